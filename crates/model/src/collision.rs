@@ -1,0 +1,189 @@
+//! A collision integrated from first touch to separation: start reading here.
+
+use stickslip_solver::{
+    Dop853, Grazing, Method, Observer, Options, Outcome, RunError, Start, Statistics, SwitchEvent, run,
+};
+
+use crate::contact::{Collision, Contact, Regime, Switch};
+use crate::energy::EnergyLedger;
+use crate::regularized::{DAMPING, END, Phase, Regularized, SLIDING, STATE, T, U, V, W};
+use crate::reversals;
+
+/// Integrates collisions with one method and one set of options.
+///
+/// ```
+/// use stickslip_model::{Collider, Contact};
+///
+/// let collision = Collider::default().collide(Contact::new(63.0, 0.5, 0.0)?)?;
+/// assert_eq!(collision.itinerary(), "+o-o+o-");
+/// assert_eq!(collision.switches.len(), 6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Collider<M> {
+    method: M,
+    options: Options,
+}
+
+impl Default for Collider<Dop853> {
+    fn default() -> Self {
+        Self::new(Dop853)
+    }
+}
+
+impl<M: Method> Collider<M> {
+    /// Relative tolerance at which Dormand–Prince 8(5,3) gives w to 1e-12.
+    pub const RTOL: f64 = 1e-13;
+    /// Absolute tolerance that goes with it.
+    pub const ATOL: f64 = 1e-14;
+
+    /// A collider with the default tolerances.
+    #[must_use]
+    pub fn new(method: M) -> Self {
+        Self::with_tolerances(method, Self::RTOL, Self::ATOL)
+    }
+
+    /// A collider with tolerances of one's own, checked when it is used.
+    #[must_use]
+    pub fn with_tolerances(method: M, rtol: f64, atol: f64) -> Self {
+        Self { method, options: Options { rtol, atol, ..Options::default() } }
+    }
+
+    /// A collider with options of one's own.
+    #[must_use]
+    pub fn with_options(method: M, options: Options) -> Self {
+        Self { method, options }
+    }
+
+    /// Integrates one collision.
+    ///
+    /// # Errors
+    /// [`CollisionError`]: invalid options, or a contact that does not end within the limits.
+    pub fn collide(&self, contact: Contact) -> Result<Collision, CollisionError> {
+        let mut collision = Collision::before(contact);
+        self.collide_into(contact, &mut collision)?;
+        Ok(collision)
+    }
+
+    /// The same into a collision whose memory is used again, so that a sweep allocates nothing.
+    ///
+    /// # Errors
+    /// As [`Self::collide`]; `collision` then holds what was found so far.
+    pub fn collide_into(
+        &self,
+        contact: Contact,
+        collision: &mut Collision,
+    ) -> Result<Statistics, CollisionError> {
+        let system = Regularized::new(contact);
+        *collision =
+            Collision { switches: std::mem::take(&mut collision.switches), ..Collision::before(contact) };
+        collision.switches.clear();
+        let phase = Phase::first(&contact);
+        let start = Start { mode: phase, s: 0.0, state: system.start() };
+        let mut account = Account { system, collision, entered: (0.0, contact.psi()), elapsed: 0.0 };
+        let run = run(self.method, &system, start, f64::INFINITY, &self.options, &mut account)?;
+        account.leave(run.mode, run.state[W], run.state[T]);
+        if run.outcome != (Outcome::EndedByGuard { guard: END }) {
+            return Err(CollisionError::Unfinished { outcome: run.outcome, time: account.elapsed });
+        }
+        collision.contact_time = collision.switches.last().map_or(0.0, |s| s.time) + run.state[T];
+        let mut left = run.state[T];
+        for switch in collision.switches.iter_mut().rev() {
+            // `time_left` holds the duration of the phase that the switch ended.
+            left += std::mem::replace(&mut switch.time_left, left);
+        }
+        let spring = system.spring(run.mode, &run.state);
+        let compression = run.state[U].powi(5);
+        collision.eps_n = -run.state[V];
+        collision.final_velocity = run.state[W];
+        collision.energy = EnergyLedger {
+            tangential_initial: 0.5 * contact.psi() * contact.psi(),
+            tangential_final: 0.5 * run.state[W] * run.state[W],
+            sliding: run.state[SLIDING],
+            spring_left: 0.5 * contact.kappa() * spring * spring,
+            normal_initial: 0.5,
+            normal_final: 0.5 * run.state[V] * run.state[V],
+            damping: run.state[DAMPING],
+            compression_left: 0.4 * compression,
+        };
+        Ok(run.statistics)
+    }
+}
+
+impl Collision {
+    /// A collision of which nothing is known yet.
+    #[must_use]
+    pub fn before(contact: Contact) -> Self {
+        Self {
+            contact,
+            eps_n: f64::NAN,
+            final_velocity: f64::NAN,
+            contact_time: f64::NAN,
+            start: Phase::first(&contact).regime,
+            switches: Vec::new(),
+            reversals: 0,
+            energy: EnergyLedger::default(),
+        }
+    }
+}
+
+/// Why a collision could not be integrated.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum CollisionError {
+    /// The integration failed.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// The contact did not end.
+    #[error("the contact has not ended at scaled time {time}: {outcome:?}")]
+    Unfinished {
+        /// Why the run stopped.
+        outcome: Outcome,
+        /// Scaled time reached.
+        time: f64,
+    },
+}
+
+/// Keeps account of a run while it goes on.
+struct Account<'a> {
+    system: Regularized,
+    collision: &'a mut Collision,
+    /// Spring and velocity when the phase began.
+    entered: (f64, f64),
+    /// Time at which it began.
+    elapsed: f64,
+}
+
+impl Account<'_> {
+    /// Closes a phase that ends with velocity `w` after `duration`.
+    fn leave(&mut self, phase: Phase, w: f64, duration: f64) {
+        self.elapsed += duration;
+        self.collision.reversals += match phase.regime {
+            Regime::Slip => usize::from(reversals::changed(self.entered.1, w)),
+            Regime::Stick => {
+                reversals::on_spring(self.collision.contact.kappa(), self.entered, w, duration)
+            }
+        };
+    }
+}
+
+impl Observer<Phase, STATE> for Account<'_> {
+    fn on_switch(&mut self, event: &SwitchEvent<Phase, STATE>) {
+        if event.guard == END {
+            return;
+        }
+        let duration = event.before[T];
+        self.leave(event.from, event.before[W], duration);
+        let spring = self.system.spring(event.to, &event.after);
+        self.entered = (spring, event.after[W]);
+        self.collision.switches.push(Switch {
+            time: self.elapsed,
+            time_left: duration,
+            to: event.to.regime,
+            side: event.to.side,
+            spring,
+            velocity: event.after[W],
+        });
+    }
+
+    fn on_grazing(&mut self, _grazing: &Grazing<Phase>) {}
+}

@@ -1,0 +1,77 @@
+//! Step-size control: how large the next step is.
+//!
+//! Source: Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I*, sections II.4
+//! and IV.2, and the codes DOPRI5 and DOP853, whose step sequences it repeats.
+
+use crate::method::{Method, State};
+
+const SAFETY: f64 = 0.9;
+
+/// Proportional-integral control with the memory it needs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Controller {
+    last_error: f64,
+    just_rejected: bool,
+}
+
+impl Controller {
+    pub(crate) fn new() -> Self {
+        Self { last_error: 1e-4, just_rejected: false }
+    }
+
+    /// The step to take after one of size `h` whose relative `error` was good enough.
+    pub(crate) fn accepted<M: Method>(&mut self, h: f64, error: f64) -> f64 {
+        let (least, most) = M::STEP_FACTORS;
+        let factor = SAFETY * self.last_error.powf(M::CONTROL_BETA) / error.powf(exponent::<M>());
+        self.last_error = error.max(1e-4);
+        let most = if std::mem::take(&mut self.just_rejected) { 1.0 } else { most };
+        h * factor.clamp(least, most)
+    }
+
+    /// The step to try after one of size `h` whose relative `error` was too large, or NaN.
+    pub(crate) fn rejected<M: Method>(&mut self, h: f64, error: f64) -> f64 {
+        self.just_rejected = true;
+        if error.is_finite() {
+            h * (SAFETY / error.powf(exponent::<M>())).max(M::STEP_FACTORS.0)
+        } else {
+            0.1 * h
+        }
+    }
+}
+
+#[allow(clippy::cast_precision_loss)]
+fn exponent<M: Method>() -> f64 {
+    let order = M::CONTROL_ORDER as f64;
+    // 0.75 β for order 5 and 0.2 β for order 8, as in the codes.
+    1.0 / order - M::CONTROL_BETA * if M::CONTROL_ORDER == 5 { 0.75 } else { 0.2 }
+}
+
+/// A first step from the sizes of the state, of its derivative `f0` and of its second derivative.
+pub(crate) fn first_step<M: Method, const N: usize>(
+    field: &mut impl FnMut(f64, &State<N>) -> State<N>,
+    s: f64,
+    y0: &State<N>,
+    f0: &State<N>,
+    tolerances: (f64, f64),
+    longest: f64,
+) -> f64 {
+    let (rtol, atol) = tolerances;
+    let norm = |v: &State<N>| -> f64 {
+        v.iter().zip(y0.iter()).map(|(v, y)| (v / (atol + rtol * y.abs())).powi(2)).sum()
+    };
+    let (state_size, slope_size) = (norm(y0), norm(f0));
+    let guess = if state_size <= 1e-10 || slope_size <= 1e-10 {
+        1e-6
+    } else {
+        0.01 * (state_size / slope_size).sqrt()
+    };
+    let h = guess.min(longest);
+    let f1 = field(s + h, &(y0 + f0 * h));
+    let curvature = norm(&(f1 - f0)).sqrt() / h;
+    let largest = curvature.max(slope_size.sqrt());
+    #[allow(clippy::cast_precision_loss)]
+    let order = M::CONTROL_ORDER as f64;
+    let step = if largest <= 1e-15 { (h * 1e-3).max(1e-6) } else { (0.01 / largest).powf(1.0 / order) };
+    let step = if step.is_nan() { h } else { step };
+    step.min(100.0 * h).min(longest)
+}

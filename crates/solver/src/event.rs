@@ -1,0 +1,367 @@
+//! One step and its guards: which of them fires first, if any.
+
+use crate::error::RunError;
+use crate::guard::{Direction, Guard};
+use crate::hybrid::{Grazing, HybridSystem, Observer, Statistics};
+use crate::isolate::{Bracket, Curve, Touch, Verdict, first_crossing};
+use crate::method::{Dense, Method, State, Step};
+use crate::quick::{self, Quick};
+
+/// Guards closer to a switch than this part of the step fire together with it.
+const TOGETHER: f64 = 1e-12;
+
+/// The mode that is active, with its guards as they stand.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Phase<Mode, const G: usize> {
+    pub(crate) mode: Mode,
+    pub(crate) guards: [Guard; G],
+    /// Values of the guards at the start of the next step.
+    pub(crate) values: [f64; G],
+    /// Orders of the zeros from which the guards start the next step.
+    pub(crate) zero_orders: [u32; G],
+}
+
+impl<Mode: Copy, const G: usize> Phase<Mode, G> {
+    pub(crate) fn enter<S: HybridSystem<N, G, Mode = Mode>, const N: usize>(
+        system: &S,
+        mode: Mode,
+        s: f64,
+        y: &State<N>,
+    ) -> Result<Self, RunError> {
+        let guards = system.guards(mode);
+        let values = system.guard_values(mode, s, y);
+        for guard in 0..G {
+            if guards[guard].direction() != Direction::Off && values[guard].is_nan() {
+                return Err(RunError::GuardNotANumber { guard, s });
+            }
+        }
+        Ok(Self { mode, guards, values, zero_orders: guards.map(|guard| guard.zero_order()) })
+    }
+
+    /// The mode goes on after `guard` has fired and left `residual`: where its value still stands at that zero,
+    /// it starts from a known one.
+    pub(crate) fn resume(&mut self, guard: usize, residual: f64) {
+        if self.values[guard].abs() <= residual {
+            self.zero_orders[guard] = self.zero_orders[guard].max(1);
+        }
+    }
+
+    /// The start of the phase lies behind.
+    pub(crate) fn leave_start(&mut self) {
+        self.zero_orders = [0; G];
+    }
+}
+
+/// A guard fires on a step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Event<const N: usize> {
+    pub(crate) guard: usize,
+    pub(crate) simultaneous: u32,
+    /// From the start of the step.
+    pub(crate) elapsed: f64,
+    /// The state on the guard.
+    pub(crate) state: State<N>,
+    /// What is left of the guard's value there.
+    pub(crate) residual: f64,
+    /// The step that ends there.
+    pub(crate) step: Step<N>,
+}
+
+/// The result of examining a step.
+pub(crate) enum Found<const N: usize, const G: usize> {
+    /// No guard fires; their values at the step's end.
+    Nothing([f64; G]),
+    /// A guard fires.
+    Event(Event<N>),
+    /// This guard is not resolved: a shorter step is needed.
+    TooCoarse(usize),
+}
+
+/// What is known of a guard on the step at hand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Status {
+    Clear,
+    Unclear,
+    Fires(Crossing),
+}
+
+/// A crossing of `sign`·guard from ≥ 0 to < 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Crossing {
+    pub(crate) sign: f64,
+    pub(crate) bracket: Bracket,
+}
+
+impl Crossing {
+    const fn at_start(sign: f64) -> Self {
+        Self { sign, bracket: Bracket { low: 0.0, high: 0.0, guess: 0.0 } }
+    }
+}
+
+/// All that the examination of a step needs.
+pub(crate) struct Examination<'a, S: HybridSystem<N, G>, O, const N: usize, const G: usize> {
+    pub(crate) system: &'a S,
+    pub(crate) phase: &'a Phase<S::Mode, G>,
+    pub(crate) statistics: &'a mut Statistics,
+    pub(crate) observer: &'a mut O,
+}
+
+impl<S, O, const N: usize, const G: usize> Examination<'_, S, O, N, G>
+where
+    S: HybridSystem<N, G>,
+    O: Observer<S::Mode, N>,
+{
+    /// Finds the first guard that fires on `step`.
+    #[inline]
+    pub(crate) fn look<M: Method>(&mut self, step: &mut Step<N>) -> Result<Found<N, G>, RunError> {
+        if G == 0 {
+            return Ok(Found::Nothing(self.phase.values));
+        }
+        let values = self.values_on(step);
+        let mut statuses = [Status::Clear; G];
+        let mut all_clear = true;
+        for guard in 0..G {
+            statuses[guard] = self.glance::<M>(guard, &values);
+            all_clear &= statuses[guard] == Status::Clear;
+        }
+        if all_clear { Ok(Found::Nothing(values[5])) } else { self.decide::<M>(step, values, statuses) }
+    }
+
+    fn decide<M: Method>(
+        &mut self,
+        step: &mut Step<N>,
+        mut values: [[f64; G]; 6],
+        mut statuses: [Status; G],
+    ) -> Result<Found<N, G>, RunError> {
+        let end_values = values[5];
+        let mut event: Option<Event<N>> = None;
+        loop {
+            let first = earliest(&statuses);
+            let Some((guard, crossing)) = first else {
+                let on = event.as_mut().map_or(&mut *step, |event| &mut event.step);
+                let mut found_any = false;
+                for guard in 0..G {
+                    if statuses[guard] == Status::Unclear {
+                        let column = values.map(|at_node| at_node[guard]);
+                        let Some(status) = self.isolate::<M>(guard, on, &column)? else {
+                            return Ok(Found::TooCoarse(guard));
+                        };
+                        found_any |= status != Status::Clear;
+                        statuses[guard] = status;
+                    }
+                }
+                if found_any {
+                    continue;
+                }
+                return Ok(event.map_or(Found::Nothing(end_values), Found::Event));
+            };
+            statuses[guard] = Status::Clear;
+            if let Some(event) = &event {
+                // Both fire at the end of the shortened step: the one listed first stands.
+                if crossing.bracket.low >= 1.0 - TOGETHER && event.guard < guard {
+                    continue;
+                }
+            }
+            let on = event.as_ref().map_or(*step, |event| event.step);
+            let exact = O::WANTS_SEGMENTS || statuses.iter().any(|&status| status != Status::Clear);
+            let mut next = self.locate::<M>(&on, guard, &crossing, exact)?;
+            if next.elapsed == 0.0 {
+                return Ok(Found::Event(next));
+            }
+            values = self.values_on(&next.step);
+            next.simultaneous = self.simultaneous(guard, &values);
+            for other in 0..G {
+                if statuses[other] != Status::Clear {
+                    statuses[other] = self.glance::<M>(other, &values);
+                }
+            }
+            event = Some(next);
+        }
+    }
+
+    /// Guards other than `guard` that are at zero where the step ends.
+    fn simultaneous(&self, guard: usize, values: &[[f64; G]; 6]) -> u32 {
+        let largest = |other: usize| values.iter().fold(0.0_f64, |size, v| size.max(v[other].abs()));
+        (0..G.min(32))
+            .filter(|&other| {
+                other != guard
+                    && self.phase.guards[other].direction() != Direction::Off
+                    && values[5][other].abs() <= TOGETHER * largest(other)
+            })
+            .fold(0, |bits, other| bits | 1 << other)
+    }
+
+    /// Guards at [`quick::NODES`] of a step.
+    #[inline]
+    fn values_on(&mut self, step: &Step<N>) -> [[f64; G]; 6] {
+        let at = |theta: f64, y: &State<N>| {
+            self.system.guard_values(self.phase.mode, step.s + theta * step.h, y)
+        };
+        self.statistics.guards += 5;
+        [
+            self.phase.values,
+            at(quick::NODES[1], &step.interior[0]),
+            at(quick::NODES[2], &step.interior[1]),
+            at(quick::NODES[3], &step.interior[2]),
+            at(quick::NODES[4], &step.interior[3]),
+            at(1.0, &step.y1),
+        ]
+    }
+
+    /// What six values tell about a guard.
+    #[inline]
+    fn glance<M: Method>(&self, guard: usize, values: &[[f64; G]; 6]) -> Status {
+        let direction = self.phase.guards[guard].direction();
+        if direction == Direction::Off {
+            return Status::Clear;
+        }
+        let sign = if direction == Direction::Rising { -1.0 } else { 1.0 };
+        let order = self.phase.zero_orders[guard];
+        let column = values.map(|at_node| sign * at_node[guard]);
+        let falls = |sign: f64, theta: f64| {
+            Status::Fires(Crossing { sign, bracket: Bracket { low: 0.0, high: 1.0, guess: theta } })
+        };
+        match quick::look(&column, order, M::QUICK_ERROR) {
+            Quick::Positive => Status::Clear,
+            Quick::Negative if direction == Direction::Below => Status::Fires(Crossing::at_start(sign)),
+            Quick::Negative => Status::Clear,
+            Quick::Falls { theta } => falls(sign, theta),
+            Quick::Unclear if direction == Direction::Either => {
+                match quick::look(&column.map(|value| -value), order, M::QUICK_ERROR) {
+                    Quick::Falls { theta } => falls(-1.0, theta),
+                    _ => Status::Unclear,
+                }
+            }
+            Quick::Unclear => Status::Unclear,
+        }
+    }
+
+    /// Decides by isolation; `None` if the step is too coarse for that.
+    fn isolate<M: Method>(
+        &mut self,
+        guard: usize,
+        step: &mut Step<N>,
+        values: &[f64; 6],
+    ) -> Result<Option<Status>, RunError> {
+        if values.iter().all(|&value| value == 0.0) {
+            return Err(RunError::GuardIdenticallyZero { guard, s: step.s });
+        }
+        self.statistics.isolations += 1;
+        let (system, mode) = (self.system, self.phase.mode);
+        let dense = step.dense::<M>(&mut |s, y| system.field(mode, s, y));
+        self.statistics.field += M::DENSE_STAGES - M::STAGES;
+        let order = self.phase.zero_orders[guard];
+        let signs: &[f64] = match self.phase.guards[guard].direction() {
+            Direction::Rising => &[-1.0],
+            Direction::Either => &[1.0, -1.0],
+            _ => &[1.0],
+        };
+        let below = self.phase.guards[guard].direction() == Direction::Below;
+        let mut found = Status::Clear;
+        for &sign in signs {
+            let mut curve = AlongStep::<'_, S, M, N, G> {
+                system,
+                mode,
+                guard,
+                sign,
+                step,
+                dense: &dense,
+                statistics: &mut *self.statistics,
+                method: std::marker::PhantomData,
+            };
+            let mut touches = [None; 8];
+            let mut count = 0;
+            let verdict = first_crossing(
+                &mut curve,
+                order,
+                below,
+                (sign * values[0], sign * values[5]),
+                |touch: Touch| {
+                    if let Some(place) = touches.get_mut(count) {
+                        *place = Some(touch);
+                    }
+                    count += 1;
+                },
+            )?;
+            for touch in touches.into_iter().flatten() {
+                self.statistics.grazings += 1;
+                let s = step.s + touch.theta * step.h;
+                self.observer.on_grazing(&Grazing { s, mode, guard, margin: sign * touch.margin });
+            }
+            let crossing = match verdict {
+                Verdict::None => continue,
+                Verdict::TooCoarse => return Ok(None),
+                Verdict::StartsBelow => Crossing::at_start(sign),
+                Verdict::Crossing(bracket) => Crossing { sign, bracket },
+            };
+            found = match found {
+                Status::Fires(other) if other.bracket.guess <= crossing.bracket.guess => found,
+                _ => Status::Fires(crossing),
+            };
+        }
+        Ok(Some(found))
+    }
+}
+
+/// The crossing with the least step fraction; of equal ones the guard listed first.
+fn earliest<const G: usize>(statuses: &[Status; G]) -> Option<(usize, Crossing)> {
+    let mut first: Option<(usize, Crossing)> = None;
+    for (guard, status) in statuses.iter().enumerate() {
+        if let Status::Fires(crossing) = *status
+            && first.is_none_or(|(_, other)| crossing.bracket.guess < other.bracket.guess)
+        {
+            first = Some((guard, crossing));
+        }
+    }
+    first
+}
+
+/// A guard along a step, for isolation.
+struct AlongStep<'a, S: HybridSystem<N, G>, M, const N: usize, const G: usize> {
+    system: &'a S,
+    mode: S::Mode,
+    guard: usize,
+    sign: f64,
+    step: &'a Step<N>,
+    dense: &'a Dense<N>,
+    statistics: &'a mut Statistics,
+    method: std::marker::PhantomData<M>,
+}
+
+impl<S, M, const N: usize, const G: usize> AlongStep<'_, S, M, N, G>
+where
+    S: HybridSystem<N, G>,
+{
+    fn value(&mut self, theta: f64, y: &State<N>) -> f64 {
+        self.statistics.guards += 1;
+        let s = self.step.s + theta * self.step.h;
+        self.sign * self.system.guard_values(self.mode, s, y)[self.guard]
+    }
+}
+
+impl<S, M, const N: usize, const G: usize> Curve for AlongStep<'_, S, M, N, G>
+where
+    S: HybridSystem<N, G>,
+    M: Method,
+{
+    type Error = RunError;
+
+    fn dense(&mut self, theta: f64) -> (f64, f64) {
+        let (fine, coarse) = (self.dense.at(theta), self.dense.coarse_at(theta));
+        (self.value(theta, &fine), self.value(theta, &coarse))
+    }
+
+    fn truth(&mut self, theta: f64) -> Result<f64, RunError> {
+        let (system, mode, step) = (self.system, self.mode, self.step);
+        let mut field = |s: f64, y: &State<N>| system.field(mode, s, y);
+        let h = theta * step.h;
+        let shorter = Step::take::<M>(&mut field, step.s, &step.y0, &step.k[0], h);
+        self.statistics.resteps += 1;
+        self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
+        let value = self.value(theta, &shorter.y1);
+        if value.is_nan() {
+            return Err(RunError::GuardNotANumber { guard: self.guard, s: step.s });
+        }
+        Ok(value)
+    }
+}

@@ -1,0 +1,344 @@
+//! Crossings of a guard on one step, decided.
+//!
+//! Along the dense output a guard is an analytic function q of the step fraction θ. It is expanded
+//! in Chebyshev polynomials on panels narrow enough for degree 8, its critical points are isolated
+//! by coefficient bounds and subdivision, and they cut the step into pieces on which q is monotone. On a
+//! monotone piece the signs at the ends decide. Where a sign lies within the error of the dense
+//! output, the method itself is asked, by a step to that point.
+
+/// Terms of a panel's expansion.
+const TERMS: usize = 9;
+/// Panels narrower than 2^−`DEPTH` of the step are not cut further.
+const DEPTH: u32 = 12;
+
+/// A guard's value along a step.
+pub(crate) trait Curve {
+    /// Why a value cannot be had.
+    type Error;
+    /// By the dense output, and by the dense output without its last term.
+    fn dense(&mut self, theta: f64) -> (f64, f64);
+    /// By a step of the method to `theta`.
+    fn truth(&mut self, theta: f64) -> Result<f64, Self::Error>;
+}
+
+/// A crossing from ≥ 0 to < 0 between two step fractions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Bracket {
+    pub(crate) low: f64,
+    pub(crate) high: f64,
+    pub(crate) guess: f64,
+}
+
+/// A local extremum within the error of the dense output of zero, and its value by the method.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Touch {
+    pub(crate) theta: f64,
+    pub(crate) margin: f64,
+}
+
+/// What became of a guard on a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Verdict {
+    /// No crossing.
+    None,
+    /// The first crossing.
+    Crossing(Bracket),
+    /// Negative from the start.
+    StartsBelow,
+    /// The guard is not resolved on this step: a shorter one is needed.
+    TooCoarse,
+}
+
+/// Finds the first crossing of a curve from ≥ 0 to < 0.
+///
+/// `zero_order` is the order of a known zero at θ = 0, which is divided out; `start` and `end` are
+/// the curve's values at the ends of the step. If the curve bounds a `domain`, a negative start counts.
+/// Touches met before the crossing go to `on_touch`.
+pub(crate) fn first_crossing<C: Curve>(
+    curve: &mut C,
+    zero_order: u32,
+    domain: bool,
+    (start, end): (f64, f64),
+    mut on_touch: impl FnMut(Touch),
+) -> Result<Verdict, C::Error> {
+    let mut quotient = Quotient { curve, order: zero_order };
+    let error = quotient.error();
+    if error.is_nan() {
+        return Ok(Verdict::TooCoarse);
+    }
+    // The last point whose sign is known, and the value there.
+    let mut before = (0.0, start);
+    if zero_order > 0 {
+        let opening = Panel::new(&mut quotient, 0.0, 1.0 / 64.0).at_left();
+        if opening.abs() <= error {
+            return Ok(Verdict::TooCoarse);
+        }
+        before.1 = opening;
+    }
+    if domain && before.1 < 0.0 {
+        return Ok(Verdict::StartsBelow);
+    }
+    let mut pending = [(0.0, 0.0); DEPTH as usize + 2];
+    pending[0] = (0.0, 1.0);
+    let mut count = 1;
+    while count > 0 {
+        count -= 1;
+        let (low, high) = pending[count];
+        let panel = Panel::new(&mut quotient, low, high);
+        if panel.tail() > error {
+            if high - low < 1.5 / f64::from(1_u32 << DEPTH) {
+                return Ok(Verdict::TooCoarse);
+            }
+            let middle = 0.5 * (low + high);
+            pending[count] = (middle, high);
+            pending[count + 1] = (low, middle);
+            count += 2;
+            continue;
+        }
+        let mut points = Points::default();
+        panel.critical_points(-1.0, 1.0, error, DEPTH, &mut points);
+        points.push(1.0);
+        if points.overflowed {
+            return Ok(Verdict::TooCoarse);
+        }
+        for &local in points.as_slice() {
+            let theta = panel.theta(local);
+            let at_end = theta >= 1.0;
+            let mut value = if at_end { end } else { panel.at(local) };
+            if !at_end && value.abs() <= error {
+                value = quotient.truth(theta)?;
+                if local < 1.0 {
+                    on_touch(Touch { theta, margin: value * power(theta, zero_order) });
+                }
+            }
+            if before.1 >= 0.0 && value < 0.0 {
+                let guess = panel_root(&mut quotient, before, (theta, value));
+                return Ok(Verdict::Crossing(Bracket { low: before.0, high: theta, guess }));
+            }
+            if value.is_nan() {
+                return Ok(Verdict::TooCoarse);
+            }
+            before = (theta, value);
+        }
+    }
+    Ok(Verdict::None)
+}
+
+/// Where the dense output puts the root between two points of opposite sign (Illinois' rule).
+fn panel_root<C: Curve>(quotient: &mut Quotient<'_, C>, low: (f64, f64), high: (f64, f64)) -> f64 {
+    let (mut a, mut b) = (low, high);
+    let mut theta = b.0;
+    for _ in 0..40 {
+        let next = a.0 + (b.0 - a.0) * (a.1 / (a.1 - b.1));
+        if !next.is_finite() || (next - theta).abs() <= 1e-9 * next {
+            break;
+        }
+        theta = next;
+        let value = quotient.at(theta).0;
+        if value < 0.0 {
+            b = (theta, value);
+            a.1 *= 0.5;
+        } else {
+            a = (theta, value);
+            b.1 *= 0.5;
+        }
+    }
+    theta.clamp(low.0, high.0)
+}
+
+fn power(theta: f64, order: u32) -> f64 {
+    (0..order).fold(1.0, |product, _| product * theta)
+}
+
+/// A curve with the known zero at its start divided out.
+struct Quotient<'a, C> {
+    curve: &'a mut C,
+    order: u32,
+}
+
+impl<C: Curve> Quotient<'_, C> {
+    fn at(&mut self, theta: f64) -> (f64, f64) {
+        let (fine, coarse) = self.curve.dense(theta);
+        let divisor = power(theta, self.order);
+        (fine / divisor, coarse / divisor)
+    }
+
+    fn truth(&mut self, theta: f64) -> Result<f64, C::Error> {
+        Ok(self.curve.truth(theta)? / power(theta, self.order))
+    }
+
+    /// Bound of the dense output's error as the guard sees it: the effect of its last term, and
+    /// rounding.
+    fn error(&mut self) -> f64 {
+        let (mut error, mut scale) = (0.0_f64, 0.0_f64);
+        for j in 1..16 {
+            let (fine, coarse) = self.at(f64::from(j) / 16.0);
+            error = if fine.is_nan() { f64::NAN } else { error.max((fine - coarse).abs()) };
+            scale = scale.max(fine.abs());
+        }
+        error + 16.0 * f64::EPSILON * scale
+    }
+}
+
+/// A curve on part of a step, in Chebyshev polynomials of the local variable t ∈ [−1, 1].
+struct Panel {
+    low: f64,
+    high: f64,
+    coefficients: [f64; TERMS],
+}
+
+impl Panel {
+    fn new<C: Curve>(quotient: &mut Quotient<'_, C>, low: f64, high: f64) -> Self {
+        let middle = 0.5 * (low + high);
+        let half = 0.5 * (high - low);
+        Self { low, high, coefficients: expand(|t| quotient.at(middle + half * t).0) }
+    }
+
+    fn theta(&self, local: f64) -> f64 {
+        if local >= 1.0 { self.high } else { self.low + 0.5 * (local + 1.0) * (self.high - self.low) }
+    }
+
+    fn at(&self, local: f64) -> f64 {
+        clenshaw(&self.coefficients, local)
+    }
+
+    fn at_left(&self) -> f64 {
+        self.at(-1.0)
+    }
+
+    /// Size of the last two terms: what degree 8 leaves out is smaller where the function is smooth.
+    fn tail(&self) -> f64 {
+        self.coefficients[TERMS - 1].abs() + self.coefficients[TERMS - 2].abs()
+    }
+
+    /// Collects, from left to right, points of ]low, high[ that cut it into monotone pieces; a stretch
+    /// flat to within `error` gives its middle.
+    fn critical_points(&self, low: f64, high: f64, error: f64, depth: u32, points: &mut Points) {
+        let local = |t: f64| 0.5 * (low + high) + 0.5 * (high - low) * t;
+        let derivative = differentiate(&self.coefficients);
+        let slope = expand(|t| clenshaw(&derivative, local(t)));
+        if dominated(&slope) {
+            return;
+        }
+        let curvature = differentiate(&slope);
+        if dominated(&curvature) {
+            if (clenshaw(&slope, -1.0) < 0.0) != (clenshaw(&slope, 1.0) < 0.0) {
+                points.push(local(monotone_root(&slope)));
+            }
+            return;
+        }
+        let values = expand(|t| clenshaw(&self.coefficients, local(t)));
+        let variation: f64 = values[1..].iter().map(|c| c.abs()).sum();
+        if depth == 0 || variation <= 0.125 * error {
+            points.push(0.5 * (low + high));
+            return;
+        }
+        let middle = 0.5 * (low + high);
+        self.critical_points(low, middle, error, depth - 1, points);
+        // An extremum that rounding puts on neither side of the cut is on the cut.
+        points.push(middle);
+        self.critical_points(middle, high, error, depth - 1, points);
+    }
+}
+
+/// Points in order.
+struct Points {
+    items: [f64; 64],
+    count: usize,
+    overflowed: bool,
+}
+
+impl Default for Points {
+    fn default() -> Self {
+        Self { items: [0.0; 64], count: 0, overflowed: false }
+    }
+}
+
+impl Points {
+    fn push(&mut self, point: f64) {
+        match self.items.get_mut(self.count) {
+            Some(item) => {
+                *item = point;
+                self.count += 1;
+            }
+            None => self.overflowed = true,
+        }
+    }
+
+    fn as_slice(&self) -> &[f64] {
+        &self.items[..self.count]
+    }
+}
+
+/// cos(10° m) for m = 0 … 9: the nodes of degree 8 are at 10°, 30°, … 170°, none of them an end of the
+/// interval, where a quotient may have no value.
+const COSINES: [f64; 10] = [
+    1.0,
+    0.984807753012208,
+    0.9396926207859083,
+    0.8660254037844386,
+    0.766044443118978,
+    0.6427876096865393,
+    0.5,
+    0.3420201433256688,
+    0.1736481776669304,
+    0.0,
+];
+
+fn cosine(tens_of_degrees: usize) -> f64 {
+    match tens_of_degrees % 36 {
+        m @ 0..=9 => COSINES[m],
+        m @ 10..=18 => -COSINES[18 - m],
+        m @ 19..=27 => -COSINES[m - 18],
+        m => COSINES[36 - m],
+    }
+}
+
+/// Chebyshev coefficients of the interpolant of degree 8 on [−1, 1].
+fn expand(mut function: impl FnMut(f64) -> f64) -> [f64; TERMS] {
+    let values: [f64; TERMS] = std::array::from_fn(|j| function(cosine(2 * j + 1)));
+    std::array::from_fn(|k| {
+        let sum: f64 =
+            values.iter().enumerate().map(|(j, value)| value * cosine(k * (2 * j + 1))).sum();
+        sum * if k == 0 { 1.0 / 9.0 } else { 2.0 / 9.0 }
+    })
+}
+
+fn clenshaw(coefficients: &[f64; TERMS], t: f64) -> f64 {
+    let (mut b1, mut b2) = (0.0, 0.0);
+    for &c in coefficients[1..].iter().rev() {
+        (b1, b2) = (c + 2.0 * t * b1 - b2, b1);
+    }
+    coefficients[0] + t * b1 - b2
+}
+
+#[allow(clippy::cast_precision_loss)]
+fn differentiate(coefficients: &[f64; TERMS]) -> [f64; TERMS] {
+    let mut derivative = [0.0; TERMS];
+    for k in (0..TERMS - 1).rev() {
+        let beyond = if k + 2 < TERMS { derivative[k + 2] } else { 0.0 };
+        derivative[k] = beyond + 2.0 * (k + 1) as f64 * coefficients[k + 1];
+    }
+    derivative[0] *= 0.5;
+    derivative
+}
+
+/// Whether the constant term outweighs all others, so that there is no root.
+fn dominated(coefficients: &[f64; TERMS]) -> bool {
+    coefficients[0].abs() > coefficients[1..].iter().map(|c| c.abs()).sum()
+}
+
+/// The root of a monotone expansion whose signs at ±1 differ, by bisection.
+fn monotone_root(coefficients: &[f64; TERMS]) -> f64 {
+    let (mut low, mut high) = (-1.0, 1.0);
+    let negative_left = clenshaw(coefficients, low) < 0.0;
+    for _ in 0..45 {
+        let middle = 0.5 * (low + high);
+        if (clenshaw(coefficients, middle) < 0.0) == negative_left {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
+}

@@ -1,0 +1,161 @@
+//! The place of a switch, by steps of the method itself.
+//!
+//! The dense output only says where to start: each iterate is a step from the same start to a trial place,
+//! so a switch is as accurate as any other point of the run.
+
+use crate::error::RunError;
+use crate::event::{Crossing, Event, Examination};
+use crate::hybrid::{HybridSystem, Observer};
+use crate::method::{Method, State, Step};
+
+/// Part of a step that the end of a re-step may be off the switch; the midpoint rule bridges it with an
+/// error of the cube of this part, which is below rounding.
+const BRIDGE: f64 = 1e-5;
+/// Part of a step over which a guard's slope is differenced: the step's own scale, on which the guard is known
+/// to change, so that cancellation cannot spoil the slope however short the step.
+const REACH: f64 = 1e-3;
+
+impl<S, O, const N: usize, const G: usize> Examination<'_, S, O, N, G>
+where
+    S: HybridSystem<N, G>,
+    O: Observer<S::Mode, N>,
+{
+    /// Ends `step` where `guard` crosses zero inside the bracket; if `exact`, the event's step ends exactly
+    /// there, otherwise within a small part of itself.
+    pub(crate) fn locate<M: Method>(
+        &mut self,
+        step: &Step<N>,
+        guard: usize,
+        crossing: &Crossing,
+        exact: bool,
+    ) -> Result<Event<N>, RunError> {
+        let (system, mode) = (self.system, self.phase.mode);
+        let (mut low, mut high) = (crossing.bracket.low, crossing.bracket.high);
+        let mut theta = crossing.bracket.guess;
+        let event = |elapsed, state, residual: f64, step| Event {
+            guard,
+            simultaneous: 0,
+            elapsed,
+            state,
+            residual: residual.abs(),
+            step,
+        };
+        if high == 0.0 {
+            let residual = self.phase.values[guard];
+            return Ok(event(0.0, step.y0, residual, step.shrunk_to_start()));
+        }
+        if !(theta > low && theta < high) {
+            theta = 0.5 * (low + high);
+        }
+        loop {
+            let mut trial = self.restep::<M>(step, theta * step.h);
+            let near = Near { system, mode, guard, sign: crossing.sign, reach: REACH * trial.h };
+            let end = near.probe(trial.s + trial.h, &trial.y1);
+            self.count_probe();
+            if end.value.is_nan() {
+                return Err(RunError::GuardNotANumber { guard, s: step.s });
+            }
+            if end.value >= 0.0 {
+                low = theta;
+            } else {
+                high = theta;
+            }
+            let shift = end.shift() / step.h;
+            let next = theta + shift;
+            if shift.abs() <= BRIDGE * theta && next >= low && next <= high {
+                let (elapsed, state, residual) = self.bridge(&near, &trial, end);
+                if exact && elapsed != trial.h {
+                    trial = self.restep::<M>(step, elapsed);
+                }
+                return Ok(event(elapsed, state, residual, trial));
+            }
+            if high - low <= 4.0 * f64::EPSILON * high {
+                return Ok(event(trial.h, trial.y1, end.value, trial));
+            }
+            theta = if next > low && next < high { next } else { 0.5 * (low + high) };
+        }
+    }
+
+    /// A step of `h` from the same start.
+    fn restep<M: Method>(&mut self, step: &Step<N>, h: f64) -> Step<N> {
+        let (system, mode) = (self.system, self.phase.mode);
+        let mut field = |s: f64, y: &State<N>| system.field(mode, s, y);
+        self.statistics.resteps += 1;
+        self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
+        Step::take::<M>(&mut field, step.s, &step.y0, &step.k[0], h)
+    }
+
+    /// Moves from the end of `trial` onto the guard: how far from the start that is, the state there, and what
+    /// is left of the guard's value.
+    fn bridge(
+        &mut self,
+        near: &Near<'_, S, N, G>,
+        trial: &Step<N>,
+        mut at: Probe<N>,
+    ) -> (f64, State<N>, f64) {
+        let (mut moved, mut y) = (0.0, trial.y1);
+        let s = trial.s + trial.h;
+        for _ in 0..4 {
+            let shift = at.shift();
+            if shift.abs() <= 1e-9 * trial.h {
+                moved += shift;
+                y += at.slope_of_state * shift;
+                break;
+            }
+            let middle = y + at.slope_of_state * (0.5 * shift);
+            y += self.system.field(near.mode, s + moved + 0.5 * shift, &middle) * shift;
+            moved += shift;
+            at = near.probe(s + moved, &y);
+            self.statistics.field += 1;
+            self.count_probe();
+        }
+        let residual = near.value(s + moved, &y);
+        self.statistics.guards += 1;
+        (trial.h + moved, y, residual)
+    }
+
+    fn count_probe(&mut self) {
+        self.statistics.field += 1;
+        self.statistics.guards += 3;
+    }
+}
+
+/// A guard in the neighbourhood of its zero.
+struct Near<'a, S: HybridSystem<N, G>, const N: usize, const G: usize> {
+    system: &'a S,
+    mode: S::Mode,
+    guard: usize,
+    sign: f64,
+    /// Distance over which slopes are differenced.
+    reach: f64,
+}
+
+/// A guard's value, and how it and the state change.
+#[derive(Clone, Copy)]
+struct Probe<const N: usize> {
+    value: f64,
+    slope: f64,
+    slope_of_state: State<N>,
+}
+
+impl<const N: usize> Probe<N> {
+    /// Newton's step to the zero.
+    fn shift(&self) -> f64 {
+        if self.value == 0.0 { 0.0 } else { -self.value / self.slope }
+    }
+}
+
+impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Near<'_, S, N, G> {
+    fn value(&self, s: f64, y: &State<N>) -> f64 {
+        self.sign * self.system.guard_values(self.mode, s, y)[self.guard]
+    }
+
+    fn probe(&self, s: f64, y: &State<N>) -> Probe<N> {
+        let slope_of_state = self.system.field(self.mode, s, y);
+        let reach = slope_of_state * self.reach;
+        let ahead = self.value(s + self.reach, &(y + reach));
+        let behind = self.value(s - self.reach, &(y - reach));
+        let slope = (ahead - behind) / (2.0 * self.reach);
+        Probe { value: self.value(s, y), slope, slope_of_state }
+    }
+}

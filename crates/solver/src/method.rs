@@ -1,0 +1,266 @@
+//! A Runge–Kutta pair as data, and one step with it as a pure function.
+
+use nalgebra::SVector;
+
+/// A state of `N` components.
+pub type State<const N: usize> = SVector<f64, N>;
+
+/// Room for the stages of the largest method, its dense output included.
+pub const MAX_STAGES: usize = 16;
+
+/// Step fractions, beside 0 and 1, at which a step knows the state without further work.
+///
+/// They are nodes of Dormand–Prince 8(5,3) whose stages are accurate to fifth order.
+pub const INTERIOR_NODES: [f64; 4] = [1.0 / 4.0, 1.0 / 3.0, 3.0 / 5.0, 6.0 / 7.0];
+
+/// Coefficients of an embedded explicit Runge–Kutta pair with a continuous extension.
+///
+/// Row `i` of `a` holds the weights of stage `i`; rows from `stages` on belong to the dense output,
+/// the first of them being the derivative at the end of the step (so its row repeats `b`).
+#[derive(Debug)]
+pub struct Tableau {
+    /// Nodes c.
+    pub c: [f64; MAX_STAGES],
+    /// Stage weights.
+    pub a: [[f64; MAX_STAGES]; MAX_STAGES],
+    /// Weights of the solution that is propagated.
+    pub b: [f64; MAX_STAGES],
+    /// Weights of the error estimate that controls the step.
+    pub error: [f64; MAX_STAGES],
+    /// Weights of a second, coarser estimate that steadies the first; all zero where there is none.
+    pub coarse_error: [f64; MAX_STAGES],
+    /// Rows of the dense output beyond its cubic Hermite part, in units of h.
+    pub dense: [[f64; MAX_STAGES]; 4],
+}
+
+/// An embedded pair: its coefficients and what they are good for.
+pub trait Method: Copy {
+    /// The name under which the pair is known.
+    const NAME: &'static str;
+    /// Order of the solution that is propagated.
+    const ORDER: usize;
+    /// Order on which the step-size control counts, one more than the error estimate's.
+    const CONTROL_ORDER: usize;
+    /// Stages of a step.
+    const STAGES: usize;
+    /// Stages once the dense output is included, the derivative at the step's end among them.
+    const DENSE_STAGES: usize;
+    /// Degree of the dense output.
+    const DENSE_DEGREE: usize;
+    /// Whether the error estimate uses the derivative at the end of the step.
+    const ERROR_USES_END: bool;
+    /// Stages that sit at [`INTERIOR_NODES`]; `None` takes these states from the dense output.
+    const INTERIOR_STAGES: Option<[usize; 4]>;
+    /// The part of the next-to-last term of a quick guard expansion that counts as its error.
+    const QUICK_ERROR: f64;
+    /// Proportional-integral exponent β of the step-size control.
+    const CONTROL_BETA: f64;
+    /// Least and largest factor by which a step may change.
+    const STEP_FACTORS: (f64, f64);
+    /// The coefficients.
+    const TABLEAU: Tableau;
+}
+
+/// A trial step of size `h` from `y0` at `s` to `y1`, with its stages.
+#[derive(Clone, Copy, Debug)]
+pub struct Step<const N: usize> {
+    /// Where the step starts.
+    pub s: f64,
+    /// Its size.
+    pub h: f64,
+    /// State at its start.
+    pub y0: State<N>,
+    /// State at its end.
+    pub y1: State<N>,
+    /// Derivatives at the stages; the first is the derivative at the start.
+    pub k: [State<N>; MAX_STAGES],
+    /// States at [`INTERIOR_NODES`].
+    pub interior: [State<N>; 4],
+    end_known: bool,
+}
+
+impl<const N: usize> Step<N> {
+    /// Takes a step of `h` from `y0`, whose derivative is `f0`.
+    #[inline]
+    pub fn take<M: Method>(
+        field: &mut impl FnMut(f64, &State<N>) -> State<N>,
+        s: f64,
+        y0: &State<N>,
+        f0: &State<N>,
+        h: f64,
+    ) -> Self {
+        let zero = State::zeros();
+        let mut step = Self {
+            s,
+            h,
+            y0: *y0,
+            y1: zero,
+            k: [zero; MAX_STAGES],
+            interior: [zero; 4],
+            end_known: false,
+        };
+        step.k[0] = *f0;
+        macro_rules! stages {
+            ($($i:literal)*) => {$(
+                if $i < M::STAGES {
+                    step.stage::<M, $i>(field);
+                }
+            )*};
+        }
+        stages!(1 2 3 4 5 6 7 8 9 10 11);
+        step.y1 = step.y0 + combine(&M::TABLEAU.b, &step.k, M::STAGES) * h;
+        if M::ERROR_USES_END {
+            step.finish::<M>(field);
+        }
+        if M::INTERIOR_STAGES.is_none() {
+            let dense = step.dense::<M>(field);
+            for (state, theta) in step.interior.iter_mut().zip(INTERIOR_NODES) {
+                *state = dense.at(theta);
+            }
+        }
+        step
+    }
+
+    /// The step of size 0.
+    pub(crate) fn shrunk_to_start(&self) -> Self {
+        let (h, y1, interior) = (0.0, self.y0, [self.y0; 4]);
+        Self { h, y1, interior, k: [self.k[0]; MAX_STAGES], ..*self }
+    }
+
+    #[inline(always)]
+    fn stage<M: Method, const I: usize>(
+        &mut self,
+        field: &mut impl FnMut(f64, &State<N>) -> State<N>,
+    ) {
+        let y = self.y0 + combine(&M::TABLEAU.a[I], &self.k, I) * self.h;
+        if let Some(stages) = M::INTERIOR_STAGES {
+            if I == stages[0] {
+                self.interior[0] = y;
+            } else if I == stages[1] {
+                self.interior[1] = y;
+            } else if I == stages[2] {
+                self.interior[2] = y;
+            } else if I == stages[3] {
+                self.interior[3] = y;
+            }
+        }
+        self.k[I] = field(self.s + M::TABLEAU.c[I] * self.h, &y);
+    }
+
+    /// The derivative at the end of the step, computed on first use.
+    #[inline]
+    pub fn finish<M: Method>(
+        &mut self,
+        field: &mut impl FnMut(f64, &State<N>) -> State<N>,
+    ) -> State<N> {
+        if !self.end_known {
+            self.k[M::STAGES] = field(self.s + self.h, &self.y1);
+            self.end_known = true;
+        }
+        self.k[M::STAGES]
+    }
+
+    /// Estimated error of `y1` relative to `atol + rtol·max(|y0|, |y1|)`, as a root mean square; a
+    /// step is good if this is below 1, which NaN is not.
+    #[inline]
+    pub fn error<M: Method>(&self, rtol: f64, atol: f64) -> f64 {
+        let used = M::STAGES + usize::from(M::ERROR_USES_END);
+        let fine = combine(&M::TABLEAU.error, &self.k, used);
+        let coarse = combine(&M::TABLEAU.coarse_error, &self.k, used);
+        let (mut fine_sum, mut coarse_sum) = (0.0, 0.0);
+        for i in 0..N {
+            let scale = atol + rtol * self.y0[i].abs().max(self.y1[i].abs());
+            fine_sum += (fine[i] / scale) * (fine[i] / scale);
+            coarse_sum += (coarse[i] / scale) * (coarse[i] / scale);
+        }
+        #[allow(clippy::cast_precision_loss)]
+        let n = N as f64;
+        // Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.10: the fine
+        // estimate is damped where the coarse one says that it is accidentally small.
+        let blend = fine_sum + 0.01 * coarse_sum;
+        if blend == 0.0 { 0.0 } else { self.h.abs() * fine_sum / (n * blend).sqrt() }
+    }
+
+    /// The continuous extension over the step; costs the method's further stages.
+    pub fn dense<M: Method>(
+        &mut self,
+        field: &mut impl FnMut(f64, &State<N>) -> State<N>,
+    ) -> Dense<N> {
+        let f1 = self.finish::<M>(field);
+        for i in M::STAGES + 1..M::DENSE_STAGES {
+            let y = self.y0 + combine(&M::TABLEAU.a[i], &self.k, i) * self.h;
+            self.k[i] = field(self.s + M::TABLEAU.c[i] * self.h, &y);
+        }
+        let mut r = [State::zeros(); 8];
+        let rise = self.y1 - self.y0;
+        let bend = self.k[0] * self.h - rise;
+        r[0] = self.y0;
+        r[1] = rise;
+        r[2] = bend;
+        r[3] = rise - f1 * self.h - bend;
+        for (i, row) in M::TABLEAU.dense.iter().enumerate().take(M::DENSE_DEGREE - 3) {
+            r[4 + i] = combine(row, &self.k, M::DENSE_STAGES) * self.h;
+        }
+        Dense { s: self.s, h: self.h, r, degree: M::DENSE_DEGREE }
+    }
+}
+
+/// Σ weights[j] k[j] over the first `count` stages.
+#[inline(always)]
+fn combine<const N: usize>(
+    weights: &[f64; MAX_STAGES],
+    k: &[State<N>; MAX_STAGES],
+    count: usize,
+) -> State<N> {
+    let mut sum = State::zeros();
+    for j in 0..count {
+        if weights[j] != 0.0 {
+            sum += k[j] * weights[j];
+        }
+    }
+    sum
+}
+
+/// The continuous extension of one step: a polynomial in the step fraction θ ∈ [0, 1],
+/// r₀ + θ(r₁ + (1−θ)(r₂ + θ(r₃ + (1−θ)(r₄ + …)))).
+#[derive(Clone, Copy, Debug)]
+pub struct Dense<const N: usize> {
+    s: f64,
+    h: f64,
+    r: [State<N>; 8],
+    degree: usize,
+}
+
+impl<const N: usize> Dense<N> {
+    /// Where the step starts.
+    #[must_use]
+    pub fn start(&self) -> f64 {
+        self.s
+    }
+
+    /// The step's size.
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        self.h
+    }
+
+    /// The state at step fraction `theta`.
+    #[must_use]
+    pub fn at(&self, theta: f64) -> State<N> {
+        self.truncated(theta, self.degree)
+    }
+
+    /// The same without the last term, whose size bounds the error of [`Self::at`].
+    #[must_use]
+    pub fn coarse_at(&self, theta: f64) -> State<N> {
+        self.truncated(theta, self.degree - 1)
+    }
+
+    fn truncated(&self, theta: f64, degree: usize) -> State<N> {
+        let mut sum = self.r[degree];
+        for i in (0..degree).rev() {
+            sum = self.r[i] + sum * if i % 2 == 0 { theta } else { 1.0 - theta };
+        }
+        sum
+    }
+}

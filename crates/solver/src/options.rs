@@ -1,0 +1,91 @@
+//! What a run may be told.
+
+/// How the step size is chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StepSize {
+    /// By the embedded error estimate, so that each step's error is below `atol + rtol·|y|`.
+    Adaptive,
+    /// The same size throughout, shortened only at switches and at the end: for convergence studies.
+    Fixed(f64),
+}
+
+/// Options of a run, checked by [`Options::validate`] when the run starts.
+///
+/// ```
+/// use stickslip_solver::Options;
+///
+/// let options = Options { rtol: 1e-9, ..Options::default() };
+/// assert!(options.validate().is_ok());
+/// assert!(Options { rtol: f64::NAN, ..options }.validate().is_err());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Relative tolerance of a step, from 1e-15 to 1e-1.
+    pub rtol: f64,
+    /// Absolute tolerance of a step, finite and above 0.
+    pub atol: f64,
+    /// How the step size is chosen.
+    pub step_size: StepSize,
+    /// Size of the first step; `None` has it estimated.
+    pub first_step: Option<f64>,
+    /// The longest step allowed.
+    pub max_step: f64,
+    /// The run stops after this many accepted or rejected steps.
+    pub max_steps: usize,
+    /// The run stops after this many switches.
+    pub max_switches: usize,
+    /// A sequence of switches whose remaining time, extrapolated geometrically, falls below this
+    /// part of the time that has passed counts as a Zeno accumulation.
+    pub zeno: f64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            rtol: 1e-10,
+            atol: 1e-12,
+            step_size: StepSize::Adaptive,
+            first_step: None,
+            max_step: f64::INFINITY,
+            max_steps: 10_000_000,
+            max_switches: 10_000_000,
+            zeno: 1e-13,
+        }
+    }
+}
+
+impl Options {
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// The first field that is out of its range, with its value and the range.
+    pub fn validate(&self) -> Result<(), InvalidOption> {
+        let check = |name, value: f64, accepted, ok: bool| {
+            if ok { Ok(()) } else { Err(InvalidOption { name, value, accepted }) }
+        };
+        let positive = |value: f64| value > 0.0 && value.is_finite();
+        check("rtol", self.rtol, "1e-15 to 0.1", (1e-15..=0.1).contains(&self.rtol))?;
+        check("atol", self.atol, "a finite number above 0", positive(self.atol))?;
+        check("max_step", self.max_step, "a number above 0", self.max_step > 0.0)?;
+        check("zeno", self.zeno, "0 to 0.1", (0.0..=0.1).contains(&self.zeno))?;
+        if let Some(h) = self.first_step {
+            check("first_step", h, "a finite number above 0", positive(h))?;
+        }
+        if let StepSize::Fixed(h) = self.step_size {
+            check("fixed step", h, "a finite number above 0", positive(h))?;
+        }
+        Ok(())
+    }
+}
+
+/// An option is out of its range.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("{name} = {value} is out of range; accepted is {accepted}")]
+pub struct InvalidOption {
+    /// The option's name.
+    pub name: &'static str,
+    /// The value that was given.
+    pub value: f64,
+    /// What is accepted.
+    pub accepted: &'static str,
+}

@@ -1,0 +1,299 @@
+//! The first look at a guard on a step: a quintic through six values that the step already holds.
+//!
+//! Most steps are far from any switch, and most crossings are steep. Both are recognised here at the
+//! price of four guard evaluations; everything else is left to [`crate::isolate`].
+
+use crate::method::INTERIOR_NODES;
+
+const COUNT: usize = 6;
+
+/// Step fractions of the six values.
+pub(crate) const NODES: [f64; COUNT] =
+    [0.0, INTERIOR_NODES[0], INTERIOR_NODES[1], INTERIOR_NODES[2], INTERIOR_NODES[3], 1.0];
+
+/// What six values of a guard tell about its sign on the step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Quick {
+    /// Positive throughout.
+    Positive,
+    /// Negative throughout.
+    Negative,
+    /// Falls through zero once, steeply.
+    Falls {
+        /// The step fraction, to the accuracy of the quintic.
+        theta: f64,
+    },
+    /// Anything else.
+    Unclear,
+}
+
+/// Looks at a guard whose values at [`NODES`] are `values` and which starts the step from a zero of
+/// order `zero_order` (0: no known zero). `trust` is the part of the next-to-last term of the
+/// expansion that counts as its error, beside the whole last term.
+#[inline]
+pub(crate) fn look(values: &[f64; COUNT], zero_order: u32, trust: f64) -> Quick {
+    if zero_order == 0 {
+        let error = last_term(values, &QUINTIC_TERM) + trust * last_term(values, &QUARTIC_TERM);
+        return classify(&multiply(&QUINTIC, values), error);
+    }
+    // With the known zero divided out, five values and a quartic remain.
+    let mut quotient = [0.0; COUNT - 1];
+    for i in 1..COUNT {
+        quotient[i - 1] = values[i] / power(NODES[i], zero_order);
+    }
+    let error = last_term(&quotient, &LATE_QUARTIC_TERM) + trust * last_term(&quotient, &LATE_CUBIC_TERM);
+    classify(&multiply(&QUARTIC, &quotient), error)
+}
+
+#[inline]
+fn power(theta: f64, order: u32) -> f64 {
+    (0..order).fold(1.0, |product, _| product * theta)
+}
+
+/// Decides from Bernstein coefficients whose polynomial is within `error` of the guard.
+#[inline]
+fn classify<const K: usize>(bernstein: &[f64; K], error: f64) -> Quick {
+    let (mut least, mut most) = (bernstein[0], bernstein[0]);
+    for &b in &bernstein[1..] {
+        least = least.min(b);
+        most = most.max(b);
+    }
+    // Comparisons are written so that NaN, which spreads to the sum and the error, is never clear.
+    if least > error {
+        return Quick::Positive;
+    }
+    if most < -error {
+        return Quick::Negative;
+    }
+    // A term of degree K whose size is `error` has a slope of at most 2K² times that (Markov).
+    #[allow(clippy::cast_precision_loss)]
+    let slope_error = 2.0 * (K * K) as f64 * error;
+    let falls = bernstein.windows(2).all(|pair| (pair[1] - pair[0]) * (K as f64 - 1.0) < -slope_error);
+    if falls && bernstein[0] > error && bernstein[K - 1] < -error {
+        return Quick::Falls { theta: falling_root(bernstein) };
+    }
+    Quick::Unclear
+}
+
+/// The root of a polynomial that falls through zero once, by Newton's method kept inside a
+/// bracket.
+fn falling_root<const K: usize>(bernstein: &[f64; K]) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    let mut theta = bernstein[0] / (bernstein[0] - bernstein[K - 1]);
+    for _ in 0..30 {
+        let (value, derivative) = de_casteljau(bernstein, theta);
+        if value > 0.0 {
+            low = theta;
+        } else {
+            high = theta;
+        }
+        let next = theta - value / derivative;
+        let next = if next > low && next < high { next } else { 0.5 * (low + high) };
+        let moved = (next - theta).abs();
+        theta = next;
+        if moved <= 1e-9 * theta {
+            break;
+        }
+    }
+    theta
+}
+
+fn de_casteljau<const K: usize>(bernstein: &[f64; K], theta: f64) -> (f64, f64) {
+    let mut b = *bernstein;
+    for last in (2..K).rev() {
+        for i in 0..last {
+            b[i] += theta * (b[i + 1] - b[i]);
+        }
+    }
+    #[allow(clippy::cast_precision_loss)]
+    let degree = (K - 1) as f64;
+    (b[0] + theta * (b[1] - b[0]), degree * (b[1] - b[0]))
+}
+
+#[inline]
+fn multiply<const K: usize>(matrix: &[[f64; K]; K], values: &[f64; K]) -> [f64; K] {
+    // Column by column, so that the products run over neighbours in memory.
+    let mut product = [0.0; K];
+    for (column, value) in matrix.iter().zip(values) {
+        for (sum, entry) in product.iter_mut().zip(column) {
+            *sum += entry * value;
+        }
+    }
+    product
+}
+
+#[inline]
+fn last_term<const K: usize>(values: &[f64; K], weights: &[f64; K]) -> f64 {
+    values.iter().zip(weights).map(|(value, weight)| value * weight).sum::<f64>().abs()
+}
+
+/// Columns of the map from values at the six nodes to Bernstein coefficients of degree 5.
+const QUINTIC: [[f64; 6]; 6] = to_bernstein(&NODES);
+/// The same for the five nodes after the start, degree 4.
+const QUARTIC: [[f64; 5]; 5] = to_bernstein(&LATE_NODES);
+const LATE_NODES: [f64; 5] = [NODES[1], NODES[2], NODES[3], NODES[4], NODES[5]];
+
+/// Weights that give the size of the expansion's last term on the step, and of the one before it.
+const QUINTIC_TERM: [f64; 6] = last_term_weights(&NODES, None, 2);
+const QUARTIC_TERM: [f64; 6] = last_term_weights(&NODES, Some(2), 3);
+const LATE_QUARTIC_TERM: [f64; 5] = last_term_weights(&LATE_NODES, None, 1);
+const LATE_CUBIC_TERM: [f64; 5] = last_term_weights(&LATE_NODES, Some(1), 2);
+
+/// Newton's form through all nodes but `skip`, with node `last` added last: the weights of its highest
+/// coefficient times the greatest value of that coefficient's polynomial on [0, 1].
+const fn last_term_weights<const K: usize>(
+    nodes: &[f64; K],
+    skip: Option<usize>,
+    last: usize,
+) -> [f64; K] {
+    let skip = match skip {
+        Some(i) => i,
+        None => K,
+    };
+    let mut greatest = 0.0;
+    let mut sample = 0;
+    while sample <= 1000 {
+        let mut product = 1.0;
+        let mut i = 0;
+        while i < K {
+            if i != skip && i != last {
+                product *= sample as f64 / 1000.0 - nodes[i];
+            }
+            i += 1;
+        }
+        if product.abs() > greatest {
+            greatest = product.abs();
+        }
+        sample += 1;
+    }
+    let mut weights = [0.0; K];
+    let mut i = 0;
+    while i < K {
+        if i != skip {
+            let mut product = 1.0;
+            let mut j = 0;
+            while j < K {
+                if j != skip && j != i {
+                    product *= nodes[i] - nodes[j];
+                }
+                j += 1;
+            }
+            weights[i] = greatest / product;
+        }
+        i += 1;
+    }
+    weights
+}
+
+/// The inverse of the Bernstein collocation matrix at `nodes`, as columns.
+const fn to_bernstein<const K: usize>(nodes: &[f64; K]) -> [[f64; K]; K] {
+    let mut matrix = [[0.0; K]; K];
+    let mut inverse = [[0.0; K]; K];
+    let mut row = 0;
+    while row < K {
+        let mut column = 0;
+        while column < K {
+            matrix[row][column] = bernstein(K - 1, column, nodes[row]);
+            column += 1;
+        }
+        inverse[row][row] = 1.0;
+        row += 1;
+    }
+    // Gauss–Jordan; the matrix is totally positive, so it needs no pivoting.
+    let mut pivot = 0;
+    while pivot < K {
+        let scale = 1.0 / matrix[pivot][pivot];
+        let mut column = 0;
+        while column < K {
+            matrix[pivot][column] *= scale;
+            inverse[pivot][column] *= scale;
+            column += 1;
+        }
+        let mut row = 0;
+        while row < K {
+            if row != pivot {
+                let factor = matrix[row][pivot];
+                let mut column = 0;
+                while column < K {
+                    matrix[row][column] -= factor * matrix[pivot][column];
+                    inverse[row][column] -= factor * inverse[pivot][column];
+                    column += 1;
+                }
+            }
+            row += 1;
+        }
+        pivot += 1;
+    }
+    let mut columns = [[0.0; K]; K];
+    let mut row = 0;
+    while row < K {
+        let mut column = 0;
+        while column < K {
+            columns[column][row] = inverse[row][column];
+            column += 1;
+        }
+        row += 1;
+    }
+    columns
+}
+
+const fn bernstein(degree: usize, index: usize, theta: f64) -> f64 {
+    let mut product = 1.0;
+    let mut i = 0;
+    while i < degree {
+        product *= if i < index {
+            theta * (degree - i) as f64 / (index - i) as f64
+        } else {
+            1.0 - theta
+        };
+        i += 1;
+    }
+    product
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sampled(guard: impl Fn(f64) -> f64) -> [f64; COUNT] {
+        NODES.map(guard)
+    }
+
+    #[test]
+    fn a_polynomial_of_degree_five_is_recovered() {
+        let guard = |t: f64| 1.0 + t * (2.0 - t * (3.0 - t * (4.0 + t * (5.0 - 6.0 * t))));
+        let coefficients = multiply(&QUINTIC, &sampled(guard));
+        for theta in [0.0, 0.1, 0.47, 0.9, 1.0] {
+            assert!((de_casteljau(&coefficients, theta).0 - guard(theta)).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn a_steep_fall_is_located() {
+        let values = sampled(|t: f64| (-(0.1 * t)).exp() - 0.95);
+        let Quick::Falls { theta } = look(&values, 0, 0.1) else { panic!("not found") };
+        let root = -10.0 * 0.95_f64.ln();
+        assert!((theta - root).abs() < 1e-8);
+    }
+
+    #[test]
+    fn a_double_zero_at_the_start_is_no_crossing() {
+        let values = sampled(|t: f64| t * t * (1.0 + 0.1 * t).ln_1p());
+        assert_eq!(look(&values, 2, 0.1), Quick::Positive);
+        let values = sampled(|t: f64| -t * t * (1.0 + 0.1 * t));
+        assert_eq!(look(&values, 2, 0.1), Quick::Negative);
+    }
+
+    #[test]
+    fn a_close_pair_is_left_to_isolation() {
+        let values = sampled(|t: f64| (t - 0.5) * (t - 0.501));
+        assert_eq!(look(&values, 0, 0.1), Quick::Unclear);
+    }
+
+    #[test]
+    fn not_a_number_is_never_clear() {
+        let mut values = sampled(|_| 1.0);
+        values[3] = f64::NAN;
+        assert_eq!(look(&values, 0, 0.1), Quick::Unclear);
+    }
+}

@@ -1,0 +1,88 @@
+//! Recording what a run finds, and its dense trajectory.
+
+use crate::hybrid::{Grazing, Observer, SwitchEvent};
+use crate::method::{Dense, State};
+
+/// An accepted step with its continuous extension.
+#[derive(Clone, Copy, Debug)]
+pub struct Segment<Mode, const N: usize> {
+    /// The mode in which the step was taken.
+    pub mode: Mode,
+    /// The state along the step.
+    pub dense: Dense<N>,
+}
+
+/// The continuous extension of a whole run.
+#[derive(Clone, Debug)]
+pub struct Trajectory<Mode, const N: usize> {
+    segments: Vec<Segment<Mode, N>>,
+}
+
+impl<Mode, const N: usize> Default for Trajectory<Mode, N> {
+    fn default() -> Self {
+        Self { segments: Vec::new() }
+    }
+}
+
+impl<Mode: Copy, const N: usize> Trajectory<Mode, N> {
+    /// The steps, in order.
+    #[must_use]
+    pub fn segments(&self) -> &[Segment<Mode, N>] {
+        &self.segments
+    }
+
+    /// Mode and state at `s`; at a switch, those that begin. `None` outside the run.
+    #[must_use]
+    pub fn at(&self, s: f64) -> Option<(Mode, State<N>)> {
+        let after = self.segments.partition_point(|segment| segment.dense.start() <= s);
+        let segment = self.segments.get(after.checked_sub(1)?)?;
+        let theta = (s - segment.dense.start()) / segment.dense.size();
+        // The end of the last step, with room for the rounding of its place.
+        (theta <= 1.0 + 1e-9).then(|| (segment.mode, segment.dense.at(theta.min(1.0))))
+    }
+}
+
+/// Records switches, touches and the trajectory.
+///
+/// ```
+/// use stickslip_solver::{Dopri5, Options, Recorder, State, integrate};
+///
+/// let circle = |_s: f64, y: &State<2>| State::from([y[1], -y[0]]);
+/// let mut recorder = Recorder::default();
+/// let options = Options::default();
+/// integrate(Dopri5, circle, 0.0, State::from([0.0, 1.0]), 3.0, &options, &mut recorder)?;
+/// let (_, y) = recorder.trajectory.at(1.5).ok_or("outside the run")?;
+/// assert!((y[0] - 1.5_f64.sin()).abs() < 1e-8);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Recorder<Mode, const N: usize> {
+    /// Every switch, the one that ended the run included.
+    pub switches: Vec<SwitchEvent<Mode, N>>,
+    /// Every touch.
+    pub grazings: Vec<Grazing<Mode>>,
+    /// The state everywhere.
+    pub trajectory: Trajectory<Mode, N>,
+}
+
+impl<Mode, const N: usize> Default for Recorder<Mode, N> {
+    fn default() -> Self {
+        Self { switches: Vec::new(), grazings: Vec::new(), trajectory: Trajectory::default() }
+    }
+}
+
+impl<Mode: Copy, const N: usize> Observer<Mode, N> for Recorder<Mode, N> {
+    const WANTS_SEGMENTS: bool = true;
+
+    fn on_switch(&mut self, event: &SwitchEvent<Mode, N>) {
+        self.switches.push(*event);
+    }
+
+    fn on_grazing(&mut self, grazing: &Grazing<Mode>) {
+        self.grazings.push(*grazing);
+    }
+
+    fn on_segment(&mut self, mode: Mode, dense: &Dense<N>) {
+        self.trajectory.segments.push(Segment { mode, dense: *dense });
+    }
+}
