@@ -1,12 +1,12 @@
 //! A collision integrated from first touch to separation: start reading here.
 
 use stickslip_solver::{
-    Dop853, Grazing, Method, Observer, Options, Outcome, RunError, Start, Statistics, SwitchEvent, run,
+    Dop853, Method, Observer, Options, Outcome, RunError, Start, State, Statistics, SwitchEvent, run,
 };
 
 use crate::contact::{Collision, Contact, Regime, Switch};
 use crate::energy::EnergyLedger;
-use crate::regularized::{DAMPING, END, Phase, Regularized, SLIDING, STATE, T, U, V, W};
+use crate::regularized::{DAMPING, END, Phase, Regularized, STATE, T, U, V, W};
 use crate::reversals;
 
 /// Integrates collisions with one method and one set of options.
@@ -80,9 +80,11 @@ impl<M: Method> Collider<M> {
         collision.switches.clear();
         let phase = Phase::first(&contact);
         let start = Start { mode: phase, s: 0.0, state: system.start() };
-        let mut account = Account { system, collision, entered: (0.0, contact.psi()), elapsed: 0.0 };
+        let mut account =
+            Account { system, collision, entered: start.state, spring: 0.0, elapsed: 0.0, sliding: 0.0 };
         let run = run(self.method, &system, start, f64::INFINITY, &self.options, &mut account)?;
-        account.leave(run.mode, run.state[W], run.state[T]);
+        account.leave(run.mode, &run.state);
+        let sliding = account.sliding;
         if run.outcome != (Outcome::EndedByGuard { guard: END }) {
             return Err(CollisionError::Unfinished { outcome: run.outcome, time: account.elapsed });
         }
@@ -99,7 +101,7 @@ impl<M: Method> Collider<M> {
         collision.energy = EnergyLedger {
             tangential_initial: 0.5 * contact.psi() * contact.psi(),
             tangential_final: 0.5 * run.state[W] * run.state[W],
-            sliding: run.state[SLIDING],
+            sliding,
             spring_left: 0.5 * contact.kappa() * spring * spring,
             normal_initial: 0.5,
             normal_final: 0.5 * run.state[V] * run.state[V],
@@ -147,22 +149,33 @@ pub enum CollisionError {
 struct Account<'a> {
     system: Regularized,
     collision: &'a mut Collision,
-    /// Spring and velocity when the phase began.
-    entered: (f64, f64),
+    /// State when the phase began.
+    entered: State<STATE>,
+    /// Spring when it began.
+    spring: f64,
     /// Time at which it began.
     elapsed: f64,
+    /// Energy taken by sliding before that.
+    sliding: f64,
 }
 
 impl Account<'_> {
-    /// Closes a phase that ends with velocity `w` after `duration`.
-    fn leave(&mut self, phase: Phase, w: f64, duration: f64) {
-        self.elapsed += duration;
+    /// Closes a phase that ends in state `y`.
+    fn leave(&mut self, phase: Phase, y: &State<STATE>) {
+        let kappa = self.collision.contact.kappa();
+        let (v0, w0) = (self.entered[V], self.entered[W]);
+        self.elapsed += y[T];
         self.collision.reversals += match phase.regime {
-            Regime::Slip => usize::from(reversals::changed(self.entered.1, w)),
-            Regime::Stick => {
-                reversals::on_spring(self.collision.contact.kappa(), self.entered, w, duration)
-            }
+            Regime::Slip => usize::from(reversals::changed(w0, y[W])),
+            Regime::Stick => reversals::on_spring(kappa, (self.spring, w0), y[W], y[T]),
         };
+        if phase.regime == Regime::Slip {
+            // s w = s w₀ + v − v₀ and F dt = −dv turn ∫ F (s w − dL/dt) dt into differences.
+            let force = self.system.normal_force(&self.entered);
+            let end_force = self.system.normal_force(y);
+            let work = (v0 - y[V]) * (phase.side.sign() * w0 + 0.5 * (y[V] - v0));
+            self.sliding += work - 0.5 * (end_force * end_force - force * force) / kappa;
+        }
     }
 }
 
@@ -171,19 +184,16 @@ impl Observer<Phase, STATE> for Account<'_> {
         if event.guard == END {
             return;
         }
-        let duration = event.before[T];
-        self.leave(event.from, event.before[W], duration);
-        let spring = self.system.spring(event.to, &event.after);
-        self.entered = (spring, event.after[W]);
+        self.leave(event.from, &event.before);
+        self.spring = self.system.spring(event.to, &event.after);
+        self.entered = event.after;
         self.collision.switches.push(Switch {
             time: self.elapsed,
-            time_left: duration,
+            time_left: event.before[T],
             to: event.to.regime,
             side: event.to.side,
-            spring,
+            spring: self.spring,
             velocity: event.after[W],
         });
     }
-
-    fn on_grazing(&mut self, _grazing: &Grazing<Phase>) {}
 }

@@ -14,14 +14,15 @@
 //! rate' = F'' − 2sκ v w + 4κ u² (F − gap)
 //! ```
 //!
-//! and gap' = rate in stick, gap = 0 in slip, where −rate is the guard.
+//! and gap' = rate in stick, gap = 0 in slip, where −rate is the guard. The state holds gap/c and rate/c² with
+//! c = max(1, √κ), which makes their errors comparable to those of w.
 
-use stickslip_solver::{Direction, Guard, HybridSystem, State};
+use stickslip_solver::{Direction, Guard, HybridSystem, Method, State, Step};
 
 use crate::contact::{Contact, Regime, Side};
 
 /// Components of the state.
-pub const STATE: usize = 8;
+pub const STATE: usize = 7;
 /// Guards of a phase.
 pub const GUARDS: usize = 3;
 
@@ -33,14 +34,12 @@ pub const V: usize = 1;
 pub const T: usize = 2;
 /// Reduced tangential velocity.
 pub const W: usize = 3;
-/// F − s κ y.
+/// gap/c.
 pub const GAP: usize = 4;
-/// d gap/ds.
+/// rate/c².
 pub const RATE: usize = 5;
-/// Tangential energy taken by sliding.
-pub const SLIDING: usize = 6;
 /// Normal energy taken by damping.
-pub const DAMPING: usize = 7;
+pub const DAMPING: usize = 6;
 
 /// Guard of the end of contact.
 pub const END: usize = 0;
@@ -70,10 +69,14 @@ impl Phase {
     }
 }
 
-/// The contact as a hybrid system in (u, v, t, w, gap, rate), with two quadratures for the energy ledger.
+/// The contact as a hybrid system in (u, v, t, w, gap, rate), with a quadrature for the energy ledger.
 #[derive(Clone, Copy, Debug)]
 pub struct Regularized {
     contact: Contact,
+    /// c = max(1, √κ).
+    stiffness: f64,
+    /// 1/c.
+    softness: f64,
 }
 
 /// The force F and its first two derivatives with respect to s.
@@ -90,7 +93,8 @@ impl Regularized {
     /// The system of one contact.
     #[must_use]
     pub fn new(contact: Contact) -> Self {
-        Self { contact }
+        let stiffness = contact.kappa().sqrt().max(1.0);
+        Self { contact, stiffness, softness: 1.0 / stiffness }
     }
 
     /// The state at the start of contact.
@@ -99,31 +103,87 @@ impl Regularized {
         let mut y = State::zeros();
         y[V] = 1.0;
         y[W] = self.contact.psi();
-        y[RATE] = self.contact.damping();
+        y[RATE] = self.softness * self.softness * self.contact.damping();
         y
+    }
+
+    /// Scaled normal force F = x^{3/2} + a √x v.
+    #[must_use]
+    pub fn normal_force(&self, y: &State<STATE>) -> f64 {
+        self.force(y[U], y[V]).value
     }
 
     /// Reduced elongation y of the spring in a state of `phase`.
     #[must_use]
     pub fn spring(&self, phase: Phase, y: &State<STATE>) -> f64 {
-        phase.side.sign() * (self.force(y[U], y[V]).value - y[GAP]) / self.contact.kappa()
+        phase.side.sign() * (self.normal_force(y) - self.stiffness * y[GAP]) / self.contact.kappa()
     }
 
     #[inline(always)]
     fn force(&self, u: f64, v: f64) -> Force {
-        let a = self.contact.damping();
+        if self.contact.damping() > 0.0 { self.force_of::<true>(u, v) } else { self.force_of::<false>(u, v) }
+    }
+
+    #[inline(always)]
+    fn force_of<const DAMPED: bool>(&self, u: f64, v: f64) -> Force {
         let uu = u * u;
-        let f1 = uu + a * v;
-        let dv = -2.0 * uu * f1;
-        let df1 = 2.0 * u * v + a * dv;
-        let ddv = -2.0 * u * (2.0 * v * f1 + u * df1);
-        let ddf1 = 2.0 * (v * v + u * dv) + a * ddv;
-        Force {
-            value: u * f1,
-            first: v * f1 + u * df1,
-            second: dv * f1 + 2.0 * v * df1 + u * ddf1,
-            deceleration: dv,
+        if DAMPED {
+            let a = self.contact.damping();
+            let f1 = uu + a * v;
+            let dv = -2.0 * uu * f1;
+            let df1 = 2.0 * u * v + a * dv;
+            let ddv = -2.0 * u * (2.0 * v * f1 + u * df1);
+            let ddf1 = 2.0 * (v * v + u * dv) + a * ddv;
+            Force {
+                value: u * f1,
+                first: v * f1 + u * df1,
+                second: dv * f1 + 2.0 * v * df1 + u * ddf1,
+                deceleration: dv,
+            }
+        } else {
+            let dv = -2.0 * uu * uu;
+            Force {
+                value: uu * u,
+                first: 3.0 * uu * v,
+                second: 3.0 * u * (2.0 * v * v + u * dv),
+                deceleration: dv,
+            }
         }
+    }
+
+    #[inline(always)]
+    fn slip<const DAMPED: bool>(&self, side: Side, y: &State<STATE>) -> State<STATE> {
+        let (u, v) = (y[U], y[V]);
+        let sign = side.sign();
+        let force = self.force_of::<DAMPED>(u, v);
+        State::from([
+            v,
+            force.deceleration,
+            2.0 * u,
+            sign * force.deceleration,
+            0.0,
+            0.0,
+            if DAMPED { 2.0 * self.contact.damping() * (u * v) * (u * v) } else { 0.0 },
+        ])
+    }
+
+    #[inline(always)]
+    fn stick<const DAMPED: bool>(&self, side: Side, y: &State<STATE>) -> State<STATE> {
+        let (u, v, w) = (y[U], y[V], y[W]);
+        let sign = side.sign();
+        let force = self.force_of::<DAMPED>(u, v);
+        let kappa = self.contact.kappa();
+        let spring = force.value - self.stiffness * y[GAP];
+        State::from([
+            v,
+            force.deceleration,
+            2.0 * u,
+            (-2.0 * sign * u) * spring,
+            self.stiffness * y[RATE],
+            self.softness * self.softness
+                * ((force.second - (2.0 * sign * kappa) * (v * w)) + (4.0 * kappa * u * u) * spring),
+            if DAMPED { 2.0 * self.contact.damping() * (u * v) * (u * v) } else { 0.0 },
+        ])
     }
 
     /// The guard of slip on side s: s w − dL/dt, in the form that has no zero of its own where u = 0.
@@ -144,35 +204,30 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
 
     #[inline(always)]
     fn field(&self, phase: Phase, _s: f64, y: &State<STATE>) -> State<STATE> {
-        let (kappa, a) = (self.contact.kappa(), self.contact.damping());
-        let (u, v, w) = (y[U], y[V], y[W]);
-        let sign = phase.side.sign();
-        let force = self.force(u, v);
-        let loss = 2.0 * a * (u * v) * (u * v);
-        match phase.regime {
-            Regime::Slip => State::from([
-                v,
-                force.deceleration,
-                2.0 * u,
-                sign * force.deceleration,
-                0.0,
-                0.0,
-                force.value * (2.0 * u * sign * w - force.first / kappa),
-                loss,
-            ]),
-            Regime::Stick => {
-                let drag = 2.0 * u * (force.value - y[GAP]);
-                State::from([
-                    v,
-                    force.deceleration,
-                    2.0 * u,
-                    -sign * drag,
-                    y[RATE],
-                    force.second - 2.0 * kappa * (sign * v * w - u * drag),
-                    0.0,
-                    loss,
-                ])
-            }
+        match (phase.regime, self.contact.damping() > 0.0) {
+            (Regime::Slip, false) => self.slip::<false>(phase.side, y),
+            (Regime::Slip, true) => self.slip::<true>(phase.side, y),
+            (Regime::Stick, false) => self.stick::<false>(phase.side, y),
+            (Regime::Stick, true) => self.stick::<true>(phase.side, y),
+        }
+    }
+
+    /// Each regime's step is compiled by itself: what a regime's right-hand side does not use (the spring while
+    /// sliding, the quadratures) then costs no stage.
+    fn step<M: Method>(
+        &self,
+        phase: Phase,
+        s: f64,
+        y0: &State<STATE>,
+        f0: &State<STATE>,
+        h: f64,
+    ) -> Step<STATE> {
+        let side = phase.side;
+        match (phase.regime, self.contact.damping() > 0.0) {
+            (Regime::Slip, false) => Step::take::<M>(&mut |_, y| self.slip::<false>(side, y), s, y0, f0, h),
+            (Regime::Slip, true) => Step::take::<M>(&mut |_, y| self.slip::<true>(side, y), s, y0, f0, h),
+            (Regime::Stick, false) => Step::take::<M>(&mut |_, y| self.stick::<false>(side, y), s, y0, f0, h),
+            (Regime::Stick, true) => Step::take::<M>(&mut |_, y| self.stick::<true>(side, y), s, y0, f0, h),
         }
     }
 
@@ -197,7 +252,7 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
             Regime::Slip => [end, self.slip_guard(phase.side, y), 1.0],
             Regime::Stick => {
                 let force = y[U] * (y[U] * y[U] + a * y[V]);
-                [end, y[GAP], 2.0 * force - y[GAP]]
+                [end, y[GAP], 2.0 * force - self.stiffness * y[GAP]]
             }
         }
     }

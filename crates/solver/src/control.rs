@@ -12,17 +12,24 @@ const SAFETY: f64 = 0.9;
 pub(crate) struct Controller {
     last_error: f64,
     just_rejected: bool,
+    fresh: bool,
 }
 
 impl Controller {
     pub(crate) fn new() -> Self {
-        Self { last_error: 1e-4, just_rejected: false }
+        Self { last_error: 1e-4, just_rejected: false, fresh: true }
+    }
+
+    /// A new right-hand side begins.
+    pub(crate) fn begin(&mut self) {
+        self.fresh = true;
     }
 
     /// The step to take after one of size `h` whose relative `error` was good enough.
     pub(crate) fn accepted<M: Method>(&mut self, h: f64, error: f64) -> f64 {
         let (least, most) = M::STEP_FACTORS;
-        let factor = SAFETY * self.last_error.powf(M::CONTROL_BETA) / error.powf(exponent::<M>());
+        self.fresh = false;
+        let factor = SAFETY * power(self.last_error, M::CONTROL_BETA) / power(error, exponent::<M>());
         self.last_error = error.max(1e-4);
         let most = if std::mem::take(&mut self.just_rejected) { 1.0 } else { most };
         h * factor.clamp(least, most)
@@ -32,10 +39,24 @@ impl Controller {
     pub(crate) fn rejected<M: Method>(&mut self, h: f64, error: f64) -> f64 {
         self.just_rejected = true;
         if error.is_finite() {
-            h * (SAFETY / error.powf(exponent::<M>())).max(M::STEP_FACTORS.0)
+            // The first step of a right-hand side is a guess: it may be wrong by more.
+            let least = if self.fresh { 0.01 } else { M::STEP_FACTORS.0 };
+            h * (SAFETY / power(error, exponent::<M>())).max(least)
         } else {
             0.1 * h
         }
+    }
+}
+
+/// `base^exponent`, by square roots for the exponents of order 8: this runs once a step.
+#[inline]
+fn power(base: f64, exponent: f64) -> f64 {
+    if exponent == 0.125 {
+        base.sqrt().sqrt().sqrt()
+    } else if exponent == 0.0 {
+        1.0
+    } else {
+        base.powf(exponent)
     }
 }
 

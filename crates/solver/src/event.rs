@@ -353,9 +353,7 @@ where
 
     fn truth(&mut self, theta: f64) -> Result<f64, RunError> {
         let (system, mode, step) = (self.system, self.mode, self.step);
-        let mut field = |s: f64, y: &State<N>| system.field(mode, s, y);
-        let h = theta * step.h;
-        let shorter = Step::take::<M>(&mut field, step.s, &step.y0, &step.k[0], h);
+        let shorter = system.step::<M>(mode, step.s, &step.y0, &step.k[0], theta * step.h);
         self.statistics.resteps += 1;
         self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
         let value = self.value(theta, &shorter.y1);

@@ -30,6 +30,22 @@ pub trait HybridSystem<const N: usize, const G: usize> {
     /// The values of the guards of `mode`; those of unused places are ignored.
     fn guard_values(&self, mode: Self::Mode, s: f64, y: &State<N>) -> [f64; G];
 
+    /// A step of `h` in `mode` from `y0`, whose derivative is `f0`.
+    ///
+    /// The provided one serves every system. A system whose modes have right-hand sides of different cost
+    /// may give each mode a step of its own, compiled for that right-hand side alone.
+    #[inline]
+    fn step<M: Method>(
+        &self,
+        mode: Self::Mode,
+        s: f64,
+        y0: &State<N>,
+        f0: &State<N>,
+        h: f64,
+    ) -> Step<N> {
+        Step::take::<M>(&mut |s, y| self.field(mode, s, y), s, y0, f0, h)
+    }
+
     /// The mode and state that follow when `guard` of `mode` fires at `y`.
     fn transition(
         &self,
@@ -195,6 +211,7 @@ where
         phase: Phase::enter(system, start.mode, start.s, &start.state)?,
         state: start.state,
         slope: State::zeros(),
+        other_h: None,
         h: 0.0,
         controller: Controller::new(),
         zeno: Zeno::new(start.s),
@@ -223,6 +240,8 @@ struct Runner<'a, S: HybridSystem<N, G>, O, const N: usize, const G: usize> {
     slope: State<N>,
     /// Size of the next step.
     h: f64,
+    /// The same for the phase after this one, as the phase before this one left it: modes mostly alternate.
+    other_h: Option<f64>,
     controller: Controller,
     zeno: Zeno,
     statistics: Statistics,
@@ -265,10 +284,10 @@ where
             let left = self.clock.until(self.end);
             let h = self.h.min(self.options.max_step);
             let (h, last) = if h >= left { (left, true) } else { (h, false) };
-            let mut step = Step::take::<M>(&mut field, self.clock.s, &self.state, &self.slope, h);
+            let mut step = system.step::<M>(mode, self.clock.s, &self.state, &self.slope, h);
             self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
             let error = match self.options.step_size {
-                StepSize::Adaptive => step.error::<M>(self.options.rtol, self.options.atol),
+                StepSize::Adaptive => step.error(self.options.rtol, self.options.atol),
                 StepSize::Fixed(_) => step.y1.sum() * 0.0,
             };
             // Written so that NaN rejects.
@@ -379,6 +398,11 @@ where
         self.clock.phase = 0.0;
         self.phase = Phase::enter(self.system, to, s, &after)?;
         self.statistics.guards += 1;
+        if self.options.step_size == StepSize::Adaptive {
+            let h = self.other_h.replace(self.h).unwrap_or(self.h);
+            self.h = h;
+            self.controller.begin();
+        }
         if to == from {
             self.phase.resume(guard, event.residual);
         }

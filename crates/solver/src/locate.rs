@@ -78,11 +78,9 @@ where
 
     /// A step of `h` from the same start.
     fn restep<M: Method>(&mut self, step: &Step<N>, h: f64) -> Step<N> {
-        let (system, mode) = (self.system, self.phase.mode);
-        let mut field = |s: f64, y: &State<N>| system.field(mode, s, y);
         self.statistics.resteps += 1;
         self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
-        Step::take::<M>(&mut field, step.s, &step.y0, &step.k[0], h)
+        self.system.step::<M>(self.phase.mode, step.s, &step.y0, &step.k[0], h)
     }
 
     /// Moves from the end of `trial` onto the guard: how far from the start that is, the state there, and what

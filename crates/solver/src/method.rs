@@ -76,6 +76,8 @@ pub struct Step<const N: usize> {
     pub k: [State<N>; MAX_STAGES],
     /// States at [`INTERIOR_NODES`].
     pub interior: [State<N>; 4],
+    /// Fine and coarse estimates of the error of `y1`, in units of h.
+    errors: [State<N>; 2],
     end_known: bool,
 }
 
@@ -97,6 +99,7 @@ impl<const N: usize> Step<N> {
             y1: zero,
             k: [zero; MAX_STAGES],
             interior: [zero; 4],
+            errors: [zero; 2],
             end_known: false,
         };
         step.k[0] = *f0;
@@ -112,6 +115,11 @@ impl<const N: usize> Step<N> {
         if M::ERROR_USES_END {
             step.finish::<M>(field);
         }
+        let used = M::STAGES + usize::from(M::ERROR_USES_END);
+        step.errors = [
+            combine(&M::TABLEAU.error, &step.k, used),
+            combine(&M::TABLEAU.coarse_error, &step.k, used),
+        ];
         if M::INTERIOR_STAGES.is_none() {
             let dense = step.dense::<M>(field);
             for (state, theta) in step.interior.iter_mut().zip(INTERIOR_NODES) {
@@ -132,7 +140,9 @@ impl<const N: usize> Step<N> {
         &mut self,
         field: &mut impl FnMut(f64, &State<N>) -> State<N>,
     ) {
-        let y = self.y0 + combine(&M::TABLEAU.a[I], &self.k, I) * self.h;
+        // The newest stage comes last and with few operations: each stage waits for the one before it.
+        let early = self.y0 + combine(&M::TABLEAU.a[I], &self.k, I - 1) * self.h;
+        let y = early + self.k[I - 1] * (self.h * M::TABLEAU.a[I][I - 1]);
         if let Some(stages) = M::INTERIOR_STAGES {
             if I == stages[0] {
                 self.interior[0] = y;
@@ -163,15 +173,13 @@ impl<const N: usize> Step<N> {
     /// Estimated error of `y1` relative to `atol + rtol·max(|y0|, |y1|)`, as a root mean square; a
     /// step is good if this is below 1, which NaN is not.
     #[inline]
-    pub fn error<M: Method>(&self, rtol: f64, atol: f64) -> f64 {
-        let used = M::STAGES + usize::from(M::ERROR_USES_END);
-        let fine = combine(&M::TABLEAU.error, &self.k, used);
-        let coarse = combine(&M::TABLEAU.coarse_error, &self.k, used);
+    pub fn error(&self, rtol: f64, atol: f64) -> f64 {
+        let [fine, coarse] = &self.errors;
         let (mut fine_sum, mut coarse_sum) = (0.0, 0.0);
         for i in 0..N {
-            let scale = atol + rtol * self.y0[i].abs().max(self.y1[i].abs());
-            fine_sum += (fine[i] / scale) * (fine[i] / scale);
-            coarse_sum += (coarse[i] / scale) * (coarse[i] / scale);
+            let weight = 1.0 / (atol + rtol * self.y0[i].abs().max(self.y1[i].abs()));
+            fine_sum += (fine[i] * weight) * (fine[i] * weight);
+            coarse_sum += (coarse[i] * weight) * (coarse[i] * weight);
         }
         #[allow(clippy::cast_precision_loss)]
         let n = N as f64;

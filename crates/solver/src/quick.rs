@@ -33,6 +33,16 @@ pub(crate) enum Quick {
 #[inline]
 pub(crate) fn look(values: &[f64; COUNT], zero_order: u32, trust: f64) -> Quick {
     if zero_order == 0 {
+        // Far from zero the spread of the values settles it.
+        let (mut least, mut most, mut sum) = (values[0], values[0], 0.0);
+        for &value in values {
+            least = least.min(value);
+            most = most.max(value);
+            sum += value;
+        }
+        if least > SPREAD * (most - least) && sum.is_finite() {
+            return Quick::Positive;
+        }
         let error = last_term(values, &QUINTIC_TERM) + trust * last_term(values, &QUARTIC_TERM);
         return classify(&multiply(&QUINTIC, values), error);
     }
@@ -138,6 +148,49 @@ const QUINTIC_TERM: [f64; 6] = last_term_weights(&NODES, None, 2);
 const QUARTIC_TERM: [f64; 6] = last_term_weights(&NODES, Some(2), 3);
 const LATE_QUARTIC_TERM: [f64; 5] = last_term_weights(&LATE_NODES, None, 1);
 const LATE_CUBIC_TERM: [f64; 5] = last_term_weights(&LATE_NODES, Some(1), 2);
+
+/// A polynomial of degree 5 with values in [m, M] at the nodes is nowhere on the step below m by more than
+/// this times M − m, its last two terms included.
+const SPREAD: f64 = 0.5
+    * (lebesgue_constant(&NODES) - 1.0 + absolute_sum(&QUINTIC_TERM) + absolute_sum(&QUARTIC_TERM));
+
+const fn absolute_sum<const K: usize>(weights: &[f64; K]) -> f64 {
+    let mut sum = 0.0;
+    let mut i = 0;
+    while i < K {
+        sum += weights[i].abs();
+        i += 1;
+    }
+    sum
+}
+
+/// The greatest sum of the absolute Lagrange polynomials on [0, 1], rounded up.
+const fn lebesgue_constant<const K: usize>(nodes: &[f64; K]) -> f64 {
+    let mut greatest = 0.0;
+    let mut sample = 0;
+    while sample <= 1000 {
+        let theta = sample as f64 / 1000.0;
+        let mut sum = 0.0;
+        let mut i = 0;
+        while i < K {
+            let mut product = 1.0;
+            let mut j = 0;
+            while j < K {
+                if j != i {
+                    product *= (theta - nodes[j]) / (nodes[i] - nodes[j]);
+                }
+                j += 1;
+            }
+            sum += product.abs();
+            i += 1;
+        }
+        if sum > greatest {
+            greatest = sum;
+        }
+        sample += 1;
+    }
+    1.01 * greatest
+}
 
 /// Newton's form through all nodes but `skip`, with node `last` added last: the weights of its highest
 /// coefficient times the greatest value of that coefficient's polynomial on [0, 1].
