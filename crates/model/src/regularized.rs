@@ -1,28 +1,30 @@
 //! The collision in coordinates in which everything is smooth.
 //!
 //! With u = √x and dt = 2u ds the law of Schwager, Becker and Pöschel (Eur. Phys. J. E 27, 107) becomes
-//! polynomial. The force F = u(u² + a v) and the spring are carried as
-//!
-//! - gap = F − s κ y, by how much the spring is below the limit on the side s it comes from,
-//! - rate = d gap/ds,
-//!
-//! so that the double zero with which a stick phase starts is exact: gap and rate both start from 0 and no
-//! difference of nearly equal numbers is ever taken. In both regimes
+//! polynomial, with the force F = u(u² + a v) and ω = √κ:
 //!
 //! ```text
-//! u' = v     v' = −2u²(u² + a v)     t' = 2u     w' = −2s u (F − gap)
-//! rate' = F'' − 2sκ v w + 4κ u² (F − gap)
+//! u' = v     v' = −2u²(u² + a v)     t' = 2u
+//! stick: (ωy)' = 2uω w     w' = −2uω (ωy)
+//! slip:  w' = −2s u F      y = s F/κ
 //! ```
 //!
-//! and gap' = rate in stick, gap = 0 in slip, where −rate is the guard. The state holds gap/c and rate/c² with
-//! c = max(1, √κ), which makes their errors comparable to those of w.
+//! A stick phase starts where its limit is reached and left at the same rate: gap = F − s κ y has a double
+//! zero there. In the first step of the phase the gap is therefore integrated by itself, from gap = 0 and
+//! rate = gap' = 0,
+//!
+//! ```text
+//! gap' = rate     rate' = F'' − 2sκ v w + 4u²κ s κ y
+//! ```
+//!
+//! so that it is never the difference of nearly equal numbers, however short the phase is.
 
 use stickslip_solver::{Direction, Guard, HybridSystem, Method, State, Step};
 
 use crate::contact::{Contact, Regime, Side};
 
 /// Components of the state.
-pub const STATE: usize = 7;
+pub const STATE: usize = 8;
 /// Guards of a phase.
 pub const GUARDS: usize = 3;
 
@@ -30,16 +32,19 @@ pub const GUARDS: usize = 3;
 pub const U: usize = 0;
 /// v = dx/dt.
 pub const V: usize = 1;
-/// Time since the phase began.
-pub const T: usize = 2;
+/// c ω y while sticking, with c = max(1, κ^{1/4}), which makes errors of y and of switch times comparable to
+/// those of w.
+pub const SPRING: usize = 2;
 /// Reduced tangential velocity.
 pub const W: usize = 3;
-/// gap/c.
-pub const GAP: usize = 4;
-/// rate/c².
-pub const RATE: usize = 5;
+/// Time since the phase began.
+pub const T: usize = 4;
 /// Normal energy taken by damping.
-pub const DAMPING: usize = 6;
+pub const DAMPING: usize = 5;
+/// gap/c, in the first step of a stick phase.
+pub const GAP: usize = 6;
+/// rate/c², in the first step of a stick phase.
+pub const RATE: usize = 7;
 
 /// Guard of the end of contact.
 pub const END: usize = 0;
@@ -55,8 +60,19 @@ pub struct Phase {
     pub regime: Regime,
     /// The side of sliding; in stick, the side from which the spring comes.
     pub side: Side,
-    /// Whether the contact starts with it.
-    pub first: bool,
+    /// How far it is from its start.
+    pub progress: Progress,
+}
+
+/// How far a phase is from its start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Progress {
+    /// The contact has just begun.
+    Touched,
+    /// A switch has just happened.
+    Switched,
+    /// The first step of the phase is done.
+    Settled,
 }
 
 impl Phase {
@@ -65,18 +81,23 @@ impl Phase {
     #[must_use]
     pub fn first(contact: &Contact) -> Self {
         let regime = if contact.damping() > 0.0 { Regime::Stick } else { Regime::Slip };
-        Self { regime, side: Side::Positive, first: true }
+        Self { regime, side: Side::Positive, progress: Progress::Touched }
     }
 }
 
-/// The contact as a hybrid system in (u, v, t, w, gap, rate), with a quadrature for the energy ledger.
+/// The contact as a hybrid system.
 #[derive(Clone, Copy, Debug)]
 pub struct Regularized {
     contact: Contact,
-    /// c = max(1, √κ).
-    stiffness: f64,
-    /// 1/c.
-    softness: f64,
+    /// c.
+    scale: f64,
+    /// 1/c².
+    rate_scale: f64,
+    /// 2ωc and 2ω/c: rates of the spring and of the velocity.
+    spring_rate: f64,
+    velocity_rate: f64,
+    /// κ y over the component [`SPRING`].
+    spring_force: f64,
 }
 
 /// The force F and its first two derivatives with respect to s.
@@ -85,16 +106,22 @@ struct Force {
     value: f64,
     first: f64,
     second: f64,
-    /// dv/ds.
-    deceleration: f64,
 }
 
 impl Regularized {
     /// The system of one contact.
     #[must_use]
     pub fn new(contact: Contact) -> Self {
-        let stiffness = contact.kappa().sqrt().max(1.0);
-        Self { contact, stiffness, softness: 1.0 / stiffness }
+        let omega = contact.kappa().sqrt();
+        let scale = omega.sqrt().max(1.0);
+        Self {
+            contact,
+            scale,
+            rate_scale: 1.0 / (scale * scale),
+            spring_rate: 2.0 * omega * scale,
+            velocity_rate: 2.0 * omega / scale,
+            spring_force: omega / scale,
+        }
     }
 
     /// The state at the start of contact.
@@ -103,7 +130,7 @@ impl Regularized {
         let mut y = State::zeros();
         y[V] = 1.0;
         y[W] = self.contact.psi();
-        y[RATE] = self.softness * self.softness * self.contact.damping();
+        y[RATE] = self.rate_scale * self.contact.damping();
         y
     }
 
@@ -116,7 +143,11 @@ impl Regularized {
     /// Reduced elongation y of the spring in a state of `phase`.
     #[must_use]
     pub fn spring(&self, phase: Phase, y: &State<STATE>) -> f64 {
-        phase.side.sign() * (self.normal_force(y) - self.stiffness * y[GAP]) / self.contact.kappa()
+        let force = match phase.regime {
+            Regime::Slip => phase.side.sign() * self.normal_force(y),
+            Regime::Stick => self.spring_force * y[SPRING],
+        };
+        force / self.contact.kappa()
     }
 
     #[inline(always)]
@@ -138,7 +169,6 @@ impl Regularized {
                 value: u * f1,
                 first: v * f1 + u * df1,
                 second: dv * f1 + 2.0 * v * df1 + u * ddf1,
-                deceleration: dv,
             }
         } else {
             let dv = -2.0 * uu * uu;
@@ -146,7 +176,6 @@ impl Regularized {
                 value: uu * u,
                 first: 3.0 * uu * v,
                 second: 3.0 * u * (2.0 * v * v + u * dv),
-                deceleration: dv,
             }
         }
     }
@@ -154,36 +183,42 @@ impl Regularized {
     #[inline(always)]
     fn slip<const DAMPED: bool>(&self, side: Side, y: &State<STATE>) -> State<STATE> {
         let (u, v) = (y[U], y[V]);
-        let sign = side.sign();
-        let force = self.force_of::<DAMPED>(u, v);
-        State::from([
-            v,
-            force.deceleration,
-            2.0 * u,
-            sign * force.deceleration,
-            0.0,
-            0.0,
-            if DAMPED { 2.0 * self.contact.damping() * (u * v) * (u * v) } else { 0.0 },
-        ])
+        let dv = self.deceleration::<DAMPED>(u, v);
+        State::from([v, dv, 0.0, side.sign() * dv, 2.0 * u, self.loss::<DAMPED>(u, v), 0.0, 0.0])
     }
 
     #[inline(always)]
-    fn stick<const DAMPED: bool>(&self, side: Side, y: &State<STATE>) -> State<STATE> {
+    fn stick<const DAMPED: bool>(&self, y: &State<STATE>) -> State<STATE> {
+        let (u, v) = (y[U], y[V]);
+        let dv = self.deceleration::<DAMPED>(u, v);
+        let stretch = (self.spring_rate * u) * y[W];
+        let pull = -(self.velocity_rate * u) * y[SPRING];
+        State::from([v, dv, stretch, pull, 2.0 * u, self.loss::<DAMPED>(u, v), 0.0, 0.0])
+    }
+
+    /// Stick with its gap.
+    #[inline(always)]
+    fn first_stick<const DAMPED: bool>(&self, side: Side, y: &State<STATE>) -> State<STATE> {
         let (u, v, w) = (y[U], y[V], y[W]);
-        let sign = side.sign();
-        let force = self.force_of::<DAMPED>(u, v);
-        let kappa = self.contact.kappa();
-        let spring = force.value - self.stiffness * y[GAP];
-        State::from([
-            v,
-            force.deceleration,
-            2.0 * u,
-            (-2.0 * sign * u) * spring,
-            self.stiffness * y[RATE],
-            self.softness * self.softness
-                * ((force.second - (2.0 * sign * kappa) * (v * w)) + (4.0 * kappa * u * u) * spring),
-            if DAMPED { 2.0 * self.contact.damping() * (u * v) * (u * v) } else { 0.0 },
-        ])
+        let (sign, kappa) = (side.sign(), self.contact.kappa());
+        let pull = self.spring_force * y[SPRING];
+        let rate = self.force_of::<DAMPED>(u, v).second
+            + 2.0 * sign * kappa * (2.0 * u * u * pull - v * w);
+        let mut slope = self.stick::<DAMPED>(y);
+        slope[GAP] = self.scale * y[RATE];
+        slope[RATE] = self.rate_scale * rate;
+        slope
+    }
+
+    #[inline(always)]
+    fn deceleration<const DAMPED: bool>(&self, u: f64, v: f64) -> f64 {
+        let uu = u * u;
+        if DAMPED { -2.0 * uu * (uu + self.contact.damping() * v) } else { -2.0 * (uu * uu) }
+    }
+
+    #[inline(always)]
+    fn loss<const DAMPED: bool>(&self, u: f64, v: f64) -> f64 {
+        if DAMPED { 2.0 * self.contact.damping() * (u * v) * (u * v) } else { 0.0 }
     }
 
     /// The guard of slip on side s: s w − dL/dt, in the form that has no zero of its own where u = 0.
@@ -204,16 +239,19 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
 
     #[inline(always)]
     fn field(&self, phase: Phase, _s: f64, y: &State<STATE>) -> State<STATE> {
+        let settled = phase.progress == Progress::Settled;
         match (phase.regime, self.contact.damping() > 0.0) {
             (Regime::Slip, false) => self.slip::<false>(phase.side, y),
             (Regime::Slip, true) => self.slip::<true>(phase.side, y),
-            (Regime::Stick, false) => self.stick::<false>(phase.side, y),
-            (Regime::Stick, true) => self.stick::<true>(phase.side, y),
+            (Regime::Stick, false) if settled => self.stick::<false>(y),
+            (Regime::Stick, true) if settled => self.stick::<true>(y),
+            (Regime::Stick, false) => self.first_stick::<false>(phase.side, y),
+            (Regime::Stick, true) => self.first_stick::<true>(phase.side, y),
         }
     }
 
-    /// Each regime's step is compiled by itself: what a regime's right-hand side does not use (the spring while
-    /// sliding, the quadratures) then costs no stage.
+    /// Each right-hand side has a step compiled for itself: components that are constant or quadratures then
+    /// cost no stage.
     fn step<M: Method>(
         &self,
         phase: Phase,
@@ -223,37 +261,53 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
         h: f64,
     ) -> Step<STATE> {
         let side = phase.side;
+        let settled = phase.progress == Progress::Settled;
         match (phase.regime, self.contact.damping() > 0.0) {
             (Regime::Slip, false) => Step::take::<M>(&mut |_, y| self.slip::<false>(side, y), s, y0, f0, h),
             (Regime::Slip, true) => Step::take::<M>(&mut |_, y| self.slip::<true>(side, y), s, y0, f0, h),
-            (Regime::Stick, false) => Step::take::<M>(&mut |_, y| self.stick::<false>(side, y), s, y0, f0, h),
-            (Regime::Stick, true) => Step::take::<M>(&mut |_, y| self.stick::<true>(side, y), s, y0, f0, h),
+            (Regime::Stick, false) if settled => Step::take::<M>(&mut |_, y| self.stick::<false>(y), s, y0, f0, h),
+            (Regime::Stick, true) if settled => Step::take::<M>(&mut |_, y| self.stick::<true>(y), s, y0, f0, h),
+            (Regime::Stick, false) => Step::take::<M>(&mut |_, y| self.first_stick::<false>(side, y), s, y0, f0, h),
+            (Regime::Stick, true) => Step::take::<M>(&mut |_, y| self.first_stick::<true>(side, y), s, y0, f0, h),
         }
     }
 
     #[inline(always)]
     fn guards(&self, phase: Phase) -> [Guard; GUARDS] {
         let end = Guard::new(Direction::Below).terminal();
-        // Without damping the contact starts at u = 0; with it both forces start from 0 in stick.
-        let end = if phase.first && phase.regime == Regime::Slip { end.from_zero(1) } else { end };
         let leave = Guard::new(Direction::Below);
-        match (phase.regime, phase.first) {
+        match (phase.regime, phase.progress) {
+            // Without damping the contact starts at u = 0.
+            (Regime::Slip, Progress::Touched) => [end.from_zero(1), leave, Guard::OFF],
             (Regime::Slip, _) => [end, leave, Guard::OFF],
-            (Regime::Stick, true) => [end, leave.from_zero(1), leave.from_zero(1)],
-            (Regime::Stick, false) => [end, leave.from_zero(2), leave],
+            // With damping both limits and the spring start from 0.
+            (Regime::Stick, Progress::Touched) => [end, leave.from_zero(1), leave.from_zero(1)],
+            (Regime::Stick, Progress::Switched) => [end, leave.from_zero(2), leave],
+            (Regime::Stick, Progress::Settled) => [end, leave, leave],
         }
     }
 
     #[inline(always)]
     fn guard_values(&self, phase: Phase, _s: f64, y: &State<STATE>) -> [f64; GUARDS] {
         let a = self.contact.damping();
-        let end = if a > 0.0 { y[U] * y[U] + a * y[V] } else { y[U] };
+        let (u, v) = (y[U], y[V]);
+        let end = if a > 0.0 { u * u + a * v } else { u };
         match phase.regime {
             Regime::Slip => [end, self.slip_guard(phase.side, y), 1.0],
             Regime::Stick => {
-                let force = y[U] * (y[U] * y[U] + a * y[V]);
-                [end, y[GAP], 2.0 * force - self.stiffness * y[GAP]]
+                let force = u * (u * u + a * v);
+                let pull = phase.side.sign() * (self.spring_force * y[SPRING]);
+                let gap = if phase.progress == Progress::Settled { force - pull } else { y[GAP] };
+                [end, gap, force + pull]
             }
+        }
+    }
+
+    #[inline(always)]
+    fn settle(&self, phase: Phase) -> Phase {
+        match phase.regime {
+            Regime::Slip => phase,
+            Regime::Stick => Phase { progress: Progress::Settled, ..phase },
         }
     }
 
@@ -264,15 +318,21 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
         _s: f64,
         y: &State<STATE>,
     ) -> (Phase, State<STATE>) {
-        let regime = match phase.regime {
-            Regime::Slip => Regime::Stick,
-            Regime::Stick => Regime::Slip,
-        };
         let side = if guard == OTHER_SIDE { phase.side.opposite() } else { phase.side };
         let mut y = *y;
         y[T] = 0.0;
         y[GAP] = 0.0;
         y[RATE] = 0.0;
-        (Phase { regime, side, first: false }, y)
+        let regime = match phase.regime {
+            Regime::Slip => {
+                y[SPRING] = side.sign() * self.normal_force(&y) / self.spring_force;
+                Regime::Stick
+            }
+            Regime::Stick => {
+                y[SPRING] = 0.0;
+                Regime::Slip
+            }
+        };
+        (Phase { regime, side, progress: Progress::Switched }, y)
     }
 }

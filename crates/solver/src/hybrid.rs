@@ -30,6 +30,15 @@ pub trait HybridSystem<const N: usize, const G: usize> {
     /// The values of the guards of `mode`; those of unused places are ignored.
     fn guard_values(&self, mode: Self::Mode, s: f64, y: &State<N>) -> [f64; G];
 
+    /// The mode in which a phase goes on once its first step is done.
+    ///
+    /// A mode that starts from a known zero may need more state for its first step than later, or another
+    /// form of its guards; it then gives way here to one that has the same solutions.
+    #[inline]
+    fn settle(&self, mode: Self::Mode) -> Self::Mode {
+        mode
+    }
+
     /// A step of `h` in `mode` from `y0`, whose derivative is `f0`.
     ///
     /// The provided one serves every system. A system whose modes have right-hand sides of different cost
@@ -344,6 +353,13 @@ where
                 (self.clock.s, self.clock.rest) = (self.end, 0.0);
             }
             self.phase.leave_start();
+            let settled = system.settle(mode);
+            if settled != mode {
+                self.phase = Phase::enter(system, settled, self.clock.s, &self.state)?;
+                self.phase.leave_start();
+                self.statistics.guards += 1;
+                self.refresh_slope()?;
+            }
             return Ok(None);
         }
     }

@@ -33,14 +33,13 @@ pub(crate) enum Quick {
 #[inline]
 pub(crate) fn look(values: &[f64; COUNT], zero_order: u32, trust: f64) -> Quick {
     if zero_order == 0 {
-        // Far from zero the spread of the values settles it.
-        let (mut least, mut most, mut sum) = (values[0], values[0], 0.0);
-        for &value in values {
-            least = least.min(value);
-            most = most.max(value);
-            sum += value;
+        // Far from zero the values' distance from their chord settles it. NaN spreads and decides nothing.
+        let rise = values[5] - values[0];
+        let mut bend = 0.0;
+        for i in 1..5 {
+            bend += (values[i] - (values[0] + NODES[i] * rise)).abs();
         }
-        if least > SPREAD * (most - least) && sum.is_finite() {
+        if values[0].min(values[5]) > SPREAD * bend && rise.is_finite() {
             return Quick::Positive;
         }
         let error = last_term(values, &QUINTIC_TERM) + trust * last_term(values, &QUARTIC_TERM);
@@ -149,10 +148,10 @@ const QUARTIC_TERM: [f64; 6] = last_term_weights(&NODES, Some(2), 3);
 const LATE_QUARTIC_TERM: [f64; 5] = last_term_weights(&LATE_NODES, None, 1);
 const LATE_CUBIC_TERM: [f64; 5] = last_term_weights(&LATE_NODES, Some(1), 2);
 
-/// A polynomial of degree 5 with values in [m, M] at the nodes is nowhere on the step below m by more than
-/// this times M − m, its last two terms included.
-const SPREAD: f64 = 0.5
-    * (lebesgue_constant(&NODES) - 1.0 + absolute_sum(&QUINTIC_TERM) + absolute_sum(&QUARTIC_TERM));
+/// A quintic whose values at the nodes differ from their chord by at most e is within this times e of it
+/// everywhere on the step, its last two terms counted as error.
+const SPREAD: f64 =
+    lebesgue_constant(&NODES) + absolute_sum(&QUINTIC_TERM) + absolute_sum(&QUARTIC_TERM);
 
 const fn absolute_sum<const K: usize>(weights: &[f64; K]) -> f64 {
     let mut sum = 0.0;
