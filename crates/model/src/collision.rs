@@ -1,7 +1,8 @@
 //! A collision integrated from first touch to separation: start reading here.
 
 use stickslip_solver::{
-    Dop853, Method, Observer, Options, Outcome, RunError, Start, State, Statistics, SwitchEvent, run,
+    Dop853, Method, Observer, Options, Outcome, RunError, Start, State, Statistics, SwitchEvent,
+    run,
 };
 
 use crate::contact::{Collision, Contact, Regime, Switch};
@@ -75,13 +76,21 @@ impl<M: Method> Collider<M> {
         collision: &mut Collision,
     ) -> Result<Statistics, CollisionError> {
         let system = Regularized::new(contact);
-        *collision =
-            Collision { switches: std::mem::take(&mut collision.switches), ..Collision::before(contact) };
+        *collision = Collision {
+            switches: std::mem::take(&mut collision.switches),
+            ..Collision::before(contact)
+        };
         collision.switches.clear();
         let phase = Phase::first(&contact);
         let start = Start { mode: phase, s: 0.0, state: system.start() };
-        let mut account =
-            Account { system, collision, entered: start.state, spring: 0.0, elapsed: 0.0, sliding: 0.0 };
+        let mut account = Account {
+            system,
+            collision,
+            entered: start.state,
+            spring: 0.0,
+            elapsed: 0.0,
+            sliding: 0.0,
+        };
         let run = run(self.method, &system, start, f64::INFINITY, &self.options, &mut account)?;
         account.leave(run.mode, &run.state);
         let sliding = account.sliding;

@@ -31,7 +31,11 @@ impl Contact {
     /// [`InvalidContact`] names the first parameter that is out of its range.
     pub fn new(kappa: f64, psi: f64, damping: f64) -> Result<Self, InvalidContact> {
         let in_range = |name, value: f64, accepted, ok: bool| {
-            if ok && value.is_finite() { Ok(()) } else { Err(InvalidContact { name, value, accepted }) }
+            if ok && value.is_finite() {
+                Ok(())
+            } else {
+                Err(InvalidContact { name, value, accepted })
+            }
         };
         in_range("kappa", kappa, "a finite number above 0", kappa > 0.0)?;
         in_range("psi", psi, "a finite number above 0", psi > 0.0)?;

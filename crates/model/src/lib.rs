@@ -3,6 +3,7 @@
 pub mod collision;
 mod contact;
 mod energy;
+pub mod exact;
 pub mod regularized;
 mod reversals;
 

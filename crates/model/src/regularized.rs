@@ -152,7 +152,11 @@ impl Regularized {
 
     #[inline(always)]
     fn force(&self, u: f64, v: f64) -> Force {
-        if self.contact.damping() > 0.0 { self.force_of::<true>(u, v) } else { self.force_of::<false>(u, v) }
+        if self.contact.damping() > 0.0 {
+            self.force_of::<true>(u, v)
+        } else {
+            self.force_of::<false>(u, v)
+        }
     }
 
     #[inline(always)]
@@ -172,11 +176,7 @@ impl Regularized {
             }
         } else {
             let dv = -2.0 * uu * uu;
-            Force {
-                value: uu * u,
-                first: 3.0 * uu * v,
-                second: 3.0 * u * (2.0 * v * v + u * dv),
-            }
+            Force { value: uu * u, first: 3.0 * uu * v, second: 3.0 * u * (2.0 * v * v + u * dv) }
         }
     }
 
@@ -259,16 +259,22 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
         y0: &State<STATE>,
         f0: &State<STATE>,
         h: f64,
-    ) -> Step<STATE> {
+        step: &mut Step<STATE>,
+    ) {
         let side = phase.side;
         let settled = phase.progress == Progress::Settled;
+        macro_rules! take {
+            ($right_hand_side:expr) => {
+                step.take::<M>(&mut |_, y: &State<STATE>| $right_hand_side(y), s, y0, f0, h)
+            };
+        }
         match (phase.regime, self.contact.damping() > 0.0) {
-            (Regime::Slip, false) => Step::take::<M>(&mut |_, y| self.slip::<false>(side, y), s, y0, f0, h),
-            (Regime::Slip, true) => Step::take::<M>(&mut |_, y| self.slip::<true>(side, y), s, y0, f0, h),
-            (Regime::Stick, false) if settled => Step::take::<M>(&mut |_, y| self.stick::<false>(y), s, y0, f0, h),
-            (Regime::Stick, true) if settled => Step::take::<M>(&mut |_, y| self.stick::<true>(y), s, y0, f0, h),
-            (Regime::Stick, false) => Step::take::<M>(&mut |_, y| self.first_stick::<false>(side, y), s, y0, f0, h),
-            (Regime::Stick, true) => Step::take::<M>(&mut |_, y| self.first_stick::<true>(side, y), s, y0, f0, h),
+            (Regime::Slip, false) => take!(|y| self.slip::<false>(side, y)),
+            (Regime::Slip, true) => take!(|y| self.slip::<true>(side, y)),
+            (Regime::Stick, false) if settled => take!(|y| self.stick::<false>(y)),
+            (Regime::Stick, true) if settled => take!(|y| self.stick::<true>(y)),
+            (Regime::Stick, false) => take!(|y| self.first_stick::<false>(side, y)),
+            (Regime::Stick, true) => take!(|y| self.first_stick::<true>(side, y)),
         }
     }
 

@@ -29,7 +29,8 @@ impl Controller {
     pub(crate) fn accepted<M: Method>(&mut self, h: f64, error: f64) -> f64 {
         let (least, most) = M::STEP_FACTORS;
         self.fresh = false;
-        let factor = SAFETY * power(self.last_error, M::CONTROL_BETA) / power(error, exponent::<M>());
+        let factor =
+            SAFETY * power(self.last_error, M::CONTROL_BETA) / power(error, exponent::<M>());
         self.last_error = error.max(1e-4);
         let most = if std::mem::take(&mut self.just_rejected) { 1.0 } else { most };
         h * factor.clamp(least, most)
@@ -92,7 +93,8 @@ pub(crate) fn first_step<M: Method, const N: usize>(
     let largest = curvature.max(slope_size.sqrt());
     #[allow(clippy::cast_precision_loss)]
     let order = M::CONTROL_ORDER as f64;
-    let step = if largest <= 1e-15 { (h * 1e-3).max(1e-6) } else { (0.01 / largest).powf(1.0 / order) };
+    let step =
+        if largest <= 1e-15 { (h * 1e-3).max(1e-6) } else { (0.01 / largest).powf(1.0 / order) };
     let step = if step.is_nan() { h } else { step };
     step.min(100.0 * h).min(longest)
 }

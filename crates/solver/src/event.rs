@@ -124,7 +124,11 @@ where
             statuses[guard] = self.glance::<M>(guard, &values);
             all_clear &= statuses[guard] == Status::Clear;
         }
-        if all_clear { Ok(Found::Nothing(values[5])) } else { self.decide::<M>(step, values, statuses) }
+        if all_clear {
+            Ok(Found::Nothing(values[5]))
+        } else {
+            self.decide::<M>(step, values, statuses)
+        }
     }
 
     fn decide<M: Method>(
@@ -181,7 +185,8 @@ where
 
     /// Guards other than `guard` that are at zero where the step ends.
     fn simultaneous(&self, guard: usize, values: &[[f64; G]; 6]) -> u32 {
-        let largest = |other: usize| values.iter().fold(0.0_f64, |size, v| size.max(v[other].abs()));
+        let largest =
+            |other: usize| values.iter().fold(0.0_f64, |size, v| size.max(v[other].abs()));
         (0..G.min(32))
             .filter(|&other| {
                 other != guard
@@ -223,7 +228,9 @@ where
         };
         match quick::look(&column, order, M::QUICK_ERROR) {
             Quick::Positive => Status::Clear,
-            Quick::Negative if direction == Direction::Below => Status::Fires(Crossing::at_start(sign)),
+            Quick::Negative if direction == Direction::Below => {
+                Status::Fires(Crossing::at_start(sign))
+            }
             Quick::Negative => Status::Clear,
             Quick::Falls { theta } => falls(sign, theta),
             Quick::Unclear if direction == Direction::Either => {
@@ -353,7 +360,8 @@ where
 
     fn truth(&mut self, theta: f64) -> Result<f64, RunError> {
         let (system, mode, step) = (self.system, self.mode, self.step);
-        let shorter = system.step::<M>(mode, step.s, &step.y0, &step.k[0], theta * step.h);
+        let mut shorter = Step::blank();
+        system.step::<M>(mode, step.s, &step.y0, &step.k[0], theta * step.h, &mut shorter);
         self.statistics.resteps += 1;
         self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
         let value = self.value(theta, &shorter.y1);

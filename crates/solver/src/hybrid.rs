@@ -39,7 +39,7 @@ pub trait HybridSystem<const N: usize, const G: usize> {
         mode
     }
 
-    /// A step of `h` in `mode` from `y0`, whose derivative is `f0`.
+    /// Takes a step of `h` in `mode` from `y0`, whose derivative is `f0`, into `step`.
     ///
     /// The provided one serves every system. A system whose modes have right-hand sides of different cost
     /// may give each mode a step of its own, compiled for that right-hand side alone.
@@ -51,8 +51,9 @@ pub trait HybridSystem<const N: usize, const G: usize> {
         y0: &State<N>,
         f0: &State<N>,
         h: f64,
-    ) -> Step<N> {
-        Step::take::<M>(&mut |s, y| self.field(mode, s, y), s, y0, f0, h)
+        step: &mut Step<N>,
+    ) {
+        step.take::<M>(&mut |s, y| self.field(mode, s, y), s, y0, f0, h);
     }
 
     /// The mode and state that follow when `guard` of `mode` fires at `y`.
@@ -267,12 +268,13 @@ where
             (StepSize::Fixed(h), _) | (StepSize::Adaptive, Some(h)) => h,
             (StepSize::Adaptive, None) => self.estimate_first_step::<M>(),
         };
+        let mut step = Step::blank();
         loop {
             let steps = self.statistics.accepted + self.statistics.rejected;
             if steps + self.statistics.too_coarse >= self.options.max_steps {
                 return Ok(Outcome::StepLimit);
             }
-            let Some(event) = self.advance::<M>()? else {
+            let Some(event) = self.advance::<M>(&mut step)? else {
                 if self.clock.s >= self.end {
                     return Ok(Outcome::ReachedEnd);
                 }
@@ -285,7 +287,7 @@ where
     }
 
     /// Takes one step that is good enough; if it meets a switch, it ends there.
-    fn advance<M: Method>(&mut self) -> Result<Option<Event<N>>, RunError> {
+    fn advance<M: Method>(&mut self, step: &mut Step<N>) -> Result<Option<Event<N>>, RunError> {
         let (system, mode) = (self.system, self.phase.mode);
         let mut field = |s: f64, y: &State<N>| system.field(mode, s, y);
         let mut cuts = 0;
@@ -293,7 +295,7 @@ where
             let left = self.clock.until(self.end);
             let h = self.h.min(self.options.max_step);
             let (h, last) = if h >= left { (left, true) } else { (h, false) };
-            let mut step = system.step::<M>(mode, self.clock.s, &self.state, &self.slope, h);
+            system.step::<M>(mode, self.clock.s, &self.state, &self.slope, h, step);
             self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
             let error = match self.options.step_size {
                 StepSize::Adaptive => step.error(self.options.rtol, self.options.atol),
@@ -311,7 +313,7 @@ where
                 statistics: &mut self.statistics,
                 observer: self.observer,
             };
-            let event = match examination.look::<M>(&mut step)? {
+            let event = match examination.look::<M>(step)? {
                 Found::Nothing(values) => {
                     self.phase.values = values;
                     None
@@ -329,7 +331,11 @@ where
             };
             self.statistics.accepted += 1;
             if self.options.step_size == StepSize::Adaptive {
-                self.h = if last && event.is_none() { self.h } else { self.controller.accepted::<M>(h, error) };
+                self.h = if last && event.is_none() {
+                    self.h
+                } else {
+                    self.controller.accepted::<M>(h, error)
+                };
             } else if let StepSize::Fixed(h) = self.options.step_size {
                 self.h = h;
             }
@@ -372,7 +378,8 @@ where
             return Err(RunError::Field { s, step });
         }
         self.h = self.controller.rejected::<M>(h, error);
-        if self.h <= f64::EPSILON * s.abs().max(f64::MIN_POSITIVE) || step >= self.options.max_steps {
+        if self.h <= f64::EPSILON * s.abs().max(f64::MIN_POSITIVE) || step >= self.options.max_steps
+        {
             return Err(if error.is_finite() {
                 RunError::Tolerance { s, h, step }
             } else {

@@ -195,7 +195,11 @@ impl Panel {
     }
 
     fn theta(&self, local: f64) -> f64 {
-        if local >= 1.0 { self.high } else { self.low + 0.5 * (local + 1.0) * (self.high - self.low) }
+        if local >= 1.0 {
+            self.high
+        } else {
+            self.low + 0.5 * (local + 1.0) * (self.high - self.low)
+        }
     }
 
     fn at(&self, local: f64) -> f64 {

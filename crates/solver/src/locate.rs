@@ -80,7 +80,9 @@ where
     fn restep<M: Method>(&mut self, step: &Step<N>, h: f64) -> Step<N> {
         self.statistics.resteps += 1;
         self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
-        self.system.step::<M>(self.phase.mode, step.s, &step.y0, &step.k[0], h)
+        let mut shorter = Step::blank();
+        self.system.step::<M>(self.phase.mode, step.s, &step.y0, &step.k[0], h, &mut shorter);
+        shorter
     }
 
     /// Moves from the end of `trial` onto the guard: how far from the start that is, the state there, and what

@@ -82,79 +82,79 @@ pub struct Step<const N: usize> {
 }
 
 impl<const N: usize> Step<N> {
-    /// Takes a step of `h` from `y0`, whose derivative is `f0`.
-    #[inline]
-    pub fn take<M: Method>(
-        field: &mut impl FnMut(f64, &State<N>) -> State<N>,
-        s: f64,
-        y0: &State<N>,
-        f0: &State<N>,
-        h: f64,
-    ) -> Self {
+    /// Room for a step.
+    #[must_use]
+    pub fn blank() -> Self {
         let zero = State::zeros();
-        let mut step = Self {
-            s,
-            h,
-            y0: *y0,
+        Self {
+            s: 0.0,
+            h: 0.0,
+            y0: zero,
             y1: zero,
             k: [zero; MAX_STAGES],
             interior: [zero; 4],
             errors: [zero; 2],
             end_known: false,
-        };
-        step.k[0] = *f0;
+        }
+    }
+
+    /// Takes a step of `h` from `y0`, whose derivative is `f0`, in place of the one that was here.
+    #[inline]
+    pub fn take<M: Method>(
+        &mut self,
+        field: &mut impl FnMut(f64, &State<N>) -> State<N>,
+        s: f64,
+        y0: &State<N>,
+        f0: &State<N>,
+        h: f64,
+    ) {
+        // Stages live in a local array until the step is done, so that the compiler can keep them in registers and
+        // drop what the right-hand side does not use.
+        let mut k = [State::zeros(); MAX_STAGES];
+        k[0] = *f0;
         macro_rules! stages {
             ($($i:literal)*) => {$(
                 if $i < M::STAGES {
-                    step.stage::<M, $i>(field);
+                    // The newest stage comes last and with few operations: each waits for the one before it.
+                    let weights = &M::TABLEAU.a[$i];
+                    let early = y0 + combine(weights, &k, $i - 1) * h;
+                    let y = early + k[$i - 1] * (h * weights[$i - 1]);
+                    if let Some(stages) = M::INTERIOR_STAGES {
+                        for (interior, stage) in self.interior.iter_mut().zip(stages) {
+                            if stage == $i {
+                                *interior = y;
+                            }
+                        }
+                    }
+                    k[$i] = field(s + M::TABLEAU.c[$i] * h, &y);
                 }
             )*};
         }
         stages!(1 2 3 4 5 6 7 8 9 10 11);
-        step.y1 = step.y0 + combine(&M::TABLEAU.b, &step.k, M::STAGES) * h;
+        self.s = s;
+        self.h = h;
+        self.y0 = *y0;
+        self.y1 = y0 + combine(&M::TABLEAU.b, &k, M::STAGES) * h;
         if M::ERROR_USES_END {
-            step.finish::<M>(field);
+            k[M::STAGES] = field(s + h, &self.y1);
         }
+        self.end_known = M::ERROR_USES_END;
         let used = M::STAGES + usize::from(M::ERROR_USES_END);
-        step.errors = [
-            combine(&M::TABLEAU.error, &step.k, used),
-            combine(&M::TABLEAU.coarse_error, &step.k, used),
-        ];
+        self.errors =
+            [combine(&M::TABLEAU.error, &k, used), combine(&M::TABLEAU.coarse_error, &k, used)];
+        self.k[..used].copy_from_slice(&k[..used]);
         if M::INTERIOR_STAGES.is_none() {
-            let dense = step.dense::<M>(field);
-            for (state, theta) in step.interior.iter_mut().zip(INTERIOR_NODES) {
+            let dense = self.dense::<M>(field);
+            for (state, theta) in self.interior.iter_mut().zip(INTERIOR_NODES) {
                 *state = dense.at(theta);
             }
         }
-        step
     }
 
     /// The step of size 0.
     pub(crate) fn shrunk_to_start(&self) -> Self {
         let (h, y1, interior) = (0.0, self.y0, [self.y0; 4]);
         Self { h, y1, interior, k: [self.k[0]; MAX_STAGES], ..*self }
-    }
-
-    #[inline(always)]
-    fn stage<M: Method, const I: usize>(
-        &mut self,
-        field: &mut impl FnMut(f64, &State<N>) -> State<N>,
-    ) {
-        // The newest stage comes last and with few operations: each stage waits for the one before it.
-        let early = self.y0 + combine(&M::TABLEAU.a[I], &self.k, I - 1) * self.h;
-        let y = early + self.k[I - 1] * (self.h * M::TABLEAU.a[I][I - 1]);
-        if let Some(stages) = M::INTERIOR_STAGES {
-            if I == stages[0] {
-                self.interior[0] = y;
-            } else if I == stages[1] {
-                self.interior[1] = y;
-            } else if I == stages[2] {
-                self.interior[2] = y;
-            } else if I == stages[3] {
-                self.interior[3] = y;
-            }
-        }
-        self.k[I] = field(self.s + M::TABLEAU.c[I] * self.h, &y);
     }
 
     /// The derivative at the end of the step, computed on first use.

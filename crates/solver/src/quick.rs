@@ -50,7 +50,8 @@ pub(crate) fn look(values: &[f64; COUNT], zero_order: u32, trust: f64) -> Quick 
     for i in 1..COUNT {
         quotient[i - 1] = values[i] / power(NODES[i], zero_order);
     }
-    let error = last_term(&quotient, &LATE_QUARTIC_TERM) + trust * last_term(&quotient, &LATE_CUBIC_TERM);
+    let error =
+        last_term(&quotient, &LATE_QUARTIC_TERM) + trust * last_term(&quotient, &LATE_CUBIC_TERM);
     classify(&multiply(&QUARTIC, &quotient), error)
 }
 
@@ -77,7 +78,8 @@ fn classify<const K: usize>(bernstein: &[f64; K], error: f64) -> Quick {
     // A term of degree K whose size is `error` has a slope of at most 2K² times that (Markov).
     #[allow(clippy::cast_precision_loss)]
     let slope_error = 2.0 * (K * K) as f64 * error;
-    let falls = bernstein.windows(2).all(|pair| (pair[1] - pair[0]) * (K as f64 - 1.0) < -slope_error);
+    let falls =
+        bernstein.windows(2).all(|pair| (pair[1] - pair[0]) * (K as f64 - 1.0) < -slope_error);
     if falls && bernstein[0] > error && bernstein[K - 1] < -error {
         return Quick::Falls { theta: falling_root(bernstein) };
     }
@@ -293,11 +295,8 @@ const fn bernstein(degree: usize, index: usize, theta: f64) -> f64 {
     let mut product = 1.0;
     let mut i = 0;
     while i < degree {
-        product *= if i < index {
-            theta * (degree - i) as f64 / (index - i) as f64
-        } else {
-            1.0 - theta
-        };
+        product *=
+            if i < index { theta * (degree - i) as f64 / (index - i) as f64 } else { 1.0 - theta };
         i += 1;
     }
     product

@@ -1,0 +1,109 @@
+//! Roots in a bracket, by Halley's step with bisection behind it.
+
+/// A function's value and first two derivatives.
+#[derive(Clone, Copy, Debug)]
+pub struct Jet {
+    /// f
+    pub value: f64,
+    /// f′
+    pub slope: f64,
+    /// f″
+    pub curvature: f64,
+}
+
+/// More than the bisections that take 1 to the smallest positive number, twice.
+const MOST_STEPS: usize = 2400;
+
+/// The root between `positive`, where f > 0, and `negative`, where f < 0.
+///
+/// The signs at the ends are the caller's knowledge: f is not evaluated there, so an end may be
+/// a zero of f or a pole of its derivatives. Either end may be the larger. With a single root
+/// between them the result is that root to rounding of f; the first value tried is `guess`.
+pub fn bracketed(
+    mut positive: f64,
+    mut negative: f64,
+    guess: f64,
+    mut f: impl FnMut(f64) -> Jet,
+) -> f64 {
+    let inside = |x: f64, a: f64, b: f64| (a < x && x < b) || (b < x && x < a);
+    let mut x = if inside(guess, positive, negative) { guess } else { 0.5 * (positive + negative) };
+    let (mut last, mut before) = (f64::INFINITY, f64::INFINITY);
+    for _ in 0..MOST_STEPS {
+        let jet = f(x);
+        if jet.value > 0.0 {
+            positive = x;
+        } else if jet.value < 0.0 {
+            negative = x;
+        } else {
+            return x;
+        }
+        let newton = -jet.value / jet.slope;
+        let bend = 0.5 * newton * jet.curvature / jet.slope;
+        // Halley's step; where it would be more than twice Newton's, f is too curved to trust it.
+        let mut step = newton / (1.0 + bend).max(0.5);
+        // A step that leaves the bracket or shrinks too slowly proves nothing: halve instead.
+        if !(inside(x + step, positive, negative) && step.abs() < 0.5 * before) {
+            if step.abs() <= f64::EPSILON * x.abs() {
+                return x;
+            }
+            step = 0.5 * (positive + negative) - x;
+            if !inside(x + step, positive, negative) {
+                return x;
+            }
+        } else if step.abs() < 1e-8 * x.abs() && bend.abs() < 1e-4 {
+            // What is left is of order bend² · step.
+            return x + step;
+        }
+        x += step;
+        before = last;
+        last = step.abs();
+    }
+    x
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// (x − a)(x² + c), counting its evaluations.
+    fn cubic(a: f64, c: f64, count: &mut u32) -> impl FnMut(f64) -> Jet {
+        move |x| {
+            *count += 1;
+            Jet {
+                value: (x - a) * (x * x + c),
+                slope: x * x + c + 2.0 * x * (x - a),
+                curvature: 6.0 * x - 2.0 * a,
+            }
+        }
+    }
+
+    #[test]
+    fn planted_roots_are_found_from_any_guess() {
+        for a in [1e-30, 3e-9, 0.3, 0.7, 0.999_999] {
+            for guess in [0.0, 0.1, 0.5, 0.999, 7.0] {
+                let mut count = 0;
+                let root = bracketed(1.0, 0.0, guess, cubic(a, 0.01, &mut count));
+                assert!((root - a).abs() <= 4e-16 * a, "{a} {guess}: {root}");
+                assert!(count < 130, "{count}");
+            }
+        }
+    }
+
+    #[test]
+    fn close_guesses_take_few_evaluations() {
+        let mut count = 0;
+        bracketed(1.0, 0.0, 0.31, cubic(0.3, 0.01, &mut count));
+        assert_eq!(count, 3);
+    }
+
+    #[test]
+    fn steps_without_progress_give_way_to_bisection() {
+        // The root of sign(x − a)·√|x − a|, from which Newton's steps run in circles.
+        let a = 0.377;
+        let root = bracketed(1.0, 0.0, 0.4, |x: f64| {
+            let off = (x - a).abs().sqrt();
+            Jet { value: off.copysign(x - a), slope: 0.5 / off, curvature: 0.0 }
+        });
+        assert!((root - a).abs() < 1e-15);
+    }
+}

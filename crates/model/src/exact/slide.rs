@@ -1,0 +1,184 @@
+//! The slip phase: where sliding turns into sticking.
+//!
+//! While sliding on side s, s·w − v is constant and the phase ends where
+//! g = s·w − dL/dt = s·w − b u v, b = 3/(2κ), falls through 0. With one function for all slip
+//! phases of a collision,
+//!
+//! h = (1 − |v|) + b u |v|,
+//!
+//! g is C − h in the compression and h − (2 − C) in the decompression, C being s·w carried back
+//! to the start of contact. Away from either end of contact h rises from 0 up to its crest: the
+//! largest compression if b u ≤ 1 there (κ ≥ 1.568…), else the one zero of dh/dt before it.
+//! Between the crests of the two halves g does not fall. So the phase ends in the compression if
+//! it starts before the crest and C is below h there, else in the decompression if C < 2, else
+//! not before the contact does.
+
+use super::pair::Pair;
+use super::precise::refined_onset;
+use super::root::{Jet, bracketed};
+use super::trajectory::{Half, LARGEST_U, MIDDLE_ROOT, Moment, Point, speed_at};
+
+/// The value of b u at the largest compression above which h is nearly flat somewhere: dg/dt is
+/// −u³(1 − b u) at the largest compression and no smaller before it.
+const FLAT: f64 = 0.97;
+
+/// What the slip phases of one collision have in common.
+#[derive(Clone, Copy, Debug)]
+pub struct Slide {
+    /// Scaled stiffness κ.
+    pub kappa: f64,
+    /// b = 3/(2κ).
+    pub bend: f64,
+    /// Where h is largest, if not at the largest compression.
+    pub crest: Option<Crest>,
+}
+
+/// The largest value of h before the largest compression.
+#[derive(Clone, Copy, Debug)]
+pub struct Crest {
+    /// Its root coordinate, in either half.
+    pub root: f64,
+    /// h there.
+    height: f64,
+}
+
+/// The start of a slip phase, in the orientation of its side.
+#[derive(Clone, Copy, Debug)]
+pub struct Sliding {
+    /// When.
+    pub start: Moment,
+    /// 1 − |v| there.
+    pub deficit: f64,
+    /// s·w there.
+    pub velocity: f64,
+}
+
+impl Sliding {
+    /// The phase with which the contact starts.
+    pub fn at_impact(psi: f64) -> Self {
+        Self { start: Moment::START, deficit: 0.0, velocity: psi }
+    }
+
+    /// The phase that starts at `start`, where s·w is `velocity`.
+    pub fn new(start: Moment, point: Point, velocity: f64) -> Self {
+        Self { start, deficit: point.deficit, velocity }
+    }
+
+    /// s·w at a later moment of the phase.
+    pub fn velocity_at(&self, moment: Moment, point: Point) -> Pair {
+        match moment.half {
+            Half::Compression => Pair::sum(self.at_start(), -point.deficit),
+            Half::Decompression => Pair::sum(self.at_end(), point.deficit),
+        }
+    }
+
+    /// s·w carried back to the start of contact.
+    fn at_start(&self) -> f64 {
+        match self.start.half {
+            Half::Compression => self.velocity + self.deficit,
+            Half::Decompression => self.at_end() + 2.0,
+        }
+    }
+
+    /// s·w carried on to the end of contact.
+    fn at_end(&self) -> f64 {
+        match self.start.half {
+            Half::Compression => self.at_start() - 2.0,
+            Half::Decompression => self.velocity - self.deficit,
+        }
+    }
+}
+
+impl Slide {
+    /// The slip phases at stiffness `kappa`.
+    pub fn new(kappa: f64) -> Self {
+        let bend = 1.5 / kappa;
+        Self { kappa, bend, crest: (bend * LARGEST_U > 1.0).then(|| Crest::new(kappa, bend)) }
+    }
+
+    /// The spring's limit L = u³/κ.
+    pub fn limit(&self, point: Point) -> f64 {
+        point.u * point.u * point.u / self.kappa
+    }
+
+    /// When `sliding` turns into sticking; none if it lasts to the end of contact.
+    pub fn stick_onset(&self, sliding: &Sliding) -> Option<Moment> {
+        let (crest, height) =
+            self.crest.map_or((MIDDLE_ROOT, 1.0), |crest| (crest.root, crest.height));
+        let start = sliding.start;
+        let carried_back = sliding.at_start();
+        if start.is_before(Moment { half: Half::Compression, root: crest }) && carried_back < height
+        {
+            let root = self.inverse(carried_back, start.root, crest);
+            let root = if self.bend * LARGEST_U > FLAT {
+                refined_onset(self, carried_back, root, crest)
+            } else {
+                root
+            };
+            return Some(Moment { half: Half::Compression, root });
+        }
+        let carried_on = sliding.at_end();
+        (carried_on < 0.0).then(|| {
+            let first = match start.half {
+                Half::Compression => crest,
+                Half::Decompression => start.root.min(crest),
+            };
+            Moment { half: Half::Decompression, root: self.inverse(-carried_on, 0.0, first) }
+        })
+    }
+
+    /// The root coordinate between `low` and `high`, on the rising piece, at which h is `target`.
+    fn inverse(&self, target: f64, low: f64, high: f64) -> f64 {
+        // h = b u + (1 − |v|)(1 − b u). Close to an end of contact the first term is all of h,
+        // for a stiff spring the second is; up to h = 1 each alone gives a u above the root.
+        let soft = target / self.bend;
+        let u = if target < 1.0 {
+            soft.min((1.25 * target * (2.0 - target)).powf(0.2))
+        } else {
+            soft.min(LARGEST_U)
+        };
+        let guess = u * (1.0 + 0.0571 * u * (u * u) * (u * u));
+        bracketed(high, low, guess, |root| {
+            let Point { u, v, deficit } = Point::at(Moment { half: Half::Compression, root });
+            let pull = pull(self.bend, u);
+            let pull_per_u = 3.0 * u * u - self.bend * (0.5 / (u * u) + 5.6 * u * u * u);
+            Jet {
+                value: deficit + self.bend * u * v - target,
+                slope: 2.0 * root * pull,
+                curvature: 2.0 * pull + 2.0 * root * root / u * v * pull_per_u,
+            }
+        })
+    }
+}
+
+impl Crest {
+    /// Solves dh/dt = 0, that is u⁴/b + 1/2 = (7/5) u⁵, for b u > 1 at the largest compression.
+    fn new(kappa: f64, bend: f64) -> Self {
+        let scale = kappa / 1.5;
+        // From the zero to the largest u the function is concave and falls, so Newton's steps
+        // from the right approach the zero from one side.
+        let mut u = LARGEST_U;
+        for _ in 0..60 {
+            let u3 = u * u * u;
+            let step =
+                (scale * u3 * u + 0.5 - 1.4 * u3 * u * u) / (4.0 * scale * u3 - 7.0 * u3 * u);
+            u -= step;
+            if step.abs() < 1e-15 {
+                break;
+            }
+        }
+        let mut moment = Moment::near_compression(Half::Compression, u);
+        // One Newton step in time, by dv/dt = −u³.
+        let error = Point::at(moment).v - speed_at(u);
+        moment.root = (moment.root + error / (2.0 * moment.root * u * u * u)).min(MIDDLE_ROOT);
+        let Point { u, v, deficit } = Point::at(moment);
+        Self { root: moment.root, height: deficit + bend * u * v }
+    }
+}
+
+/// κL + d²L/dt² = u³ + b (1/(2u) − (7/5) u⁴), what drives the spring and its limit apart.
+///
+/// In slip it is −dg/dt; in stick D = L ∓ y obeys D̈ + κD = this.
+pub fn pull(bend: f64, u: f64) -> f64 {
+    u * u * u + bend * (0.5 / u - 1.4 * (u * u) * (u * u))
+}
