@@ -14,7 +14,7 @@ use crate::energy::EnergyLedger;
 /// let contact = Contact::new(63.0, 0.5, 0.0)?;
 /// assert_eq!(contact.kappa(), 63.0);
 /// assert!(Contact::new(-1.0, 0.5, 0.0).is_err());
-/// # Ok::<(), stickslip_model::InvalidContact>(())
+/// # Ok::<(), stickslip_model::InvalidParameter>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact {
@@ -28,13 +28,13 @@ impl Contact {
     /// impact ratio `psi` = (g_t/g_n) α/μ > 0 and scaled damping `damping` = A β^{2/5} g_n^{1/5} ≥ 0.
     ///
     /// # Errors
-    /// [`InvalidContact`] names the first parameter that is out of its range.
-    pub fn new(kappa: f64, psi: f64, damping: f64) -> Result<Self, InvalidContact> {
+    /// [`InvalidParameter`] names the first parameter that is out of its range.
+    pub fn new(kappa: f64, psi: f64, damping: f64) -> Result<Self, InvalidParameter> {
         let in_range = |name, value: f64, accepted, ok: bool| {
             if ok && value.is_finite() {
                 Ok(())
             } else {
-                Err(InvalidContact { name, value, accepted })
+                Err(InvalidParameter { name, value, accepted })
             }
         };
         in_range("kappa", kappa, "a finite number above 0", kappa > 0.0)?;
@@ -65,7 +65,7 @@ impl Contact {
 /// A parameter of a collision is out of its range.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{name} = {value} is out of range; accepted is {accepted}")]
-pub struct InvalidContact {
+pub struct InvalidParameter {
     /// The parameter's name.
     pub name: &'static str,
     /// The value that was given.

@@ -1,12 +1,35 @@
-//! The collision of two frictional viscoelastic spheres.
+//! The collision of two frictional viscoelastic spheres, integrated and exact.
+//!
+//! During one contact the tangential force switches several times between Coulomb sliding and a spring
+//! (Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107, 2008). In scaled variables two numbers decide all of
+//! it, the stiffness κ and the impact ratio ψ, and a third one with damping: a [`Contact`]. A [`Collider`]
+//! integrates it, [`exact::collide`] solves it in closed form where there is no damping; both return a
+//! [`Collision`] with every switch.
+//!
+//! Start reading in [`collision`]; then [`regularized`] (the equations), [`exact`] (the closed form),
+//! [`scaling`] (SI units), [`plain_time`] (the equations as the paper has them, for studies).
+//!
+//! ```
+//! use stickslip_model::{Collider, Contact, exact};
+//!
+//! let contact = Contact::new(18.0, 0.4, 0.0)?;
+//! let integrated = Collider::default().collide(contact)?;
+//! let closed = exact::collide(contact)?;
+//! assert_eq!(integrated.itinerary(), closed.itinerary());
+//! assert!((integrated.eps_t() - closed.eps_t()).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod collision;
 mod contact;
 mod energy;
 pub mod exact;
+pub mod plain_time;
 pub mod regularized;
 mod reversals;
+pub mod scaling;
 
 pub use collision::{Collider, CollisionError};
-pub use contact::{Collision, Contact, InvalidContact, Regime, Side, Switch};
+pub use contact::{Collision, Contact, InvalidParameter, Regime, Side, Switch};
 pub use energy::EnergyLedger;
+pub use scaling::{Impact, Material, Pair, Surface};
