@@ -1,0 +1,136 @@
+//! Random collisions by both engines: do they ever disagree on a switch?
+//!
+//! κ is log-uniform in [0.02, 400], ψ uniform in [0.002, 2.3]. Prints the largest difference of the final velocity and every
+//! collision whose itineraries differ, with its margin: the least relative change of ψ that changes the exact
+//! engine's itinerary. Fails if a collision with a margin of 1e-12 or more differs.
+//!
+//! Run with `cargo run --release --example compare_engines -- [COUNT] [SEED]`; one million without arguments.
+
+use std::process::ExitCode;
+
+use rayon::prelude::*;
+use stickslip::model::{Collider, Collision, Contact, exact};
+
+/// Margins from here on must not decide differently.
+const DECISIVE: f64 = 1e-12;
+const CHUNK: u64 = 10_000;
+
+/// What a chunk of collisions showed.
+#[derive(Default)]
+struct Comparison {
+    switches: usize,
+    velocity: f64,
+    at: Option<Contact>,
+    time: f64,
+    different: Vec<Contact>,
+    failed: Vec<String>,
+}
+
+impl Comparison {
+    fn merge(mut self, other: Self) -> Self {
+        self.switches += other.switches;
+        if other.velocity > self.velocity {
+            (self.velocity, self.at) = (other.velocity, other.at);
+        }
+        self.time = self.time.max(other.time);
+        self.different.extend(other.different);
+        self.failed.extend(other.failed);
+        self
+    }
+}
+
+fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let count: u64 = arguments.next().map_or(Ok(1_000_000), |text| text.parse())?;
+    let seed: u64 = arguments.next().map_or(Ok(1), |text| text.parse())?;
+    let chunks: Vec<u64> = (0..count).step_by(usize::try_from(CHUNK)?).collect();
+    let result = chunks
+        .into_par_iter()
+        .map(|first| compare(seed, first..count.min(first + CHUNK)))
+        .collect::<Vec<_>>()
+        .into_iter()
+        .fold(Comparison::default(), Comparison::merge);
+
+    println!("{count} collisions, {} switches, seed {seed}", result.switches);
+    println!("largest difference of w: {:e}, at {:?}", result.velocity, result.at);
+    println!("largest difference of a switch time away from grazes: {:e}", result.time);
+    let mut wrong = result.failed.len();
+    for failure in &result.failed {
+        println!("failed: {failure}");
+    }
+    for contact in &result.different {
+        let margin = margin(*contact);
+        wrong += usize::from(margin >= DECISIVE);
+        println!("itineraries differ at {contact:?}, margin {margin:e}");
+    }
+    println!("{} itineraries differ, {wrong} of them wrong", result.different.len());
+    Ok(if wrong == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+fn compare(seed: u64, cases: std::ops::Range<u64>) -> Comparison {
+    let collider = Collider::default();
+    let mut comparison = Comparison::default();
+    for case in cases {
+        let (first, second) = uniform_pair(seed, case);
+        let kappa = 0.02 * (400.0_f64 / 0.02).powf(first);
+        let psi = 0.002 + (2.3 - 0.002) * second;
+        match collide(&collider, kappa, psi) {
+            Ok((integrated, closed)) => {
+                comparison.switches += closed.switches.len();
+                if integrated.itinerary() != closed.itinerary() {
+                    comparison.different.push(closed.contact);
+                    continue;
+                }
+                let velocity = (integrated.final_velocity - closed.final_velocity).abs();
+                if velocity > comparison.velocity {
+                    (comparison.velocity, comparison.at) = (velocity, Some(closed.contact));
+                }
+                for (a, b) in integrated.switches.iter().zip(&closed.switches) {
+                    let difference = (a.time - b.time).abs();
+                    comparison.time = comparison.time.max(difference);
+                }
+            }
+            Err(error) => comparison.failed.push(format!("κ = {kappa}, ψ = {psi}: {error}")),
+        }
+    }
+    comparison
+}
+
+fn collide(
+    collider: &Collider<stickslip::solver::Dop853>,
+    kappa: f64,
+    psi: f64,
+) -> Result<(Collision, Collision), Box<dyn std::error::Error>> {
+    let contact = Contact::new(kappa, psi, 0.0)?;
+    Ok((collider.collide(contact)?, exact::collide(contact)?))
+}
+
+/// The least relative change of ψ, by powers of 2, that changes the exact engine's itinerary.
+fn margin(contact: Contact) -> f64 {
+    let itinerary = |factor: f64| {
+        let moved = Contact::new(contact.kappa(), contact.psi() * factor, 0.0).ok()?;
+        exact::collide(moved).ok().map(|collision| collision.itinerary())
+    };
+    let here = itinerary(1.0);
+    let mut change = f64::EPSILON;
+    while change < 0.1 && itinerary(1.0 + change) == here && itinerary(1.0 - change) == here {
+        change *= 2.0;
+    }
+    change
+}
+
+/// Two numbers in [0, 1) that depend on the case alone (splitmix64), so that threads do not matter.
+fn uniform_pair(seed: u64, case: u64) -> (f64, f64) {
+    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(case << 1);
+    let mut next = || {
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^= z >> 31;
+        #[allow(clippy::cast_precision_loss)]
+        let mantissa = (z >> 11) as f64;
+        mantissa / (1_u64 << 53) as f64
+    };
+    (next(), next())
+}
