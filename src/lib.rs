@@ -1,4 +1,4 @@
-//! Piecewise-smooth ODEs with every switch found, and the planes on which the switching changes.
+#![doc = include_str!("../README.md")]
 
 /// Integration of piecewise-smooth ODEs: Dormand–Prince pairs, decided guards, hybrid runs.
 pub use stickslip_solver as solver;

@@ -34,9 +34,9 @@ impl Default for Collider<Dop853> {
 
 impl<M: Method> Collider<M> {
     /// Relative tolerance at which Dormand–Prince 8(5,3) gives w to 1e-12.
-    pub const RTOL: f64 = 1e-13;
+    pub const RTOL: f64 = 2e-13;
     /// Absolute tolerance that goes with it.
-    pub const ATOL: f64 = 1e-14;
+    pub const ATOL: f64 = 2e-13;
 
     /// A collider with the default tolerances.
     #[must_use]
