@@ -9,7 +9,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use stickslip::model::regularized::{self, Phase, Regularized};
 use stickslip::model::{Collider, Collision, Contact, exact};
 use stickslip::solver::{
-    Dop853, Guard, HybridSystem, Method, Options, Start, State, Step, StepSize, run,
+    Dop853, Guard, HybridSystem, Method, Options, Start, State, Step, StepSize, Trial, run,
 };
 
 /// The 200 collisions of tests/data/undamped_random.json.
@@ -93,13 +93,10 @@ impl<const GUARDED: bool> HybridSystem<{ regularized::STATE }, { regularized::GU
     fn step<M: Method>(
         &self,
         phase: Phase,
-        s: f64,
-        y0: &State<{ regularized::STATE }>,
-        f0: &State<{ regularized::STATE }>,
-        h: f64,
+        trial: &Trial<'_, { regularized::STATE }>,
         step: &mut Step<{ regularized::STATE }>,
     ) {
-        self.0.step::<M>(phase, s, y0, f0, h, step);
+        self.0.step::<M>(phase, trial, step);
     }
 
     fn guards(&self, phase: Phase) -> [Guard; regularized::GUARDS] {

@@ -19,7 +19,7 @@
 //!
 //! so that it is never the difference of nearly equal numbers, however short the phase is.
 
-use stickslip_solver::{Direction, Guard, HybridSystem, Method, State, Step};
+use stickslip_solver::{Direction, Guard, HybridSystem, Method, State, Step, Trial};
 
 use crate::contact::{Contact, Regime, Side};
 
@@ -252,20 +252,12 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
 
     /// Each right-hand side has a step compiled for itself: components that are constant or quadratures then
     /// cost no stage.
-    fn step<M: Method>(
-        &self,
-        phase: Phase,
-        s: f64,
-        y0: &State<STATE>,
-        f0: &State<STATE>,
-        h: f64,
-        step: &mut Step<STATE>,
-    ) {
+    fn step<M: Method>(&self, phase: Phase, trial: &Trial<'_, STATE>, step: &mut Step<STATE>) {
         let side = phase.side;
         let settled = phase.progress == Progress::Settled;
         macro_rules! take {
             ($right_hand_side:expr) => {
-                step.take::<M>(&mut |_, y: &State<STATE>| $right_hand_side(y), s, y0, f0, h)
+                step.take::<M>(&mut |_, y: &State<STATE>| $right_hand_side(y), trial)
             };
         }
         match (phase.regime, self.contact.damping() > 0.0) {

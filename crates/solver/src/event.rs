@@ -361,7 +361,7 @@ where
     fn truth(&mut self, theta: f64) -> Result<f64, RunError> {
         let (system, mode, step) = (self.system, self.mode, self.step);
         let mut shorter = Step::blank();
-        system.step::<M>(mode, step.s, &step.y0, &step.k[0], theta * step.h, &mut shorter);
+        system.step::<M>(mode, &step.shortened(theta * step.h), &mut shorter);
         self.statistics.resteps += 1;
         self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
         let value = self.value(theta, &shorter.y1);

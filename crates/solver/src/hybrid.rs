@@ -10,7 +10,7 @@ use crate::control::{Controller, first_step};
 use crate::error::RunError;
 use crate::event::{Event, Examination, Found, Phase};
 use crate::guard::Guard;
-use crate::method::{Dense, Method, State, Step};
+use crate::method::{Dense, Method, State, Step, Trial};
 use crate::options::{Options, StepSize};
 
 /// A piecewise-smooth ODE of `N` components with at most `G` guards in a mode.
@@ -39,21 +39,13 @@ pub trait HybridSystem<const N: usize, const G: usize> {
         mode
     }
 
-    /// Takes a step of `h` in `mode` from `y0`, whose derivative is `f0`, into `step`.
+    /// Takes the step `trial` in `mode`.
     ///
     /// The provided one serves every system. A system whose modes have right-hand sides of different cost
     /// may give each mode a step of its own, compiled for that right-hand side alone.
     #[inline]
-    fn step<M: Method>(
-        &self,
-        mode: Self::Mode,
-        s: f64,
-        y0: &State<N>,
-        f0: &State<N>,
-        h: f64,
-        step: &mut Step<N>,
-    ) {
-        step.take::<M>(&mut |s, y| self.field(mode, s, y), s, y0, f0, h);
+    fn step<M: Method>(&self, mode: Self::Mode, trial: &Trial<'_, N>, step: &mut Step<N>) {
+        step.take::<M>(&mut |s, y| self.field(mode, s, y), trial);
     }
 
     /// The mode and state that follow when `guard` of `mode` fires at `y`.
@@ -295,10 +287,17 @@ where
             let left = self.clock.until(self.end);
             let h = self.h.min(self.options.max_step);
             let (h, last) = if h >= left { (left, true) } else { (h, false) };
-            system.step::<M>(mode, self.clock.s, &self.state, &self.slope, h, step);
+            let trial = Trial {
+                s: self.clock.s,
+                y: &self.state,
+                slope: &self.slope,
+                h,
+                tolerances: (self.options.rtol, self.options.atol),
+            };
+            system.step::<M>(mode, &trial, step);
             self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
             let error = match self.options.step_size {
-                StepSize::Adaptive => step.error(self.options.rtol, self.options.atol),
+                StepSize::Adaptive => step.error,
                 StepSize::Fixed(_) => step.y1.sum() * 0.0,
             };
             // Written so that NaN rejects.

@@ -63,7 +63,7 @@ pub use guard::{Direction, Guard};
 pub use hybrid::{
     Grazing, HybridSystem, Observer, Outcome, Run, Start, Statistics, SwitchEvent, run,
 };
-pub use method::{Dense, Method, State, Step, Tableau};
+pub use method::{Dense, Method, State, Step, Tableau, Trial};
 pub use options::{InvalidOption, Options, StepSize};
 pub use smooth::integrate;
 pub use trajectory::{Recorder, Segment, Trajectory};

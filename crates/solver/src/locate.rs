@@ -81,7 +81,7 @@ where
         self.statistics.resteps += 1;
         self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
         let mut shorter = Step::blank();
-        self.system.step::<M>(self.phase.mode, step.s, &step.y0, &step.k[0], h, &mut shorter);
+        self.system.step::<M>(self.phase.mode, &step.shortened(h), &mut shorter);
         shorter
     }
 

@@ -61,7 +61,22 @@ pub trait Method: Copy {
     const TABLEAU: Tableau;
 }
 
-/// A trial step of size `h` from `y0` at `s` to `y1`, with its stages.
+/// A step to be tried.
+#[derive(Clone, Copy, Debug)]
+pub struct Trial<'a, const N: usize> {
+    /// Where it starts.
+    pub s: f64,
+    /// The state there.
+    pub y: &'a State<N>,
+    /// Derivative of the state there.
+    pub slope: &'a State<N>,
+    /// Its size.
+    pub h: f64,
+    /// Relative and absolute tolerance by which its error is measured.
+    pub tolerances: (f64, f64),
+}
+
+/// A step of size `h` from `y0` at `s` to `y1`, with its stages.
 #[derive(Clone, Copy, Debug)]
 pub struct Step<const N: usize> {
     /// Where the step starts.
@@ -76,8 +91,9 @@ pub struct Step<const N: usize> {
     pub k: [State<N>; MAX_STAGES],
     /// States at [`INTERIOR_NODES`].
     pub interior: [State<N>; 4],
-    /// Fine and coarse estimates of the error of `y1`, in units of h.
-    errors: [State<N>; 2],
+    /// Estimated error of `y1` relative to `atol + rtol·max(|y0|, |y1|)`, as a root mean square over the
+    /// components; the step is good if this is below 1, which NaN is not.
+    pub error: f64,
     end_known: bool,
 }
 
@@ -93,25 +109,23 @@ impl<const N: usize> Step<N> {
             y1: zero,
             k: [zero; MAX_STAGES],
             interior: [zero; 4],
-            errors: [zero; 2],
+            error: 0.0,
             end_known: false,
         }
     }
 
-    /// Takes a step of `h` from `y0`, whose derivative is `f0`, in place of the one that was here.
+    /// Takes the step `trial` in place of the one that was here.
     #[inline]
     pub fn take<M: Method>(
         &mut self,
         field: &mut impl FnMut(f64, &State<N>) -> State<N>,
-        s: f64,
-        y0: &State<N>,
-        f0: &State<N>,
-        h: f64,
+        trial: &Trial<'_, N>,
     ) {
+        let &Trial { s, y: y0, slope, h, tolerances: (rtol, atol) } = trial;
         // Stages live in a local array until the step is done, so that the compiler can keep them in registers and
         // drop what the right-hand side does not use.
         let mut k = [State::zeros(); MAX_STAGES];
-        k[0] = *f0;
+        k[0] = *slope;
         macro_rules! stages {
             ($($i:literal)*) => {$(
                 if $i < M::STAGES {
@@ -134,14 +148,28 @@ impl<const N: usize> Step<N> {
         self.s = s;
         self.h = h;
         self.y0 = *y0;
-        self.y1 = y0 + combine(&M::TABLEAU.b, &k, M::STAGES) * h;
+        let y1 = y0 + combine(&M::TABLEAU.b, &k, M::STAGES) * h;
+        self.y1 = y1;
         if M::ERROR_USES_END {
-            k[M::STAGES] = field(s + h, &self.y1);
+            k[M::STAGES] = field(s + h, &y1);
         }
         self.end_known = M::ERROR_USES_END;
         let used = M::STAGES + usize::from(M::ERROR_USES_END);
-        self.errors =
-            [combine(&M::TABLEAU.error, &k, used), combine(&M::TABLEAU.coarse_error, &k, used)];
+        let fine = combine(&M::TABLEAU.error, &k, used);
+        let coarse = combine(&M::TABLEAU.coarse_error, &k, used);
+        let (mut fine_sum, mut coarse_sum) = (0.0, 0.0);
+        for i in 0..N {
+            let (start, end) = (y0[i].abs(), y1[i].abs());
+            let weight = 1.0 / (atol + rtol * if start > end { start } else { end });
+            fine_sum += (fine[i] * weight) * (fine[i] * weight);
+            coarse_sum += (coarse[i] * weight) * (coarse[i] * weight);
+        }
+        #[allow(clippy::cast_precision_loss)]
+        let n = N as f64;
+        // Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.10: the fine
+        // estimate is damped where the coarse one says that it is accidentally small.
+        let blend = fine_sum + 0.01 * coarse_sum;
+        self.error = if blend == 0.0 { 0.0 } else { h.abs() * fine_sum / (n * blend).sqrt() };
         self.k[..used].copy_from_slice(&k[..used]);
         if M::INTERIOR_STAGES.is_none() {
             let dense = self.dense::<M>(field);
@@ -149,6 +177,11 @@ impl<const N: usize> Step<N> {
                 *state = dense.at(theta);
             }
         }
+    }
+
+    /// A step of `h` from the same start, whose error is of no interest.
+    pub(crate) fn shortened(&self, h: f64) -> Trial<'_, N> {
+        Trial { s: self.s, y: &self.y0, slope: &self.k[0], h, tolerances: (1.0, 1.0) }
     }
 
     /// The step of size 0.
@@ -168,25 +201,6 @@ impl<const N: usize> Step<N> {
             self.end_known = true;
         }
         self.k[M::STAGES]
-    }
-
-    /// Estimated error of `y1` relative to `atol + rtol·max(|y0|, |y1|)`, as a root mean square; a
-    /// step is good if this is below 1, which NaN is not.
-    #[inline]
-    pub fn error(&self, rtol: f64, atol: f64) -> f64 {
-        let [fine, coarse] = &self.errors;
-        let (mut fine_sum, mut coarse_sum) = (0.0, 0.0);
-        for i in 0..N {
-            let weight = 1.0 / (atol + rtol * self.y0[i].abs().max(self.y1[i].abs()));
-            fine_sum += (fine[i] * weight) * (fine[i] * weight);
-            coarse_sum += (coarse[i] * weight) * (coarse[i] * weight);
-        }
-        #[allow(clippy::cast_precision_loss)]
-        let n = N as f64;
-        // Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.10: the fine
-        // estimate is damped where the coarse one says that it is accidentally small.
-        let blend = fine_sum + 0.01 * coarse_sum;
-        if blend == 0.0 { 0.0 } else { self.h.abs() * fine_sum / (n * blend).sqrt() }
     }
 
     /// The continuous extension over the step; costs the method's further stages.
