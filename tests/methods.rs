@@ -7,7 +7,7 @@
 
 use stickslip::solver::method::{INTERIOR_NODES, MAX_STAGES};
 use stickslip::solver::{
-    Dense, Dop853, Dopri5, Method, Observer, Options, State, Step, StepSize, integrate,
+    Dense, Dop853, Dopri5, Method, Observer, Options, State, Step, StepSize, Trial, integrate,
 };
 
 /// A rooted tree: its vertices, its density γ, and the trees (by index) that hang on its root.
@@ -101,7 +101,9 @@ fn weights_of_dense<M: Method>() -> (Step<MAX_STAGES>, Dense<MAX_STAGES>) {
         unit(next)
     };
     let mut step = Step::blank();
-    step.take::<M>(&mut field, 0.0, &State::zeros(), &unit(0), 1.0);
+    let (y, slope) = (State::zeros(), unit(0));
+    let trial = Trial { s: 0.0, y: &y, slope: &slope, h: 1.0, tolerances: (1.0, 1.0) };
+    step.take::<M>(&mut field, &trial);
     let dense = step.dense::<M>(&mut field);
     for stage in 0..M::DENSE_STAGES {
         assert_eq!(step.k[stage], unit(stage), "stage {stage}");
@@ -326,7 +328,9 @@ fn a_single_step_has_one_order_more_than_the_method() {
         let y0 = on_ellipse(1.0);
         let mut step = Step::blank();
         let mut field = kepler;
-        step.take::<M>(&mut field, 1.0, &y0, &kepler(1.0, &y0), h);
+        let slope = kepler(1.0, &y0);
+        let trial = Trial { s: 1.0, y: &y0, slope: &slope, h, tolerances: (1.0, 1.0) };
+        step.take::<M>(&mut field, &trial);
         let inside = step.dense::<M>(&mut field).at(0.4) - on_ellipse(1.0 + 0.4 * h);
         ((step.y1 - on_ellipse(1.0 + h)).norm(), inside.norm())
     }
