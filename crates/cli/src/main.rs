@@ -1,1 +1,56 @@
-fn main() {}
+//! The `stickslip` program: arguments become a plan, the plan is carried out, the outcome becomes
+//! an exit code.
+//!
+//! Start reading here; then, in this order: `args` (what may be typed), `plan` (what it means),
+//! `collide` and `batch` (doing it), `input` (files read), `table`, `json`, `rows` and `output`
+//! (results written).
+
+mod args;
+mod batch;
+mod collide;
+mod engine;
+mod error;
+mod input;
+mod json;
+mod number;
+mod output;
+mod parameter;
+mod plan;
+mod recipe;
+mod rows;
+mod table;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Arguments, Command};
+use error::Failure;
+use plan::CollidePlan;
+
+fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(reply) => {
+            // The reader of a help text may be gone already; that is no failure.
+            let _ = reply.print();
+            return ExitCode::from(u8::try_from(reply.exit_code()).unwrap_or(2));
+        }
+    };
+    match run(&arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.report();
+            failure.exit_code()
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<(), Failure> {
+    match &arguments.command {
+        Command::Collide(arguments) => match CollidePlan::new(arguments)? {
+            CollidePlan::Point(point) => collide::run(&point),
+            CollidePlan::Batch(batch) => batch::run(&batch),
+        },
+    }
+}

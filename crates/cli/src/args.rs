@@ -1,0 +1,151 @@
+//! What may be typed: options with their syntax and ranges, and the help text.
+
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand, ValueEnum};
+
+use crate::engine::Tolerances;
+use crate::parameter::Parameter;
+
+/// Collisions of frictional viscoelastic spheres, with every switch between sticking and sliding.
+#[derive(Debug, Parser)]
+#[command(name = "stickslip", version, after_help = EXIT_CODES)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Compute one collision, or a file of them
+    #[command(long_about = COLLIDE, after_long_help = COLLIDE_EXAMPLES)]
+    Collide(CollideArguments),
+}
+
+/// Options of `collide`.
+#[derive(Debug, clap::Args)]
+pub struct CollideArguments {
+    /// Scaled stiffness κ = k_t/(α m β^⅘ g_n^⅖) of the tangential spring; above 0
+    #[arg(long, value_name = "K", help_heading = "Collision", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Kappa.parse(text))]
+    #[arg(required_unless_present = "batch")]
+    pub kappa: Option<f64>,
+
+    /// Impact ratio g_t/g_n of tangential and normal velocity; above 0; gives ψ = G·α/μ
+    #[arg(long, value_name = "G", help_heading = "Collision", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Ratio.parse(text))]
+    pub ratio: Option<f64>,
+
+    /// Reduced impact ratio ψ = (g_t/g_n)·α/μ, instead of --ratio; above 0
+    #[arg(long, value_name = "P", help_heading = "Collision", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Psi.parse(text))]
+    pub psi: Option<f64>,
+
+    /// Coefficient of friction μ, with --ratio; above 0 [default: 0.4]
+    #[arg(long, value_name = "M", help_heading = "Collision", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Mu.parse(text))]
+    pub mu: Option<f64>,
+
+    /// Tangential inertia α, with --ratio; above 0, at most 1 [default: 2/7, homogeneous spheres]
+    #[arg(long, value_name = "A", help_heading = "Collision", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Alpha.parse(text))]
+    pub alpha: Option<f64>,
+
+    /// Scaled damping a = A β^⅖ g_n^⅕ of the normal force; 0 or above [default: 0]
+    #[arg(long, value_name = "D", help_heading = "Collision", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Damping.parse(text))]
+    pub damping: Option<f64>,
+
+    /// What computes the collision
+    #[arg(long, value_enum, default_value_t = Method::Dop853, help_heading = "Method")]
+    pub method: Method,
+
+    /// Relative tolerance of a step; 1e-15 to 0.1
+    #[arg(long, help = tolerance_help("Relative", "1e-15 to 0.1", |tolerances| tolerances.rtol))]
+    #[arg(value_name = "R", help_heading = "Method", allow_hyphen_values = true)]
+    #[arg(value_parser = Tolerances::parse_rtol)]
+    pub rtol: Option<f64>,
+
+    /// Absolute tolerance of a step; above 0
+    #[arg(long, help = tolerance_help("Absolute", "above 0", |tolerances| tolerances.atol))]
+    #[arg(value_name = "T", help_heading = "Method", allow_hyphen_values = true)]
+    #[arg(value_parser = Tolerances::parse_atol)]
+    pub atol: Option<f64>,
+
+    /// How one collision is printed
+    #[arg(long, value_enum, default_value_t = Format::Table, help_heading = "Output")]
+    #[arg(conflicts_with = "batch")]
+    pub format: Format,
+
+    /// CSV file with a header row and one collision a row
+    #[arg(long, value_name = "IN.csv", help_heading = "Batch", requires = "out")]
+    pub batch: Option<PathBuf>,
+
+    /// CSV file for the results, one row a collision in the order of the input
+    #[arg(long, value_name = "OUT.csv", help_heading = "Batch", requires = "batch")]
+    pub out: Option<PathBuf>,
+
+    /// CSV file for every switch of every collision
+    #[arg(long, value_name = "EV.csv", help_heading = "Batch", requires = "batch")]
+    pub events: Option<PathBuf>,
+
+    /// Threads for a batch; 1 to 1024 [default: one for each core]; results do not depend on it
+    #[arg(long, value_name = "N", help_heading = "Batch", allow_hyphen_values = true)]
+    #[arg(value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
+/// What computes a collision.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Method {
+    /// Dormand–Prince 5(4)
+    Dopri5,
+    /// Dormand–Prince 8(5,3)
+    Dop853,
+    /// The exact solution; without damping only
+    Exact,
+}
+
+/// How one collision is printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// A readable table
+    Table,
+    /// One JSON object, schema "stickslip.collision/1"
+    Json,
+}
+
+fn tolerance_help(name: &str, range: &str, tolerance: fn(&Tolerances) -> f64) -> String {
+    let [dop853, dopri5] = [&Tolerances::DOP853, &Tolerances::DOPRI5].map(tolerance);
+    format!(
+        "{name} tolerance of a step; {range} [default: {dop853:?} with dop853, {dopri5:?} with dopri5]"
+    )
+}
+
+const EXIT_CODES: &str = "Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";
+
+const COLLIDE: &str = "\
+Compute one collision, or a file of them: the coefficients of restitution, the switches between \
+sticking and sliding, and where the energy went.
+
+A collision is given by --kappa and exactly one of --psi and --ratio. All quantities are scaled: \
+time by β^(−2/5) g_n^(−1/5), length by g_n^(4/5) β^(−2/5), with β = ρ/m; spring and tangential \
+velocity are reduced by μ/α besides. Numbers are written like 18, 1.5e3 or 2/7.";
+
+const COLLIDE_EXAMPLES: &str = "\
+Batch files:
+  The header of IN.csv names any of kappa, psi, ratio, mu, alpha, damping; the options of the same
+  names give what the file does not. Other columns pass through. OUT.csv has the input's columns
+  followed by eps_n, eps_t, switch_count, itinerary, contact_time, reversals, status. A row that
+  cannot be computed has empty results and its reason in status, and the exit code is 1.
+
+Examples:
+  stickslip collide --kappa 63 --psi 0.5
+  stickslip collide --kappa 18 --ratio 1.4 --mu 0.4 --alpha 2/7 --method exact
+  stickslip collide --kappa 18 --psi 1 --damping 0.05 --format json
+  stickslip collide --batch IN.csv --out OUT.csv --events EV.csv --threads 4
+  stickslip collide --batch PSI.csv --kappa 18 --method exact --out OUT.csv
+
+Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

@@ -1,0 +1,34 @@
+//! One collision, computed and printed.
+
+use std::io::{self, BufWriter, Write};
+
+use crate::args::Format;
+use crate::engine::{EngineError, require_finite, require_finite_energy};
+use crate::error::Failure;
+use crate::plan::Point;
+use crate::{json, table};
+
+/// Computes the collision and prints it to standard output.
+///
+/// # Errors
+/// The collision cannot be computed, or standard output cannot be written.
+pub fn run(point: &Point) -> Result<(), Failure> {
+    let contact = point.contact;
+    let failed = |source: EngineError| Failure::Computation {
+        kappa: contact.kappa(),
+        psi: contact.psi(),
+        damping: contact.damping(),
+        source,
+    };
+    let (collision, statistics) = point.engine.collide(contact, Vec::new()).map_err(failed)?;
+    require_finite(&collision).map_err(failed)?;
+    require_finite_energy(&collision.energy).map_err(failed)?;
+
+    let mut out = BufWriter::new(io::stdout().lock());
+    let (engine, statistics) = (&point.engine, statistics.as_ref());
+    let written = match point.format {
+        Format::Json => json::write(&mut out, engine, &collision, statistics),
+        Format::Table => table::write(&mut out, engine, &collision, statistics),
+    };
+    Failure::unless_written(written.and_then(|()| out.flush()))
+}

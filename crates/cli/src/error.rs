@@ -1,0 +1,105 @@
+//! What can go wrong, and the exit code that tells it.
+
+use std::fmt::Display;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use crate::engine::EngineError;
+
+/// Why the program did not do what it was asked.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    /// The options contradict each other.
+    #[error("{0}")]
+    Usage(String),
+    /// An input file cannot be used.
+    #[error("{}: {reason}", path.display())]
+    Input {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it, and what is accepted.
+        reason: String,
+    },
+    /// The point cannot be computed.
+    #[error("kappa = {kappa:?}, psi = {psi:?}, damping = {damping:?}: {source}")]
+    Computation {
+        /// Scaled stiffness of the contact.
+        kappa: f64,
+        /// Its reduced impact ratio.
+        psi: f64,
+        /// Its scaled damping.
+        damping: f64,
+        /// Why.
+        source: EngineError,
+    },
+    /// Some rows of a batch have no result.
+    #[error(
+        "{failed} of {rows} rows could not be computed; \
+         the column status of {} says why", path.display()
+    )]
+    Rows {
+        /// Rows without a result.
+        failed: u64,
+        /// All rows.
+        rows: u64,
+        /// The output file.
+        path: PathBuf,
+    },
+    /// An output file cannot be written.
+    #[error("{}: cannot be written: {source}", path.display())]
+    Output {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// Standard output cannot be written.
+    #[error("standard output: cannot be written: {0}")]
+    Stdout(io::Error),
+    /// The threads cannot be started.
+    #[error("--threads: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+}
+
+impl Failure {
+    /// An unusable input file.
+    pub fn input(path: &Path, reason: impl Display) -> Self {
+        Self::Input { path: path.to_owned(), reason: reason.to_string() }
+    }
+
+    /// An output file that cannot be written.
+    pub fn output(path: &Path, source: impl Into<io::Error>) -> Self {
+        Self::Output { path: path.to_owned(), source: source.into() }
+    }
+
+    /// The outcome of writing to standard output: a reader that has gone away has seen enough.
+    ///
+    /// # Errors
+    /// Any other failure to write.
+    pub fn unless_written(written: io::Result<()>) -> Result<(), Self> {
+        match written {
+            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Self::Stdout(error)),
+            _ => Ok(()),
+        }
+    }
+
+    /// 2 for bad usage or input, 1 for everything that fails later.
+    pub fn exit_code(&self) -> ExitCode {
+        ExitCode::from(match self {
+            Self::Usage(_) | Self::Input { .. } => 2,
+            _ => 1,
+        })
+    }
+
+    /// Says on standard error what went wrong.
+    pub fn report(&self) {
+        use io::Write;
+        // If standard error is closed, the exit code still tells.
+        let _ = writeln!(io::stderr(), "error: {self}");
+        if let Self::Usage(_) = self {
+            let _ =
+                writeln!(io::stderr(), "\nFor more information, try 'stickslip collide --help'.");
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! Output files that are complete or not there at all.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::{Builder, NamedTempFile};
+
+/// A file that is written beside its target and takes the target's name when it is complete.
+///
+/// Dropped before [`Self::publish`], it disappears and the target stays as it was. A device or a
+/// pipe is written directly: there is nothing to replace.
+#[derive(Debug)]
+pub struct OutputFile(Destination);
+
+#[derive(Debug)]
+enum Destination {
+    Beside { partial: NamedTempFile, target: PathBuf },
+    Direct(File),
+}
+
+impl OutputFile {
+    /// Starts to write `path`, whose directory must exist.
+    ///
+    /// # Errors
+    /// The directory is missing or cannot be written, or `path` is a directory.
+    pub fn create(path: &Path) -> io::Result<Self> {
+        if is_stream(path) {
+            // At the end of whatever it leads to: another program may have written before.
+            let stream = OpenOptions::new().append(true).open(path)?;
+            return Ok(Self(Destination::Direct(stream)));
+        }
+        if path.is_dir() {
+            return Err(io::ErrorKind::IsADirectory.into());
+        }
+        // Behind a symbolic link, the file that it points to is replaced, not the link.
+        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let directory = match target.parent() {
+            Some(parent) if !parent.as_os_str().is_empty() => parent,
+            _ => Path::new("."),
+        };
+        fs::metadata(directory)?;
+        let name = target.file_name().ok_or(io::ErrorKind::InvalidFilename)?;
+        let prefix = format!(".{}.", name.to_string_lossy());
+        let mut builder = Builder::new();
+        builder.prefix(&prefix).suffix(".partial");
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        // The whole error would show the temporary name, which means nothing to the user.
+        let partial = builder.tempfile_in(directory).map_err(|error| error.kind())?;
+        Ok(Self(Destination::Beside { partial, target }))
+    }
+
+    /// Makes sure that everything has been stored.
+    ///
+    /// # Errors
+    /// The disk is full or fails.
+    pub fn store(&mut self) -> io::Result<()> {
+        match &mut self.0 {
+            Destination::Beside { partial, .. } => partial.as_file().sync_all(),
+            Destination::Direct(device) => device.flush(),
+        }
+    }
+
+    /// Gives the file its name.
+    ///
+    /// # Errors
+    /// It cannot be renamed; then it is removed.
+    pub fn publish(self) -> io::Result<()> {
+        match self.0 {
+            Destination::Beside { partial, target } => {
+                partial.persist(target).map(drop).map_err(|failed| failed.error)
+            }
+            Destination::Direct(_) => Ok(()),
+        }
+    }
+}
+
+impl Write for OutputFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match &mut self.0 {
+            // The error of the file itself: `NamedTempFile` would add the temporary name to it.
+            Destination::Beside { partial, .. } => partial.as_file_mut().write(bytes),
+            Destination::Direct(device) => device.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match &mut self.0 {
+            Destination::Beside { partial, .. } => partial.as_file_mut().flush(),
+            Destination::Direct(device) => device.flush(),
+        }
+    }
+}
+
+/// Whether `path` leads to a device, a pipe or a stream of the process itself, which a file of the
+/// same name must not replace.
+fn is_stream(path: &Path) -> bool {
+    let own = ["/dev/stdout", "/dev/stderr", "/dev/fd", "/proc/self/fd"];
+    own.iter().any(|stream| path.starts_with(stream))
+        || fs::metadata(path).is_ok_and(|existing| !existing.is_file() && !existing.is_dir())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(directory: &Path) -> Vec<String> {
+        let entries = fs::read_dir(directory).unwrap();
+        let mut names: Vec<_> =
+            entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn appears_when_published_and_not_before() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("out.csv");
+        let mut file = OutputFile::create(&path).unwrap();
+        file.write_all(b"a,b\n").unwrap();
+        assert!(!path.exists());
+        file.store().unwrap();
+        file.publish().unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"a,b\n");
+        assert_eq!(names(directory.path()), ["out.csv"]);
+    }
+
+    #[test]
+    fn dropped_unpublished_it_leaves_what_was_there() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("out.csv");
+        fs::write(&path, "old").unwrap();
+        let mut file = OutputFile::create(&path).unwrap();
+        file.write_all(b"new").unwrap();
+        drop(file);
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(names(directory.path()), ["out.csv"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn replaces_what_a_link_points_to_and_keeps_the_link() {
+        let directory = tempfile::tempdir().unwrap();
+        let (target, link) = (directory.path().join("target"), directory.path().join("link"));
+        fs::write(&target, "old").unwrap();
+        std::os::unix::fs::symlink(&target, &link).unwrap();
+        let mut file = OutputFile::create(&link).unwrap();
+        file.write_all(b"new").unwrap();
+        file.publish().unwrap();
+        assert_eq!(fs::read(&target).unwrap(), b"new");
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    }
+}

@@ -1,0 +1,155 @@
+//! What the options mean together: raw arguments become a plan that can be carried out.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use stickslip_model::Contact;
+
+use crate::args::{CollideArguments, Format, Method};
+use crate::engine::{Engine, Tolerances};
+use crate::error::Failure;
+use crate::recipe::{Given, Recipe, RecipeError};
+
+/// What `collide` is to do.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CollidePlan {
+    /// One collision to standard output.
+    Point(Point),
+    /// A file of collisions.
+    Batch(Batch),
+}
+
+/// One collision.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Its parameters.
+    pub contact: Contact,
+    /// What computes it.
+    pub engine: Engine,
+    /// How it is printed.
+    pub format: Format,
+}
+
+/// A file of collisions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Batch {
+    /// Where they are.
+    pub input: PathBuf,
+    /// Where the results go.
+    pub out: PathBuf,
+    /// Where the switches go, if they are wanted.
+    pub events: Option<PathBuf>,
+    /// Values for all rows.
+    pub given: Given,
+    /// What computes them.
+    pub engine: Engine,
+    /// Number of threads; `None` is one for each core.
+    pub threads: Option<usize>,
+}
+
+impl CollidePlan {
+    /// The plan that `arguments` make.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] says which options do not go together.
+    pub fn new(arguments: &CollideArguments) -> Result<Self, Failure> {
+        let engine = engine(arguments)?;
+        let given = Given {
+            kappa: arguments.kappa,
+            psi: arguments.psi,
+            ratio: arguments.ratio,
+            mu: arguments.mu,
+            alpha: arguments.alpha,
+            damping: arguments.damping,
+        };
+        let (Some(input), Some(out)) = (&arguments.batch, &arguments.out) else {
+            let recipe = Recipe::new(&given, |_| None).map_err(|e| Failure::Usage(explain(e)))?;
+            let contact = recipe.contact(|_| &[]).map_err(|e| Failure::Usage(e.to_string()))?;
+            return Ok(Self::Point(Point { contact, engine, format: arguments.format }));
+        };
+        let events = arguments.events.as_ref();
+        require_different(("--out", out), ("--batch", input))?;
+        if let Some(events) = events {
+            require_different(("--events", events), ("--batch", input))?;
+            require_different(("--events", events), ("--out", out))?;
+        }
+        Ok(Self::Batch(Batch {
+            input: input.clone(),
+            out: out.clone(),
+            events: events.cloned(),
+            given,
+            engine,
+            threads: arguments.threads.map(usize::from),
+        }))
+    }
+}
+
+fn engine(arguments: &CollideArguments) -> Result<Engine, Failure> {
+    let tolerances = |default: Tolerances| Tolerances {
+        rtol: arguments.rtol.unwrap_or(default.rtol),
+        atol: arguments.atol.unwrap_or(default.atol),
+    };
+    match arguments.method {
+        Method::Dop853 => return Ok(Engine::Dop853(tolerances(Tolerances::DOP853))),
+        Method::Dopri5 => return Ok(Engine::Dopri5(tolerances(Tolerances::DOPRI5))),
+        Method::Exact => {}
+    }
+    let unused = [("--rtol", arguments.rtol), ("--atol", arguments.atol)];
+    if let Some((option, Some(value))) = unused.into_iter().find(|(_, value)| value.is_some()) {
+        return Err(Failure::Usage(format!(
+            "{option} {value:?} has no effect with --method exact, which has no tolerances; \
+             accepted with dop853 and dopri5"
+        )));
+    }
+    match arguments.damping {
+        Some(damping) if damping != 0.0 => Err(Failure::Usage(format!(
+            "--damping {damping:?} cannot be used with --method exact, which holds without \
+             damping; accepted is 0, or --method dop853 or dopri5"
+        ))),
+        _ => Ok(Engine::Exact),
+    }
+}
+
+/// What is wrong with the options of one collision.
+fn explain(error: RecipeError) -> String {
+    match error {
+        RecipeError::NoKappa => "--kappa is missing".to_owned(),
+        RecipeError::NoImpact => {
+            "neither --psi nor --ratio is given; accepted is exactly one of them".to_owned()
+        }
+        RecipeError::PsiAndRatio => {
+            "--psi and --ratio are both given; accepted is exactly one of them".to_owned()
+        }
+        RecipeError::GivenTwice { name } => format!("--{name} is given twice"),
+        RecipeError::Unused { name } => {
+            format!("--{name} has no effect with --psi; accepted with --ratio only")
+        }
+    }
+}
+
+fn require_different(output: (&str, &Path), other: (&str, &Path)) -> Result<(), Failure> {
+    if identity(output.1) != identity(other.1) {
+        return Ok(());
+    }
+    Err(Failure::Usage(format!(
+        "{} {} is the same file as {}; accepted is a file of its own",
+        output.0,
+        output.1.display(),
+        other.0
+    )))
+}
+
+/// The file that `path` names, whether it exists or not.
+fn identity(path: &Path) -> PathBuf {
+    if let Ok(existing) = fs::canonicalize(path) {
+        return existing;
+    }
+    let parent = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    match (fs::canonicalize(parent), path.file_name()) {
+        (Ok(parent), Some(name)) => parent.join(name),
+        _ => path.to_owned(),
+    }
+}
