@@ -128,7 +128,6 @@ fn uniform_pair(seed: u64, case: u64) -> (f64, f64) {
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         z ^= z >> 31;
-        #[allow(clippy::cast_precision_loss)]
         let mantissa = (z >> 11) as f64;
         mantissa / (1_u64 << 53) as f64
     };

@@ -47,7 +47,7 @@ fn order(coarse: f64, fine: f64, velocity: impl Fn(Contact, f64) -> f64) -> f64 
 
 fn regularized<M: Method>(method: M, coarse: f64, fine: f64) -> f64 {
     let velocity = |contact, h| {
-        let collision = Collider::with_options(method, fixed(h)).collide(contact);
+        let collision = Collider::unrefined(method, fixed(h)).collide(contact);
         let collision = collision.expect("a collision");
         let expected = exact::collide(contact).expect("no damping").itinerary();
         assert_eq!(collision.itinerary(), expected, "{contact:?}, {h}");

@@ -10,7 +10,7 @@
 
 mod account;
 mod onset;
-mod pair;
+
 mod precise;
 mod release;
 mod root;

@@ -61,7 +61,6 @@ fn power(base: f64, exponent: f64) -> f64 {
     }
 }
 
-#[allow(clippy::cast_precision_loss)]
 fn exponent<M: Method>() -> f64 {
     let order = M::CONTROL_ORDER as f64;
     // 0.75 β for order 5 and 0.2 β for order 8, as in the codes.
@@ -91,7 +90,6 @@ pub(crate) fn first_step<M: Method, const N: usize>(
     let f1 = field(s + h, &(y0 + f0 * h));
     let curvature = norm(&(f1 - f0)).sqrt() / h;
     let largest = curvature.max(slope_size.sqrt());
-    #[allow(clippy::cast_precision_loss)]
     let order = M::CONTROL_ORDER as f64;
     let step =
         if largest <= 1e-15 { (h * 1e-3).max(1e-6) } else { (0.01 / largest).powf(1.0 / order) };

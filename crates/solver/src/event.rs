@@ -19,6 +19,8 @@ pub(crate) struct Phase<Mode, const G: usize> {
     pub(crate) values: [f64; G],
     /// Orders of the zeros from which the guards start the next step.
     pub(crate) zero_orders: [u32; G],
+    /// Largest absolute values of the guards at the ends of the phase's steps.
+    pub(crate) largest: [f64; G],
 }
 
 impl<Mode: Copy, const G: usize> Phase<Mode, G> {
@@ -35,7 +37,13 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
                 return Err(RunError::GuardNotANumber { guard, s });
             }
         }
-        Ok(Self { mode, guards, values, zero_orders: guards.map(|guard| guard.zero_order()) })
+        Ok(Self {
+            mode,
+            guards,
+            values,
+            zero_orders: guards.map(|guard| guard.zero_order()),
+            largest: values.map(f64::abs),
+        })
     }
 
     /// The mode goes on after `guard` has fired and left `residual`: where its value still stands at that zero,
@@ -46,9 +54,14 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
         }
     }
 
-    /// The start of the phase lies behind.
-    pub(crate) fn leave_start(&mut self) {
+    /// A step is done, and the start of the phase lies behind.
+    #[inline]
+    pub(crate) fn advance(&mut self, values: [f64; G]) {
+        self.values = values;
         self.zero_orders = [0; G];
+        for (largest, value) in self.largest.iter_mut().zip(values) {
+            *largest = if value.abs() > *largest { value.abs() } else { *largest };
+        }
     }
 }
 
@@ -57,6 +70,8 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
 pub(crate) struct Event<const N: usize> {
     pub(crate) guard: usize,
     pub(crate) simultaneous: u32,
+    /// Absolute slope of the guard there.
+    pub(crate) slope: f64,
     /// From the start of the step.
     pub(crate) elapsed: f64,
     /// The state on the guard.
@@ -120,9 +135,9 @@ where
         let values = self.values_on(step);
         let mut statuses = [Status::Clear; G];
         let mut all_clear = true;
-        for guard in 0..G {
-            statuses[guard] = self.glance::<M>(guard, &values);
-            all_clear &= statuses[guard] == Status::Clear;
+        for (guard, status) in statuses.iter_mut().enumerate() {
+            *status = self.glance::<M>(guard, &values);
+            all_clear &= *status == Status::Clear;
         }
         if all_clear {
             Ok(Found::Nothing(values[5]))
@@ -174,9 +189,9 @@ where
             }
             values = self.values_on(&next.step);
             next.simultaneous = self.simultaneous(guard, &values);
-            for other in 0..G {
-                if statuses[other] != Status::Clear {
-                    statuses[other] = self.glance::<M>(other, &values);
+            for (other, status) in statuses.iter_mut().enumerate() {
+                if *status != Status::Clear {
+                    *status = self.glance::<M>(other, &values);
                 }
             }
             event = Some(next);
@@ -185,13 +200,11 @@ where
 
     /// Guards other than `guard` that are at zero where the step ends.
     fn simultaneous(&self, guard: usize, values: &[[f64; G]; 6]) -> u32 {
-        let largest =
-            |other: usize| values.iter().fold(0.0_f64, |size, v| size.max(v[other].abs()));
         (0..G.min(32))
             .filter(|&other| {
                 other != guard
                     && self.phase.guards[other].direction() != Direction::Off
-                    && values[5][other].abs() <= TOGETHER * largest(other)
+                    && values[5][other].abs() <= TOGETHER * largest(other, values)
             })
             .fold(0, |bits, other| bits | 1 << other)
     }
@@ -227,11 +240,10 @@ where
             Status::Fires(Crossing { sign, bracket: Bracket { low: 0.0, high: 1.0, guess: theta } })
         };
         match quick::look(&column, order, M::QUICK_ERROR) {
-            Quick::Positive => Status::Clear,
             Quick::Negative if direction == Direction::Below => {
                 Status::Fires(Crossing::at_start(sign))
             }
-            Quick::Negative => Status::Clear,
+            Quick::Positive | Quick::Negative => Status::Clear,
             Quick::Falls { theta } => falls(sign, theta),
             Quick::Unclear if direction == Direction::Either => {
                 match quick::look(&column.map(|value| -value), order, M::QUICK_ERROR) {
@@ -308,6 +320,11 @@ where
         }
         Ok(Some(found))
     }
+}
+
+/// Largest absolute value of a guard at the nodes of a step.
+fn largest<const G: usize>(guard: usize, values: &[[f64; G]; 6]) -> f64 {
+    values.iter().fold(0.0, |size, at_node| size.max(at_node[guard].abs()))
 }
 
 /// The crossing with the least step fraction; of equal ones the guard listed first.

@@ -316,7 +316,6 @@ fn clenshaw(coefficients: &[f64; TERMS], t: f64) -> f64 {
     coefficients[0] + t * b1 - b2
 }
 
-#[allow(clippy::cast_precision_loss)]
 fn differentiate(coefficients: &[f64; TERMS]) -> [f64; TERMS] {
     let mut derivative = [0.0; TERMS];
     for k in (0..TERMS - 1).rev() {

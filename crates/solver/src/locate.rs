@@ -32,9 +32,10 @@ where
         let (system, mode) = (self.system, self.phase.mode);
         let (mut low, mut high) = (crossing.bracket.low, crossing.bracket.high);
         let mut theta = crossing.bracket.guess;
-        let event = |elapsed, state, residual: f64, step| Event {
+        let event = |elapsed, state, residual: f64, slope: f64, step| Event {
             guard,
             simultaneous: 0,
+            slope: slope.abs(),
             elapsed,
             state,
             residual: residual.abs(),
@@ -42,7 +43,7 @@ where
         };
         if high == 0.0 {
             let residual = self.phase.values[guard];
-            return Ok(event(0.0, step.y0, residual, step.shrunk_to_start()));
+            return Ok(event(0.0, step.y0, residual, f64::INFINITY, step.shrunk_to_start()));
         }
         if !(theta > low && theta < high) {
             theta = 0.5 * (low + high);
@@ -67,10 +68,10 @@ where
                 if exact && elapsed != trial.h {
                     trial = self.restep::<M>(step, elapsed);
                 }
-                return Ok(event(elapsed, state, residual, trial));
+                return Ok(event(elapsed, state, residual, end.slope, trial));
             }
             if high - low <= 4.0 * f64::EPSILON * high {
-                return Ok(event(trial.h, trial.y1, end.value, trial));
+                return Ok(event(trial.h, trial.y1, end.value, end.slope, trial));
             }
             theta = if next > low && next < high { next } else { 0.5 * (low + high) };
         }

@@ -164,7 +164,6 @@ impl<const N: usize> Step<N> {
             fine_sum += (fine[i] * weight) * (fine[i] * weight);
             coarse_sum += (coarse[i] * weight) * (coarse[i] * weight);
         }
-        #[allow(clippy::cast_precision_loss)]
         let n = N as f64;
         // Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.10: the fine
         // estimate is damped where the coarse one says that it is accidentally small.

@@ -76,7 +76,6 @@ fn classify<const K: usize>(bernstein: &[f64; K], error: f64) -> Quick {
         return Quick::Negative;
     }
     // A term of degree K whose size is `error` has a slope of at most 2K² times that (Markov).
-    #[allow(clippy::cast_precision_loss)]
     let slope_error = 2.0 * (K * K) as f64 * error;
     let falls =
         bernstein.windows(2).all(|pair| (pair[1] - pair[0]) * (K as f64 - 1.0) < -slope_error);
@@ -116,7 +115,6 @@ fn de_casteljau<const K: usize>(bernstein: &[f64; K], theta: f64) -> (f64, f64) 
             b[i] += theta * (b[i + 1] - b[i]);
         }
     }
-    #[allow(clippy::cast_precision_loss)]
     let degree = (K - 1) as f64;
     (b[0] + theta * (b[1] - b[0]), degree * (b[1] - b[0]))
 }

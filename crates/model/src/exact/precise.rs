@@ -3,10 +3,10 @@
 //! A guard that falls through 0 at the rate δ turns an error of 1e-16 in itself into one of
 //! 1e-16/δ in the switch. One Newton step with the guard computed in [`Pair`]s takes it away.
 
-use super::pair::Pair;
 use super::slide::{Slide, pull};
 use super::swing::Swing;
 use super::trajectory::{CONTACT_TIME, CONTACT_TIME_REST, Half, Moment, Point};
+use crate::pair::Pair;
 
 /// `root`, where a slip phase in the compression ends, improved beside a slip graze; `target` is
 /// s·w carried back to the start of contact, `crest` the end of the piece on which h rises.

@@ -13,10 +13,10 @@
 //! it starts before the crest and C is below h there, else in the decompression if C < 2, else
 //! not before the contact does.
 
-use super::pair::Pair;
 use super::precise::refined_onset;
 use super::root::{Jet, bracketed};
 use super::trajectory::{Half, LARGEST_U, MIDDLE_ROOT, Moment, Point, speed_at};
+use crate::pair::Pair;
 
 /// The value of b u at the largest compression above which h is nearly flat somewhere: dg/dt is
 /// −u³(1 − b u) at the largest compression and no smaller before it.

@@ -1,9 +1,9 @@
 //! The motion of the spring in a stick phase, beside its limit.
 
 use super::onset::Onset;
-use super::pair::Pair;
 use super::slide::{Slide, pull};
 use super::trajectory::{CONTACT_TIME, Moment, Point};
+use crate::pair::Pair;
 
 /// One stick phase, in the orientation in which it starts on side +1:
 /// y = A cos θ, with θ rising at the rate ω = √κ.

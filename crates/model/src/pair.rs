@@ -5,7 +5,7 @@
 
 /// An unevaluated sum, the second number below the rounding of the first.
 #[derive(Clone, Copy, Debug)]
-pub struct Pair(pub f64, pub f64);
+pub(crate) struct Pair(pub f64, pub f64);
 
 impl Pair {
     /// a + b, exactly.
@@ -36,6 +36,12 @@ impl Pair {
     pub fn times(self, other: Self) -> Self {
         let Self(high, low) = Self::product(self.0, other.0);
         Self::sum(high, low + (self.0 * other.1 + self.1 * other.0))
+    }
+
+    /// The product with a single number.
+    pub fn scaled(self, factor: f64) -> Self {
+        let Self(high, low) = Self::product(self.0, factor);
+        Self::sum(high, self.1.mul_add(factor, low))
     }
 
     /// The quotient by `divisor`.
