@@ -33,9 +33,9 @@ pub struct Row {
 impl Input {
     /// Most rows of a portion.
     const ROWS: usize = 4096;
-    /// A portion ends when its collisions have about this many switches: memory stays bounded
-    /// where a single collision has a million.
-    const SWITCHES: f64 = 1e6;
+    /// A portion ends when its collisions have about this many switches, 200 MB: memory stays
+    /// bounded where a single collision has a million.
+    const SWITCHES: f64 = 4e6;
 
     /// Opens `path` and reads the header.
     ///
