@@ -11,6 +11,12 @@ const TERMS: usize = 9;
 /// Panels narrower than 2^−`DEPTH` of the step are not cut further.
 const DEPTH: u32 = 12;
 
+/// By how much the dense output's error may exceed its last term. A value that is too large costs steps of the method; one
+/// too small would cost decisions.
+const SAFETY: f64 = 4.0;
+/// The part of the step whose expansion gives the value at the start of a quotient.
+const OPENING: f64 = 0.25;
+
 /// A guard's value along a step.
 pub(crate) trait Curve {
     /// Why a value cannot be had.
@@ -62,15 +68,16 @@ pub(crate) fn first_crossing<C: Curve>(
     mut on_touch: impl FnMut(Touch),
 ) -> Result<Verdict, C::Error> {
     let mut quotient = Quotient { curve, order: zero_order };
-    let error = quotient.error();
-    if error.is_nan() {
+    let accuracy = quotient.accuracy();
+    if accuracy.dense.is_nan() {
         return Ok(Verdict::TooCoarse);
     }
     // The last point whose sign is known, and the value there.
     let mut before = (0.0, start);
     if zero_order > 0 {
-        let opening = Panel::new(&mut quotient, 0.0, 1.0 / 64.0).at_left();
-        if opening.abs() <= error {
+        let panel = Panel::new(&mut quotient, 0.0, OPENING);
+        let opening = panel.at(-1.0);
+        if opening.abs() <= accuracy.on(&panel, zero_order) {
             return Ok(Verdict::TooCoarse);
         }
         before.1 = opening;
@@ -85,6 +92,7 @@ pub(crate) fn first_crossing<C: Curve>(
         count -= 1;
         let (low, high) = pending[count];
         let panel = Panel::new(&mut quotient, low, high);
+        let error = accuracy.on(&panel, zero_order);
         if panel.tail() > error {
             if high - low < 1.5 / f64::from(1_u32 << DEPTH) {
                 return Ok(Verdict::TooCoarse);
@@ -167,16 +175,37 @@ impl<C: Curve> Quotient<'_, C> {
         Ok(self.curve.truth(theta)? / power(theta, self.order))
     }
 
-    /// Bound of the dense output's error as the guard sees it: the effect of its last term, and
-    /// rounding.
-    fn error(&mut self) -> f64 {
-        let (mut error, mut scale) = (0.0_f64, 0.0_f64);
+    fn accuracy(&mut self) -> Accuracy {
+        let mut accuracy = Accuracy { dense: 0.0, rounding: 0.0 };
         for j in 1..16 {
-            let (fine, coarse) = self.at(f64::from(j) / 16.0);
-            error = if fine.is_nan() { f64::NAN } else { error.max((fine - coarse).abs()) };
-            scale = scale.max(fine.abs());
+            let theta = f64::from(j) / 16.0;
+            let divisor = power(theta, self.order);
+            let (fine, coarse) = self.curve.dense(theta);
+            // The error vanishes as θ²(1−θ)² at the ends of the step, but its ratio to a double zero at the start does
+            // not, where the last term's does: 16 is the inverse of the maximum of θ²(1−θ)².
+            let weight = if self.order > 1 { (1.0 / divisor).max(16.0) } else { 1.0 / divisor };
+            let error = SAFETY * weight * (fine - coarse).abs();
+            if error.is_nan() {
+                return Accuracy { dense: f64::NAN, ..accuracy };
+            }
+            accuracy.dense = accuracy.dense.max(error);
+            accuracy.rounding = accuracy.rounding.max(64.0 * f64::EPSILON * fine.abs());
         }
-        error + 16.0 * f64::EPSILON * scale
+        accuracy
+    }
+}
+
+/// How well a quotient is known along the dense output.
+struct Accuracy {
+    /// Error of the dense output as the guard sees it: the effect of its last term.
+    dense: f64,
+    /// Rounding of the guard before the known zero is divided out, which magnifies it.
+    rounding: f64,
+}
+
+impl Accuracy {
+    fn on(&self, panel: &Panel, order: u32) -> f64 {
+        self.dense + self.rounding / power(panel.theta(-COSINES[1]), order)
     }
 }
 
@@ -204,10 +233,6 @@ impl Panel {
 
     fn at(&self, local: f64) -> f64 {
         clenshaw(&self.coefficients, local)
-    }
-
-    fn at_left(&self) -> f64 {
-        self.at(-1.0)
     }
 
     /// Size of the last two terms: what degree 8 leaves out is smaller where the function is smooth.
