@@ -32,10 +32,10 @@ pub const GUARDS: usize = 3;
 pub const U: usize = 0;
 /// v = dx/dt.
 pub const V: usize = 1;
-/// c ω y while sticking, with c = max(1, κ^{1/4}), which makes errors of y and of switch times comparable to
-/// those of w.
+/// c ω y/σ while sticking, with c = max(1, κ^{1/4}) and σ = min(1, ψ), which makes errors of y and of switch times
+/// comparable to those of w.
 pub const SPRING: usize = 2;
-/// Reduced tangential velocity.
+/// w/σ; see [`Regularized::velocity`].
 pub const W: usize = 3;
 /// Time since the phase began.
 pub const T: usize = 4;
@@ -98,6 +98,8 @@ pub struct Regularized {
     velocity_rate: f64,
     /// κ y over the component [`SPRING`].
     spring_force: f64,
+    /// σ = min(1, ψ), the size of the velocity.
+    velocity_unit: f64,
 }
 
 /// The force F and its first two derivatives with respect to s.
@@ -114,13 +116,15 @@ impl Regularized {
     pub fn new(contact: Contact) -> Self {
         let omega = contact.kappa().sqrt();
         let scale = omega.sqrt().max(1.0);
+        let velocity_unit = contact.psi().min(1.0);
         Self {
             contact,
             scale,
             rate_scale: 1.0 / (scale * scale),
             spring_rate: 2.0 * omega * scale,
             velocity_rate: 2.0 * omega / scale,
-            spring_force: omega / scale,
+            spring_force: omega / scale * velocity_unit,
+            velocity_unit,
         }
     }
 
@@ -129,9 +133,16 @@ impl Regularized {
     pub fn start(&self) -> State<STATE> {
         let mut y = State::zeros();
         y[V] = 1.0;
-        y[W] = self.contact.psi();
+        y[W] = self.contact.psi() / self.velocity_unit;
         y[RATE] = self.rate_scale * self.contact.damping();
         y
+    }
+
+    /// Reduced tangential velocity w.
+    #[inline(always)]
+    #[must_use]
+    pub fn velocity(&self, y: &State<STATE>) -> f64 {
+        self.velocity_unit * y[W]
     }
 
     /// Scaled normal force F = x^{3/2} + a √x v.
@@ -184,7 +195,8 @@ impl Regularized {
     fn slip<const DAMPED: bool>(&self, side: Side, y: &State<STATE>) -> State<STATE> {
         let (u, v) = (y[U], y[V]);
         let dv = self.deceleration::<DAMPED>(u, v);
-        State::from([v, dv, 0.0, side.sign() * dv, 2.0 * u, self.loss::<DAMPED>(u, v), 0.0, 0.0])
+        let pull = side.sign() / self.velocity_unit * dv;
+        State::from([v, dv, 0.0, pull, 2.0 * u, self.loss::<DAMPED>(u, v), 0.0, 0.0])
     }
 
     #[inline(always)]
@@ -199,7 +211,7 @@ impl Regularized {
     /// Stick with its gap.
     #[inline(always)]
     fn first_stick<const DAMPED: bool>(&self, side: Side, y: &State<STATE>) -> State<STATE> {
-        let (u, v, w) = (y[U], y[V], y[W]);
+        let (u, v, w) = (y[U], y[V], self.velocity(y));
         let (sign, kappa) = (side.sign(), self.contact.kappa());
         let pull = self.spring_force * y[SPRING];
         let rate = self.force_of::<DAMPED>(u, v).second
@@ -224,7 +236,7 @@ impl Regularized {
     /// The guard of slip on side s: s w − dL/dt, in the form that has no zero of its own where u = 0.
     #[inline(always)]
     fn slip_guard(&self, side: Side, y: &State<STATE>) -> f64 {
-        let (u, v, w) = (y[U], y[V], y[W]);
+        let (u, v, w) = (y[U], y[V], self.velocity(y));
         let pull = self.contact.kappa() * side.sign() * w;
         if self.contact.damping() > 0.0 {
             2.0 * u * pull - self.force(u, v).first

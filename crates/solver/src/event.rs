@@ -187,8 +187,16 @@ where
             if next.elapsed == 0.0 {
                 return Ok(Found::Event(next));
             }
-            values = self.values_on(&next.step);
-            next.simultaneous = self.simultaneous(guard, &values);
+            let mut at_nodes = self.values_on(&next.step);
+            next.simultaneous = self.simultaneous(guard, &at_nodes);
+            if let Some((first, crossing)) = self.listed_before(&next, &values[5], on.h) {
+                // Of guards that fire together the one listed first decides, wherever rounding puts the others.
+                statuses[first] = Status::Clear;
+                next = self.locate::<M>(&on, first, &crossing, exact)?;
+                at_nodes = self.values_on(&next.step);
+                next.simultaneous = self.simultaneous(first, &at_nodes);
+            }
+            values = at_nodes;
             for (other, status) in statuses.iter_mut().enumerate() {
                 if *status != Status::Clear {
                     *status = self.glance::<M>(other, &values);
@@ -196,6 +204,25 @@ where
             }
             event = Some(next);
         }
+    }
+
+    /// The first of the guards listed before that of `event` that fire with it on a step of `h` at whose end the guards have
+    /// `end_values`.
+    fn listed_before(
+        &self,
+        event: &Event<N>,
+        end_values: &[f64; G],
+        h: f64,
+    ) -> Option<(usize, Crossing)> {
+        let bracket = Bracket { low: 0.0, high: 1.0, guess: event.elapsed / h };
+        (0..event.guard).filter(|&first| event.simultaneous & (1 << first) != 0).find_map(|first| {
+            let sign = match self.phase.guards[first].direction() {
+                Direction::Rising => -1.0,
+                Direction::Either => -end_values[first].signum(),
+                _ => 1.0,
+            };
+            (sign * end_values[first] < 0.0).then_some((first, Crossing { sign, bracket }))
+        })
     }
 
     /// Guards other than `guard` that are at zero where the step ends.
