@@ -10,8 +10,8 @@ use crate::energy::EnergyLedger;
 use crate::regularized::{DAMPING, END, Phase, Regularized, STATE, T, U, V};
 use crate::{refine, reversals};
 
-/// Below this steepness of a switch its time would be worth clearly less than the state: the collision is refined.
-const STEEP: f64 = 0.1;
+/// Above this flatness of a switch, in s, its time would be worth clearly less than the state: the collision is refined.
+const FLAT: f64 = 30.0;
 
 /// Longest step in s, of which a contact lasts 2.62 without damping.
 ///
@@ -44,9 +44,9 @@ impl Default for Collider<Dop853> {
 
 impl<M: Method> Collider<M> {
     /// Relative tolerance at which Dormand–Prince 8(5,3) gives w to 1e-12.
-    pub const RTOL: f64 = 5e-13;
+    pub const RTOL: f64 = 4e-13;
     /// Absolute tolerance that goes with it.
-    pub const ATOL: f64 = 5e-13;
+    pub const ATOL: f64 = 4e-13;
 
     /// A collider with the default tolerances.
     #[must_use]
@@ -57,7 +57,9 @@ impl<M: Method> Collider<M> {
     /// A collider with tolerances of one's own, checked when it is used.
     #[must_use]
     pub fn with_tolerances(method: M, rtol: f64, atol: f64) -> Self {
-        let options = Options { rtol, atol, max_step: LONGEST_STEP, ..Options::default() };
+        let first_step = Some(LONGEST_STEP);
+        let max_step = LONGEST_STEP;
+        let options = Options { rtol, atol, first_step, max_step, ..Options::default() };
         Self { method, options, refined: true }
     }
 
@@ -103,11 +105,11 @@ impl<M: Method> Collider<M> {
             spring: 0.0,
             elapsed: 0.0,
             sliding: 0.0,
-            steepness: 1.0,
+            flatness: 0.0,
         };
         let run = run(self.method, &system, start, f64::INFINITY, &self.options, &mut account)?;
         account.leave(run.mode, &run.state);
-        let (sliding, steepness) = (account.sliding, account.steepness);
+        let (sliding, flatness) = (account.sliding, account.flatness);
         if run.outcome != (Outcome::EndedByGuard { guard: END }) {
             return Err(CollisionError::Unfinished { outcome: run.outcome, time: account.elapsed });
         }
@@ -131,7 +133,7 @@ impl<M: Method> Collider<M> {
             damping: run.state[DAMPING],
             compression_left: 0.4 * compression,
         };
-        if self.refined && steepness < STEEP {
+        if self.refined && flatness > FLAT {
             refine::refine(self.method, &self.options, collision);
         }
         Ok(run.statistics)
@@ -183,8 +185,8 @@ struct Account<'a> {
     elapsed: f64,
     /// Energy taken by sliding before that.
     sliding: f64,
-    /// The least steepness of a switch.
-    steepness: f64,
+    /// The largest flatness of a switch.
+    flatness: f64,
 }
 
 impl Account<'_> {
@@ -214,7 +216,7 @@ impl Observer<Phase, STATE> for Account<'_> {
             return;
         }
         self.leave(event.from, &event.before);
-        self.steepness = self.steepness.min(event.steepness);
+        self.flatness = self.flatness.max(event.flatness);
         self.spring = self.system.spring(event.to, &event.after);
         self.entered = event.after;
         self.collision.switches.push(Switch {

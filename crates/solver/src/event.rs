@@ -181,9 +181,9 @@ where
                     continue;
                 }
             }
-            let on = event.as_ref().map_or(*step, |event| event.step);
+            let on = event.as_ref().map_or(&*step, |event| &event.step);
             let exact = O::WANTS_SEGMENTS || statuses.iter().any(|&status| status != Status::Clear);
-            let mut next = self.locate::<M>(&on, guard, &crossing, exact)?;
+            let mut next = self.locate::<M>(on, guard, &crossing, exact)?;
             if next.elapsed == 0.0 {
                 return Ok(Found::Event(next));
             }
@@ -192,7 +192,7 @@ where
             if let Some((first, crossing)) = self.listed_before(&next, &values[5], on.h) {
                 // Of guards that fire together the one listed first decides, wherever rounding puts the others.
                 statuses[first] = Status::Clear;
-                next = self.locate::<M>(&on, first, &crossing, exact)?;
+                next = self.locate::<M>(on, first, &crossing, exact)?;
                 at_nodes = self.values_on(&next.step);
                 next.simultaneous = self.simultaneous(first, &at_nodes);
             }
@@ -263,6 +263,9 @@ where
         let sign = if direction == Direction::Rising { -1.0 } else { 1.0 };
         let order = self.phase.zero_orders[guard];
         let column = values.map(|at_node| sign * at_node[guard]);
+        if order == 0 && quick::clearly_positive(column) {
+            return Status::Clear;
+        }
         let falls = |sign: f64, theta: f64| {
             Status::Fires(Crossing { sign, bracket: Bracket { low: 0.0, high: 1.0, guess: theta } })
         };

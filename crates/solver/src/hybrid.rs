@@ -79,9 +79,9 @@ pub struct SwitchEvent<Mode, const N: usize> {
     /// Further guards of the mode that vanish at the same place, one bit each. Of guards that fire together
     /// the one listed first decides the transition.
     pub simultaneous: u32,
-    /// How steeply the guard crosses: its slope times the length of the phase over its largest value in the phase. Of order 1
-    /// for a plain crossing, and small near a graze, where the place of a switch is worth as many digits less.
-    pub steepness: f64,
+    /// The guard's largest value in the phase over its slope here, in units of s: an error of the guard relative to that value
+    /// moves the switch by the error times this. Large near a graze.
+    pub flatness: f64,
     /// The mode that ended.
     pub from: Mode,
     /// The mode that begins; `from` if the run ends here.
@@ -405,7 +405,7 @@ where
             s,
             guard,
             simultaneous: event.simultaneous,
-            steepness: event.slope * self.clock.phase / self.phase.largest[guard],
+            flatness: self.phase.largest[guard] / event.slope,
             from,
             to,
             before: event.state,

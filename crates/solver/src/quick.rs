@@ -33,15 +33,6 @@ pub(crate) enum Quick {
 #[inline]
 pub(crate) fn look(values: &[f64; COUNT], zero_order: u32, trust: f64) -> Quick {
     if zero_order == 0 {
-        // Far from zero the values' distance from their chord settles it. NaN spreads and decides nothing.
-        let rise = values[5] - values[0];
-        let mut bend = 0.0;
-        for i in 1..5 {
-            bend += (values[i] - (values[0] + NODES[i] * rise)).abs();
-        }
-        if values[0].min(values[5]) > SPREAD * bend && rise.is_finite() {
-            return Quick::Positive;
-        }
         let error = last_term(values, &QUINTIC_TERM) + trust * last_term(values, &QUARTIC_TERM);
         return classify(&multiply(&QUINTIC, values), error);
     }
@@ -53,6 +44,19 @@ pub(crate) fn look(values: &[f64; COUNT], zero_order: u32, trust: f64) -> Quick 
     let error =
         last_term(&quotient, &LATE_QUARTIC_TERM) + trust * last_term(&quotient, &LATE_CUBIC_TERM);
     classify(&multiply(&QUARTIC, &quotient), error)
+}
+
+/// A first test that settles most guards: positive throughout, because far from zero compared with the values' distance
+/// from their chord. NaN spreads and settles nothing.
+#[inline]
+pub(crate) fn clearly_positive(values: [f64; COUNT]) -> bool {
+    let rise = values[5] - values[0];
+    let mut bend = 0.0;
+    for i in 1..5 {
+        bend += BEND[i] * (values[i] - (values[0] + NODES[i] * rise)).abs();
+    }
+    let least = if values[0] < values[5] { values[0] } else { values[5] };
+    least > bend && rise.is_finite()
 }
 
 #[inline]
@@ -148,43 +152,34 @@ const QUARTIC_TERM: [f64; 6] = last_term_weights(&NODES, Some(2), 3);
 const LATE_QUARTIC_TERM: [f64; 5] = last_term_weights(&LATE_NODES, None, 1);
 const LATE_CUBIC_TERM: [f64; 5] = last_term_weights(&LATE_NODES, Some(1), 2);
 
-/// A quintic whose values at the nodes differ from their chord by at most e is within this times e of it
-/// everywhere on the step, its last two terms counted as error.
-const SPREAD: f64 =
-    lebesgue_constant(&NODES) + absolute_sum(&QUINTIC_TERM) + absolute_sum(&QUARTIC_TERM);
-
-const fn absolute_sum<const K: usize>(weights: &[f64; K]) -> f64 {
-    let mut sum = 0.0;
+/// By how much the quintic and its error may move at most, anywhere on the step, for each unit by which the value at a node
+/// differs from the chord through the ends.
+const BEND: [f64; 6] = {
+    let mut bend = [0.0; 6];
     let mut i = 0;
-    while i < K {
-        sum += weights[i].abs();
+    while i < 6 {
+        bend[i] = greatest_lagrange(&NODES, i) + QUINTIC_TERM[i].abs() + QUARTIC_TERM[i].abs();
         i += 1;
     }
-    sum
-}
+    bend
+};
 
-/// The greatest sum of the absolute Lagrange polynomials on [0, 1], rounded up.
-const fn lebesgue_constant<const K: usize>(nodes: &[f64; K]) -> f64 {
+/// The greatest absolute value on [0, 1] of the polynomial that is 1 at node `i` and 0 at the others, rounded up.
+const fn greatest_lagrange<const K: usize>(nodes: &[f64; K], i: usize) -> f64 {
     let mut greatest = 0.0;
     let mut sample = 0;
     while sample <= 1000 {
         let theta = sample as f64 / 1000.0;
-        let mut sum = 0.0;
-        let mut i = 0;
-        while i < K {
-            let mut product = 1.0;
-            let mut j = 0;
-            while j < K {
-                if j != i {
-                    product *= (theta - nodes[j]) / (nodes[i] - nodes[j]);
-                }
-                j += 1;
+        let mut product = 1.0;
+        let mut j = 0;
+        while j < K {
+            if j != i {
+                product *= (theta - nodes[j]) / (nodes[i] - nodes[j]);
             }
-            sum += product.abs();
-            i += 1;
+            j += 1;
         }
-        if sum > greatest {
-            greatest = sum;
+        if product.abs() > greatest {
+            greatest = product.abs();
         }
         sample += 1;
     }
