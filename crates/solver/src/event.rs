@@ -7,6 +7,8 @@ use crate::isolate::{Bracket, Curve, Touch, Verdict, first_crossing};
 use crate::method::{Dense, Method, State, Step};
 use crate::quick::{self, Quick};
 
+/// Relative change of state and time by which a guard's sensitivity to them is measured.
+const SLIGHT: f64 = 1e-12;
 /// Guards closer to a switch than this part of the step fire together with it.
 const TOGETHER: f64 = 1e-12;
 
@@ -19,6 +21,8 @@ pub(crate) struct Phase<Mode, const G: usize> {
     pub(crate) values: [f64; G],
     /// Orders of the zeros from which the guards start the next step.
     pub(crate) zero_orders: [u32; G],
+    /// Signs with which the guards leave these zeros; 0 where it is not known.
+    pub(crate) sides: [f64; G],
     /// Largest absolute values of the guards at the ends of the phase's steps.
     pub(crate) largest: [f64; G],
 }
@@ -42,15 +46,20 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
             guards,
             values,
             zero_orders: guards.map(|guard| guard.zero_order()),
+            sides: [0.0; G],
             largest: values.map(f64::abs),
         })
     }
 
-    /// The mode goes on after `guard` has fired and left `residual`: where its value still stands at that zero,
-    /// it starts from a known one.
-    pub(crate) fn resume(&mut self, guard: usize, residual: f64) {
-        if self.values[guard].abs() <= residual {
+    /// The mode goes on after `event`: where the guard's value still stands at that zero, it starts from a known one,
+    /// and if `unchanged` leaves it on the side to which it fired.
+    pub(crate) fn resume<const N: usize>(&mut self, event: &Event<N>, unchanged: bool) {
+        let guard = event.guard;
+        if self.values[guard].abs() <= event.residual {
             self.zero_orders[guard] = self.zero_orders[guard].max(1);
+            if unchanged {
+                self.sides[guard] = -event.sign;
+            }
         }
     }
 
@@ -59,6 +68,7 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
     pub(crate) fn advance(&mut self, values: [f64; G]) {
         self.values = values;
         self.zero_orders = [0; G];
+        self.sides = [0.0; G];
         for (largest, value) in self.largest.iter_mut().zip(values) {
             *largest = if value.abs() > *largest { value.abs() } else { *largest };
         }
@@ -78,6 +88,8 @@ pub(crate) struct Event<const N: usize> {
     pub(crate) state: State<N>,
     /// What is left of the guard's value there.
     pub(crate) residual: f64,
+    /// The sign of the guard before it fired.
+    pub(crate) sign: f64,
     /// The step that ends there.
     pub(crate) step: Step<N>,
 }
@@ -140,7 +152,7 @@ where
             all_clear &= *status == Status::Clear;
         }
         if all_clear {
-            Ok(Found::Nothing(values[5]))
+            Ok(Found::Nothing(on_their_side(&values)))
         } else {
             self.decide::<M>(step, values, statuses)
         }
@@ -152,7 +164,7 @@ where
         mut values: [[f64; G]; 6],
         mut statuses: [Status; G],
     ) -> Result<Found<N, G>, RunError> {
-        let end_values = values[5];
+        let end_values = on_their_side(&values);
         let mut event: Option<Event<N>> = None;
         loop {
             let first = earliest(&statuses);
@@ -175,17 +187,20 @@ where
                 return Ok(event.map_or(Found::Nothing(end_values), Found::Event));
             };
             statuses[guard] = Status::Clear;
-            if let Some(event) = &event {
-                // Both fire at the end of the shortened step: the one listed first stands.
-                if crossing.bracket.low >= 1.0 - TOGETHER && event.guard < guard {
-                    continue;
-                }
-            }
             let on = event.as_ref().map_or(&*step, |event| &event.step);
-            let exact = O::WANTS_SEGMENTS || statuses.iter().any(|&status| status != Status::Clear);
+            let exact = O::WANTS_SEGMENTS
+                || event.is_some()
+                || statuses.iter().any(|&status| status != Status::Clear);
             let mut next = self.locate::<M>(on, guard, &crossing, exact)?;
             if next.elapsed == 0.0 {
                 return Ok(Found::Event(next));
+            }
+            if let Some(event) = &event
+                && event.guard < guard
+                && next.elapsed >= (1.0 - TOGETHER) * event.elapsed
+            {
+                // Both fire at the end of the shortened step: the one listed first stands.
+                continue;
             }
             let mut at_nodes = self.values_on(&next.step);
             next.simultaneous = self.simultaneous(guard, &at_nodes);
@@ -322,7 +337,7 @@ where
             let mut count = 0;
             let verdict = first_crossing(
                 &mut curve,
-                order,
+                (order, sign * self.phase.sides[guard]),
                 below,
                 (sign * values[0], sign * values[5]),
                 |touch: Touch| {
@@ -355,6 +370,32 @@ where
 /// Largest absolute value of a guard at the nodes of a step.
 fn largest<const G: usize>(guard: usize, values: &[[f64; G]; 6]) -> f64 {
     values.iter().fold(0.0, |size, at_node| size.max(at_node[guard].abs()))
+}
+
+/// Values at a step's end; one that is exactly zero keeps the side from which it came.
+fn on_their_side<const G: usize>(values: &[[f64; G]; 6]) -> [f64; G] {
+    std::array::from_fn(|guard| {
+        let (before, end) = (values[4][guard], values[5][guard]);
+        if end == 0.0 && before != 0.0 { f64::MIN_POSITIVE.copysign(before) } else { end }
+    })
+}
+
+/// What rounding of time and state to some units in the last place does to a guard's `value` at `y`.
+///
+/// Zero where the guard has no value nearby: nothing is known of it beyond its domain.
+pub(crate) fn rounding<const N: usize>(
+    value: impl Fn(f64, &State<N>) -> f64,
+    s: f64,
+    y: &State<N>,
+) -> f64 {
+    let here = value(s, y);
+    let mut change = (value(s + SLIGHT * s.abs(), y) - here).abs();
+    for i in 0..N {
+        let mut moved = *y;
+        moved[i] += SLIGHT * moved[i].abs();
+        change += (value(s, &moved) - here).abs();
+    }
+    if change.is_finite() { 4.0 * f64::EPSILON / SLIGHT * change } else { 0.0 }
 }
 
 /// The crossing with the least step fraction; of equal ones the guard listed first.
@@ -403,6 +444,14 @@ where
     fn dense(&mut self, theta: f64) -> (f64, f64) {
         let (fine, coarse) = (self.dense.at(theta), self.dense.coarse_at(theta));
         (self.value(theta, &fine), self.value(theta, &coarse))
+    }
+
+    fn rounding(&mut self) -> (f64, f64) {
+        self.statistics.guards += 3 * (N + 2);
+        let value = |s: f64, y: &State<N>| self.system.guard_values(self.mode, s, y)[self.guard];
+        let [start, middle, end] = [0.0, 0.5, 1.0]
+            .map(|theta| rounding(value, self.step.s + theta * self.step.h, &self.dense.at(theta)));
+        (start, start.max(middle).max(end))
     }
 
     fn truth(&mut self, theta: f64) -> Result<f64, RunError> {

@@ -324,10 +324,11 @@ where
                 Found::TooCoarse(guard) => {
                     self.statistics.too_coarse += 1;
                     cuts += 1;
-                    if cuts > 60 {
+                    self.h = 0.2 * h;
+                    // A step that does not move the time gets nowhere.
+                    if cuts > 60 || self.h <= f64::EPSILON * self.clock.s.abs() {
                         return Err(RunError::GuardUnresolved { guard, s: self.clock.s, h });
                     }
-                    self.h = 0.2 * h;
                     continue;
                 }
             };
@@ -430,7 +431,7 @@ where
             self.controller.begin();
         }
         if to == from {
-            self.phase.resume(guard, event.residual);
+            self.phase.resume(event, after == event.state);
         }
         self.refresh_slope()?;
         Ok(None)
@@ -508,6 +509,8 @@ impl Zeno {
     /// Takes note of a switch at `s` that ends a phase of length `phase`; the accumulation point, if there
     /// is one within `tolerance`.
     fn after_switch(&mut self, s: f64, phase: f64, tolerance: f64) -> Option<f64> {
+        // A phase that does not move the time at all has no length.
+        let phase = if phase <= f64::EPSILON * (s - self.start) { 0.0 } else { phase };
         let ratio = if phase == 0.0 { 0.0 } else { phase / self.phase };
         self.shrinking = if ratio < 1.0 { self.shrinking + 1 } else { 0 };
         self.phase = phase;

@@ -10,6 +10,9 @@
 const TERMS: usize = 9;
 /// Panels narrower than 2^−`DEPTH` of the step are not cut further.
 const DEPTH: u32 = 12;
+/// Panels are halved at most this often between critical points; stretches that are flat to within the error
+/// end the search earlier.
+const CRITICAL_DEPTH: u32 = 45;
 
 /// By how much the dense output's error may exceed its last term. A value that is too large costs steps of the method; one
 /// too small would cost decisions.
@@ -23,6 +26,8 @@ pub(crate) trait Curve {
     type Error;
     /// By the dense output, and by the dense output without its last term.
     fn dense(&mut self, theta: f64) -> (f64, f64);
+    /// What the rounding of state and time may do to a value: at the start of the step, and at most.
+    fn rounding(&mut self) -> (f64, f64);
     /// By a step of the method to `theta`.
     fn truth(&mut self, theta: f64) -> Result<f64, Self::Error>;
 }
@@ -57,12 +62,12 @@ pub(crate) enum Verdict {
 
 /// Finds the first crossing of a curve from ≥ 0 to < 0.
 ///
-/// `zero_order` is the order of a known zero at θ = 0, which is divided out; `start` and `end` are
-/// the curve's values at the ends of the step. If the curve bounds a `domain`, a negative start counts.
+/// `zero_order` is the order of a known zero at θ = 0, which is divided out, and `side` the sign with which the curve
+/// leaves it, 0 if that is not known; `start` and `end` are the curve's values at the ends of the step. If the curve bounds a `domain`, a negative start counts.
 /// Touches met before the crossing go to `on_touch`.
 pub(crate) fn first_crossing<C: Curve>(
     curve: &mut C,
-    zero_order: u32,
+    (zero_order, side): (u32, f64),
     domain: bool,
     (start, end): (f64, f64),
     mut on_touch: impl FnMut(Touch),
@@ -77,10 +82,11 @@ pub(crate) fn first_crossing<C: Curve>(
     if zero_order > 0 {
         let panel = Panel::new(&mut quotient, 0.0, OPENING);
         let opening = panel.at(-1.0);
-        if opening.abs() <= accuracy.on(&panel, zero_order) {
+        before.1 =
+            if side == 0.0 { opening } else { opening.abs().max(f64::MIN_POSITIVE).copysign(side) };
+        if side == 0.0 && opening.abs() <= accuracy.on(&panel, zero_order) {
             return Ok(Verdict::TooCoarse);
         }
-        before.1 = opening;
     }
     if domain && before.1 < 0.0 {
         return Ok(Verdict::StartsBelow);
@@ -93,6 +99,9 @@ pub(crate) fn first_crossing<C: Curve>(
         let (low, high) = pending[count];
         let panel = Panel::new(&mut quotient, low, high);
         let error = accuracy.on(&panel, zero_order);
+        if panel.tail().is_nan() {
+            return Ok(Verdict::TooCoarse);
+        }
         if panel.tail() > error {
             if high - low < 1.5 / f64::from(1_u32 << DEPTH) {
                 return Ok(Verdict::TooCoarse);
@@ -104,7 +113,7 @@ pub(crate) fn first_crossing<C: Curve>(
             continue;
         }
         let mut points = Points::default();
-        panel.critical_points(-1.0, 1.0, error, DEPTH, &mut points);
+        panel.critical_points(-1.0, 1.0, error, CRITICAL_DEPTH, &mut points);
         points.push(1.0);
         if points.overflowed {
             return Ok(Verdict::TooCoarse);
@@ -117,6 +126,11 @@ pub(crate) fn first_crossing<C: Curve>(
                 value = quotient.truth(theta)?;
                 if local < 1.0 {
                     on_touch(Touch { theta, margin: value * power(theta, zero_order) });
+                }
+                let hidden = if zero_order > 0 { accuracy.state.0 } else { 0.0 };
+                if value.abs() * power(theta, zero_order) <= hidden {
+                    // On neither side: what follows tells whether the guard goes through.
+                    continue;
                 }
             }
             if before.1 >= 0.0 && value < 0.0 {
@@ -176,7 +190,7 @@ impl<C: Curve> Quotient<'_, C> {
     }
 
     fn accuracy(&mut self) -> Accuracy {
-        let mut accuracy = Accuracy { dense: 0.0, rounding: 0.0 };
+        let mut accuracy = Accuracy { dense: 0.0, rounding: 0.0, state: self.curve.rounding() };
         for j in 1..16 {
             let theta = f64::from(j) / 16.0;
             let divisor = power(theta, self.order);
@@ -201,11 +215,14 @@ struct Accuracy {
     dense: f64,
     /// Rounding of the guard before the known zero is divided out, which magnifies it.
     rounding: f64,
+    /// What rounding of state and time does to the guard, at the start of the step and at most.
+    state: (f64, f64),
 }
 
 impl Accuracy {
     fn on(&self, panel: &Panel, order: u32) -> f64 {
-        self.dense + self.rounding / power(panel.theta(-COSINES[1]), order)
+        let state = self.state.0 + panel.high * self.state.1;
+        self.dense + (self.rounding + state) / power(panel.theta(-COSINES[1]), order)
     }
 }
 
@@ -243,6 +260,9 @@ impl Panel {
     /// Collects, from left to right, points of ]low, high[ that cut it into monotone pieces; a stretch
     /// flat to within `error` gives its middle.
     fn critical_points(&self, low: f64, high: f64, error: f64, depth: u32, points: &mut Points) {
+        if points.overflowed {
+            return;
+        }
         let local = |t: f64| 0.5 * (low + high) + 0.5 * (high - low) * t;
         let derivative = differentiate(&self.coefficients);
         let slope = expand(|t| clenshaw(&derivative, local(t)));

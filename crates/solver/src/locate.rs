@@ -4,13 +4,15 @@
 //! so a switch is as accurate as any other point of the run.
 
 use crate::error::RunError;
-use crate::event::{Crossing, Event, Examination};
+use crate::event::{Crossing, Event, Examination, rounding};
 use crate::hybrid::{HybridSystem, Observer};
 use crate::method::{Method, State, Step};
 
 /// Part of a step that the end of a re-step may be off the switch; the midpoint rule bridges it with an
 /// error of the cube of this part, which is below rounding.
 const BRIDGE: f64 = 1e-5;
+/// Part of the time below which a switch is at the start of its step.
+const NOWHERE: f64 = 1e-20;
 /// Part of a step over which a guard's slope is differenced: the step's own scale, on which the guard is known
 /// to change, so that cancellation cannot spoil the slope however short the step.
 const REACH: f64 = 1e-3;
@@ -39,6 +41,7 @@ where
             elapsed,
             state,
             residual: residual.abs(),
+            sign: crossing.sign,
             step,
         };
         if high == 0.0 {
@@ -48,6 +51,7 @@ where
         if !(theta > low && theta < high) {
             theta = 0.5 * (low + high);
         }
+        let mut last_value = f64::INFINITY;
         loop {
             let mut trial = self.restep::<M>(step, theta * step.h);
             let near = Near { system, mode, guard, sign: crossing.sign, reach: REACH * trial.h };
@@ -63,17 +67,32 @@ where
             }
             let shift = end.shift() / step.h;
             let next = theta + shift;
-            if shift.abs() <= BRIDGE * theta && next >= low && next <= high {
-                let (elapsed, state, residual) = self.bridge(&near, &trial, end);
+            if shift.abs() <= BRIDGE * theta
+                && next >= low
+                && next <= high
+                && let Some((elapsed, state, residual)) = self.bridge(&near, &trial, end)
+            {
                 if exact && elapsed != trial.h {
                     trial = self.restep::<M>(step, elapsed);
                 }
                 return Ok(event(elapsed, state, residual, end.slope, trial));
             }
+            if high * step.h <= NOWHERE * step.s.abs() || high <= f64::MIN_POSITIVE {
+                let residual = self.phase.values[guard];
+                return Ok(event(0.0, step.y0, residual, end.slope, step.shrunk_to_start()));
+            }
             if high - low <= 4.0 * f64::EPSILON * high {
+                if theta < high {
+                    // A zero too flat for Newton's method is left behind.
+                    theta = high;
+                    continue;
+                }
                 return Ok(event(trial.h, trial.y1, end.value, end.slope, trial));
             }
-            theta = if next > low && next < high { next } else { 0.5 * (low + high) };
+            // Newton's method where it makes progress, bisection where the guard is too flat for it.
+            let progress = end.value.abs() <= 0.1 * last_value;
+            last_value = end.value.abs();
+            theta = if progress && next > low && next < high { next } else { 0.5 * (low + high) };
         }
     }
 
@@ -87,32 +106,49 @@ where
     }
 
     /// Moves from the end of `trial` onto the guard: how far from the start that is, the state there, and what
-    /// is left of the guard's value.
+    /// is left of the guard's value. `None` where Newton's method does not converge as from a simple zero.
     fn bridge(
         &mut self,
         near: &Near<'_, S, N, G>,
         trial: &Step<N>,
         mut at: Probe<N>,
-    ) -> (f64, State<N>, f64) {
+    ) -> Option<(f64, State<N>, f64)> {
         let (mut moved, mut y) = (0.0, trial.y1);
         let s = trial.s + trial.h;
         for _ in 0..4 {
             let shift = at.shift();
-            if shift.abs() <= 1e-9 * trial.h {
+            if shift.abs() <= 1e-9 * trial.h && at.left_by(shift) <= f64::EPSILON * trial.h {
                 moved += shift;
                 y += at.slope_of_state * shift;
-                break;
+                let mut residual = near.value(s + moved, &y);
+                self.statistics.guards += 1;
+                // A slope that changes within the reach of its difference is not the slope here.
+                if residual.abs() > 0.01 * at.value.abs()
+                    && residual.abs() > 2.0 * near.rounding(s + moved, &y)
+                {
+                    return None;
+                }
+                let rest = -residual / at.slope;
+                if rest.abs() > f64::EPSILON * trial.h {
+                    moved += rest;
+                    y += at.slope_of_state * rest;
+                    residual = near.value(s + moved, &y);
+                    self.statistics.guards += 1;
+                }
+                return Some((trial.h + moved, y, residual));
             }
             let middle = y + at.slope_of_state * (0.5 * shift);
             y += self.system.field(near.mode, s + moved + 0.5 * shift, &middle) * shift;
             moved += shift;
+            let before = at.value.abs();
             at = near.probe(s + moved, &y);
             self.statistics.field += 1;
             self.count_probe();
+            if at.value.abs() > 0.1 * before {
+                break;
+            }
         }
-        let residual = near.value(s + moved, &y);
-        self.statistics.guards += 1;
-        (trial.h + moved, y, residual)
+        None
     }
 
     fn count_probe(&mut self) {
@@ -136,6 +172,8 @@ struct Near<'a, S: HybridSystem<N, G>, const N: usize, const G: usize> {
 struct Probe<const N: usize> {
     value: f64,
     slope: f64,
+    /// Half the second derivative.
+    bend: f64,
     slope_of_state: State<N>,
 }
 
@@ -144,11 +182,20 @@ impl<const N: usize> Probe<N> {
     fn shift(&self) -> f64 {
         if self.value == 0.0 { 0.0 } else { -self.value / self.slope }
     }
+
+    /// How far from the zero Newton's step leaves.
+    fn left_by(&self, shift: f64) -> f64 {
+        if shift == 0.0 { 0.0 } else { (self.bend / self.slope).abs() * shift * shift }
+    }
 }
 
 impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Near<'_, S, N, G> {
     fn value(&self, s: f64, y: &State<N>) -> f64 {
         self.sign * self.system.guard_values(self.mode, s, y)[self.guard]
+    }
+
+    fn rounding(&self, s: f64, y: &State<N>) -> f64 {
+        rounding(|s, y| self.value(s, y), s, y)
     }
 
     fn probe(&self, s: f64, y: &State<N>) -> Probe<N> {
@@ -157,6 +204,8 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Near<'_, S, N, G> {
         let ahead = self.value(s + self.reach, &(y + reach));
         let behind = self.value(s - self.reach, &(y - reach));
         let slope = (ahead - behind) / (2.0 * self.reach);
-        Probe { value: self.value(s, y), slope, slope_of_state }
+        let value = self.value(s, y);
+        let bend = (0.5 * (ahead + behind) - value) / (self.reach * self.reach);
+        Probe { value, slope, bend, slope_of_state }
     }
 }

@@ -6,6 +6,8 @@
 use crate::method::INTERIOR_NODES;
 
 const COUNT: usize = 6;
+/// Rounding of a Bernstein coefficient, relative to the largest.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Step fractions of the six values.
 pub(crate) const NODES: [f64; COUNT] =
@@ -72,6 +74,8 @@ fn classify<const K: usize>(bernstein: &[f64; K], error: f64) -> Quick {
         least = least.min(b);
         most = most.max(b);
     }
+    // Coefficients are combinations of the values with weights up to about 20.
+    let error = error + ROUNDING * most.max(-least);
     // Comparisons are written so that NaN, which spreads to the sum and the error, is never clear.
     if least > error {
         return Quick::Positive;
