@@ -296,7 +296,7 @@ fn dip(width: f64, h: f64) -> Score {
 fn a_dip_is_found_unless_it_is_narrow_against_the_step() {
     // A guard that is no polynomial of the state can hide between the six values of the first look, whatever is
     // done with them; a longest step excludes that. Found: all at half widths of a tenth of the step and more, three
-    // quarters at a twentieth, none invented.
+    // fifths at a twentieth, none invented.
     for (width, h) in [(0.3, 1.0), (0.1, 1.0), (0.03, 0.1), (0.01, 0.1), (3e-3, 0.01), (1e-3, 0.01)]
     {
         let score = dip(width, h);
