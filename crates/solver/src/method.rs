@@ -10,7 +10,7 @@ pub const MAX_STAGES: usize = 16;
 
 /// Step fractions, beside 0 and 1, at which a step knows the state without further work.
 ///
-/// They are nodes of Dormand–Prince 8(5,3) whose stages are accurate to fifth order.
+/// They are nodes of Dormand–Prince 8(5,3) whose stages are of order 4: their errors are of fifth order in h.
 pub const INTERIOR_NODES: [f64; 4] = [1.0 / 4.0, 1.0 / 3.0, 3.0 / 5.0, 6.0 / 7.0];
 
 /// Coefficients of an embedded explicit Runge–Kutta pair with a continuous extension.
