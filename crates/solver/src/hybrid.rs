@@ -6,6 +6,7 @@
 
 use std::fmt;
 
+use crate::clock::{Clock, Zeno};
 use crate::control::{Controller, first_step};
 use crate::error::RunError;
 use crate::event::{Event, Examination, Found, Phase};
@@ -359,7 +360,7 @@ where
             self.statistics.field += usize::from(!M::ERROR_USES_END);
             self.clock.advance(h);
             if last {
-                (self.clock.s, self.clock.rest) = (self.end, 0.0);
+                self.clock.arrive(self.end);
             }
             let settled = system.settle(mode);
             if settled != mode {
@@ -458,63 +459,5 @@ where
         let longest = self.clock.until(self.end).min(self.options.max_step);
         let tolerances = (self.options.rtol, self.options.atol);
         first_step::<M, N>(&mut field, self.clock.s, &self.state, &self.slope, tolerances, longest)
-    }
-}
-
-/// The independent variable with what rounding has cut off, so that many short steps add up.
-#[derive(Clone, Copy, Debug)]
-struct Clock {
-    s: f64,
-    rest: f64,
-    /// Duration of the phase so far, accurate relative to itself.
-    phase: f64,
-}
-
-impl Clock {
-    fn new(s: f64) -> Self {
-        Self { s, rest: 0.0, phase: 0.0 }
-    }
-
-    fn advance(&mut self, h: f64) {
-        self.phase += h;
-        let step = h + self.rest;
-        let sum = self.s + step;
-        // Two-sum: exact whichever is larger.
-        let added = sum - self.s;
-        self.rest = (self.s - (sum - added)) + (step - added);
-        self.s = sum;
-    }
-
-    fn until(&self, end: f64) -> f64 {
-        (end - self.s) - self.rest
-    }
-}
-
-/// Watches for switches that accumulate.
-#[derive(Clone, Copy, Debug)]
-struct Zeno {
-    start: f64,
-    phase: f64,
-    shrinking: usize,
-}
-
-impl Zeno {
-    /// Phases in a row that must have shrunk.
-    const PHASES: usize = 12;
-
-    fn new(s: f64) -> Self {
-        Self { start: s, phase: f64::INFINITY, shrinking: 0 }
-    }
-
-    /// Takes note of a switch at `s` that ends a phase of length `phase`; the accumulation point, if there
-    /// is one within `tolerance`.
-    fn after_switch(&mut self, s: f64, phase: f64, tolerance: f64) -> Option<f64> {
-        // A phase that does not move the time at all has no length.
-        let phase = if phase <= f64::EPSILON * (s - self.start) { 0.0 } else { phase };
-        let ratio = if phase == 0.0 { 0.0 } else { phase / self.phase };
-        self.shrinking = if ratio < 1.0 { self.shrinking + 1 } else { 0 };
-        self.phase = phase;
-        let left = phase * ratio / (1.0 - ratio);
-        (self.shrinking >= Self::PHASES && left <= tolerance * (s - self.start)).then_some(s + left)
     }
 }

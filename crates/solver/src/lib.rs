@@ -7,7 +7,7 @@
 //! the switch, not from the dense output.
 //!
 //! Start reading in [`hybrid`]; then, in this order: `event` (one step and its guards), `quick` and `isolate`
-//! (the decision), `locate` (the refinement), [`method`], [`Dopri5`] and [`Dop853`], `control`, [`smooth`],
+//! (the decision), `locate` (the refinement), [`method`], [`Dopri5`] and [`Dop853`], `control`, `clock`, [`smooth`],
 //! [`trajectory`].
 //!
 //! ```
@@ -41,6 +41,7 @@
 //! # Ok::<(), stickslip_solver::RunError>(())
 //! ```
 
+mod clock;
 mod control;
 mod dop853;
 mod dopri5;
