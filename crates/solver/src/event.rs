@@ -252,7 +252,7 @@ where
     }
 
     /// Guards at [`quick::NODES`] of a step.
-    #[inline]
+    #[inline(always)]
     fn values_on(&mut self, step: &Step<N>) -> [[f64; G]; 6] {
         let at = |theta: f64, y: &State<N>| {
             self.system.guard_values(self.phase.mode, step.s + theta * step.h, y)
@@ -269,7 +269,7 @@ where
     }
 
     /// What six values tell about a guard.
-    #[inline]
+    #[inline(always)]
     fn glance<M: Method>(&self, guard: usize, values: &[[f64; G]; 6]) -> Status {
         let direction = self.phase.guards[guard].direction();
         if direction == Direction::Off {
