@@ -23,7 +23,6 @@ pub const W: usize = 3;
 
 /// Guard of the end of contact.
 pub const END: usize = 0;
-const SAME_SIDE: usize = 1;
 const OTHER_SIDE: usize = 2;
 
 /// The undamped contact as a hybrid system in (x, v, y, w) and time.
@@ -97,16 +96,11 @@ impl HybridSystem<STATE, 3> for PlainTime {
         _s: f64,
         y: &State<STATE>,
     ) -> (Phase, State<STATE>) {
-        let side = if guard == OTHER_SIDE { phase.side.opposite() } else { phase.side };
+        let next = phase.after(guard == OTHER_SIDE);
         let mut y = *y;
-        let regime = match phase.regime {
-            Regime::Slip => {
-                debug_assert_eq!(guard, SAME_SIDE);
-                y[Y] = side.sign() * Self::force(&y) / self.contact.kappa();
-                Regime::Stick
-            }
-            Regime::Stick => Regime::Slip,
-        };
-        (Phase { regime, side, progress: Progress::Switched }, y)
+        if next.regime == Regime::Stick {
+            y[Y] = next.side.sign() * Self::force(&y) / self.contact.kappa();
+        }
+        (next, y)
     }
 }

@@ -83,6 +83,17 @@ impl Phase {
         let regime = if contact.damping() > 0.0 { Regime::Stick } else { Regime::Slip };
         Self { regime, side: Side::Positive, progress: Progress::Touched }
     }
+
+    /// The phase that follows: the other regime, on the other side if the spring has reached its limit there.
+    #[must_use]
+    pub fn after(self, on_other_side: bool) -> Self {
+        let regime = match self.regime {
+            Regime::Slip => Regime::Stick,
+            Regime::Stick => Regime::Slip,
+        };
+        let side = if on_other_side { self.side.opposite() } else { self.side };
+        Self { regime, side, progress: Progress::Switched }
+    }
 }
 
 /// The contact as a hybrid system.
@@ -328,21 +339,15 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
         _s: f64,
         y: &State<STATE>,
     ) -> (Phase, State<STATE>) {
-        let side = if guard == OTHER_SIDE { phase.side.opposite() } else { phase.side };
+        let next = phase.after(guard == OTHER_SIDE);
         let mut y = *y;
         y[T] = 0.0;
         y[GAP] = 0.0;
         y[RATE] = 0.0;
-        let regime = match phase.regime {
-            Regime::Slip => {
-                y[SPRING] = side.sign() * self.normal_force(&y) / self.spring_force;
-                Regime::Stick
-            }
-            Regime::Stick => {
-                y[SPRING] = 0.0;
-                Regime::Slip
-            }
+        y[SPRING] = match next.regime {
+            Regime::Stick => next.side.sign() * self.normal_force(&y) / self.spring_force,
+            Regime::Slip => 0.0,
         };
-        (Phase { regime, side, progress: Progress::Switched }, y)
+        (next, y)
     }
 }
