@@ -366,7 +366,7 @@ where
             if settled != mode {
                 let largest = self.phase.largest;
                 self.phase = Phase::enter(system, settled, self.clock.s, &self.state)?;
-                self.phase = Phase { zero_orders: [0; G], largest, ..self.phase };
+                self.phase = Phase { at_zero: false, zero_orders: [0; G], largest, ..self.phase };
                 self.statistics.guards += 1;
                 self.refresh_slope()?;
             }
