@@ -96,7 +96,7 @@ where
         let exit = fired.get(k).copied();
         let end = starts.get(k + 1).map_or(end, |next| next.s);
         let mut minima_of_exit = 0;
-        for (guard, about) in system.guards(start.mode).iter().enumerate() {
+        for (guard, about) in system.guards(start.mode).into_iter().enumerate() {
             if !leaves_margins(about) || end <= start.s {
                 continue;
             }
@@ -155,7 +155,7 @@ where
 }
 
 /// Whether the direction of a guard says on which side of zero it does not fire.
-fn leaves_margins(guard: &Guard) -> bool {
+fn leaves_margins(guard: Guard) -> bool {
     let either = matches!(guard.direction(), Direction::Off | Direction::Either);
     !either && !guard.ends_run()
 }
