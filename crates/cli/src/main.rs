@@ -2,7 +2,7 @@
 //! an exit code.
 //!
 //! Start reading here; then, in this order: `args` (what may be typed), `plan` (what it means),
-//! `collide` and `batch` (doing it), `input` (files read), `table`, `json`, `rows` and `output`
+//! `collide`, `batch` and `map` (doing it), `input` (files read), `table`, `json`, `rows` and `output`
 //! (results written).
 
 mod args;
@@ -12,10 +12,12 @@ mod engine;
 mod error;
 mod input;
 mod json;
+mod map;
 mod number;
 mod output;
 mod parameter;
 mod plan;
+mod range;
 mod recipe;
 mod rows;
 mod table;
@@ -26,7 +28,7 @@ use clap::Parser;
 
 use args::{Arguments, Command};
 use error::Failure;
-use plan::CollidePlan;
+use plan::{CollidePlan, MapPlan};
 
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
@@ -52,5 +54,6 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             CollidePlan::Point(point) => collide::run(&point),
             CollidePlan::Batch(batch) => batch::run(&batch),
         },
+        Command::Map(arguments) => map::run(&MapPlan::new(arguments)?),
     }
 }
