@@ -12,9 +12,10 @@ mod thumbnail;
 mod tile;
 mod tiles;
 
+use std::fmt;
 use std::io::{self, Write};
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 use stickslip_model::Switch;
@@ -154,17 +155,15 @@ fn report(tiles: &Tiles, found: &Found) {
     let _ = writeln!(io::stderr(), "{directory}: going on with {kept} of {tiles} tiles{damaged}");
 }
 
-/// Shows itself on a terminal only.
+/// Shows itself on a terminal only; counts what is left to do, so that the rate is right.
 fn progress_bar(tiles: &Tiles, found: &Found) -> ProgressBar {
-    const TEMPLATE: &str = "{bar:40} {percent}% of {human_len} points, {per_sec}, {eta} left";
-    let style = ProgressStyle::with_template(TEMPLATE);
-    let task = tiles.task();
-    let missing: usize = found.missing.iter().map(|index| task.range(*index).len()).sum();
-    let target = ProgressDrawTarget::stderr();
-    let bar = ProgressBar::with_draw_target(Some(task.points as u64), target)
+    const TEMPLATE: &str = "{bar:25} {percent}% of {human_len} points, {rate}/s, {eta} left";
+    let rate = |state: &ProgressState, out: &mut dyn fmt::Write| {
+        // Writing into the line of the bar does not fail.
+        let _ = write!(out, "{:.0}", state.per_sec());
+    };
+    let style = ProgressStyle::with_template(TEMPLATE).map(|style| style.with_key("rate", rate));
+    let points: usize = found.missing.iter().map(|index| tiles.task().range(*index).len()).sum();
+    ProgressBar::with_draw_target(Some(points as u64), ProgressDrawTarget::stderr())
         .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
-        .with_position((task.points - missing) as u64);
-    // What was computed before does not count for the rate.
-    bar.reset_eta();
-    bar
 }

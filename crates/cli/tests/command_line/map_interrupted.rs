@@ -180,7 +180,6 @@ fn a_second_process_is_sent_away() {
     let second = workspace.run(LINE);
     assert_eq!(second.code, 1);
     assert_eq!(second.stderr, format!("error: {DIRECTORY}: another process is making this map\n"));
-    assert!(tiles(&workspace).len() < TILES);
     assert!(first.wait().unwrap().success());
     assert_eq!(workspace.names(), ["m.npz"]);
     assert!(fs::read(workspace.path("m.npz")).unwrap() == whole());
