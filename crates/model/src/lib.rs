@@ -7,7 +7,7 @@
 //! [`Collision`] with every switch.
 //!
 //! Start reading in [`collision`]; then [`regularized`] (the equations), [`exact`] (the closed form),
-//! [`scaling`] (SI units), [`plain_time`] (the equations as the paper has them, for studies).
+//! [`bodies`] and [`scaling`] (SI units), [`plain_time`] (the equations as the paper has them, for studies).
 //!
 //! ```
 //! use stickslip_model::{Collider, Contact, exact};
@@ -20,18 +20,21 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod bodies;
 pub mod collision;
 mod contact;
 mod energy;
 pub mod exact;
 mod pair;
 pub mod plain_time;
+pub mod quantity;
 mod refine;
 pub mod regularized;
 mod reversals;
 pub mod scaling;
 
+pub use bodies::{Body, Elasticity, Material, Sphere, Wall};
 pub use collision::{Collider, CollisionError};
 pub use contact::{Collision, Contact, InvalidParameter, Regime, Side, Switch};
 pub use energy::EnergyLedger;
-pub use scaling::{Impact, Material, Pair, Surface};
+pub use scaling::{Impact, Pair, Surface};
