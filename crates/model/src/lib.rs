@@ -7,7 +7,8 @@
 //! [`Collision`] with every switch.
 //!
 //! Start reading in [`collision`]; then [`regularized`] (the equations), [`exact`] (the closed form),
-//! [`bodies`] and [`scaling`] (SI units), [`plain_time`] (the equations as the paper has them, for studies).
+//! [`scaling`] (SI units), [`bodies`] and [`encounter`] (spheres in three dimensions), [`normal`] and [`coulomb`]
+//! (formulas to compare with), [`plain_time`] (the equations as the paper has them, for studies).
 //!
 //! ```
 //! use stickslip_model::{Collider, Contact, exact};
@@ -23,8 +24,13 @@
 pub mod bodies;
 pub mod collision;
 mod contact;
+pub mod coulomb;
+pub mod encounter;
 mod energy;
 pub mod exact;
+pub mod normal;
+mod observed;
+mod outcome;
 mod pair;
 pub mod plain_time;
 pub mod quantity;
@@ -36,5 +42,9 @@ pub mod scaling;
 pub use bodies::{Body, Elasticity, Material, Sphere, Wall};
 pub use collision::{Collider, CollisionError};
 pub use contact::{Collision, Contact, InvalidParameter, Regime, Side, Switch};
+pub use encounter::{Encounter, EncounterError, Motion, Plane};
 pub use energy::EnergyLedger;
+pub use nalgebra::Vector3;
+pub use observed::Observed;
+pub use outcome::{EnergyAccount, ForceSwitch, Outcome};
 pub use scaling::{Impact, Pair, Surface};
