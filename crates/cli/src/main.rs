@@ -7,6 +7,7 @@
 
 mod args;
 mod batch;
+mod bodies;
 mod collide;
 mod engine;
 mod error;
