@@ -10,7 +10,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 use crate::parameter::Parameter;
 
 pub use map::MapArguments;
-pub use method::MethodArguments;
+pub use method::{Method, MethodArguments};
 
 /// Collisions of frictional viscoelastic spheres, with every switch between sticking and sliding.
 #[derive(Debug, Parser)]

@@ -22,7 +22,6 @@ use crate::error::Failure;
 /// # Errors
 /// [`Failure::Input`]: the file cannot be read, is not JSON, or does not describe two bodies. It
 /// names the line or the field, and what is accepted there.
-#[allow(dead_code)]
 pub fn read_pair(path: &Path) -> Result<Pair, Failure> {
     let shown = if path == Path::new("-") { Path::new("standard input") } else { path };
     let text = read(path).map_err(|e| Failure::input(shown, format!("cannot be read: {e}")))?;
