@@ -1,5 +1,6 @@
 //! What may be typed: options with their syntax and ranges, and the help text.
 
+mod impact;
 mod method;
 
 use std::path::PathBuf;
@@ -8,6 +9,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 
 use crate::parameter::Parameter;
 
+pub use impact::ImpactArguments;
 pub use method::MethodArguments;
 
 /// Collisions of frictional viscoelastic spheres, with every switch between sticking and sliding.
@@ -25,6 +27,9 @@ pub enum Command {
     /// Compute one collision, or a file of them
     #[command(long_about = COLLIDE, after_long_help = COLLIDE_EXAMPLES)]
     Collide(CollideArguments),
+    /// Compute the impact of two spheres, or a sphere and a wall, in SI units
+    #[command(long_about = impact::ABOUT, after_long_help = impact::EXAMPLES)]
+    Impact(ImpactArguments),
 }
 
 /// Options of `collide`.
@@ -93,7 +98,7 @@ pub struct CollideArguments {
 pub enum Format {
     /// A readable table
     Table,
-    /// One JSON object, schema "stickslip.collision/1"
+    /// One JSON object
     Json,
 }
 

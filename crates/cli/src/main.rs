@@ -2,7 +2,7 @@
 //! an exit code.
 //!
 //! Start reading here; then, in this order: `args` (what may be typed), `plan` (what it means),
-//! `collide` and `batch` (doing it), `input` (files read), `table`, `json`, `rows` and `output`
+//! `collide`, `batch` and `impact` (doing it), `input` and `bodies` (files read), `table`, `json`, `rows` and `output`
 //! (results written).
 
 mod args;
@@ -11,6 +11,7 @@ mod bodies;
 mod collide;
 mod engine;
 mod error;
+mod impact;
 mod input;
 mod json;
 mod number;
@@ -53,5 +54,6 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             CollidePlan::Point(point) => collide::run(&point),
             CollidePlan::Batch(batch) => batch::run(&batch),
         },
+        Command::Impact(arguments) => impact::run(arguments),
     }
 }
