@@ -85,7 +85,7 @@ The axes are --kappa and --psi or --ratio, or, for two bodies in SI units, --nor
 
 /// What follows it.
 pub const EXAMPLES: &str = "\
-Output:
+Results:
   FILE.npz has the arrays kappa (W), psi (H), with --ratio also ratio (H), and eps_t and
   switch_count (H x W: one row for each psi). With --bodies they are normal_m_per_s (W),
   tangential_m_per_s (H), kappa (W), psi (H x W), damping (W), eps_t and switch_count. FILE.csv has
