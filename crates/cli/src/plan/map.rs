@@ -1,0 +1,115 @@
+//! What `map` is to do.
+
+use std::path::{Path, PathBuf};
+
+use crate::args::{MapArguments, Method};
+use crate::bodies::read_pair;
+use crate::engine::Engine;
+use crate::error::Failure;
+use crate::map::{Axis, Coordinates, Plane};
+use crate::plan::explain;
+use crate::range::Range;
+use crate::recipe::{DEFAULT_ALPHA, DEFAULT_MU, RecipeError};
+
+/// A map to be computed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MapPlan {
+    /// Its window and cells.
+    pub plane: Plane,
+    /// What computes the collisions.
+    pub engine: Engine,
+    /// Where it goes.
+    pub out: PathBuf,
+    /// How it is written.
+    pub format: MapFormat,
+    /// Number of threads; `None` is one for each core.
+    pub threads: Option<usize>,
+}
+
+/// How a map is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MapFormat {
+    /// NumPy arrays.
+    Npz,
+    /// A table.
+    Csv,
+}
+
+impl MapPlan {
+    /// The plan that `arguments` make.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] says which options do not go together.
+    pub fn new(arguments: &MapArguments) -> Result<Self, Failure> {
+        let MapArguments { size, .. } = *arguments;
+        let (columns, rows, coordinates) = match &arguments.bodies {
+            Some(bodies) => velocities(arguments, bodies)?,
+            None => scaled(arguments)?,
+        };
+        Ok(Self {
+            plane: Plane {
+                columns: Axis { range: columns, cells: size.columns },
+                rows: Axis { range: rows, cells: size.rows },
+                coordinates,
+            },
+            engine: arguments.method.engine(arguments.damping)?,
+            out: arguments.out.clone(),
+            format: format(&arguments.out)?,
+            threads: arguments.threads.map(usize::from),
+        })
+    }
+}
+
+/// The axes κ and ψ, or κ and g_t/g_n.
+fn scaled(arguments: &MapArguments) -> Result<(Range, Range, Coordinates), Failure> {
+    let MapArguments { kappa, psi, ratio, mu, alpha, .. } = *arguments;
+    let refused = |error| Failure::Usage(explain(error));
+    let damping = arguments.damping.unwrap_or(0.0);
+    let kappa = kappa.ok_or_else(|| refused(RecipeError::NoKappa))?;
+    match (psi, ratio) {
+        (Some(_), Some(_)) => Err(refused(RecipeError::PsiAndRatio)),
+        (None, None) => Err(refused(RecipeError::NoImpact)),
+        (Some(psi), None) => match [("mu", mu), ("alpha", alpha)].iter().find(|x| x.1.is_some()) {
+            Some((name, _)) => Err(refused(RecipeError::Unused { name })),
+            None => Ok((kappa, psi, Coordinates::Psi { damping })),
+        },
+        (None, Some(ratio)) => {
+            let (mu, alpha) = (mu.unwrap_or(DEFAULT_MU), alpha.unwrap_or(DEFAULT_ALPHA));
+            Ok((kappa, ratio, Coordinates::Ratio { mu, alpha, damping }))
+        }
+    }
+}
+
+/// The axes g_n and g_t of the bodies in a file.
+fn velocities(
+    arguments: &MapArguments,
+    bodies: &Path,
+) -> Result<(Range, Range, Coordinates), Failure> {
+    let (Some(normal), Some(tangential)) = (arguments.normal, arguments.tangential) else {
+        let message = "--normal or --tangential is missing; accepted is --bodies with both";
+        return Err(Failure::Usage(message.to_owned()));
+    };
+    let pair = read_pair(bodies)?;
+    let damping_time_s = pair.surface.damping_time_s;
+    if arguments.method.method == Method::Exact && damping_time_s != 0.0 {
+        return Err(Failure::input(
+            bodies,
+            format!(
+                "surface.damping_time_s is {damping_time_s:?}, and --method exact holds without \
+                 damping; accepted is 0, or --method dop853 or dopri5"
+            ),
+        ));
+    }
+    Ok((normal, tangential, Coordinates::Velocities { pair }))
+}
+
+fn format(out: &Path) -> Result<MapFormat, Failure> {
+    match out.extension().and_then(|extension| extension.to_str()) {
+        Some("npz") => Ok(MapFormat::Npz),
+        Some("csv") => Ok(MapFormat::Csv),
+        _ => Err(Failure::Usage(format!(
+            "--out {}: the name does not tell the format; accepted are FILE.npz and FILE.csv",
+            out.display()
+        ))),
+    }
+}
