@@ -7,6 +7,7 @@ use stickslip_solver::{
 
 use crate::contact::{Collision, Contact, Regime, Switch};
 use crate::energy::EnergyLedger;
+use crate::history::History;
 use crate::regularized::{DAMPING, END, Phase, Regularized, STATE, T, U, V};
 use crate::{refine, reversals};
 
@@ -137,6 +138,21 @@ impl<M: Method> Collider<M> {
             refine::refine(self.method, &self.options, collision);
         }
         Ok(run.statistics)
+    }
+
+    /// Integrates one collision and keeps its course in time.
+    ///
+    /// It takes about 2 kB of memory a switch.
+    ///
+    /// # Errors
+    /// As [`Self::collide`].
+    pub fn history(&self, contact: Contact) -> Result<History, CollisionError> {
+        let (history, outcome) = History::record(self.method, &self.options, contact)?;
+        if outcome == (Outcome::EndedByGuard { guard: END }) {
+            Ok(history)
+        } else {
+            Err(CollisionError::Unfinished { outcome, time: history.duration() })
+        }
     }
 }
 

@@ -7,7 +7,7 @@
 //! [`Collision`] with every switch.
 //!
 //! Start reading in [`collision`]; then [`regularized`] (the equations), [`exact`] (the closed form),
-//! [`scaling`] (SI units), [`plain_time`] (the equations as the paper has them, for studies).
+//! [`history`] (its course in time), [`scaling`] (SI units), [`plain_time`] (the equations as the paper has them, for studies).
 //!
 //! ```
 //! use stickslip_model::{Collider, Contact, exact};
@@ -24,6 +24,7 @@ pub mod collision;
 mod contact;
 mod energy;
 pub mod exact;
+pub mod history;
 mod pair;
 pub mod plain_time;
 mod refine;
@@ -34,4 +35,5 @@ pub mod scaling;
 pub use collision::{Collider, CollisionError};
 pub use contact::{Collision, Contact, InvalidParameter, Regime, Side, Switch};
 pub use energy::EnergyLedger;
+pub use history::{History, PhaseHistory, Snapshot};
 pub use scaling::{Impact, Material, Pair, Surface};
