@@ -1,11 +1,14 @@
 //! What may be typed: options with their syntax and ranges, and the help text.
 
+mod method;
+
 use std::path::PathBuf;
 
 use clap::{Parser, Subcommand, ValueEnum};
 
-use crate::engine::Tolerances;
 use crate::parameter::Parameter;
+
+pub use method::MethodArguments;
 
 /// Collisions of frictional viscoelastic spheres, with every switch between sticking and sliding.
 #[derive(Debug, Parser)]
@@ -58,21 +61,9 @@ pub struct CollideArguments {
     #[arg(value_parser = |text: &str| Parameter::Damping.parse(text))]
     pub damping: Option<f64>,
 
-    /// What computes the collision
-    #[arg(long, value_enum, default_value_t = Method::Dop853, help_heading = "Method")]
-    pub method: Method,
-
-    /// Relative tolerance of a step; 1e-15 to 0.1
-    #[arg(long, help = tolerance_help("Relative", "1e-15 to 0.1", |tolerances| tolerances.rtol))]
-    #[arg(value_name = "R", help_heading = "Method", allow_hyphen_values = true)]
-    #[arg(value_parser = Tolerances::parse_rtol)]
-    pub rtol: Option<f64>,
-
-    /// Absolute tolerance of a step; above 0
-    #[arg(long, help = tolerance_help("Absolute", "above 0", |tolerances| tolerances.atol))]
-    #[arg(value_name = "T", help_heading = "Method", allow_hyphen_values = true)]
-    #[arg(value_parser = Tolerances::parse_atol)]
-    pub atol: Option<f64>,
+    /// What computes a collision.
+    #[command(flatten)]
+    pub method: MethodArguments,
 
     /// How one collision is printed
     #[arg(long, value_enum, default_value_t = Format::Table, help_heading = "Output")]
@@ -97,17 +88,6 @@ pub struct CollideArguments {
     pub threads: Option<u16>,
 }
 
-/// What computes a collision.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Method {
-    /// Dormand–Prince 5(4)
-    Dopri5,
-    /// Dormand–Prince 8(5,3)
-    Dop853,
-    /// The exact solution; without damping only
-    Exact,
-}
-
 /// How one collision is printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Format {
@@ -115,13 +95,6 @@ pub enum Format {
     Table,
     /// One JSON object, schema "stickslip.collision/1"
     Json,
-}
-
-fn tolerance_help(name: &str, range: &str, tolerance: fn(&Tolerances) -> f64) -> String {
-    let [dop853, dopri5] = [&Tolerances::DOP853, &Tolerances::DOPRI5].map(tolerance);
-    format!(
-        "{name} tolerance of a step; {range} [default: {dop853:?} with dop853, {dopri5:?} with dopri5]"
-    )
 }
 
 const EXIT_CODES: &str = "Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

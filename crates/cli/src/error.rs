@@ -98,8 +98,7 @@ impl Failure {
         // If standard error is closed, the exit code still tells.
         let _ = writeln!(io::stderr(), "error: {self}");
         if let Self::Usage(_) = self {
-            let _ =
-                writeln!(io::stderr(), "\nFor more information, try 'stickslip collide --help'.");
+            let _ = writeln!(io::stderr(), "\nFor more information, try '--help'.");
         }
     }
 }

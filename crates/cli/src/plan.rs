@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use stickslip_model::Contact;
 
-use crate::args::{CollideArguments, Format, Method};
-use crate::engine::{Engine, Tolerances};
+use crate::args::{CollideArguments, Format};
+use crate::engine::Engine;
 use crate::error::Failure;
 use crate::recipe::{Given, Recipe, RecipeError};
 
@@ -53,7 +53,7 @@ impl CollidePlan {
     /// # Errors
     /// [`Failure::Usage`] says which options do not go together.
     pub fn new(arguments: &CollideArguments) -> Result<Self, Failure> {
-        let engine = engine(arguments)?;
+        let engine = arguments.method.engine(arguments.damping)?;
         let given = Given {
             kappa: arguments.kappa,
             psi: arguments.psi,
@@ -81,32 +81,6 @@ impl CollidePlan {
             engine,
             threads: arguments.threads.map(usize::from),
         }))
-    }
-}
-
-fn engine(arguments: &CollideArguments) -> Result<Engine, Failure> {
-    let tolerances = |default: Tolerances| Tolerances {
-        rtol: arguments.rtol.unwrap_or(default.rtol),
-        atol: arguments.atol.unwrap_or(default.atol),
-    };
-    match arguments.method {
-        Method::Dop853 => return Ok(Engine::Dop853(tolerances(Tolerances::DOP853))),
-        Method::Dopri5 => return Ok(Engine::Dopri5(tolerances(Tolerances::DOPRI5))),
-        Method::Exact => {}
-    }
-    let unused = [("--rtol", arguments.rtol), ("--atol", arguments.atol)];
-    if let Some((option, Some(value))) = unused.into_iter().find(|(_, value)| value.is_some()) {
-        return Err(Failure::Usage(format!(
-            "{option} {value:?} has no effect with --method exact, which has no tolerances; \
-             accepted with dop853 and dopri5"
-        )));
-    }
-    match arguments.damping {
-        Some(damping) if damping != 0.0 => Err(Failure::Usage(format!(
-            "--damping {damping:?} cannot be used with --method exact, which holds without \
-             damping; accepted is 0, or --method dop853 or dopri5"
-        ))),
-        _ => Ok(Engine::Exact),
     }
 }
 

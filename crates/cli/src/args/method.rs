@@ -1,0 +1,76 @@
+//! The options that say what computes a collision, the same for every command.
+
+use clap::ValueEnum;
+
+use crate::engine::{Engine, Tolerances};
+use crate::error::Failure;
+
+/// What computes a collision, and with which tolerances.
+#[derive(Clone, Debug, clap::Args)]
+pub struct MethodArguments {
+    /// What computes a collision
+    #[arg(long, value_enum, default_value_t = Method::Dop853, help_heading = "Method")]
+    pub method: Method,
+
+    /// Relative tolerance of a step; 1e-15 to 0.1
+    #[arg(long, help = tolerance_help("Relative", "1e-15 to 0.1", |tolerances| tolerances.rtol))]
+    #[arg(value_name = "R", help_heading = "Method", allow_hyphen_values = true)]
+    #[arg(value_parser = Tolerances::parse_rtol)]
+    pub rtol: Option<f64>,
+
+    /// Absolute tolerance of a step; above 0
+    #[arg(long, help = tolerance_help("Absolute", "above 0", |tolerances| tolerances.atol))]
+    #[arg(value_name = "T", help_heading = "Method", allow_hyphen_values = true)]
+    #[arg(value_parser = Tolerances::parse_atol)]
+    pub atol: Option<f64>,
+}
+
+/// What computes a collision.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Method {
+    /// Dormand–Prince 5(4)
+    Dopri5,
+    /// Dormand–Prince 8(5,3)
+    Dop853,
+    /// The exact solution; without damping only
+    Exact,
+}
+
+impl MethodArguments {
+    /// The engine that the options choose for collisions with `damping`, if that is known.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`]: a tolerance that would have no effect, or damping with the exact solution.
+    pub fn engine(&self, damping: Option<f64>) -> Result<Engine, Failure> {
+        let tolerances = |default: Tolerances| Tolerances {
+            rtol: self.rtol.unwrap_or(default.rtol),
+            atol: self.atol.unwrap_or(default.atol),
+        };
+        match self.method {
+            Method::Dop853 => return Ok(Engine::Dop853(tolerances(Tolerances::DOP853))),
+            Method::Dopri5 => return Ok(Engine::Dopri5(tolerances(Tolerances::DOPRI5))),
+            Method::Exact => {}
+        }
+        let unused = [("--rtol", self.rtol), ("--atol", self.atol)];
+        if let Some((option, Some(value))) = unused.into_iter().find(|(_, value)| value.is_some()) {
+            return Err(Failure::Usage(format!(
+                "{option} {value:?} has no effect with --method exact, which has no tolerances; \
+                 accepted with dop853 and dopri5"
+            )));
+        }
+        match damping {
+            Some(damping) if damping != 0.0 => Err(Failure::Usage(format!(
+                "--damping {damping:?} cannot be used with --method exact, which holds without \
+                 damping; accepted is 0, or --method dop853 or dopri5"
+            ))),
+            _ => Ok(Engine::Exact),
+        }
+    }
+}
+
+fn tolerance_help(name: &str, range: &str, tolerance: fn(&Tolerances) -> f64) -> String {
+    let [dop853, dopri5] = [&Tolerances::DOP853, &Tolerances::DOPRI5].map(tolerance);
+    format!(
+        "{name} tolerance of a step; {range} [default: {dop853:?} with dop853, {dopri5:?} with dopri5]"
+    )
+}
