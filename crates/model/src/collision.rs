@@ -140,19 +140,18 @@ impl<M: Method> Collider<M> {
         Ok(run.statistics)
     }
 
-    /// Integrates one collision and keeps its course in time.
-    ///
-    /// It takes about 2 kB of memory a switch.
+    /// Integrates one collision and keeps its course in time, up to [`History::MOST_STEPS`] steps of it.
     ///
     /// # Errors
     /// As [`Self::collide`].
     pub fn history(&self, contact: Contact) -> Result<History, CollisionError> {
-        let (history, outcome) = History::record(self.method, &self.options, contact)?;
+        let max_steps = self.options.max_steps.min(History::MOST_STEPS);
+        let options = Options { max_steps, ..self.options };
+        let (history, outcome) = History::record(self.method, &options, contact)?;
         if outcome == (Outcome::EndedByGuard { guard: END }) {
-            Ok(history)
-        } else {
-            Err(CollisionError::Unfinished { outcome, time: history.duration() })
+            return Ok(history);
         }
+        Err(CollisionError::Unfinished { outcome, time: history.duration() })
     }
 }
 

@@ -81,6 +81,11 @@ struct Record {
 }
 
 impl History {
+    /// Most steps of the integrator that are kept, about 160 MB of them.
+    ///
+    /// Without damping κ = 1e9 takes as many.
+    pub const MOST_STEPS: usize = 300_000;
+
     /// Integrates `contact` and keeps the trajectory.
     pub(crate) fn record<M: Method>(
         method: M,
@@ -232,8 +237,10 @@ impl Observer<Phase, STATE> for History {
 
 #[cfg(test)]
 mod tests {
+    use stickslip_solver::Dop853;
+
     use super::*;
-    use crate::Collider;
+    use crate::{Collider, CollisionError};
 
     fn history(kappa: f64, psi: f64, damping: f64) -> History {
         Collider::default().history(Contact::new(kappa, psi, damping).unwrap()).unwrap()
@@ -319,6 +326,18 @@ mod tests {
                 let at = history.at(sample.time).unwrap();
                 assert!((at.velocity - sample.velocity).abs() < 1e-12);
             }
+        }
+    }
+
+    #[test]
+    fn says_when_it_has_too_many_steps() {
+        let contact = Contact::new(63.0, 0.5, 0.0).unwrap();
+        for max_steps in 0..60 {
+            let options = Options { max_steps, ..Options::default() };
+            let error = Collider::unrefined(Dop853, options).history(contact).unwrap_err();
+            let CollisionError::Unfinished { outcome, time } = error else { panic!("{error}") };
+            assert_eq!(outcome, Outcome::StepLimit, "{max_steps}");
+            assert!((0.0..3.3).contains(&time), "{max_steps}: {time}");
         }
     }
 
