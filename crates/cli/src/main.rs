@@ -2,14 +2,15 @@
 //! an exit code.
 //!
 //! Start reading here; then, in this order: `args` (what may be typed), `plan` (what it means),
-//! `collide` and `batch` (doing it), `input` (files read), `table`, `json`, `rows` and `output`
-//! (results written).
+//! `collide` and `batch` (doing it), `input` (files read), `table`, `json`, `rows`, `figure` and
+//! `output` (results written).
 
 mod args;
 mod batch;
 mod collide;
 mod engine;
 mod error;
+mod figure;
 mod input;
 mod json;
 mod number;
