@@ -1,5 +1,6 @@
 //! What may be typed: options with their syntax and ranges, and the help text.
 
+mod map;
 mod method;
 
 use std::path::PathBuf;
@@ -10,6 +11,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 use crate::figure::Target;
 use crate::parameter::Parameter;
 
+pub use map::MapArguments;
 pub use method::MethodArguments;
 
 /// Collisions of frictional viscoelastic spheres, with every switch between sticking and sliding.
@@ -27,6 +29,9 @@ pub enum Command {
     /// Compute one collision, or a file of them
     #[command(long_about = COLLIDE, after_long_help = COLLIDE_EXAMPLES)]
     Collide(CollideArguments),
+    /// Compute the restitution and the number of switches on a plane
+    #[command(long_about = map::ABOUT, after_long_help = map::EXAMPLES)]
+    Map(MapArguments),
 }
 
 /// Options of `collide`.

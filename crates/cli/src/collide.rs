@@ -5,7 +5,7 @@ use std::io::{self, BufWriter, Write};
 use crate::args::Format;
 use crate::engine::{EngineError, require_finite, require_finite_energy};
 use crate::error::Failure;
-use crate::figure::{self, Target};
+use crate::figure;
 use crate::plan::Point;
 use crate::{json, table};
 
@@ -21,13 +21,15 @@ pub fn run(point: &Point) -> Result<(), Failure> {
         damping: contact.damping(),
         source,
     };
-    let picture = point.plot.as_ref().map(Target::create).transpose()?;
+    if let Some(target) = &point.plot {
+        target.check()?;
+    }
     let (collision, statistics) = point.engine.collide(contact, Vec::new()).map_err(failed)?;
     require_finite(&collision).map_err(failed)?;
     require_finite_energy(&collision.energy).map_err(failed)?;
-    if let Some(picture) = picture {
+    if let Some(target) = &point.plot {
         let history = point.engine.history(contact).map_err(failed)?;
-        picture.publish(&figure::collision::draw(&collision, &history))?;
+        target.write(&figure::collision::draw(&collision, &history))?.publish()?;
     }
 
     let mut out = BufWriter::new(io::stdout().lock());

@@ -46,6 +46,24 @@ pub enum Failure {
         /// The output file.
         path: PathBuf,
     },
+    /// Some points of a map have no result.
+    #[error(
+        "{failed} of {points} points could not be computed and are NaN and -1 in {}; \
+         the first, {first}", path.display()
+    )]
+    Points {
+        /// Points without a result.
+        failed: usize,
+        /// All points.
+        points: usize,
+        /// The output file.
+        path: PathBuf,
+        /// The first of them, and why it could not be computed.
+        first: String,
+    },
+    /// Another process is at work.
+    #[error("{}: another process is making this map", .0.display())]
+    Busy(PathBuf),
     /// An output file cannot be written.
     #[error("{}: cannot be written: {source}", path.display())]
     Output {

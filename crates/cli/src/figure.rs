@@ -14,12 +14,13 @@ mod style;
 mod svg;
 mod text;
 
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::PathBuf;
 
 use crate::error::Failure;
 use crate::output::OutputFile;
-use svg::Svg;
+pub use svg::Svg;
+pub use text::number;
 
 /// The file of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -54,37 +55,64 @@ impl Target {
         Ok(Self { path, format })
     }
 
-    /// Starts to write the picture, so that a file that cannot be written is found before there is work to lose.
+    /// Makes sure that the file can be written, before there is work to lose.
     ///
     /// # Errors
     /// The file cannot be created.
-    pub fn create(&self) -> Result<Unpublished<'_>, Failure> {
-        let file =
-            OutputFile::create(&self.path).map_err(|error| Failure::output(&self.path, error))?;
+    pub fn check(&self) -> Result<(), Failure> {
+        OutputFile::create(&self.path).map(drop).map_err(|error| self.failure(error))
+    }
+
+    /// Writes `picture` beside the file.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn write(&self, picture: &Svg) -> Result<Unpublished<'_>, Failure> {
+        let svg = picture.document();
+        let file = OutputFile::create(&self.path).and_then(|mut file| {
+            match self.format {
+                Format::Svg => file.write_all(svg.as_bytes())?,
+                Format::Png => file.write_all(&raster::png(&svg)?)?,
+            }
+            file.store()?;
+            Ok(file)
+        });
+        let file = file.map_err(|error| self.failure(error))?;
         Ok(Unpublished { target: self, file })
+    }
+
+    fn failure(&self, error: io::Error) -> Failure {
+        Failure::output(&self.path, error)
     }
 }
 
-/// A picture file on its way.
+/// A picture that is complete but for its name.
 pub struct Unpublished<'a> {
     target: &'a Target,
     file: OutputFile,
 }
 
 impl Unpublished<'_> {
-    /// Writes `picture` and gives the file its name.
+    /// Gives the file its name.
     ///
     /// # Errors
-    /// The file cannot be written.
-    pub fn publish(mut self, picture: &Svg) -> Result<(), Failure> {
-        let svg = picture.document();
-        let written = match self.target.format {
-            Format::Svg => self.file.write_all(svg.as_bytes()),
-            Format::Png => raster::png(&svg).and_then(|png| self.file.write_all(&png)),
-        };
-        written
-            .and_then(|()| self.file.store())
-            .and_then(|()| self.file.publish())
-            .map_err(|error| Failure::output(&self.target.path, error))
+    /// It cannot be renamed.
+    pub fn publish(self) -> Result<(), Failure> {
+        self.file.publish().map_err(|error| self.target.failure(error))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_name_tells_the_format() {
+        let format = |name: &str| Target::new(name.into()).map(|target| target.format);
+        assert_eq!(format("a/b.svg"), Ok(Format::Svg));
+        assert_eq!(format("b.c.PNG"), Ok(Format::Png));
+        for name in ["svg", ".png", "a.pdf", "a.svg.", ""] {
+            assert!(format(name).is_err(), "{name}");
+        }
     }
 }

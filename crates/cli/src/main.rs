@@ -2,21 +2,24 @@
 //! an exit code.
 //!
 //! Start reading here; then, in this order: `args` (what may be typed), `plan` (what it means),
-//! `collide` and `batch` (doing it), `input` (files read), `table`, `json`, `rows`, `figure` and
+//! `collide`, `batch` and `map` (doing it), `input` (files read), `table`, `json`, `rows`, `figure` and
 //! `output` (results written).
 
 mod args;
 mod batch;
+mod bodies;
 mod collide;
 mod engine;
 mod error;
 mod figure;
 mod input;
 mod json;
+mod map;
 mod number;
 mod output;
 mod parameter;
 mod plan;
+mod range;
 mod recipe;
 mod rows;
 mod table;
@@ -27,7 +30,7 @@ use clap::Parser;
 
 use args::{Arguments, Command};
 use error::Failure;
-use plan::CollidePlan;
+use plan::{CollidePlan, MapPlan};
 
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
@@ -53,5 +56,6 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             CollidePlan::Point(point) => collide::run(&point),
             CollidePlan::Batch(batch) => batch::run(&batch),
         },
+        Command::Map(arguments) => map::run(&MapPlan::new(arguments)?),
     }
 }

@@ -6,6 +6,18 @@ use std::path::{Path, PathBuf};
 
 use tempfile::{Builder, NamedTempFile};
 
+/// How the name of an incomplete file ends.
+pub const PARTIAL: &str = ".partial";
+
+/// The file that is replaced when `path` is written: behind a symbolic link, the one it points to
+/// and not the link. A device or a pipe has its own name.
+pub fn target(path: &Path) -> PathBuf {
+    match fs::canonicalize(path) {
+        Ok(target) if path.is_symlink() && !is_stream(path) => target,
+        _ => path.to_owned(),
+    }
+}
+
 /// A file that is written beside its target and takes the target's name when it is complete.
 ///
 /// Dropped before [`Self::publish`], it disappears and the target stays as it was. A device or a
@@ -25,6 +37,19 @@ impl OutputFile {
     /// # Errors
     /// The directory is missing or cannot be written, or `path` is a directory.
     pub fn create(path: &Path) -> io::Result<Self> {
+        let target = target(path);
+        let directory = match target.parent() {
+            Some(parent) if !parent.as_os_str().is_empty() => parent,
+            _ => Path::new("."),
+        };
+        Self::create_in(directory, path)
+    }
+
+    /// The same with the incomplete file in `directory`, on the file system of the target.
+    ///
+    /// # Errors
+    /// `directory` is missing or cannot be written, or `path` is a directory.
+    pub fn create_in(directory: &Path, path: &Path) -> io::Result<Self> {
         if is_stream(path) {
             // At the end of whatever it leads to: another program may have written before.
             let stream = OpenOptions::new().append(true).open(path)?;
@@ -33,17 +58,12 @@ impl OutputFile {
         if path.is_dir() {
             return Err(io::ErrorKind::IsADirectory.into());
         }
-        // Behind a symbolic link, the file that it points to is replaced, not the link.
-        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-        let directory = match target.parent() {
-            Some(parent) if !parent.as_os_str().is_empty() => parent,
-            _ => Path::new("."),
-        };
+        let target = target(path);
         fs::metadata(directory)?;
         let name = target.file_name().ok_or(io::ErrorKind::InvalidFilename)?;
         let prefix = format!(".{}.", name.to_string_lossy());
         let mut builder = Builder::new();
-        builder.prefix(&prefix).suffix(".partial");
+        builder.prefix(&prefix).suffix(PARTIAL);
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
         // The whole error would show the temporary name, which means nothing to the user.

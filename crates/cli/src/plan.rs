@@ -1,5 +1,7 @@
 //! What the options mean together: raw arguments become a plan that can be carried out.
 
+mod map;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -10,6 +12,8 @@ use crate::engine::Engine;
 use crate::error::Failure;
 use crate::figure::Target;
 use crate::recipe::{Given, Recipe, RecipeError};
+
+pub use map::{MapFormat, MapPlan};
 
 /// What `collide` is to do.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,7 +92,7 @@ impl CollidePlan {
     }
 }
 
-/// What is wrong with the options of one collision.
+/// What is wrong with the options that give a collision.
 fn explain(error: RecipeError) -> String {
     match error {
         RecipeError::NoKappa => "--kappa is missing".to_owned(),

@@ -7,7 +7,8 @@
 //! [`Collision`] with every switch.
 //!
 //! Start reading in [`collision`]; then [`regularized`] (the equations), [`exact`] (the closed form),
-//! [`history`] (its course in time), [`scaling`] (SI units), [`plain_time`] (the equations as the paper has them, for studies).
+//! [`history`] (its course in time), [`scaling`] (SI units), [`bodies`] and [`encounter`] (spheres in three dimensions),
+//! [`normal`] and [`coulomb`] (formulas to compare with), [`plain_time`] (the equations as the paper has them, for studies).
 //!
 //! ```
 //! use stickslip_model::{Collider, Contact, exact};
@@ -20,20 +21,32 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod bodies;
 pub mod collision;
 mod contact;
+pub mod coulomb;
+pub mod encounter;
 mod energy;
 pub mod exact;
 pub mod history;
+pub mod normal;
+mod observed;
+mod outcome;
 mod pair;
 pub mod plain_time;
+pub mod quantity;
 mod refine;
 pub mod regularized;
 mod reversals;
 pub mod scaling;
 
+pub use bodies::{Body, Elasticity, Material, Sphere, Wall};
 pub use collision::{Collider, CollisionError};
 pub use contact::{Collision, Contact, InvalidParameter, Regime, Side, Switch};
+pub use encounter::{Encounter, EncounterError, Motion, Plane};
 pub use energy::EnergyLedger;
 pub use history::{History, PhaseHistory, Snapshot};
-pub use scaling::{Impact, Material, Pair, Surface};
+pub use nalgebra::Vector3;
+pub use observed::Observed;
+pub use outcome::{EnergyAccount, ForceSwitch, Outcome};
+pub use scaling::{Impact, Pair, Surface};

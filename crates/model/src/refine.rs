@@ -8,6 +8,7 @@
 use stickslip_solver::{Method, Observer, Options, Start, SwitchEvent, run};
 
 use crate::contact::{Collision, Contact, Regime, Side};
+use crate::energy::EnergyLedger;
 use crate::pair::Pair;
 use crate::regularized::{Phase, Regularized, STATE};
 
@@ -16,21 +17,28 @@ const DEGREE: usize = 24;
 /// Size of the first neglected terms of a step.
 const TOLERANCE: f64 = 1e-22;
 
-/// Replaces times, states and restitution of `collision` by ones computed with twice the digits.
+/// Replaces times, states, restitution and energies of `collision`, except what damping took, by ones computed with twice the digits.
 ///
 /// Returns false and changes nothing if Newton's method leaves the neighbourhood of a switch that the integrator found.
 pub(crate) fn refine<M: Method>(method: M, options: &Options, collision: &mut Collision) -> bool {
     let contact = collision.contact;
     let Some(phases) = phases(method, options, contact) else { return false };
     let mut state = Motion::start(contact);
+    let mut sliding = ZERO;
     let mut ends = Vec::with_capacity(phases.len());
     for (index, (phase, length)) in phases.iter().enumerate() {
         let exit = phases.get(index + 1).map(|(next, _)| *next);
         let Some(end) = state.follow(contact, *phase, exit, *length) else { return false };
+        if phase.regime == Regime::Slip {
+            sliding = sliding.plus(state.slid(&end, contact, phase.side));
+        }
         state = end.enter(contact, *phase, exit);
         ends.push(end);
     }
-    let Some(last) = ends.last().copied() else { return false };
+    let (Some(last), Some((phase, _))) = (ends.last().copied(), phases.last()) else {
+        return false;
+    };
+    let spring = last.spring(contact, *phase).nearest();
     let mut time = Pair(0.0, 0.0);
     for (switch, end) in collision.switches.iter_mut().zip(&ends) {
         time = time.plus(end.t);
@@ -46,6 +54,14 @@ pub(crate) fn refine<M: Method>(method: M, options: &Options, collision: &mut Co
     }
     collision.eps_n = -last.v.nearest();
     collision.final_velocity = last.w.nearest();
+    collision.energy = EnergyLedger {
+        tangential_final: 0.5 * collision.final_velocity * collision.final_velocity,
+        sliding: sliding.nearest(),
+        spring_left: 0.5 * contact.kappa() * spring * spring,
+        normal_final: 0.5 * collision.eps_n * collision.eps_n,
+        compression_left: 0.4 * last.u.nearest().powi(5),
+        ..collision.energy
+    };
     true
 }
 
@@ -111,6 +127,15 @@ impl Motion {
             }
             Regime::Stick => self.y,
         }
+    }
+
+    /// Energy taken by sliding on `side` from here to `end`: ∫ F (s w − dL/dt) dt with F dt = −dv.
+    fn slid(&self, end: &Self, contact: Contact, side: Side) -> Pair {
+        let slowed = self.v.minus(end.v);
+        let mean = self.w.scaled(side.sign()).minus(slowed.scaled(0.5));
+        let [force, end_force] = [self, end].map(|moment| moment.force(contact));
+        let stored = end_force.times(end_force).minus(force.times(force)).scaled(0.5);
+        slowed.times(mean).minus(stored.over(Pair(contact.kappa(), 0.0)))
     }
 
     /// The function that vanishes where `phase` gives way to `exit`, or the contact ends.

@@ -55,17 +55,17 @@ pub fn place(cells: Cells<'_>, half_size: impl Fn(i32) -> (f64, f64)) -> Vec<Lab
         }
         let (_, half_height) = half_size(values[place]);
         // The largest box of the label's shape: every row that it covers must be wide enough.
-        let wide_enough = |room: f64, distance: usize, other: usize| {
-            let reach = (distance as f64 - 0.5) / half_height;
-            room.min(reach.max(rooms[other].0))
-        };
-        let reaches = |room: f64| (room.min(height) * half_height + 0.5).ceil();
         let mut room = width.min(height);
-        let mut distance = 1;
-        while (distance as f64) < reaches(room) {
-            room = wide_enough(room, distance, place - distance * columns);
-            room = wide_enough(room, distance, place + distance * columns);
-            distance += 1;
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let within_run = 1..=along[place] as usize;
+        for distance in within_run {
+            let reach = (distance as f64 - 0.5) / half_height;
+            if reach >= room {
+                break;
+            }
+            let narrowest =
+                rooms[place - distance * columns].0.min(rooms[place + distance * columns].0);
+            room = room.min(reach.max(narrowest));
         }
         let rank = (room, width + height);
         if rank > best[region].0 {
@@ -192,14 +192,14 @@ mod tests {
 
     #[test]
     fn every_box_lies_within_its_region() {
-        let (columns, rows, half_size) = (90_u32, 70, (4.2, 2.6));
+        let (columns, rows, half_size) = (90_usize, 70_usize, (4.2, 2.6));
         // Wavy rings around a corner.
-        let value = |column: f64, row: f64| column.hypot(row) / 13.0 + (0.2 * column).sin();
         #[allow(clippy::cast_possible_truncation)]
-        let values: Vec<_> = (0..columns * rows)
-            .map(|cell| value(f64::from(cell % columns), f64::from(cell / columns)).floor() as i32)
-            .collect();
-        let (columns, rows) = (90, 70);
+        let value = |cell: usize| {
+            let (column, row) = ((cell % columns) as f64, (cell / columns) as f64);
+            (column.hypot(row) / 13.0 + (0.2 * column).sin()).floor() as i32
+        };
+        let values: Vec<_> = (0..columns * rows).map(value).collect();
         let labels = place(Cells { columns, values: &values }, |_| half_size);
         assert!(labels.len() >= 8, "{}", labels.len());
         for label in &labels {

@@ -20,6 +20,8 @@ pub struct Map<'a> {
     pub vertical: Axis<'a>,
     /// Cells in a row.
     pub columns: usize,
+    /// Rows.
+    pub rows: usize,
     /// Tangential restitution row by row, the first at the lower end of the axis; NaN where there is none.
     pub eps_t: &'a [f64],
     /// Number of switches; negative where there is none.
@@ -35,13 +37,15 @@ pub struct Axis<'a> {
     pub range: (f64, f64),
 }
 
-const WIDTH: f64 = 1010.0;
+const WIDTH: f64 = 1024.0;
 const HEIGHT: f64 = 456.0;
-const RESTITUTION: Rectangle = Rectangle { left: 66.0, top: 64.0, width: 370.0, height: 340.0 };
-const SWITCHES: Rectangle = Rectangle { left: 578.0, ..RESTITUTION };
+const RESTITUTION: Rectangle = Rectangle { left: 72.0, top: 64.0, width: 370.0, height: 340.0 };
+const SWITCHES: Rectangle = Rectangle { left: 592.0, ..RESTITUTION };
 /// Distance and width of the colour keys.
 const KEY: (f64, f64) = (12.0, 16.0);
-const TITLE_AT: (f64, f64) = (66.0, 20.0);
+/// Least pixels of the image of a panel, across and along.
+const FINE: usize = 600;
+const TITLE_AT: (f64, f64) = (72.0, 20.0);
 
 /// Shades of restitution; the middle one is zero.
 const SHADES: u8 = 255;
@@ -82,12 +86,12 @@ fn restitution(svg: &mut Svg, map: &Map<'_>) -> io::Result<()> {
     };
     palette.push(style::MISSING);
     svg.image(panel.frame, &map.bitmap(|cell| shade(map.eps_t[cell]), palette).base64()?);
-    map.axes(svg, &panel, "tangential restitution ε_t");
 
-    let key_panel = Panel { frame: beside(&panel), x: (0.0, 1.0), y: (-largest, largest) };
-    svg.image(key_panel.frame, &key.base64()?);
-    key_panel.border(svg);
-    key_panel.ticks(svg, Edge::Right, true);
+    let scale = Panel { frame: beside(&panel), x: (0.0, 1.0), y: (-largest, largest) };
+    svg.image(scale.frame, &key.base64()?);
+    scale.border(svg);
+    scale.ticks(svg, Edge::Right, true);
+    map.axes(svg, &panel, &format!("tangential restitution ε_t{}", scale.power(Edge::Right)));
     Ok(())
 }
 
@@ -112,7 +116,7 @@ fn switches(svg: &mut Svg, map: &Map<'_>) -> io::Result<()> {
     svg.begin_group("regions");
     let cells = Cells { columns: map.columns, values: map.switch_count };
     let cell_width = panel.frame.width / map.columns as f64;
-    let cell_height = panel.frame.height / map.rows() as f64;
+    let cell_height = panel.frame.height / map.rows as f64;
     let half_size = |count: i32| {
         // Figures are 0.64 of the font size wide and 0.73 high.
         let digits = count.to_string().len() as f64;
@@ -129,11 +133,11 @@ fn switches(svg: &mut Svg, map: &Map<'_>) -> io::Result<()> {
     map.axes(svg, &panel, "number of switches");
 
     let key = Panel { frame: beside(&panel), x: (0.0, 1.0), y: (0.0, counts.len().max(1) as f64) };
-    let pixels: Vec<u8> =
-        counts.iter().rev().map(|&count| shade(count).unwrap_or(missing)).collect();
-    if !pixels.is_empty() {
-        let bitmap = Bitmap { columns: 1, rows: pixels.len(), pixels, palette };
-        svg.image(key.frame, &bitmap.base64()?);
+    // Each colour down to the bottom, under those that follow: no seams.
+    for (rank, count) in counts.iter().enumerate().rev() {
+        let (left, top) = key.place((0.0, rank as f64 + 1.0));
+        let height = key.frame.bottom() - top;
+        svg.fill(Rectangle { left, top, height, ..key.frame }, &style::hex(colour(*count)));
     }
     let apart = counts.len().div_ceil(MOST_NUMBERS).max(1);
     svg.begin_group("counts");
@@ -147,18 +151,19 @@ fn switches(svg: &mut Svg, map: &Map<'_>) -> io::Result<()> {
 }
 
 impl Map<'_> {
-    fn rows(&self) -> usize {
-        self.eps_t.len() / self.columns
-    }
-
     fn panel(&self, frame: Rectangle) -> Panel {
         Panel { frame, x: self.horizontal.range, y: self.vertical.range }
     }
 
     /// The cells as pixels, the last row on top.
+    ///
+    /// Few cells are several pixels each, since not every viewer keeps the edges of pixels sharp.
     fn bitmap(&self, pixel: impl Fn(usize) -> u8, palette: Vec<colorous::Color>) -> Bitmap {
-        let (columns, rows) = (self.columns, self.rows());
-        let cells = (0..rows).rev().flat_map(|row| row * columns..(row + 1) * columns);
+        let repeat = |cells: usize| FINE.div_ceil(cells);
+        let (wide, high) = (repeat(self.columns), repeat(self.rows));
+        let (columns, rows) = (self.columns * wide, self.rows * high);
+        let lines = (0..rows).rev().map(|row| (row / high) * self.columns);
+        let cells = lines.flat_map(|line| (0..columns).map(move |column| line + column / wide));
         Bitmap { columns, rows, pixels: cells.map(pixel).collect(), palette }
     }
 
@@ -168,7 +173,7 @@ impl Map<'_> {
             panel.ticks(svg, edge, true);
         }
         panel.name(svg, Edge::Bottom, 36.0, self.horizontal.name);
-        panel.name(svg, Edge::Left, 48.0, self.vertical.name);
+        panel.name(svg, Edge::Left, 56.0, self.vertical.name);
         let at = (panel.frame.left, panel.frame.top - 14.0);
         svg.words(at, Words::new(heading, TEXT, Anchor::Start));
     }

@@ -66,14 +66,14 @@ impl Panel {
         svg.outline(self.frame, FRAME);
     }
 
-    /// Ticks with their values along an edge; without `labels` the ticks alone.
+    /// Ticks with their values along an edge, in units of [`Self::power`]; without `labels` the ticks alone.
     pub fn ticks(&self, svg: &mut Svg, edge: Edge, labels: bool) {
         let frame = &self.frame;
-        let (range, length, apart) = match edge {
-            Edge::Bottom => (self.x, frame.width, 70.0),
-            Edge::Left | Edge::Right => (self.y, frame.height, 30.0),
+        let (length, apart) = match edge {
+            Edge::Bottom => (frame.width, 70.0),
+            Edge::Left | Edge::Right => (frame.height, 30.0),
         };
-        for (value, label) in ticks(range, length / apart) {
+        for (value, label) in ticks(self.range(edge), length / apart) {
             let (x, y) = self.place((value, value));
             let (from, to, at, anchor) = match edge {
                 Edge::Bottom => {
@@ -96,49 +96,61 @@ impl Panel {
         }
     }
 
-    /// The name of an axis, `distance` from its edge.
+    /// The power of ten in units of which the ticks of an edge are labelled, to follow the name of what they show; empty
+    /// where numbers need none.
+    pub fn power(&self, edge: Edge) -> String {
+        match exponent(self.range(edge)) {
+            0 => String::new(),
+            exponent => text::minus(&format!(" (×10^{{{exponent}}})")),
+        }
+    }
+
+    /// The name of the lower or left axis, `distance` from its edge.
     pub fn name(&self, svg: &mut Svg, edge: Edge, distance: f64, name: &str) {
         let frame = &self.frame;
-        let (across, along) = (frame.left + 0.5 * frame.width, frame.top + 0.5 * frame.height);
-        let words = Words::new(name, TEXT, Anchor::Middle);
-        let (at, upwards) = match edge {
-            Edge::Bottom => ((across, frame.bottom() + distance), false),
-            Edge::Left => ((frame.left - distance, along), true),
-            Edge::Right => ((frame.right() + distance, along), true),
-        };
-        svg.words(at, Words { upwards, ..words });
+        let name = format!("{name}{}", self.power(edge));
+        let words = Words::new(&name, TEXT, Anchor::Middle);
+        if edge == Edge::Bottom {
+            svg.words((frame.left + 0.5 * frame.width, frame.bottom() + distance), words);
+        } else {
+            let at = (frame.left - distance, frame.top + 0.5 * frame.height);
+            svg.words(at, Words { upwards: true, ..words });
+        }
+    }
+
+    fn range(&self, edge: Edge) -> (f64, f64) {
+        match edge {
+            Edge::Bottom => self.x,
+            Edge::Left | Edge::Right => self.y,
+        }
     }
 }
 
-/// About `count` round values between `low` and `high`, with their labels.
+/// About `count` round values between `low` and `high`, with their labels in units of 10^[`exponent`].
 fn ticks((low, high): (f64, f64), count: f64) -> Vec<(f64, String)> {
+    let unit = 10_f64.powi(exponent((low, high)));
+    let (low, high) = (low / unit, high / unit);
     let finest = (high - low) / count.max(1.0);
     let power = finest.log10().floor();
-    let unit = 10_f64.powf(power);
-    let step = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * unit);
-    let step = step.into_iter().find(|&step| step >= finest * (1.0 - 1e-9)).unwrap_or(finest);
-    let (first, last) = ((low / step - 1e-9).ceil(), (high / step + 1e-9).floor());
+    let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * 10_f64.powf(power));
+    let step = steps.into_iter().find(|&step| step >= finest * (1.0 - 1e-9)).unwrap_or(finest);
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let decimals = (-(step.log10() + 1e-9).floor()).max(0.0) as usize;
     #[allow(clippy::cast_possible_truncation)]
-    let indices = first as i64..=last as i64;
+    let indices = (low / step - 1e-9).ceil() as i64..=(high / step + 1e-9).floor() as i64;
+    let label = |value: f64| {
+        if value == 0.0 { "0".to_owned() } else { text::minus(&format!("{value:.decimals$}")) }
+    };
     let values = indices.map(|index| index as f64 * step);
-    let largest = low.abs().max(high.abs());
-    values.map(|value| (value, tick_label(value, step, largest))).collect()
+    values.map(|value| (value * unit, label(value))).collect()
 }
 
-/// `value` with the digits that tell it from its neighbours a `step` away.
-fn tick_label(value: f64, step: f64, largest: f64) -> String {
+/// The power of ten that ticks leave out: 0 for numbers that fit beside an axis as they are.
+fn exponent((low, high): (f64, f64)) -> i32 {
     #[allow(clippy::cast_possible_truncation)]
-    let exponent_of = |value: f64| (value.log10() + 1e-9).floor() as i32;
-    let (exponent, finest) = (exponent_of(largest), exponent_of(step));
-    let fixed =
-        |value: f64, finest: i32| format!("{value:.*}", usize::try_from(-finest).unwrap_or(0));
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    if (-3..5).contains(&exponent) {
-        return text::minus(&fixed(value, finest));
-    }
-    text::power(&fixed(value / 10_f64.powi(exponent), finest - exponent), exponent)
+    let exponent = low.abs().max(high.abs()).log10().floor() as i32;
+    // Below, 10^−exponent is no number any more.
+    if (-2..5).contains(&exponent) { 0 } else { exponent.max(-300) }
 }
 
 #[cfg(test)]
@@ -154,12 +166,27 @@ mod tests {
         assert_eq!(labels((0.0, 3.218), 8.0), ["0", "0.5", "1.0", "1.5", "2.0", "2.5", "3.0"]);
         assert_eq!(labels((-1.2, 1.2), 6.0), ["−1.0", "−0.5", "0", "0.5", "1.0"]);
         assert_eq!(labels((0.0, 20.0), 5.0), ["0", "5", "10", "15", "20"]);
-        assert_eq!(
-            labels((0.0, 2e6), 4.0),
-            ["0", "0.5×10^{6}", "1.0×10^{6}", "1.5×10^{6}", "2.0×10^{6}"]
-        );
-        assert_eq!(labels((-3e-5, 3e-5), 3.0), ["−2×10^{−5}", "0", "2×10^{−5}"]);
-        assert_eq!(labels((0.0, 1e-300), 2.0), ["0", "0.5×10^{−300}", "1.0×10^{−300}"]);
+        assert_eq!(labels((17.9, 18.1), 3.0), ["17.9", "18.0", "18.1"]);
+        assert_eq!(labels((0.0, 3e4), 3.0), ["0", "10000", "20000", "30000"]);
+    }
+
+    #[test]
+    fn very_large_and_small_numbers_leave_out_a_power_of_ten() {
+        let frame = Rectangle { left: 0.0, top: 0.0, width: 100.0, height: 100.0 };
+        for (range, exponent, shown) in [
+            ((0.0, 2e6), " (×10^{6})", ["0", "0.5", "1.0", "1.5", "2.0"].as_slice()),
+            ((-3e-5, 3e-5), " (×10^{−5})", &["−2", "0", "2"]),
+            ((0.0, 2e-300), " (×10^{−300})", &["0", "0.5", "1.0", "1.5", "2.0"]),
+            ((0.0, 99999.0), "", &["0", "50000"]),
+        ] {
+            let panel = Panel { frame, x: range, y: range };
+            assert_eq!(panel.power(Edge::Left), exponent);
+            let count =
+                if shown.len() > 3 { 4.0 } else { 3.0 - f64::from(u8::from(shown.len() == 2)) };
+            assert_eq!(labels(range, count), shown);
+        }
+        let (value, _) = ticks((0.0, 2e6), 4.0)[3];
+        assert!((value - 1.5e6).abs() < 1e-6);
     }
 
     #[test]

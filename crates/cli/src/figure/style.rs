@@ -52,6 +52,11 @@ pub fn ordered(i: usize, n: usize) -> Color {
     colorous::YELLOW_GREEN_BLUE.eval_continuous(0.06 + 0.94 * t)
 }
 
+/// `colour` as SVG writes it.
+pub fn hex(colour: Color) -> String {
+    format!("#{colour:X}")
+}
+
 /// Black or white, whichever is readable on `colour`.
 pub fn readable_on(Color { r, g, b }: Color) -> &'static str {
     // Luma of ITU-R BT.601.

@@ -59,12 +59,7 @@ pub fn number(value: f64, digits: usize) -> String {
         // Reading the rounded number back drops trailing zeros.
         return minus(&rounded.parse().unwrap_or(value).to_string());
     }
-    let mantissa = mantissa.parse().unwrap_or(0.0_f64).to_string();
-    power(&mantissa, exponent)
-}
-
-/// mantissa × 10^exponent, as markup.
-pub fn power(mantissa: &str, exponent: i32) -> String {
+    let mantissa: f64 = mantissa.parse().unwrap_or(value);
     minus(&format!("{mantissa}×10^{{{exponent}}}"))
 }
 
@@ -86,15 +81,11 @@ fn pieces(markup: &str) -> Vec<Piece<'_>> {
         let height = if rest[place..].starts_with('_') { Height::Lowered } else { Height::Raised };
         pieces.push(Piece { text: &rest[..place], height: Height::Line });
         let after = &rest[place + 1..];
-        let (text, end) = match after.strip_prefix('{').and_then(|inner| inner.find('}')) {
-            Some(length) => (&after[1..=length], length + 2),
-            None => {
-                let length = after.chars().next().map_or(0, char::len_utf8);
-                (&after[..length], length)
-            }
-        };
+        let braced = after.strip_prefix('{').and_then(|inner| inner.split_once('}'));
+        let (text, remaining) = braced
+            .unwrap_or_else(|| after.split_at(after.chars().next().map_or(0, char::len_utf8)));
         pieces.push(Piece { text, height });
-        rest = &after[end..];
+        rest = remaining;
     }
     pieces.push(Piece { text: rest, height: Height::Line });
     pieces.retain(|piece| !piece.text.is_empty());

@@ -2,6 +2,11 @@
 
 mod batch;
 mod batch_failures;
+mod map;
+mod map_failures;
+#[cfg(unix)]
+mod map_interrupted;
+mod pictures;
 mod point;
 mod usage;
 
@@ -78,7 +83,12 @@ impl Workspace {
 
     /// All names in the directory, hidden ones too.
     fn names(&self) -> Vec<String> {
-        let entries = fs::read_dir(self.0.path()).expect("the directory is there");
+        self.names_in(".")
+    }
+
+    /// All names in a directory inside.
+    fn names_in(&self, directory: &str) -> Vec<String> {
+        let entries = fs::read_dir(self.path(directory)).expect("the directory is there");
         let name = |entry: std::io::Result<fs::DirEntry>| {
             entry.expect("an entry").file_name().into_string().expect("a name in UTF-8")
         };
@@ -96,6 +106,55 @@ fn rows(csv: &str) -> Vec<Vec<String>> {
         .records()
         .map(|record| record.expect("rows of equal length").iter().map(str::to_owned).collect())
         .collect()
+}
+
+/// An array of a .npz file.
+struct Array {
+    /// As NumPy writes it.
+    shape: String,
+    element: String,
+    data: Vec<u8>,
+}
+
+impl Array {
+    fn doubles(&self) -> Vec<f64> {
+        assert_eq!(self.element, "<f8");
+        self.data.as_chunks().0.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect()
+    }
+
+    fn integers(&self) -> Vec<i32> {
+        assert_eq!(self.element, "<i4");
+        self.data.as_chunks().0.iter().map(|bytes| i32::from_le_bytes(*bytes)).collect()
+    }
+}
+
+/// The arrays of a .npz file with their names, in order.
+fn npz(path: &Path) -> Vec<(String, Array)> {
+    let bytes = fs::read(path).expect("the file is there");
+    let archive = rawzip::ZipArchive::from_slice(&bytes).expect("an archive");
+    let entries = archive.entries().map(|entry| {
+        let header = entry.expect("an entry");
+        let name = String::from_utf8_lossy(header.file_path().as_bytes()).into_owned();
+        let entry = archive.get_entry(header.wayfinder()).expect("its data");
+        let mut data = Vec::new();
+        let mut reader = entry.verifying_reader(entry.data());
+        std::io::Read::read_to_end(&mut reader, &mut data).expect("the right checksum");
+        (name.strip_suffix(".npy").expect("an array").to_owned(), array(&data))
+    });
+    entries.collect()
+}
+
+fn array(file: &[u8]) -> Array {
+    assert_eq!(file[..8], *b"\x93NUMPY\x01\x00");
+    let length = usize::from(u16::from_le_bytes([file[8], file[9]]));
+    let (header, data) = file[10..].split_at(length);
+    let header = std::str::from_utf8(header).expect("ASCII");
+    let between = |start, end| header.split_once(start)?.1.split_once(end).map(|x| x.0.to_owned());
+    Array {
+        shape: between("'shape': (", ")").expect("a shape"),
+        element: between("'descr': '", "'").expect("a type"),
+        data: data.to_vec(),
+    }
 }
 
 /// The cases of a file of reference values.

@@ -1,0 +1,93 @@
+//! The options of `map`.
+
+use std::path::PathBuf;
+
+use clap::builder::{PathBufValueParser, TypedValueParser};
+
+use crate::args::MethodArguments;
+use crate::figure::Target;
+use crate::parameter::Parameter;
+use crate::range::{Range, Size};
+
+/// Options of `map`.
+#[derive(Debug, clap::Args)]
+pub struct MapArguments {
+    /// Columns: interval of the scaled stiffness κ = k_t/(α m β^⅘ g_n^⅖), 0 or above
+    #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
+    #[arg(value_parser = Range::parse)]
+    pub kappa: Option<Range>,
+
+    /// Rows: interval of the reduced impact ratio ψ = (g_t/g_n)·α/μ, 0 or above
+    #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
+    #[arg(value_parser = Range::parse)]
+    pub psi: Option<Range>,
+
+    /// Rows, instead of --psi: interval of the impact ratio g_t/g_n, 0 or above
+    #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
+    #[arg(value_parser = Range::parse)]
+    pub ratio: Option<Range>,
+
+    /// Number of columns and rows, at most 10000000000 points
+    #[arg(long, value_name = "WxH", help_heading = "Window", allow_hyphen_values = true)]
+    #[arg(value_parser = Size::parse)]
+    pub size: Size,
+
+    /// Coefficient of friction μ, with --ratio; above 0 [default: 0.4]
+    #[arg(long, value_name = "M", help_heading = "Collisions", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Mu.parse(text))]
+    pub mu: Option<f64>,
+
+    /// Tangential inertia α, with --ratio; above 0, at most 1 [default: 2/7, homogeneous spheres]
+    #[arg(long, value_name = "A", help_heading = "Collisions", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Alpha.parse(text))]
+    pub alpha: Option<f64>,
+
+    /// Scaled damping a = A β^⅖ g_n^⅕ of the normal force; 0 or above [default: 0]
+    #[arg(long, value_name = "D", help_heading = "Collisions", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Damping.parse(text))]
+    pub damping: Option<f64>,
+
+    /// What computes the collisions.
+    #[command(flatten)]
+    pub method: MethodArguments,
+
+    /// File for the map: NumPy arrays in FILE.npz, or a table in FILE.csv
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub out: PathBuf,
+
+    /// Picture of both: ε_t in colours, and the regions of equal numbers of switches
+    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
+    #[arg(value_parser = PathBufValueParser::new().try_map(Target::new))]
+    pub plot: Option<Target>,
+
+    /// Threads; 1 to 1024 [default: one for each core]; results do not depend on it
+    #[arg(long, value_name = "N", help_heading = "Output", allow_hyphen_values = true)]
+    #[arg(value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
+/// Text of `map --help`.
+pub const ABOUT: &str = "\
+Compute the tangential restitution ε_t and the number of switches on a plane, with all cores.
+
+The window LO:HI of each axis is cut into equal cells, W along κ and H along ψ, and the collision at \
+the centre of each cell is computed: κ_i = LO + (HI − LO)·((i + ½)/W) for i = 0 … W − 1, and the \
+same for ψ with H. A window may therefore begin at 0, where there is no collision.";
+
+/// What follows it.
+pub const EXAMPLES: &str = "\
+Output:
+  FILE.npz has the arrays kappa (W), psi (H), with --ratio also ratio (H), and eps_t and
+  switch_count (H x W: one row for each psi). FILE.csv has the same names as columns and one row
+  a point. A point that cannot be computed is NaN and -1, and the exit code is 1.
+
+  Finished parts are kept in FILE.npz.tiles until the map is complete: after an interruption the
+  same command goes on where it stopped, and the result is the same, bit for bit.
+
+Examples:
+  stickslip map --kappa 0:70 --psi 0:2.9 --size 1000x1000 --out map.npz --plot map.svg
+  stickslip map --kappa 0:20 --ratio 0:3.5 --mu 0.4 --alpha 2/7 --size 600x400 --out map.csv
+  stickslip map --kappa 17:19 --psi 0:2 --method exact --size 2000x2000 --out map.npz
+  stickslip map --kappa 0:70 --psi 0:2.9 --damping 0.05 --size 500x500 --out damped.npz
+
+Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

@@ -1,0 +1,101 @@
+//! The results of one tile of a map, and the bytes in which they are kept.
+
+use twox_hash::XxHash3_128;
+
+/// Tangential restitution and number of switches at successive points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tile {
+    /// ε_t; NaN where it could not be computed.
+    pub eps_t: Vec<f64>,
+    /// Number of switches; −1 where it could not be computed.
+    pub switch_count: Vec<i32>,
+}
+
+/// What stands for ε_t where it could not be computed: always the same bits.
+pub const NO_EPS_T: f64 = f64::NAN;
+/// What stands for the number of switches where it could not be computed.
+pub const NO_COUNT: i32 = -1;
+
+impl Tile {
+    /// The tile as bytes: `label`, all ε_t, all counts, and a checksum over everything before it.
+    ///
+    /// Numbers are little-endian. The label says of which map and at which place the tile is.
+    pub fn to_bytes(&self, label: &str) -> Vec<u8> {
+        let mut bytes = Vec::with_capacity(length(label, self.eps_t.len()));
+        bytes.extend_from_slice(label.as_bytes());
+        bytes.extend(self.eps_t.iter().flat_map(|value| value.to_le_bytes()));
+        bytes.extend(self.switch_count.iter().flat_map(|count| count.to_le_bytes()));
+        bytes.extend(XxHash3_128::oneshot(&bytes).to_le_bytes());
+        bytes
+    }
+
+    /// Reads a tile of `points` points; `None` if `bytes` are anything but what [`Self::to_bytes`]
+    /// wrote with the same label.
+    pub fn from_bytes(bytes: &[u8], label: &str, points: usize) -> Option<Self> {
+        if bytes.len() != length(label, points) {
+            return None;
+        }
+        let (content, checksum) = bytes.split_last_chunk()?;
+        if XxHash3_128::oneshot(content) != u128::from_le_bytes(*checksum) {
+            return None;
+        }
+        let results = content.strip_prefix(label.as_bytes())?;
+        let (eps_t, switch_count) = results.split_at_checked(8 * points)?;
+        let eps_t = eps_t.as_chunks().0.iter().map(|bytes| f64::from_le_bytes(*bytes));
+        let switch_count = switch_count.as_chunks().0.iter();
+        Some(Self {
+            eps_t: eps_t.collect(),
+            switch_count: switch_count.map(|bytes| i32::from_le_bytes(*bytes)).collect(),
+        })
+    }
+}
+
+/// Number of bytes of a tile.
+fn length(label: &str, points: usize) -> usize {
+    label.len() + points * (8 + 4) + 16
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LABEL: &str = "a map\ntile 3\n";
+
+    fn tile() -> Tile {
+        Tile { eps_t: vec![0.5, NO_EPS_T, -1.0 / 3.0], switch_count: vec![4, NO_COUNT, i32::MAX] }
+    }
+
+    #[test]
+    fn reads_back_bit_for_bit() {
+        let bytes = tile().to_bytes(LABEL);
+        let read = Tile::from_bytes(&bytes, LABEL, 3).unwrap();
+        assert_eq!(read.switch_count, tile().switch_count);
+        let bits = |tile: &Tile| tile.eps_t.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(&read), bits(&tile()));
+    }
+
+    #[test]
+    fn every_change_of_a_bit_and_every_cut_is_noticed() {
+        let bytes = tile().to_bytes(LABEL);
+        for bit in 0..8 * bytes.len() {
+            let mut changed = bytes.clone();
+            changed[bit / 8] ^= 1 << (bit % 8);
+            assert_eq!(Tile::from_bytes(&changed, LABEL, 3), None, "bit {bit}");
+        }
+        for length in 0..bytes.len() {
+            assert_eq!(Tile::from_bytes(&bytes[..length], LABEL, 3), None, "{length} bytes");
+        }
+        let longer = [&bytes[..], b"\0"].concat();
+        assert_eq!(Tile::from_bytes(&longer, LABEL, 3), None);
+    }
+
+    #[test]
+    fn a_tile_of_another_map_place_or_size_is_refused() {
+        let bytes = tile().to_bytes(LABEL);
+        assert_eq!(Tile::from_bytes(&bytes, "a map\ntile 4\n", 3), None);
+        assert_eq!(Tile::from_bytes(&bytes, "a map\ntile 10\n", 3), None);
+        for points in [0, 2, 4, usize::MAX / 16] {
+            assert_eq!(Tile::from_bytes(&bytes, LABEL, points), None, "{points}");
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! Maps as they are when nothing goes wrong.
+
+use std::fs;
+
+use stickslip_model::{Collider, Contact, exact};
+
+use crate::{Workspace, npz, rows};
+
+/// LO + (HI − LO)·((index + ½)/cells)
+fn centre(low: f64, high: f64, index: u32, cells: u32) -> f64 {
+    low + (high - low) * ((f64::from(index) + 0.5) / f64::from(cells))
+}
+
+#[test]
+fn every_cell_is_the_collision_at_its_centre() {
+    let workspace = Workspace::new();
+    let ran = workspace.run("map --kappa 0:70 --psi 0.1:2.9 --size 7x5 --damping 0.01 --out m.npz");
+    assert_eq!((ran.code, ran.stdout.as_str(), ran.stderr.as_str()), (0, "", ""));
+    assert_eq!(workspace.names(), ["m.npz"]);
+    let map = npz(&workspace.path("m.npz"));
+    let shapes: Vec<_> =
+        map.iter().map(|(name, array)| (name.as_str(), array.shape.as_str())).collect();
+    let expected = [("kappa", "7,"), ("psi", "5,"), ("eps_t", "5, 7"), ("switch_count", "5, 7")];
+    assert_eq!(shapes, expected);
+    let [kappa, psi, eps_t] = [0, 1, 2].map(|array| map[array].1.doubles());
+    let switch_count = map[3].1.integers();
+    for (row, psi) in (0..).zip(psi) {
+        assert_eq!(psi, centre(0.1, 2.9, row, 5));
+        for (column, kappa) in (0..).zip(&kappa) {
+            assert_eq!(*kappa, centre(0.0, 70.0, column, 7));
+            let contact = Contact::new(*kappa, psi, 0.01).unwrap();
+            let collision = Collider::default().collide(contact).unwrap();
+            let point = (7 * row + column) as usize;
+            assert_eq!(eps_t[point], collision.eps_t(), "{contact:?}");
+            assert_eq!(usize::try_from(switch_count[point]), Ok(collision.switches.len()));
+        }
+    }
+}
+
+#[test]
+fn a_table_says_the_same_as_arrays() {
+    let workspace = Workspace::new();
+    for window in ["--psi 0:2", "--ratio 0:3.5 --mu 0.3 --alpha 1/3"] {
+        let line = format!("map --kappa 1:70 {window} --size 30x20 --method exact --out");
+        for name in ["m.npz", "m.csv"] {
+            let ran = workspace.run(&format!("{line} {name}"));
+            assert_eq!((ran.code, ran.stderr.as_str()), (0, ""), "{line} {name}");
+        }
+        let map = npz(&workspace.path("m.npz"));
+        let table = rows(&workspace.read("m.csv"));
+        assert_eq!(table[0], map.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>());
+        assert_eq!(table.len(), 601);
+        for (point, fields) in table[1..].iter().enumerate() {
+            for ((name, array), field) in map.iter().zip(fields) {
+                let index = match array.shape.as_str() {
+                    "30," => point % 30,
+                    "20," => point / 30,
+                    _ => point,
+                };
+                if name == "switch_count" {
+                    assert_eq!(field, &array.integers()[index].to_string());
+                } else {
+                    assert_eq!(field, &format!("{:?}", array.doubles()[index]), "{name}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_ratio_is_made_into_psi_as_for_one_collision() {
+    let workspace = Workspace::new();
+    let line = "map --kappa 17:19 --ratio 1:2 --size 1x1 --method exact --out m.csv";
+    assert_eq!(workspace.run(line).code, 0);
+    let line = "collide --kappa 18 --ratio 1.5 --method exact --format json";
+    let point: serde_json::Value = serde_json::from_str(&workspace.run(line).stdout).unwrap();
+    let expected = format!(
+        "kappa,psi,ratio,eps_t,switch_count\n18.0,{:?},1.5,{:?},{}\n",
+        point["parameters"]["psi"].as_f64().unwrap(),
+        point["eps_t"].as_f64().unwrap(),
+        point["switch_count"]
+    );
+    assert_eq!(workspace.read("m.csv"), expected);
+}
+
+#[test]
+fn both_engines_agree() {
+    let workspace = Workspace::new();
+    let line = "map --kappa 0:70 --psi 0:2.9 --size 60x40";
+    assert_eq!(workspace.run(&format!("{line} --out integrated.npz")).code, 0);
+    assert_eq!(workspace.run(&format!("{line} --method exact --out exact.npz")).code, 0);
+    let [one, two] = ["integrated.npz", "exact.npz"].map(|name| npz(&workspace.path(name)));
+    assert_eq!(one[3].1.integers(), two[3].1.integers());
+    let psi = one[1].1.doubles();
+    for (point, (one, two)) in one[2].1.doubles().iter().zip(two[2].1.doubles()).enumerate() {
+        // Measured: 2.2e-13 at 1000 × 1000 points.
+        assert!(psi[point / 60] * (one - two).abs() < 4e-13, "{point}: {one} {two}");
+    }
+}
+
+#[test]
+fn results_do_not_depend_on_the_number_of_threads() {
+    // Several tiles, the last of them not full.
+    for (options, extension) in [
+        ("--size 70x61 --kappa 900:2000 --psi 0:3", "npz"),
+        ("--size 301x203 --kappa 0:70 --ratio 0:4 --method exact", "csv"),
+        ("--size 50x40 --kappa 0:70 --psi 0:3 --damping 0.1 --method dopri5", "npz"),
+    ] {
+        let workspace = Workspace::new();
+        let mut first = None;
+        for threads in ["--threads 1", "--threads 2", "--threads 4", ""] {
+            let ran = workspace.run(&format!("map {options} {threads} --out m.{extension}"));
+            assert_eq!(ran.code, 0, "{options}: {}", ran.stderr);
+            let bytes = fs::read(workspace.path(&format!("m.{extension}"))).unwrap();
+            assert!(first.get_or_insert_with(|| bytes.clone()) == &bytes, "{options} {threads}");
+        }
+    }
+}
+
+#[test]
+fn a_map_without_width_or_height_is_a_line() {
+    let workspace = Workspace::new();
+    let line = "map --kappa 18:18.000001 --psi 0:2 --size 1x5 --method exact --out m.npz";
+    assert_eq!(workspace.run(line).code, 0);
+    let map = npz(&workspace.path("m.npz"));
+    assert_eq!(map[2].1.shape, "5, 1");
+    let expected = map[1].1.doubles().into_iter().map(|psi| {
+        let contact = Contact::new(map[0].1.doubles()[0], psi, 0.0).unwrap();
+        exact::collide(contact).unwrap().eps_t()
+    });
+    assert_eq!(map[2].1.doubles(), expected.collect::<Vec<_>>());
+}

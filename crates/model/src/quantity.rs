@@ -1,0 +1,81 @@
+//! The quantities that describe bodies and surfaces, with the ranges in which they are accepted.
+
+use crate::contact::InvalidParameter;
+
+/// A quantity in SI units: its name, which holds the unit, and its range.
+///
+/// ```
+/// use stickslip_model::quantity;
+///
+/// assert_eq!(quantity::RADIUS.check(0.02)?, 0.02);
+/// let error = quantity::RADIUS.check(-0.02).unwrap_err().to_string();
+/// assert_eq!(error, "radius_m = -0.02 is out of range; accepted is a finite number above 0, in m");
+/// # Ok::<(), stickslip_model::InvalidParameter>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Quantity {
+    /// The name, as fields of structs and files have it.
+    pub name: &'static str,
+    /// The range and the unit, for people.
+    pub accepted: &'static str,
+    range: Range,
+}
+
+/// Radius of a sphere.
+pub const RADIUS: Quantity = positive("radius_m", "a finite number above 0, in m");
+/// Mass of a sphere.
+pub const MASS: Quantity = positive("mass_kg", "a finite number above 0, in kg");
+/// Moment of inertia of a sphere about its centre.
+pub const MOMENT_OF_INERTIA: Quantity =
+    positive("moment_of_inertia_kg_m2", "a finite number above 0, in kg m²");
+/// Young's modulus Y.
+pub const YOUNG_MODULUS: Quantity = positive("young_modulus_pa", "a finite number above 0, in Pa");
+/// Poisson's ratio ν.
+pub const POISSON_RATIO: Quantity = Quantity {
+    name: "poisson_ratio",
+    accepted: "a number above -1, at most 0.5, without unit",
+    range: Range::Poisson,
+};
+/// Density.
+pub const DENSITY: Quantity = positive("density_kg_per_m3", "a finite number above 0, in kg/m³");
+/// Coulomb's coefficient of friction μ.
+pub const FRICTION: Quantity = positive("friction", "a finite number above 0, without unit");
+/// Stiffness k_t of the tangential spring.
+pub const TANGENTIAL_STIFFNESS: Quantity =
+    positive("tangential_stiffness_kg_per_s2", "a finite number above 0, in kg/s²");
+/// Damping time A of the normal force.
+pub const DAMPING_TIME: Quantity = Quantity {
+    name: "damping_time_s",
+    accepted: "a finite number, 0 or above, in s",
+    range: Range::NotNegative,
+};
+
+#[derive(Clone, Copy, Debug)]
+enum Range {
+    Positive,
+    NotNegative,
+    Poisson,
+}
+
+impl Quantity {
+    /// `value`, if it is in the range.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`] with the quantity's name, the value and the range.
+    pub fn check(&self, value: f64) -> Result<f64, InvalidParameter> {
+        let ok = match self.range {
+            Range::Positive => value > 0.0,
+            Range::NotNegative => value >= 0.0,
+            Range::Poisson => value > -1.0 && value <= 0.5,
+        };
+        if ok && value.is_finite() {
+            Ok(value)
+        } else {
+            Err(InvalidParameter { name: self.name, value, accepted: self.accepted })
+        }
+    }
+}
+
+const fn positive(name: &'static str, accepted: &'static str) -> Quantity {
+    Quantity { name, accepted, range: Range::Positive }
+}
