@@ -1,5 +1,6 @@
 //! What may be typed: options with their syntax and ranges, and the help text.
 
+mod impact;
 mod map;
 mod method;
 
@@ -11,8 +12,9 @@ use clap::{Parser, Subcommand, ValueEnum};
 use crate::figure::Target;
 use crate::parameter::Parameter;
 
+pub use impact::ImpactArguments;
 pub use map::MapArguments;
-pub use method::MethodArguments;
+pub use method::{Method, MethodArguments};
 
 /// Collisions of frictional viscoelastic spheres, with every switch between sticking and sliding.
 #[derive(Debug, Parser)]
@@ -29,6 +31,9 @@ pub enum Command {
     /// Compute one collision, or a file of them
     #[command(long_about = COLLIDE, after_long_help = COLLIDE_EXAMPLES)]
     Collide(CollideArguments),
+    /// Compute the impact of two spheres, or a sphere and a wall, in SI units
+    #[command(long_about = impact::ABOUT, after_long_help = impact::EXAMPLES)]
+    Impact(ImpactArguments),
     /// Compute the restitution and the number of switches on a plane
     #[command(long_about = map::ABOUT, after_long_help = map::EXAMPLES)]
     Map(MapArguments),
@@ -105,7 +110,7 @@ pub struct CollideArguments {
 pub enum Format {
     /// A readable table
     Table,
-    /// One JSON object, schema "stickslip.collision/1"
+    /// One JSON object
     Json,
 }
 

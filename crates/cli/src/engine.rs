@@ -173,7 +173,13 @@ pub fn require_finite_energy(ledger: &EnergyLedger) -> Result<(), EngineError> {
     ])
 }
 
-fn all_finite(values: impl IntoIterator<Item = (&'static str, f64)>) -> Result<(), EngineError> {
+/// Refuses results, given with their names, of which one is no finite number.
+///
+/// # Errors
+/// [`EngineError::NotFinite`] names the first.
+pub fn all_finite(
+    values: impl IntoIterator<Item = (&'static str, f64)>,
+) -> Result<(), EngineError> {
     match values.into_iter().find(|(_, value)| !value.is_finite()) {
         Some((name, _)) => Err(EngineError::NotFinite { name }),
         None => Ok(()),

@@ -46,8 +46,9 @@ struct Parameters {
     damping: f64,
 }
 
+/// What computed a collision.
 #[derive(Serialize)]
-struct Method {
+pub struct Method {
     name: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
     rtol: Option<f64>,
@@ -80,7 +81,7 @@ struct Energy {
 /// The integrator's work; an empty object for the exact solution.
 #[derive(Serialize)]
 #[serde(untagged)]
-enum Work {
+pub enum Work {
     Integrated {
         accepted: usize,
         rejected: usize,
@@ -98,7 +99,6 @@ enum Work {
 impl Object {
     fn new(engine: &Engine, collision: &Collision, statistics: Option<&Statistics>) -> Self {
         let contact = &collision.contact;
-        let tolerances = engine.tolerances();
         Self {
             schema: "stickslip.collision/1",
             parameters: Parameters {
@@ -106,11 +106,7 @@ impl Object {
                 psi: contact.psi(),
                 damping: contact.damping(),
             },
-            method: Method {
-                name: engine.name(),
-                rtol: tolerances.map(|tolerances| tolerances.rtol),
-                atol: tolerances.map(|tolerances| tolerances.atol),
-            },
+            method: Method::from(engine),
             eps_n: collision.eps_n,
             eps_t: collision.eps_t(),
             w_final: collision.final_velocity,
@@ -120,8 +116,27 @@ impl Object {
             itinerary: collision.itinerary(),
             switches: collision.switches.iter().map(Switch::from).collect(),
             energy: Energy::from(&collision.energy),
-            statistics: statistics.map_or(Work::Exact {}, Work::from),
+            statistics: Work::new(statistics),
         }
+    }
+}
+
+impl From<&Engine> for Method {
+    fn from(engine: &Engine) -> Self {
+        let tolerances = engine.tolerances();
+        Self {
+            name: engine.name(),
+            rtol: tolerances.map(|tolerances| tolerances.rtol),
+            atol: tolerances.map(|tolerances| tolerances.atol),
+        }
+    }
+}
+
+/// 1 or −1.
+pub fn side(side: Side) -> i8 {
+    match side {
+        Side::Positive => 1,
+        Side::Negative => -1,
     }
 }
 
@@ -131,10 +146,7 @@ impl From<&stickslip_model::Switch> for Switch {
             time: switch.time,
             time_left: switch.time_left,
             to: switch.to.to_string(),
-            side: match switch.side {
-                Side::Positive => 1,
-                Side::Negative => -1,
-            },
+            side: side(switch.side),
             spring: switch.spring,
             velocity: switch.velocity,
         }
@@ -156,8 +168,10 @@ impl From<&EnergyLedger> for Energy {
     }
 }
 
-impl From<&Statistics> for Work {
-    fn from(statistics: &Statistics) -> Self {
+impl Work {
+    /// The work behind a collision; the exact solution has no `statistics`.
+    pub fn new(statistics: Option<&Statistics>) -> Self {
+        let Some(statistics) = statistics else { return Self::Exact {} };
         Self::Integrated {
             accepted: statistics.accepted,
             rejected: statistics.rejected,

@@ -2,8 +2,8 @@
 //! an exit code.
 //!
 //! Start reading here; then, in this order: `args` (what may be typed), `plan` (what it means),
-//! `collide`, `batch` and `map` (doing it), `input` (files read), `table`, `json`, `rows`, `figure` and
-//! `output` (results written).
+//! `collide`, `batch`, `impact` and `map` (doing it), `input` and `bodies` (files read), `table`,
+//! `json`, `rows`, `figure` and `output` (results written).
 
 mod args;
 mod batch;
@@ -12,6 +12,7 @@ mod collide;
 mod engine;
 mod error;
 mod figure;
+mod impact;
 mod input;
 mod json;
 mod map;
@@ -56,6 +57,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             CollidePlan::Point(point) => collide::run(&point),
             CollidePlan::Batch(batch) => batch::run(&batch),
         },
+        Command::Impact(arguments) => impact::run(arguments),
         Command::Map(arguments) => map::run(&MapPlan::new(arguments)?),
     }
 }

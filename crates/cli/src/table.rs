@@ -57,7 +57,8 @@ pub fn write(
     Ok(())
 }
 
-fn describe(engine: &Engine) -> String {
+/// The method with its tolerances.
+pub fn describe(engine: &Engine) -> String {
     match engine.tolerances() {
         Some(tolerances) => {
             format!("{} (rtol {:?}, atol {:?})", engine.name(), tolerances.rtol, tolerances.atol)
@@ -98,7 +99,11 @@ fn entry(name: &str, tangential: f64, normal: f64) -> [String; 3] {
     [name.to_owned(), number(tangential), number(normal)]
 }
 
-fn work(out: &mut impl Write, statistics: &Statistics) -> io::Result<()> {
+/// What the integrator did, after a blank line.
+///
+/// # Errors
+/// `out` cannot be written.
+pub fn work(out: &mut impl Write, statistics: &Statistics) -> io::Result<()> {
     writeln!(out)?;
     pairs(
         out,
@@ -116,13 +121,19 @@ fn work(out: &mut impl Write, statistics: &Statistics) -> io::Result<()> {
 }
 
 /// Names to the left, values after them.
-fn pairs(out: &mut impl Write, lines: &[(&str, String)]) -> io::Result<()> {
+///
+/// # Errors
+/// `out` cannot be written.
+pub fn pairs(out: &mut impl Write, lines: &[(&str, String)]) -> io::Result<()> {
     let width = lines.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
     lines.iter().try_for_each(|(name, value)| writeln!(out, "{name:<width$}  {value}"))
 }
 
 /// Columns: the first to the left, the others to the right.
-fn aligned<const N: usize>(out: &mut impl Write, rows: &[[String; N]]) -> io::Result<()> {
+///
+/// # Errors
+/// `out` cannot be written.
+pub fn aligned<const N: usize>(out: &mut impl Write, rows: &[[String; N]]) -> io::Result<()> {
     let width =
         |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let widths: [usize; N] = std::array::from_fn(width);
@@ -137,7 +148,7 @@ fn aligned<const N: usize>(out: &mut impl Write, rows: &[[String; N]]) -> io::Re
 }
 
 /// `value` with [`DIGITS`] significant digits, with an exponent if it is very small or large.
-fn number(value: f64) -> String {
+pub fn number(value: f64) -> String {
     let rounded = format!("{value:.*e}", DIGITS - 1);
     // The exponent of the rounded number: 9.9999999999 has one digit more than it seems.
     let exponent: i32 =

@@ -155,6 +155,11 @@ impl Encounter {
         self.impact.contact
     }
 
+    /// The spheres: two, or one before a wall.
+    pub fn spheres(&self) -> impl Iterator<Item = &Sphere> {
+        self.parties.iter().filter_map(|party| party.sphere.as_ref())
+    }
+
     fn new(
         pair: Pair,
         parties: [Party; 2],

@@ -31,7 +31,7 @@ pub fn series(damping: f64) -> f64 {
     late_end + 4.0 / 15.0 * a * a * a.sqrt() * power
 }
 
-/// ε_n by the Padé approximant [1/4] in √a of Müller and Pöschel (2011), within 0.0085 for every a.
+/// ε_n by the Padé approximant [1/4] in √a of Müller and Pöschel (2011), within 0.009 for every a.
 ///
 /// Its coefficients follow from the series up to a^{5/2}: with d = √a,
 /// (1 + b₁d)/(1 + b₁d + C₁d² + b₁C₁d³ + (2/5)C₁²d⁴), b₁ = 2/(3C₁²).

@@ -27,6 +27,21 @@ pub struct MapArguments {
     #[arg(value_parser = Range::parse)]
     pub ratio: Option<Range>,
 
+    /// JSON file of two bodies, as for impact; --normal and --tangential are the axes then
+    #[arg(long, value_name = "FILE.json", help_heading = "Window in SI units")]
+    #[arg(conflicts_with_all = ["kappa", "psi", "ratio", "mu", "alpha", "damping"])]
+    pub bodies: Option<PathBuf>,
+
+    /// Columns: interval of the normal velocity g_n of the surfaces in m/s, 0 or above
+    #[arg(long, value_name = "LO:HI", help_heading = "Window in SI units")]
+    #[arg(value_parser = Range::parse, requires = "bodies", allow_hyphen_values = true)]
+    pub normal: Option<Range>,
+
+    /// Rows: interval of the tangential velocity g_t of the surfaces in m/s, 0 or above
+    #[arg(long, value_name = "LO:HI", help_heading = "Window in SI units")]
+    #[arg(value_parser = Range::parse, requires = "bodies", allow_hyphen_values = true)]
+    pub tangential: Option<Range>,
+
     /// Number of columns and rows, at most 10000000000 points
     #[arg(long, value_name = "WxH", help_heading = "Window", allow_hyphen_values = true)]
     #[arg(value_parser = Size::parse)]
@@ -72,14 +87,18 @@ Compute the tangential restitution ε_t and the number of switches on a plane, w
 
 The window LO:HI of each axis is cut into equal cells, W along κ and H along ψ, and the collision at \
 the centre of each cell is computed: κ_i = LO + (HI − LO)·((i + ½)/W) for i = 0 … W − 1, and the \
-same for ψ with H. A window may therefore begin at 0, where there is no collision.";
+same for ψ with H. A window may therefore begin at 0, where there is no collision.
+
+The axes are --kappa and --psi or --ratio, or, for two bodies in SI units, --normal and --tangential: the velocities of the surfaces at the contact.";
 
 /// What follows it.
 pub const EXAMPLES: &str = "\
 Output:
   FILE.npz has the arrays kappa (W), psi (H), with --ratio also ratio (H), and eps_t and
-  switch_count (H x W: one row for each psi). FILE.csv has the same names as columns and one row
-  a point. A point that cannot be computed is NaN and -1, and the exit code is 1.
+  switch_count (H x W: one row for each psi). With --bodies they are normal_m_per_s (W),
+  tangential_m_per_s (H), kappa (W), psi (H x W), damping (W), eps_t and switch_count. FILE.csv has
+  the same names as columns and one row a point. A point that cannot be computed is NaN and -1, and
+  the exit code is 1.
 
   Finished parts are kept in FILE.npz.tiles until the map is complete: after an interruption the
   same command goes on where it stopped, and the result is the same, bit for bit.
@@ -89,5 +108,6 @@ Examples:
   stickslip map --kappa 0:20 --ratio 0:3.5 --mu 0.4 --alpha 2/7 --size 600x400 --out map.csv
   stickslip map --kappa 17:19 --psi 0:2 --method exact --size 2000x2000 --out map.npz
   stickslip map --kappa 0:70 --psi 0:2.9 --damping 0.05 --size 500x500 --out damped.npz
+  stickslip map --bodies pair.json --normal 0:200 --tangential 0:200 --size 500x500 --out si.npz
 
 Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

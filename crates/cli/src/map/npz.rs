@@ -17,24 +17,25 @@ use crate::map::tiles::Tiles;
 pub fn write(out: impl Write, plane: &Plane, tiles: &Tiles) -> io::Result<()> {
     let mut archive = ZipArchiveWriter::new(out);
     let (columns, rows) = (plane.columns.cells, plane.rows.cells);
+    let points = format!("{rows}, {columns}");
     for quantity in plane.quantities() {
-        let along_columns = quantity.extent() == Extent::Columns;
-        let cells = if along_columns { columns } else { rows };
-        let value = |cell| {
-            let (column, row) = if along_columns { (cell, 0) } else { (0, cell) };
-            plane.value(*quantity, column, row)
+        let (rows, columns, shape) = match plane.extent(*quantity) {
+            Extent::Columns => (1, columns, &format!("{columns},")),
+            Extent::Rows => (rows, 1, &format!("{rows},")),
+            Extent::Points => (rows, columns, &points),
         };
-        array(&mut archive, quantity.name(), "<f8", &format!("{cells},"), |out| {
-            (0..cells).try_for_each(|cell| out.write_all(&value(cell).to_le_bytes()))
+        let values = (0..rows)
+            .flat_map(|row| (0..columns).map(move |column| plane.value(*quantity, column, row)));
+        array(&mut archive, quantity.name(), "<f8", shape, |out| {
+            values.map(f64::to_le_bytes).try_for_each(|bytes| out.write_all(&bytes))
         })?;
     }
-    let shape = format!("{rows}, {columns}");
-    array(&mut archive, "eps_t", "<f8", &shape, |out| {
+    array(&mut archive, "eps_t", "<f8", &points, |out| {
         tiles.each(|_, tile| {
             tile.eps_t.iter().try_for_each(|value| out.write_all(&value.to_le_bytes()))
         })
     })?;
-    array(&mut archive, "switch_count", "<i4", &shape, |out| {
+    array(&mut archive, "switch_count", "<i4", &points, |out| {
         tiles.each(|_, tile| {
             tile.switch_count.iter().try_for_each(|count| out.write_all(&count.to_le_bytes()))
         })

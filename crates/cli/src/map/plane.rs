@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use stickslip_model::{Contact, InvalidParameter};
+use stickslip_model::{Contact, InvalidParameter, Pair};
 
 use crate::range::Range;
 
@@ -53,6 +53,11 @@ pub enum Coordinates {
         /// Scaled damping of all collisions.
         damping: f64,
     },
+    /// Normal and tangential velocity of the surfaces at the contact.
+    Velocities {
+        /// The bodies.
+        pair: Pair,
+    },
 }
 
 /// A coordinate or parameter that is stored with the results.
@@ -64,6 +69,12 @@ pub enum Quantity {
     Psi,
     /// Impact ratio g_t/g_n.
     Ratio,
+    /// Normal velocity g_n.
+    Normal,
+    /// Tangential velocity g_t.
+    Tangential,
+    /// Scaled damping a.
+    Damping,
 }
 
 /// On what a quantity depends.
@@ -73,6 +84,8 @@ pub enum Extent {
     Columns,
     /// On the row alone.
     Rows,
+    /// On both.
+    Points,
 }
 
 impl Plane {
@@ -96,29 +109,47 @@ impl Plane {
     /// # Errors
     /// [`InvalidParameter`]: the centre has left the range of numbers.
     pub fn contact(&self, column: usize, row: usize) -> Result<Contact, InvalidParameter> {
-        let damping = match self.coordinates {
-            Coordinates::Psi { damping } | Coordinates::Ratio { damping, .. } => damping,
-        };
-        let [kappa, psi] = [Quantity::Kappa, Quantity::Psi].map(|q| self.value(q, column, row));
+        let [kappa, psi, damping] = self.parameters(column, row)?;
         Contact::new(kappa, psi, damping)
+    }
+
+    /// What the axes mean: along a row, along a column.
+    pub fn axes(&self) -> [Quantity; 2] {
+        match self.coordinates {
+            Coordinates::Psi { .. } => [Quantity::Kappa, Quantity::Psi],
+            Coordinates::Ratio { .. } => [Quantity::Kappa, Quantity::Ratio],
+            Coordinates::Velocities { .. } => [Quantity::Normal, Quantity::Tangential],
+        }
     }
 
     /// What is stored with the results, in this order.
     pub fn quantities(&self) -> &'static [Quantity] {
+        use Quantity::{Damping, Kappa, Normal, Psi, Ratio, Tangential};
         match self.coordinates {
-            Coordinates::Psi { .. } => &[Quantity::Kappa, Quantity::Psi],
-            Coordinates::Ratio { .. } => &[Quantity::Kappa, Quantity::Psi, Quantity::Ratio],
+            Coordinates::Psi { .. } => &[Kappa, Psi],
+            Coordinates::Ratio { .. } => &[Kappa, Psi, Ratio],
+            Coordinates::Velocities { .. } => &[Normal, Tangential, Kappa, Psi, Damping],
         }
     }
 
-    /// The value of `quantity` at the centre of a cell.
+    /// The value of `quantity` at the centre of a cell; NaN where there is no collision.
     pub fn value(&self, quantity: Quantity, column: usize, row: usize) -> f64 {
+        let parameter = |index: usize| self.parameters(column, row).map_or(f64::NAN, |p| p[index]);
+        match quantity {
+            Quantity::Kappa => parameter(0),
+            Quantity::Psi => parameter(1),
+            Quantity::Damping => parameter(2),
+            Quantity::Normal => self.columns.centre(column),
+            Quantity::Ratio | Quantity::Tangential => self.rows.centre(row),
+        }
+    }
+
+    /// On what `quantity` depends.
+    pub fn extent(&self, quantity: Quantity) -> Extent {
         match (quantity, self.coordinates) {
-            (Quantity::Kappa, _) => self.columns.centre(column),
-            (Quantity::Psi, Coordinates::Ratio { mu, alpha, .. }) => {
-                self.rows.centre(row) * alpha / mu
-            }
-            (Quantity::Psi | Quantity::Ratio, _) => self.rows.centre(row),
+            (Quantity::Psi, Coordinates::Velocities { .. }) => Extent::Points,
+            (Quantity::Kappa | Quantity::Damping | Quantity::Normal, _) => Extent::Columns,
+            (Quantity::Psi | Quantity::Ratio | Quantity::Tangential, _) => Extent::Rows,
         }
     }
 
@@ -130,18 +161,28 @@ impl Plane {
             .map(|(column, row)| self.value(Quantity::Kappa, column, row))
             .fold(0.0, f64::max)
     }
+
+    /// κ, ψ and the damping at the centre of a cell.
+    fn parameters(&self, column: usize, row: usize) -> Result<[f64; 3], InvalidParameter> {
+        let (x, y) = (self.columns.centre(column), self.rows.centre(row));
+        match self.coordinates {
+            Coordinates::Psi { damping } => Ok([x, y, damping]),
+            Coordinates::Ratio { mu, alpha, damping } => Ok([x, y * alpha / mu, damping]),
+            Coordinates::Velocities { pair } => {
+                let contact = pair.impact(x, y)?.contact;
+                Ok([contact.kappa(), contact.psi(), contact.damping()])
+            }
+        }
+    }
 }
 
 /// One fact a line, with all digits: planes that differ read differently.
 impl fmt::Display for Plane {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let rows = match self.coordinates {
-            Coordinates::Psi { .. } => Quantity::Psi,
-            Coordinates::Ratio { .. } => Quantity::Ratio,
-        };
-        let axes = [("columns", Quantity::Kappa, self.columns), ("rows", rows, self.rows)];
-        for (name, quantity, Axis { range: Range { low, high }, cells }) in axes {
-            let quantity = quantity.name();
+        let [x, y] = self.axes().map(Quantity::name);
+        for (name, quantity, Axis { range: Range { low, high }, cells }) in
+            [("columns", x, self.columns), ("rows", y, self.rows)]
+        {
             writeln!(f, "{name}: {cells}, {quantity} from {low:?} to {high:?}")?;
         }
         match self.coordinates {
@@ -149,6 +190,7 @@ impl fmt::Display for Plane {
             Coordinates::Ratio { mu, alpha, damping } => {
                 writeln!(f, "damping: {damping:?}\nmu: {mu:?}\nalpha: {alpha:?}")
             }
+            Coordinates::Velocities { pair } => writeln!(f, "bodies: {pair:?}"),
         }
     }
 }
@@ -160,14 +202,9 @@ impl Quantity {
             Self::Kappa => "kappa",
             Self::Psi => "psi",
             Self::Ratio => "ratio",
-        }
-    }
-
-    /// On what the quantity depends.
-    pub fn extent(self) -> Extent {
-        match self {
-            Self::Kappa => Extent::Columns,
-            Self::Psi | Self::Ratio => Extent::Rows,
+            Self::Normal => "normal_m_per_s",
+            Self::Tangential => "tangential_m_per_s",
+            Self::Damping => "damping",
         }
     }
 }

@@ -93,6 +93,9 @@ impl Tiles {
             Ok(kept) => require_same(&directory, &kept, &task.description)?,
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 write_whole(&directory, Self::TASK, task.description.as_bytes())?;
+                // A power cut must not spoil it: unlike a tile, it could not be made again.
+                let task = File::open(directory.join(Self::TASK));
+                task.and_then(|task| task.sync_all()).map_err(unusable)?;
             }
             Err(error) => return Err(unusable(error)),
         }
@@ -199,7 +202,7 @@ fn name(index: usize) -> String {
 
 /// Writes a file beside its name and renames it.
 ///
-/// Nothing is synchronised: a file that a power cut leaves incomplete is found out by its checksum.
+/// It is not synchronised: a tile that a power cut leaves incomplete is found out by its checksum.
 fn write_whole(directory: &Path, name: &str, bytes: &[u8]) -> Result<(), Failure> {
     let path = directory.join(name);
     let partial = directory.join(format!("{name}{}", output::PARTIAL));
@@ -225,7 +228,7 @@ fn require_same(directory: &Path, kept: &[u8], description: &str) -> Result<(), 
         return Ok(());
     }
     let kept = String::from_utf8_lossy(kept);
-    let mut lines = kept.lines().zip(description.lines());
+    let mut lines = kept.lines().chain(std::iter::repeat("")).zip(description.lines());
     let (theirs, ours) = lines.find(|(theirs, ours)| theirs != ours).unwrap_or(("", ""));
     Err(Failure::input(
         directory,

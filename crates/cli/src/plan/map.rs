@@ -2,12 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::args::MapArguments;
+use crate::args::{MapArguments, Method};
+use crate::bodies::read_pair;
 use crate::engine::Engine;
 use crate::error::Failure;
 use crate::figure::Target;
 use crate::map::{Axis, Coordinates, Plane};
 use crate::plan::explain;
+use crate::range::Range;
 use crate::recipe::{DEFAULT_ALPHA, DEFAULT_MU, RecipeError};
 
 /// A map to be computed.
@@ -42,8 +44,17 @@ impl MapPlan {
     /// # Errors
     /// [`Failure::Usage`] says which options do not go together.
     pub fn new(arguments: &MapArguments) -> Result<Self, Failure> {
+        let MapArguments { size, .. } = *arguments;
+        let (columns, rows, coordinates) = match &arguments.bodies {
+            Some(bodies) => velocities(arguments, bodies)?,
+            None => scaled(arguments)?,
+        };
         Ok(Self {
-            plane: plane(arguments)?,
+            plane: Plane {
+                columns: Axis { range: columns, cells: size.columns },
+                rows: Axis { range: rows, cells: size.rows },
+                coordinates,
+            },
             engine: arguments.method.engine(arguments.damping)?,
             out: arguments.out.clone(),
             format: format(&arguments.out)?,
@@ -53,30 +64,47 @@ impl MapPlan {
     }
 }
 
-fn plane(arguments: &MapArguments) -> Result<Plane, Failure> {
-    let MapArguments { kappa, psi, ratio, mu, alpha, size, .. } = *arguments;
+/// The axes κ and ψ, or κ and g_t/g_n.
+fn scaled(arguments: &MapArguments) -> Result<(Range, Range, Coordinates), Failure> {
+    let MapArguments { kappa, psi, ratio, mu, alpha, .. } = *arguments;
     let refused = |error| Failure::Usage(explain(error));
     let damping = arguments.damping.unwrap_or(0.0);
-    let columns = kappa.ok_or_else(|| refused(RecipeError::NoKappa))?;
-    let (rows, coordinates) = match (psi, ratio) {
-        (Some(_), Some(_)) => return Err(refused(RecipeError::PsiAndRatio)),
-        (None, None) => return Err(refused(RecipeError::NoImpact)),
-        (Some(psi), None) => {
-            if let Some((name, _)) = [("mu", mu), ("alpha", alpha)].iter().find(|x| x.1.is_some()) {
-                return Err(refused(RecipeError::Unused { name }));
-            }
-            (psi, Coordinates::Psi { damping })
-        }
+    let kappa = kappa.ok_or_else(|| refused(RecipeError::NoKappa))?;
+    match (psi, ratio) {
+        (Some(_), Some(_)) => Err(refused(RecipeError::PsiAndRatio)),
+        (None, None) => Err(refused(RecipeError::NoImpact)),
+        (Some(psi), None) => match [("mu", mu), ("alpha", alpha)].iter().find(|x| x.1.is_some()) {
+            Some((name, _)) => Err(refused(RecipeError::Unused { name })),
+            None => Ok((kappa, psi, Coordinates::Psi { damping })),
+        },
         (None, Some(ratio)) => {
             let (mu, alpha) = (mu.unwrap_or(DEFAULT_MU), alpha.unwrap_or(DEFAULT_ALPHA));
-            (ratio, Coordinates::Ratio { mu, alpha, damping })
+            Ok((kappa, ratio, Coordinates::Ratio { mu, alpha, damping }))
         }
+    }
+}
+
+/// The axes g_n and g_t of the bodies in a file.
+fn velocities(
+    arguments: &MapArguments,
+    bodies: &Path,
+) -> Result<(Range, Range, Coordinates), Failure> {
+    let (Some(normal), Some(tangential)) = (arguments.normal, arguments.tangential) else {
+        let message = "--normal or --tangential is missing; accepted is --bodies with both";
+        return Err(Failure::Usage(message.to_owned()));
     };
-    Ok(Plane {
-        columns: Axis { range: columns, cells: size.columns },
-        rows: Axis { range: rows, cells: size.rows },
-        coordinates,
-    })
+    let pair = read_pair(bodies)?;
+    let damping_time_s = pair.surface.damping_time_s;
+    if arguments.method.method == Method::Exact && damping_time_s != 0.0 {
+        return Err(Failure::input(
+            bodies,
+            format!(
+                "surface.damping_time_s is {damping_time_s:?}, and --method exact holds without \
+                 damping; accepted is 0, or --method dop853 or dopri5"
+            ),
+        ));
+    }
+    Ok((normal, tangential, Coordinates::Velocities { pair }))
 }
 
 fn format(out: &Path) -> Result<MapFormat, Failure> {

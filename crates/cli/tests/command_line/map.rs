@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use stickslip_model::{Collider, Contact, exact};
+use stickslip_model::{Collider, Contact, Material, Pair, Surface, exact};
 
 use crate::{Workspace, npz, rows};
 
@@ -129,4 +129,52 @@ fn a_map_without_width_or_height_is_a_line() {
         exact::collide(contact).unwrap().eps_t()
     });
     assert_eq!(map[2].1.doubles(), expected.collect::<Vec<_>>());
+}
+
+#[test]
+fn two_bodies_on_the_plane_of_their_velocities() {
+    let workspace = Workspace::new();
+    let file = fs::read_to_string("../../examples/steel_pair.json").unwrap();
+    workspace.write("pair.json", file.replace("\"damping_time_s\": 0", "\"damping_time_s\": 1e-7"));
+    let line = "map --bodies pair.json --normal 0:200 --tangential 0:100 --size 4x3 --out";
+    for name in ["m.npz", "m.csv"] {
+        let ran = workspace.run(&format!("{line} {name}"));
+        assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
+    }
+    let table = rows(&workspace.read("m.csv"));
+    assert_eq!(
+        table[0].join(","),
+        "normal_m_per_s,tangential_m_per_s,kappa,psi,damping,eps_t,switch_count"
+    );
+    let shapes = npz(&workspace.path("m.npz")).into_iter().map(|(name, array)| {
+        let count =
+            if name == "switch_count" { array.integers().len() } else { array.doubles().len() };
+        (name, array.shape, count)
+    });
+    let shapes: Vec<_> = shapes.collect();
+    let expected = ["4,", "3,", "4,", "3, 4", "4,", "3, 4", "3, 4"];
+    assert_eq!(shapes.iter().map(|shape| shape.1.as_str()).collect::<Vec<_>>(), expected);
+    assert_eq!(shapes.iter().map(|shape| shape.2).collect::<Vec<_>>(), [4, 3, 4, 12, 4, 12, 12]);
+    assert_eq!(shapes.into_iter().map(|shape| shape.0).collect::<Vec<_>>(), table[0]);
+
+    let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
+    let surface =
+        Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e12, damping_time_s: 1e-7 };
+    let pair = Pair::equal_spheres(0.02, &steel, &surface).unwrap();
+    for (point, row) in (0..).zip(&table[1..]) {
+        let (normal, tangential) =
+            (centre(0.0, 200.0, point % 4, 4), centre(0.0, 100.0, point / 4, 3));
+        let contact = pair.impact(normal, tangential).unwrap().contact;
+        let collision = Collider::default().collide(contact).unwrap();
+        let expected = [
+            normal,
+            tangential,
+            contact.kappa(),
+            contact.psi(),
+            contact.damping(),
+            collision.eps_t(),
+        ];
+        assert_eq!(row[..6], expected.map(|value| format!("{value:?}")));
+        assert_eq!(row[6], collision.switches.len().to_string());
+    }
 }

@@ -77,6 +77,35 @@ fn options_that_do_not_go_together() {
 }
 
 #[test]
+fn bodies_that_do_not_go_together_with_other_options() {
+    let rest = "--size 3x3 --out m.npz";
+    let velocities = "--normal 0:1 --tangential 0:1";
+    for other in ["--kappa 0:1", "--psi 0:1", "--ratio 0:1", "--mu 1", "--alpha 1", "--damping 0"] {
+        let option = other.split_once(' ').unwrap().0;
+        refused(&format!("--bodies b.json {velocities} {other} {rest}"), &["--bodies", option]);
+    }
+    for one in ["--normal 0:1", "--tangential 0:1", ""] {
+        refused(&format!("--bodies b.json {one} {rest}"), &["--normal", "--tangential", "both"]);
+    }
+    refused(&format!("{velocities} {rest}"), &["--bodies"]);
+    refused(&format!("--bodies b.json {velocities} {rest}"), &["b.json: cannot be read"]);
+}
+
+#[test]
+fn damped_bodies_with_the_exact_solution() {
+    let workspace = Workspace::new();
+    let file = std::fs::read_to_string("../../examples/steel_pair.json").unwrap();
+    workspace.write("b.json", file.replace("\"damping_time_s\": 0", "\"damping_time_s\": 1e-7"));
+    let line = "map --bodies b.json --normal 0:1 --tangential 0:1 --size 3x3 --out m.npz";
+    let ran = workspace.run(&format!("{line} --method exact"));
+    assert_eq!(ran.code, 2);
+    for part in ["b.json", "surface.damping_time_s is 1e-7", "accepted is 0, or --method dop853"] {
+        assert!(ran.stderr.contains(part), "{}", ran.stderr);
+    }
+    assert_eq!(workspace.names(), ["b.json"]);
+}
+
+#[test]
 fn points_that_cannot_be_computed() {
     // ψ = 0 by underflow in the first row, κ beyond the exact solution in the second column.
     let workspace = Workspace::new();

@@ -1,0 +1,91 @@
+//! Fields of a JSON object: numbers and vectors with their names, units and ranges.
+
+use std::fmt;
+use std::marker::PhantomData;
+
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+use serde_json::Value;
+use stickslip_model::Vector3;
+use stickslip_model::quantity::Quantity;
+
+/// A struct that is written as an object; serde alone would take an array of its fields too.
+pub struct Object<T>(pub T);
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(ObjectVisitor(PhantomData))
+    }
+}
+
+struct ObjectVisitor<T>(PhantomData<T>);
+
+impl<'de, T: Deserialize<'de>> Visitor<'de> for ObjectVisitor<T> {
+    type Value = Object<T>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("an object")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
+        T::deserialize(MapAccessDeserializer::new(map)).map(Object)
+    }
+}
+
+/// The object at `place`.
+///
+/// # Errors
+/// It is missing.
+pub fn required<T>(place: &str, object: Option<T>) -> Result<T, String> {
+    object.ok_or_else(|| format!("{place} is missing; accepted is an object"))
+}
+
+/// The number in the field of `quantity` in the object at `place`.
+///
+/// # Errors
+/// It is missing, no number, or out of range.
+pub fn number(place: &str, quantity: &Quantity, value: Option<&Value>) -> Result<f64, String> {
+    let Quantity { name, accepted, .. } = quantity;
+    let number = match value {
+        None => return Err(format!("{place}.{name} is missing; accepted is {accepted}")),
+        Some(value) => value
+            .as_f64()
+            .ok_or_else(|| format!("{place}.{name} is {}; accepted is {accepted}", kind(value)))?,
+    };
+    quantity.check(number).map_err(|invalid| format!("{place}.{invalid}"))
+}
+
+/// The three numbers in the field `name`, which holds a vector in `unit`, of the object at `place`.
+///
+/// # Errors
+/// They are missing, or not three numbers.
+pub fn vector(
+    place: &str,
+    (name, unit): (&str, &str),
+    value: Option<&Value>,
+) -> Result<Vector3<f64>, String> {
+    let found = match value {
+        None => "missing".to_owned(),
+        Some(Value::Array(items)) => {
+            let numbers: Vec<f64> = items.iter().filter_map(Value::as_f64).collect();
+            if let ([x, y, z], 3) = (&numbers[..], items.len()) {
+                return Ok(Vector3::new(*x, *y, *z));
+            }
+            format!("an array of {}, {} of them numbers", items.len(), numbers.len())
+        }
+        Some(value) => kind(value).to_owned(),
+    };
+    Err(format!("{place}.{name} is {found}; accepted are three finite numbers, {unit}"))
+}
+
+fn kind(value: &Value) -> &'static str {
+    match value {
+        Value::Null => "null",
+        Value::Bool(_) => "true or false",
+        Value::Number(_) => "a number",
+        Value::String(_) => "a string",
+        Value::Array(_) => "an array",
+        Value::Object(_) => "an object",
+    }
+}
