@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use nalgebra::{Rotation3, Unit};
 use stickslip::model::{
     Collider, Elasticity, Encounter, EncounterError, Motion, Outcome, Plane, Sphere, Surface,
-    Vector3, Wall,
+    Vector3, Wall, encounter::TOUCH,
 };
 
 /// Numbers that depend on the seed alone (splitmix64).
@@ -78,15 +78,17 @@ impl Case {
         let first = sphere(random);
         let normal = random.direction();
         let speed = random.logarithmic(1e-3, 30.0);
-        let spin = |random: &mut Random, radius: f64| match central {
-            true => normal * (random.between(-2.0, 2.0) * speed / radius),
-            false => random.direction() * (random.between(0.0, 2.0) * speed / radius),
+        let spin = |random: &mut Random, radius: f64| {
+            let rate = random.between(-2.0, 2.0) * speed / radius;
+            if central { normal * rate } else { random.direction() * rate }
         };
         let drift = random.direction() * random.between(0.0, 2.0) * speed;
         let sideways = if central { Vector3::zeros() } else { random.direction() * (0.9 * speed) };
         let touch = random.direction() * random.between(0.0, 5.0 * first.radius_m);
         let motion = Motion {
-            position_m: touch + normal * first.radius_m,
+            // Positions need not be better than this.
+            position_m: touch
+                + normal * (first.radius_m * (1.0 + random.between(-1.0, 1.0) * TOUCH / 2.0)),
             velocity_m_per_s: drift - normal * speed + sideways,
             spin_rad_per_s: spin(random, first.radius_m),
         };
@@ -181,7 +183,7 @@ impl Worst {
 fn momentum_angular_momentum_and_energy_are_conserved() {
     let mut random = Random(1);
     let [mut momentum, mut angular, mut energy] = [(); 3].map(|()| Worst::default());
-    let mut kinds = [0; 4];
+    let mut kinds = [0; 3];
     for _ in 0..100_000 {
         let case = Case::random(&mut random);
         let (encounter, outcome) = case.outcome();
@@ -213,15 +215,11 @@ fn momentum_angular_momentum_and_energy_are_conserved() {
         energy.see(account.unbalanced_j().abs() / size);
         kinds[usize::from(on_wall != Vector3::zeros())] += 1;
         kinds[2] += usize::from(encounter.tangent.is_none());
-        kinds[3] += outcome.switches.len();
     }
-    println!(
-        "momentum {:.1e}, angular momentum {:.1e}, energy {:.1e}",
-        momentum.0, angular.0, energy.0
-    );
-    println!("pairs, walls, central impacts, switches: {kinds:?}");
-    assert!(kinds[..3].iter().all(|&count| count > 9_000), "{kinds:?}");
-    assert!(momentum.0 < 1e-12 && angular.0 < 1e-12 && energy.0 < 1e-12);
+    assert!(kinds.iter().all(|&count| count > 9_000), "{kinds:?}");
+    // Measured: 1.5e-16, 2.7e-16 and 6.3e-13. Energy shows the errors of the integration, which grow with κ.
+    assert!(momentum.0 < 3e-16 && angular.0 < 6e-16, "{} {}", momentum.0, angular.0);
+    assert!(energy.0 < 1e-12, "{}", energy.0);
 }
 
 /// Relative to the speeds of the surfaces.
@@ -262,6 +260,7 @@ fn orientation_frame_and_order_do_not_matter() {
             exchanged.see(difference(&other, &none, nothing));
         }
     }
-    println!("turned {:.1e}, boosted {:.1e}, exchanged {:.1e}", turned.0, boosted.0, exchanged.0);
-    assert!(turned.0 < 1e-12 && boosted.0 < 1e-12 && exchanged.0 < 1e-12);
+    // Measured: 2.6e-14 and 2.4e-14.
+    assert!(turned.0 < 5e-14 && boosted.0 < 5e-14, "{} {}", turned.0, boosted.0);
+    assert_eq!(exchanged.0, 0.0, "the same bits");
 }

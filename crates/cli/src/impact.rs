@@ -14,8 +14,8 @@ use crate::engine::{self, Engine, EngineError};
 use crate::error::Failure;
 
 /// An impact and all that is printed of it.
-struct Impact {
-    encounter: Encounter,
+struct Impact<'a> {
+    encounter: &'a Encounter,
     collision: Collision,
     outcome: Outcome,
     comparison: Comparison,
@@ -57,7 +57,7 @@ pub fn run(arguments: &ImpactArguments) -> Result<(), Failure> {
     };
     let (collision, statistics) = engine.collide(contact, Vec::new()).map_err(failed)?;
     engine::require_finite(&collision).map_err(failed)?;
-    let impact = Impact::new(encounter, collision);
+    let impact = Impact::new(&encounter, collision);
     impact.require_finite().map_err(failed)?;
 
     let mut out = BufWriter::new(io::stdout().lock());
@@ -68,8 +68,8 @@ pub fn run(arguments: &ImpactArguments) -> Result<(), Failure> {
     Failure::unless_written(written.and_then(|()| out.flush()))
 }
 
-impl Impact {
-    fn new(encounter: Encounter, collision: Collision) -> Self {
+impl<'a> Impact<'a> {
+    fn new(encounter: &'a Encounter, collision: Collision) -> Self {
         let outcome = encounter.outcome(&collision);
         let (impact, contact) = (&encounter.impact, encounter.contact());
         let eps_n = outcome.eps_n;

@@ -39,7 +39,7 @@ struct Object<'a> {
     spheres: Vec<Sphere>,
     impulse_n_s: [f64; 3],
     switches: Vec<Switch>,
-    energy: Energy,
+    energy_j: Energy,
     #[serde(with = "Observed")]
     observed: stickslip_model::Observed,
     comparison: &'a Comparison,
@@ -89,14 +89,14 @@ struct Switch {
 
 #[derive(Serialize)]
 struct Energy {
-    kinetic_before_j: f64,
-    kinetic_after_j: f64,
-    work_of_wall_j: f64,
-    sliding_j: f64,
-    damping_j: f64,
-    spring_left_j: f64,
-    compression_left_j: f64,
-    unbalanced_j: f64,
+    kinetic_before: f64,
+    kinetic_after: f64,
+    work_of_wall: f64,
+    sliding: f64,
+    damping: f64,
+    spring_left: f64,
+    compression_left: f64,
+    unbalanced: f64,
 }
 
 #[derive(Serialize)]
@@ -114,7 +114,7 @@ struct Observed {
 }
 
 impl<'a> Object<'a> {
-    fn new(engine: &Engine, impact: &'a Impact, statistics: Option<&Statistics>) -> Self {
+    fn new(engine: &Engine, impact: &'a Impact<'_>, statistics: Option<&Statistics>) -> Self {
         let Impact { encounter, outcome, comparison, .. } = impact;
         let (scaled, pair) = (&encounter.impact, &encounter.impact.pair);
         let contact = encounter.contact();
@@ -149,7 +149,7 @@ impl<'a> Object<'a> {
             spheres: impact.spheres().iter().map(Sphere::from).collect(),
             impulse_n_s: components(&outcome.impulse_n_s),
             switches: outcome.switches.iter().map(Switch::from).collect(),
-            energy: Energy::from(&outcome.energy),
+            energy_j: Energy::from(&outcome.energy),
             observed: outcome.observed,
             comparison,
             statistics: Work::new(statistics),
@@ -184,14 +184,14 @@ impl From<&ForceSwitch> for Switch {
 impl From<&EnergyAccount> for Energy {
     fn from(account: &EnergyAccount) -> Self {
         Self {
-            kinetic_before_j: account.kinetic_before_j,
-            kinetic_after_j: account.kinetic_after_j,
-            work_of_wall_j: account.work_of_wall_j,
-            sliding_j: account.sliding_j,
-            damping_j: account.damping_j,
-            spring_left_j: account.spring_left_j,
-            compression_left_j: account.compression_left_j,
-            unbalanced_j: account.unbalanced_j(),
+            kinetic_before: account.kinetic_before_j,
+            kinetic_after: account.kinetic_after_j,
+            work_of_wall: account.work_of_wall_j,
+            sliding: account.sliding_j,
+            damping: account.damping_j,
+            spring_left: account.spring_left_j,
+            compression_left: account.compression_left_j,
+            unbalanced: account.unbalanced_j(),
         }
     }
 }

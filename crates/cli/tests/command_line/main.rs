@@ -2,6 +2,8 @@
 
 mod batch;
 mod batch_failures;
+mod impact;
+mod impact_failures;
 mod map;
 mod map_failures;
 #[cfg(unix)]
