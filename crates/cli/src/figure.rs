@@ -81,7 +81,8 @@ impl Target {
         Ok(Unpublished { target: self, file })
     }
 
-    fn failure(&self, error: io::Error) -> Failure {
+    /// The picture cannot be made.
+    pub fn failure(&self, error: io::Error) -> Failure {
         Failure::output(&self.path, error)
     }
 }

@@ -129,7 +129,8 @@ fn compute(plan: &MapPlan, task: &Task, index: usize) -> Tile {
 fn draw<'a>(plan: &MapPlan, tiles: &Tiles, target: &'a Target) -> Result<Unpublished<'a>, Failure> {
     let unreadable = |error| Failure::input(tiles.directory(), format!("cannot be read: {error}"));
     let thumbnail = Thumbnail::read(&plan.plane, tiles, MOST_PIXELS).map_err(unreadable)?;
-    target.write(&picture::draw(&plan.plane, &thumbnail).map_err(unreadable)?)
+    let picture = picture::draw(&plan.plane, &thumbnail).map_err(|error| target.failure(error))?;
+    target.write(&picture)
 }
 
 /// Says how many points could not be computed, if there are any, and why the first.

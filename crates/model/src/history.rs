@@ -83,7 +83,7 @@ struct Record {
 impl History {
     /// Most steps of the integrator that are kept, about 160 MB of them.
     ///
-    /// Without damping κ = 1e9 takes as many.
+    /// Without damping κ = 1e9 takes 200 000 at the default tolerances.
     pub const MOST_STEPS: usize = 300_000;
 
     /// Integrates `contact` and keeps the trajectory.
