@@ -6,8 +6,10 @@ mod method;
 
 use std::path::PathBuf;
 
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Parser, Subcommand, ValueEnum};
 
+use crate::figure::Target;
 use crate::parameter::Parameter;
 
 pub use impact::ImpactArguments;
@@ -80,6 +82,11 @@ pub struct CollideArguments {
     #[arg(conflicts_with = "batch")]
     pub format: Format,
 
+    /// Picture of the forces and the velocity of one collision, beside what is printed
+    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output", conflicts_with = "batch")]
+    #[arg(value_parser = PathBufValueParser::new().try_map(Target::new))]
+    pub plot: Option<Target>,
+
     /// CSV file with a header row and one collision a row
     #[arg(long, value_name = "IN.csv", help_heading = "Batch", requires = "out")]
     pub batch: Option<PathBuf>,
@@ -126,6 +133,7 @@ Batch files:
 
 Examples:
   stickslip collide --kappa 63 --psi 0.5
+  stickslip collide --kappa 63 --psi 0.5 --plot collision.svg
   stickslip collide --kappa 18 --ratio 1.4 --mu 0.4 --alpha 2/7 --method exact
   stickslip collide --kappa 18 --psi 1 --damping 0.05 --format json
   stickslip collide --batch IN.csv --out OUT.csv --events EV.csv --threads 4

@@ -1,7 +1,7 @@
 //! What computes a collision: an integrator with its tolerances, or the exact solution.
 
 use stickslip_model::{
-    Collider, Collision, CollisionError, Contact, EnergyLedger, Switch,
+    Collider, Collision, CollisionError, Contact, EnergyLedger, History, Switch,
     exact::{self, ExactError},
 };
 use stickslip_solver::{Dop853, Dopri5, InvalidOption, Options, Statistics};
@@ -64,6 +64,23 @@ impl Engine {
             }
         };
         Ok((collision, Some(statistics)))
+    }
+
+    /// The course of the collision of `contact`; the exact solution's is that of Dormand–Prince 8(5,3).
+    ///
+    /// # Errors
+    /// What the integrator reports.
+    pub fn history(&self, contact: Contact) -> Result<History, EngineError> {
+        let history = match *self {
+            Self::Dop853(Tolerances { rtol, atol }) => {
+                Collider::with_tolerances(Dop853, rtol, atol).history(contact)
+            }
+            Self::Dopri5(Tolerances { rtol, atol }) => {
+                Collider::with_tolerances(Dopri5, rtol, atol).history(contact)
+            }
+            Self::Exact => Collider::default().history(contact),
+        };
+        Ok(history?)
     }
 }
 

@@ -3,7 +3,7 @@
 //!
 //! Start reading here; then, in this order: `args` (what may be typed), `plan` (what it means),
 //! `collide`, `batch`, `impact` and `map` (doing it), `input` and `bodies` (files read), `table`,
-//! `json`, `rows` and `output` (results written).
+//! `json`, `rows`, `figure` and `output` (results written).
 
 mod args;
 mod batch;
@@ -11,6 +11,7 @@ mod bodies;
 mod collide;
 mod engine;
 mod error;
+mod figure;
 mod impact;
 mod input;
 mod json;

@@ -1,13 +1,13 @@
 //! A map of collisions: computed tile by tile, kept tile by tile, and put together at the end.
 //!
 //! Start reading here; then, in this order: `plane` (which collision belongs to which cell), `tile`
-//! and `tiles` (what is kept, and where), `npz` and `csv` (the finished map), `thumbnail` (some of
-//! it, for a picture).
+//! and `tiles` (what is kept, and where), `npz` and `csv` (the finished map), `thumbnail` and
+//! `picture` (some of it, drawn).
 
 mod csv;
 mod npz;
+mod picture;
 mod plane;
-#[cfg_attr(not(test), expect(dead_code, reason = "for the picture of a map"))]
 mod thumbnail;
 mod tile;
 mod tiles;
@@ -22,12 +22,17 @@ use stickslip_model::Switch;
 
 use crate::engine::require_finite;
 use crate::error::Failure;
+use crate::figure::{Target, Unpublished};
 use crate::output::OutputFile;
 use crate::plan::{MapFormat, MapPlan};
 
 pub use plane::{Axis, Coordinates, Plane, Quantity};
+use thumbnail::Thumbnail;
 use tile::{NO_COUNT, NO_EPS_T, Tile};
 use tiles::{Found, Task, Tiles};
+
+/// Most columns and rows of the picture.
+const MOST_PIXELS: usize = 1000;
 
 /// Computes the map, or the rest of one that was begun before.
 ///
@@ -35,6 +40,9 @@ use tiles::{Found, Task, Tiles};
 /// Files cannot be written, another process makes the same map, or some points have no result; in
 /// the last case the map is complete.
 pub fn run(plan: &MapPlan) -> Result<(), Failure> {
+    if let Some(target) = &plan.plot {
+        target.check()?;
+    }
     let pool = ThreadPoolBuilder::new().num_threads(plan.threads.unwrap_or(0)).build()?;
     let tiles = Tiles::open(&plan.out, plan.task())?;
     let failed = |error: io::Error| Failure::output(&plan.out, error);
@@ -56,8 +64,13 @@ pub fn run(plan: &MapPlan) -> Result<(), Failure> {
         MapFormat::Csv => csv::write(&mut file, &plan.plane, &tiles),
     };
     written.and_then(|()| file.store()).map_err(failed)?;
+    let picture = plan.plot.as_ref().map(|target| draw(plan, &tiles, target)).transpose()?;
     let outcome = outcome(plan, &tiles).map_err(failed)?;
+    // Both are complete before one of them gets its name.
     file.publish().map_err(failed)?;
+    if let Some(picture) = picture {
+        picture.publish()?;
+    }
     tiles.remove();
     outcome.map_or(Ok(()), Err)
 }
@@ -110,6 +123,14 @@ fn compute(plan: &MapPlan, task: &Task, index: usize) -> Tile {
         })
         .unzip_into_vecs(&mut tile.eps_t, &mut tile.switch_count);
     tile
+}
+
+/// Writes the picture, but for its name.
+fn draw<'a>(plan: &MapPlan, tiles: &Tiles, target: &'a Target) -> Result<Unpublished<'a>, Failure> {
+    let unreadable = |error| Failure::input(tiles.directory(), format!("cannot be read: {error}"));
+    let thumbnail = Thumbnail::read(&plan.plane, tiles, MOST_PIXELS).map_err(unreadable)?;
+    let picture = picture::draw(&plan.plane, &thumbnail).map_err(|error| target.failure(error))?;
+    target.write(&picture)
 }
 
 /// Says how many points could not be computed, if there are any, and why the first.

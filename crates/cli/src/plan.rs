@@ -10,6 +10,7 @@ use stickslip_model::Contact;
 use crate::args::{CollideArguments, Format};
 use crate::engine::Engine;
 use crate::error::Failure;
+use crate::figure::Target;
 use crate::recipe::{Given, Recipe, RecipeError};
 
 pub use map::{MapFormat, MapPlan};
@@ -24,7 +25,7 @@ pub enum CollidePlan {
 }
 
 /// One collision.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Point {
     /// Its parameters.
     pub contact: Contact,
@@ -32,6 +33,8 @@ pub struct Point {
     pub engine: Engine,
     /// How it is printed.
     pub format: Format,
+    /// Where it is drawn, if it is.
+    pub plot: Option<Target>,
 }
 
 /// A file of collisions.
@@ -69,7 +72,8 @@ impl CollidePlan {
         let (Some(input), Some(out)) = (&arguments.batch, &arguments.out) else {
             let recipe = Recipe::new(&given, |_| None).map_err(|e| Failure::Usage(explain(e)))?;
             let contact = recipe.contact(|_| &[]).map_err(|e| Failure::Usage(e.to_string()))?;
-            return Ok(Self::Point(Point { contact, engine, format: arguments.format }));
+            let (format, plot) = (arguments.format, arguments.plot.clone());
+            return Ok(Self::Point(Point { contact, engine, format, plot }));
         };
         let events = arguments.events.as_ref();
         require_different(("--out", out), ("--batch", input))?;

@@ -7,6 +7,7 @@ use stickslip_solver::{
 
 use crate::contact::{Collision, Contact, Regime, Switch};
 use crate::energy::EnergyLedger;
+use crate::history::History;
 use crate::regularized::{DAMPING, END, Phase, Regularized, STATE, T, U, V};
 use crate::{refine, reversals};
 
@@ -137,6 +138,20 @@ impl<M: Method> Collider<M> {
             refine::refine(self.method, &self.options, collision);
         }
         Ok(run.statistics)
+    }
+
+    /// Integrates one collision and keeps its course in time, up to [`History::MOST_STEPS`] steps of it.
+    ///
+    /// # Errors
+    /// As [`Self::collide`].
+    pub fn history(&self, contact: Contact) -> Result<History, CollisionError> {
+        let max_steps = self.options.max_steps.min(History::MOST_STEPS);
+        let options = Options { max_steps, ..self.options };
+        let (history, outcome) = History::record(self.method, &options, contact)?;
+        if outcome == (Outcome::EndedByGuard { guard: END }) {
+            return Ok(history);
+        }
+        Err(CollisionError::Unfinished { outcome, time: history.duration() })
     }
 }
 

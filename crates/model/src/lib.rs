@@ -7,8 +7,8 @@
 //! [`Collision`] with every switch.
 //!
 //! Start reading in [`collision`]; then [`regularized`] (the equations), [`exact`] (the closed form),
-//! [`scaling`] (SI units), [`bodies`] and [`encounter`] (spheres in three dimensions), [`normal`] and [`coulomb`]
-//! (formulas to compare with), [`plain_time`] (the equations as the paper has them, for studies).
+//! [`history`] (its course in time), [`scaling`] (SI units), [`bodies`] and [`encounter`] (spheres in three dimensions),
+//! [`normal`] and [`coulomb`] (formulas to compare with), [`plain_time`] (the equations as the paper has them, for studies).
 //!
 //! ```
 //! use stickslip_model::{Collider, Contact, exact};
@@ -28,6 +28,7 @@ pub mod coulomb;
 pub mod encounter;
 mod energy;
 pub mod exact;
+pub mod history;
 pub mod normal;
 mod observed;
 mod outcome;
@@ -44,6 +45,7 @@ pub use collision::{Collider, CollisionError};
 pub use contact::{Collision, Contact, InvalidParameter, Regime, Side, Switch};
 pub use encounter::{Encounter, EncounterError, Motion, Plane};
 pub use energy::EnergyLedger;
+pub use history::{History, PhaseHistory, Snapshot};
 pub use nalgebra::Vector3;
 pub use observed::Observed;
 pub use outcome::{EnergyAccount, ForceSwitch, Outcome};

@@ -139,6 +139,12 @@ impl Regularized {
         }
     }
 
+    /// The contact.
+    #[must_use]
+    pub fn contact(&self) -> Contact {
+        self.contact
+    }
+
     /// The state at the start of contact.
     #[must_use]
     pub fn start(&self) -> State<STATE> {

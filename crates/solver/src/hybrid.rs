@@ -186,6 +186,13 @@ pub struct Statistics {
     pub grazings: usize,
 }
 
+impl Statistics {
+    /// Steps taken, good or not.
+    fn tried(&self) -> usize {
+        self.accepted + self.rejected + self.too_coarse
+    }
+}
+
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Run<Mode, const N: usize> {
@@ -283,8 +290,7 @@ where
         };
         let mut step = Step::blank();
         loop {
-            let steps = self.statistics.accepted + self.statistics.rejected;
-            if steps + self.statistics.too_coarse >= self.options.max_steps {
+            if self.statistics.tried() >= self.options.max_steps {
                 return Ok(Outcome::StepLimit);
             }
             let Some(event) = self.advance::<M>(&mut step)? else {
@@ -299,12 +305,15 @@ where
         }
     }
 
-    /// Takes one step that is good enough; if it meets a switch, it ends there.
+    /// Takes one step that is good enough; if it meets a switch, it ends there. Takes none beyond the limit of steps.
     fn advance<M: Method>(&mut self, step: &mut Step<N>) -> Result<Option<Event<N>>, RunError> {
         let (system, mode) = (self.system, self.phase.mode);
         let mut field = |s: f64, y: &State<N>| system.field(mode, s, y);
         let mut cuts = 0;
         loop {
+            if self.statistics.tried() >= self.options.max_steps {
+                return Ok(None);
+            }
             let left = self.clock.until(self.end);
             let h = self.h.min(self.options.max_step);
             let (h, last) = if h >= left { (left, true) } else { (h, false) };
@@ -399,8 +408,7 @@ where
             return Err(RunError::Field { s, step });
         }
         self.h = self.controller.rejected::<M>(h, error);
-        if self.h <= f64::EPSILON * s.abs().max(f64::MIN_POSITIVE) || step >= self.options.max_steps
-        {
+        if self.h <= f64::EPSILON * s.abs().max(f64::MIN_POSITIVE) {
             return Err(if error.is_finite() {
                 RunError::Tolerance { s, h, step }
             } else {

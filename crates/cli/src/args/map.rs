@@ -2,7 +2,10 @@
 
 use std::path::PathBuf;
 
+use clap::builder::{PathBufValueParser, TypedValueParser};
+
 use crate::args::MethodArguments;
+use crate::figure::Target;
 use crate::parameter::Parameter;
 use crate::range::{Range, Size};
 
@@ -67,6 +70,11 @@ pub struct MapArguments {
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub out: PathBuf,
 
+    /// Picture of both: ε_t in colours, and the regions of equal numbers of switches
+    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
+    #[arg(value_parser = PathBufValueParser::new().try_map(Target::new))]
+    pub plot: Option<Target>,
+
     /// Threads; 1 to 1024 [default: one for each core]; results do not depend on it
     #[arg(long, value_name = "N", help_heading = "Output", allow_hyphen_values = true)]
     #[arg(value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -96,7 +104,7 @@ Results:
   same command goes on where it stopped, and the result is the same, bit for bit.
 
 Examples:
-  stickslip map --kappa 0:70 --psi 0:2.9 --size 1000x1000 --out map.npz
+  stickslip map --kappa 0:70 --psi 0:2.9 --size 1000x1000 --out map.npz --plot map.svg
   stickslip map --kappa 0:20 --ratio 0:3.5 --mu 0.4 --alpha 2/7 --size 600x400 --out map.csv
   stickslip map --kappa 17:19 --psi 0:2 --method exact --size 2000x2000 --out map.npz
   stickslip map --kappa 0:70 --psi 0:2.9 --damping 0.05 --size 500x500 --out damped.npz

@@ -6,6 +6,7 @@ use crate::args::{MapArguments, Method};
 use crate::bodies::read_pair;
 use crate::engine::Engine;
 use crate::error::Failure;
+use crate::figure::Target;
 use crate::map::{Axis, Coordinates, Plane};
 use crate::plan::explain;
 use crate::range::Range;
@@ -22,6 +23,8 @@ pub struct MapPlan {
     pub out: PathBuf,
     /// How it is written.
     pub format: MapFormat,
+    /// Where it is drawn, if it is.
+    pub plot: Option<Target>,
     /// Number of threads; `None` is one for each core.
     pub threads: Option<usize>,
 }
@@ -55,6 +58,7 @@ impl MapPlan {
             engine: arguments.method.engine(arguments.damping)?,
             out: arguments.out.clone(),
             format: format(&arguments.out)?,
+            plot: arguments.plot.clone(),
             threads: arguments.threads.map(usize::from),
         })
     }

@@ -8,6 +8,7 @@ mod map;
 mod map_failures;
 #[cfg(unix)]
 mod map_interrupted;
+mod pictures;
 mod point;
 mod usage;
 

@@ -1,0 +1,31 @@
+//! SVG to PNG.
+
+use std::io;
+use std::sync::Arc;
+
+use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::usvg::fontdb::Database;
+use resvg::usvg::{Options, Tree};
+
+/// Pixels of the PNG for one of the SVG.
+const SCALE: f32 = 2.0;
+
+/// DejaVu Sans, so that no machine needs a font; see `assets/README.md`.
+const FONT_FILE: &[u8] = include_bytes!("../../assets/DejaVuSans-subset.ttf");
+
+/// The picture as a PNG file.
+///
+/// # Errors
+/// The document is no SVG, or too large for memory.
+pub fn png(svg: &str) -> io::Result<Vec<u8>> {
+    let mut fonts = Database::new();
+    fonts.load_font_data(FONT_FILE.to_vec());
+    let options = Options { fontdb: Arc::new(fonts), ..Options::default() };
+    let tree = Tree::from_str(svg, &options).map_err(io::Error::other)?;
+    let size = tree.size().to_int_size().scale_by(SCALE);
+    let mut pixels = size
+        .and_then(|size| Pixmap::new(size.width(), size.height()))
+        .ok_or(io::ErrorKind::OutOfMemory)?;
+    resvg::render(&tree, Transform::from_scale(SCALE, SCALE), &mut pixels.as_mut());
+    pixels.encode_png().map_err(io::Error::other)
+}

@@ -1,0 +1,231 @@
+//! Shapes and words as SVG.
+
+use std::fmt::{self, Display};
+
+use super::style::{FONT, INK};
+use super::text;
+
+/// A picture under construction; what is added later lies on top. Lengths are in pixels, y points down.
+#[derive(Debug)]
+pub struct Svg {
+    width: f64,
+    height: f64,
+    title: String,
+    body: String,
+}
+
+/// An upright rectangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rectangle {
+    /// Its left edge.
+    pub left: f64,
+    /// Its upper edge.
+    pub top: f64,
+    /// Its width.
+    pub width: f64,
+    /// Its height.
+    pub height: f64,
+}
+
+impl Rectangle {
+    /// Its right edge.
+    pub fn right(&self) -> f64 {
+        self.left + self.width
+    }
+
+    /// Its lower edge.
+    pub fn bottom(&self) -> f64 {
+        self.top + self.height
+    }
+}
+
+/// How a line is drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Stroke {
+    /// Its colour.
+    pub colour: &'static str,
+    /// Its width.
+    pub width: f64,
+    /// Lengths of dashes and gaps; empty for a full line.
+    pub dashes: &'static str,
+}
+
+impl Stroke {
+    /// A full line.
+    pub const fn full(colour: &'static str, width: f64) -> Self {
+        Self { colour, width, dashes: "" }
+    }
+}
+
+impl Display for Stroke {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, r#"stroke="{}" stroke-width="{}""#, self.colour, self.width)?;
+        if !self.dashes.is_empty() {
+            write!(f, r#" stroke-dasharray="{}""#, self.dashes)?;
+        }
+        Ok(())
+    }
+}
+
+/// Which point of a text its position means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Anchor {
+    /// Where it starts.
+    Start,
+    /// Its middle.
+    Middle,
+    /// Where it ends.
+    End,
+}
+
+/// Words at a place.
+#[derive(Clone, Copy, Debug)]
+pub struct Words<'a> {
+    /// The words, with `_` and `^` before what is lowered and raised: a character, or several in braces.
+    pub text: &'a str,
+    /// Font size.
+    pub size: f64,
+    /// What the position means.
+    pub anchor: Anchor,
+    /// Their colour.
+    pub colour: &'a str,
+    /// Whether they run upwards.
+    pub upwards: bool,
+}
+
+impl<'a> Words<'a> {
+    /// Words of the usual colour and direction.
+    pub fn new(text: &'a str, size: f64, anchor: Anchor) -> Self {
+        Self { text, size, anchor, colour: INK, upwards: false }
+    }
+}
+
+/// A length, to a hundredth of a pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct Px(pub f64);
+
+impl Display for Px {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Adding 0 turns −0 into 0.
+        write!(f, "{}", (self.0 * 100.0).round() / 100.0 + 0.0)
+    }
+}
+
+impl Svg {
+    /// An empty picture, with the title that assistive programs and browsers show.
+    pub fn new(width: f64, height: f64, title: &str) -> Self {
+        Self { width, height, title: text::plain(title), body: String::new() }
+    }
+
+    /// The whole document.
+    pub fn document(&self) -> String {
+        let Self { width, height, title, body } = self;
+        // Some viewers drop blanks at the ends of lowered and raised words unless told to preserve them.
+        format!(
+            r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" font-family="{FONT}" xml:space="preserve">
+<title>{title}</title>
+<rect width="{width}" height="{height}" fill="white"/>
+{body}</svg>
+"#
+        )
+    }
+
+    /// What follows belongs to the group `class`, until [`Self::end_group`].
+    pub fn begin_group(&mut self, class: &str) {
+        self.element(format_args!(r#"<g class="{class}">"#));
+    }
+
+    /// Ends the group begun last.
+    pub fn end_group(&mut self) {
+        self.element(format_args!("</g>"));
+    }
+
+    /// A filled rectangle.
+    pub fn fill(&mut self, at: Rectangle, colour: &str) {
+        self.element(format_args!(r#"<rect {} fill="{colour}"/>"#, Place(at)));
+    }
+
+    /// The edge of a rectangle.
+    pub fn outline(&mut self, at: Rectangle, stroke: Stroke) {
+        self.element(format_args!(r#"<rect {} fill="none" {stroke}/>"#, Place(at)));
+    }
+
+    /// A straight line.
+    pub fn line(&mut self, (x1, y1): (f64, f64), (x2, y2): (f64, f64), stroke: Stroke) {
+        let [x1, y1, x2, y2] = [x1, y1, x2, y2].map(Px);
+        self.element(format_args!(r#"<line x1="{x1}" y1="{y1}" x2="{x2}" y2="{y2}" {stroke}/>"#));
+    }
+
+    /// A line through points; points that cannot be told apart are left out.
+    pub fn polyline(&mut self, points: impl IntoIterator<Item = (f64, f64)>, stroke: Stroke) {
+        /// No eye and no usual magnification tells points apart that are closer.
+        const APART: f64 = 0.1;
+        let mut list = String::new();
+        let mut write =
+            |(x, y): (f64, f64)| text::append(&mut list, format_args!("{},{} ", Px(x), Px(y)));
+        let (mut written, mut skipped) = (None::<(f64, f64)>, None);
+        for point in points {
+            let near =
+                |(x, y): (f64, f64)| (x - point.0).abs() < APART && (y - point.1).abs() < APART;
+            if written.is_some_and(near) {
+                skipped = Some(point);
+            } else {
+                // The last point before a jump belongs to the line.
+                skipped.take().into_iter().chain([point]).for_each(&mut write);
+                written = Some(point);
+            }
+        }
+        skipped.into_iter().for_each(write);
+        let list = list.trim_end();
+        self.element(format_args!(
+            r#"<polyline points="{list}" fill="none" stroke-linejoin="round" {stroke}/>"#
+        ));
+    }
+
+    /// An image of which every pixel becomes a sharp rectangle; `png` is its file in base 64.
+    pub fn image(&mut self, at: Rectangle, png: &str) {
+        // The attribute is for viewers that do not know the newer word in the style.
+        self.element(format_args!(
+            r#"<image {} preserveAspectRatio="none" image-rendering="optimizeSpeed" style="image-rendering:pixelated" href="data:image/png;base64,{png}"/>"#,
+            Place(at)
+        ));
+    }
+
+    /// Words on a line, at the middle of their height.
+    pub fn words(&mut self, (x, y): (f64, f64), words: Words<'_>) {
+        let Words { text, size, anchor, colour, upwards } = words;
+        let anchor = match anchor {
+            Anchor::Start => "start",
+            Anchor::Middle => "middle",
+            Anchor::End => "end",
+        };
+        // Half the height of a figure.
+        let lowered = 0.365 * size;
+        let turn = if upwards {
+            format!(r#" transform="rotate(-90 {} {})""#, Px(x), Px(y))
+        } else {
+            String::new()
+        };
+        let spans = text::spans(text, size);
+        self.element(format_args!(
+            r#"<text x="{}" y="{}" font-size="{size}" text-anchor="{anchor}" fill="{colour}"{turn}>{spans}</text>"#,
+            Px(x),
+            Px(y + lowered),
+        ));
+    }
+
+    fn element(&mut self, element: fmt::Arguments<'_>) {
+        text::append(&mut self.body, element);
+        self.body.push('\n');
+    }
+}
+
+/// A rectangle as attributes.
+struct Place(Rectangle);
+
+impl Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, width, height] = [self.0.left, self.0.top, self.0.width, self.0.height].map(Px);
+        f.write_fmt(format_args!(r#"x="{x}" y="{y}" width="{width}" height="{height}""#))
+    }
+}
