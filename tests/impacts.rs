@@ -188,7 +188,7 @@ fn restitution_error(encounter: &Encounter, outcome: &Outcome) -> f64 {
     let expected = encounter.normal * (outcome.eps_n * encounter.normal_m_per_s)
         + encounter.tangent.unwrap_or_default()
             * (outcome.eps_t.unwrap_or(0.0) * encounter.tangential_m_per_s);
-    let size = [one.0, one.1, two.0, two.1].iter().map(|part| part.norm()).sum::<f64>();
+    let size = [one.0, one.1, two.0, two.1].iter().map(Vector3::norm).sum::<f64>();
     (one.0 + one.1 - two.0 - two.1 - expected).norm() / size
 }
 
