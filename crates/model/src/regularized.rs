@@ -273,23 +273,29 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
         }
     }
 
-    /// Each right-hand side has a step compiled for itself: components that are constant or quadratures then
-    /// cost no stage.
+    /// Each right-hand side has a step compiled for itself, which knows the components that stand still (in brackets): these
+    /// cost nothing, and quadratures no stage.
     fn step<M: Method>(&self, phase: Phase, trial: &Trial<'_, STATE>, step: &mut Step<STATE>) {
         let side = phase.side;
         let settled = phase.progress == Progress::Settled;
         macro_rules! take {
-            ($right_hand_side:expr) => {
-                step.take::<M>(&mut |_, y: &State<STATE>| $right_hand_side(y), trial)
-            };
+            ([$($still:ident)*] $right_hand_side:expr) => {{
+                let slope = &mut trial.slope.clone_owned();
+                $(slope[$still] = 0.0;)*
+                step.take::<M>(&mut |_, y| $right_hand_side(y), &Trial { slope, ..*trial });
+            }};
         }
         match (phase.regime, self.contact.damping() > 0.0) {
-            (Regime::Slip, false) => take!(|y| self.slip::<false>(side, y)),
-            (Regime::Slip, true) => take!(|y| self.slip::<true>(side, y)),
-            (Regime::Stick, false) if settled => take!(|y| self.stick::<false>(y)),
-            (Regime::Stick, true) if settled => take!(|y| self.stick::<true>(y)),
-            (Regime::Stick, false) => take!(|y| self.first_stick::<false>(side, y)),
-            (Regime::Stick, true) => take!(|y| self.first_stick::<true>(side, y)),
+            (Regime::Slip, false) => {
+                take!([SPRING DAMPING GAP RATE] |y| self.slip::<false>(side, y))
+            }
+            (Regime::Slip, true) => take!([SPRING GAP RATE] |y| self.slip::<true>(side, y)),
+            (Regime::Stick, false) if settled => {
+                take!([DAMPING GAP RATE] |y| self.stick::<false>(y))
+            }
+            (Regime::Stick, true) if settled => take!([GAP RATE] |y| self.stick::<true>(y)),
+            (Regime::Stick, false) => take!([DAMPING] | y | self.first_stick::<false>(side, y)),
+            (Regime::Stick, true) => take!([] | y | self.first_stick::<true>(side, y)),
         }
     }
 

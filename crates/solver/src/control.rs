@@ -30,7 +30,7 @@ impl Controller {
         let (least, most) = M::STEP_FACTORS;
         self.fresh = false;
         let factor =
-            SAFETY * power(self.last_error, M::CONTROL_BETA) / power(error, exponent::<M>());
+            SAFETY * power(self.last_error, M::CONTROL_BETA) * power(error, -exponent::<M>());
         self.last_error = error.max(1e-4);
         let most = if std::mem::take(&mut self.just_rejected) { 1.0 } else { most };
         h * factor.clamp(least, most)
@@ -42,23 +42,41 @@ impl Controller {
         if error.is_finite() {
             // The first step of a right-hand side is a guess: it may be wrong by more.
             let least = if self.fresh { 0.01 } else { M::STEP_FACTORS.0 };
-            h * (SAFETY / power(error, exponent::<M>())).max(least)
+            h * (SAFETY * power(error, -exponent::<M>())).max(least)
         } else {
             0.1 * h
         }
     }
 }
 
-/// `base^exponent`, by square roots for the exponents of order 8: this runs once a step.
+/// `base^exponent`, quickly for the exponents of order 8: the next step waits for it.
 #[inline]
 fn power(base: f64, exponent: f64) -> f64 {
-    if exponent == 0.125 {
-        base.sqrt().sqrt().sqrt()
+    if exponent == -0.125 {
+        inverse_eighth_root(base)
     } else if exponent == 0.0 {
         1.0
     } else {
         base.powf(exponent)
     }
+}
+
+/// `x^(−1/8)` of a finite x ≥ 0 to 1e-7 of itself; something large for 0.
+///
+/// The bits of a double are nearly its logarithm, which gives 3 %; Newton's method for y⁻⁸ = x, which needs no division,
+/// does the rest.
+#[inline]
+fn inverse_eighth_root(x: f64) -> f64 {
+    /// The bits of 1, and the shift that spreads the error of the straight line evenly to both sides.
+    const ONE: u64 = 1.0_f64.to_bits();
+    const SHIFT: u64 = (1 << 52) / 1000 * 54;
+    let mut y = f64::from_bits(ONE + ONE / 8 - SHIFT - x.to_bits() / 8);
+    for _ in 0..3 {
+        let square = y * y;
+        let fourth = square * square;
+        y *= 1.125 - 0.125 * (x * fourth) * fourth;
+    }
+    y
 }
 
 fn exponent<M: Method>() -> f64 {
@@ -95,4 +113,18 @@ pub(crate) fn first_step<M: Method, const N: usize>(
         if largest <= 1e-15 { (h * 1e-3).max(1e-6) } else { (0.01 / largest).powf(1.0 / order) };
     let step = if step.is_nan() { h } else { step };
     step.min(100.0 * h).min(longest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inverse_eighth_roots_are_good_to_1e_7() {
+        for i in -3000..3000 {
+            let x = 1.2_f64.powi(i).clamp(f64::MIN_POSITIVE, f64::MAX);
+            assert!((inverse_eighth_root(x) * x.powf(0.125) - 1.0).abs() < 1e-7, "{x:e}");
+        }
+        assert!(inverse_eighth_root(0.0) > 1e30);
+    }
 }

@@ -19,6 +19,8 @@ pub(crate) struct Phase<Mode, const G: usize> {
     pub(crate) guards: [Guard; G],
     /// Values of the guards at the start of the next step.
     pub(crate) values: [f64; G],
+    /// Whether a guard starts the next step from a known zero.
+    pub(crate) at_zero: bool,
     /// Orders of the zeros from which the guards start the next step.
     pub(crate) zero_orders: [u32; G],
     /// Signs with which the guards leave these zeros; 0 where it is not known.
@@ -45,6 +47,7 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
             mode,
             guards,
             values,
+            at_zero: guards.iter().any(|guard| guard.zero_order() > 0),
             zero_orders: guards.map(|guard| guard.zero_order()),
             sides: [0.0; G],
             largest: values.map(f64::abs),
@@ -56,6 +59,7 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
     pub(crate) fn resume<const N: usize>(&mut self, event: &Event<N>, unchanged: bool) {
         let guard = event.guard;
         if self.values[guard].abs() <= event.residual {
+            self.at_zero = true;
             self.zero_orders[guard] = self.zero_orders[guard].max(1);
             if unchanged {
                 self.sides[guard] = -event.sign;
@@ -67,8 +71,11 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
     #[inline]
     pub(crate) fn advance(&mut self, values: [f64; G]) {
         self.values = values;
-        self.zero_orders = [0; G];
-        self.sides = [0.0; G];
+        if self.at_zero {
+            self.at_zero = false;
+            self.zero_orders = [0; G];
+            self.sides = [0.0; G];
+        }
         for (largest, value) in self.largest.iter_mut().zip(values) {
             *largest = if value.abs() > *largest { value.abs() } else { *largest };
         }
@@ -145,17 +152,30 @@ where
             return Ok(Found::Nothing(self.phase.values));
         }
         let values = self.values_on(step);
-        let mut statuses = [Status::Clear; G];
-        let mut all_clear = true;
-        for (guard, status) in statuses.iter_mut().enumerate() {
-            *status = self.glance::<M>(guard, &values);
-            all_clear &= *status == Status::Clear;
+        if self.all_clearly_away(&values) {
+            return Ok(Found::Nothing(values[5]));
         }
-        if all_clear {
+        let statuses = std::array::from_fn(|guard| self.glance::<M>(guard, &values));
+        if statuses.iter().all(|&status| status == Status::Clear) {
             Ok(Found::Nothing(on_their_side(&values)))
         } else {
             self.decide::<M>(step, values, statuses)
         }
+    }
+
+    /// Whether all guards stay clearly on the side where they do not fire: true of most steps.
+    #[inline(always)]
+    fn all_clearly_away(&self, values: &[[f64; G]; 6]) -> bool {
+        // An array of verdicts first, so that the loop is unrolled and the values stay in registers.
+        let away: [bool; G] = std::array::from_fn(|guard| {
+            let column = values.map(|at_node| at_node[guard]);
+            match self.phase.guards[guard].direction() {
+                Direction::Off => true,
+                Direction::Below => column[0] > 0.0 && quick::clearly_away(column),
+                _ => quick::clearly_away(column),
+            }
+        });
+        !self.phase.at_zero && away == [true; G]
     }
 
     fn decide<M: Method>(
@@ -269,7 +289,6 @@ where
     }
 
     /// What six values tell about a guard.
-    #[inline(always)]
     fn glance<M: Method>(&self, guard: usize, values: &[[f64; G]; 6]) -> Status {
         let direction = self.phase.guards[guard].direction();
         if direction == Direction::Off {
@@ -278,9 +297,6 @@ where
         let sign = if direction == Direction::Rising { -1.0 } else { 1.0 };
         let order = self.phase.zero_orders[guard];
         let column = values.map(|at_node| sign * at_node[guard]);
-        if order == 0 && quick::clearly_positive(column) {
-            return Status::Clear;
-        }
         let falls = |sign: f64, theta: f64| {
             Status::Fires(Crossing { sign, bracket: Bracket { low: 0.0, high: 1.0, guess: theta } })
         };
@@ -313,7 +329,7 @@ where
         self.statistics.isolations += 1;
         let (system, mode) = (self.system, self.phase.mode);
         let dense = step.dense::<M>(&mut |s, y| system.field(mode, s, y));
-        self.statistics.field += M::DENSE_STAGES - M::STAGES;
+        self.statistics.field += M::DENSE_STAGES - 1;
         let order = self.phase.zero_orders[guard];
         let signs: &[f64] = match self.phase.guards[guard].direction() {
             Direction::Rising => &[-1.0],

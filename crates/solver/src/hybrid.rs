@@ -14,6 +14,9 @@ use crate::guard::Guard;
 use crate::method::{Dense, Method, State, Step, Trial};
 use crate::options::{Options, StepSize};
 
+/// Distance in the independent variable over which [`HybridSystem::guard_rates`] takes differences.
+pub const RATE_REACH: f64 = 1e-3;
+
 /// A piecewise-smooth ODE of `N` components with at most `G` guards in a mode.
 ///
 /// The right-hand side and the guards of a mode must be smooth also a little beyond the guards' zeros, since
@@ -30,6 +33,20 @@ pub trait HybridSystem<const N: usize, const G: usize> {
 
     /// The values of the guards of `mode`; those of unused places are ignored.
     fn guard_values(&self, mode: Self::Mode, s: f64, y: &State<N>) -> [f64; G];
+
+    /// The rates at which the guards of `mode` change along the solution through `y`, whose zeros are the guards' extrema.
+    ///
+    /// The provided one takes differences along the field over [`RATE_REACH`] to both sides, of fourth order in it; a system whose
+    /// guards change on a shorter scale gives its own. Only margins use it.
+    fn guard_rates(&self, mode: Self::Mode, s: f64, y: &State<N>) -> [f64; G] {
+        let slope = self.field(mode, s, y);
+        let at = |reach: f64| self.guard_values(mode, s + reach, &(y + slope * reach));
+        let [far, near] = [2.0, 1.0].map(|k| (at(k * RATE_REACH), at(-k * RATE_REACH)));
+        std::array::from_fn(|guard| {
+            let difference = |(ahead, behind): &([f64; G], [f64; G])| ahead[guard] - behind[guard];
+            (8.0 * difference(&near) - difference(&far)) / (12.0 * RATE_REACH)
+        })
+    }
 
     /// The mode in which a phase goes on once its first step is done.
     ///
@@ -366,7 +383,7 @@ where
             if settled != mode {
                 let largest = self.phase.largest;
                 self.phase = Phase::enter(system, settled, self.clock.s, &self.state)?;
-                self.phase = Phase { zero_orders: [0; G], largest, ..self.phase };
+                self.phase = Phase { at_zero: false, zero_orders: [0; G], largest, ..self.phase };
                 self.statistics.guards += 1;
                 self.refresh_slope()?;
             }

@@ -8,7 +8,7 @@
 //!
 //! Start reading in [`hybrid`]; then, in this order: `event` (one step and its guards), `quick` and `isolate`
 //! (the decision), `locate` (the refinement), [`method`], [`Dopri5`] and [`Dop853`], `control`, `clock`, [`smooth`],
-//! [`trajectory`].
+//! [`trajectory`], [`mod@margin`].
 //!
 //! ```
 //! use stickslip_solver::{
@@ -51,6 +51,7 @@ mod guard;
 pub mod hybrid;
 mod isolate;
 mod locate;
+pub mod margin;
 pub mod method;
 mod options;
 mod quick;
@@ -64,6 +65,7 @@ pub use guard::{Direction, Guard};
 pub use hybrid::{
     Grazing, HybridSystem, Observer, Outcome, Run, Start, Statistics, SwitchEvent, run,
 };
+pub use margin::{Exit, Margin, Margins, NearMiss, Place, margin, margins};
 pub use method::{Dense, Method, State, Step, Tableau, Trial};
 pub use options::{InvalidOption, Options, StepSize};
 pub use smooth::integrate;

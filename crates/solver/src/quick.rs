@@ -48,17 +48,18 @@ pub(crate) fn look(values: &[f64; COUNT], zero_order: u32, trust: f64) -> Quick 
     classify(&multiply(&QUARTIC, &quotient), error)
 }
 
-/// A first test that settles most guards: positive throughout, because far from zero compared with the values' distance
+/// A first test that settles most guards: of one sign throughout, because far from zero compared with the values' distance
 /// from their chord. NaN spreads and settles nothing.
-#[inline]
-pub(crate) fn clearly_positive(values: [f64; COUNT]) -> bool {
-    let rise = values[5] - values[0];
+#[inline(always)]
+pub(crate) fn clearly_away(values: [f64; COUNT]) -> bool {
+    let [start, .., end] = values;
+    let rise = end - start;
     let mut bend = 0.0;
     for i in 1..5 {
-        bend += BEND[i] * (values[i] - (values[0] + NODES[i] * rise)).abs();
+        bend += BEND[i] * (values[i] - (start + NODES[i] * rise)).abs();
     }
-    let least = if values[0] < values[5] { values[0] } else { values[5] };
-    least > bend && rise.is_finite()
+    let least = if start.abs() < end.abs() { start.abs() } else { end.abs() };
+    least > bend && (start > 0.0) == (end > 0.0)
 }
 
 #[inline]
@@ -109,7 +110,7 @@ fn falling_root<const K: usize>(bernstein: &[f64; K]) -> f64 {
         let next = if next > low && next < high { next } else { 0.5 * (low + high) };
         let moved = (next - theta).abs();
         theta = next;
-        if moved <= 1e-9 * theta {
+        if moved <= 1e-3 * theta {
             break;
         }
     }

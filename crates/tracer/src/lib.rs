@@ -1,4 +1,12 @@
-//! Curves in a parameter plane on which the switching of a piecewise-smooth ODE changes.
+//! Curves in a parameter plane on which the switching of a piecewise-smooth ODE changes, and the subdivision of the plane
+//! that they make.
 //!
-//! This crate will follow switch boundaries {margin = 0} of hybrid systems in two parameters and return the
-//! subdivision of the plane that they make. It holds only this page so far.
+//! In reading order: `family` (what is traced), `curve` (what comes out), `runs` (hybrid systems as families).
+
+mod curve;
+mod family;
+mod runs;
+
+pub use curve::{Curve, Node, Vertex, VertexKind};
+pub use family::{Family, Point, Window};
+pub use runs::{ModeOf, Problem, Runs, RunsError, RunsErrorKind};

@@ -1,0 +1,55 @@
+//! What the tracer follows: a family of runs in two parameters, and the margins that they leave.
+
+use std::fmt::Debug;
+use std::hash::Hash;
+
+use nalgebra::Vector2;
+
+/// A point of the parameter plane, in the coordinates in which it is traced.
+///
+/// A family that spans decades chooses logarithms here and converts on its own side.
+pub type Point = Vector2<f64>;
+
+/// Runs that depend on two parameters.
+///
+/// A free run has a *label*, the itinerary of its switches. Where the label changes, a *margin* vanishes: the value of a guard
+/// where it comes closest to firing. A margin belongs to the itinerary that leads to that place and is followed through zero
+/// with the itinerary held fixed, so that it is a smooth function of the parameters.
+pub trait Family {
+    /// What a free run does; two points of one region have the same.
+    type Label: Clone + Debug + Eq + Ord + Hash;
+    /// Which margin.
+    type Margin: Clone + Debug + Eq + Ord + Hash;
+    /// Why a run failed.
+    type Error: std::error::Error;
+
+    /// The label of the free run at `point`.
+    ///
+    /// # Errors
+    /// The run failed.
+    fn label(&self, point: &Point) -> Result<Self::Label, Self::Error>;
+
+    /// The margin `margin` at `point`: positive where its guard does not fire, negative beyond, smooth through zero.
+    ///
+    /// `None` where there is no such extremum, or the itinerary that leads to it cannot be followed.
+    ///
+    /// # Errors
+    /// The run failed.
+    fn margin(&self, point: &Point, margin: &Self::Margin) -> Result<Option<f64>, Self::Error>;
+
+    /// All margins of the free run at `point`, with their values: a boundary through a place close by is the zero of one of them,
+    /// or of one of those at the places on the boundary's other side.
+    ///
+    /// # Errors
+    /// The run failed.
+    fn margins(&self, point: &Point) -> Result<Vec<(Self::Margin, f64)>, Self::Error>;
+}
+
+/// A rectangle of the parameter plane, in the coordinates of [`Point`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    /// The corner with the least coordinates.
+    pub low: Point,
+    /// The corner with the greatest.
+    pub high: Point,
+}

@@ -1,0 +1,80 @@
+//! Margins of prescribed runs vanish on the switch boundaries, at the places known to twenty digits.
+
+#[expect(dead_code, reason = "shared with other tests")]
+mod common;
+
+use stickslip::model::Contact;
+use stickslip::model::regularized::{Phase, Regularized};
+use stickslip::solver::margin::{Margin, Margins, Place, margin, margins};
+use stickslip::solver::{Dop853, Options, Start};
+
+fn options() -> Options {
+    Options { rtol: 1e-14, atol: 1e-14, first_step: Some(0.1), max_step: 0.1, ..Options::default() }
+}
+
+fn start(contact: Contact) -> (Regularized, Start<Phase, 8>) {
+    let system = Regularized::new(contact);
+    (system, Start { mode: Phase::first(&contact), s: 0.0, state: system.start() })
+}
+
+fn free(kappa: f64, psi: f64) -> Margins {
+    let (system, start) = start(Contact::new(kappa, psi, 0.0).unwrap());
+    margins(Dop853, &system, start, f64::INFINITY, &options()).unwrap()
+}
+
+fn value(kappa: f64, psi: f64, which: &Margin) -> f64 {
+    let (system, start) = start(Contact::new(kappa, psi, 0.0).unwrap());
+    let miss = margin(Dop853, &system, start, f64::INFINITY, &options(), which).unwrap();
+    miss.expect("the margin exists near the boundary").value
+}
+
+#[test]
+fn boundaries_are_the_zeros_of_margins() {
+    let data = common::file("boundaries");
+    let mut largest = 0.0_f64;
+    let mut count = 0;
+    for boundary in data["boundaries"].as_array().unwrap() {
+        let (kappa, psi) = (common::number(&boundary["kappa"]), common::number(&boundary["psi"]));
+        let (below, above) = (boundary["below"].as_u64(), boundary["above"].as_u64());
+        // The side of fewer switches, a little off.
+        let side = if below < above { -1.0 } else { 1.0 };
+        let near = psi * (1.0 + side * 1e-5);
+        let run = free(kappa, near);
+        assert_eq!(Some(run.fired.len() as u64), if side < 0.0 { below } else { above });
+        let nearest = run
+            .near_misses
+            .iter()
+            .filter(|miss| miss.value > 0.0)
+            .min_by(|a, b| a.value.total_cmp(&b.value))
+            .expect("a near miss");
+        let which = &nearest.margin;
+        let kind = match which.place {
+            Place::End => "end-of-contact",
+            Place::Minimum(_) if which.exits.len() % 2 == 0 => "slip-graze",
+            Place::Minimum(_) => "stick-graze",
+        };
+        assert_eq!(boundary["kind"], kind, "κ = {kappa}, ψ = {psi}");
+        // Secant steps through zero: the margin exists on both sides.
+        let (mut last, mut at) = (near, psi * (1.0 - side * 1e-6));
+        let (mut last_value, mut at_value) = (nearest.value, value(kappa, at, which));
+        assert!(at_value < 0.0, "beyond the boundary the margin is negative");
+        for _ in 0..6 {
+            if at_value == last_value {
+                break;
+            }
+            let next = at - at_value * (at - last) / (at_value - last_value);
+            (last, last_value) = (at, at_value);
+            (at, at_value) = (next, value(kappa, next, which));
+            if (at - last).abs() < 1e-14 {
+                break;
+            }
+        }
+        if (at - psi).abs() > 1e-12 {
+            println!("{kind} κ = {kappa}, ψ = {psi}: off by {:.1e}, {which:?}", at - psi);
+        }
+        largest = largest.max((at - psi).abs());
+        count += 1;
+    }
+    println!("{count} boundaries, largest error in ψ {largest:.1e}");
+    assert!(largest < 1e-11);
+}
