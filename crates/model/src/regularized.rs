@@ -279,29 +279,26 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
         }
     }
 
-    /// Each right-hand side has a step compiled for itself, which knows the components that stand still (in brackets): these
-    /// cost nothing, and quadratures no stage.
+    /// Each right-hand side has a step compiled for itself, which knows the components that stand still: these cost nothing, and
+    /// quadratures no stage.
     fn step<M: Method>(&self, phase: Phase, trial: &Trial<'_, STATE>, step: &mut Step<STATE>) {
         let side = phase.side;
         let settled = phase.progress == Progress::Settled;
         macro_rules! take {
-            ([$($still:ident)*] $right_hand_side:expr) => {{
+            ($law:ident $damped:literal ($($side:ident)?); $($still:ident)*) => {{
                 let slope = &mut trial.slope.clone_owned();
                 $(slope[$still] = 0.0;)*
-                step.take::<M>(&mut |_, y| $right_hand_side(y), &Trial { slope, ..*trial });
+                let trial = &Trial { slope, ..*trial };
+                step.take::<M>(&mut |_, y| self.$law::<$damped>($($side,)? y), trial);
             }};
         }
         match (phase.regime, self.contact.damping() > 0.0) {
-            (Regime::Slip, false) => {
-                take!([SPRING DAMPING GAP RATE] |y| self.slip::<false>(side, y))
-            }
-            (Regime::Slip, true) => take!([SPRING GAP RATE] |y| self.slip::<true>(side, y)),
-            (Regime::Stick, false) if settled => {
-                take!([DAMPING GAP RATE] |y| self.stick::<false>(y))
-            }
-            (Regime::Stick, true) if settled => take!([GAP RATE] |y| self.stick::<true>(y)),
-            (Regime::Stick, false) => take!([DAMPING] | y | self.first_stick::<false>(side, y)),
-            (Regime::Stick, true) => take!([] | y | self.first_stick::<true>(side, y)),
+            (Regime::Slip, false) => take!(slip false (side); SPRING DAMPING GAP RATE),
+            (Regime::Slip, true) => take!(slip true (side); SPRING GAP RATE),
+            (Regime::Stick, false) if settled => take!(stick false (); DAMPING GAP RATE),
+            (Regime::Stick, true) if settled => take!(stick true (); GAP RATE),
+            (Regime::Stick, false) => take!(first_stick false (side); DAMPING),
+            (Regime::Stick, true) => take!(first_stick true (side);),
         }
     }
 
