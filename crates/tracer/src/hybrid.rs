@@ -22,7 +22,7 @@ pub type ModeOf<P, const N: usize, const G: usize> =
 
 /// The runs of a problem: labels are the guards that fired, in order; margins are those of the solver.
 #[derive(Clone, Copy, Debug)]
-pub struct Runs<P, M, const N: usize, const G: usize> {
+pub struct HybridFamily<P, M, const N: usize, const G: usize> {
     /// The problem.
     pub problem: P,
     /// The method.
@@ -36,16 +36,16 @@ pub struct Runs<P, M, const N: usize, const G: usize> {
 /// A run of a family failed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("at ({}, {}): {kind}", .point.x, .point.y)]
-pub struct RunsError {
+pub struct FamilyError {
     /// Where in the parameter plane.
     pub point: Point,
     /// Why.
-    pub kind: RunsErrorKind,
+    pub kind: FamilyErrorKind,
 }
 
 /// Why a run of a family failed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum RunsErrorKind {
+pub enum FamilyErrorKind {
     /// The integration failed.
     #[error(transparent)]
     Run(#[from] RunError),
@@ -54,16 +54,16 @@ pub enum RunsErrorKind {
     Unfinished(Outcome),
 }
 
-impl<P, M, const N: usize, const G: usize> Family for Runs<P, M, N, G>
+impl<P, M, const N: usize, const G: usize> Family for HybridFamily<P, M, N, G>
 where
     P: Problem<N, G>,
     M: Method,
 {
     type Label = Vec<usize>;
     type Margin = Margin;
-    type Error = RunsError;
+    type Error = FamilyError;
 
-    fn label(&self, point: &Point) -> Result<Vec<usize>, RunsError> {
+    fn label(&self, point: &Point) -> Result<Vec<usize>, FamilyError> {
         let (system, start) = self.problem.at(point);
         let mut fired = Fired(Vec::new());
         let run = run(self.method, &system, start, self.end, &self.options, &mut fired)
@@ -74,14 +74,14 @@ where
         finished(point, run.outcome).map(|()| fired.0)
     }
 
-    fn margin(&self, point: &Point, which: &Margin) -> Result<Option<f64>, RunsError> {
+    fn margin(&self, point: &Point, which: &Margin) -> Result<Option<f64>, FamilyError> {
         let (system, start) = self.problem.at(point);
         margin(self.method, &system, start, self.end, &self.options, which)
             .map(|found| found.map(|miss| miss.value))
             .map_err(|error| failure(point, error))
     }
 
-    fn margins(&self, point: &Point) -> Result<Vec<(Margin, f64)>, RunsError> {
+    fn margins(&self, point: &Point) -> Result<Vec<(Margin, f64)>, FamilyError> {
         let (system, start) = self.problem.at(point);
         let found = margins(self.method, &system, start, self.end, &self.options)
             .map_err(|error| failure(point, error))?;
@@ -90,14 +90,14 @@ where
     }
 }
 
-fn failure(point: &Point, error: RunError) -> RunsError {
-    RunsError { point: *point, kind: error.into() }
+fn failure(point: &Point, error: RunError) -> FamilyError {
+    FamilyError { point: *point, kind: error.into() }
 }
 
-fn finished(point: &Point, outcome: Outcome) -> Result<(), RunsError> {
+fn finished(point: &Point, outcome: Outcome) -> Result<(), FamilyError> {
     match outcome {
         Outcome::EndedByGuard { .. } | Outcome::ReachedEnd => Ok(()),
-        _ => Err(RunsError { point: *point, kind: RunsErrorKind::Unfinished(outcome) }),
+        _ => Err(FamilyError { point: *point, kind: FamilyErrorKind::Unfinished(outcome) }),
     }
 }
 
