@@ -16,6 +16,8 @@ pub(crate) const SHORTEST: f64 = 1e-9;
 #[derive(Clone, Debug)]
 pub(crate) struct Seed<Label, Margin> {
     pub point: Point,
+    /// A unit vector along the boundary.
+    pub tangent: Point,
     pub margin: Margin,
     /// Labels where the margin is positive and where it is negative.
     pub labels: [Label; 2],
@@ -136,7 +138,9 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
             end: None,
             rejected: 0,
         };
-        let Some(gradient) = runs.gradient(&seed.point, &seed.margin, branch.radius)? else {
+        let Some(gradient) =
+            runs.gradient(&seed.point, &seed.margin, &seed.tangent, branch.radius)?
+        else {
             return Ok(None);
         };
         let Some(foothold) = branch.foothold(&seed.point, &gradient)?.ok() else { return Ok(None) };
@@ -205,13 +209,6 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         }
     }
 
-    /// The boundary at the place that the cubic between two nodes has at θ.
-    pub fn on_curve(&self, arc: &Arc, theta: f64, gradient: &Point) -> Traced<Option<Point>, F> {
-        let guess = arc.point(theta);
-        let reach = 0.3 * arc.chord() + 100.0 * self.runs.options.tolerance;
-        Ok(correct(self.runs, &self.margin, &guess, gradient, reach)?.map(|found| found.point))
-    }
-
     fn take_step(&mut self) -> Traced<(), F> {
         let Some(from) = self.trail.back().cloned() else { return Ok(()) };
         if self.taken >= self.runs.options.max_nodes {
@@ -239,6 +236,9 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
             };
             self.rejected += 1;
             failures += 1;
+            if let Some(index) = self.aim(&from, h)? {
+                return self.finish(End::Known(index), None);
+            }
             let stuck = h < 1e-2 * first_step || beyond.is_some() || turned;
             if stuck && matches!(failures, 1 | 4 | 8 | 16 | 24 | 32) {
                 if let Some(special) = special::locate(self, &from, beyond.as_ref(), h)? {
@@ -278,7 +278,9 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         let Some(corrected) = correct(runs, &self.margin, &guess, &from.gradient, reach)? else {
             return Ok(Attempt::Lost);
         };
-        let Some(gradient) = runs.gradient(&corrected.point, &self.margin, self.radius)? else {
+        let Some(gradient) =
+            runs.gradient(&corrected.point, &self.margin, &from.node.tangent, self.radius)?
+        else {
             return Ok(Attempt::Lost);
         };
         let tangent = self.tangent(&gradient);
@@ -299,7 +301,8 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         }
         let (point, gradient, edge) = match self.leave_window(&arc, &gradient)? {
             Some(point) => {
-                let Some(gradient) = runs.gradient(&point, &self.margin, self.radius)? else {
+                let Some(gradient) = runs.gradient(&point, &self.margin, &tangent, self.radius)?
+                else {
                     return Ok(Attempt::Lost);
                 };
                 (point, gradient, true)
@@ -427,6 +430,56 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         })
     }
 
+    /// The known vertex ahead, within a step that failed, that the branch runs into without another special point before.
+    fn aim(&self, from: &FootholdOf<F>, h: f64) -> Traced<Option<usize>, F> {
+        let runs = self.runs;
+        for (index, stop) in self.stops.iter().enumerate() {
+            let chord = stop.point - from.node.point;
+            let length = chord.norm();
+            let angle = chord.angle(&from.node.tangent);
+            if !(length <= 2.0 * h && length > SHORTEST * runs.scale)
+                || !(angle <= 0.5 * runs.options.max_angle)
+            {
+                continue;
+            }
+            let end = Node { point: stop.point, tangent: mirrored(&from.node.tangent, &chord) };
+            let arc = Arc::between(&from.node, &end);
+            let mut runs_in = true;
+            for theta in [0.3, 0.7] {
+                let value = runs.margin(&arc.point(theta), &self.margin)?;
+                runs_in &= value.is_some_and(|value| {
+                    value.abs() <= runs.options.interpolation * from.gradient.norm()
+                });
+            }
+            if !runs_in {
+                continue;
+            }
+            // Halfway, and just before the vertex.
+            for theta in [0.5, 0.97] {
+                runs_in = runs_in && self.holds(from, &arc.point(theta), 0.1 * length)?;
+            }
+            if runs_in {
+                return Ok(Some(index));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Whether the branch passes close to `guess` with its labels.
+    pub fn holds(&self, from: &FootholdOf<F>, guess: &Point, reach: f64) -> Traced<bool, F> {
+        let runs = self.runs;
+        let reach = reach + 100.0 * runs.options.tolerance;
+        let Some(found) = correct(runs, &self.margin, guess, &from.gradient, reach)? else {
+            return Ok(false);
+        };
+        let tangent = &from.node.tangent;
+        let gradient = runs.gradient(&found.point, &self.margin, tangent, self.radius)?;
+        Ok(match gradient {
+            Some(gradient) => self.foothold(&found.point, &gradient)?.is_ok(),
+            None => false,
+        })
+    }
+
     fn passes_origin(&self, arc: &Arc) -> bool {
         let (theta, distance) = arc.closest(&self.origin.point);
         distance < 1e-8 * self.runs.scale && theta > 0.0 && {
@@ -474,9 +527,9 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
 
     /// The tangent at an end: across the gradient where there is one, else that of the circle through the last node.
     fn end_tangent(&self, last: &Node, point: &Point) -> Traced<Point, F> {
-        let chord = (point - last.point).normalize();
-        let mirrored = chord * (2.0 * chord.dot(&last.tangent)) - last.tangent;
-        if let Some(gradient) = self.runs.gradient(point, &self.margin, self.radius)? {
+        let chord = point - last.point;
+        let mirrored = mirrored(&last.tangent, &chord);
+        if let Some(gradient) = self.runs.gradient(point, &self.margin, &mirrored, self.radius)? {
             let tangent = self.tangent(&gradient);
             let turn = tangent.angle(&mirrored);
             if turn < 0.1 * last.tangent.angle(&chord) + 1e-6 {
@@ -485,4 +538,10 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         }
         Ok(mirrored)
     }
+}
+
+/// The tangent at the other end of a circle's arc with this tangent at one end.
+fn mirrored(tangent: &Point, chord: &Point) -> Point {
+    let chord = chord.normalize();
+    chord * (2.0 * chord.dot(tangent)) - tangent
 }

@@ -13,8 +13,8 @@ pub(crate) struct Corrected {
 
 /// The zero of a margin on the line through `guess` along `gradient`, at most `reach` away, by the secant method.
 ///
-/// `gradient` is that of a place nearby; its length is the slope to start with. The last update is not evaluated again: the error
-/// it leaves is the update times the relative error of the slope, which the two updates before tell.
+/// `gradient` is that of a place nearby; its length is the slope to start with. The last update is not evaluated again: it leaves
+/// an error of the update times the relative error of the slope, which is that of the update before or, of a secant, less.
 pub(crate) fn correct<F: Family>(
     runs: &Runs<'_, F>,
     margin: &F::Margin,
@@ -36,29 +36,32 @@ pub(crate) fn correct<F: Family>(
         if !((next - guess).norm() <= reach) {
             return Ok(None);
         }
-        if update.abs() * contraction <= 0.1 * runs.resolution(slope) {
+        if update.abs() * contraction <= 0.2 * runs.resolution(slope) {
             return Ok(Some(Corrected { point: next, evaluations }));
         }
         let Some(next_value) = runs.margin(&next, margin)? else { return Ok(None) };
         contraction = (next_value / value).abs();
         // Below that the difference of two margins is noise, and the slope at hand is better.
-        if (next_value - value).abs() > 1e3 * runs.options.noise {
-            let secant = (next_value - value) / update;
+        let fall = next_value - value;
+        if fall.abs() > 1e3 * runs.options.noise {
+            let secant = fall / update;
             if !(secant > 0.05 * slope && secant < 20.0 * slope) {
                 return Ok(None);
             }
             slope = secant;
+            contraction += runs.options.noise / fall.abs();
         }
         (point, value) = (next, next_value);
     }
     Ok(None)
 }
 
-/// The place near `guess` where two margins vanish together, by Newton's method.
+/// The place near `guess` where two margins vanish together, by Newton's method; `direction` is that of differences.
 pub(crate) fn crossing<F: Family>(
     runs: &Runs<'_, F>,
     margins: [&F::Margin; 2],
     guess: &Point,
+    direction: &Point,
     radius: f64,
     reach: f64,
 ) -> Traced<Option<Point>, F> {
@@ -74,8 +77,8 @@ pub(crate) fn crossing<F: Family>(
         // The gradients of two rounds ago serve as long as the updates shrink fast.
         if inverse.is_none() || round % 3 == 0 {
             let (Some(one), Some(two)) = (
-                runs.gradient(&point, margins[0], radius)?,
-                runs.gradient(&point, margins[1], radius)?,
+                runs.gradient(&point, margins[0], direction, radius)?,
+                runs.gradient(&point, margins[1], direction, radius)?,
             ) else {
                 return Ok(None);
             };
@@ -93,7 +96,7 @@ pub(crate) fn crossing<F: Family>(
             return Ok(None);
         }
         let resolution = runs.options.tolerance.max(runs.options.noise * inverse.norm());
-        if size <= resolution || (size <= 10.0 * resolution && size >= last) {
+        if size <= runs.options.tolerance || (size <= 10.0 * resolution && size >= 0.5 * last) {
             return Ok(Some(point));
         }
         last = size;

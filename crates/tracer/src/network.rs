@@ -75,6 +75,8 @@ pub(crate) struct Passage<Label> {
 pub(crate) struct Builder<Label, Margin> {
     pub network: Network<Label, Margin>,
     pub stops: Vec<Stop>,
+    /// Curves that came from parting one, whose sides must be looked at again.
+    pub suspects: Vec<usize>,
     scale: f64,
     /// Pieces (curve, node) by cell of the window.
     cells: Vec<Vec<(usize, usize)>>,
@@ -93,10 +95,12 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
             unresolved: Vec::new(),
         };
         let scale = window.extent().min();
-        Self { network, stops: Vec::new(), scale, cells: vec![Vec::new(); CELLS * CELLS] }
+        let cells = vec![Vec::new(); CELLS * CELLS];
+        Self { network, stops: Vec::new(), suspects: Vec::new(), scale, cells }
     }
 
-    /// Adds a vertex, or finds it among those there are; curves that pass through it are parted.
+    /// Adds a vertex, or finds it among those there are; curves that pass through it are parted, and their parts are
+    /// [suspects](Self::suspects).
     pub fn add_vertex(&mut self, special: &Special<Margin>) -> usize {
         let near = special.uncertainty + SHORTEST * self.scale;
         let known = self
@@ -245,6 +249,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         for (curve, piece, theta) in hits {
             let tangent = self.arc(curve, piece).tangent(theta);
             let here = Node { point, tangent };
+            self.suspects.push(curve);
             let own = &mut self.network.curves[curve];
             let after: Vec<Node> =
                 std::iter::once(here).chain(own.nodes[piece + 1..].iter().copied()).collect();
@@ -253,6 +258,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
             if let Some([start, end]) = own.ends {
                 own.ends = Some([start, vertex]);
                 let rest = Curve { nodes: after, ends: Some([vertex, end]), ..own.clone() };
+                self.suspects.push(self.network.curves.len());
                 self.network.curves.push(rest);
             } else {
                 // A closed curve only starts elsewhere.
@@ -262,10 +268,26 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
                 own.ends = Some([vertex, vertex]);
             }
         }
+        self.rebuild_index();
+    }
+
+    /// Takes curves out.
+    pub fn remove_curves(&mut self, removed: &[usize]) {
+        let mut index = 0;
+        self.network.curves.retain(|_| {
+            index += 1;
+            !removed.contains(&(index - 1))
+        });
+        self.rebuild_index();
+    }
+
+    fn rebuild_index(&mut self) {
         self.cells.iter_mut().for_each(Vec::clear);
-        let curves = std::mem::take(&mut self.network.curves);
-        for curve in curves {
-            self.add_curve(curve);
+        for curve in 0..self.network.curves.len() {
+            for piece in 0..self.network.curves[curve].nodes.len() - 1 {
+                let arc = self.arc(curve, piece);
+                self.enter(curve, piece, &arc);
+            }
         }
     }
 }

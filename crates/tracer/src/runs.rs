@@ -64,42 +64,57 @@ impl<'a, F: Family> Runs<'a, F> {
         Ok(value)
     }
 
-    /// The gradient of a margin by central differences.
+    /// The gradient of a margin by differences along `direction`, a unit vector, and across it.
     ///
-    /// With margins in error by ε and a scale L on which they vary, the error ε/h + h²/(6L²) is least for h = (3εL²)^⅓: 3e-5 of L
-    /// for ε = 1e-14 and L = 1, which leaves 5e-10. `radius` is the radius of curvature of the boundary, the scale that is known.
-    /// Where the margin does not exist at all four points, the step shrinks.
+    /// With margins in error by ε and a scale L on which they vary, the error ε/h + h²/(6L²) of a central difference is least for
+    /// h = (3εL²)^⅓: 3e-5 of L for ε = 1e-14 and L = 1, which leaves 5e-10. `radius` is the radius of curvature of the boundary,
+    /// the scale that is known. Where the margin exists on one side only, the difference is one-sided of second order; where it
+    /// exists on neither, the step shrinks. Boundaries end in wedges that are thin across and long along them, which is why the
+    /// direction matters.
     pub fn gradient(
         &self,
         point: &Point,
         margin: &F::Margin,
+        direction: &Point,
         radius: f64,
     ) -> Traced<Option<Point>, F> {
         let ratio = (radius / self.scale).clamp(1e-9, 1.0);
-        let mut h = 3e-5 * self.scale * ratio.powf(2.0 / 3.0);
-        while h > 1e-11 * self.scale {
-            if let Some(gradient) = self.difference(point, margin, h)? {
-                return Ok(Some(gradient));
+        let h = 3e-5 * self.scale * ratio.powf(2.0 / 3.0);
+        let across = Point::new(-direction.y, direction.x);
+        let (Some(along), Some(rise)) =
+            (self.slope(point, margin, direction, h)?, self.slope(point, margin, &across, h)?)
+        else {
+            return Ok(None);
+        };
+        Ok(Some(direction * along + across * rise))
+    }
+
+    fn slope(
+        &self,
+        point: &Point,
+        margin: &F::Margin,
+        direction: &Point,
+        mut h: f64,
+    ) -> Traced<Option<f64>, F> {
+        while h > 1e-9 * self.scale {
+            let ahead = self.margin(&(point + direction * h), margin)?;
+            let behind = self.margin(&(point - direction * h), margin)?;
+            let (sign, near) = match (ahead, behind) {
+                (Some(ahead), Some(behind)) => return Ok(Some((ahead - behind) / (2.0 * h))),
+                (Some(ahead), None) => (1.0, ahead),
+                (None, Some(behind)) => (-1.0, behind),
+                (None, None) => {
+                    h /= 16.0;
+                    continue;
+                }
+            };
+            let far = self.margin(&(point + direction * (2.0 * sign * h)), margin)?;
+            if let (Some(here), Some(far)) = (self.margin(point, margin)?, far) {
+                return Ok(Some(sign * (4.0 * near - 3.0 * here - far) / (2.0 * h)));
             }
             h /= 16.0;
         }
         Ok(None)
-    }
-
-    fn difference(&self, point: &Point, margin: &F::Margin, h: f64) -> Traced<Option<Point>, F> {
-        let mut gradient = Point::zeros();
-        for axis in 0..2 {
-            let (mut ahead, mut behind) = (*point, *point);
-            ahead[axis] += h;
-            behind[axis] -= h;
-            let (Some(more), Some(less)) =
-                (self.margin(&ahead, margin)?, self.margin(&behind, margin)?)
-            else {
-                return Ok(None);
-            };
-            gradient[axis] = (more - less) / (ahead[axis] - behind[axis]);
-        }
-        Ok(Some(gradient))
     }
 
     /// How far a zero of a margin can be told, given the length of its gradient.

@@ -57,6 +57,7 @@ pub(crate) fn identify<F: Family>(
     let mut tried: Vec<F::Margin> = Vec::new();
     let middle = places[0].lerp(&places[1], 0.5);
     let width = (places[1] - places[0]).norm();
+    let along = (places[1] - places[0]) / width;
     for (margin, value) in margins {
         if tried.len() >= CANDIDATES {
             break;
@@ -65,7 +66,7 @@ pub(crate) fn identify<F: Family>(
             continue;
         }
         tried.push(margin.clone());
-        let Some(gradient) = runs.gradient(&middle, &margin, runs.scale)? else { continue };
+        let Some(gradient) = runs.gradient(&middle, &margin, &along, runs.scale)? else { continue };
         let slope = gradient.norm();
         let reach = 10.0 * width + 10.0 * runs.resolution(slope);
         if !(value.abs() <= slope * reach) {
@@ -77,7 +78,8 @@ pub(crate) fn identify<F: Family>(
         } else {
             [labels[1].clone(), labels[0].clone()]
         };
-        let seed = Seed { point: found.point, margin, labels };
+        let tangent = Point::new(gradient.y, -gradient.x) / slope;
+        let seed = Seed { point: found.point, tangent, margin, labels };
         if holds(runs, &seed, &gradient)? {
             return Ok(Some(seed));
         }
@@ -86,7 +88,7 @@ pub(crate) fn identify<F: Family>(
 }
 
 /// Whether the labels on both sides of a seed are its own.
-fn holds<F: Family>(
+pub(crate) fn holds<F: Family>(
     runs: &Runs<'_, F>,
     seed: &Seed<F::Label, F::Margin>,
     gradient: &Point,

@@ -6,6 +6,7 @@ use crate::corrector::{correct, crossing, stationary};
 use crate::curve::{Node, VertexKind};
 use crate::family::{Family, Point};
 use crate::runs::{Runs, Traced};
+use crate::seed::{bisect, identify};
 
 /// The special point of a branch after `from` within a step `h` that failed; `beyond` is the place reached if its labels are
 /// wrong. `None` if it is not found from so far away.
@@ -16,8 +17,18 @@ pub(crate) fn locate<F: Family>(
     h: f64,
 ) -> Traced<Option<Special<F::Margin>>, F> {
     let mut found = Vec::new();
-    for margin in rivals(branch, from, beyond) {
-        if let Some(point) = meet(branch, from, beyond, &margin, h)? {
+    let mut margins = rivals(branch, from, beyond);
+    if let Some(beyond) = beyond {
+        margins.extend(wedge(branch, beyond)?);
+    }
+    for margin in margins {
+        let met = match meet(branch, from, beyond, &margin, h)? {
+            None if narrow::<F>(from, beyond, &margin, h) => {
+                graze(branch, from, beyond, &margin, h)?
+            }
+            met => met,
+        };
+        if let Some(point) = met {
             let progress = (point - from.node.point).dot(&from.node.tangent);
             found.push((progress, point, margin));
         }
@@ -154,7 +165,14 @@ fn meet<F: Family>(
         (None, Some(_)) => end,
         _ => return Ok(None),
     };
-    let Some(point) = crossing(runs, [&branch.margin, margin], &guess, branch.radius(), 2.0 * h)?
+    let Some(point) = crossing(
+        runs,
+        [&branch.margin, margin],
+        &guess,
+        &from.node.tangent,
+        branch.radius(),
+        2.0 * h,
+    )?
     else {
         return Ok(None);
     };
@@ -170,22 +188,21 @@ fn is_last<F: Family>(
     point: &Point,
 ) -> Traced<bool, F> {
     let runs = branch.runs;
-    let Some(gradient) = runs.gradient(point, &branch.margin, branch.radius())? else {
+    let Some(gradient) =
+        runs.gradient(point, &branch.margin, &from.node.tangent, branch.radius())?
+    else {
         return Ok(true);
     };
     let node = Node { point: *point, tangent: branch.tangent(&gradient) };
     let length = (point - from.node.point).norm();
-    let holds = |guess: Point| -> Traced<bool, F> {
-        let reach = 0.3 * length + 100.0 * runs.options.tolerance;
-        let Some(found) = correct(runs, &branch.margin, &guess, &gradient, reach)? else {
+    if length > 1e-6 * runs.scale {
+        let before = Arc::between(&from.node, &node).point(0.97);
+        if !branch.holds(from, &before, 0.3 * length)? {
             return Ok(false);
-        };
-        Ok(branch.foothold(&found.point, &gradient)?.is_ok())
-    };
-    if length > 1e-6 * runs.scale && !holds(Arc::between(&from.node, &node).point(0.97))? {
-        return Ok(false);
+        }
     }
-    Ok(!holds(point + node.tangent * (0.03 * length).max(1e-6 * runs.scale))?)
+    let after = point + node.tangent * (0.03 * length).max(1e-6 * runs.scale);
+    Ok(!branch.holds(from, &after, 0.3 * length)?)
 }
 
 /// A special point that the labels do not show: between the last two footholds and `next` another margin comes down to zero and
@@ -253,41 +270,20 @@ fn dip<F: Family>(
         Arc::between(&places[0].node, &places[1].node),
         Arc::between(&places[1].node, &places[2].node),
     ];
-    let probe = |length: f64| -> Traced<Option<Probe>, F> {
-        let (arc, theta) = if length < 0.0 {
-            (&arcs[0], 1.0 + length / arcs[0].chord())
+    let place = |length: f64| {
+        if length < 0.0 {
+            arcs[0].point(1.0 + length / arcs[0].chord())
         } else {
-            (&arcs[1], length / arcs[1].chord())
-        };
-        let Some(point) = branch.on_curve(arc, theta, &places[1].gradient)? else {
-            return Ok(None);
-        };
-        let (Some(own), Some(other), Some(value)) = (
-            runs.gradient(&point, &branch.margin, branch.radius())?,
-            runs.gradient(&point, margin, branch.radius())?,
-            runs.margin(&point, margin)?,
-        ) else {
-            return Ok(None);
-        };
-        let sine = own.perp(&other) / (own.norm() * other.norm());
-        Ok(Some(Probe { point, sine, value, slope: other.norm() }))
+            arcs[1].point(length / arcs[1].chord())
+        }
     };
-    let mut length = guess;
-    let Some(mut last) = probe(length)? else { return Ok(None) };
-    let mut shift = 0.1 * arcs[0].chord().min(arcs[1].chord());
-    for _ in 0..12 {
-        let Some(now) = probe(length + shift)? else { return Ok(None) };
-        length += shift;
-        let turn = (now.sine - last.sine) / shift;
-        last = now;
-        shift = -last.sine / turn;
-        if !(shift.abs() <= arcs[0].chord() + arcs[1].chord()) {
-            return Ok(None);
-        }
-        if shift.abs() <= 10.0 * runs.options.tolerance {
-            break;
-        }
-    }
+    let chords = arcs.map(|arc| arc.chord());
+    let start = [guess, guess + 0.1 * chords[0].min(chords[1])];
+    let Some((length, last)) =
+        parallel(branch, place, places[1], margin, start, [-chords[0], chords[1]])?
+    else {
+        return Ok(None);
+    };
     let gap = last.value / last.slope;
     let margins = vec![branch.margin.clone(), margin.clone()];
     let special = |point, uncertainty| Special {
@@ -308,8 +304,10 @@ fn dip<F: Family>(
     // Twice through zero: the first time lies between the first place and the lowest one.
     let before = value_beside(places[0], margin).unwrap_or(beside);
     let start = places[0].node.point.lerp(&last.point, before / (before - last.value));
-    let reach = 2.0 * (arcs[0].chord() + arcs[1].chord());
-    let crossed = crossing(runs, [&branch.margin, margin], &start, branch.radius(), reach)?;
+    let tangent = &places[1].node.tangent;
+    let reach = 2.0 * (chords[0] + chords[1]);
+    let crossed =
+        crossing(runs, [&branch.margin, margin], &start, tangent, branch.radius(), reach)?;
     Ok(crossed.map(|point| {
         let along = (point - places[1].node.point).dot(&places[1].node.tangent);
         (special(point, 0.0), along < 0.0)
@@ -323,4 +321,140 @@ struct Probe {
     sine: f64,
     value: f64,
     slope: f64,
+}
+
+/// Where, along a branch, the gradients of its own and of another margin are parallel, by the secant method: the length there, and
+/// what is found. Where the other margin stops to exist before that place, as an extremum does that leaves through the end of its
+/// phase, the place is approached from the side on which it exists.
+fn parallel<F: Family>(
+    branch: &Branch<'_, '_, F>,
+    place: impl Fn(f64) -> Point,
+    near: &FootholdOf<F>,
+    margin: &F::Margin,
+    start: [f64; 2],
+    limits: [f64; 2],
+) -> Traced<Option<(f64, Probe)>, F> {
+    let runs = branch.runs;
+    let width = limits[1] - limits[0];
+    let probe = |length: f64| -> Traced<Option<Probe>, F> {
+        let reach = 0.3 * width + 100.0 * runs.options.tolerance;
+        let guess = place(length);
+        let Some(found) = correct(runs, &branch.margin, &guess, &near.gradient, reach)? else {
+            return Ok(None);
+        };
+        let (point, tangent) = (found.point, &near.node.tangent);
+        let (Some(own), Some(other), Some(value)) = (
+            runs.gradient(&point, &branch.margin, tangent, branch.radius())?,
+            runs.gradient(&point, margin, tangent, branch.radius())?,
+            runs.margin(&point, margin)?,
+        ) else {
+            return Ok(None);
+        };
+        let sine = own.perp(&other) / (own.norm() * other.norm());
+        Ok(Some(Probe { point, sine, value, slope: other.norm() }))
+    };
+    let mut length = start[0];
+    let Some(mut last) = probe(length)? else { return Ok(None) };
+    let mut shift = start[1] - start[0];
+    for _ in 0..40 {
+        let Some(now) = probe(length + shift)? else {
+            shift *= 0.5;
+            if shift.abs() <= 1e-10 * runs.scale {
+                return Ok(Some((length, last)));
+            }
+            continue;
+        };
+        length += shift;
+        let turn = (now.sine - last.sine) / shift;
+        last = now;
+        shift = -last.sine / turn;
+        if !(length + shift >= limits[0] && length + shift <= limits[1]) {
+            return Ok(None);
+        }
+        if shift.abs() <= 10.0 * runs.options.tolerance {
+            return Ok(Some((length, last)));
+        }
+    }
+    Ok(None)
+}
+
+/// Whether another margin is so close to zero beside the step that its boundary may touch the branch there.
+fn narrow<F: Family>(
+    from: &FootholdOf<F>,
+    beyond: Option<&FootholdOf<F>>,
+    margin: &F::Margin,
+    h: f64,
+) -> bool {
+    let values =
+        [Some(from), beyond].map(|foothold| foothold.and_then(|f| value_beside(f, margin)));
+    // Not known beside the step: found across a wedge.
+    values.iter().all(Option::is_none)
+        || values.iter().flatten().any(|value| value.abs() <= h * from.gradient.norm())
+}
+
+/// Where the boundary of `margin` touches the branch within the step.
+fn graze<F: Family>(
+    branch: &Branch<'_, '_, F>,
+    from: &FootholdOf<F>,
+    beyond: Option<&FootholdOf<F>>,
+    margin: &F::Margin,
+    h: f64,
+) -> Traced<Option<Point>, F> {
+    let end = beyond.map_or_else(
+        || Node { point: branch.predict(&from.node, h), tangent: from.node.tangent },
+        |foothold| foothold.node,
+    );
+    if is_twin(branch, margin)? {
+        return Ok(None);
+    }
+    let arc = Arc::between(&from.node, &end);
+    let chord = arc.chord();
+    let slack = 1e-8 * branch.runs.scale;
+    for start in [[chord, 0.75 * chord], [0.0, 0.25 * chord]] {
+        let place = |length: f64| arc.point(length / chord);
+        let found = parallel(branch, place, from, margin, start, [-slack, chord + slack])?;
+        if let Some((_, probe)) = found
+            && (probe.value / probe.slope).abs() <= branch.runs.options.interpolation
+        {
+            return Ok(Some(probe.point));
+        }
+    }
+    Ok(None)
+}
+
+/// Whether another margin vanishes all along the branch, as the two do that a boundary has from its two sides.
+fn is_twin<F: Family>(branch: &Branch<'_, '_, F>, margin: &F::Margin) -> Traced<bool, F> {
+    let Some(back) = branch.trail().front() else { return Ok(false) };
+    let value = branch.runs.margin(&back.node.point, margin)?;
+    let floor = branch.runs.options.interpolation * back.gradient.norm();
+    Ok(value.is_some_and(|value| value.abs() <= floor))
+}
+
+/// The margins that part a thin region beside a place from the label that the branch has on that side.
+fn wedge<F: Family>(
+    branch: &Branch<'_, '_, F>,
+    place: &FootholdOf<F>,
+) -> Traced<Vec<F::Margin>, F> {
+    let runs = branch.runs;
+    let left = Point::new(-place.node.tangent.y, place.node.tangent.x);
+    let mut margins = Vec::new();
+    for (side, normal) in [left, -left].into_iter().enumerate() {
+        if place.sides[side].label == branch.sides[side] {
+            continue;
+        }
+        let mut offset = 4.0 * runs.options.offset;
+        while offset < 1e-3 * runs.scale {
+            let segment = [0.25 * offset, offset].map(|offset| place.node.point + normal * offset);
+            let labels = [runs.label(&segment[0])?, runs.label(&segment[1])?];
+            if labels[1] == branch.sides[side] && labels[0] != labels[1] {
+                let change = bisect(runs, &segment, [0.0, 1.0], labels)?;
+                let places = change.places.map(|part| segment[0].lerp(&segment[1], part));
+                margins.extend(identify(runs, &places, &change.labels)?.map(|seed| seed.margin));
+                break;
+            }
+            offset *= 4.0;
+        }
+    }
+    margins.retain(|margin| *margin != branch.margin);
+    Ok(margins)
 }

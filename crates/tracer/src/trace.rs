@@ -1,13 +1,15 @@
 //! All boundaries in a window.
 
+use crate::arc::Arc;
 use crate::branch::{Branch, End, Seed, Special};
+use crate::corrector::correct;
 use crate::curve::{Curve, Node, VertexKind};
 use crate::family::{Family, Point, Window};
 use crate::island::islands;
 use crate::network::{Builder, Network, Unresolved};
 use crate::options::{TraceError, TraceOptions};
 use crate::runs::{Runs, Traced};
-use crate::seed::{GridPlace, bisect, identify};
+use crate::seed::{GridPlace, bisect, holds, identify};
 
 /// Traces every boundary of a family in a window.
 ///
@@ -217,6 +219,41 @@ impl<F: Family> Tracer<'_, '_, F> {
         Ok(())
     }
 
+    /// Takes out the parts of curves whose labels are wrong: two vertices lay between two nodes, and only one of them was found
+    /// later. The circles around it find the right curves.
+    fn look_at_suspects(&mut self) -> Traced<(), F> {
+        let mut wrong = Vec::new();
+        for index in std::mem::take(&mut self.builder.suspects) {
+            let curve = &self.builder.network.curves[index];
+            let piece = (curve.nodes.len() - 1) / 2;
+            let guess = Arc::between(&curve.nodes[piece], &curve.nodes[piece + 1]);
+            let (guess, tangent, reach) = (guess.point(0.5), guess.tangent(0.5), guess.chord());
+            let found =
+                match self.runs.gradient(&guess, &curve.margin, &tangent, self.runs.scale)? {
+                    Some(gradient) => correct(self.runs, &curve.margin, &guess, &gradient, reach)?
+                        .map(|found| (found.point, gradient)),
+                    None => None,
+                };
+            let holds = match found {
+                Some((point, gradient)) => {
+                    let [left, right] = curve.sides.clone();
+                    let on_left = gradient.dot(&Point::new(-tangent.y, tangent.x)) > 0.0;
+                    let labels = if on_left { [left, right] } else { [right, left] };
+                    let seed = Seed { point, tangent, margin: curve.margin.clone(), labels };
+                    holds(self.runs, &seed, &gradient)?
+                }
+                None => false,
+            };
+            if !holds {
+                wrong.push(index);
+            }
+        }
+        if !wrong.is_empty() {
+            self.builder.remove_curves(&wrong);
+        }
+        Ok(())
+    }
+
     /// Origin, nodes, and the vertex at the end, `None` if it closes; `None` in place of all if no branch starts there.
     #[expect(clippy::type_complexity)]
     fn follow(
@@ -239,7 +276,11 @@ impl<F: Family> Tracer<'_, '_, F> {
         let end = match branch.end().cloned() {
             Some(End::Closed) => None,
             Some(End::Known(index)) => Some(index),
-            Some(End::Vertex(special)) => Some(self.builder.add_vertex(&special)),
+            Some(End::Vertex(special)) => {
+                let index = self.builder.add_vertex(&special);
+                self.look_at_suspects()?;
+                Some(index)
+            }
             Some(End::Limit) | None => {
                 self.builder.network.unresolved.push(Unresolved::TooManyNodes { point: last });
                 let special = Special {

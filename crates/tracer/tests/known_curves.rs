@@ -97,6 +97,15 @@ fn assert_on<M>(curve: &Curve<Label, M>, distance: impl Fn(&Point) -> f64) {
     let (mut nodes, mut pieces) = (0.0_f64, 0.0_f64);
     for node in &curve.nodes {
         nodes = nodes.max(distance(&node.point).abs());
+        if distance(&node.point).abs() > 3e-13 {
+            eprintln!(
+                "{:?} {:?} {:e} of {}",
+                node,
+                curve.nodes.iter().position(|n| n == node),
+                distance(&node.point),
+                curve.nodes.len()
+            );
+        }
     }
     for piece in 0..curve.nodes.len() - 1 {
         for i in 1..20 {
@@ -104,7 +113,6 @@ fn assert_on<M>(curve: &Curve<Label, M>, distance: impl Fn(&Point) -> f64) {
             pieces = pieces.max(distance(&point).abs());
         }
     }
-    eprintln!("nodes {nodes:e} pieces {pieces:e}");
     assert!(nodes < 1e-12, "nodes {nodes:e}");
     assert!(pieces < 2e-10, "pieces {pieces:e}");
 }
@@ -239,4 +247,179 @@ fn a_line_through_a_corner() {
     has_vertex(&network, VertexKind::WindowEdge, 1.0, 0.0);
     has_vertex(&network, VertexKind::WindowCorner, -1.0, -1.0);
     assert!((length(&network.curves[0]) - 5.0_f64.sqrt()).abs() < 1e-10);
+}
+
+/// A guard h(θ) = a + (b − θ)² on a phase 0 ≤ θ ≤ 1 that fires where it falls through zero, and then fires back where it rises
+/// again, with a = y + x/5 and b = 1 + x/2: its minimum leaves the phase through the end at x = 0.
+struct Dip;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+enum DipMargin {
+    /// The minimum, before any firing.
+    Minimum,
+    /// The value at the end, before any firing.
+    End,
+    /// Minus the value at the end after one firing.
+    Back,
+}
+
+impl Dip {
+    fn shape(point: &Point) -> (f64, f64) {
+        (point.y + 0.2 * point.x, 1.0 + 0.5 * point.x)
+    }
+}
+
+impl Family for Dip {
+    type Label = u8;
+    type Margin = DipMargin;
+    type Error = Infallible;
+
+    fn label(&self, point: &Point) -> Result<u8, Infallible> {
+        let (a, b) = Self::shape(point);
+        let end = a + (1.0 - b).powi(2);
+        Ok(if end < 0.0 {
+            1
+        } else if b < 1.0 && a < 0.0 {
+            2
+        } else {
+            0
+        })
+    }
+
+    fn margin(&self, point: &Point, margin: &DipMargin) -> Result<Option<f64>, Infallible> {
+        let (a, b) = Self::shape(point);
+        let end = a + (1.0 - b).powi(2);
+        Ok(match margin {
+            DipMargin::Minimum => (b < 1.0).then_some(a),
+            DipMargin::End => Some(end),
+            DipMargin::Back => (a < 0.0 && b - (-a).sqrt() < 1.0).then_some(-end),
+        })
+    }
+
+    fn free_run(&self, point: &Point) -> Result<FreeRun<u8, DipMargin>, Infallible> {
+        let label = self.label(point)?;
+        let known: &[DipMargin] = match label {
+            0 => &[DipMargin::Minimum, DipMargin::End],
+            1 => &[DipMargin::Back],
+            _ => &[],
+        };
+        let mut margins = Vec::new();
+        for margin in known {
+            margins.extend(self.margin(point, margin)?.map(|value| (*margin, value)));
+        }
+        Ok(FreeRun { label, margins })
+    }
+}
+
+#[test]
+fn a_minimum_that_leaves_through_the_end() {
+    let network = trace(&Dip, &SQUARE, &exact()).unwrap();
+    eprintln!("{:?} {:?} {:#?}", network.statistics, network.vertices, network.unresolved);
+    for curve in &network.curves {
+        eprintln!(
+            "  {:?} {:?} {:?} {} nodes {:?} {:?}",
+            curve.margin,
+            curve.sides,
+            curve.ends,
+            curve.nodes.len(),
+            curve.nodes[0].point.as_slice(),
+            curve.nodes[curve.nodes.len() - 1].point.as_slice()
+        );
+    }
+    assert_eq!(network.unresolved, []);
+    assert_eq!((network.curves.len(), network.vertices.len()), (3, 4));
+    let middle = network.vertices.iter().position(|vertex| vertex.point.norm() < 1e-8);
+    assert!(middle.is_some());
+}
+
+/// A plane full of circles of many sizes, asked in order.
+struct Circles(Vec<[f64; 3]>);
+
+impl Family for Circles {
+    type Label = Label;
+    type Margin = Margin;
+    type Error = Infallible;
+
+    fn label(&self, point: &Point) -> Result<Label, Infallible> {
+        Ok((0..self.0.len()).map(|i| self.value(i, point) < 0.0).collect())
+    }
+
+    fn margin(&self, point: &Point, margin: &Margin) -> Result<Option<f64>, Infallible> {
+        Ok(Some(self.value(margin.0, point)))
+    }
+
+    fn free_run(&self, point: &Point) -> Result<FreeRun<Label, Margin>, Infallible> {
+        let label = self.label(point)?;
+        let margins = (0..self.0.len())
+            .filter(|&i| !label[i])
+            .map(|i| ((i, label[..i].to_vec()), self.value(i, point)))
+            .collect();
+        Ok(FreeRun { label, margins })
+    }
+}
+
+impl Circles {
+    fn value(&self, index: usize, point: &Point) -> f64 {
+        let [x, y, radius] = self.0[index];
+        // A little of everything, so that nothing is exact by accident; noise as of a run.
+        let noise = 1e-14 * (1e9 * (point.x + 3.7 * point.y)).sin();
+        ((point - Point::new(x, y)).norm_squared() - radius * radius) * (0.3 * point.x).exp()
+            + noise
+    }
+}
+
+/// Euler's formula for random circles: the curves between crossings and the crossings are those that geometry tells.
+#[test]
+fn random_circles() {
+    let mut state = 7_u64;
+    let mut random = || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    for case in 0..40 {
+        let circles: Vec<[f64; 3]> = (0..5)
+            .map(|_| [1.2 * random() - 0.6, 1.2 * random() - 0.6, 0.05 + 0.34 * random()])
+            .collect();
+        let mut crossings = vec![0; circles.len()];
+        let mut vertices = 0;
+        for i in 0..circles.len() {
+            for j in 0..i {
+                let ([a, b, r], [c, d, q]) = (circles[i], circles[j]);
+                let distance = (a - c).hypot(b - d);
+                if distance < r + q && distance > (r - q).abs() {
+                    vertices += 2;
+                    crossings[i] += 2;
+                    crossings[j] += 2;
+                }
+            }
+        }
+        let curves: usize = crossings.iter().map(|&count| usize::max(count, 1)).sum();
+        let network = trace(&Circles(circles.clone()), &SQUARE, &TraceOptions::default()).unwrap();
+        assert_eq!(network.unresolved, [], "case {case}");
+        eprintln!("{:?}", network.statistics);
+        if network.curves.len() != curves {
+            for curve in &network.curves {
+                eprintln!(
+                    "  {:?} {:?} {} nodes {:?} {:?}",
+                    curve.margin,
+                    curve.ends,
+                    curve.nodes.len(),
+                    curve.nodes[0].point.as_slice(),
+                    curve.nodes[curve.nodes.len() - 1].point.as_slice()
+                );
+            }
+            for vertex in &network.vertices {
+                eprintln!("  {:?} {:?}", vertex.kind, vertex.point.as_slice());
+            }
+        }
+        assert_eq!(
+            (network.curves.len(), network.vertices.len()),
+            (curves, vertices),
+            "case {case}: {circles:?}"
+        );
+        for curve in &network.curves {
+            let [x, y, radius] = circles[curve.margin.0];
+            assert_on(curve, circle(x, y, radius));
+        }
+    }
 }
