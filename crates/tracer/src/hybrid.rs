@@ -5,7 +5,7 @@ use stickslip_solver::{
     margins, run,
 };
 
-use crate::family::{Family, Point};
+use crate::family::{Family, FreeRun, Point};
 
 /// A hybrid system at every point of a parameter plane.
 pub trait Problem<const N: usize, const G: usize> {
@@ -81,12 +81,13 @@ where
             .map_err(|error| failure(point, error))
     }
 
-    fn margins(&self, point: &Point) -> Result<Vec<(Margin, f64)>, FamilyError> {
+    fn free_run(&self, point: &Point) -> Result<FreeRun<Vec<usize>, Margin>, FamilyError> {
         let (system, start) = self.problem.at(point);
         let found = margins(self.method, &system, start, self.end, &self.options)
             .map_err(|error| failure(point, error))?;
         finished(point, found.outcome)?;
-        Ok(found.near_misses.into_iter().map(|miss| (miss.margin, miss.value)).collect())
+        let margins = found.near_misses.into_iter().map(|miss| (miss.margin, miss.value));
+        Ok(FreeRun { label: found.fired, margins: margins.collect() })
     }
 }
 
