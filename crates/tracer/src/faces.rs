@@ -1,5 +1,7 @@
 //! Which sides of edges belong to one face.
 
+use std::ops::Range;
+
 use crate::crossing::Edge;
 use crate::family::Point;
 use crate::piece::Piece;
@@ -16,28 +18,23 @@ pub(crate) struct Faces {
 impl Faces {
     /// Joins sides that look at each other vertically, and places that a wall between slabs keeps apart.
     ///
-    /// What is seen counts only at places farther than `reach` from every edge, so that nothing is decided by the order of edges
-    /// that interpolation cannot tell apart: tangent ones close to their vertex. `outline` are the edges of the window, which
-    /// have the outside on their right.
-    pub(crate) fn new(
-        slabs: &Slabs,
-        edges: &[Edge],
-        outline: std::ops::Range<usize>,
-        reach: f64,
-    ) -> Self {
+    /// Edges that leave a vertex with one tangent are closer together than `reach` beside it, and interpolation leaves open which
+    /// one is above. So a gap between pieces counts only where it is wider, and speaks for a piece only if the gap on the piece's
+    /// other side is wider as well. `outline` are the edges of the window, which have the outside on their right.
+    pub(crate) fn new(slabs: &Slabs, edges: &[Edge], outline: Range<usize>, reach: f64) -> Self {
         let outside = 2 * edges.len();
         let mut sides = DisjointSets::new(outside + 1);
         for edge in outline {
             sides.unite(2 * edge + 1, outside);
         }
-        let clear = |x: f64, y: f64| slabs.nearest(&Point::new(x, y), reach, |_| true).is_none();
         let piece = |index: usize| &slabs.pieces[index];
         for slab in 0..slabs.count() {
-            let x = slabs.middle(slab);
-            for pair in slabs.of(slab).windows(2) {
-                let [lower, upper] = [piece(pair[0]), piece(pair[1])];
-                let (a, b) = (side_above(lower), side_below(upper));
-                if !sides.are_united(a, b) && clear(x, 0.5 * (lower.y_at(x) + upper.y_at(x))) {
+            for (lower, pair) in slabs.of(slab).windows(2).enumerate() {
+                let (a, b) = (side_above(piece(pair[0])), side_below(piece(pair[1])));
+                if !sides.are_united(a, b)
+                    && (lower.saturating_sub(1)..=lower + 1)
+                        .all(|gap| slabs.is_wide(slab, gap, reach))
+                {
                     sides.unite(a, b);
                 }
             }
@@ -51,9 +48,15 @@ impl Faces {
             let (mut i, mut j) = (0, 0);
             while i + 1 < left.len() && j + 1 < right.len() {
                 let (low, high) = (left[i].max(right[j]), left[i + 1].min(right[j + 1]));
+                let place = Point::new(x, 0.5 * (low + high));
                 let [a, b] =
                     [slabs.of(slab - 1)[i], slabs.of(slab)[j]].map(|k| side_above(piece(k)));
-                if high > low && !sides.are_united(a, b) && clear(x, 0.5 * (low + high)) {
+                if high > low
+                    && !sides.are_united(a, b)
+                    && slabs.nearest(&place, reach, |_| true).is_none()
+                    && let (Some(a), Some(b)) =
+                        (side_of_gap(slabs, slab - 1, i, reach), side_of_gap(slabs, slab, j, reach))
+                {
                     sides.unite(a, b);
                 }
                 if left[i + 1] < right[j + 1] {
@@ -66,15 +69,20 @@ impl Faces {
         for &index in &slabs.verticals {
             let vertical = piece(index);
             let middle = vertical.cubic.at(0.5);
+            let other = |other: &Piece| !std::ptr::eq(other, vertical);
+            if slabs.nearest(&middle, reach, other).is_some() {
+                continue;
+            }
             let right = slabs.walls.partition_point(|&wall| wall < middle.x);
             let [left_side, right_side] =
                 [side(vertical, !vertical.forward), side(vertical, vertical.forward)];
-            let neighbours = [(right.checked_sub(1), left_side), (Some(right), right_side)];
-            for (slab, own) in neighbours {
+            let beside = [(right.checked_sub(1), left_side), (Some(right), right_side)];
+            for (slab, own) in beside {
                 if let Some(slab) = slab.filter(|&slab| slab < slabs.count())
-                    && let [Some(below), _] = slabs.neighbours(slab, &middle)
+                    && let Some(gap) = slabs.below(slab, &middle).checked_sub(1)
+                    && let Some(seen) = side_of_gap(slabs, slab, gap, reach)
                 {
-                    sides.unite(own, side_above(piece(below)));
+                    sides.unite(own, seen);
                 }
             }
         }
@@ -100,10 +108,48 @@ impl Faces {
         Self { of_edges, count }
     }
 
+    /// Puts pieces of a slab that are closer together than `reach` into the order in which faces follow each other.
+    pub(crate) fn put_in_order(&self, slabs: &mut Slabs, reach: f64) {
+        for slab in 0..slabs.count() {
+            for place in 1..slabs.of(slab).len() {
+                let pieces = slabs.of(slab);
+                let face = self.above(&slabs.pieces[pieces[place - 1]]);
+                let follows = |&index: &usize| self.below(&slabs.pieces[index]) == face;
+                if follows(&pieces[place]) {
+                    continue;
+                }
+                let last = (place..pieces.len() - 1).find(|&gap| slabs.is_wide(slab, gap, reach));
+                let close = place..=last.unwrap_or(pieces.len() - 1);
+                if let Some(next) = pieces[close].iter().position(follows) {
+                    slabs.of_mut(slab).swap(place, place + next);
+                }
+            }
+        }
+    }
+
+    /// The face below a piece that is not vertical.
+    fn below(&self, piece: &Piece) -> Option<usize> {
+        self.of_edges[piece.edge][usize::from(piece.forward)]
+    }
+
     /// The face above a piece that is not vertical.
     #[inline]
     pub(crate) fn above(&self, piece: &Piece) -> Option<usize> {
         self.of_edges[piece.edge][usize::from(!piece.forward)]
+    }
+}
+
+/// A side that looks into the part of a slab above its piece at position `gap`, if one can be told.
+fn side_of_gap(slabs: &Slabs, slab: usize, gap: usize, reach: f64) -> Option<usize> {
+    let pieces = slabs.of(slab);
+    if !slabs.is_wide(slab, gap, reach) {
+        None
+    } else if gap == 0 || slabs.is_wide(slab, gap - 1, reach) {
+        Some(side_above(&slabs.pieces[pieces[gap]]))
+    } else if slabs.is_wide(slab, gap + 1, reach) {
+        Some(side_below(&slabs.pieces[pieces[gap + 1]]))
+    } else {
+        None
     }
 }
 

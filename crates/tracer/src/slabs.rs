@@ -61,6 +61,21 @@ impl Slabs {
         &self.order[self.starts[slab]..self.starts[slab + 1]]
     }
 
+    pub(crate) fn of_mut(&mut self, slab: usize) -> &mut [usize] {
+        &mut self.order[self.starts[slab]..self.starts[slab + 1]]
+    }
+
+    /// Whether the middle between the pieces at `gap` and `gap` + 1 of a slab is farther than `reach` from every piece; also if
+    /// there are no such two pieces.
+    pub(crate) fn is_wide(&self, slab: usize, gap: usize, reach: f64) -> bool {
+        let pieces = self.of(slab);
+        gap + 1 >= pieces.len() || {
+            let x = self.middle(slab);
+            let [low, high] = [gap, gap + 1].map(|k| self.pieces[pieces[k]].y_at(x));
+            self.nearest(&Point::new(x, 0.5 * (low + high)), reach, |_| true).is_none()
+        }
+    }
+
     /// The middle of a slab in x.
     pub(crate) fn middle(&self, slab: usize) -> f64 {
         0.5 * (self.walls[slab] + self.walls[slab + 1])
