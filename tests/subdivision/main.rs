@@ -1,5 +1,6 @@
 //! Planes with known answers: how many regions, which areas, which label where; and that what is wrong is found.
 
+mod arrangements;
 mod findings;
 mod planes;
 

@@ -30,8 +30,8 @@ impl Crossings<'_> {
     /// Pairs of edges with the place at which they cross, from left to right.
     ///
     /// Decided, not sampled: pieces of a slab cross if they change order between its middle and its walls, if the order differs
-    /// on both sides of a wall, or if they dip below each other and come back; the last is excluded by bounds from the slopes,
-    /// which are monotone along a piece.
+    /// on both sides of a wall, or if they dip below each other and come back; that the last happens, deeper than the tolerance,
+    /// is excluded by bounds from the slopes, which are monotone along a piece.
     pub(crate) fn find(&self) -> Vec<([usize; 2], Point)> {
         let mut found = Vec::new();
         let mut place = vec![usize::MAX; self.slabs.pieces.len()];
@@ -121,7 +121,7 @@ impl Crossings<'_> {
             } else {
                 (gap0 * rises - gap1 * falls + falls * rises * (to - from).abs()) / (rises - falls)
             };
-            if least >= -self.rounding {
+            if least >= -self.tolerance {
                 return None;
             }
         }
