@@ -1,26 +1,51 @@
 //! Curves in a parameter plane on which the switching of a piecewise-smooth ODE changes, and the subdivision of the plane
 //! that they make.
 //!
-//! In reading order: `family` (what is traced), `hybrid` (hybrid systems as families), `curve` (what comes out), `trace` (how all curves are found), `branch` (how one is
-//! followed), `special` (where it ends), `seed` and `island` (where it starts), `corrector`, `runs`, `network`, `arc`.
+//! In reading order: `family` (what is traced), `hybrid` (hybrid systems as families), `curve` (what comes out);
+//!
+//! - curves: `trace` (how all are found), `branch` (how one is followed), `special` (where it ends), `seed` and `island` (where it
+//!   starts), `corrector`, `runs`, `network`, `arc`;
+//! - regions: `hermite` (the cubics between nodes), `subdivision` with `faces`, `crossing`, `finding` and `interior`, `slabs` and
+//!   `locate` (where a point lies), `verify` (runs against the subdivision).
 
 mod arc;
+mod bernstein;
 mod branch;
 mod corrector;
+mod crossing;
 mod curve;
+mod faces;
 mod family;
+mod finding;
+mod hermite;
 mod hybrid;
+mod interior;
 mod island;
+mod locate;
 mod network;
 mod options;
+mod outline;
+mod piece;
 mod runs;
 mod seed;
+mod slabs;
 mod special;
+mod subdivision;
 mod trace;
+mod union;
+mod verify;
 
 pub use curve::{Curve, Node, Vertex, VertexKind};
 pub use family::{Family, FreeRun, Point, Window};
+pub use finding::{Euler, Finding, SubdivisionError};
+pub use hermite::Cubic;
 pub use hybrid::{FamilyError, FamilyErrorKind, HybridFamily, ModeOf, Problem};
+pub use locate::Location;
 pub use network::{Network, TraceStatistics, Unresolved};
 pub use options::{InvalidTraceOption, TraceError, TraceOptions};
+pub use subdivision::{Region, Side, Subdivision};
 pub use trace::trace;
+pub use verify::{
+    Checkpoint, Mismatch, Origin, Reason, Traced, Unverified, Verification, Verified, VerifyError,
+    VerifyOptions, until_verified, verify, verify_with,
+};

@@ -1,0 +1,201 @@
+//! Edges that cross where there is no vertex.
+
+use std::ops::Range;
+
+use crate::family::Point;
+use crate::piece::Piece;
+use crate::slabs::Slabs;
+
+/// An edge of the subdivision: its vertices, and its pieces in its direction.
+#[derive(Clone, Debug)]
+pub(crate) struct Edge {
+    /// `None` if it is closed without a vertex.
+    pub(crate) ends: Option<[usize; 2]>,
+    pub(crate) pieces: Range<usize>,
+}
+
+/// Finds where two edges change places; each time two neighbours in a slab do.
+pub(crate) struct Crossings<'a> {
+    pub(crate) slabs: &'a Slabs,
+    pub(crate) edges: &'a [Edge],
+    /// Two edges from one vertex may change places within the error of interpolation.
+    pub(crate) tolerance: f64,
+    /// What rounding may do to a height.
+    pub(crate) rounding: f64,
+    /// Slopes above are not used for bounds.
+    pub(crate) steepest: f64,
+}
+
+impl Crossings<'_> {
+    /// Pairs of edges with the place at which they cross, from left to right.
+    ///
+    /// Decided, not sampled: pieces of a slab cross if they change order between its middle and its walls, if the order differs
+    /// on both sides of a wall, or if they dip below each other and come back; that the last happens, deeper than the tolerance,
+    /// is excluded by bounds from the slopes, which are monotone along a piece.
+    pub(crate) fn find(&self) -> Vec<([usize; 2], Point)> {
+        let mut found = Vec::new();
+        let mut place = vec![usize::MAX; self.slabs.pieces.len()];
+        for slab in 0..self.slabs.count() {
+            let pieces = self.slabs.of(slab);
+            let wall = self.slabs.walls[slab];
+            let mut last: Option<(usize, usize)> = None;
+            for &piece in pieces {
+                let Some(before) = self.before(piece, wall).map(|left| place[left]) else {
+                    continue;
+                };
+                if let Some((lower, _)) = last.filter(|&(_, earlier)| before < earlier)
+                    && self.gap(lower, piece, wall).abs() <= self.rounding
+                {
+                    self.record([lower, piece], wall, &mut found);
+                }
+                last = Some((piece, before));
+            }
+            for pair in pieces.windows(2) {
+                let (from, middle, to) =
+                    (wall, self.slabs.middle(slab), self.slabs.walls[slab + 1]);
+                let meeting = self
+                    .dip(pair[0], pair[1], middle, from)
+                    .or_else(|| self.dip(pair[0], pair[1], middle, to));
+                if let Some(x) = meeting {
+                    self.record([pair[0], pair[1]], x, &mut found);
+                }
+            }
+            if let Some(left) = slab.checked_sub(1) {
+                for &piece in self.slabs.of(left) {
+                    place[piece] = usize::MAX;
+                }
+            }
+            for (position, &piece) in pieces.iter().enumerate() {
+                place[piece] = position;
+            }
+        }
+        found
+    }
+
+    /// The piece that goes on as `piece` beyond the wall on its left.
+    fn before(&self, piece: usize, wall: f64) -> Option<usize> {
+        let own = &self.slabs.pieces[piece];
+        if own.first().x < wall {
+            return Some(piece);
+        }
+        let edge = &self.edges[own.edge];
+        let neighbour = if own.forward {
+            if piece > edge.pieces.start { Some(piece - 1) } else { None }
+        } else if piece + 1 < edge.pieces.end {
+            Some(piece + 1)
+        } else {
+            None
+        };
+        let wrapped = if own.forward { edge.pieces.end - 1 } else { edge.pieces.start };
+        let left = neighbour.or(edge.ends.is_none().then_some(wrapped))?;
+        let other = &self.slabs.pieces[left];
+        (!other.is_vertical() && other.last() == own.first()).then_some(left)
+    }
+
+    fn gap(&self, lower: usize, upper: usize, x: f64) -> f64 {
+        self.slabs.pieces[upper].y_at(x) - self.slabs.pieces[lower].y_at(x)
+    }
+
+    /// Where `upper` falls below `lower` between `from`, where it does not, and `to` on either side.
+    fn dip(&self, lower: usize, upper: usize, from: f64, to: f64) -> Option<f64> {
+        let [p, q] = [lower, upper].map(|piece| &self.slabs.pieces[piece]);
+        let ((p0, ps0), (p1, ps1)) = (p.y_and_slope_at(from), p.y_and_slope_at(to));
+        let ((q0, qs0), (q1, qs1)) = (q.y_and_slope_at(from), q.y_and_slope_at(to));
+        if q0.min(q1) >= p0.max(p1) {
+            return None;
+        }
+        let (gap0, gap1) = (q0 - p0, q1 - p1);
+        if gap1 < -self.rounding {
+            return Some(self.change(lower, upper, from, to));
+        }
+        let slopes = [ps0, ps1, qs0, qs1];
+        if slopes.iter().all(|slope| slope.abs() <= self.steepest) {
+            // The gap's slope in the direction from `from` to `to` lies in [falls, rises].
+            let way = (to - from).signum();
+            let (a, b) = (qs0.min(qs1) - ps0.max(ps1), qs0.max(qs1) - ps0.min(ps1));
+            let (falls, rises) = if way > 0.0 { (a, b) } else { (-b, -a) };
+            let least = if falls >= 0.0 {
+                gap0
+            } else if rises <= 0.0 {
+                gap1
+            } else {
+                (gap0 * rises - gap1 * falls + falls * rises * (to - from).abs()) / (rises - falls)
+            };
+            if least >= -self.tolerance {
+                return None;
+            }
+        }
+        let middle = 0.5 * (from + to);
+        if middle == from || middle == to {
+            return None;
+        }
+        if self.gap(lower, upper, middle) < -self.rounding {
+            return Some(self.change(lower, upper, from, middle));
+        }
+        self.dip(lower, upper, from, middle).or_else(|| self.dip(lower, upper, middle, to))
+    }
+
+    /// Where the gap, positive at `from` and negative at `to`, changes sign.
+    fn change(&self, lower: usize, upper: usize, mut from: f64, mut to: f64) -> f64 {
+        loop {
+            let middle = 0.5 * (from + to);
+            if middle == from || middle == to {
+                return middle;
+            }
+            if self.gap(lower, upper, middle) < 0.0 {
+                to = middle;
+            } else {
+                from = middle;
+            }
+        }
+    }
+
+    fn record(&self, pieces: [usize; 2], x: f64, found: &mut Vec<([usize; 2], Point)>) {
+        let [a, b] = pieces.map(|piece| &self.slabs.pieces[piece]);
+        let point = Point::new(x, 0.5 * (a.y_at(x) + b.y_at(x)));
+        if !self.within_interpolation(pieces, &point) {
+            found.push(([a.edge, b.edge], point));
+        }
+    }
+
+    /// Whether the crossing cannot be told from the vertex the edges share: between vertex and crossing, the edges enclose an
+    /// area whose mean width is below the tolerance.
+    fn within_interpolation(&self, pieces: [usize; 2], point: &Point) -> bool {
+        let [a, b] = pieces.map(|piece| &self.edges[self.slabs.pieces[piece].edge]);
+        let (Some(a_ends), Some(b_ends)) = (a.ends, b.ends) else {
+            return false;
+        };
+        [[0, 0], [0, 1], [1, 0], [1, 1]].into_iter().any(|[i, j]| {
+            if a_ends[i] != b_ends[j] || (std::ptr::eq(a, b) && i == j) {
+                return false;
+            }
+            let vertex = self.end(a, i);
+            let area = self.area(a, i, pieces[0], point.x, &vertex)
+                - self.area(b, j, pieces[1], point.x, &vertex);
+            area.abs() <= self.tolerance * (point - vertex).norm()
+        })
+    }
+
+    /// The first or last point of an edge.
+    fn end(&self, edge: &Edge, which: usize) -> Point {
+        let index = if which == 0 { edge.pieces.start } else { edge.pieces.end - 1 };
+        let piece = &self.slabs.pieces[index];
+        if (which == 0) == piece.forward { piece.first() } else { piece.last() }
+    }
+
+    /// The area between an edge and the rays from its end `which` at `origin`, up to where `piece` reaches `x`.
+    fn area(&self, edge: &Edge, which: usize, piece: usize, x: f64, origin: &Point) -> f64 {
+        // `away`: the edge's direction leads away from that end.
+        let away = which == 0;
+        let before = if away { edge.pieces.start..piece } else { piece + 1..edge.pieces.end };
+        let directed = |piece: &Piece| if piece.forward == away { 1.0 } else { -1.0 };
+        let whole: f64 = self.slabs.pieces[before]
+            .iter()
+            .map(|piece| directed(piece) * piece.cubic.area(origin))
+            .sum();
+        let last = &self.slabs.pieces[piece];
+        let [low, high] = last.cubic.split(last.parameter_at(x));
+        let part = if last.forward == away { low } else { high };
+        whole + directed(last) * part.area(origin)
+    }
+}

@@ -1,0 +1,115 @@
+//! A point well inside every region.
+
+use crate::crossing::Edge;
+use crate::faces::Faces;
+use crate::family::Point;
+use crate::slabs::Slabs;
+use crate::subdivision::Region;
+
+/// Sets `sample` and `clearance` of every region.
+///
+/// The best of some places halfway between two boundaries, moved as long as that leads farther from all of them: a local maximum of
+/// the distance to a thirtieth, not always the greatest.
+pub(crate) fn place_samples<Label>(
+    regions: &mut [Region<Label>],
+    slabs: &Slabs,
+    edges: &[Edge],
+    faces: &Faces,
+) {
+    let mut bounding: Vec<Vec<usize>> = vec![Vec::new(); regions.len()];
+    for (edge, sides) in edges.iter().zip(&faces.of_edges) {
+        for face in sides.iter().flatten() {
+            bounding[*face].extend(edge.pieces.clone());
+        }
+    }
+    for ((region, pieces), gaps) in regions.iter_mut().zip(&bounding).zip(gaps(slabs, faces)) {
+        let clearance = |point: &Point| clearance(slabs, pieces, point);
+        let start = candidates(slabs, &gaps)
+            .map(|point| (clearance(&point), point))
+            .reduce(|best, next| if next.0 > best.0 { next } else { best });
+        let Some((mut best, mut sample)) = start else { continue };
+        let face = |point: &Point| {
+            let [below, _] = slabs.neighbours(slabs.at(point.x), point);
+            below.and_then(|piece| faces.above(&slabs.pieces[piece]))
+        };
+        let own = face(&sample);
+        let finest = best / 32.0;
+        let mut step = best;
+        while step > finest {
+            let better = DIRECTIONS
+                .iter()
+                .map(|&(x, y)| sample + step * Point::new(x, y))
+                .filter(|point| face(point) == own)
+                .map(|point| (clearance(&point), point))
+                .find(|&(distance, _)| distance > best);
+            if let Some(better) = better {
+                (best, sample) = better;
+            } else {
+                step *= 0.5;
+            }
+        }
+        (region.sample, region.clearance) = (sample, best);
+    }
+}
+
+const DIRECTIONS: [(f64, f64); 8] = {
+    const D: f64 = std::f64::consts::FRAC_1_SQRT_2;
+    [(1.0, 0.0), (D, D), (0.0, 1.0), (-D, D), (-1.0, 0.0), (-D, -D), (0.0, -1.0), (D, -D)]
+};
+
+/// For every region its parts in slabs: slab and position in it.
+fn gaps(slabs: &Slabs, faces: &Faces) -> Vec<Vec<(usize, usize)>> {
+    let mut gaps = vec![Vec::new(); faces.count];
+    for slab in 0..slabs.count() {
+        for (position, &below) in slabs.of(slab).iter().enumerate() {
+            if let Some(face) = faces.above(&slabs.pieces[below])
+                && position + 1 < slabs.of(slab).len()
+            {
+                gaps[face].push((slab, position));
+            }
+        }
+    }
+    gaps
+}
+
+/// Middles of parts evenly spread over all parts, and of the highest one.
+fn candidates(slabs: &Slabs, gaps: &[(usize, usize)]) -> impl Iterator<Item = Point> {
+    const SPREAD: usize = 48;
+    let ends = |(slab, position): (usize, usize)| {
+        let x = slabs.middle(slab);
+        let [below, above] =
+            [position, position + 1].map(|k| slabs.pieces[slabs.of(slab)[k]].y_at(x));
+        (x, below, above)
+    };
+    let height = |&gap: &(usize, usize)| {
+        let (_, below, above) = ends(gap);
+        above - below
+    };
+    let highest = gaps.iter().copied().max_by(|a, b| height(a).total_cmp(&height(b)));
+    let count = gaps.len().min(SPREAD);
+    let spread = (0..count).map(|i| gaps[(2 * i + 1) * gaps.len() / (2 * count)]);
+    spread
+        .chain(highest)
+        .map(move |gap| {
+            let (x, below, above) = ends(gap);
+            Point::new(x, 0.5 * (below + above))
+        })
+        .collect::<Vec<_>>()
+        .into_iter()
+}
+
+/// The distance of `point` from the nearest of `pieces`.
+fn clearance(slabs: &Slabs, pieces: &[usize], point: &Point) -> f64 {
+    let pieces = pieces.iter().map(|&piece| &slabs.pieces[piece]);
+    let mut least = pieces
+        .clone()
+        .map(|piece| (piece.first() - point).norm_squared())
+        .fold(f64::INFINITY, f64::min)
+        .sqrt();
+    for piece in pieces {
+        if piece.box_distance(point) < least {
+            least = least.min(piece.cubic.distance(point));
+        }
+    }
+    least
+}

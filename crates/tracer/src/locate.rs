@@ -1,0 +1,89 @@
+//! Which region a point lies in, and how far the nearest boundary is.
+
+use crate::family::Point;
+use crate::piece::Piece;
+use crate::subdivision::Subdivision;
+
+/// Where a point lies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Location {
+    /// In a region, by index.
+    Region(usize),
+    /// So close to a curve that the curve's tolerance leaves the side open.
+    OnBoundary {
+        /// The nearest curve.
+        curve: usize,
+        /// Distance from it.
+        distance: f64,
+    },
+    /// Outside the window, or not a number.
+    Outside,
+}
+
+impl<Label, Margin> Subdivision<Label, Margin> {
+    /// Where `point` lies: a binary search for the slab and one in it, both exact for the cubics.
+    #[must_use]
+    pub fn locate(&self, point: &Point) -> Location {
+        if !self.window.contains(point) {
+            return Location::Outside;
+        }
+        let near = self.slabs.nearest(point, self.tolerance, |piece| self.is_curve(piece));
+        if let Some((piece, distance)) = near {
+            return Location::OnBoundary { curve: self.slabs.pieces[piece].edge, distance };
+        }
+        self.region_at(point).map_or(Location::Outside, Location::Region)
+    }
+
+    /// The distance of `point` from the nearest curve in the direction of the second coordinate, up or down; `None` if no curve
+    /// has a point with its first coordinate, or if it is outside the window.
+    #[must_use]
+    pub fn vertical_distance(&self, point: &Point) -> Option<f64> {
+        if !self.window.contains(point) {
+            return None;
+        }
+        let home = self.slabs.at(point.x);
+        // On a wall, a curve may be on one side only.
+        let left = (home > 0 && self.slabs.walls[home] == point.x).then(|| home - 1);
+        let beside = std::iter::once(home)
+            .chain(left)
+            .flat_map(|slab| self.slabs.neighbours(slab, point))
+            .flatten()
+            .map(|index| &self.slabs.pieces[index])
+            .filter(|piece| self.is_curve(piece))
+            .map(|piece| (piece.y_at(point.x) - point.y).abs());
+        let upright = self
+            .slabs
+            .verticals_between(point.x, point.x)
+            .iter()
+            .map(|&index| &self.slabs.pieces[index])
+            .filter(|piece| self.is_curve(piece))
+            .map(|piece| (piece.first().y - point.y).max(point.y - piece.last().y).max(0.0));
+        beside.chain(upright).reduce(f64::min)
+    }
+
+    /// A place on a curve, `share` in [0, 1) of the way through its pieces, and the unit normal to its left.
+    pub(crate) fn place_on(&self, curve: usize, share: f64) -> (Point, Point) {
+        let range = &self.edges[curve].pieces;
+        let way = share * range.len() as f64;
+        // Truncation is meant, and `share` may be rounded up to 1.
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let index = (way as usize).min(range.len() - 1);
+        let piece = &self.slabs.pieces[range.start + index];
+        let t = way - index as f64;
+        let along = piece.cubic.derivative(t);
+        let along = if piece.forward { along } else { -along };
+        (piece.cubic.at(t), Point::new(-along.y, along.x).normalize())
+    }
+
+    fn region_at(&self, point: &Point) -> Option<usize> {
+        let slab = self.slabs.at(point.x);
+        let pieces = self.slabs.of(slab);
+        // The window's lower side is the first piece and belongs to the window.
+        let above = self.slabs.below(slab, point).max(1);
+        self.faces.above(&self.slabs.pieces[*pieces.get(above - 1)?])
+    }
+
+    fn is_curve(&self, piece: &Piece) -> bool {
+        piece.edge < self.curves.len()
+    }
+}

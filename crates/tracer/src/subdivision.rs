@@ -1,0 +1,383 @@
+//! Regions of the window, made from curves and vertices.
+
+use crate::crossing::{Crossings, Edge};
+use crate::curve::{Curve, Node, Vertex, VertexKind};
+use crate::faces::Faces;
+use crate::family::{Point, Window};
+use crate::finding::{Euler, Finding, SubdivisionError};
+use crate::hermite::Cubic;
+use crate::interior;
+use crate::piece::Piece;
+use crate::slabs::Slabs;
+use crate::union::DisjointSets;
+
+/// A window of the plane parted by curves into regions.
+///
+/// ```
+/// use stickslip_tracer::{Curve, Location, Node, Point, Subdivision, Vertex, VertexKind, Window};
+///
+/// // A straight boundary from the window's lower side to its upper one.
+/// let ends = [Point::new(0.5, 0.0), Point::new(0.5, 1.0)];
+/// let curve = Curve {
+///     margin: "m",
+///     sides: ["left", "right"],
+///     nodes: ends.map(|point| Node { point, tangent: Point::new(0.0, 1.0) }).to_vec(),
+///     ends: Some([0, 1]),
+/// };
+/// let vertices = ends.map(|point| Vertex { point, kind: VertexKind::WindowEdge, margins: vec!["m"] });
+/// let window = Window { low: Point::new(0.0, 0.0), high: Point::new(2.0, 1.0) };
+/// let plane = Subdivision::new(window, vec![curve], vertices.to_vec(), 1e-10)?;
+/// assert!(plane.findings().is_empty());
+/// assert_eq!(plane.regions().len(), 2);
+/// let Location::Region(region) = plane.locate(&Point::new(0.2, 0.3)) else { panic!("inside") };
+/// assert_eq!(plane.regions()[region].label, Some("left"));
+/// assert_eq!(plane.regions()[region].area, 0.5);
+/// # Ok::<(), stickslip_tracer::SubdivisionError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Subdivision<Label, Margin> {
+    pub(crate) window: Window,
+    pub(crate) tolerance: f64,
+    pub(crate) curves: Vec<Curve<Label, Margin>>,
+    vertices: Vec<Vertex<Margin>>,
+    regions: Vec<Region<Label>>,
+    findings: Vec<Finding<Label>>,
+    euler: Euler,
+    pub(crate) slabs: Slabs,
+    /// The curves in their order, then the parts of the window's boundary.
+    pub(crate) edges: Vec<Edge>,
+    pub(crate) faces: Faces,
+}
+
+/// A region: a connected part of the window that no curve enters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Region<Label> {
+    /// The label that the curves around it have on this side, the most frequent one if they do not agree; `None` if no curve
+    /// bounds it.
+    pub label: Option<Label>,
+    /// Its area, without that of islands; exact for the interpolated curves.
+    pub area: f64,
+    /// A point well inside.
+    pub sample: Point,
+    /// Distance of `sample` from the region's boundary.
+    pub clearance: f64,
+    /// The curves that bound it, by index, with the side on which it lies.
+    pub boundary: Vec<(usize, Side)>,
+}
+
+/// A side of a curve, seen in its direction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Side {
+    /// To the left.
+    Left,
+    /// To the right.
+    Right,
+}
+
+impl<Label: Clone + Ord, Margin> Subdivision<Label, Margin> {
+    /// The regions that `curves` make of `window`.
+    ///
+    /// `tolerance` is the distance within which curves, which are interpolated, and vertices are known; vertices within it of the
+    /// window's boundary lie on the boundary. A closed curve may repeat its first node as its last. What is inconsistent becomes
+    /// a [`Finding`]; without findings the regions are those of the curves. Time and memory grow as the number of cubic pieces
+    /// times the number of curves over one abscissa.
+    ///
+    /// # Errors
+    /// Input that has no meaning: numbers that are not finite, indices out of range, a window without area.
+    pub fn new(
+        window: Window,
+        curves: Vec<Curve<Label, Margin>>,
+        vertices: Vec<Vertex<Margin>>,
+        tolerance: f64,
+    ) -> Result<Self, SubdivisionError> {
+        SubdivisionError::check(&window, &curves, &vertices, tolerance)?;
+        let mut findings = Vec::new();
+        let mut points: Vec<Point> = vertices.iter().map(|vertex| vertex.point).collect();
+        let around = outline(&window, &vertices, tolerance, &mut points, &mut findings);
+        let mut pieces = Vec::new();
+        let mut edges = Vec::with_capacity(curves.len() + around.len());
+        for (index, curve) in curves.iter().enumerate() {
+            let start = pieces.len();
+            for cubic in cubics(index, curve, &points, tolerance, &mut findings) {
+                Piece::of(index, cubic, &mut pieces);
+            }
+            if pieces.len() == start {
+                return Err(SubdivisionError::NoLength { curve: index });
+            }
+            edges.push(Edge { ends: curve.ends, pieces: start..pieces.len() });
+        }
+        for (i, &from) in around.iter().enumerate() {
+            let to = around[(i + 1) % around.len()];
+            let start = pieces.len();
+            Piece::of(edges.len(), Cubic::line(points[from], points[to]), &mut pieces);
+            edges.push(Edge { ends: Some([from, to]), pieces: start..pieces.len() });
+        }
+        let mut slabs = Slabs::new(pieces);
+        let reach = 2.0 * tolerance;
+        let faces = Faces::new(&slabs, &edges, curves.len()..edges.len(), reach);
+        let size = window.high - window.low;
+        let crossings = Crossings {
+            slabs: &slabs,
+            edges: &edges,
+            tolerance,
+            rounding: 1e-14 * (size.y + window.low.y.abs() + window.high.y.abs()),
+            steepest: 1e6 * size.y / size.x,
+        };
+        let named = |edge: usize| (edge < curves.len()).then_some(edge);
+        findings.extend(
+            crossings
+                .find()
+                .into_iter()
+                .map(|(pair, point)| Finding::Crossing { curves: pair.map(named), point }),
+        );
+        faces.put_in_order(&mut slabs, reach);
+        let regions = regions(&curves, &slabs, &edges, &faces, &window.low);
+        let euler = euler(&edges, points.len(), faces.count);
+        let mut plane = Self {
+            window,
+            tolerance,
+            curves,
+            vertices,
+            regions,
+            findings,
+            euler,
+            slabs,
+            edges,
+            faces,
+        };
+        interior::place_samples(&mut plane.regions, &plane.slabs, &plane.edges, &plane.faces);
+        plane.find_inconsistencies();
+        Ok(plane)
+    }
+
+    fn find_inconsistencies(&mut self) {
+        let mut degrees = vec![0_usize; self.vertices.len() + 4];
+        for end in self.edges.iter().filter_map(|edge| edge.ends).flatten() {
+            degrees[end] += 1;
+        }
+        for (index, curve) in self.curves.iter().enumerate() {
+            for vertex in curve.ends.into_iter().flatten().filter(|&vertex| degrees[vertex] == 1) {
+                self.findings.push(Finding::Dangling { curve: index, vertex });
+            }
+            let regions = self.faces.of_edges[index];
+            if regions[0] == regions[1] || regions.contains(&None) {
+                self.findings.push(Finding::SidesNotApart { curve: index, regions });
+            }
+        }
+        for (index, region) in self.regions.iter().enumerate() {
+            if !(region.clearance > self.tolerance) {
+                self.findings.push(Finding::Thin { region: index, clearance: region.clearance });
+            }
+            find_disagreements(index, region, &self.curves, &mut self.findings);
+        }
+        if !self.euler.holds() {
+            self.findings.push(Finding::Euler(self.euler));
+        }
+    }
+}
+
+impl<Label, Margin> Subdivision<Label, Margin> {
+    /// The window.
+    #[must_use]
+    pub fn window(&self) -> &Window {
+        &self.window
+    }
+
+    /// The distance within which the curves are known.
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    /// The curves, as given.
+    #[must_use]
+    pub fn curves(&self) -> &[Curve<Label, Margin>] {
+        &self.curves
+    }
+
+    /// The vertices, as given.
+    #[must_use]
+    pub fn vertices(&self) -> &[Vertex<Margin>] {
+        &self.vertices
+    }
+
+    /// The regions.
+    #[must_use]
+    pub fn regions(&self) -> &[Region<Label>] {
+        &self.regions
+    }
+
+    /// The regions on the left and on the right of a curve; `None` is the outside, which only a curve with findings has.
+    #[must_use]
+    pub fn regions_beside(&self, curve: usize) -> [Option<usize>; 2] {
+        self.faces.of_edges[curve]
+    }
+
+    /// What is inconsistent; empty if nothing is.
+    #[must_use]
+    pub fn findings(&self) -> &[Finding<Label>] {
+        &self.findings
+    }
+
+    /// The counts of Euler's formula.
+    #[must_use]
+    pub fn euler(&self) -> Euler {
+        self.euler
+    }
+
+    /// Curves and vertices back, to add to them.
+    #[must_use]
+    pub fn into_parts(self) -> (Vec<Curve<Label, Margin>>, Vec<Vertex<Margin>>) {
+        (self.curves, self.vertices)
+    }
+}
+
+/// The vertices around the window, counterclockwise; `points` gets them moved onto it, and the corners that were no vertices.
+fn outline<Label, Margin>(
+    window: &Window,
+    vertices: &[Vertex<Margin>],
+    tolerance: f64,
+    points: &mut Vec<Point>,
+    findings: &mut Vec<Finding<Label>>,
+) -> Vec<usize> {
+    let mut around = Vec::new();
+    for (index, vertex) in vertices.iter().enumerate() {
+        if let Some(point) = window.onto_boundary(&vertex.point, tolerance) {
+            points[index] = point;
+            around.push(index);
+        } else if !window.contains(&vertex.point)
+            || matches!(vertex.kind, VertexKind::WindowEdge | VertexKind::WindowCorner)
+        {
+            findings.push(Finding::VertexOffWindow { vertex: index });
+        }
+    }
+    for corner in window.corners() {
+        if !around.iter().any(|&vertex| points[vertex] == corner) {
+            around.push(points.len());
+        }
+        // Also where it is a vertex already, so that the number of points is fixed; such a one has no edges.
+        points.push(corner);
+    }
+    around.sort_by(|&i, &j| {
+        window.along_boundary(&points[i]).total_cmp(&window.along_boundary(&points[j]))
+    });
+    around
+}
+
+/// The cubics of a curve, with its ends at its vertices.
+fn cubics<Label, Margin>(
+    index: usize,
+    curve: &Curve<Label, Margin>,
+    points: &[Point],
+    tolerance: f64,
+    findings: &mut Vec<Finding<Label>>,
+) -> Vec<Cubic> {
+    let mut nodes = curve.nodes.clone();
+    let last = nodes.len() - 1;
+    if let Some(ends) = curve.ends {
+        for (node, vertex) in [0, last].into_iter().zip(ends) {
+            let distance = (nodes[node].point - points[vertex]).norm();
+            if distance > tolerance {
+                findings.push(Finding::EndAway { curve: index, vertex, distance });
+            }
+            nodes[node].point = points[vertex];
+        }
+    } else if nodes[0].point != nodes[last].point {
+        nodes.push(nodes[0]);
+    }
+    nodes.windows(2).map(|pair: &[Node]| Cubic::between(&pair[0], &pair[1])).collect()
+}
+
+fn regions<Label: Clone + Ord, Margin>(
+    curves: &[Curve<Label, Margin>],
+    slabs: &Slabs,
+    edges: &[Edge],
+    faces: &Faces,
+    origin: &Point,
+) -> Vec<Region<Label>> {
+    let empty =
+        Region { label: None, area: 0.0, sample: *origin, clearance: 0.0, boundary: Vec::new() };
+    let mut regions = vec![empty; faces.count];
+    for (index, edge) in edges.iter().enumerate() {
+        let area: f64 = slabs.pieces[edge.pieces.clone()]
+            .iter()
+            .map(|piece| if piece.forward { 1.0 } else { -1.0 } * piece.cubic.area(origin))
+            .sum();
+        let sides = [(Side::Left, area), (Side::Right, -area)];
+        for (face, (side, area)) in faces.of_edges[index].into_iter().zip(sides) {
+            let Some(face) = face else { continue };
+            regions[face].area += area;
+            if index < curves.len() {
+                regions[face].boundary.push((index, side));
+            }
+        }
+    }
+    for region in &mut regions {
+        region.label = most_frequent(region.boundary.iter().map(|&side| label(curves, side)));
+    }
+    regions
+}
+
+fn label<Label, Margin>(curves: &[Curve<Label, Margin>], (curve, side): (usize, Side)) -> &Label {
+    &curves[curve].sides[usize::from(side == Side::Right)]
+}
+
+/// The least of the most frequent labels.
+fn most_frequent<'a, Label: Clone + Ord + 'a>(
+    labels: impl Iterator<Item = &'a Label>,
+) -> Option<Label> {
+    let mut counts = std::collections::BTreeMap::new();
+    for label in labels {
+        *counts.entry(label).or_insert(0_usize) += 1;
+    }
+    let most = counts.values().copied().max()?;
+    counts.into_iter().find(|&(_, count)| count == most).map(|(label, _)| label.clone())
+}
+
+/// Every curve that does not have the region's label on this side, beside one that has it, a neighbour at a vertex if there is one.
+fn find_disagreements<Label: Clone + Ord, Margin>(
+    index: usize,
+    region: &Region<Label>,
+    curves: &[Curve<Label, Margin>],
+    findings: &mut Vec<Finding<Label>>,
+) {
+    let Some(common) = &region.label else { return };
+    let (agreeing, others): (Vec<_>, Vec<_>) =
+        region.boundary.iter().partition(|&&side| label(curves, side) == common);
+    for &&other in &others {
+        let ends = |curve: usize| curves[curve].ends.into_iter().flatten();
+        let neighbour = agreeing.iter().find_map(|&&(curve, _)| {
+            let vertex = ends(other.0).find(|&vertex| ends(curve).any(|end| end == vertex))?;
+            Some((curve, Some(vertex)))
+        });
+        // The label came from a curve, so that one at least agrees.
+        let Some((curve, vertex)) = neighbour.or(agreeing.first().map(|side| (side.0, None)))
+        else {
+            continue;
+        };
+        findings.push(Finding::Labels {
+            region: index,
+            curves: [curve, other.0],
+            labels: [common.clone(), label(curves, other).clone()],
+            vertex,
+        });
+    }
+}
+
+/// A closed curve counts as an edge with one vertex.
+fn euler(edges: &[Edge], points: usize, regions: usize) -> Euler {
+    let closed = edges.iter().filter(|edge| edge.ends.is_none()).count();
+    let mut sets = DisjointSets::new(points);
+    let mut used = vec![false; points];
+    for [from, to] in edges.iter().filter_map(|edge| edge.ends) {
+        sets.unite(from, to);
+        (used[from], used[to]) = (true, true);
+    }
+    let roots = (0..points).filter(|&point| used[point] && sets.least(point) == point).count();
+    Euler {
+        vertices: used.iter().filter(|&&used| used).count() + closed,
+        edges: edges.len(),
+        faces: regions + 1,
+        components: roots + closed,
+    }
+}

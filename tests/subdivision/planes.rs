@@ -1,0 +1,234 @@
+//! Planes with known answers: curves from parametrised curves, labels from the signs of explicit functions.
+
+use std::convert::Infallible;
+use std::f64::consts::{PI, TAU};
+
+use stickslip::tracer::{
+    Curve, Family, Node, Point, Subdivision, SubdivisionError, Vertex, VertexKind, Window,
+};
+
+pub const TOLERANCE: f64 = 1e-10;
+pub const UNIT: Window = Window { low: Point::new(0.0, 0.0), high: Point::new(1.0, 1.0) };
+
+/// Curves that make a plane, and the label that is true at a point.
+#[derive(Clone)]
+pub struct Plane {
+    pub curves: Vec<Curve<i32, usize>>,
+    pub vertices: Vec<Vertex<usize>>,
+    pub truth: fn(&Point) -> i32,
+}
+
+impl Plane {
+    pub fn new(truth: fn(&Point) -> i32) -> Self {
+        Self { curves: Vec::new(), vertices: Vec::new(), truth }
+    }
+
+    pub fn vertex(mut self, x: f64, y: f64, kind: VertexKind) -> Self {
+        self.vertices.push(Vertex { point: Point::new(x, y), kind, margins: Vec::new() });
+        self
+    }
+
+    /// A curve through (x, y), with derivatives (x′, y′), at the `parameters`; `sides` are left and right.
+    pub fn curve(
+        mut self,
+        along: impl Fn(f64) -> [f64; 4],
+        parameters: impl Iterator<Item = f64>,
+        sides: [i32; 2],
+        ends: Option<[usize; 2]>,
+    ) -> Self {
+        let nodes = parameters
+            .map(|s| {
+                let [x, y, dx, dy] = along(s);
+                Node { point: Point::new(x, y), tangent: Point::new(dx, dy).normalize() }
+            })
+            .collect();
+        self.curves.push(Curve { margin: self.curves.len(), sides, nodes, ends });
+        self
+    }
+
+    pub fn subdivision(&self) -> Result<Subdivision<i32, usize>, SubdivisionError> {
+        Subdivision::new(UNIT, self.curves.clone(), self.vertices.clone(), TOLERANCE)
+    }
+}
+
+impl Family for Plane {
+    type Label = i32;
+    type Margin = usize;
+    type Error = Infallible;
+
+    fn label(&self, point: &Point) -> Result<i32, Infallible> {
+        Ok((self.truth)(point))
+    }
+
+    fn margin(&self, _: &Point, _: &usize) -> Result<Option<f64>, Infallible> {
+        Ok(None)
+    }
+
+    fn margins(&self, _: &Point) -> Result<Vec<(usize, f64)>, Infallible> {
+        Ok(Vec::new())
+    }
+}
+
+/// `count` + 1 parameters evenly from `from` to `to`.
+pub fn even(from: f64, to: f64, count: u32) -> impl Iterator<Item = f64> {
+    (0..=count).map(move |i| from + (to - from) * f64::from(i) / f64::from(count))
+}
+
+/// Parameters from 0 to `to`, dense at 0.
+fn graded(to: f64, count: u32) -> impl Iterator<Item = f64> {
+    even(0.0, 1.0, count).map(move |s| to * s * s)
+}
+
+pub fn circle(x: f64, y: f64, radius: f64) -> impl Fn(f64) -> [f64; 4] {
+    move |s| {
+        let (sin, cos) = s.sin_cos();
+        [x + radius * cos, y + radius * sin, -radius * sin, radius * cos]
+    }
+}
+
+pub fn inside(point: &Point, x: f64, y: f64, radius: f64) -> i32 {
+    i32::from((point - Point::new(x, y)).norm() < radius)
+}
+
+/// Label: 1 in the first circle, 2 in the second, 3 in both.
+pub fn crossing_circles() -> Plane {
+    let half = 0.0525_f64.sqrt();
+    let angle = half.atan2(0.1);
+    Plane::new(|p| inside(p, 0.4, 0.5, 0.25) + 2 * inside(p, 0.6, 0.5, 0.25))
+        .vertex(0.5, 0.5 - half, VertexKind::Crossing)
+        .vertex(0.5, 0.5 + half, VertexKind::Crossing)
+        .curve(circle(0.4, 0.5, 0.25), even(-angle, angle, 60), [3, 2], Some([0, 1]))
+        .curve(circle(0.4, 0.5, 0.25), even(angle, TAU - angle, 160), [1, 0], Some([1, 0]))
+        .curve(circle(0.6, 0.5, 0.25), even(PI - angle, PI + angle, 60), [3, 1], Some([1, 0]))
+        .curve(
+            circle(0.6, 0.5, 0.25),
+            even(PI + angle, 3.0 * PI - angle, 160),
+            [2, 0],
+            Some([0, 1]),
+        )
+}
+
+/// A circle, and a smaller one that touches it from inside or from outside in the direction `angle`.
+///
+/// The label is not in closed form without the angle: `truth` is for the angle 0 and must be replaced for others.
+pub fn touching_circles(angle: f64, within: bool) -> Plane {
+    let (sin, cos) = angle.sin_cos();
+    let (touch, middle) = (0.25, if within { 0.15 } else { 0.35 });
+    let start = if within { angle } else { angle + PI };
+    let truth: fn(&Point) -> i32 = if within {
+        |p| inside(p, 0.5, 0.5, 0.25) + inside(p, 0.65, 0.5, 0.1)
+    } else {
+        |p| inside(p, 0.5, 0.5, 0.25) + 2 * inside(p, 0.85, 0.5, 0.1)
+    };
+    Plane::new(truth)
+        .vertex(0.5 + touch * cos, 0.5 + touch * sin, VertexKind::Degenerate)
+        .curve(circle(0.5, 0.5, 0.25), even(angle, angle + TAU, 200), [1, 0], Some([0, 0]))
+        .curve(
+            circle(0.5 + middle * cos, 0.5 + middle * sin, 0.1),
+            even(start, start + TAU, 130),
+            if within { [2, 1] } else { [2, 0] },
+            Some([0, 0]),
+        )
+}
+
+/// (y − 0.5)² = (x − 0.3)³, up to the window's right side. Label 1 between the branches.
+pub fn cusp() -> Plane {
+    let reach = 0.7_f64.sqrt();
+    let rise = reach * reach * reach;
+    let branch =
+        |sign: f64| move |s: f64| [0.3 + s * s, 0.5 + sign * s * s * s, 2.0, 3.0 * sign * s];
+    // The upper branch leaves the window above, at s = 0.5^(1/3); the lower one likewise below.
+    assert!(rise > 0.5);
+    let s = 0.5_f64.cbrt();
+    Plane::new(|p| {
+        let x = p.x - 0.3;
+        i32::from(x > 0.0 && (p.y - 0.5).powi(2) < x.powi(3))
+    })
+    .vertex(0.3, 0.5, VertexKind::Degenerate)
+    .vertex(0.3 + s * s, 1.0, VertexKind::WindowEdge)
+    .vertex(0.3 + s * s, 0.0, VertexKind::WindowEdge)
+    .curve(branch(1.0), graded(s, 500), [0, 1], Some([0, 1]))
+    .curve(branch(-1.0), graded(s, 500), [1, 0], Some([0, 2]))
+}
+
+/// The cusp with both coordinates exchanged: its branches leave upwards, both with a vertical tangent.
+pub fn upright_cusp() -> Plane {
+    let mut plane = cusp();
+    plane.truth = |p| {
+        let y = p.y - 0.3;
+        i32::from(y > 0.0 && (p.x - 0.5).powi(2) < y.powi(3))
+    };
+    let exchange = |point: &mut Point| *point = Point::new(point.y, point.x);
+    for vertex in &mut plane.vertices {
+        exchange(&mut vertex.point);
+    }
+    for curve in &mut plane.curves {
+        curve.sides.reverse();
+        for node in &mut curve.nodes {
+            exchange(&mut node.point);
+            exchange(&mut node.tangent);
+        }
+    }
+    plane
+}
+
+/// y² = x² − x⁴, scaled by 0.4 about the middle. Labels: 1 in the right lobe, 2 in the left one.
+pub fn figure_of_eight() -> Plane {
+    let along = |s: f64| {
+        let (sin, cos) = s.sin_cos();
+        [0.5 + 0.4 * sin, 0.5 + 0.4 * sin * cos, cos, cos * cos - sin * sin]
+    };
+    Plane::new(|p| {
+        let (x, y) = ((p.x - 0.5) / 0.4, (p.y - 0.5) / 0.4);
+        let inside = y * y < x * x - x.powi(4);
+        i32::from(inside) * if x > 0.0 { 1 } else { 2 }
+    })
+    .vertex(0.5, 0.5, VertexKind::Crossing)
+    .curve(along, even(0.0, PI, 800), [0, 1], Some([0, 0]))
+    .curve(along, even(PI, TAU, 800), [2, 0], Some([0, 0]))
+}
+
+/// An island of radius 1e-3 and label 2 in one of radius 0.3 and label 1; the first repeats its first node, the second does not.
+pub fn islands() -> Plane {
+    Plane::new(|p| inside(p, 0.5, 0.5, 0.3) + inside(p, 0.4, 0.6, 1e-3))
+        .curve(circle(0.4, 0.6, 1e-3), even(0.3, 0.3 + TAU, 60), [2, 1], None)
+        .curve(circle(0.5, 0.5, 0.3), even(0.1, 0.1 + TAU * 199.0 / 200.0, 199), [1, 0], None)
+}
+
+/// Two waves 1e-6 apart, from the left side of the window to the right one. Labels from above: 2, 1, 0.
+pub fn close_curves() -> Plane {
+    let wave = |lift: f64| {
+        move |x: f64| [x, 0.5 + lift + 0.1 * (6.0 * x).sin(), 1.0, 0.6 * (6.0 * x).cos()]
+    };
+    let end = 0.5 + 0.1 * 6.0_f64.sin();
+    Plane::new(|p| {
+        let y = p.y - 0.5 - 0.1 * (6.0 * p.x).sin();
+        i32::from(y > 0.0) + i32::from(y > 1e-6)
+    })
+    .vertex(0.0, 0.5, VertexKind::WindowEdge)
+    .vertex(1.0, end, VertexKind::WindowEdge)
+    .vertex(0.0, 0.5 + 1e-6, VertexKind::WindowEdge)
+    .vertex(1.0, end + 1e-6, VertexKind::WindowEdge)
+    .curve(wave(0.0), even(0.0, 1.0, 700), [1, 0], Some([0, 1]))
+    .curve(wave(1e-6), even(0.0, 1.0, 700), [2, 1], Some([2, 3]))
+}
+
+/// A wave from corner to corner, a circle about a corner, and a circle that touches the window's left side from inside.
+pub fn edges_and_corner() -> Plane {
+    let wave = |x: f64| {
+        let angle = PI * x;
+        [x, x * x + 0.1 * angle.sin(), 1.0, 2.0 * x + 0.1 * PI * angle.cos()]
+    };
+    Plane::new(|p| {
+        let above = i32::from(p.y > p.x * p.x + 0.1 * (PI * p.x).sin());
+        above + 2 * inside(p, 1.0, 0.0, 0.4) + 4 * inside(p, 0.15, 0.7, 0.15)
+    })
+    .vertex(0.0, 0.0, VertexKind::WindowCorner)
+    .vertex(1.0, 1.0, VertexKind::WindowCorner)
+    .vertex(1.0, 0.4, VertexKind::WindowEdge)
+    .vertex(0.6, 0.0, VertexKind::WindowEdge)
+    .vertex(0.0, 0.7, VertexKind::WindowEdge)
+    .curve(wave, even(0.0, 1.0, 400), [1, 0], Some([0, 1]))
+    .curve(circle(1.0, 0.0, 0.4), even(0.5 * PI, PI, 60), [2, 0], Some([2, 3]))
+    .curve(circle(0.15, 0.7, 0.15), even(PI, 3.0 * PI, 160), [5, 1], Some([4, 4]))
+}
