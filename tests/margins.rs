@@ -50,8 +50,8 @@ fn boundaries_are_the_zeros_of_margins() {
         let which = &nearest.margin;
         let kind = match which.place {
             Place::End => "end-of-contact",
-            Place::Minimum(_) if which.exits.len() % 2 == 0 => "slip-graze",
-            Place::Minimum(_) => "stick-graze",
+            Place::Minimum { .. } if which.exits.len() % 2 == 0 => "slip-graze",
+            Place::Minimum { .. } => "stick-graze",
         };
         assert_eq!(boundary["kind"], kind, "κ = {kappa}, ψ = {psi}");
         // Secant steps through zero: the margin exists on both sides.

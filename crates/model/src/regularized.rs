@@ -333,6 +333,42 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
         }
     }
 
+    /// Rates in s, which those of stick without damping share with u: divided by it, they do not vanish where the contact ends.
+    fn guard_rates(&self, phase: Phase, _s: f64, y: &State<STATE>) -> [f64; GUARDS] {
+        let a = self.contact.damping();
+        let (u, v) = (y[U], y[V]);
+        let dv = self.deceleration::<true>(u, v);
+        let end = if a > 0.0 { 2.0 * u * v + a * dv } else { v };
+        let force = self.force(u, v);
+        match phase.regime {
+            Regime::Slip => {
+                // s κ w' = κ dv, with w' = −2s u F = s dv.
+                let (pull, pull_rate) = (
+                    self.contact.kappa() * phase.side.sign() * self.velocity(y),
+                    self.contact.kappa() * dv,
+                );
+                let leave = if a > 0.0 {
+                    2.0 * (v * pull + u * pull_rate) - force.second
+                } else {
+                    pull_rate - 1.5 * (v * v + u * dv)
+                };
+                [end, leave, 0.0]
+            }
+            Regime::Stick => {
+                let shared = if a > 0.0 { 1.0 } else { u };
+                let stretch = phase.side.sign() * self.spring_force * self.spring_rate * y[W];
+                let (force, pull) =
+                    if a > 0.0 { (force.first, u * stretch) } else { (3.0 * u * v, stretch) };
+                let gap = if phase.progress == Progress::Settled {
+                    force - pull
+                } else {
+                    self.scale * y[RATE] / shared
+                };
+                [end, gap, force + pull]
+            }
+        }
+    }
+
     #[inline(always)]
     fn settle(&self, phase: Phase) -> Phase {
         match phase.regime {

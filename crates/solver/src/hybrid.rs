@@ -34,7 +34,8 @@ pub trait HybridSystem<const N: usize, const G: usize> {
     /// The values of the guards of `mode`; those of unused places are ignored.
     fn guard_values(&self, mode: Self::Mode, s: f64, y: &State<N>) -> [f64; G];
 
-    /// The rates at which the guards of `mode` change along the solution through `y`, whose zeros are the guards' extrema.
+    /// The rates at which the guards of `mode` change along the solution through `y`, whose zeros are the guards' extrema; each may
+    /// be multiplied by anything positive.
     ///
     /// The provided one takes differences along the field over [`RATE_REACH`] to both sides, of fourth order in it; a system whose
     /// guards change on a shorter scale gives its own. Only margins use it.

@@ -65,7 +65,7 @@ pub use guard::{Direction, Guard};
 pub use hybrid::{
     Grazing, HybridSystem, Observer, Outcome, Run, Start, Statistics, SwitchEvent, run,
 };
-pub use margin::{Exit, Margin, Margins, NearMiss, Place, margin, margins};
+pub use margin::{Exit, Hint, Margin, Margins, NearMiss, Place, margin, margins};
 pub use method::{Dense, Method, State, Step, Tableau, Trial};
 pub use options::{InvalidOption, Options, StepSize};
 pub use smooth::integrate;

@@ -8,31 +8,72 @@
 //! A minimum of a guard is a zero of its rate. It is found as any other switch is: decided on every step, and refined by steps of
 //! the method itself.
 
+use std::cmp::Ordering;
+use std::hash::{Hash, Hasher};
+
 use crate::error::RunError;
 use crate::guard::{Direction, Guard};
 use crate::hybrid::{HybridSystem, Observer, Outcome, Start, SwitchEvent, run};
 use crate::method::{Method, State, Step, Trial};
 use crate::options::Options;
 
+/// A place in a phase, which moves with the parameters: two that differ in nothing else are the same.
+#[derive(Clone, Copy, Debug)]
+pub struct Hint(pub f64);
+
+impl PartialEq for Hint {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl Eq for Hint {}
+
+impl PartialOrd for Hint {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Hint {
+    fn cmp(&self, _: &Self) -> Ordering {
+        Ordering::Equal
+    }
+}
+
+impl Hash for Hint {
+    fn hash<H: Hasher>(&self, _: &mut H) {}
+}
+
 /// How a phase of a prescribed run ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Exit {
     /// The guard that fires.
     pub guard: usize,
-    /// Local minima of that guard which come before: until then it is not looked at, wherever they lie.
-    pub minima: usize,
+    /// Where the guard is looked at from: beyond its local minima, which it passes wherever they lie.
+    pub after: Hint,
+    /// The part of the phase which that is; 0 if the guard has no minima before.
+    pub part: Hint,
 }
 
 /// Where a margin is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Place {
-    /// At a local minimum of the guard, counted from 0 in its phase.
-    Minimum(usize),
+    /// At the local minimum of the guard that is nearest to a place.
+    Minimum {
+        /// Where it is to be looked for.
+        near: Hint,
+        /// Its number in its phase, from 0, where it was found.
+        number: usize,
+    },
     /// Where a terminal guard ends the run.
     End,
 }
 
 /// Names a margin: in the phase that follows `exits`, the value of `guard` at `place`.
+///
+/// Hints say which of several minima is meant. As the parameters move away, [`margin`] returns the margin with hints
+/// that have moved along.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Margin {
     /// The phases before.
@@ -95,29 +136,28 @@ where
     for (k, &start) in starts.iter().enumerate() {
         let exit = fired.get(k).copied();
         let end = starts.get(k + 1).map_or(end, |next| next.s);
-        let mut minima_of_exit = 0;
+        let mut after = start.s;
         for (guard, about) in system.guards(start.mode).into_iter().enumerate() {
             if !leaves_margins(about) || end <= start.s {
                 continue;
             }
-            let found = watch(method, system, start, end, options, &[], guard, usize::MAX)?;
+            let found = watch(method, system, start, end, options, &[], guard)?;
             let Some(found) = found else { continue };
-            // Rounding may put a minimum on the wrong side of the phase's end.
-            let minima = found.minima.iter().filter(|minimum| minimum.s < end);
             let mut add = |place, at: Extremum| {
                 let margin = Margin { exits: exits.clone(), guard, place };
                 near_misses.push(NearMiss { margin, s: at.s, value: at.value });
             };
-            for (index, &minimum) in minima.enumerate() {
-                add(Place::Minimum(index), minimum);
-                minima_of_exit = if exit == Some(guard) { index + 1 } else { minima_of_exit };
+            for (number, &minimum) in found.minima.iter().enumerate() {
+                add(Place::Minimum { near: Hint(minimum.s), number }, minimum);
+                after = if exit == Some(guard) { 0.5 * (minimum.s + end) } else { after };
             }
             if let (None, Some(at_end)) = (exit, found.end) {
                 add(Place::End, at_end);
             }
         }
         if let Some(guard) = exit {
-            exits.push(Exit { guard, minima: minima_of_exit });
+            let part = if after > start.s { (after - start.s) / (end - start.s) } else { 0.0 };
+            exits.push(Exit { guard, after: Hint(after), part: Hint(part) });
         }
     }
     Ok(Margins { fired, near_misses, outcome: free.outcome })
@@ -141,17 +181,26 @@ where
     M: Method,
     S: HybridSystem<N, G>,
 {
-    let wanted = match margin.place {
-        Place::Minimum(index) => index + 1,
-        Place::End => usize::MAX,
-    };
     let exits = &margin.exits;
-    let watched = watch(method, system, start, end, options, exits, margin.guard, wanted)?;
-    let at = watched.and_then(|watched| match margin.place {
-        Place::Minimum(index) => watched.minima.get(index).copied(),
-        Place::End => watched.end,
+    let watched = watch(method, system, start, end, options, exits, margin.guard)?;
+    let Some(watched) = watched else { return Ok(None) };
+    let (place, at) = match margin.place {
+        Place::End => (Place::End, watched.end),
+        Place::Minimum { near, number } => {
+            let distance = |minimum: &Extremum| (minimum.s - near.0).abs();
+            let nearest = watched.minima.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+            let near = nearest.map_or(near, |minimum| Hint(minimum.s));
+            (Place::Minimum { near, number }, nearest.copied())
+        }
+    };
+    let mut began = start.s;
+    let exits = margin.exits.iter().zip(&watched.exits).map(|(exit, &s)| {
+        let after = Hint(began + exit.part.0 * (s - began));
+        began = s;
+        Exit { after, ..*exit }
     });
-    Ok(at.map(|at| NearMiss { margin: margin.clone(), s: at.s, value: at.value }))
+    let moved = Margin { exits: exits.collect(), guard: margin.guard, place };
+    Ok(at.map(|at| NearMiss { margin: moved, s: at.s, value: at.value }))
 }
 
 /// Whether the direction of a guard says on which side of zero it does not fire.
@@ -169,12 +218,13 @@ struct Extremum {
 
 /// What was seen of the guard that is watched.
 struct Watched {
+    /// Where the exits before happened.
+    exits: Vec<f64>,
     minima: Vec<Extremum>,
     end: Option<Extremum>,
 }
 
-/// Follows `exits` and then watches `guard` until it has had `wanted` minima or the run ends; `None` if it ends before.
-#[expect(clippy::too_many_arguments, reason = "those of `run` and what to watch")]
+/// Follows `exits` and then watches `guard` to the end of the run; `None` if that ends before.
 fn watch<M, S, const N: usize, const G: usize>(
     method: M,
     system: &S,
@@ -183,36 +233,34 @@ fn watch<M, S, const N: usize, const G: usize>(
     options: &Options,
     exits: &[Exit],
     guard: usize,
-    wanted: usize,
 ) -> Result<Option<Watched>, RunError>
 where
     M: Method,
     S: HybridSystem<N, G>,
 {
     let prescribed = Prescribed { system, exits, watched: guard };
-    let before: usize = exits.iter().map(|exit| exit.minima + 1).sum();
-    let options = Options {
-        max_switches: before.saturating_add(wanted).min(options.max_switches),
-        // A prescribed run may pass switches as close together as it likes.
-        zeno: 0.0,
-        ..*options
+    // A prescribed run may pass switches as close together as it likes.
+    let options = Options { zeno: 0.0, ..*options };
+    let mut watching = Watching::<S, G> {
+        prescribed: &prescribed,
+        seen: Watched { exits: Vec::with_capacity(exits.len()), minima: Vec::new(), end: None },
     };
-    let mut watching = Watching::<S, G> { prescribed: &prescribed, minima: Vec::new() };
-    let mode = PhaseMode { mode: start.mode, phase: 0, minima: 0 };
+    let mode = PhaseMode { mode: start.mode, phase: 0, part: Part::Start };
     let start = Start { mode, s: start.s, state: start.state };
     let run = run(method, &prescribed, start, end, &options, &mut watching)?;
     if run.mode.phase < exits.len() {
         return Ok(None);
     }
-    let value = || prescribed.value(run.mode.mode, guard, run.s, &run.state);
-    let ended = matches!(run.outcome, Outcome::EndedByGuard { .. });
-    Ok(Some(Watched {
-        minima: watching.minima,
-        end: ended.then(|| Extremum { s: run.s, value: value() }),
-    }))
+    let mut seen = watching.seen;
+    if let Outcome::EndedByGuard { .. } = run.outcome {
+        let value = prescribed.value(run.mode.mode, guard, run.s, &run.state);
+        seen.end = Some(Extremum { s: run.s, value });
+    }
+    Ok(Some(seen))
 }
 
-/// A system whose guards fire only as prescribed, with the rate of a guard in the guard's place where its minima count.
+/// A system whose guards fire only as prescribed. In the place of the guard that counts stands what is waited for: the place from
+/// which it is looked at, the guard itself, or its rate.
 struct Prescribed<'a, S> {
     system: &'a S,
     exits: &'a [Exit],
@@ -226,16 +274,39 @@ struct PhaseMode<Mode> {
     mode: Mode,
     /// Exits behind.
     phase: usize,
-    /// Minima behind in this phase, of the guard that counts.
-    minima: usize,
+    part: Part,
+}
+
+/// How far a phase is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
+    /// Nothing has been waited for yet.
+    Start,
+    /// The guard of the exit is looked at, from a place inside the phase on.
+    Armed,
+    /// So many minima of the guard that is watched are behind.
+    Minima(usize),
+}
+
+/// What is waited for.
+enum Awaited {
+    /// This place.
+    Place(f64),
+    /// The guard's zero.
+    Guard,
+    /// A minimum of the guard.
+    Minimum,
 }
 
 impl<S> Prescribed<'_, S> {
-    /// The guard that counts, and whether it is its rate that does.
-    fn subject<Mode>(&self, at: &PhaseMode<Mode>) -> (usize, bool) {
+    /// The guard that counts, and what is waited for.
+    fn subject<Mode>(&self, at: &PhaseMode<Mode>) -> (usize, Awaited) {
         match self.exits.get(at.phase) {
-            Some(exit) => (exit.guard, at.minima < exit.minima),
-            None => (self.watched, true),
+            Some(exit) if at.part == Part::Start && exit.part.0 > 0.0 => {
+                (exit.guard, Awaited::Place(exit.after.0))
+            }
+            Some(exit) => (exit.guard, Awaited::Guard),
+            None => (self.watched, Awaited::Minimum),
         }
     }
 
@@ -268,34 +339,42 @@ where
     }
 
     fn guards(&self, at: Self::Mode) -> [Guard; G] {
-        let (subject, by_rate) = self.subject(&at);
+        let (subject, awaited) = self.subject(&at);
         let own = self.system.guards(at.mode);
         std::array::from_fn(|guard| {
-            // A guard that has been watched in this phase has left its start behind.
-            let order = if at.minima > 0 { 0 } else { own[guard].zero_order() };
+            // In the middle of a phase its start lies behind.
+            let order = if at.part == Part::Start { own[guard].zero_order() } else { 0 };
             if own[guard].ends_run() {
-                Guard::new(own[guard].direction()).from_zero(order).terminal()
-            } else if guard != subject {
-                Guard::OFF
-            } else if by_rate {
-                // The rate rises from zero after a minimum.
-                let order = if at.minima > 0 { 1 } else { order.saturating_sub(1) };
-                Guard::new(Direction::Rising).from_zero(order)
-            } else {
+                return Guard::new(own[guard].direction()).from_zero(order).terminal();
+            }
+            if guard != subject {
+                return Guard::OFF;
+            }
+            match awaited {
+                Awaited::Place(_) => Guard::new(Direction::Below),
                 // Not `Below`: past a graze it is still negative, and to rise first.
-                Guard::new(Direction::Falling).from_zero(order)
+                Awaited::Guard => Guard::new(Direction::Falling).from_zero(order),
+                Awaited::Minimum => {
+                    // The rate rises from zero after a minimum.
+                    let after_minimum = matches!(at.part, Part::Minima(_));
+                    let order = if after_minimum { 1 } else { order.saturating_sub(1) };
+                    Guard::new(Direction::Rising).from_zero(order)
+                }
             }
         })
     }
 
     #[inline]
     fn guard_values(&self, at: Self::Mode, s: f64, y: &State<N>) -> [f64; G] {
-        let (subject, by_rate) = self.subject(&at);
+        let (subject, awaited) = self.subject(&at);
         let mut values = self.system.guard_values(at.mode, s, y);
         let rises = self.system.guards(at.mode)[subject].direction() == Direction::Rising;
-        let value =
-            if by_rate { self.system.guard_rates(at.mode, s, y)[subject] } else { values[subject] };
-        values[subject] = if rises { -value } else { value };
+        let sign = if rises { -1.0 } else { 1.0 };
+        values[subject] = match awaited {
+            Awaited::Place(place) => place - s,
+            Awaited::Guard => sign * values[subject],
+            Awaited::Minimum => sign * self.system.guard_rates(at.mode, s, y)[subject],
+        };
         values
     }
 
@@ -314,18 +393,23 @@ where
         s: f64,
         y: &State<N>,
     ) -> (Self::Mode, State<N>) {
-        if self.subject(&at).1 {
-            return (PhaseMode { minima: at.minima + 1, ..at }, *y);
-        }
-        let (mode, y) = self.system.transition(at.mode, guard, s, y);
-        (PhaseMode { mode, phase: at.phase + 1, minima: 0 }, y)
+        let part = match (self.subject(&at).1, at.part) {
+            (Awaited::Guard, _) => {
+                let (mode, y) = self.system.transition(at.mode, guard, s, y);
+                return (PhaseMode { mode, phase: at.phase + 1, part: Part::Start }, y);
+            }
+            (Awaited::Place(_), _) => Part::Armed,
+            (Awaited::Minimum, Part::Minima(behind)) => Part::Minima(behind + 1),
+            (Awaited::Minimum, _) => Part::Minima(1),
+        };
+        (PhaseMode { part, ..at }, *y)
     }
 }
 
-/// Takes down the minima of the guard that is watched.
+/// Takes down the exits and the minima of the guard that is watched.
 struct Watching<'a, S, const G: usize> {
     prescribed: &'a Prescribed<'a, S>,
-    minima: Vec<Extremum>,
+    seen: Watched,
 }
 
 impl<S, const N: usize, const G: usize> Observer<PhaseMode<S::Mode>, N> for Watching<'_, S, G>
@@ -333,11 +417,17 @@ where
     S: HybridSystem<N, G>,
 {
     fn on_switch(&mut self, event: &SwitchEvent<PhaseMode<S::Mode>, N>) {
-        if event.from.phase == self.prescribed.exits.len() && event.guard == self.prescribed.watched
-        {
-            let guard = self.prescribed.watched;
-            let value = self.prescribed.value(event.from.mode, guard, event.s, &event.before);
-            self.minima.push(Extremum { s: event.s, value });
+        let (guard, awaited) = self.prescribed.subject(&event.from);
+        if event.guard != guard {
+            return;
+        }
+        match awaited {
+            Awaited::Place(_) => {}
+            Awaited::Guard => self.seen.exits.push(event.s),
+            Awaited::Minimum => {
+                let value = self.prescribed.value(event.from.mode, guard, event.s, &event.before);
+                self.seen.minima.push(Extremum { s: event.s, value });
+            }
         }
     }
 }

@@ -37,6 +37,15 @@ pub trait Family {
     /// The run failed.
     fn margin(&self, point: &Point, margin: &Self::Margin) -> Result<Option<f64>, Self::Error>;
 
+    /// `margin` as it is to be named at `point`, which lies on its boundary: a family that tells the minima of a guard apart by
+    /// where they are moves such hints along.
+    ///
+    /// # Errors
+    /// The run failed.
+    fn moved(&self, _point: &Point, margin: &Self::Margin) -> Result<Self::Margin, Self::Error> {
+        Ok(margin.clone())
+    }
+
     /// The free run at `point` with all its margins: a boundary through a place close by is the zero of one of them, or of one
     /// of those at the places on the boundary's other side.
     ///

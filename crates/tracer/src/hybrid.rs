@@ -1,8 +1,8 @@
 //! A hybrid system with two parameters as a family of runs.
 
 use stickslip_solver::{
-    HybridSystem, Margin, Method, Observer, Options, Outcome, RunError, Start, SwitchEvent, margin,
-    margins, run,
+    HybridSystem, Margin, Method, NearMiss, Observer, Options, Outcome, RunError, Start,
+    SwitchEvent, margin, margins, run,
 };
 
 use crate::family::{Family, FreeRun, Point};
@@ -54,6 +54,18 @@ pub enum FamilyErrorKind {
     Unfinished(Outcome),
 }
 
+impl<P, M, const N: usize, const G: usize> HybridFamily<P, M, N, G>
+where
+    P: Problem<N, G>,
+    M: Method,
+{
+    fn near_miss(&self, point: &Point, which: &Margin) -> Result<Option<NearMiss>, FamilyError> {
+        let (system, start) = self.problem.at(point);
+        margin(self.method, &system, start, self.end, &self.options, which)
+            .map_err(|error| failure(point, error))
+    }
+}
+
 impl<P, M, const N: usize, const G: usize> Family for HybridFamily<P, M, N, G>
 where
     P: Problem<N, G>,
@@ -75,10 +87,12 @@ where
     }
 
     fn margin(&self, point: &Point, which: &Margin) -> Result<Option<f64>, FamilyError> {
-        let (system, start) = self.problem.at(point);
-        margin(self.method, &system, start, self.end, &self.options, which)
-            .map(|found| found.map(|miss| miss.value))
-            .map_err(|error| failure(point, error))
+        self.near_miss(point, which).map(|found| found.map(|miss| miss.value))
+    }
+
+    fn moved(&self, point: &Point, which: &Margin) -> Result<Margin, FamilyError> {
+        self.near_miss(point, which)
+            .map(|found| found.map_or_else(|| which.clone(), |miss| miss.margin))
     }
 
     fn free_run(&self, point: &Point) -> Result<FreeRun<Vec<usize>, Margin>, FamilyError> {
