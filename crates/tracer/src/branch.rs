@@ -397,6 +397,7 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
             let special = special::edge(self.runs, &foothold.node.point, &self.margin);
             return self.finish(End::Vertex(special), Some(foothold.node));
         }
+        self.margin = self.runs.moved(&foothold.node.point, &self.margin)?;
         self.trail.push_back(foothold);
         self.held = true;
         if self.trail.len() > 2 {

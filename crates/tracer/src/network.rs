@@ -157,12 +157,11 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
     }
 
     /// Whether a place on the boundary of `margin` with these labels on its sides lies on a curve that is there.
-    pub fn covers(&self, point: &Point, margin: &Margin, labels: &[Label; 2]) -> bool {
+    pub fn covers(&self, point: &Point, labels: &[Label; 2]) -> bool {
         let near = 1e-8 * self.scale;
         self.near(&[*point, *point]).into_iter().any(|(curve, piece)| {
             let sides = &self.network.curves[curve].sides;
-            self.network.curves[curve].margin == *margin
-                && (sides == labels || (sides[0] == labels[1] && sides[1] == labels[0]))
+            (sides == labels || (sides[0] == labels[1] && sides[1] == labels[0]))
                 && self.arc(curve, piece).closest(point).1 < near
         })
     }

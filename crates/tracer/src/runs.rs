@@ -64,6 +64,10 @@ impl<'a, F: Family> Runs<'a, F> {
         Ok(value)
     }
 
+    pub fn moved(&self, point: &Point, margin: &F::Margin) -> Traced<F::Margin, F> {
+        self.family.moved(point, margin).map_err(|source| TraceError::Run { point: *point, source })
+    }
+
     /// The gradient of a margin by differences along `direction`, a unit vector, and across it.
     ///
     /// With margins in error by ε and a scale L on which they vary, the error ε/h + h²/(6L²) of a central difference is least for

@@ -188,8 +188,7 @@ impl<F: Family> Tracer<'_, '_, F> {
 
     /// Traces the curve through a seed in both directions, unless it is known.
     fn seed(&mut self, seed: &Seed<F::Label, F::Margin>) -> Traced<(), F> {
-        if self.builder.covers(&seed.point, &seed.margin, &seed.labels)
-            || !self.runs.window.contains(&seed.point)
+        if self.builder.covers(&seed.point, &seed.labels) || !self.runs.window.contains(&seed.point)
         {
             return Ok(());
         }
