@@ -135,28 +135,31 @@ where
     let mut near_misses = Vec::new();
     for (k, &start) in starts.iter().enumerate() {
         let exit = fired.get(k).copied();
-        let end = starts.get(k + 1).map_or(end, |next| next.s);
+        let exited = starts.get(k + 1).map_or(end, |next| next.s);
+        // Where the last phase shrinks to nothing, the one before it lasts to the end.
+        let until = if k + 2 < starts.len() { exited } else { end };
         let mut after = start.s;
         for (guard, about) in system.guards(start.mode).into_iter().enumerate() {
-            if !leaves_margins(about) || end <= start.s {
+            if !leaves_margins(about) || exited <= start.s {
                 continue;
             }
-            let found = watch(method, system, start, end, options, &[], guard)?;
+            let found = watch(method, system, start, until, options, &[], guard)?;
             let Some(found) = found else { continue };
             let mut add = |place, at: Extremum| {
                 let margin = Margin { exits: exits.clone(), guard, place };
                 near_misses.push(NearMiss { margin, s: at.s, value: at.value });
             };
-            for (number, &minimum) in found.minima.iter().enumerate() {
+            let minima = found.minima.iter().take_while(|minimum| minimum.s < exited);
+            for (number, &minimum) in minima.enumerate() {
                 add(Place::Minimum { near: Hint(minimum.s), number }, minimum);
-                after = if exit == Some(guard) { 0.5 * (minimum.s + end) } else { after };
+                after = if exit == Some(guard) { 0.5 * (minimum.s + exited) } else { after };
             }
-            if let (None, Some(at_end)) = (exit, found.end) {
+            if let Some(at_end) = found.end.filter(|_| exit != Some(guard)) {
                 add(Place::End, at_end);
             }
         }
         if let Some(guard) = exit {
-            let part = if after > start.s { (after - start.s) / (end - start.s) } else { 0.0 };
+            let part = if after > start.s { (after - start.s) / (exited - start.s) } else { 0.0 };
             exits.push(Exit { guard, after: Hint(after), part: Hint(part) });
         }
     }
