@@ -21,7 +21,7 @@ pub trait Family {
     /// Which margin.
     type Margin: Clone + Debug + Eq + Ord + Hash;
     /// Why a run failed.
-    type Error: std::error::Error;
+    type Error: std::error::Error + 'static;
 
     /// The label of the free run at `point`.
     ///
@@ -37,12 +37,25 @@ pub trait Family {
     /// The run failed.
     fn margin(&self, point: &Point, margin: &Self::Margin) -> Result<Option<f64>, Self::Error>;
 
-    /// All margins of the free run at `point`, with their values: a boundary through a place close by is the zero of one of them,
-    /// or of one of those at the places on the boundary's other side.
+    /// The free run at `point` with all its margins: a boundary through a place close by is the zero of one of them, or of one
+    /// of those at the places on the boundary's other side.
+    ///
+    /// Each listed margin is also watched along boundaries and on the grid: two boundaries that touch or cross twice between two
+    /// nodes, and islands smaller than the grid's cells, are found if a free run beside them lists the margin. A margin may be
+    /// listed with a negative value, for a guard that has fired.
     ///
     /// # Errors
     /// The run failed.
-    fn margins(&self, point: &Point) -> Result<Vec<(Self::Margin, f64)>, Self::Error>;
+    fn free_run(&self, point: &Point) -> Result<FreeRun<Self::Label, Self::Margin>, Self::Error>;
+}
+
+/// What a free run does and how far it is from doing something else.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FreeRun<Label, Margin> {
+    /// The same as [`Family::label`] returns.
+    pub label: Label,
+    /// Each margin once, with the value that [`Family::margin`] returns.
+    pub margins: Vec<(Margin, f64)>,
 }
 
 /// A rectangle of the parameter plane, in the coordinates of [`Point`].
@@ -52,4 +65,18 @@ pub struct Window {
     pub low: Point,
     /// The corner with the greatest.
     pub high: Point,
+}
+
+impl Window {
+    /// Width and height.
+    #[must_use]
+    pub fn extent(&self) -> Point {
+        self.high - self.low
+    }
+
+    /// Whether a point lies inside or on the edge.
+    #[must_use]
+    pub fn contains(&self, point: &Point) -> bool {
+        (0..2).all(|axis| (self.low[axis]..=self.high[axis]).contains(&point[axis]))
+    }
 }

@@ -1,0 +1,165 @@
+//! From a guess to the zero of a margin, of two margins, or of a margin's gradient.
+
+use nalgebra::{Matrix2, Vector2};
+
+use crate::family::{Family, Point};
+use crate::runs::{Runs, Traced};
+
+/// A place on a boundary, with the margins evaluated to get there.
+pub(crate) struct Corrected {
+    pub point: Point,
+    pub evaluations: usize,
+}
+
+/// The zero of a margin on the line through `guess` along `gradient`, at most `reach` away, by the secant method.
+///
+/// `gradient` is that of a place nearby; its length is the slope to start with. The last update is not evaluated again: it leaves
+/// an error of the update times the relative error of the slope, which is that of the update before or, of a secant, less.
+pub(crate) fn correct<F: Family>(
+    runs: &Runs<'_, F>,
+    margin: &F::Margin,
+    guess: &Point,
+    gradient: &Point,
+    reach: f64,
+) -> Traced<Option<Corrected>, F> {
+    let mut slope = gradient.norm();
+    let normal = gradient / slope;
+    if !normal.iter().all(|part| part.is_finite()) {
+        return Ok(None);
+    }
+    let mut point = *guess;
+    let Some(mut value) = runs.margin(&point, margin)? else { return Ok(None) };
+    let mut contraction: f64 = 0.1;
+    for evaluations in 1..=10 {
+        let update = -value / slope;
+        let next = point + normal * update;
+        let within = (next - guess).norm() <= reach;
+        if !within {
+            return Ok(None);
+        }
+        if update.abs() * contraction <= 0.2 * runs.resolution(slope) {
+            return Ok(Some(Corrected { point: next, evaluations }));
+        }
+        let Some(next_value) = runs.margin(&next, margin)? else { return Ok(None) };
+        contraction = (next_value / value).abs();
+        // Below that the difference of two margins is noise, and the slope at hand is better.
+        let fall = next_value - value;
+        if fall.abs() > 1e3 * runs.options.noise {
+            let secant = fall / update;
+            let alike = secant > 0.05 * slope && secant < 20.0 * slope;
+            if !alike {
+                return Ok(None);
+            }
+            slope = secant;
+            contraction += runs.options.noise / fall.abs();
+        }
+        (point, value) = (next, next_value);
+    }
+    Ok(None)
+}
+
+/// The place near `guess` where two margins vanish together, by Newton's method; `direction` is that of differences.
+pub(crate) fn crossing<F: Family>(
+    runs: &Runs<'_, F>,
+    margins: [&F::Margin; 2],
+    guess: &Point,
+    direction: &Point,
+    radius: f64,
+    reach: f64,
+) -> Traced<Option<Point>, F> {
+    let mut point = *guess;
+    let mut last = f64::INFINITY;
+    let mut inverse: Option<Matrix2<f64>> = None;
+    for _ in 0..20 {
+        let (Some(first), Some(second)) =
+            (runs.margin(&point, margins[0])?, runs.margin(&point, margins[1])?)
+        else {
+            return Ok(None);
+        };
+        if inverse.is_none() {
+            let (Some(one), Some(two)) = (
+                runs.gradient(&point, margins[0], direction, radius)?,
+                runs.gradient(&point, margins[1], direction, radius)?,
+            ) else {
+                return Ok(None);
+            };
+            let sine = one.perp(&two).abs() / (one.norm() * two.norm());
+            let independent = sine > 1e-7;
+            if !independent {
+                return Ok(None);
+            }
+            inverse = Matrix2::from_rows(&[one.transpose(), two.transpose()]).try_inverse();
+        }
+        let Some(solver) = inverse else { return Ok(None) };
+        let update = solver * Vector2::new(first, second);
+        point -= update;
+        let size = update.norm();
+        let within = (point - guess).norm() <= reach;
+        if !within {
+            return Ok(None);
+        }
+        let resolution = runs.options.tolerance.max(runs.options.noise * solver.norm());
+        if size <= runs.options.tolerance || (size <= 10.0 * resolution && size >= 0.5 * last) {
+            return Ok(Some(point));
+        }
+        // Gradients serve as long as the updates shrink fast.
+        if size > 0.01 * last {
+            inverse = None;
+        }
+        last = size;
+    }
+    Ok(None)
+}
+
+/// The place near `guess` where the gradient of a margin vanishes, by Newton's method with differences whose step follows the
+/// updates, so that a singular second derivative only makes it slow: at a cusp each round halves the distance.
+pub(crate) fn stationary<F: Family>(
+    runs: &Runs<'_, F>,
+    margin: &F::Margin,
+    guess: &Point,
+    spread: f64,
+    reach: f64,
+) -> Traced<Option<Point>, F> {
+    let mut point = *guess;
+    let mut h = spread;
+    for _ in 0..60 {
+        let Some((gradient, second)) = derivatives(runs, margin, &point, h)? else {
+            return Ok(None);
+        };
+        let Some(inverse) = second.try_inverse() else { return Ok(None) };
+        let update = inverse * gradient;
+        point -= update;
+        let within = (point - guess).norm() <= reach;
+        if !within {
+            return Ok(None);
+        }
+        let size = update.norm();
+        if size <= runs.options.tolerance {
+            return Ok(Some(point));
+        }
+        h = (0.1 * size).min(h);
+    }
+    Ok(None)
+}
+
+/// Gradient and second derivatives of a margin by differences with step `h`.
+pub(crate) fn derivatives<F: Family>(
+    runs: &Runs<'_, F>,
+    margin: &F::Margin,
+    point: &Point,
+    h: f64,
+) -> Traced<Option<(Point, Matrix2<f64>)>, F> {
+    let mut values = [[0.0; 3]; 3];
+    for (i, row) in values.iter_mut().enumerate() {
+        for (j, value) in row.iter_mut().enumerate() {
+            let place = point + Point::new(i as f64 - 1.0, j as f64 - 1.0) * h;
+            let Some(found) = runs.margin(&place, margin)? else { return Ok(None) };
+            *value = found;
+        }
+    }
+    let [[aa, ab, ac], [ba, bb, bc], [ca, cb, cc]] = values;
+    let gradient = Point::new(cb - ab, bc - ba) / (2.0 * h);
+    let mixed = (cc - ca - ac + aa) / 4.0;
+    let second = Matrix2::new(cb - 2.0 * bb + ab, mixed, mixed, bc - 2.0 * bb + ba) / (h * h);
+    Ok(Some((gradient, second)))
+}

@@ -1,0 +1,113 @@
+//! Closed boundaries between the places of a grid: minima of margins that dip below zero.
+
+use nalgebra::Matrix2;
+
+use crate::corrector::derivatives;
+use crate::family::{Family, Point};
+use crate::runs::{Runs, Traced};
+use crate::seed::GridPlace;
+
+/// Places near those of the grid where a margin has another sign than around: one for each least value among neighbours whose
+/// minimum lies on the other side of zero.
+///
+/// `grid` holds columns of `rows` places each, `cell` apart.
+pub(crate) fn islands<F: Family>(
+    runs: &Runs<'_, F>,
+    grid: &[GridPlace<F>],
+    rows: usize,
+    cell: &Point,
+) -> Traced<Vec<[Point; 2]>, F> {
+    let mut found = Vec::new();
+    for (index, (point, run)) in grid.iter().enumerate() {
+        for (margin, value) in &run.margins {
+            if *value != 0.0 && is_least(grid, rows, index, margin, *value) {
+                found.extend(dive(runs, point, margin, *value, cell)?.map(|low| [*point, low]));
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// Whether no neighbour on the grid has the same margin closer to zero; one that has it on zero's other side has a boundary
+/// between, which needs no search.
+fn is_least<L, M: PartialEq>(
+    grid: &[(Point, crate::family::FreeRun<L, M>)],
+    rows: usize,
+    index: usize,
+    margin: &M,
+    value: f64,
+) -> bool {
+    let (column, row) = (index / rows, index % rows);
+    let columns = grid.len() / rows;
+    let mut neighbours = 0;
+    for i in column.saturating_sub(1)..=(column + 1).min(columns - 1) {
+        for j in row.saturating_sub(1)..=(row + 1).min(rows - 1) {
+            if (i, j) == (column, row) {
+                continue;
+            }
+            let own = grid[i * rows + j].1.margins.iter().find(|(other, _)| other == margin);
+            if let Some((_, other)) = own {
+                neighbours += 1;
+                if (*other < 0.0) != (value < 0.0) || other.abs() < value.abs() {
+                    return false;
+                }
+            }
+        }
+    }
+    neighbours > 0
+}
+
+/// Goes down from a place of the grid by quadratic models, until the margin has changed its sign or cannot.
+fn dive<F: Family>(
+    runs: &Runs<'_, F>,
+    start: &Point,
+    margin: &F::Margin,
+    value: f64,
+    cell: &Point,
+) -> Traced<Option<Point>, F> {
+    let sign = value.signum();
+    let (mut point, mut height) = (*start, value.abs());
+    let mut trust = cell.max();
+    let mut h = 0.25 * cell.min();
+    for _ in 0..16 {
+        let Some((slope, second)) = derivatives(runs, margin, &point, h)? else { return Ok(None) };
+        let (slope, second) = (slope * sign, second * sign);
+        let step = downhill(&slope, &second, trust);
+        let gain = -(slope.dot(&step) + 0.5 * step.dot(&(second * step)));
+        // The minimum is above zero by far more than the model can be wrong.
+        if gain < 0.1 * height && step.norm() < 0.9 * trust {
+            return Ok(None);
+        }
+        let next = point + step;
+        if (next - start).amax() > 2.0 * cell.max() || !runs.window.contains(&next) {
+            return Ok(None);
+        }
+        match runs.margin(&next, margin)? {
+            Some(value) if sign * value < 0.0 => return Ok(Some(next)),
+            Some(value) if sign * value < height => {
+                (point, height) = (next, sign * value);
+                h = (0.25 * step.norm()).min(h).max(1e-6 * runs.scale);
+            }
+            _ => {
+                trust *= 0.25;
+                h *= 0.25;
+            }
+        }
+        if trust < 1e-6 * runs.scale || h < 1e-7 * runs.scale {
+            return Ok(None);
+        }
+    }
+    Ok(None)
+}
+
+/// The step to the lowest point of a quadratic model within `trust`, or downhill if it has none.
+fn downhill(slope: &Point, second: &Matrix2<f64>, trust: f64) -> Point {
+    let newton = second.try_inverse().map(|inverse| -(inverse * slope));
+    match newton {
+        Some(step) if second.trace() > 0.0 && second.determinant() > 0.0 => {
+            step * (trust / step.norm()).min(1.0)
+        }
+        _ if slope.norm() > 0.0 => -slope * (trust / slope.norm()),
+        _ => Point::zeros(),
+    }
+}

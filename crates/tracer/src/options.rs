@@ -1,0 +1,117 @@
+//! What a trace may be told, and how it fails.
+
+use crate::family::{Point, Window};
+
+/// Options of a trace, checked by [`TraceOptions::validate`] when it starts.
+///
+/// Lengths are in the coordinates of the window.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TraceOptions {
+    /// Distance of a node from its boundary, above 0.
+    pub tolerance: f64,
+    /// Distance of the cubics between nodes from their boundary, at least ten times `tolerance`.
+    pub interpolation: f64,
+    /// How far apart the two points are at which both sides of a boundary are asked for their labels, half of it; above
+    /// `tolerance`.
+    pub offset: f64,
+    /// The error of a margin: below it, no margin says anything.
+    pub noise: f64,
+    /// The longest step, as a part of the window's shorter extent, up to 0.25.
+    pub max_step: f64,
+    /// The largest angle between the tangents of consecutive nodes, in radians, up to 0.5.
+    pub max_angle: f64,
+    /// Cells of the grid of seeds along each axis, at least 2; each side of the window is looked at in twice as many places.
+    pub cells: usize,
+    /// A branch stops after this many nodes.
+    pub max_nodes: usize,
+    /// The trace stops after this many curves.
+    pub max_curves: usize,
+}
+
+impl Default for TraceOptions {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-12,
+            interpolation: 1e-10,
+            offset: 1e-8,
+            noise: 1e-13,
+            max_step: 0.05,
+            max_angle: 0.2,
+            cells: 32,
+            max_nodes: 20_000,
+            max_curves: 10_000,
+        }
+    }
+}
+
+impl TraceOptions {
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// The first field that is out of its range, with its value and the range.
+    pub fn validate(&self) -> Result<(), InvalidTraceOption> {
+        let check = |name, value: f64, accepted, ok: bool| {
+            if ok { Ok(()) } else { Err(InvalidTraceOption { name, value, accepted }) }
+        };
+        let within = |value: f64, low: f64, high: f64| value > low && value <= high;
+        check("tolerance", self.tolerance, "above 0 to 1e-6", within(self.tolerance, 0.0, 1e-6))?;
+        check(
+            "interpolation",
+            self.interpolation,
+            "10 times the tolerance to 1e-2",
+            self.interpolation >= 10.0 * self.tolerance && self.interpolation <= 1e-2,
+        )?;
+        check(
+            "offset",
+            self.offset,
+            "10 times the tolerance to 1e-4",
+            self.offset >= 10.0 * self.tolerance && self.offset <= 1e-4,
+        )?;
+        check("noise", self.noise, "0 to 1e-6", (0.0..=1e-6).contains(&self.noise))?;
+        check("max_step", self.max_step, "above 0 to 0.25", within(self.max_step, 0.0, 0.25))?;
+        check("max_angle", self.max_angle, "above 0 to 0.5", within(self.max_angle, 0.0, 0.5))?;
+        check("cells", self.cells as f64, "2 to 4096", (2..=4096).contains(&self.cells))?;
+        check("max_nodes", self.max_nodes as f64, "at least 2", self.max_nodes >= 2)?;
+        check("max_curves", self.max_curves as f64, "at least 1", self.max_curves >= 1)
+    }
+}
+
+/// An option is out of its range.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("{name} is {value}, accepted is {accepted}")]
+pub struct InvalidTraceOption {
+    /// The field.
+    pub name: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// What it may be.
+    pub accepted: &'static str,
+}
+
+/// A trace failed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum TraceError<E: std::error::Error + 'static> {
+    /// An option is out of its range.
+    #[error(transparent)]
+    Option(#[from] InvalidTraceOption),
+    /// The window is empty, infinite or not a number.
+    #[error("the window from {:?} to {:?} is not a rectangle", window.low.as_slice(), window.high.as_slice())]
+    Window {
+        /// The window.
+        window: Window,
+    },
+    /// A run failed.
+    #[error("the run at ({}, {}) failed", point.x, point.y)]
+    Run {
+        /// Where.
+        point: Point,
+        /// Why.
+        source: E,
+    },
+    /// A margin is not a number.
+    #[error("a margin at ({}, {}) is not a number", point.x, point.y)]
+    NotANumber {
+        /// Where.
+        point: Point,
+    },
+}

@@ -1,0 +1,134 @@
+//! Where to start: from two places with different labels to a boundary between them.
+
+use crate::branch::{Seed, SeedOf};
+use crate::corrector::correct;
+use crate::family::{Family, FreeRun, Point};
+use crate::runs::{Runs, Traced};
+
+impl<Label: Clone + Eq, Margin> Seed<Label, Margin> {
+    /// A place between two others at which the label of the first one ends; `None` if their labels are the same, or no margin that
+    /// vanishes there parts them.
+    ///
+    /// # Errors
+    /// A run fails, or a margin is not a number.
+    pub fn between<F: Family<Label = Label, Margin = Margin>>(
+        runs: &Runs<'_, F>,
+        places: &[Point; 2],
+    ) -> Traced<Option<Self>, F> {
+        let labels = [runs.label(&places[0])?, runs.label(&places[1])?];
+        if labels[0] == labels[1] {
+            return Ok(None);
+        }
+        let change = bisect(runs, places, [0.0, 1.0], labels)?;
+        let near = change.places.map(|part| places[0].lerp(&places[1], part));
+        identify(runs, &near, &change.labels)
+    }
+}
+
+/// The first change of the label on a segment, from the label of its start.
+pub(crate) struct Change<Label> {
+    /// Where the label is still the first one, and where it is not, in parts of the segment.
+    pub places: [f64; 2],
+    /// The labels there.
+    pub labels: [Label; 2],
+}
+
+/// Bisects a change of label between two places of the segment from `a` to `b` to 1e-9 of the window.
+///
+/// What it finds is a place where the label at the start ends; between it and the segment's end the label may change again.
+pub(crate) fn bisect<F: Family>(
+    runs: &Runs<'_, F>,
+    [a, b]: &[Point; 2],
+    places: [f64; 2],
+    labels: [F::Label; 2],
+) -> Traced<Change<F::Label>, F> {
+    let [mut low, mut high] = places;
+    let [first, mut second] = labels;
+    let width = 1e-9 * runs.scale / (b - a).norm();
+    while high - low > width {
+        let middle = 0.5 * (low + high);
+        if !(middle > low && middle < high) {
+            break;
+        }
+        let label = runs.label(&a.lerp(b, middle))?;
+        if label == first {
+            low = middle;
+        } else {
+            (high, second) = (middle, label);
+        }
+    }
+    Ok(Change { places: [low, high], labels: [first, second] })
+}
+
+/// The boundary between two places that are close together: a margin of their free runs that vanishes there and parts their
+/// labels.
+pub(crate) fn identify<F: Family>(
+    runs: &Runs<'_, F>,
+    places: &[Point; 2],
+    labels: &[F::Label; 2],
+) -> Traced<Option<SeedOf<F>>, F> {
+    /// Margins looked at, those with the least values first.
+    const CANDIDATES: usize = 12;
+    let mut margins: Vec<(F::Margin, f64)> = Vec::new();
+    for place in places {
+        margins.extend(runs.free(place)?.margins);
+    }
+    margins.sort_by(|(one, x), (two, y)| x.abs().total_cmp(&y.abs()).then_with(|| one.cmp(two)));
+    let mut tried: Vec<F::Margin> = Vec::new();
+    let middle = places[0].lerp(&places[1], 0.5);
+    let width = (places[1] - places[0]).norm();
+    let along = (places[1] - places[0]) / width;
+    for (margin, value) in margins {
+        if tried.len() >= CANDIDATES {
+            break;
+        }
+        if tried.contains(&margin) {
+            continue;
+        }
+        tried.push(margin.clone());
+        let Some(gradient) = runs.gradient(&middle, &margin, &along, runs.scale)? else { continue };
+        let slope = gradient.norm();
+        let reach = 10.0 * width + 10.0 * runs.resolution(slope);
+        let near = value.abs() <= slope * reach;
+        if !near {
+            continue;
+        }
+        let Some(found) = correct(runs, &margin, &middle, &gradient, reach)? else { continue };
+        let labels = if gradient.dot(&(places[0] - places[1])) > 0.0 {
+            labels.clone()
+        } else {
+            [labels[1].clone(), labels[0].clone()]
+        };
+        let tangent = Point::new(gradient.y, -gradient.x) / slope;
+        let seed = Seed { point: found.point, tangent, margin, labels };
+        if holds(runs, &seed, &gradient)? {
+            return Ok(Some(seed));
+        }
+    }
+    Ok(None)
+}
+
+/// Whether the labels on both sides of a seed are its own.
+pub(crate) fn holds<F: Family>(
+    runs: &Runs<'_, F>,
+    seed: &Seed<F::Label, F::Margin>,
+    gradient: &Point,
+) -> Traced<bool, F> {
+    let resolution = runs.resolution(gradient.norm());
+    let mut offset = runs.options.offset.max(10.0 * resolution);
+    let normal = gradient.normalize();
+    loop {
+        if runs.label(&(seed.point + normal * offset))? == seed.labels[0]
+            && runs.label(&(seed.point - normal * offset))? == seed.labels[1]
+        {
+            return Ok(true);
+        }
+        offset *= 0.1;
+        if offset < 5.0 * resolution {
+            return Ok(false);
+        }
+    }
+}
+
+/// A place of the grid with its free run.
+pub(crate) type GridPlace<F> = (Point, FreeRun<<F as Family>::Label, <F as Family>::Margin>);

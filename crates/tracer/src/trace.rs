@@ -1,0 +1,337 @@
+//! All boundaries in a window.
+
+use crate::arc::Arc;
+use crate::branch::{Branch, End, Seed, SeedOf, Special};
+use crate::corrector::correct;
+use crate::curve::{Curve, Node, VertexKind};
+use crate::family::{Family, Point, Window};
+use crate::island::islands;
+use crate::network::{Builder, NetworkOf, Unresolved};
+use crate::options::{TraceError, TraceOptions};
+use crate::runs::{Runs, Traced};
+use crate::seed::{Change, GridPlace, bisect, holds, identify};
+
+/// Traces every boundary of a family in a window.
+///
+/// Seeds come from the window's edges, from circles around every vertex, from a grid, and from the minima of margins between its
+/// places. What can be missed are closed curves, or pieces between two vertices, that pass between all of those: strips and
+/// islands with no place of the grid inside whose margin has no minimum that the grid sees.
+///
+/// The family is evaluated up to a thousandth of the window's extent outside of it. Nodes are on their boundary to
+/// `options.tolerance`, or as far as the noise of margins allows, the cubics between them to `options.interpolation`.
+///
+/// # Errors
+/// Options out of range, a window that is not a rectangle, a run that fails, a margin that is not a number.
+pub fn trace<F: Family>(
+    family: &F,
+    window: &Window,
+    options: &TraceOptions,
+) -> Result<NetworkOf<F>, TraceError<F::Error>> {
+    let runs = Runs::new(family, *window, *options)?;
+    let mut tracer = Tracer { runs: &runs, builder: Builder::new(*window), probed: 0 };
+    tracer.edges()?;
+    tracer.vertices()?;
+    tracer.grid()?;
+    tracer.close_vertices()?;
+    let mut network = tracer.builder.network;
+    [network.statistics.free_runs, network.statistics.prescribed_runs] = runs.counts();
+    Ok(network)
+}
+
+/// Radii of the circles around a vertex on which seeds are looked for, in parts of the window's shorter extent.
+const CIRCLES: [f64; 2] = [1e-3, 1e-5];
+
+struct Tracer<'a, 'f, F: Family> {
+    runs: &'a Runs<'f, F>,
+    builder: Builder<F::Label, F::Margin>,
+    /// Vertices around which seeds were looked for.
+    probed: usize,
+}
+
+impl<F: Family> Tracer<'_, '_, F> {
+    /// Seeds from the window's edges, a ten-millionth inside.
+    fn edges(&mut self) -> Traced<(), F> {
+        let inset = Point::repeat(1e-7 * self.runs.scale);
+        let (low, high) = (self.runs.window.low + inset, self.runs.window.high - inset);
+        let corners = [low, Point::new(high.x, low.y), high, Point::new(low.x, high.y), low];
+        let parts = 2 * self.runs.options.cells;
+        let mut places = vec![low];
+        for side in corners.windows(2) {
+            places.extend((1..=parts).map(|i| side[0].lerp(&side[1], i as f64 / parts as f64)));
+        }
+        self.walk(&places)
+    }
+
+    /// Seeds from two circles around every vertex that has come up and does not lie on the window's edge.
+    fn vertices(&mut self) -> Traced<(), F> {
+        while let Some(vertex) = self.builder.network.vertices.get(self.probed) {
+            let (point, kind) = (vertex.point, vertex.kind);
+            self.probed += 1;
+            if matches!(kind, VertexKind::WindowEdge | VertexKind::WindowCorner) {
+                continue;
+            }
+            for radius in CIRCLES {
+                self.circle(&point, radius * self.runs.scale)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Seeds from a circle around every vertex that has others inside its circles: between them, where curves from one to the
+    /// other pass.
+    fn close_vertices(&mut self) -> Traced<(), F> {
+        let mut done = 0;
+        while done < self.builder.stops.len() {
+            let point = self.builder.stops[done].point;
+            let distances = self.builder.stops.iter().map(|stop| (stop.point - point).norm());
+            let nearest =
+                distances.filter(|&distance| distance > 0.0).fold(f64::INFINITY, f64::min);
+            done += 1;
+            if nearest < CIRCLES[0] * self.runs.scale {
+                self.circle(&point, 0.3 * nearest)?;
+                self.vertices()?;
+            }
+        }
+        Ok(())
+    }
+
+    fn circle(&mut self, centre: &Point, radius: f64) -> Traced<(), F> {
+        const CORNERS: u32 = 16;
+        let places: Vec<Point> = (0..=CORNERS)
+            .map(|i| {
+                // Turned, so that no corner lies on a line through the vertex along an axis or a diagonal.
+                let turns = (f64::from(i % CORNERS) + 0.3) / f64::from(CORNERS);
+                let (sine, cosine) = (std::f64::consts::TAU * turns).sin_cos();
+                centre + Point::new(cosine, sine) * radius
+            })
+            .collect();
+        self.walk(&places)
+    }
+
+    /// Seeds from the grid and from the islands between its places.
+    fn grid(&mut self) -> Traced<(), F> {
+        let cells = self.runs.options.cells;
+        let window = self.runs.window;
+        let cell = window.extent() / cells as f64;
+        let mut grid: Vec<GridPlace<F>> = Vec::with_capacity(cells * cells);
+        for column in 0..cells {
+            for row in 0..cells {
+                let part = Point::new(column as f64 + 0.5, row as f64 + 0.5);
+                let point = window.low + cell.component_mul(&part);
+                grid.push((point, self.runs.free(&point)?));
+            }
+        }
+        for index in 0..grid.len() {
+            let (column, row) = (index / cells, index % cells);
+            let (here, run) = &grid[index];
+            for (inside, other) in
+                [(row + 1 < cells, index + 1), (column + 1 < cells, index + cells)]
+            {
+                if inside {
+                    let (there, next) = &grid[other];
+                    self.scan([*here, *there], [run.label.clone(), next.label.clone()])?;
+                    self.vertices()?;
+                }
+            }
+        }
+        for segment in islands(self.runs, &grid, cells, &cell)? {
+            let labels = [self.runs.label(&segment[0])?, self.runs.label(&segment[1])?];
+            self.scan(segment, labels)?;
+            self.vertices()?;
+        }
+        Ok(())
+    }
+
+    /// Scans the segments of a polygon.
+    fn walk(&mut self, places: &[Point]) -> Traced<(), F> {
+        let mut labels = Vec::with_capacity(places.len());
+        for place in places {
+            labels.push(self.runs.label(place)?);
+        }
+        for (segment, ends) in places.windows(2).zip(labels.windows(2)) {
+            self.scan([segment[0], segment[1]], [ends[0].clone(), ends[1].clone()])?;
+        }
+        Ok(())
+    }
+
+    /// Traces every curve that changes the label along a segment, if it is not among the known curves.
+    ///
+    /// The curves that cross the segment explain how the label changes along it; only where their sides do not fit together, or
+    /// with the labels at the ends, is the boundary looked for by bisection.
+    fn scan(&mut self, segment: [Point; 2], labels: [F::Label; 2]) -> Traced<(), F> {
+        /// Changes on one segment; more are left to the grid's other edges.
+        const CHANGES: usize = 64;
+        let [a, b] = segment;
+        let gap = 2e-9 * self.runs.scale / (b - a).norm();
+        let [mut label, last] = labels;
+        let mut place = 0.0;
+        for _ in 0..CHANGES {
+            let mut unexplained = None;
+            for passage in self.builder.passages(&a, &b) {
+                if passage.place <= place {
+                    continue;
+                }
+                if passage.labels[0] != label {
+                    unexplained = Some(passage);
+                    break;
+                }
+                place = passage.place + gap;
+                label = passage.labels[1].clone();
+            }
+            let end = unexplained.as_ref().map_or(1.0, |passage| passage.place - gap);
+            if place >= 1.0 || (unexplained.is_none() && last == label) {
+                return Ok(());
+            }
+            // Labels are asked for, as far as they come from curves.
+            let first = if place > 0.0 { self.runs.label(&a.lerp(&b, place))? } else { label };
+            let second = match &unexplained {
+                Some(_) if end > place => self.runs.label(&a.lerp(&b, end))?,
+                Some(_) => first.clone(),
+                None => last.clone(),
+            };
+            let doubtful = first == second;
+            let change = if !doubtful {
+                bisect(self.runs, &segment, [place, end], [first, second])?
+            } else if let Some(passage) = &unexplained {
+                // A curve with other sides than here: there is a vertex on it that was missed.
+                let after = (end + 2.0 * gap).min(1.0);
+                let labels = [second, self.runs.label(&a.lerp(&b, after))?];
+                if labels[0] == labels[1] || labels == passage.labels {
+                    place = after;
+                    [_, label] = labels;
+                    continue;
+                }
+                Change { places: [end, after], labels }
+            } else {
+                return Ok(());
+            };
+            let places = change.places.map(|place| a.lerp(&b, place));
+            match identify(self.runs, &places, &change.labels)? {
+                Some(seed) => self.seed(&seed)?,
+                // Where curves are closer together than can be parted, the labels next to one are not its own.
+                None if doubtful => {}
+                None => {
+                    let labels = change.labels.clone();
+                    let unresolved = Unresolved::Change { between: places, labels };
+                    self.builder.network.unresolved.push(unresolved);
+                }
+            }
+            place = change.places[1];
+            label = change.labels[1].clone();
+        }
+        Ok(())
+    }
+
+    /// Traces the curve through a seed in both directions, unless it is known.
+    fn seed(&mut self, seed: &SeedOf<F>) -> Traced<(), F> {
+        if self.builder.covers(&seed.point, &seed.margin, &seed.labels)
+            || !self.runs.window.contains(&seed.point)
+        {
+            return Ok(());
+        }
+        let network = &mut self.builder.network;
+        if network.curves.len() >= self.runs.options.max_curves {
+            network.unresolved.push(Unresolved::TooManyCurves { point: seed.point });
+            return Ok(());
+        }
+        network.statistics.seeds += 1;
+        let Some((origin, forward, end)) = self.follow(seed, true)? else {
+            return Ok(());
+        };
+        let (nodes, ends) = match end {
+            None => (std::iter::once(origin).chain(forward).collect(), None),
+            Some(end) => {
+                let Some((_, backward, start)) = self.follow(seed, false)? else { return Ok(()) };
+                let turned = |node: &Node| Node { tangent: -node.tangent, ..*node };
+                let mut nodes: Vec<Node> = backward.iter().rev().map(turned).collect();
+                nodes.push(origin);
+                nodes.extend(forward);
+                // A branch that closes one way and ends the other way met the vertex just at its origin.
+                (nodes, Some([start.unwrap_or(end), end]))
+            }
+        };
+        let sides = seed.labels.clone();
+        self.builder.add_curve(Curve { margin: seed.margin.clone(), sides, nodes, ends });
+        Ok(())
+    }
+
+    /// Takes out the parts of curves whose labels are wrong: two vertices lay between two nodes, and only one of them was found
+    /// later. The circles around it find the right curves.
+    fn look_at_suspects(&mut self) -> Traced<(), F> {
+        let mut wrong = Vec::new();
+        for index in std::mem::take(&mut self.builder.suspects) {
+            let curve = &self.builder.network.curves[index];
+            let piece = (curve.nodes.len() - 1) / 2;
+            let guess = Arc::between(&curve.nodes[piece], &curve.nodes[piece + 1]);
+            let (guess, tangent, reach) = (guess.point(0.5), guess.tangent(0.5), guess.chord());
+            let found =
+                match self.runs.gradient(&guess, &curve.margin, &tangent, self.runs.scale)? {
+                    Some(gradient) => correct(self.runs, &curve.margin, &guess, &gradient, reach)?
+                        .map(|found| (found.point, gradient)),
+                    None => None,
+                };
+            let holds = match found {
+                Some((point, gradient)) => {
+                    let [left, right] = curve.sides.clone();
+                    let on_left = gradient.dot(&Point::new(-tangent.y, tangent.x)) > 0.0;
+                    let labels = if on_left { [left, right] } else { [right, left] };
+                    let seed = Seed { point, tangent, margin: curve.margin.clone(), labels };
+                    holds(self.runs, &seed, &gradient)?
+                }
+                None => false,
+            };
+            if !holds {
+                wrong.push(index);
+            }
+        }
+        if !wrong.is_empty() {
+            self.builder.remove_curves(&wrong);
+        }
+        Ok(())
+    }
+
+    /// Origin, nodes, and the vertex at the end, `None` if it closes; `None` in place of all if no branch starts there.
+    #[expect(clippy::type_complexity)]
+    fn follow(
+        &mut self,
+        seed: &SeedOf<F>,
+        forward: bool,
+    ) -> Traced<Option<(Node, Vec<Node>, Option<usize>)>, F> {
+        let stops = self.builder.stops.clone();
+        let Some(mut branch) = Branch::new(self.runs, seed, forward, &stops)? else {
+            let between = [seed.point; 2];
+            let labels = seed.labels.clone();
+            self.builder.network.unresolved.push(Unresolved::Change { between, labels });
+            return Ok(None);
+        };
+        let mut nodes = Vec::new();
+        for node in &mut branch {
+            nodes.push(node?);
+        }
+        let last = nodes.last().map_or(seed.point, |node| node.point);
+        let end = match branch.end().cloned() {
+            Some(End::Closed) => None,
+            Some(End::Known(index)) => Some(index),
+            Some(End::Vertex(special)) => {
+                let index = self.builder.add_vertex(&special);
+                self.look_at_suspects()?;
+                Some(index)
+            }
+            Some(End::Limit) | None => {
+                self.builder.network.unresolved.push(Unresolved::TooManyNodes { point: last });
+                let special = Special {
+                    point: last,
+                    kind: VertexKind::Degenerate,
+                    margins: vec![seed.margin.clone()],
+                    uncertainty: 0.0,
+                    solved: true,
+                };
+                Some(self.builder.add_vertex(&special))
+            }
+        };
+        let statistics = &mut self.builder.network.statistics;
+        statistics.nodes += nodes.len();
+        statistics.rejected += branch.rejected();
+        Ok(Some((branch.origin(), nodes, end)))
+    }
+}
