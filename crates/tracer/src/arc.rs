@@ -144,9 +144,10 @@ mod tests {
         let arc = Arc::between(&node(-0.1), &node(0.1));
         let found = arc.crossings(&Point::new(0.999, -1.0), &Point::new(0.999, 1.0));
         assert_eq!(found.len(), 2);
-        for [_, place] in found {
-            let y = 2.0 * place - 1.0;
-            assert!((y.abs() - (1.0_f64 - 0.999 * 0.999).sqrt()).abs() < 1e-8, "{y}");
+        for [theta, place] in found {
+            let crossing = arc.point(theta);
+            assert!((crossing - Point::new(0.999, 2.0 * place - 1.0)).norm() < 1e-14);
+            assert!((crossing.norm() - 1.0).abs() < 3e-9);
         }
         let (theta, distance) = arc.closest(&Point::new(1.1, 0.0));
         assert!((theta - 0.5).abs() < 1e-12 && (distance - 0.1).abs() < 1e-9);

@@ -3,29 +3,36 @@
 use std::collections::VecDeque;
 
 use crate::arc::Arc;
-use crate::corrector::correct;
 use crate::curve::{Node, VertexKind};
 use crate::family::{Family, FreeRun, Point};
+use crate::options::TraceError;
 use crate::runs::{Runs, Traced};
 use crate::special;
+use crate::step::Attempt;
+use crate::touch::touch;
 
 /// Nodes closer than this part of the window's shorter extent are one.
 pub(crate) const SHORTEST: f64 = 1e-9;
 
 /// A place on a boundary from which it can be followed.
 #[derive(Clone, Debug)]
-pub(crate) struct Seed<Label, Margin> {
+pub struct Seed<Label, Margin> {
+    /// The place.
     pub point: Point,
     /// A unit vector along the boundary.
     pub tangent: Point,
+    /// The margin that vanishes.
     pub margin: Margin,
     /// Labels where the margin is positive and where it is negative.
     pub labels: [Label; 2],
 }
 
+/// The seed of a family.
+pub(crate) type SeedOf<F> = Seed<<F as Family>::Label, <F as Family>::Margin>;
+
 /// Why a branch ended.
 #[derive(Clone, Debug)]
-pub(crate) enum End<Margin> {
+pub enum End<Margin> {
     /// It came back to where it started.
     Closed,
     /// At a vertex that was known, by its index.
@@ -38,9 +45,12 @@ pub(crate) enum End<Margin> {
 
 /// A vertex as a branch finds it.
 #[derive(Clone, Debug)]
-pub(crate) struct Special<Margin> {
+pub struct Special<Margin> {
+    /// Where.
     pub point: Point,
+    /// What it is.
     pub kind: VertexKind,
+    /// The margins known to vanish there.
     pub margins: Vec<Margin>,
     /// How far off it may be.
     pub uncertainty: f64,
@@ -50,8 +60,10 @@ pub(crate) struct Special<Margin> {
 
 /// A vertex that is known, where branches through it end.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Stop {
+pub struct Stop {
+    /// Where.
     pub point: Point,
+    /// How far off it may be.
     pub uncertainty: f64,
 }
 
@@ -69,49 +81,68 @@ pub(crate) type FootholdOf<F> = Foothold<<F as Family>::Label, <F as Family>::Ma
 
 /// A boundary followed in one direction: an iterator over its nodes, the start not among them.
 ///
-/// It runs one node behind the foothold, because a special point between the last two steps may take the last node back.
-pub(crate) struct Branch<'a, 'f, F: Family> {
+/// A step predicts along the last cubic, corrects along the normal, and is accepted if the tangent turns little, the cubic is as
+/// close to the boundary as asked, and free runs on both sides have the labels of the branch. The iterator is one node behind,
+/// because a special point between the last two steps may take the last node back.
+///
+/// ```
+/// use stickslip_tracer::{Branch, End, Family, FreeRun, Point, Runs, Seed, TraceOptions, Window};
+///
+/// /// A guard fires inside the unit circle.
+/// struct Disc;
+///
+/// impl Family for Disc {
+///     type Label = bool;
+///     type Margin = ();
+///     type Error = std::convert::Infallible;
+///     fn label(&self, p: &Point) -> Result<bool, Self::Error> {
+///         Ok(p.norm_squared() < 1.0)
+///     }
+///     fn margin(&self, p: &Point, (): &()) -> Result<Option<f64>, Self::Error> {
+///         Ok(Some(p.norm_squared() - 1.0))
+///     }
+///     fn free_run(&self, p: &Point) -> Result<FreeRun<bool, ()>, Self::Error> {
+///         Ok(FreeRun { label: self.label(p)?, margins: vec![((), p.norm_squared() - 1.0)] })
+///     }
+/// }
+///
+/// let window = Window { low: Point::new(-2.0, -2.0), high: Point::new(2.0, 2.0) };
+/// let runs = Runs::new(&Disc, window, TraceOptions::default())?;
+/// let seed = Seed::between(&runs, &[Point::zeros(), Point::new(1.5, 0.5)])?.expect("labels differ");
+/// let mut branch = Branch::new(&runs, &seed, true, &[])?.expect("on the boundary");
+/// for node in &mut branch {
+///     assert!((node?.point.norm() - 1.0).abs() < 1e-12);
+/// }
+/// assert!(matches!(branch.end(), Some(End::Closed)));
+/// # Ok::<(), stickslip_tracer::TraceError<std::convert::Infallible>>(())
+/// ```
+pub struct Branch<'a, 'f, F: Family> {
     pub(crate) runs: &'a Runs<'f, F>,
     pub(crate) margin: F::Margin,
     /// Labels on the left and on the right.
     pub(crate) sides: [F::Label; 2],
     /// 1 where the margin is positive on the left, −1 where it is on the right.
     pub(crate) orientation: f64,
-    stops: &'a [Stop],
-    origin: Node,
+    pub(crate) stops: &'a [Stop],
+    pub(crate) origin: Node,
     /// The last two footholds.
-    trail: VecDeque<FootholdOf<F>>,
+    pub(crate) trail: VecDeque<FootholdOf<F>>,
     /// Whether the last of them is still to be handed out.
     held: bool,
-    step: f64,
-    radius: f64,
-    taken: usize,
+    pub(crate) step: f64,
+    pub(crate) radius: f64,
+    pub(crate) taken: usize,
     ready: VecDeque<Node>,
     end: Option<End<F::Margin>>,
-    pub(crate) rejected: usize,
-}
-
-/// What became of a step.
-enum Attempt<Label, Margin> {
-    Accepted {
-        foothold: Foothold<Label, Margin>,
-        error: f64,
-        evaluations: usize,
-        edge: bool,
-    },
-    /// The margin does not exist, or its zero is not found.
-    Lost,
-    /// It turns too much, by this angle.
-    Turn(f64),
-    /// The cubic misses it by this distance.
-    Rough(f64),
-    /// Labels on the sides are others.
-    Labels(Foothold<Label, Margin>),
+    rejected: usize,
 }
 
 impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
-    /// The branch that leaves `seed` with the positive side on its left, or the other way; `None` if the seed is not on a
-    /// boundary between its labels.
+    /// The branch that leaves `seed` with the positive side on its left (`forward`), or the other way, and ends at the `stops` it
+    /// comes to; `None` if the seed is not on a boundary between its labels.
+    ///
+    /// # Errors
+    /// A run fails, or a margin is not a number.
     pub fn new(
         runs: &'a Runs<'f, F>,
         seed: &Seed<F::Label, F::Margin>,
@@ -159,54 +190,22 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         self.end.as_ref()
     }
 
+    /// Steps that were rejected so far.
+    pub fn rejected(&self) -> usize {
+        self.rejected
+    }
+
     /// The radius of curvature where it is.
-    pub fn radius(&self) -> f64 {
+    pub(crate) fn radius(&self) -> f64 {
         self.radius
     }
 
     /// The next node, or `None` at the end.
-    pub fn advance(&mut self) -> Traced<Option<Node>, F> {
+    fn advance(&mut self) -> Traced<Option<Node>, F> {
         while self.ready.is_empty() && self.end.is_none() {
             self.take_step()?;
         }
         Ok(self.ready.pop_front())
-    }
-
-    /// Tangent at a place with this gradient.
-    pub fn tangent(&self, gradient: &Point) -> Point {
-        Point::new(gradient.y, -gradient.x) * (self.orientation / gradient.norm())
-    }
-
-    /// The place on the boundary with the free runs on both sides; `Err` if their labels are not those of the branch.
-    ///
-    /// Where another boundary is closer than the offset, a smaller offset is tried, as far as the place itself is known.
-    pub fn foothold(
-        &self,
-        point: &Point,
-        gradient: &Point,
-    ) -> Traced<Result<FootholdOf<F>, FootholdOf<F>>, F> {
-        let tangent = self.tangent(gradient);
-        let left = Point::new(-tangent.y, tangent.x);
-        let resolution = self.runs.resolution(gradient.norm());
-        let mut offset = self.runs.options.offset.max(10.0 * resolution);
-        let node = Node { point: *point, tangent };
-        let mut first = None;
-        loop {
-            let sides = [
-                self.runs.free(&(point + left * offset))?,
-                self.runs.free(&(point - left * offset))?,
-            ];
-            let holds = sides[0].label == self.sides[0] && sides[1].label == self.sides[1];
-            let foothold = Foothold { node, gradient: *gradient, sides };
-            if holds {
-                return Ok(Ok(foothold));
-            }
-            offset *= 0.1;
-            let widest = first.get_or_insert(foothold);
-            if offset < 5.0 * resolution {
-                return Ok(Err(widest.clone()));
-            }
-        }
     }
 
     fn take_step(&mut self) -> Traced<(), F> {
@@ -240,10 +239,11 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
                 return self.finish(End::Known(index), None);
             }
             let stuck = h < 1e-2 * first_step || beyond.is_some() || turned;
-            if stuck && matches!(failures, 1 | 4 | 8 | 16 | 24 | 32) {
-                if let Some(special) = special::locate(self, &from, beyond.as_ref(), h)? {
-                    return self.finish_at(special);
-                }
+            if stuck
+                && matches!(failures, 1 | 4 | 8 | 16 | 24 | 32)
+                && let Some(special) = special::locate(self, &from, beyond.as_ref(), h)?
+            {
+                return self.finish_at(special);
             }
             if h < 1e-12 * self.runs.scale {
                 let special = special::give_up(self, &from, h)?;
@@ -251,112 +251,6 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
             }
             h *= factor;
         }
-    }
-
-    /// The step to try: not far beyond the window.
-    fn limited_step(&self, from: &Node) -> f64 {
-        let window = &self.runs.window;
-        let mut exit = f64::INFINITY;
-        for axis in 0..2 {
-            let speed = from.tangent[axis];
-            let room = if speed > 0.0 {
-                window.high[axis] - from.point[axis]
-            } else {
-                from.point[axis] - window.low[axis]
-            };
-            exit = exit.min(room.max(0.0) / speed.abs());
-        }
-        self.step
-            .min(self.runs.options.max_step * self.runs.scale)
-            .min(exit + 1e-3 * self.runs.scale)
-    }
-
-    fn attempt(&self, from: &FootholdOf<F>, h: f64) -> Traced<Attempt<F::Label, F::Margin>, F> {
-        let runs = self.runs;
-        let guess = self.predict(&from.node, h);
-        let reach = 0.3 * h + 100.0 * runs.options.tolerance;
-        let Some(corrected) = correct(runs, &self.margin, &guess, &from.gradient, reach)? else {
-            return Ok(Attempt::Lost);
-        };
-        let Some(gradient) =
-            runs.gradient(&corrected.point, &self.margin, &from.node.tangent, self.radius)?
-        else {
-            return Ok(Attempt::Lost);
-        };
-        let tangent = self.tangent(&gradient);
-        let angle = from.node.tangent.angle(&tangent);
-        if !(angle <= runs.options.max_angle) {
-            return Ok(Attempt::Turn(angle));
-        }
-        let node = Node { point: corrected.point, tangent };
-        let arc = Arc::between(&from.node, &node);
-        // Off the middle, where the errors of fourth and of fifth order both show; the first has 0.7 of its maximum there.
-        let Some(value) = runs.margin(&arc.point(0.3), &self.margin)? else {
-            return Ok(Attempt::Lost);
-        };
-        let slope = 0.5 * (gradient.norm() + from.gradient.norm());
-        let error = ((value.abs() - runs.options.noise) / slope / 0.7).max(0.0);
-        if !(error <= runs.options.interpolation) {
-            return Ok(Attempt::Rough(error));
-        }
-        let (point, gradient, edge) = match self.leave_window(&arc, &gradient)? {
-            Some(point) => {
-                let Some(gradient) = runs.gradient(&point, &self.margin, &tangent, self.radius)?
-                else {
-                    return Ok(Attempt::Lost);
-                };
-                (point, gradient, true)
-            }
-            None => (corrected.point, gradient, false),
-        };
-        Ok(match self.foothold(&point, &gradient)? {
-            Ok(foothold) => {
-                Attempt::Accepted { foothold, error, evaluations: corrected.evaluations, edge }
-            }
-            Err(beyond) => Attempt::Labels(beyond),
-        })
-    }
-
-    /// The last cubic goes on, if the step is not much longer than it; else the tangent.
-    pub fn predict(&self, from: &Node, h: f64) -> Point {
-        let before = self.trail.len().checked_sub(2).map(|index| self.trail[index].node);
-        if let Some(before) = before {
-            let arc = Arc::between(&before, from);
-            if h < 2.5 * arc.chord() && arc.chord() > 1e-6 * self.runs.scale {
-                return arc.point(1.0 + h / arc.chord());
-            }
-        }
-        from.point + from.tangent * h
-    }
-
-    /// Where the piece leaves the window, solved on the edge; `None` if it does not.
-    fn leave_window(&self, arc: &Arc, gradient: &Point) -> Traced<Option<Point>, F> {
-        let window = &self.runs.window;
-        if window.contains(&arc.point(1.0)) {
-            return Ok(None);
-        }
-        let (mut inside, mut outside) = (0.0, 1.0);
-        for _ in 0..50 {
-            let middle = 0.5 * (inside + outside);
-            if window.contains(&arc.point(middle)) { inside = middle } else { outside = middle }
-        }
-        let exit = arc.point(outside);
-        let axis = usize::from(exit.y < window.low.y || exit.y > window.high.y);
-        let edge =
-            if exit[axis] > window.high[axis] { window.high[axis] } else { window.low[axis] };
-        let mut guess = arc.point(inside);
-        guess[axis] = edge;
-        let mut along = *gradient;
-        along[axis] = 0.0;
-        let reach = 0.3 * arc.chord();
-        let solved = if along.norm() > 1e-3 * gradient.norm() {
-            correct(self.runs, &self.margin, &guess, &along, reach)?
-        } else {
-            correct(self.runs, &self.margin, &guess, gradient, reach)?
-        };
-        let mut point = solved.map_or(guess, |found| found.point);
-        point[axis] = edge;
-        Ok(Some(point.sup(&window.low).inf(&window.high)))
     }
 
     fn accept(
@@ -378,18 +272,18 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         let most = if shortened { 1.0 } else { 2.0 };
         self.step = arc.chord() * by_error.min(by_angle).min(by_effort).clamp(0.3, most);
 
-        if let Some(index) = self.passed_stop(&arc) {
-            return self.finish(End::Known(index), None);
-        }
-        if self.taken > 0 && self.passes_origin(&arc) {
-            return self.finish(End::Closed, Some(self.origin));
-        }
-        if let Some((special, before_last)) = special::touch(self, &foothold)? {
+        if let Some((special, before_last)) = touch(self, &foothold)? {
             if before_last {
                 self.trail.pop_back();
                 self.held = false;
             }
             return self.finish_at(special);
+        }
+        if let Some(index) = self.passed_stop(&arc) {
+            return self.finish(End::Known(index), None);
+        }
+        if self.taken > 0 && self.passes_origin(&arc) {
+            return self.finish(End::Closed, Some(self.origin));
         }
         self.hand_out();
         self.taken += 1;
@@ -414,78 +308,8 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
     }
 
     /// The last footholds, at most two, oldest first.
-    pub fn trail(&self) -> &VecDeque<FootholdOf<F>> {
+    pub(crate) fn trail(&self) -> &VecDeque<FootholdOf<F>> {
         &self.trail
-    }
-
-    fn passed_stop(&self, arc: &Arc) -> Option<usize> {
-        self.stops.iter().position(|stop| {
-            let near = stop.uncertainty + 1e-9 * self.runs.scale;
-            let [low, high] = arc.bounds();
-            (0..2).all(|axis| {
-                stop.point[axis] > low[axis] - near && stop.point[axis] < high[axis] + near
-            }) && {
-                let (theta, distance) = arc.closest(&stop.point);
-                distance < near && (self.taken > 0 || theta > 0.0)
-            }
-        })
-    }
-
-    /// The known vertex ahead, within a step that failed, that the branch runs into without another special point before.
-    fn aim(&self, from: &FootholdOf<F>, h: f64) -> Traced<Option<usize>, F> {
-        let runs = self.runs;
-        for (index, stop) in self.stops.iter().enumerate() {
-            let chord = stop.point - from.node.point;
-            let length = chord.norm();
-            let angle = chord.angle(&from.node.tangent);
-            if !(length <= 2.0 * h && length > SHORTEST * runs.scale)
-                || !(angle <= 0.5 * runs.options.max_angle)
-            {
-                continue;
-            }
-            let end = Node { point: stop.point, tangent: mirrored(&from.node.tangent, &chord) };
-            let arc = Arc::between(&from.node, &end);
-            let mut runs_in = true;
-            for theta in [0.3, 0.7] {
-                let value = runs.margin(&arc.point(theta), &self.margin)?;
-                runs_in &= value.is_some_and(|value| {
-                    value.abs() <= runs.options.interpolation * from.gradient.norm()
-                });
-            }
-            if !runs_in {
-                continue;
-            }
-            // Halfway, and just before the vertex.
-            for theta in [0.5, 0.97] {
-                runs_in = runs_in && self.holds(from, &arc.point(theta), 0.1 * length)?;
-            }
-            if runs_in {
-                return Ok(Some(index));
-            }
-        }
-        Ok(None)
-    }
-
-    /// Whether the branch passes close to `guess` with its labels.
-    pub fn holds(&self, from: &FootholdOf<F>, guess: &Point, reach: f64) -> Traced<bool, F> {
-        let runs = self.runs;
-        let reach = reach + 100.0 * runs.options.tolerance;
-        let Some(found) = correct(runs, &self.margin, guess, &from.gradient, reach)? else {
-            return Ok(false);
-        };
-        let tangent = &from.node.tangent;
-        let gradient = runs.gradient(&found.point, &self.margin, tangent, self.radius)?;
-        Ok(match gradient {
-            Some(gradient) => self.foothold(&found.point, &gradient)?.is_ok(),
-            None => false,
-        })
-    }
-
-    fn passes_origin(&self, arc: &Arc) -> bool {
-        let (theta, distance) = arc.closest(&self.origin.point);
-        distance < 1e-8 * self.runs.scale && theta > 0.0 && {
-            arc.tangent(theta).dot(&self.origin.tangent) > 0.5
-        }
     }
 
     /// Ends at a special point, which becomes the last node.
@@ -510,39 +334,28 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         Ok(())
     }
 
-    /// Hands out the node that was held back, then `point`.
+    /// Hands out the node that was held back, then `point`, or a known vertex that lies before it.
     fn finish_with(&mut self, end: End<F::Margin>, point: Point) -> Traced<(), F> {
         self.hand_out();
-        if let Some(last) = self.trail.back().map(|foothold| foothold.node) {
-            // Nothing can be said of directions over distances comparable to the tolerance.
-            let tangent = if (point - last.point).norm() < SHORTEST * self.runs.scale {
-                last.tangent
-            } else {
-                self.end_tangent(&last, &point)?
-            };
-            self.ready.push_back(Node { point, tangent });
-        }
+        let Some(last) = self.trail.back().map(|foothold| foothold.node) else { return Ok(()) };
+        let mut node = self.end_node(&last, &point)?;
         self.end = Some(end);
-        Ok(())
-    }
-
-    /// The tangent at an end: across the gradient where there is one, else that of the circle through the last node.
-    fn end_tangent(&self, last: &Node, point: &Point) -> Traced<Point, F> {
-        let chord = point - last.point;
-        let mirrored = mirrored(&last.tangent, &chord);
-        if let Some(gradient) = self.runs.gradient(point, &self.margin, &mirrored, self.radius)? {
-            let tangent = self.tangent(&gradient);
-            let turn = tangent.angle(&mirrored);
-            if turn < 0.1 * last.tangent.angle(&chord) + 1e-6 {
-                return Ok(tangent);
-            }
+        let reaches = |stop: &Stop| (stop.point - point).norm() <= stop.uncertainty;
+        if let Some(index) = self.passed_stop(&Arc::between(&last, &node))
+            && !reaches(&self.stops[index])
+        {
+            node = self.end_node(&last, &self.stops[index].point)?;
+            self.end = Some(End::Known(index));
         }
-        Ok(mirrored)
+        self.ready.push_back(node);
+        Ok(())
     }
 }
 
-/// The tangent at the other end of a circle's arc with this tangent at one end.
-fn mirrored(tangent: &Point, chord: &Point) -> Point {
-    let chord = chord.normalize();
-    chord * (2.0 * chord.dot(tangent)) - tangent
+impl<F: Family> Iterator for Branch<'_, '_, F> {
+    type Item = Result<Node, TraceError<F::Error>>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.advance().transpose()
+    }
 }

@@ -33,7 +33,8 @@ pub(crate) fn correct<F: Family>(
     for evaluations in 1..=10 {
         let update = -value / slope;
         let next = point + normal * update;
-        if !((next - guess).norm() <= reach) {
+        let within = (next - guess).norm() <= reach;
+        if !within {
             return Ok(None);
         }
         if update.abs() * contraction <= 0.2 * runs.resolution(slope) {
@@ -45,7 +46,8 @@ pub(crate) fn correct<F: Family>(
         let fall = next_value - value;
         if fall.abs() > 1e3 * runs.options.noise {
             let secant = fall / update;
-            if !(secant > 0.05 * slope && secant < 20.0 * slope) {
+            let alike = secant > 0.05 * slope && secant < 20.0 * slope;
+            if !alike {
                 return Ok(None);
             }
             slope = secant;
@@ -68,36 +70,41 @@ pub(crate) fn crossing<F: Family>(
     let mut point = *guess;
     let mut last = f64::INFINITY;
     let mut inverse: Option<Matrix2<f64>> = None;
-    for round in 0..16 {
+    for _ in 0..20 {
         let (Some(first), Some(second)) =
             (runs.margin(&point, margins[0])?, runs.margin(&point, margins[1])?)
         else {
             return Ok(None);
         };
-        // The gradients of two rounds ago serve as long as the updates shrink fast.
-        if inverse.is_none() || round % 3 == 0 {
+        if inverse.is_none() {
             let (Some(one), Some(two)) = (
                 runs.gradient(&point, margins[0], direction, radius)?,
                 runs.gradient(&point, margins[1], direction, radius)?,
             ) else {
                 return Ok(None);
             };
-            let sine = (one.x * two.y - one.y * two.x).abs() / (one.norm() * two.norm());
-            if !(sine > 1e-7) {
+            let sine = one.perp(&two).abs() / (one.norm() * two.norm());
+            let independent = sine > 1e-7;
+            if !independent {
                 return Ok(None);
             }
             inverse = Matrix2::from_rows(&[one.transpose(), two.transpose()]).try_inverse();
         }
-        let Some(inverse) = inverse else { return Ok(None) };
-        let update = inverse * Vector2::new(first, second);
+        let Some(solver) = inverse else { return Ok(None) };
+        let update = solver * Vector2::new(first, second);
         point -= update;
         let size = update.norm();
-        if !((point - guess).norm() <= reach) {
+        let within = (point - guess).norm() <= reach;
+        if !within {
             return Ok(None);
         }
-        let resolution = runs.options.tolerance.max(runs.options.noise * inverse.norm());
+        let resolution = runs.options.tolerance.max(runs.options.noise * solver.norm());
         if size <= runs.options.tolerance || (size <= 10.0 * resolution && size >= 0.5 * last) {
             return Ok(Some(point));
+        }
+        // Gradients serve as long as the updates shrink fast.
+        if size > 0.01 * last {
+            inverse = None;
         }
         last = size;
     }
@@ -122,7 +129,8 @@ pub(crate) fn stationary<F: Family>(
         let Some(inverse) = second.try_inverse() else { return Ok(None) };
         let update = inverse * gradient;
         point -= update;
-        if !((point - guess).norm() <= reach) {
+        let within = (point - guess).norm() <= reach;
+        if !within {
             return Ok(None);
         }
         let size = update.norm();

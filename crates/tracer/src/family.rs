@@ -49,6 +49,10 @@ pub trait Family {
     /// The free run at `point` with all its margins: a boundary through a place close by is the zero of one of them, or of one
     /// of those at the places on the boundary's other side.
     ///
+    /// Each listed margin is also watched along boundaries and on the grid: two boundaries that touch or cross twice between two
+    /// nodes, and islands smaller than the grid's cells, are found if a free run beside them lists the margin. A margin may be
+    /// listed with a negative value, for a guard that has fired.
+    ///
     /// # Errors
     /// The run failed.
     fn free_run(&self, point: &Point) -> Result<FreeRun<Self::Label, Self::Margin>, Self::Error>;

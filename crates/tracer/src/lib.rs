@@ -3,11 +3,12 @@
 //!
 //! In reading order: `family` (what is traced), `hybrid` (hybrid systems as families), `curve` (what comes out);
 //!
-//! - curves: `trace` (how all are found), `branch` (how one is followed), `special` (where it ends), `seed` and `island` (where it
-//!   starts), `corrector`, `runs`, `network`, `arc`;
+//! - curves: `trace` (how all are found), `branch` (how one is followed), `step` (a step), `special`, `touch` and `ahead` (where it
+//!   ends), `seed` and `island` (where it starts), `corrector`, `runs`, `network`, `arc`;
 //! - regions: `hermite` (the cubics between nodes), `subdivision` with `faces`, `crossing`, `finding` and `interior`, `slabs` and
 //!   `locate` (where a point lies), `verify` (runs against the subdivision).
 
+mod ahead;
 mod arc;
 mod bernstein;
 mod branch;
@@ -30,19 +31,23 @@ mod runs;
 mod seed;
 mod slabs;
 mod special;
+mod step;
 mod subdivision;
+mod touch;
 mod trace;
 mod union;
 mod verify;
 
+pub use branch::{Branch, End, Seed, Special, Stop};
 pub use curve::{Curve, Node, Vertex, VertexKind};
 pub use family::{Family, FreeRun, Point, Window};
 pub use finding::{Euler, Finding, SubdivisionError};
 pub use hermite::Cubic;
 pub use hybrid::{FamilyError, FamilyErrorKind, HybridFamily, ModeOf, Problem};
 pub use locate::Location;
-pub use network::{Network, TraceStatistics, Unresolved};
+pub use network::{Network, NetworkOf, TraceStatistics, Unresolved};
 pub use options::{InvalidTraceOption, TraceError, TraceOptions};
+pub use runs::Runs;
 pub use subdivision::{Region, Side, Subdivision};
 pub use trace::trace;
 pub use verify::{

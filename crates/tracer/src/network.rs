@@ -3,7 +3,7 @@
 use crate::arc::Arc;
 use crate::branch::{SHORTEST, Special, Stop};
 use crate::curve::{Curve, Node, Vertex};
-use crate::family::{Point, Window};
+use crate::family::{Family, Point, Window};
 
 /// All curves on which the label changes in a window, and where they end.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +19,9 @@ pub struct Network<Label, Margin> {
     /// What is not sure.
     pub unresolved: Vec<Unresolved<Label>>,
 }
+
+/// The network of a family.
+pub type NetworkOf<F> = Network<<F as Family>::Label, <F as Family>::Margin>;
 
 /// The work of a trace.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -156,7 +159,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         Some(index)
     }
 
-    /// Whether a place on the boundary of `margin` with these labels on its sides lies on a curve that is there.
+    /// Whether a place on a boundary with these labels on its sides lies on a curve that is there, whatever its margin is called.
     pub fn covers(&self, point: &Point, labels: &[Label; 2]) -> bool {
         let near = 1e-8 * self.scale;
         self.near(&[*point, *point]).into_iter().any(|(curve, piece)| {

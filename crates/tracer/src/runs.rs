@@ -9,17 +9,21 @@ use crate::options::{TraceError, TraceOptions};
 pub(crate) type Traced<T, F> = Result<T, TraceError<<F as Family>::Error>>;
 
 /// A family in a window, with the options of a trace; every run goes through it.
-pub(crate) struct Runs<'a, F: Family> {
+pub struct Runs<'a, F: Family> {
     family: &'a F,
-    pub window: Window,
-    pub options: TraceOptions,
+    pub(crate) window: Window,
+    pub(crate) options: TraceOptions,
     /// The shorter extent of the window, against which steps are measured.
-    pub scale: f64,
+    pub(crate) scale: f64,
     free: Cell<usize>,
     prescribed: Cell<usize>,
 }
 
 impl<'a, F: Family> Runs<'a, F> {
+    /// Takes a family.
+    ///
+    /// # Errors
+    /// An option out of its range, or a window that is not a rectangle.
     pub fn new(family: &'a F, window: Window, options: TraceOptions) -> Traced<Self, F> {
         options.validate()?;
         let extent = window.extent();
@@ -31,16 +35,17 @@ impl<'a, F: Family> Runs<'a, F> {
     }
 
     /// Free runs and prescribed runs so far.
+    #[must_use]
     pub fn counts(&self) -> [usize; 2] {
         [self.free.get(), self.prescribed.get()]
     }
 
-    pub fn label(&self, point: &Point) -> Traced<F::Label, F> {
+    pub(crate) fn label(&self, point: &Point) -> Traced<F::Label, F> {
         self.free.set(self.free.get() + 1);
         self.family.label(point).map_err(|source| TraceError::Run { point: *point, source })
     }
 
-    pub fn free(&self, point: &Point) -> Traced<FreeRun<F::Label, F::Margin>, F> {
+    pub(crate) fn free(&self, point: &Point) -> Traced<FreeRun<F::Label, F::Margin>, F> {
         self.free.set(self.free.get() + 1);
         let run = self
             .family
@@ -52,7 +57,7 @@ impl<'a, F: Family> Runs<'a, F> {
         Ok(run)
     }
 
-    pub fn margin(&self, point: &Point, margin: &F::Margin) -> Traced<Option<f64>, F> {
+    pub(crate) fn margin(&self, point: &Point, margin: &F::Margin) -> Traced<Option<f64>, F> {
         self.prescribed.set(self.prescribed.get() + 1);
         let value = self
             .family
@@ -64,7 +69,7 @@ impl<'a, F: Family> Runs<'a, F> {
         Ok(value)
     }
 
-    pub fn moved(&self, point: &Point, margin: &F::Margin) -> Traced<F::Margin, F> {
+    pub(crate) fn moved(&self, point: &Point, margin: &F::Margin) -> Traced<F::Margin, F> {
         self.family.moved(point, margin).map_err(|source| TraceError::Run { point: *point, source })
     }
 
@@ -75,7 +80,7 @@ impl<'a, F: Family> Runs<'a, F> {
     /// the scale that is known. Where the margin exists on one side only, the difference is one-sided of second order; where it
     /// exists on neither, the step shrinks. Boundaries end in wedges that are thin across and long along them, which is why the
     /// direction matters.
-    pub fn gradient(
+    pub(crate) fn gradient(
         &self,
         point: &Point,
         margin: &F::Margin,
@@ -122,7 +127,7 @@ impl<'a, F: Family> Runs<'a, F> {
     }
 
     /// How far a zero of a margin can be told, given the length of its gradient.
-    pub fn resolution(&self, slope: f64) -> f64 {
+    pub(crate) fn resolution(&self, slope: f64) -> f64 {
         self.options.tolerance.max(self.options.noise / slope)
     }
 }

@@ -1,9 +1,29 @@
 //! Where to start: from two places with different labels to a boundary between them.
 
-use crate::branch::Seed;
+use crate::branch::{Seed, SeedOf};
 use crate::corrector::correct;
 use crate::family::{Family, FreeRun, Point};
 use crate::runs::{Runs, Traced};
+
+impl<Label: Clone + Eq, Margin> Seed<Label, Margin> {
+    /// A place between two others at which the label of the first one ends; `None` if their labels are the same, or no margin that
+    /// vanishes there parts them.
+    ///
+    /// # Errors
+    /// A run fails, or a margin is not a number.
+    pub fn between<F: Family<Label = Label, Margin = Margin>>(
+        runs: &Runs<'_, F>,
+        places: &[Point; 2],
+    ) -> Traced<Option<Self>, F> {
+        let labels = [runs.label(&places[0])?, runs.label(&places[1])?];
+        if labels[0] == labels[1] {
+            return Ok(None);
+        }
+        let change = bisect(runs, places, [0.0, 1.0], labels)?;
+        let near = change.places.map(|part| places[0].lerp(&places[1], part));
+        identify(runs, &near, &change.labels)
+    }
+}
 
 /// The first change of the label on a segment, from the label of its start.
 pub(crate) struct Change<Label> {
@@ -46,7 +66,7 @@ pub(crate) fn identify<F: Family>(
     runs: &Runs<'_, F>,
     places: &[Point; 2],
     labels: &[F::Label; 2],
-) -> Traced<Option<Seed<F::Label, F::Margin>>, F> {
+) -> Traced<Option<SeedOf<F>>, F> {
     /// Margins looked at, those with the least values first.
     const CANDIDATES: usize = 12;
     let mut margins: Vec<(F::Margin, f64)> = Vec::new();
@@ -69,7 +89,8 @@ pub(crate) fn identify<F: Family>(
         let Some(gradient) = runs.gradient(&middle, &margin, &along, runs.scale)? else { continue };
         let slope = gradient.norm();
         let reach = 10.0 * width + 10.0 * runs.resolution(slope);
-        if !(value.abs() <= slope * reach) {
+        let near = value.abs() <= slope * reach;
+        if !near {
             continue;
         }
         let Some(found) = correct(runs, &margin, &middle, &gradient, reach)? else { continue };

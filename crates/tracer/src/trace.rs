@@ -1,15 +1,15 @@
 //! All boundaries in a window.
 
 use crate::arc::Arc;
-use crate::branch::{Branch, End, Seed, Special};
+use crate::branch::{Branch, End, Seed, SeedOf, Special};
 use crate::corrector::correct;
 use crate::curve::{Curve, Node, VertexKind};
 use crate::family::{Family, Point, Window};
 use crate::island::islands;
-use crate::network::{Builder, Network, Unresolved};
+use crate::network::{Builder, NetworkOf, Unresolved};
 use crate::options::{TraceError, TraceOptions};
 use crate::runs::{Runs, Traced};
-use crate::seed::{GridPlace, bisect, holds, identify};
+use crate::seed::{Change, GridPlace, bisect, holds, identify};
 
 /// Traces every boundary of a family in a window.
 ///
@@ -26,16 +26,20 @@ pub fn trace<F: Family>(
     family: &F,
     window: &Window,
     options: &TraceOptions,
-) -> Result<Network<F::Label, F::Margin>, TraceError<F::Error>> {
+) -> Result<NetworkOf<F>, TraceError<F::Error>> {
     let runs = Runs::new(family, *window, *options)?;
     let mut tracer = Tracer { runs: &runs, builder: Builder::new(*window), probed: 0 };
     tracer.edges()?;
     tracer.vertices()?;
     tracer.grid()?;
+    tracer.close_vertices()?;
     let mut network = tracer.builder.network;
     [network.statistics.free_runs, network.statistics.prescribed_runs] = runs.counts();
     Ok(network)
 }
+
+/// Radii of the circles around a vertex on which seeds are looked for, in parts of the window's shorter extent.
+const CIRCLES: [f64; 2] = [1e-3, 1e-5];
 
 struct Tracer<'a, 'f, F: Family> {
     runs: &'a Runs<'f, F>,
@@ -60,28 +64,48 @@ impl<F: Family> Tracer<'_, '_, F> {
 
     /// Seeds from two circles around every vertex that has come up and does not lie on the window's edge.
     fn vertices(&mut self) -> Traced<(), F> {
-        const CORNERS: u32 = 16;
         while let Some(vertex) = self.builder.network.vertices.get(self.probed) {
             let (point, kind) = (vertex.point, vertex.kind);
             self.probed += 1;
             if matches!(kind, VertexKind::WindowEdge | VertexKind::WindowCorner) {
                 continue;
             }
-            for radius in [1e-3, 1e-5] {
-                // Turned, so that no corner lies on a line through the vertex along an axis or a diagonal.
-                let places: Vec<Point> = (0..=CORNERS)
-                    .map(|i| {
-                        let (sine, cosine) = (std::f64::consts::TAU
-                            * (f64::from(i % CORNERS) + 0.3)
-                            / f64::from(CORNERS))
-                        .sin_cos();
-                        point + Point::new(cosine, sine) * (radius * self.runs.scale)
-                    })
-                    .collect();
-                self.walk(&places)?;
+            for radius in CIRCLES {
+                self.circle(&point, radius * self.runs.scale)?;
             }
         }
         Ok(())
+    }
+
+    /// Seeds from a circle around every vertex that has others inside its circles: between them, where curves from one to the
+    /// other pass.
+    fn close_vertices(&mut self) -> Traced<(), F> {
+        let mut done = 0;
+        while done < self.builder.stops.len() {
+            let point = self.builder.stops[done].point;
+            let distances = self.builder.stops.iter().map(|stop| (stop.point - point).norm());
+            let nearest =
+                distances.filter(|&distance| distance > 0.0).fold(f64::INFINITY, f64::min);
+            done += 1;
+            if nearest < CIRCLES[0] * self.runs.scale {
+                self.circle(&point, 0.3 * nearest)?;
+                self.vertices()?;
+            }
+        }
+        Ok(())
+    }
+
+    fn circle(&mut self, centre: &Point, radius: f64) -> Traced<(), F> {
+        const CORNERS: u32 = 16;
+        let places: Vec<Point> = (0..=CORNERS)
+            .map(|i| {
+                // Turned, so that no corner lies on a line through the vertex along an axis or a diagonal.
+                let turns = (f64::from(i % CORNERS) + 0.3) / f64::from(CORNERS);
+                let (sine, cosine) = (std::f64::consts::TAU * turns).sin_cos();
+                centre + Point::new(cosine, sine) * radius
+            })
+            .collect();
+        self.walk(&places)
     }
 
     /// Seeds from the grid and from the islands between its places.
@@ -148,37 +172,49 @@ impl<F: Family> Tracer<'_, '_, F> {
                     continue;
                 }
                 if passage.labels[0] != label {
-                    unexplained = Some((passage.place - gap, passage.labels[0].clone()));
+                    unexplained = Some(passage);
                     break;
                 }
                 place = passage.place + gap;
                 label = passage.labels[1].clone();
             }
-            let (end, expected) = unexplained.unwrap_or((1.0, last.clone()));
-            if place >= 1.0 || (end == 1.0 && expected == label) {
+            let end = unexplained.as_ref().map_or(1.0, |passage| passage.place - gap);
+            if place >= 1.0 || (unexplained.is_none() && last == label) {
                 return Ok(());
             }
             // Labels are asked for, as far as they come from curves.
             let first = if place > 0.0 { self.runs.label(&a.lerp(&b, place))? } else { label };
-            let second = if end < 1.0 && end > place {
-                self.runs.label(&a.lerp(&b, end))?
-            } else {
-                expected
+            let second = match &unexplained {
+                Some(_) if end > place => self.runs.label(&a.lerp(&b, end))?,
+                Some(_) => first.clone(),
+                None => last.clone(),
             };
-            if first == second || end <= place {
-                place = end + 2.0 * gap;
-                label = self.runs.label(&a.lerp(&b, place.min(1.0)))?;
-                continue;
-            }
-            let change = bisect(self.runs, &segment, [place, end], [first, second])?;
+            let doubtful = first == second;
+            let change = if !doubtful {
+                bisect(self.runs, &segment, [place, end], [first, second])?
+            } else if let Some(passage) = &unexplained {
+                // A curve with other sides than here: there is a vertex on it that was missed.
+                let after = (end + 2.0 * gap).min(1.0);
+                let labels = [second, self.runs.label(&a.lerp(&b, after))?];
+                if labels[0] == labels[1] || labels == passage.labels {
+                    place = after;
+                    [_, label] = labels;
+                    continue;
+                }
+                Change { places: [end, after], labels }
+            } else {
+                return Ok(());
+            };
             let places = change.places.map(|place| a.lerp(&b, place));
             match identify(self.runs, &places, &change.labels)? {
                 Some(seed) => self.seed(&seed)?,
-                None => self
-                    .builder
-                    .network
-                    .unresolved
-                    .push(Unresolved::Change { between: places, labels: change.labels.clone() }),
+                // Where curves are closer together than can be parted, the labels next to one are not its own.
+                None if doubtful => {}
+                None => {
+                    let labels = change.labels.clone();
+                    let unresolved = Unresolved::Change { between: places, labels };
+                    self.builder.network.unresolved.push(unresolved);
+                }
             }
             place = change.places[1];
             label = change.labels[1].clone();
@@ -187,7 +223,7 @@ impl<F: Family> Tracer<'_, '_, F> {
     }
 
     /// Traces the curve through a seed in both directions, unless it is known.
-    fn seed(&mut self, seed: &Seed<F::Label, F::Margin>) -> Traced<(), F> {
+    fn seed(&mut self, seed: &SeedOf<F>) -> Traced<(), F> {
         if self.builder.covers(&seed.point, &seed.labels) || !self.runs.window.contains(&seed.point)
         {
             return Ok(());
@@ -257,7 +293,7 @@ impl<F: Family> Tracer<'_, '_, F> {
     #[expect(clippy::type_complexity)]
     fn follow(
         &mut self,
-        seed: &Seed<F::Label, F::Margin>,
+        seed: &SeedOf<F>,
         forward: bool,
     ) -> Traced<Option<(Node, Vec<Node>, Option<usize>)>, F> {
         let stops = self.builder.stops.clone();
@@ -268,8 +304,8 @@ impl<F: Family> Tracer<'_, '_, F> {
             return Ok(None);
         };
         let mut nodes = Vec::new();
-        while let Some(node) = branch.advance()? {
-            nodes.push(node);
+        for node in &mut branch {
+            nodes.push(node?);
         }
         let last = nodes.last().map_or(seed.point, |node| node.point);
         let end = match branch.end().cloned() {
@@ -294,7 +330,7 @@ impl<F: Family> Tracer<'_, '_, F> {
         };
         let statistics = &mut self.builder.network.statistics;
         statistics.nodes += nodes.len();
-        statistics.rejected += branch.rejected;
+        statistics.rejected += branch.rejected();
         Ok(Some((branch.origin(), nodes, end)))
     }
 }
