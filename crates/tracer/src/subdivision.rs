@@ -164,7 +164,7 @@ impl<Label: Clone + Ord, Margin> Subdivision<Label, Margin> {
             }
         }
         for (index, region) in self.regions.iter().enumerate() {
-            if !(region.clearance > self.tolerance) {
+            if region.clearance <= self.tolerance {
                 self.findings.push(Finding::Thin { region: index, clearance: region.clearance });
             }
             find_disagreements(index, region, &self.curves, &mut self.findings);
