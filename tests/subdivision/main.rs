@@ -7,8 +7,8 @@ mod planes;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use planes::{
-    Plane, close_curves, crossing_circles, cusp, edges_and_corner, figure_of_eight, islands,
-    touching_circles, upright_cusp,
+    Plane, close_curves, crossing_circles, cusp, disturbed, edges_and_corner, figure_of_eight,
+    grid, islands, touching_circles, upright_cusp,
 };
 use stickslip::tracer::{Location, Point, Subdivision, VerifyOptions, verify};
 
@@ -135,6 +135,52 @@ fn curves_through_sides_and_corners_of_the_window() {
         &edges_and_corner(),
         &[(0, wave - quarter), (2, quarter), (5, disc), (1, 1.0 - wave - disc)],
     );
+}
+
+#[test]
+fn a_grid_of_lines() {
+    let areas: Vec<(i32, f64)> = (0..16).map(|label| (label, 0.0625)).collect();
+    let made = holds(&grid(), &areas);
+    assert!(made.regions().iter().all(|region| region.clearance == 0.125));
+}
+
+/// Nodes off by a fifth of the tolerance: curves that leave a vertex with one tangent cross each other beside it, again and again.
+/// The regions stay, and so does every label that the tolerance does not leave open.
+#[test]
+fn disturbed_curves_keep_their_regions() {
+    let planes = [
+        (cusp(), 2),
+        (upright_cusp(), 2),
+        (touching_circles(0.0, true), 3),
+        (touching_circles(0.0, false), 3),
+        (figure_of_eight(), 3),
+        (crossing_circles(), 4),
+        (close_curves(), 3),
+        (edges_and_corner(), 4),
+        (grid(), 16),
+    ];
+    for (plane, regions) in &planes {
+        for seed in 0..20 {
+            let traced = disturbed(plane.clone(), 0.2 * planes::TOLERANCE, 1e-8, seed);
+            let made = traced.subdivision().expect("curves with a meaning");
+            assert!(made.findings().is_empty(), "{:?}", made.findings());
+            assert_eq!(made.regions().len(), *regions);
+            let mut decided = 0;
+            for vertex in &plane.vertices {
+                for i in 0..1000 {
+                    let (sin, cos) = (0.1 * f64::from(i)).sin_cos();
+                    let radius = 1e-10 * 1e8_f64.powf(f64::from(i) / 1000.0);
+                    let point = vertex.point + radius * Point::new(cos, sin);
+                    if let Location::Region(region) = made.locate(&point) {
+                        let label = made.regions()[region].label;
+                        assert_eq!(label, Some((plane.truth)(&point)), "{point} {radius:e}");
+                        decided += 1;
+                    }
+                }
+            }
+            assert!(decided > 200 * plane.vertices.len(), "{decided}");
+        }
+    }
 }
 
 #[test]

@@ -232,3 +232,53 @@ pub fn edges_and_corner() -> Plane {
     .curve(circle(1.0, 0.0, 0.4), even(0.5 * PI, PI, 60), [2, 0], Some([2, 3]))
     .curve(circle(0.15, 0.7, 0.15), even(PI, 3.0 * PI, 160), [5, 1], Some([4, 4]))
 }
+
+/// Three upright lines crossed by three level ones: vertices and walls above each other, pieces without extent in x.
+pub fn grid() -> Plane {
+    let at = |i: usize| 0.25 * i as f64;
+    let mut plane = Plane::new(|p| {
+        let field = |x: f64| i32::from(x > 0.25) + i32::from(x > 0.5) + i32::from(x > 0.75);
+        field(p.x) + 4 * field(p.y)
+    });
+    for j in 0..=4 {
+        for i in 0..=4 {
+            let edge = [i, j].iter().any(|k| k % 4 == 0);
+            let kind = if edge { VertexKind::WindowEdge } else { VertexKind::Crossing };
+            plane = plane.vertex(at(i), at(j), kind);
+        }
+    }
+    for line in 1..4 {
+        for part in 0..4_usize {
+            let (label, across) =
+                ([line, part].map(|k| i32::try_from(k).expect("small")), at(line));
+            let level = move |s: f64| [s, across, 1.0, 0.0];
+            let upright = move |s: f64| [across, s, 0.0, 1.0];
+            let ends = |stride: usize, other: usize| {
+                let first = line * stride + part * other;
+                Some([first, first + other])
+            };
+            let below = label[1] + 4 * label[0] - 4;
+            let left = label[0] - 1 + 4 * label[1];
+            let span = || even(at(part), at(part + 1), 3);
+            plane = plane.curve(level, span(), [below + 4, below], ends(5, 1)).curve(
+                upright,
+                span(),
+                [left, left + 1],
+                ends(1, 5),
+            );
+        }
+    }
+    plane
+}
+
+/// The plane with every node moved by up to `distance` and every tangent turned by up to `angle`, as a trace leaves them.
+pub fn disturbed(mut plane: Plane, distance: f64, angle: f64, seed: u64) -> Plane {
+    let mut random = fastrand::Rng::with_seed(seed);
+    let mut up_to = |size: f64| size * (2.0 * random.f64() - 1.0);
+    for node in plane.curves.iter_mut().flat_map(|curve| &mut curve.nodes) {
+        let normal = Point::new(-node.tangent.y, node.tangent.x);
+        node.point += up_to(distance) * normal;
+        node.tangent = (node.tangent + up_to(angle) * normal).normalize();
+    }
+    plane
+}

@@ -81,11 +81,11 @@ fn value_and_slope<const N: usize>(c: &[f64; N], t: f64) -> (f64, f64) {
 
 fn halves<const N: usize>(c: &[f64; N]) -> ([f64; N], [f64; N]) {
     let (mut low, mut high) = (*c, *c);
-    for level in 1..N {
+    for (level, value) in low.iter_mut().enumerate().skip(1) {
         for i in 0..N - level {
             high[i] = 0.5 * (high[i] + high[i + 1]);
         }
-        low[level] = high[0];
+        *value = high[0];
     }
     (low, high)
 }

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use crate::family::Point;
+use crate::hermite::Cubic;
 use crate::piece::Piece;
 use crate::slabs::Slabs;
 
@@ -58,6 +59,16 @@ impl Crossings<'_> {
                     .or_else(|| self.dip(pair[0], pair[1], middle, to));
                 if let Some(x) = meeting {
                     self.record([pair[0], pair[1]], x, &mut found);
+                }
+            }
+            for &upright in self.slabs.verticals_between(wall, wall) {
+                let [low, high] =
+                    [self.slabs.pieces[upright].first(), self.slabs.pieces[upright].last()];
+                for &piece in pieces.iter().filter(|&&piece| self.before(piece, wall).is_some()) {
+                    let y = self.slabs.pieces[piece].y_at(wall);
+                    if y > low.y + self.rounding && y < high.y - self.rounding {
+                        self.record([piece, upright], wall, &mut found);
+                    }
                 }
             }
             if let Some(left) = slab.checked_sub(1) {
@@ -152,16 +163,32 @@ impl Crossings<'_> {
 
     fn record(&self, pieces: [usize; 2], x: f64, found: &mut Vec<([usize; 2], Point)>) {
         let [a, b] = pieces.map(|piece| &self.slabs.pieces[piece]);
-        let point = Point::new(x, 0.5 * (a.y_at(x) + b.y_at(x)));
+        let point = Point::new(x, a.y_at(x));
         if !self.within_interpolation(pieces, &point) {
             found.push(([a.edge, b.edge], point));
         }
     }
 
-    /// Whether the crossing cannot be told from the vertex the edges share: between vertex and crossing, the edges enclose an
-    /// area whose mean width is below the tolerance.
+    /// Whether the crossing is not certain: between a vertex that the edges share and the crossing, they enclose an area whose
+    /// mean width is below the tolerance; or an edge that crosses itself encloses less than the tolerance squared, as it does
+    /// where both sides of a fold are rounded.
     fn within_interpolation(&self, pieces: [usize; 2], point: &Point) -> bool {
         let [a, b] = pieces.map(|piece| &self.edges[self.slabs.pieces[piece].edge]);
+        if std::ptr::eq(a, b) {
+            let [to_first, to_last] = [pieces[0].min(pieces[1]), pieces[0].max(pieces[1])]
+                .map(|piece| self.area(a, 0, piece, point, point));
+            let enclosed = to_last - to_first;
+            let whole: f64 = self.slabs.pieces[a.pieces.clone()]
+                .iter()
+                .map(|piece| if piece.forward { 1.0 } else { -1.0 } * piece.cubic.area(point))
+                .sum();
+            let rest = whole - enclosed;
+            let least =
+                if a.ends.is_none() { enclosed.abs().min(rest.abs()) } else { enclosed.abs() };
+            if least <= self.tolerance * self.tolerance {
+                return true;
+            }
+        }
         let (Some(a_ends), Some(b_ends)) = (a.ends, b.ends) else {
             return false;
         };
@@ -170,9 +197,9 @@ impl Crossings<'_> {
                 return false;
             }
             let vertex = self.end(a, i);
-            let area = self.area(a, i, pieces[0], point.x, &vertex)
-                - self.area(b, j, pieces[1], point.x, &vertex);
-            area.abs() <= self.tolerance * (point - vertex).norm()
+            let area = self.area(a, i, pieces[0], point, &vertex)
+                - self.area(b, j, pieces[1], point, &vertex);
+            area.abs() <= self.tolerance * (point - vertex).norm().max(self.tolerance)
         })
     }
 
@@ -183,8 +210,8 @@ impl Crossings<'_> {
         if (which == 0) == piece.forward { piece.first() } else { piece.last() }
     }
 
-    /// The area between an edge and the rays from its end `which` at `origin`, up to where `piece` reaches `x`.
-    fn area(&self, edge: &Edge, which: usize, piece: usize, x: f64, origin: &Point) -> f64 {
+    /// The area between an edge, from its end `which` up to `place` on `piece`, and the rays from `origin`.
+    fn area(&self, edge: &Edge, which: usize, piece: usize, place: &Point, origin: &Point) -> f64 {
         // `away`: the edge's direction leads away from that end.
         let away = which == 0;
         let before = if away { edge.pieces.start..piece } else { piece + 1..edge.pieces.end };
@@ -194,7 +221,11 @@ impl Crossings<'_> {
             .map(|piece| directed(piece) * piece.cubic.area(origin))
             .sum();
         let last = &self.slabs.pieces[piece];
-        let [low, high] = last.cubic.split(last.parameter_at(x));
+        let [low, high] = if last.is_vertical() {
+            [Cubic::line(last.first(), *place), Cubic::line(*place, last.last())]
+        } else {
+            last.cubic.split(last.parameter_at(place.x))
+        };
         let part = if last.forward == away { low } else { high };
         whole + directed(last) * part.area(origin)
     }

@@ -28,20 +28,24 @@ pub(crate) fn place_samples<Label>(
             .map(|point| (clearance(&point), point))
             .reduce(|best, next| if next.0 > best.0 { next } else { best });
         let Some((mut best, mut sample)) = start else { continue };
+        let (first, last) = (slabs.walls[0], slabs.walls[slabs.count()]);
         let face = |point: &Point| {
-            let [below, _] = slabs.neighbours(slabs.at(point.x), point);
-            below.and_then(|piece| faces.above(&slabs.pieces[piece]))
+            if point.x <= first || point.x >= last {
+                return None;
+            }
+            let slab = slabs.at(point.x);
+            let below = slabs.below(slab, point).checked_sub(1)?;
+            faces.of_gap(slabs, slab, below)
         };
         let own = face(&sample);
-        let finest = best / 32.0;
-        let mut step = best;
-        while step > finest {
+        let mut step = 0.25 * (last - first);
+        while step > best.max(f64::MIN_POSITIVE) / 32.0 {
             let better = DIRECTIONS
                 .iter()
                 .map(|&(x, y)| sample + step * Point::new(x, y))
                 .filter(|point| face(point) == own)
                 .map(|point| (clearance(&point), point))
-                .find(|&(distance, _)| distance > best);
+                .find(|&(distance, _)| distance > best + step / 64.0);
             if let Some(better) = better {
                 (best, sample) = better;
             } else {
@@ -61,10 +65,8 @@ const DIRECTIONS: [(f64, f64); 8] = {
 fn gaps(slabs: &Slabs, faces: &Faces) -> Vec<Vec<(usize, usize)>> {
     let mut gaps = vec![Vec::new(); faces.count];
     for slab in 0..slabs.count() {
-        for (position, &below) in slabs.of(slab).iter().enumerate() {
-            if let Some(face) = faces.above(&slabs.pieces[below])
-                && position + 1 < slabs.of(slab).len()
-            {
+        for position in 0..slabs.of(slab).len().saturating_sub(1) {
+            if let Some(face) = faces.of_gap(slabs, slab, position) {
                 gaps[face].push((slab, position));
             }
         }

@@ -77,10 +77,9 @@ impl<Label, Margin> Subdivision<Label, Margin> {
 
     fn region_at(&self, point: &Point) -> Option<usize> {
         let slab = self.slabs.at(point.x);
-        let pieces = self.slabs.of(slab);
         // The window's lower side is the first piece and belongs to the window.
         let above = self.slabs.below(slab, point).max(1);
-        self.faces.above(&self.slabs.pieces[*pieces.get(above - 1)?])
+        self.faces.of_gap(&self.slabs, slab, above - 1)
     }
 
     fn is_curve(&self, piece: &Piece) -> bool {

@@ -61,18 +61,21 @@ impl Slabs {
         &self.order[self.starts[slab]..self.starts[slab + 1]]
     }
 
-    pub(crate) fn of_mut(&mut self, slab: usize) -> &mut [usize] {
-        &mut self.order[self.starts[slab]..self.starts[slab + 1]]
+    /// The index of a slab's first piece in the order of all slabs.
+    #[inline]
+    pub(crate) fn start(&self, slab: usize) -> usize {
+        self.starts[slab]
     }
 
-    /// Whether the middle between the pieces at `gap` and `gap` + 1 of a slab is farther than `reach` from every piece; also if
-    /// there are no such two pieces.
+    /// Whether the middle between the pieces at `gap` and `gap` + 1 of a slab is farther than `reach` from every piece that
+    /// is not vertical; also if there are no such two pieces.
     pub(crate) fn is_wide(&self, slab: usize, gap: usize, reach: f64) -> bool {
         let pieces = self.of(slab);
         gap + 1 >= pieces.len() || {
             let x = self.middle(slab);
             let [low, high] = [gap, gap + 1].map(|k| self.pieces[pieces[k]].y_at(x));
-            self.nearest(&Point::new(x, 0.5 * (low + high)), reach, |_| true).is_none()
+            self.nearest(&Point::new(x, 0.5 * (low + high)), reach, |piece| !piece.is_vertical())
+                .is_none()
         }
     }
 

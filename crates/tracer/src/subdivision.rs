@@ -112,7 +112,7 @@ impl<Label: Clone + Ord, Margin> Subdivision<Label, Margin> {
             Piece::of(edges.len(), Cubic::line(points[from], points[to]), &mut pieces);
             edges.push(Edge { ends: Some([from, to]), pieces: start..pieces.len() });
         }
-        let mut slabs = Slabs::new(pieces);
+        let slabs = Slabs::new(pieces);
         let reach = 2.0 * tolerance;
         let faces = Faces::new(&slabs, &edges, curves.len()..edges.len(), reach);
         let size = window.high - window.low;
@@ -130,7 +130,6 @@ impl<Label: Clone + Ord, Margin> Subdivision<Label, Margin> {
                 .into_iter()
                 .map(|(pair, point)| Finding::Crossing { curves: pair.map(named), point }),
         );
-        faces.put_in_order(&mut slabs, reach);
         let regions = regions(&curves, &slabs, &edges, &faces, &window.low);
         let euler = euler(&edges, points.len(), faces.count);
         let mut plane = Self {
@@ -165,7 +164,7 @@ impl<Label: Clone + Ord, Margin> Subdivision<Label, Margin> {
             }
         }
         for (index, region) in self.regions.iter().enumerate() {
-            if !(region.clearance > self.tolerance) {
+            if region.clearance <= self.tolerance {
                 self.findings.push(Finding::Thin { region: index, clearance: region.clearance });
             }
             find_disagreements(index, region, &self.curves, &mut self.findings);
