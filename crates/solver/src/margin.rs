@@ -106,6 +106,9 @@ pub struct Margins {
     pub outcome: Outcome,
 }
 
+/// Part of the run below which its last phase may be about to vanish.
+const SHORT: f64 = 1e-6;
+
 /// Runs `system` freely and returns every margin that the run leaves.
 ///
 /// Guards that fire in either direction leave none, and terminal guards none. A minimum takes about one step more than the run
@@ -137,7 +140,9 @@ where
         let exit = fired.get(k).copied();
         let exited = starts.get(k + 1).map_or(end, |next| next.s);
         // Where the last phase shrinks to nothing, the one before it lasts to the end.
-        let until = if k + 2 < starts.len() { exited } else { end };
+        let lasts = k + 1 == starts.len()
+            || (k + 2 == starts.len() && free.s - exited <= SHORT * (free.s - starts[0].s));
+        let until = if lasts { end } else { exited };
         let mut after = start.s;
         for (guard, about) in system.guards(start.mode).into_iter().enumerate() {
             if !leaves_margins(about) || exited <= start.s {

@@ -58,6 +58,12 @@ impl<'a, F: Family> Runs<'a, F> {
     }
 
     pub(crate) fn margin(&self, point: &Point, margin: &F::Margin) -> Traced<Option<f64>, F> {
+        // Newton's method may throw a point far away, where the family need not be defined.
+        let beyond = self.window.extent() * 1e-2;
+        let Window { low, high } = self.window;
+        if !(Window { low: low - beyond, high: high + beyond }).contains(point) {
+            return Ok(None);
+        }
         self.prescribed.set(self.prescribed.get() + 1);
         let value = self
             .family

@@ -74,6 +74,10 @@ pub(crate) fn identify<F: Family>(
         margins.extend(runs.free(place)?.margins);
     }
     margins.sort_by(|(one, x), (two, y)| x.abs().total_cmp(&y.abs()).then_with(|| one.cmp(two)));
+    margins.truncate(2 * CANDIDATES);
+    // Of several that vanish together the one that comes first is the simplest: others may belong to phases that are about to
+    // vanish, and end at the boundary.
+    margins.sort_by(|(one, _), (two, _)| one.cmp(two));
     let mut tried: Vec<F::Margin> = Vec::new();
     let middle = places[0].lerp(&places[1], 0.5);
     let width = (places[1] - places[0]).norm();
@@ -116,6 +120,10 @@ pub(crate) fn holds<F: Family>(
 ) -> Traced<bool, F> {
     let resolution = runs.resolution(gradient.norm());
     let mut offset = runs.options.offset.max(10.0 * resolution);
+    // A margin as flat as that says nothing about where its zero is.
+    if !(offset <= 1e-3 * runs.scale) {
+        return Ok(false);
+    }
     let normal = gradient.normalize();
     loop {
         if runs.label(&(seed.point + normal * offset))? == seed.labels[0]
