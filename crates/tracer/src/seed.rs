@@ -69,18 +69,20 @@ pub(crate) fn identify<F: Family>(
 ) -> Traced<Option<SeedOf<F>>, F> {
     /// Margins looked at, those with the least values first.
     const CANDIDATES: usize = 12;
+    /// The greatest slope of a margin that is expected.
+    const STEEPEST: f64 = 1e4;
     let mut margins: Vec<(F::Margin, f64)> = Vec::new();
     for place in places {
         margins.extend(runs.free(place)?.margins);
     }
     margins.sort_by(|(one, x), (two, y)| x.abs().total_cmp(&y.abs()).then_with(|| one.cmp(two)));
-    margins.truncate(2 * CANDIDATES);
     // Of several that vanish together the one that comes first is the simplest: others may belong to phases that are about to
     // vanish, and end at the boundary.
-    margins.sort_by(|(one, _), (two, _)| one.cmp(two));
+    let width = (places[1] - places[0]).norm();
+    let together = margins.partition_point(|(_, value)| value.abs() <= STEEPEST * width);
+    margins[..together].sort_by(|(one, _), (two, _)| one.cmp(two));
     let mut tried: Vec<F::Margin> = Vec::new();
     let middle = places[0].lerp(&places[1], 0.5);
-    let width = (places[1] - places[0]).norm();
     let along = (places[1] - places[0]) / width;
     for (margin, value) in margins {
         if tried.len() >= CANDIDATES {
