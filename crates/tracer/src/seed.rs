@@ -123,7 +123,7 @@ pub(crate) fn holds<F: Family>(
     let resolution = runs.resolution(gradient.norm());
     let mut offset = runs.options.offset.max(10.0 * resolution);
     // A margin as flat as that says nothing about where its zero is.
-    if !(offset <= 1e-3 * runs.scale) {
+    if offset.is_nan() || offset > 1e-3 * runs.scale {
         return Ok(false);
     }
     let normal = gradient.normalize();
