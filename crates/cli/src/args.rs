@@ -1,8 +1,10 @@
 //! What may be typed: options with their syntax and ranges, and the help text.
 
 mod impact;
+mod locate;
 mod map;
 mod method;
+mod trace;
 
 use std::path::PathBuf;
 
@@ -13,8 +15,10 @@ use crate::figure::Target;
 use crate::parameter::Parameter;
 
 pub use impact::ImpactArguments;
+pub use locate::LocateArguments;
 pub use map::MapArguments;
 pub use method::{Method, MethodArguments};
+pub use trace::TraceArguments;
 
 /// Collisions of frictional viscoelastic spheres, with every switch between sticking and sliding.
 #[derive(Debug, Parser)]
@@ -37,6 +41,12 @@ pub enum Command {
     /// Compute the restitution and the number of switches on a plane
     #[command(long_about = map::ABOUT, after_long_help = map::EXAMPLES)]
     Map(MapArguments),
+    /// Trace every boundary in a window on which the switches change
+    #[command(long_about = trace::ABOUT, after_long_help = trace::EXAMPLES)]
+    Trace(TraceArguments),
+    /// Look up the switches of collisions in an atlas
+    #[command(long_about = locate::ABOUT, after_long_help = locate::EXAMPLES)]
+    Locate(LocateArguments),
 }
 
 /// Options of `collide`.

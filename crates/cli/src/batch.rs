@@ -10,7 +10,7 @@ use stickslip_model::Switch;
 
 use crate::engine::{Engine, require_finite};
 use crate::error::Failure;
-use crate::input::{Input, Row};
+use crate::input::{Columns, Input, Row};
 use crate::output::OutputFile;
 use crate::plan::Batch;
 use crate::rows::{self, EVENTS, Summary};
@@ -21,7 +21,7 @@ use crate::rows::{self, EVENTS, Summary};
 /// The input cannot be used, an output cannot be written, or some rows have no result; in the last
 /// case the outputs are complete.
 pub fn run(batch: &Batch) -> Result<(), Failure> {
-    let mut input = Input::open(&batch.input, &batch.given)?;
+    let mut input = Input::open(&batch.input, &batch.given, &Columns::COLLISIONS)?;
     let pool = ThreadPoolBuilder::new().num_threads(batch.threads.unwrap_or(0)).build()?;
     let mut results = Table::create(&batch.out)?;
     let mut events = batch.events.as_deref().map(Table::create).transpose()?;
@@ -86,26 +86,38 @@ fn compute(engine: Engine, portion: &[Row], with_switches: bool, computed: &mut 
 }
 
 /// A CSV file on its way, with the name by which the user knows it.
-struct Table {
+pub struct Table {
     path: PathBuf,
     writer: Writer<OutputFile>,
 }
 
 impl Table {
-    fn create(path: &Path) -> Result<Self, Failure> {
+    /// Starts to write `path`.
+    ///
+    /// # Errors
+    /// It cannot be created.
+    pub fn create(path: &Path) -> Result<Self, Failure> {
         let file = OutputFile::create(path).map_err(|error| Failure::output(path, error))?;
         let writer = csv::WriterBuilder::new().flexible(true).from_writer(file);
         Ok(Self { path: path.to_owned(), writer })
     }
 
-    fn write(
+    /// Writes rows.
+    ///
+    /// # Errors
+    /// They cannot be written.
+    pub fn write(
         &mut self,
         rows: impl FnOnce(&mut Writer<OutputFile>) -> csv::Result<()>,
     ) -> Result<(), Failure> {
         rows(&mut self.writer).map_err(|error| Failure::output(&self.path, error))
     }
 
-    fn store(self) -> Result<(PathBuf, OutputFile), Failure> {
+    /// The file with all rows, which needs its name only.
+    ///
+    /// # Errors
+    /// It cannot be stored.
+    pub fn store(self) -> Result<(PathBuf, OutputFile), Failure> {
         let Self { path, mut writer } = self;
         let stored = writer
             .flush()

@@ -61,6 +61,32 @@ pub enum Failure {
         /// The first of them, and why it could not be computed.
         first: String,
     },
+    /// Boundaries cannot be traced.
+    #[error("the boundaries cannot be traced: {0}")]
+    Trace(String),
+    /// Something speaks against an atlas.
+    #[error("{}: the atlas is complete, but may be wrong: {reason}", path.display())]
+    Doubtful {
+        /// The output file.
+        path: PathBuf,
+        /// What speaks against it.
+        reason: String,
+    },
+    /// Some points have no place in an atlas.
+    #[error(
+        "{failed} of {rows} points could not be located and have no switches in {}; \
+         the first, {first}", path.display()
+    )]
+    Unlocated {
+        /// Points without a place.
+        failed: u64,
+        /// All points.
+        rows: u64,
+        /// The output file.
+        path: PathBuf,
+        /// The first of them, and why it could not be located.
+        first: String,
+    },
     /// Another process is at work.
     #[error("{}: another process is making this map", .0.display())]
     Busy(PathBuf),

@@ -4,6 +4,7 @@
 //! [`panel`] (axes and what is drawn against them) and [`collision`] (a picture); then [`svg`] and [`text`] (how shapes and
 //! words are written), [`style`] (colours and sizes), [`bitmap`] and [`label`] (maps), [`raster`] (PNG).
 
+pub mod atlas;
 mod bitmap;
 pub mod collision;
 mod label;

@@ -10,7 +10,7 @@ use stickslip_model::Contact;
 use crate::error::Failure;
 use crate::parameter::Parameter;
 use crate::recipe::{Given, Recipe, RecipeError};
-use crate::rows::RESULTS;
+use crate::rows::{LOCATED, RESULTS};
 
 /// A CSV file of collisions, open after its header.
 #[derive(Debug)]
@@ -19,6 +19,36 @@ pub struct Input {
     reader: csv::Reader<Window>,
     header: ByteRecord,
     recipe: Recipe,
+}
+
+/// Which columns have a meaning.
+#[derive(Clone, Copy, Debug)]
+pub struct Columns {
+    /// Parameters that are read; other columns pass through.
+    parameters: &'static [Parameter],
+    /// Whether options may stand for them.
+    options: bool,
+    /// Names that the results have.
+    results: &'static [&'static str],
+}
+
+impl Columns {
+    /// Those of a file of collisions.
+    pub const COLLISIONS: Self = Self {
+        parameters: &[
+            Parameter::Kappa,
+            Parameter::Psi,
+            Parameter::Ratio,
+            Parameter::Mu,
+            Parameter::Alpha,
+            Parameter::Damping,
+        ],
+        options: true,
+        results: &RESULTS,
+    };
+    /// Those of a file of points (κ, ψ) that are located.
+    pub const POINTS: Self =
+        Self { parameters: &[Parameter::Kappa, Parameter::Psi], options: false, results: &LOCATED };
 }
 
 /// One row of the file.
@@ -42,13 +72,14 @@ impl Input {
     /// # Errors
     /// [`Failure::Input`]: the file cannot be read, is empty, or its columns do not make a
     /// collision together with the values `given` as options.
-    pub fn open(path: &Path, given: &Given) -> Result<Self, Failure> {
+    pub fn open(path: &Path, given: &Given, columns: &Columns) -> Result<Self, Failure> {
         let unreadable =
             |error: io::Error| Failure::input(path, format!("cannot be read: {error}"));
         let file = File::open(path).map_err(unreadable)?;
         let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(Window::new(file));
         let header = reader.byte_headers().map_err(|e| unreadable(e.into()))?.clone();
-        let recipe = recipe(&header, given).map_err(|reason| Failure::input(path, reason))?;
+        let recipe =
+            recipe(&header, given, columns).map_err(|reason| Failure::input(path, reason))?;
         Ok(Self { path: path.to_owned(), reader, header, recipe })
     }
 
@@ -154,7 +185,7 @@ impl Read for Window {
 }
 
 /// The recipe that the columns of `header` make, together with the values given as options.
-fn recipe(header: &ByteRecord, given: &Given) -> Result<Recipe, String> {
+fn recipe(header: &ByteRecord, given: &Given, columns: &Columns) -> Result<Recipe, String> {
     if header.is_empty() {
         return Err("is empty; accepted is a header row, for example kappa,psi".to_owned());
     }
@@ -164,18 +195,24 @@ fn recipe(header: &ByteRecord, given: &Given) -> Result<Recipe, String> {
         if names[..index].contains(name) {
             return Err(format!("two columns are named '{shown}'; accepted are different names"));
         }
-        if RESULTS.iter().any(|result| result.as_bytes() == *name) {
+        if columns.results.iter().any(|result| result.as_bytes() == *name) {
             return Err(format!(
                 "column {shown} has the name of a result; accepted are names other than {}",
-                RESULTS.join(", ")
+                columns.results.join(", ")
             ));
         }
     }
-    let column =
-        |parameter: Parameter| names.iter().position(|name| *name == parameter.name().as_bytes());
+    let column = |parameter: Parameter| {
+        let place = names.iter().position(|name| *name == parameter.name().as_bytes());
+        place.filter(|_| columns.parameters.contains(&parameter))
+    };
     Recipe::new(given, column).map_err(|error| {
-        let columns = String::from_utf8_lossy(&names.join(&b", "[..])).into_owned();
-        format!("{}; the columns are: {columns}", explain(error))
+        let problem = if columns.options {
+            explain(error)
+        } else {
+            "kappa or psi is missing; accepted are columns kappa and psi".to_owned()
+        };
+        format!("{problem}; the columns are: {}", String::from_utf8_lossy(&names.join(&b", "[..])))
     })
 }
 

@@ -2,10 +2,11 @@
 //! an exit code.
 //!
 //! Start reading here; then, in this order: `args` (what may be typed), `plan` (what it means),
-//! `collide`, `batch`, `impact` and `map` (doing it), `input` and `bodies` (files read), `table`,
-//! `json`, `rows`, `figure` and `output` (results written).
+//! `collide`, `batch`, `impact`, `map` and `atlas` (doing it), `input`, `bodies` and `json_input`
+//! (files read), `table`, `json`, `rows`, `figure` and `output` (results written).
 
 mod args;
+mod atlas;
 mod batch;
 mod bodies;
 mod collide;
@@ -15,6 +16,7 @@ mod figure;
 mod impact;
 mod input;
 mod json;
+mod json_input;
 mod map;
 mod number;
 mod output;
@@ -31,7 +33,7 @@ use clap::Parser;
 
 use args::{Arguments, Command};
 use error::Failure;
-use plan::{CollidePlan, MapPlan};
+use plan::{CollidePlan, LocatePlan, MapPlan, TracePlan};
 
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
@@ -59,5 +61,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         },
         Command::Impact(arguments) => impact::run(arguments),
         Command::Map(arguments) => map::run(&MapPlan::new(arguments)?),
+        Command::Trace(arguments) => atlas::trace::run(&TracePlan::new(arguments)?),
+        Command::Locate(arguments) => atlas::locate::run(&LocatePlan::new(arguments)?),
     }
 }

@@ -1,6 +1,8 @@
 //! What the options mean together: raw arguments become a plan that can be carried out.
 
+mod locate;
 mod map;
+mod trace;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,7 +15,9 @@ use crate::error::Failure;
 use crate::figure::Target;
 use crate::recipe::{Given, Recipe, RecipeError};
 
+pub use locate::LocatePlan;
 pub use map::{MapFormat, MapPlan};
+pub use trace::TracePlan;
 
 /// What `collide` is to do.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,6 +9,9 @@ use stickslip_model::{Collision, Side, Switch};
 pub const RESULTS: [&str; 7] =
     ["eps_n", "eps_t", "switch_count", "itinerary", "contact_time", "reversals", "status"];
 
+/// Columns that follow those of the input where points are located in an atlas.
+pub const LOCATED: [&str; 4] = ["switch_count", "itinerary", "region", "distance"];
+
 /// Columns of the file of switches.
 pub const EVENTS: [&str; 8] =
     ["case", "index", "time", "time_left", "to", "side", "spring", "velocity"];
@@ -92,11 +95,15 @@ pub fn write_switches<W: Write>(
 }
 
 /// The shortest digits that read back as `value`.
-fn number(value: f64) -> String {
+pub fn number(value: f64) -> String {
     format!("{value:?}")
 }
 
-fn write_fields<'a, W: Write>(
+/// Writes a row: the input's fields, then the results'.
+///
+/// # Errors
+/// `out` cannot be written.
+pub fn write_fields<'a, W: Write>(
     out: &mut Writer<W>,
     input: &ByteRecord,
     results: impl IntoIterator<Item = &'a str>,

@@ -38,8 +38,15 @@ impl<Label, Margin> Subdivision<Label, Margin> {
     /// has a point with its first coordinate, or if it is outside the window.
     #[must_use]
     pub fn vertical_distance(&self, point: &Point) -> Option<f64> {
+        self.vertical_distances(point).into_iter().flatten().reduce(f64::min)
+    }
+
+    /// The distances of `point` from the nearest curves below and above it; 0 for both on a curve, `None` where there is none,
+    /// and outside the window.
+    #[must_use]
+    pub fn vertical_distances(&self, point: &Point) -> [Option<f64>; 2] {
         if !self.window.contains(point) {
-            return None;
+            return [None; 2];
         }
         let home = self.slabs.at(point.x);
         // On a wall, a curve may be on one side only.
@@ -50,15 +57,23 @@ impl<Label, Margin> Subdivision<Label, Margin> {
             .flatten()
             .map(|index| &self.slabs.pieces[index])
             .filter(|piece| self.is_curve(piece))
-            .map(|piece| (piece.y_at(point.x) - point.y).abs());
+            .map(|piece| piece.y_at(point.x) - point.y);
         let upright = self
             .slabs
             .verticals_between(point.x, point.x)
             .iter()
             .map(|&index| &self.slabs.pieces[index])
             .filter(|piece| self.is_curve(piece))
-            .map(|piece| (piece.first().y - point.y).max(point.y - piece.last().y).max(0.0));
-        beside.chain(upright).reduce(f64::min)
+            .map(|piece| point.y.clamp(piece.first().y, piece.last().y) - point.y);
+        let mut distances = [None; 2];
+        for rise in beside.chain(upright) {
+            for (distance, away) in distances.iter_mut().zip([-rise, rise]) {
+                if away >= 0.0 {
+                    *distance = Some(distance.map_or(away, |nearest: f64| nearest.min(away)));
+                }
+            }
+        }
+        distances
     }
 
     /// A place on a curve, `share` in [0, 1) of the way through its pieces, and the unit normal to its left.

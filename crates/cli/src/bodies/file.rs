@@ -7,6 +7,7 @@ use stickslip_model::{Elasticity, Motion, Plane, Sphere, Surface, Wall};
 
 use super::field::{Object, number, required, vector};
 use super::{Bodies, Other};
+use crate::json_input;
 
 impl Bodies {
     /// The bodies that `text` describes.
@@ -14,19 +15,9 @@ impl Bodies {
     /// # Errors
     /// What is wrong and where, and what is accepted.
     pub fn parse(text: &[u8]) -> Result<Self, String> {
-        let mut reader = serde_json::Deserializer::from_slice(text);
-        let Object(file): Object<File> =
-            serde_path_to_error::deserialize(&mut reader).map_err(located)?;
-        reader.end().map_err(|error| error.to_string())?;
+        let Object(file): Object<File> = json_input::parse(text)?;
         file.resolve()
     }
-}
-
-/// The error with the field at which it occurred; broken JSON has a line and a column only.
-fn located(error: serde_path_to_error::Error<serde_json::Error>) -> String {
-    let path = error.path().to_string();
-    let error = error.into_inner();
-    if error.is_data() && path != "." { format!("{path}: {error}") } else { error.to_string() }
 }
 
 /// A file as it is written; what is missing is `None`.

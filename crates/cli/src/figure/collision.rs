@@ -40,8 +40,8 @@ pub fn draw(collision: &Collision, history: &History) -> Svg {
     let velocity = samples.iter().fold((0.0_f64, 0.0_f64), |(low, high), sample| {
         (low.min(sample.velocity), high.max(sample.velocity))
     });
-    let forces = Panel { frame: FORCES, x: time, y: padded((-force, force)) };
-    let velocities = Panel { frame: VELOCITY, x: time, y: padded(velocity) };
+    let forces = Panel { frame: FORCES, x: time, y: padded((-force, force)), logarithmic: false };
+    let velocities = Panel { frame: VELOCITY, x: time, y: padded(velocity), logarithmic: false };
     for panel in [&forces, &velocities] {
         background(&mut svg, panel, history);
     }

@@ -87,7 +87,8 @@ fn restitution(svg: &mut Svg, map: &Map<'_>) -> io::Result<()> {
     palette.push(style::MISSING);
     svg.image(panel.frame, &map.bitmap(|cell| shade(map.eps_t[cell]), palette).base64()?);
 
-    let scale = Panel { frame: beside(&panel), x: (0.0, 1.0), y: (-largest, largest) };
+    let scale =
+        Panel { frame: beside(&panel), x: (0.0, 1.0), y: (-largest, largest), logarithmic: false };
     svg.image(scale.frame, &key.base64()?);
     scale.border(svg);
     scale.ticks(svg, Edge::Right, true);
@@ -132,7 +133,12 @@ fn switches(svg: &mut Svg, map: &Map<'_>) -> io::Result<()> {
     svg.end_group();
     map.axes(svg, &panel, "number of switches");
 
-    let key = Panel { frame: beside(&panel), x: (0.0, 1.0), y: (0.0, counts.len().max(1) as f64) };
+    let key = Panel {
+        frame: beside(&panel),
+        x: (0.0, 1.0),
+        y: (0.0, counts.len().max(1) as f64),
+        logarithmic: false,
+    };
     // Each colour down to the bottom, under those that follow: no seams.
     for (rank, count) in counts.iter().enumerate().rev() {
         let (left, top) = key.place((0.0, rank as f64 + 1.0));
@@ -152,7 +158,7 @@ fn switches(svg: &mut Svg, map: &Map<'_>) -> io::Result<()> {
 
 impl Map<'_> {
     fn panel(&self, frame: Rectangle) -> Panel {
-        Panel { frame, x: self.horizontal.range, y: self.vertical.range }
+        Panel { frame, x: self.horizontal.range, y: self.vertical.range, logarithmic: false }
     }
 
     /// The cells as pixels, the last row on top.

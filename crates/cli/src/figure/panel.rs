@@ -13,6 +13,8 @@ pub struct Panel {
     pub x: (f64, f64),
     /// Values at the lower and the upper edge.
     pub y: (f64, f64),
+    /// Whether x is logarithmic; then both its values are above 0.
+    pub logarithmic: bool,
 }
 
 /// An edge of a panel that carries an axis.
@@ -33,10 +35,27 @@ impl Panel {
     /// The place of a point in the picture.
     pub fn place(&self, (x, y): (f64, f64)) -> (f64, f64) {
         let part = |value: f64, (low, high): (f64, f64)| (value - low) / (high - low);
+        let along = if self.logarithmic {
+            part(x.ln(), (self.x.0.ln(), self.x.1.ln()))
+        } else {
+            part(x, self.x)
+        };
         (
-            self.frame.left + part(x, self.x) * self.frame.width,
+            self.frame.left + along * self.frame.width,
             self.frame.bottom() - part(y, self.y) * self.frame.height,
         )
+    }
+
+    /// The point at a place in the picture: the inverse of [`Self::place`].
+    pub fn value(&self, (left, top): (f64, f64)) -> (f64, f64) {
+        let along = (left - self.frame.left) / self.frame.width;
+        let up = (self.frame.bottom() - top) / self.frame.height;
+        let x = if self.logarithmic {
+            self.x.0 * (self.x.1 / self.x.0).powf(along)
+        } else {
+            self.x.0 + along * (self.x.1 - self.x.0)
+        };
+        (x, self.y.0 + up * (self.y.1 - self.y.0))
     }
 
     /// Fills the panel's height from one value of x to another.
@@ -73,8 +92,17 @@ impl Panel {
             Edge::Bottom => (frame.width, 70.0),
             Edge::Left | Edge::Right => (frame.height, 30.0),
         };
-        for (value, label) in ticks(self.range(edge), length / apart) {
-            let (x, y) = self.place((value, value));
+        let marks = if self.is_logarithmic(edge) {
+            decade_ticks(self.x, length / 40.0)
+        } else {
+            ticks(self.range(edge), length / apart)
+        };
+        for (value, label) in marks {
+            // Of the other axis, any value will do.
+            let (x, y) = match edge {
+                Edge::Bottom => self.place((value, self.y.0)),
+                Edge::Left | Edge::Right => self.place((self.x.0, value)),
+            };
             let (from, to, at, anchor) = match edge {
                 Edge::Bottom => {
                     let y = frame.bottom();
@@ -100,6 +128,7 @@ impl Panel {
     /// where numbers need none.
     pub fn power(&self, edge: Edge) -> String {
         match exponent(self.range(edge)) {
+            _ if self.is_logarithmic(edge) => String::new(),
             0 => String::new(),
             exponent => text::minus(&format!(" (×10^{{{exponent}}})")),
         }
@@ -116,6 +145,10 @@ impl Panel {
             let at = (frame.left - distance, frame.top + 0.5 * frame.height);
             svg.words(at, Words { upwards: true, ..words });
         }
+    }
+
+    fn is_logarithmic(&self, edge: Edge) -> bool {
+        self.logarithmic && edge == Edge::Bottom
     }
 
     fn range(&self, edge: Edge) -> (f64, f64) {
@@ -145,6 +178,24 @@ fn ticks((low, high): (f64, f64), count: f64) -> Vec<(f64, String)> {
     values.map(|value| (value * unit, label(value))).collect()
 }
 
+/// At most about `count` values 1, 2, 5 or 1 times powers of ten between `low` and `high`, above 0, with their labels.
+fn decade_ticks((low, high): (f64, f64), count: f64) -> Vec<(f64, String)> {
+    #[allow(clippy::cast_possible_truncation)]
+    let [first, last] = [low, high].map(|end| end.log10().floor() as i32);
+    let decades = (high / low).log10();
+    let factors: &[f64] = if 3.0 * decades <= count { &[1.0, 2.0, 5.0] } else { &[1.0] };
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let apart = (decades / count.max(1.0)).ceil().max(1.0) as usize;
+    let within = |value: &f64| (low * (1.0 - 1e-9)..=high * (1.0 + 1e-9)).contains(value);
+    (first..=last)
+        .step_by(apart)
+        // Parsed, because powers computed are not always the nearest doubles.
+        .flat_map(|power| factors.iter().filter_map(move |f| format!("{f}e{power}").parse().ok()))
+        .filter(within)
+        .map(|value| (value, text::number(value, 3)))
+        .collect()
+}
+
 /// The power of ten that ticks leave out: 0 for numbers that fit beside an axis as they are.
 fn exponent((low, high): (f64, f64)) -> i32 {
     #[allow(clippy::cast_possible_truncation)]
@@ -171,6 +222,30 @@ mod tests {
     }
 
     #[test]
+    fn decades_have_round_ticks() {
+        let labels = |range, count| {
+            decade_ticks(range, count).into_iter().map(|tick| tick.1).collect::<Vec<_>>()
+        };
+        assert_eq!(labels((5.0, 100.0), 20.0), ["5", "10", "20", "50", "100"]);
+        assert_eq!(labels((0.05, 1.5), 20.0), ["0.05", "0.1", "0.2", "0.5", "1"]);
+        assert_eq!(labels((1e-3, 1e3), 8.0), ["0.001", "0.01", "0.1", "1", "10", "100", "1000"]);
+        assert_eq!(labels((1.0, 1e9), 4.0), ["1", "1000", "1×10^{6}", "1×10^{9}"]);
+    }
+
+    #[test]
+    fn places_and_values_are_inverse() {
+        let frame = Rectangle { left: 10.0, top: 20.0, width: 300.0, height: 100.0 };
+        for logarithmic in [false, true] {
+            let panel = Panel { frame, x: (0.5, 200.0), y: (-1.0, 3.0), logarithmic };
+            let (x, y) = panel.value(panel.place((7.0, 0.3)));
+            assert!((x - 7.0).abs() < 1e-12 && (y - 0.3).abs() < 1e-14);
+            let (left, _) = panel.place((10.0, 0.0));
+            let middle = frame.left + 0.5 * frame.width;
+            assert_eq!((left - middle).abs() < 1e-9, logarithmic);
+        }
+    }
+
+    #[test]
     fn very_large_and_small_numbers_leave_out_a_power_of_ten() {
         let frame = Rectangle { left: 0.0, top: 0.0, width: 100.0, height: 100.0 };
         for (range, exponent, shown) in [
@@ -179,7 +254,7 @@ mod tests {
             ((0.0, 2e-300), " (×10^{−300})", &["0", "0.5", "1.0", "1.5", "2.0"]),
             ((0.0, 99999.0), "", &["0", "50000"]),
         ] {
-            let panel = Panel { frame, x: range, y: range };
+            let panel = Panel { frame, x: range, y: range, logarithmic: false };
             assert_eq!(panel.power(Edge::Left), exponent);
             let count =
                 if shown.len() > 3 { 4.0 } else { 3.0 - f64::from(u8::from(shown.len() == 2)) };
@@ -192,7 +267,7 @@ mod tests {
     #[test]
     fn points_have_places() {
         let frame = Rectangle { left: 10.0, top: 20.0, width: 100.0, height: 50.0 };
-        let panel = Panel { frame, x: (0.0, 2.0), y: (-1.0, 1.0) };
+        let panel = Panel { frame, x: (0.0, 2.0), y: (-1.0, 1.0), logarithmic: false };
         assert_eq!(panel.place((0.0, -1.0)), (10.0, 70.0));
         assert_eq!(panel.place((2.0, 1.0)), (110.0, 20.0));
     }

@@ -31,6 +31,13 @@ pub const NORMAL_MIRRORED: Stroke = Stroke { dashes: "6 4", ..NORMAL };
 /// Quantities of the tangential motion.
 pub const TANGENTIAL: Stroke = Stroke::full("#0072B2", 2.0);
 
+/// Boundaries on which a switch falls on the end of contact.
+pub const BOUNDARY_END: Stroke = Stroke::full("#222222", 1.6);
+/// Boundaries on which the force touches its limit while sticking.
+pub const BOUNDARY_STICK: Stroke = Stroke { colour: "#0072B2", width: 1.6, dashes: "7 3" };
+/// Boundaries on which the spring all but sticks while sliding.
+pub const BOUNDARY_SLIP: Stroke = Stroke { colour: "#D55E00", width: 1.6, dashes: "2 2.5" };
+
 /// Phases of slip on side +1.
 pub const SLIP_POSITIVE: &str = "#F8D8A8";
 /// Phases of slip on side −1.

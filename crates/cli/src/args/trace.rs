@@ -1,0 +1,82 @@
+//! The options of `trace`.
+
+use std::path::PathBuf;
+
+use clap::builder::{PathBufValueParser, TypedValueParser};
+
+use crate::figure::Target;
+use crate::number;
+use crate::parameter::Parameter;
+use crate::range::Range;
+
+/// Options of `trace`.
+#[derive(Debug, clap::Args)]
+pub struct TraceArguments {
+    /// Interval of the scaled stiffness κ = k_t/(α m β^⅘ g_n^⅖), above 0
+    #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
+    #[arg(value_parser = Range::parse)]
+    pub kappa: Option<Range>,
+
+    /// Interval of the reduced impact ratio ψ = (g_t/g_n)·α/μ, above 0
+    #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
+    #[arg(value_parser = Range::parse)]
+    pub psi: Option<Range>,
+
+    /// Interval of the impact ratio g_t/g_n, instead of --psi; above 0
+    #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
+    #[arg(value_parser = Range::parse)]
+    pub ratio: Option<Range>,
+
+    /// Coefficient of friction μ, with --ratio; above 0 [default: 0.4]
+    #[arg(long, value_name = "M", help_heading = "Collisions", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Mu.parse(text))]
+    pub mu: Option<f64>,
+
+    /// Tangential inertia α, with --ratio; above 0, at most 1 [default: 2/7, homogeneous spheres]
+    #[arg(long, value_name = "A", help_heading = "Collisions", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Alpha.parse(text))]
+    pub alpha: Option<f64>,
+
+    /// Scaled damping a = A β^⅖ g_n^⅕ of the normal force; 0 or above [default: 0]
+    #[arg(long, value_name = "D", help_heading = "Collisions", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Damping.parse(text))]
+    pub damping: Option<f64>,
+
+    /// Accuracy of boundaries in ψ, between their points too; 1e-11·(1 + HI) of ψ to 1e-6
+    /// [default: 1e-10·(1 + HI)]
+    #[arg(long, value_name = "T", help_heading = "Collisions", allow_hyphen_values = true)]
+    #[arg(value_parser = number::parse)]
+    pub tolerance: Option<f64>,
+
+    /// JSON file for the atlas
+    #[arg(long, value_name = "ATLAS.json", help_heading = "Output")]
+    pub out: PathBuf,
+
+    /// Picture of the boundaries, with the number of switches in each region
+    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
+    #[arg(value_parser = PathBufValueParser::new().try_map(Target::new))]
+    pub plot: Option<Target>,
+
+    /// Threads that verify; 1 to 1024 [default: one for each core]; results do not depend on it
+    #[arg(long, value_name = "N", help_heading = "Output", allow_hyphen_values = true)]
+    #[arg(value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
+/// Text of `trace --help`.
+pub const ABOUT: &str = "\
+Trace every boundary in a window of the (κ, ψ) plane on which the switches of a collision change, \
+where boundaries meet, and the regions between them.
+
+The regions are verified: collisions at 20 000 random points of the window, and at 40 beside each \
+boundary, must have the switches of their region. If one has not, or something remained open, the \
+atlas is written all the same and says so, and the exit code is 1.";
+
+/// What follows it.
+pub const EXAMPLES: &str = "\
+Examples:
+  stickslip trace --kappa 5:100 --psi 0.05:3 --out atlas.json --plot atlas.svg
+  stickslip trace --kappa 5:20 --ratio 0.3:3.5 --mu 0.4 --alpha 2/7 --out atlas.json
+  stickslip trace --kappa 5:20 --psi 0.2:2.5 --damping 0.05 --out damped.json
+
+Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

@@ -1,0 +1,211 @@
+//! The layout of an atlas as a file, schema "stickslip.atlas/1".
+
+use serde::{Deserialize, Serialize};
+use stickslip_tracer::{Curve, Node, VertexKind};
+
+use super::boundary::{Kind, in_order};
+use super::frame::scaled;
+use super::verification::Report;
+use super::{Atlas, switch_count};
+
+/// Name and version of the layout.
+pub const SCHEMA: &str = "stickslip.atlas/1";
+
+/// An atlas as it is written.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Document {
+    pub schema: String,
+    pub window: WindowFields,
+    /// Accuracy of boundaries in ψ.
+    pub tolerance: f64,
+    pub boundaries: Vec<BoundaryFields>,
+    pub vertices: Vec<VertexFields>,
+    pub regions: Vec<RegionFields>,
+    pub verification: Report,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+pub struct WindowFields {
+    pub kappa: [f64; 2],
+    pub psi: [f64; 2],
+    pub damping: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ratio: Option<[f64; 2]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mu: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub alpha: Option<f64>,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+pub struct BoundaryFields {
+    pub id: usize,
+    pub kind: Kind,
+    pub below: Switching,
+    pub above: Switching,
+    /// (κ, ψ).
+    pub points: Vec<[f64; 2]>,
+    /// Unit tangents in (ln κ, ln(1 + ψ)).
+    pub tangents: Vec<[f64; 2]>,
+    pub start: Why,
+    pub end: Why,
+    /// Where it starts and ends, unless it is closed.
+    pub vertices: Option<[usize; 2]>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Switching {
+    pub switch_count: usize,
+    pub itinerary: String,
+}
+
+/// Why a boundary ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Why {
+    /// On the window's edge.
+    Window,
+    /// At a vertex inside.
+    Vertex,
+    /// It does not: its last point is its first.
+    Closed,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+pub struct VertexFields {
+    pub id: usize,
+    pub kind: Corner,
+    pub kappa: f64,
+    pub psi: f64,
+    /// The boundaries that end there.
+    pub boundaries: Vec<usize>,
+}
+
+/// What a vertex is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Corner {
+    WindowEdge,
+    WindowCorner,
+    /// Boundaries cross or touch.
+    Crossing,
+    /// What vanishes on the boundary stops to exist.
+    Degenerate,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+pub struct RegionFields {
+    pub id: usize,
+    #[serde(flatten)]
+    pub switching: Switching,
+    /// A place well inside.
+    pub sample: [f64; 2],
+    /// Its part of the window's area in (ln κ, ln(1 + ψ)).
+    pub area_share: f64,
+    /// The boundaries around it.
+    pub boundaries: Vec<usize>,
+}
+
+impl Document {
+    /// `atlas` as it is to be written.
+    pub fn new(atlas: &Atlas, verification: Report) -> Self {
+        let Atlas { frame, tolerance, map, .. } = atlas;
+        let corners: Vec<Corner> =
+            map.vertices().iter().map(|vertex| Corner::from(vertex.kind)).collect();
+        let mut ending = vec![Vec::new(); corners.len()];
+        for (id, curve) in map.curves().iter().enumerate() {
+            for vertex in curve.ends.into_iter().flatten() {
+                if ending[vertex].last() != Some(&id) {
+                    ending[vertex].push(id);
+                }
+            }
+        }
+        let vertices = map.vertices().iter().zip(ending).enumerate();
+        let vertices = vertices.map(|(id, (vertex, boundaries))| {
+            let [kappa, psi] = frame.snapped(scaled(&vertex.point));
+            VertexFields { id, kind: corners[id], kappa, psi, boundaries }
+        });
+        let regions = map.regions().iter().enumerate().map(|(id, region)| {
+            let mut boundaries: Vec<usize> = region.boundary.iter().map(|side| side.0).collect();
+            boundaries.sort_unstable();
+            boundaries.dedup();
+            RegionFields {
+                id,
+                switching: Switching::new(atlas.itinerary(id)),
+                sample: scaled(&region.sample),
+                area_share: region.area / map.window().area(),
+                boundaries,
+            }
+        });
+        let boundaries = map.curves().iter().enumerate();
+        Self {
+            schema: SCHEMA.to_owned(),
+            window: WindowFields {
+                kappa: [frame.kappa.low, frame.kappa.high],
+                psi: [frame.psi.low, frame.psi.high],
+                damping: frame.damping,
+                ratio: frame.ratio.map(|ratio| [ratio.range.low, ratio.range.high]),
+                mu: frame.ratio.map(|ratio| ratio.mu),
+                alpha: frame.ratio.map(|ratio| ratio.alpha),
+            },
+            tolerance: *tolerance,
+            boundaries: boundaries
+                .map(|(id, curve)| BoundaryFields::new(atlas, id, curve, &corners))
+                .collect(),
+            vertices: vertices.collect(),
+            regions: regions.collect(),
+            verification,
+        }
+    }
+}
+
+impl BoundaryFields {
+    fn new(atlas: &Atlas, id: usize, curve: &Curve<String, Kind>, corners: &[Corner]) -> Self {
+        let [below, above] = in_order(&curve.nodes, curve.sides.each_ref());
+        let why = |end: usize| match curve.ends.map(|ends| corners[ends[end]]) {
+            None => Why::Closed,
+            Some(Corner::WindowEdge | Corner::WindowCorner) => Why::Window,
+            Some(Corner::Crossing | Corner::Degenerate) => Why::Vertex,
+        };
+        let point = |node: &Node| atlas.frame.snapped(scaled(&node.point));
+        Self {
+            id,
+            kind: curve.margin,
+            below: Switching::new(below),
+            above: Switching::new(above),
+            points: curve.nodes.iter().map(point).collect(),
+            tangents: curve.nodes.iter().map(|node| node.tangent.into()).collect(),
+            start: why(0),
+            end: why(1),
+            vertices: curve.ends,
+        }
+    }
+}
+
+impl Switching {
+    fn new(itinerary: &str) -> Self {
+        Self { switch_count: switch_count(itinerary), itinerary: itinerary.to_owned() }
+    }
+}
+
+impl From<VertexKind> for Corner {
+    fn from(kind: VertexKind) -> Self {
+        match kind {
+            VertexKind::WindowEdge => Self::WindowEdge,
+            VertexKind::WindowCorner => Self::WindowCorner,
+            VertexKind::Crossing => Self::Crossing,
+            VertexKind::Degenerate => Self::Degenerate,
+        }
+    }
+}
+
+impl From<Corner> for VertexKind {
+    fn from(corner: Corner) -> Self {
+        match corner {
+            Corner::WindowEdge => Self::WindowEdge,
+            Corner::WindowCorner => Self::WindowCorner,
+            Corner::Crossing => Self::Crossing,
+            Corner::Degenerate => Self::Degenerate,
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! The picture of an atlas.
+
+use stickslip_tracer::{Cubic, Location, Point, VertexKind};
+
+use super::boundary::Kind;
+use super::frame::{scaled, traced};
+use super::{Atlas, switch_count};
+use crate::figure::atlas::{self, Line};
+use crate::figure::{Svg, number};
+
+/// Most straight lines for the piece between two points.
+const MOST_LINES: f64 = 16.0;
+/// Straight lines for a piece as long as the window is high.
+const LINES: f64 = 60.0;
+
+/// Draws `atlas`.
+pub fn draw(atlas: &Atlas) -> Svg {
+    let Atlas { frame, map, .. } = atlas;
+    let pair = |point: &Point| <(f64, f64)>::from(scaled(point));
+    let extent = map.window().extent();
+    let boundaries = map.curves().iter().map(|curve| {
+        let line = match curve.margin {
+            Kind::EndOfContact => Line::EndOfContact,
+            Kind::StickGraze => Line::StickGraze,
+            Kind::SlipGraze => Line::SlipGraze,
+        };
+        let mut points = vec![pair(&curve.nodes[0].point)];
+        for nodes in curve.nodes.windows(2) {
+            let cubic = Cubic::between(&nodes[0], &nodes[1]);
+            let length = (nodes[1].point - nodes[0].point).component_div(&extent).norm();
+            let lines = (LINES * length).ceil().clamp(1.0, MOST_LINES);
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+            let count = lines as u32;
+            points.extend((1..=count).map(|i| pair(&cubic.at(f64::from(i) / lines))));
+        }
+        (line, points)
+    });
+    let vertices = |kind: VertexKind| {
+        let of_kind = map.vertices().iter().filter(|vertex| vertex.kind == kind);
+        of_kind.map(|vertex| pair(&vertex.point)).collect()
+    };
+    let counts = (0..map.regions().len()).map(|region| switch_count(atlas.itinerary(region)));
+    let (mu, alpha) = (frame.ratio.map(|ratio| ratio.mu), frame.ratio.map(|ratio| ratio.alpha));
+    let parameters = [("a", Some(frame.damping)), ("μ", mu), ("α", alpha)];
+    let parameters = parameters
+        .iter()
+        .filter_map(|(name, value)| value.map(|value| format!(", {name} = {}", number(value, 6))));
+    let title: String =
+        std::iter::once(format!("{} boundaries, {} regions", map.curves().len(), counts.len()))
+            .chain(parameters)
+            .collect();
+    let picture = atlas::Atlas {
+        title: &title,
+        kappa: (frame.kappa.low, frame.kappa.high),
+        psi: (frame.psi.low, frame.psi.high),
+        boundaries: boundaries.collect(),
+        crossings: vertices(VertexKind::Crossing),
+        stops: vertices(VertexKind::Degenerate),
+        counts: counts.collect(),
+    };
+    atlas::draw(&picture, |(kappa, psi)| match map.locate(&traced([kappa, psi])) {
+        Location::Region(region) => Some(region),
+        _ => None,
+    })
+}

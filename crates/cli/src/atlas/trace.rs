@@ -1,0 +1,149 @@
+//! An atlas made: boundaries traced, regions verified, both written.
+
+use std::collections::BTreeMap;
+use std::io::{BufWriter, Write};
+
+use rayon::ThreadPoolBuilder;
+use stickslip_model::Contact;
+use stickslip_model::regularized::{GUARDS, Phase, Regularized, STATE};
+use stickslip_solver::{Dop853, Margin, Options, Start};
+use stickslip_tracer::{
+    Curve, HybridFamily, Network, Node, Point, Problem, Subdivision, TraceError, TraceOptions,
+    Vertex, trace,
+};
+
+use super::boundary::{Kind, itinerary};
+use super::document::Document;
+use super::frame::{Frame, scaled, traced};
+use super::{Atlas, Map, picture, verification};
+use crate::error::Failure;
+use crate::output::OutputFile;
+use crate::plan::TracePlan;
+
+/// Traces the boundaries of the window and writes its atlas.
+///
+/// # Errors
+/// A run fails, files cannot be written, or something speaks against the atlas; in the last case it is complete and says so.
+pub fn run(plan: &TracePlan) -> Result<(), Failure> {
+    if let Some(target) = &plan.plot {
+        target.check()?;
+    }
+    let pool = ThreadPoolBuilder::new().num_threads(plan.threads.unwrap_or(0)).build()?;
+    let failed = |error| Failure::output(&plan.out, error);
+    let mut file = OutputFile::create(&plan.out).map_err(failed)?;
+
+    let (atlas, unresolved) = make(plan)?;
+    let report = pool
+        .install(|| verification::verify(&atlas, unresolved))
+        .map_err(|error| Failure::Trace(error.to_string()))?;
+    let objection = report.objection();
+
+    let document = Document::new(&atlas, report);
+    let mut out = BufWriter::new(&mut file);
+    serde_json::to_writer(&mut out, &document).map_err(|error| failed(error.into()))?;
+    out.write_all(b"\n").and_then(|()| out.flush()).map_err(failed)?;
+    drop(out);
+    file.store().map_err(failed)?;
+    let picture = match &plan.plot {
+        Some(target) => Some(target.write(&picture::draw(&atlas))?),
+        None => None,
+    };
+    // Both are complete before one of them gets its name.
+    file.publish().map_err(failed)?;
+    if let Some(picture) = picture {
+        picture.publish()?;
+    }
+    match objection {
+        Some(reason) => Err(Failure::Doubtful { path: plan.out.clone(), reason }),
+        None => Ok(()),
+    }
+}
+
+/// The atlas, and what the tracer could not explain.
+fn make(plan: &TracePlan) -> Result<(Atlas, Vec<String>), Failure> {
+    let frame = plan.frame;
+    let window = frame.window();
+    let fallback = frame.contact(&window.low).map_err(|error| Failure::Trace(error.to_string()))?;
+    let family = HybridFamily {
+        problem: Collisions { frame, fallback },
+        method: Dop853,
+        options: Options {
+            rtol: 1e-14,
+            atol: 1e-14,
+            first_step: Some(0.1),
+            max_step: 0.1,
+            ..Options::default()
+        },
+        end: f64::INFINITY,
+    };
+    let options = TraceOptions {
+        interpolation: frame.interpolation(plan.tolerance),
+        ..TraceOptions::default()
+    };
+    let network = trace(&family, &window, &options).map_err(|error| {
+        Failure::Trace(match error {
+            TraceError::Run { point, source } => {
+                let [kappa, psi] = scaled(&point);
+                format!("kappa = {kappa:?}, psi = {psi:?}: {}", source.kind)
+            }
+            error => error.to_string(),
+        })
+    })?;
+    let unresolved = verification::unresolved(&network);
+    let map = map(&frame, plan.tolerance, network, &fallback)?;
+    let unbounded = map
+        .regions()
+        .iter()
+        .enumerate()
+        .filter(|(_, region)| region.label.is_none())
+        .map(|(index, region)| Ok((index, verification::itinerary(&frame, &region.sample)?)))
+        .collect::<Result<BTreeMap<_, _>, String>>()
+        .map_err(Failure::Trace)?;
+    Ok((Atlas { frame, tolerance: plan.tolerance, map, unbounded }, unresolved))
+}
+
+/// Collisions at the traced points of a window.
+struct Collisions {
+    frame: Frame,
+    /// Stands for places outside of the window at which κ is no number.
+    fallback: Contact,
+}
+
+impl Problem<STATE, GUARDS> for Collisions {
+    type System = Regularized;
+
+    fn at(&self, point: &Point) -> (Regularized, Start<Phase, STATE>) {
+        let contact = self.frame.contact(point).unwrap_or(self.fallback);
+        let system = Regularized::new(contact);
+        (system, Start { mode: Phase::first(&contact), s: 0.0, state: system.start() })
+    }
+}
+
+/// The regions that the traced curves make. Points go through (κ, ψ), as they are written, so that a file makes the same regions
+/// bit for bit.
+fn map(
+    frame: &Frame,
+    tolerance: f64,
+    network: Network<Vec<usize>, Margin>,
+    any: &Contact,
+) -> Result<Map, Failure> {
+    let written = |point: &Point| traced(frame.snapped(scaled(point)));
+    let curves = network.curves.into_iter().map(|curve| Curve {
+        margin: Kind::of(any, &curve.margin),
+        sides: curve.sides.map(|guards| itinerary(any, &guards)),
+        nodes: curve
+            .nodes
+            .iter()
+            .map(|node| Node { point: written(&node.point), tangent: node.tangent })
+            .collect(),
+        ends: curve.ends,
+    });
+    let vertices = network.vertices.into_iter().map(|vertex| Vertex {
+        point: written(&vertex.point),
+        kind: vertex.kind,
+        margins: Vec::new(),
+    });
+    let resolution = frame.resolution(tolerance);
+    Subdivision::new(frame.window(), curves.collect(), vertices.collect(), resolution)
+        .map_err(|error| Failure::Trace(error.to_string()))
+}

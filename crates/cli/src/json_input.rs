@@ -1,0 +1,20 @@
+//! JSON files read, with the field at which something is wrong.
+
+use serde::de::DeserializeOwned;
+
+/// The value that all of `text` describes.
+///
+/// # Errors
+/// What is wrong and where; broken JSON has a line and a column only.
+pub fn parse<T: DeserializeOwned>(text: &[u8]) -> Result<T, String> {
+    let mut reader = serde_json::Deserializer::from_slice(text);
+    let value = serde_path_to_error::deserialize(&mut reader).map_err(located)?;
+    reader.end().map_err(|error| error.to_string())?;
+    Ok(value)
+}
+
+fn located(error: serde_path_to_error::Error<serde_json::Error>) -> String {
+    let path = error.path().to_string();
+    let error = error.into_inner();
+    if error.is_data() && path != "." { format!("{path}: {error}") } else { error.to_string() }
+}

@@ -1,0 +1,93 @@
+//! What `trace` is to do.
+
+use std::path::PathBuf;
+
+use crate::args::TraceArguments;
+use crate::atlas::{Frame, Ratio};
+use crate::error::Failure;
+use crate::figure::Target;
+use crate::plan::explain;
+use crate::range::Range;
+use crate::recipe::{DEFAULT_ALPHA, DEFAULT_MU, RecipeError};
+
+/// An atlas to be traced.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TracePlan {
+    /// Its window.
+    pub frame: Frame,
+    /// Accuracy of boundaries in ψ.
+    pub tolerance: f64,
+    /// Where it goes.
+    pub out: PathBuf,
+    /// Where it is drawn, if it is.
+    pub plot: Option<Target>,
+    /// Number of threads; `None` is one for each core.
+    pub threads: Option<usize>,
+}
+
+impl TracePlan {
+    /// The plan that `arguments` make.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] says which options do not go together.
+    pub fn new(arguments: &TraceArguments) -> Result<Self, Failure> {
+        let frame = frame(arguments)?;
+        let finest = 1.0 + frame.psi.high;
+        let tolerance = arguments.tolerance.unwrap_or(1e-10 * finest);
+        if !(1e-11 * finest..=1e-6).contains(&tolerance) {
+            return Err(Failure::Usage(format!(
+                "--tolerance {tolerance:?} is out of range; accepted is {:e} (1e-11·(1 + HI) of \
+                 psi) to 1e-6",
+                1e-11 * finest
+            )));
+        }
+        let plan = Self {
+            frame,
+            tolerance,
+            out: arguments.out.clone(),
+            plot: arguments.plot.clone(),
+            threads: arguments.threads.map(usize::from),
+        };
+        plan.frame.require_wide(tolerance).map_err(Failure::Usage)?;
+        Ok(plan)
+    }
+}
+
+fn frame(arguments: &TraceArguments) -> Result<Frame, Failure> {
+    let TraceArguments { kappa, psi, ratio, mu, alpha, .. } = *arguments;
+    let refused = |error| Failure::Usage(explain(error));
+    let kappa = positive("--kappa", kappa.ok_or_else(|| refused(RecipeError::NoKappa))?)?;
+    let (psi, ratio) = match (psi, ratio) {
+        (Some(_), Some(_)) => return Err(refused(RecipeError::PsiAndRatio)),
+        (None, None) => return Err(refused(RecipeError::NoImpact)),
+        (Some(psi), None) => match [("mu", mu), ("alpha", alpha)].iter().find(|x| x.1.is_some()) {
+            Some((name, _)) => return Err(refused(RecipeError::Unused { name })),
+            None => (positive("--psi", psi)?, None),
+        },
+        (None, Some(ratio)) => {
+            let range = positive("--ratio", ratio)?;
+            let (mu, alpha) = (mu.unwrap_or(DEFAULT_MU), alpha.unwrap_or(DEFAULT_ALPHA));
+            let [low, high] = [range.low, range.high].map(|ratio| ratio * alpha / mu);
+            if !(low > 0.0 && low < high && high.is_finite()) {
+                return Err(Failure::Usage(format!(
+                    "psi = ratio·alpha/mu from {low:?} to {high:?} is out of range; accepted are \
+                     finite numbers 0 < LO < HI"
+                )));
+            }
+            (Range { low, high }, Some(Ratio { range, mu, alpha }))
+        }
+    };
+    Ok(Frame { kappa, psi, ratio, damping: arguments.damping.unwrap_or(0.0) })
+}
+
+/// `range`, unless it begins at 0, where there is no collision.
+fn positive(option: &str, range: Range) -> Result<Range, Failure> {
+    if range.low > 0.0 {
+        return Ok(range);
+    }
+    Err(Failure::Usage(format!(
+        "{option} {:?}:{:?}: there is no collision at 0, and the boundaries near it have no end; \
+         accepted is LO:HI with LO > 0",
+        range.low, range.high
+    )))
+}
