@@ -4,7 +4,7 @@ use std::convert::Infallible;
 use std::f64::consts::{PI, TAU};
 
 use stickslip::tracer::{
-    Curve, Family, Node, Point, Subdivision, SubdivisionError, Vertex, VertexKind, Window,
+    Curve, Family, FreeRun, Node, Point, Subdivision, SubdivisionError, Vertex, VertexKind, Window,
 };
 
 pub const TOLERANCE: f64 = 1e-10;
@@ -64,8 +64,8 @@ impl Family for Plane {
         Ok(None)
     }
 
-    fn margins(&self, _: &Point) -> Result<Vec<(usize, f64)>, Infallible> {
-        Ok(Vec::new())
+    fn free_run(&self, point: &Point) -> Result<FreeRun<i32, usize>, Infallible> {
+        Ok(FreeRun { label: (self.truth)(point), margins: Vec::new() })
     }
 }
 
