@@ -102,7 +102,7 @@ fn frame(window: &WindowFields) -> Result<Frame, String> {
         }
         Err(format!("window.{name} = [{low:?}, {high:?}]: accepted is [LO, HI] with 0 < LO < HI"))
     };
-    if !(window.damping >= 0.0) {
+    if window.damping < 0.0 {
         return Err(format!("window.damping = {:?}: accepted is 0 or above", window.damping));
     }
     let (kappa, psi) = (range("kappa", window.kappa)?, range("psi", window.psi)?);

@@ -1,5 +1,6 @@
 //! Atlases: traced, verified, read back.
 
+use std::fmt::Write;
 use std::sync::OnceLock;
 
 use roxmltree::Document;
@@ -58,7 +59,8 @@ fn an_atlas_has_the_fields_of_its_schema() {
         let points = list(boundary, "points");
         assert_eq!(points.len(), list(boundary, "tangents").len());
         for (why, end, point) in [("start", 0, &points[0]), ("end", 1, &points[points.len() - 1])] {
-            let vertex = &vertices[boundary["vertices"][end].as_u64().unwrap() as usize];
+            let vertex =
+                &vertices[usize::try_from(boundary["vertices"][end].as_u64().unwrap()).unwrap()];
             assert!(list(vertex, "boundaries").contains(&id.into()));
             let edge = vertex["kind"].as_str().unwrap().starts_with("window");
             assert_eq!(boundary[why], if edge { "window" } else { "vertex" });
@@ -96,8 +98,9 @@ fn reference_boundaries_are_among_the_traced() {
     let mut points = "kappa,psi\n".to_owned();
     for case in &cases {
         for side in [-apart, apart] {
-            points += &format!(
-                "{},{:?}\n",
+            let _ = writeln!(
+                points,
+                "{},{:?}",
                 case["kappa"].as_str().unwrap(),
                 decimal(&case["psi"]) + side
             );
@@ -135,7 +138,7 @@ fn located_points_are_computed_collisions() {
     };
     let mut points = "name,psi,kappa\n".to_owned();
     for index in 0..500 {
-        points += &format!("p{index},{:?},{:?}\n", uniform(0.2, 2.5), uniform(5.0, 20.0));
+        let _ = writeln!(points, "p{index},{:?},{:?}", uniform(0.2, 2.5), uniform(5.0, 20.0));
     }
     workspace.write("p.csv", &points);
     let ran = workspace.run("locate --atlas a.json --batch p.csv --out o.csv");
