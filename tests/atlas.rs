@@ -11,18 +11,16 @@ use stickslip::model::regularized::{OTHER_SIDE, Phase, Regularized, SAME_SIDE, S
 use stickslip::model::{Contact, Side, exact};
 use stickslip::solver::{Dop853, Margin, Options, Place, Start};
 use stickslip::tracer::{
-    Family, HybridFamily, Location, Point, Problem, Subdivision, TraceOptions, Window, trace,
+    HybridFamily, Location, Point, Problem, Subdivision, TraceOptions, Window, trace,
 };
 
-struct Collisions {
-    damping: f64,
-}
+struct Collisions;
 
 impl Collisions {
-    fn contact(&self, point: &Point) -> Contact {
+    fn contact(point: &Point) -> Contact {
         // Tracing asks for points a little outside the window.
         let psi = point.y.exp_m1().max(1e-9);
-        Contact::new(point.x.exp(), psi, self.damping).expect("in the window")
+        Contact::new(point.x.exp(), psi, 0.0).expect("in the window")
     }
 
     fn family(self) -> HybridFamily<Self, Dop853, STATE, 3> {
@@ -41,7 +39,7 @@ impl Problem<STATE, 3> for Collisions {
     type System = Regularized;
 
     fn at(&self, point: &Point) -> (Regularized, Start<Phase, STATE>) {
-        let contact = self.contact(point);
+        let contact = Self::contact(point);
         let system = Regularized::new(contact);
         (system, Start { mode: Phase::first(&contact), s: 0.0, state: system.start() })
     }
@@ -54,7 +52,7 @@ fn window() -> Window {
 
 /// Without damping, to 2e-13 at the nodes and 2e-12 between them.
 static ATLAS: LazyLock<Subdivision<Vec<usize>, Margin>> = LazyLock::new(|| {
-    let family = Collisions { damping: 0.0 }.family();
+    let family = Collisions.family();
     let options = TraceOptions {
         tolerance: 2e-13,
         interpolation: 2e-12,
@@ -68,7 +66,7 @@ static ATLAS: LazyLock<Subdivision<Vec<usize>, Margin>> = LazyLock::new(|| {
 
 /// Guards that fire in the collision at `point`, by the exact engine.
 fn fired(point: &Point) -> Vec<usize> {
-    let collision = exact::collide(Collisions { damping: 0.0 }.contact(point)).expect("exact");
+    let collision = exact::collide(Collisions::contact(point)).expect("exact");
     let mut side = Side::Positive;
     let guard = |switch: &stickslip::model::Switch| {
         let same = switch.side == side;
@@ -119,7 +117,7 @@ fn reference_boundaries_lie_on_traced_curves() {
         let curve = &plane.curves()[curve];
         let kind = match curve.margin.place {
             Place::End => "end-of-contact",
-            Place::Minimum { .. } if curve.margin.exits.len() % 2 == 0 => "slip-graze",
+            Place::Minimum { .. } if curve.margin.exits.len().is_multiple_of(2) => "slip-graze",
             Place::Minimum { .. } => "stick-graze",
         };
         assert_eq!(boundary["kind"], kind, "κ = {kappa}, ψ = {psi}");
@@ -176,23 +174,4 @@ fn top(kappa: f64) -> f64 {
     let cosine = (1.0 - low * low).sqrt();
     let graze = [1.0, -1.0].map(|sign| 1.0 - sign * cosine * (1.0 - b * low.powf(0.4)));
     graze.into_iter().fold(2.0, f64::max)
-}
-
-#[test]
-fn with_damping_regions_are_those_of_free_runs() {
-    let family = Collisions { damping: 0.1 }.family();
-    let network = trace(&family, &window(), &TraceOptions::default()).expect("an atlas");
-    let plane = Subdivision::new(network.window, network.curves, network.vertices, 1e-9)
-        .expect("a subdivision");
-    assert!(plane.findings().is_empty(), "{:?}", plane.findings());
-    let mut random = fastrand::Rng::with_seed(2);
-    for _ in 0..10_000 {
-        let Window { low, high } = window();
-        let part = Point::new(random.f64(), random.f64());
-        let point = low + (high - low).component_mul(&part);
-        if let Location::Region(region) = plane.locate(&point) {
-            let found = family.label(&point).expect("a run");
-            assert_eq!(plane.regions()[region].label, Some(found), "{point}");
-        }
-    }
 }

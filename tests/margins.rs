@@ -50,7 +50,7 @@ fn boundaries_are_the_zeros_of_margins() {
         let which = &nearest.margin;
         let kind = match which.place {
             Place::End => "end-of-contact",
-            Place::Minimum { .. } if which.exits.len() % 2 == 0 => "slip-graze",
+            Place::Minimum { .. } if which.exits.len().is_multiple_of(2) => "slip-graze",
             Place::Minimum { .. } => "stick-graze",
         };
         assert_eq!(boundary["kind"], kind, "κ = {kappa}, ψ = {psi}");

@@ -46,13 +46,12 @@ pub const GAP: usize = 6;
 /// rate/c², in the first step of a stick phase.
 pub const RATE: usize = 7;
 
+/// Guard of the end of contact.
+pub const END: usize = 0;
 /// Guard of the switch on the side at hand.
-pub const SAME_SIDE: usize = 0;
+pub const SAME_SIDE: usize = 1;
 /// Guard of the switch to slip on the other side.
-pub const OTHER_SIDE: usize = 1;
-/// Guard of the end of contact; the last one, since of guards that fire together the first decides: with damping the limit ends at
-/// zero, and a spring that stands there slips before.
-pub const END: usize = 2;
+pub const OTHER_SIDE: usize = 2;
 
 /// A phase of the contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -309,12 +308,12 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
         let leave = Guard::new(Direction::Below);
         match (phase.regime, phase.progress) {
             // Without damping the contact starts at u = 0.
-            (Regime::Slip, Progress::Touched) => [leave, Guard::OFF, end.from_zero(1)],
-            (Regime::Slip, _) => [leave, Guard::OFF, end],
+            (Regime::Slip, Progress::Touched) => [end.from_zero(1), leave, Guard::OFF],
+            (Regime::Slip, _) => [end, leave, Guard::OFF],
             // With damping both limits and the spring start from 0.
-            (Regime::Stick, Progress::Touched) => [leave.from_zero(1), leave.from_zero(1), end],
-            (Regime::Stick, Progress::Switched) => [leave.from_zero(2), leave, end],
-            (Regime::Stick, Progress::Settled) => [leave, leave, end],
+            (Regime::Stick, Progress::Touched) => [end, leave.from_zero(1), leave.from_zero(1)],
+            (Regime::Stick, Progress::Switched) => [end, leave.from_zero(2), leave],
+            (Regime::Stick, Progress::Settled) => [end, leave, leave],
         }
     }
 
@@ -324,12 +323,12 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
         let (u, v) = (y[U], y[V]);
         let end = if a > 0.0 { u * u + a * v } else { u };
         match phase.regime {
-            Regime::Slip => [self.slip_guard(phase.side, y), 1.0, end],
+            Regime::Slip => [end, self.slip_guard(phase.side, y), 1.0],
             Regime::Stick => {
                 let force = u * (u * u + a * v);
                 let pull = phase.side.sign() * (self.spring_force * y[SPRING]);
                 let gap = if phase.progress == Progress::Settled { force - pull } else { y[GAP] };
-                [gap, force + pull, end]
+                [end, gap, force + pull]
             }
         }
     }
@@ -353,7 +352,7 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
                 } else {
                     pull_rate - 1.5 * (v * v + u * dv)
                 };
-                [leave, 0.0, end]
+                [end, leave, 0.0]
             }
             Regime::Stick => {
                 let shared = if a > 0.0 { 1.0 } else { u };
@@ -365,7 +364,7 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
                 } else {
                     self.scale * y[RATE] / shared
                 };
-                [gap, force + pull, end]
+                [end, gap, force + pull]
             }
         }
     }

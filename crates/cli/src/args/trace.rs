@@ -42,8 +42,8 @@ pub struct TraceArguments {
     #[arg(value_parser = |text: &str| Parameter::Damping.parse(text))]
     pub damping: Option<f64>,
 
-    /// Accuracy of boundaries in ψ, between their points too; 1e-11·(1 + HI) of ψ to 1e-6
-    /// [default: 1e-10·(1 + HI)]
+    /// Accuracy of boundaries in ψ, between their points too; with HI of ψ, from 1e-11·(1 + HI) to
+    /// 1e-9·(1 + HI), less in narrow windows [default: 1e-10·(1 + HI)]
     #[arg(long, value_name = "T", help_heading = "Collisions", allow_hyphen_values = true)]
     #[arg(value_parser = number::parse)]
     pub tolerance: Option<f64>,

@@ -74,7 +74,7 @@ pub enum Why {
 #[derive(Debug, Serialize, Deserialize)]
 pub struct VertexFields {
     pub id: usize,
-    pub kind: Corner,
+    pub kind: Meeting,
     pub kappa: f64,
     pub psi: f64,
     /// The boundaries that end there.
@@ -84,7 +84,7 @@ pub struct VertexFields {
 /// What a vertex is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Corner {
+pub enum Meeting {
     WindowEdge,
     WindowCorner,
     /// Boundaries cross or touch.
@@ -110,8 +110,8 @@ impl Document {
     /// `atlas` as it is to be written.
     pub fn new(atlas: &Atlas, verification: Report) -> Self {
         let Atlas { frame, tolerance, map, .. } = atlas;
-        let corners: Vec<Corner> =
-            map.vertices().iter().map(|vertex| Corner::from(vertex.kind)).collect();
+        let corners: Vec<Meeting> =
+            map.vertices().iter().map(|vertex| Meeting::from(vertex.kind)).collect();
         let mut ending = vec![Vec::new(); corners.len()];
         for (id, curve) in map.curves().iter().enumerate() {
             for vertex in curve.ends.into_iter().flatten() {
@@ -160,12 +160,12 @@ impl Document {
 }
 
 impl BoundaryFields {
-    fn new(atlas: &Atlas, id: usize, curve: &Curve<String, Kind>, corners: &[Corner]) -> Self {
+    fn new(atlas: &Atlas, id: usize, curve: &Curve<String, Kind>, corners: &[Meeting]) -> Self {
         let [below, above] = in_order(&curve.nodes, curve.sides.each_ref());
         let why = |end: usize| match curve.ends.map(|ends| corners[ends[end]]) {
             None => Why::Closed,
-            Some(Corner::WindowEdge | Corner::WindowCorner) => Why::Window,
-            Some(Corner::Crossing | Corner::Degenerate) => Why::Vertex,
+            Some(Meeting::WindowEdge | Meeting::WindowCorner) => Why::Window,
+            Some(Meeting::Crossing | Meeting::Degenerate) => Why::Vertex,
         };
         let point = |node: &Node| atlas.frame.snapped(scaled(&node.point));
         Self {
@@ -188,7 +188,7 @@ impl Switching {
     }
 }
 
-impl From<VertexKind> for Corner {
+impl From<VertexKind> for Meeting {
     fn from(kind: VertexKind) -> Self {
         match kind {
             VertexKind::WindowEdge => Self::WindowEdge,
@@ -199,13 +199,13 @@ impl From<VertexKind> for Corner {
     }
 }
 
-impl From<Corner> for VertexKind {
-    fn from(corner: Corner) -> Self {
+impl From<Meeting> for VertexKind {
+    fn from(corner: Meeting) -> Self {
         match corner {
-            Corner::WindowEdge => Self::WindowEdge,
-            Corner::WindowCorner => Self::WindowCorner,
-            Corner::Crossing => Self::Crossing,
-            Corner::Degenerate => Self::Degenerate,
+            Meeting::WindowEdge => Self::WindowEdge,
+            Meeting::WindowCorner => Self::WindowCorner,
+            Meeting::Crossing => Self::Crossing,
+            Meeting::Degenerate => Self::Degenerate,
         }
     }
 }

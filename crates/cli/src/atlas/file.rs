@@ -45,7 +45,7 @@ impl Atlas {
         if !(tolerance > 0.0 && tolerance <= 1e-6) {
             return Err(format!("tolerance = {tolerance:?}: accepted is above 0 to 1e-6"));
         }
-        frame.require_wide(tolerance).map_err(|reason| format!("window: {reason}"))?;
+        frame.require_wide().map_err(|reason| format!("window: {reason}"))?;
         let curves = boundaries
             .iter()
             .enumerate()
@@ -102,7 +102,7 @@ fn frame(window: &WindowFields) -> Result<Frame, String> {
         }
         Err(format!("window.{name} = [{low:?}, {high:?}]: accepted is [LO, HI] with 0 < LO < HI"))
     };
-    if !(window.damping >= 0.0) {
+    if window.damping < 0.0 {
         return Err(format!("window.damping = {:?}: accepted is 0 or above", window.damping));
     }
     let (kappa, psi) = (range("kappa", window.kappa)?, range("psi", window.psi)?);
@@ -134,13 +134,15 @@ fn curve(index: usize, boundary: &BoundaryFields) -> Result<Curve<String, Kind>,
 /// The itinerary, whose length must fit the count.
 fn checked(switching: Switching, place: impl Fn() -> String) -> Result<String, String> {
     let Switching { switch_count: count, itinerary } = switching;
-    let phases = !itinerary.is_empty() && itinerary.chars().all(|phase| "+o-".contains(phase));
-    if phases && switch_count(&itinerary) == count {
+    let phases = itinerary.as_bytes();
+    let known = !phases.is_empty() && phases.iter().all(|phase| b"+o-".contains(phase));
+    let alternating = phases.windows(2).all(|pair| (pair[0] == b'o') != (pair[1] == b'o'));
+    if known && alternating && switch_count(&itinerary) == count {
         return Ok(itinerary);
     }
     Err(format!(
-        "{}: switch_count {count} and itinerary {itinerary:?} do not fit; accepted is one of +, o \
-         and - for each phase, one more than there are switches",
+        "{}: switch_count {count} and itinerary {itinerary:?} do not fit; accepted are o in turns \
+         with + or -, one for each phase, one more than there are switches",
         place()
     ))
 }

@@ -53,26 +53,33 @@ impl Frame {
         tolerance / (1.0 + self.psi.high)
     }
 
-    /// Distance within which the side of a curve is left open: ten times its error, for vertices are known less well.
+    /// Distance within which the side of a curve is left open: ten times its error, and where vertices are known less well.
     pub fn resolution(&self, tolerance: f64) -> f64 {
-        10.0 * self.interpolation(tolerance)
+        (10.0 * self.interpolation(tolerance)).max(1e-9)
     }
 
-    /// Refuses a window in which `tolerance` is not small.
+    /// The finest, the usual and the coarsest accuracy in ψ. The tracer tells curves apart by 1e-8 of the window's shorter side,
+    /// and has margins to some 1e-13.
+    pub fn tolerances(&self) -> [f64; 3] {
+        let shorter = self.window().extent().min().min(1.0);
+        [1e-11, (1e-10 * shorter).max(1e-11), 1e-9 * shorter]
+            .map(|part| part * (1.0 + self.psi.high))
+    }
+
+    /// Refuses a window that is too narrow for the accuracy of its boundaries.
     ///
     /// # Errors
     /// What is wrong and what is accepted.
-    pub fn require_wide(&self, tolerance: f64) -> Result<(), String> {
-        let resolution = self.resolution(tolerance);
+    pub fn require_wide(&self) -> Result<(), String> {
+        const NARROWEST: f64 = 0.01;
         let extent = self.window().extent();
-        let (x, y) = (extent.x, extent.y);
-        let narrowest = 1e3 * resolution;
-        if x > narrowest && y > narrowest {
+        if extent.min() >= NARROWEST {
             return Ok(());
         }
         Err(format!(
-            "the window is {x:e} wide in ln(kappa) and {y:e} high in ln(1 + psi), too narrow for a \
-             tolerance of {tolerance:e}; accepted is above {narrowest:e}"
+            "the window is too narrow: {:e} in ln(kappa) by {:e} in ln(1 + psi); accepted is from \
+             {NARROWEST} each",
+            extent.x, extent.y
         ))
     }
 

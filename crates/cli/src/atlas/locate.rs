@@ -46,9 +46,8 @@ pub fn run(plan: &LocatePlan) -> Result<(), Failure> {
             rows += 1;
             if let Err(reason) = located.region {
                 failed += 1;
-                first.get_or_insert_with(|| match reason.starts_with("line ") {
-                    true => reason,
-                    false => format!("row {rows}: {reason}"),
+                first.get_or_insert_with(|| {
+                    if row.contact.is_err() { reason } else { format!("row {rows}: {reason}") }
                 });
             }
         }

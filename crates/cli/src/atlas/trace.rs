@@ -9,7 +9,7 @@ use stickslip_model::regularized::{GUARDS, Phase, Regularized, STATE};
 use stickslip_solver::{Dop853, Margin, Options, Start};
 use stickslip_tracer::{
     Curve, HybridFamily, Network, Node, Point, Problem, Subdivision, TraceError, TraceOptions,
-    Vertex, trace,
+    Vertex, VertexKind, trace,
 };
 
 use super::boundary::{Kind, itinerary};
@@ -138,12 +138,19 @@ fn map(
             .collect(),
         ends: curve.ends,
     });
-    let vertices = network.vertices.into_iter().map(|vertex| Vertex {
-        point: written(&vertex.point),
-        kind: vertex.kind,
-        margins: Vec::new(),
+    let curves: Vec<_> = curves.collect();
+    let vertices = network.vertices.into_iter().enumerate().map(|(index, vertex)| {
+        let ends = curves.iter().filter_map(|curve| curve.ends).flatten();
+        let meeting = ends.filter(|&end| end == index).count();
+        let kind = match vertex.kind {
+            // The tracer names what it finds first; where others go on, boundaries meet.
+            VertexKind::Degenerate if meeting > 2 => VertexKind::Crossing,
+            kind => kind,
+        };
+        Vertex { point: written(&vertex.point), kind, margins: Vec::new() }
     });
+    let vertices: Vec<_> = vertices.collect();
     let resolution = frame.resolution(tolerance);
-    Subdivision::new(frame.window(), curves.collect(), vertices.collect(), resolution)
+    Subdivision::new(frame.window(), curves, vertices, resolution)
         .map_err(|error| Failure::Trace(error.to_string()))
 }

@@ -32,24 +32,22 @@ impl TracePlan {
     /// [`Failure::Usage`] says which options do not go together.
     pub fn new(arguments: &TraceArguments) -> Result<Self, Failure> {
         let frame = frame(arguments)?;
-        let finest = 1.0 + frame.psi.high;
-        let tolerance = arguments.tolerance.unwrap_or(1e-10 * finest);
-        if !(1e-11 * finest..=1e-6).contains(&tolerance) {
+        frame.require_wide().map_err(Failure::Usage)?;
+        let [finest, usual, coarsest] = frame.tolerances();
+        let tolerance = arguments.tolerance.unwrap_or(usual);
+        if !(finest..=coarsest).contains(&tolerance) {
             return Err(Failure::Usage(format!(
-                "--tolerance {tolerance:?} is out of range; accepted is {:e} (1e-11·(1 + HI) of \
-                 psi) to 1e-6",
-                1e-11 * finest
+                "--tolerance {tolerance:?} is out of range; accepted is {finest:e} to {coarsest:e} \
+                 in this window"
             )));
         }
-        let plan = Self {
+        Ok(Self {
             frame,
             tolerance,
             out: arguments.out.clone(),
             plot: arguments.plot.clone(),
             threads: arguments.threads.map(usize::from),
-        };
-        plan.frame.require_wide(tolerance).map_err(Failure::Usage)?;
-        Ok(plan)
+        })
     }
 }
 
