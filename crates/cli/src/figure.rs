@@ -6,13 +6,14 @@
 
 pub mod atlas;
 mod bitmap;
+pub mod chart;
 pub mod collision;
 mod label;
 pub mod map;
-mod panel;
+pub mod panel;
 mod raster;
-mod style;
-mod svg;
+pub mod style;
+pub mod svg;
 mod text;
 
 use std::io::{self, Write};

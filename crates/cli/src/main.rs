@@ -25,6 +25,7 @@ mod plan;
 mod range;
 mod recipe;
 mod rows;
+mod study;
 mod table;
 
 use std::process::ExitCode;

@@ -1,7 +1,7 @@
 //! The picture of an atlas: boundaries by kind, and the number of switches in each region.
 
 use super::label::{self, Cells};
-use super::panel::{Edge, Panel};
+use super::panel::{Edge, Panel, Scale};
 use super::style::{BOUNDARY_END, BOUNDARY_SLIP, BOUNDARY_STICK, FRAME, INK, SMALL, TEXT, TITLE};
 use super::svg::{Anchor, Rectangle, Stroke, Svg, Words};
 
@@ -51,8 +51,9 @@ pub fn draw(atlas: &Atlas<'_>, region: impl Fn((f64, f64)) -> Option<usize>) -> 
     let mut svg = Svg::new(WIDTH, HEIGHT, atlas.title);
     svg.words(TITLE_AT, Words::new(atlas.title, TITLE, Anchor::Start));
     legend(&mut svg);
-    let logarithmic = atlas.kappa.1 > 10.0 * atlas.kappa.0;
-    let panel = Panel { frame: FRAME_AT, x: atlas.kappa, y: atlas.psi, logarithmic };
+    let wide = atlas.kappa.1 > 10.0 * atlas.kappa.0;
+    let scales = (if wide { Scale::Logarithmic } else { Scale::Linear }, Scale::Linear);
+    let panel = Panel { frame: FRAME_AT, x: atlas.kappa, y: atlas.psi, scales };
     for line in [Line::EndOfContact, Line::StickGraze, Line::SlipGraze] {
         svg.begin_group(line.name());
         for (_, points) in atlas.boundaries.iter().filter(|boundary| boundary.0 == line) {

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use stickslip_model::{Collision, History, PhaseHistory, Regime, Side, Snapshot};
 
-use super::panel::{Edge, Panel};
+use super::panel::{Edge, LINEAR, Panel};
 use super::style::{
     FRAME, NORMAL, NORMAL_MIRRORED, RULE, SLIP_NEGATIVE, SLIP_POSITIVE, STICK, TANGENTIAL, TEXT,
     TITLE,
@@ -40,8 +40,8 @@ pub fn draw(collision: &Collision, history: &History) -> Svg {
     let velocity = samples.iter().fold((0.0_f64, 0.0_f64), |(low, high), sample| {
         (low.min(sample.velocity), high.max(sample.velocity))
     });
-    let forces = Panel { frame: FORCES, x: time, y: padded((-force, force)), logarithmic: false };
-    let velocities = Panel { frame: VELOCITY, x: time, y: padded(velocity), logarithmic: false };
+    let forces = Panel { frame: FORCES, x: time, y: padded((-force, force)), scales: LINEAR };
+    let velocities = Panel { frame: VELOCITY, x: time, y: padded(velocity), scales: LINEAR };
     for panel in [&forces, &velocities] {
         background(&mut svg, panel, history);
     }

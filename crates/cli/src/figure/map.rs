@@ -5,7 +5,7 @@ use std::io;
 
 use super::bitmap::Bitmap;
 use super::label::{self, Cells};
-use super::panel::{Edge, Panel};
+use super::panel::{Edge, LINEAR, Panel};
 use super::style::{self, SMALL, TEXT, TITLE};
 use super::svg::{Anchor, Rectangle, Svg, Words};
 
@@ -88,7 +88,7 @@ fn restitution(svg: &mut Svg, map: &Map<'_>) -> io::Result<()> {
     svg.image(panel.frame, &map.bitmap(|cell| shade(map.eps_t[cell]), palette).base64()?);
 
     let scale =
-        Panel { frame: beside(&panel), x: (0.0, 1.0), y: (-largest, largest), logarithmic: false };
+        Panel { frame: beside(&panel), x: (0.0, 1.0), y: (-largest, largest), scales: LINEAR };
     svg.image(scale.frame, &key.base64()?);
     scale.border(svg);
     scale.ticks(svg, Edge::Right, true);
@@ -137,7 +137,7 @@ fn switches(svg: &mut Svg, map: &Map<'_>) -> io::Result<()> {
         frame: beside(&panel),
         x: (0.0, 1.0),
         y: (0.0, counts.len().max(1) as f64),
-        logarithmic: false,
+        scales: LINEAR,
     };
     // Each colour down to the bottom, under those that follow: no seams.
     for (rank, count) in counts.iter().enumerate().rev() {
@@ -158,7 +158,7 @@ fn switches(svg: &mut Svg, map: &Map<'_>) -> io::Result<()> {
 
 impl Map<'_> {
     fn panel(&self, frame: Rectangle) -> Panel {
-        Panel { frame, x: self.horizontal.range, y: self.vertical.range, logarithmic: false }
+        Panel { frame, x: self.horizontal.range, y: self.vertical.range, scales: LINEAR }
     }
 
     /// The cells as pixels, the last row on top.

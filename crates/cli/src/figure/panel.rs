@@ -13,8 +13,36 @@ pub struct Panel {
     pub x: (f64, f64),
     /// Values at the lower and the upper edge.
     pub y: (f64, f64),
-    /// Whether x is logarithmic; then both its values are above 0.
-    pub logarithmic: bool,
+    /// How values lie along the width and along the height.
+    pub scales: (Scale, Scale),
+}
+
+/// How values lie along an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// Equal differences are equally far apart.
+    Linear,
+    /// Equal ratios are; all values are above 0.
+    Logarithmic,
+}
+
+impl Scale {
+    /// What part of the way from `low` to `high` leads to `value`.
+    fn part(self, value: f64, (low, high): (f64, f64)) -> f64 {
+        let part = |value: f64, low: f64, high: f64| (value - low) / (high - low);
+        match self {
+            Self::Linear => part(value, low, high),
+            Self::Logarithmic => part(value.ln(), low.ln(), high.ln()),
+        }
+    }
+
+    /// The value to which a part of the way leads: the inverse of [`Self::part`].
+    fn value(self, part: f64, (low, high): (f64, f64)) -> f64 {
+        match self {
+            Self::Linear => low + part * (high - low),
+            Self::Logarithmic => low * (high / low).powf(part),
+        }
+    }
 }
 
 /// An edge of a panel that carries an axis.
@@ -28,34 +56,25 @@ pub enum Edge {
     Bottom,
 }
 
+/// Both axes linear.
+pub const LINEAR: (Scale, Scale) = (Scale::Linear, Scale::Linear);
+
 /// Length of a tick.
 const TICK: f64 = 4.0;
 
 impl Panel {
     /// The place of a point in the picture.
     pub fn place(&self, (x, y): (f64, f64)) -> (f64, f64) {
-        let part = |value: f64, (low, high): (f64, f64)| (value - low) / (high - low);
-        let along = if self.logarithmic {
-            part(x.ln(), (self.x.0.ln(), self.x.1.ln()))
-        } else {
-            part(x, self.x)
-        };
-        (
-            self.frame.left + along * self.frame.width,
-            self.frame.bottom() - part(y, self.y) * self.frame.height,
-        )
+        let along = self.scales.0.part(x, self.x);
+        let up = self.scales.1.part(y, self.y);
+        (self.frame.left + along * self.frame.width, self.frame.bottom() - up * self.frame.height)
     }
 
     /// The point at a place in the picture: the inverse of [`Self::place`].
     pub fn value(&self, (left, top): (f64, f64)) -> (f64, f64) {
         let along = (left - self.frame.left) / self.frame.width;
         let up = (self.frame.bottom() - top) / self.frame.height;
-        let x = if self.logarithmic {
-            self.x.0 * (self.x.1 / self.x.0).powf(along)
-        } else {
-            self.x.0 + along * (self.x.1 - self.x.0)
-        };
-        (x, self.y.0 + up * (self.y.1 - self.y.0))
+        (self.scales.0.value(along, self.x), self.scales.1.value(up, self.y))
     }
 
     /// Fills the panel's height from one value of x to another.
@@ -88,14 +107,13 @@ impl Panel {
     /// Ticks with their values along an edge, in units of [`Self::power`]; without `labels` the ticks alone.
     pub fn ticks(&self, svg: &mut Svg, edge: Edge, labels: bool) {
         let frame = &self.frame;
-        let (length, apart) = match edge {
-            Edge::Bottom => (frame.width, 70.0),
-            Edge::Left | Edge::Right => (frame.height, 30.0),
+        let (length, apart, closest) = match edge {
+            Edge::Bottom => (frame.width, 70.0, 40.0),
+            Edge::Left | Edge::Right => (frame.height, 30.0, 20.0),
         };
-        let marks = if self.is_logarithmic(edge) {
-            decade_ticks(self.x, length / 40.0)
-        } else {
-            ticks(self.range(edge), length / apart)
+        let marks = match self.scale(edge) {
+            Scale::Linear => ticks(self.range(edge), length / apart),
+            Scale::Logarithmic => decade_ticks(self.range(edge), length / closest),
         };
         for (value, label) in marks {
             // Of the other axis, any value will do.
@@ -127,10 +145,9 @@ impl Panel {
     /// The power of ten in units of which the ticks of an edge are labelled, to follow the name of what they show; empty
     /// where numbers need none.
     pub fn power(&self, edge: Edge) -> String {
-        match exponent(self.range(edge)) {
-            _ if self.is_logarithmic(edge) => String::new(),
-            0 => String::new(),
-            exponent => text::minus(&format!(" (×10^{{{exponent}}})")),
+        match (self.scale(edge), exponent(self.range(edge))) {
+            (Scale::Logarithmic, _) | (_, 0) => String::new(),
+            (Scale::Linear, exponent) => text::minus(&format!(" (×10^{{{exponent}}})")),
         }
     }
 
@@ -147,8 +164,11 @@ impl Panel {
         }
     }
 
-    fn is_logarithmic(&self, edge: Edge) -> bool {
-        self.logarithmic && edge == Edge::Bottom
+    fn scale(&self, edge: Edge) -> Scale {
+        match edge {
+            Edge::Bottom => self.scales.0,
+            Edge::Left | Edge::Right => self.scales.1,
+        }
     }
 
     fn range(&self, edge: Edge) -> (f64, f64) {
@@ -235,13 +255,14 @@ mod tests {
     #[test]
     fn places_and_values_are_inverse() {
         let frame = Rectangle { left: 10.0, top: 20.0, width: 300.0, height: 100.0 };
-        for logarithmic in [false, true] {
-            let panel = Panel { frame, x: (0.5, 200.0), y: (-1.0, 3.0), logarithmic };
+        for scale in [Scale::Linear, Scale::Logarithmic] {
+            let panel = Panel { frame, x: (0.5, 200.0), y: (0.1, 10.0), scales: (scale, scale) };
             let (x, y) = panel.value(panel.place((7.0, 0.3)));
             assert!((x - 7.0).abs() < 1e-12 && (y - 0.3).abs() < 1e-14);
-            let (left, _) = panel.place((10.0, 0.0));
-            let middle = frame.left + 0.5 * frame.width;
-            assert_eq!((left - middle).abs() < 1e-9, logarithmic);
+            let (left, top) = panel.place((10.0, 1.0));
+            let middle = (frame.left + 0.5 * frame.width, frame.top + 0.5 * frame.height);
+            assert_eq!((left - middle.0).abs() < 1e-9, scale == Scale::Logarithmic);
+            assert_eq!((top - middle.1).abs() < 1e-9, scale == Scale::Logarithmic);
         }
     }
 
@@ -254,7 +275,7 @@ mod tests {
             ((0.0, 2e-300), " (×10^{−300})", &["0", "0.5", "1.0", "1.5", "2.0"]),
             ((0.0, 99999.0), "", &["0", "50000"]),
         ] {
-            let panel = Panel { frame, x: range, y: range, logarithmic: false };
+            let panel = Panel { frame, x: range, y: range, scales: LINEAR };
             assert_eq!(panel.power(Edge::Left), exponent);
             let count =
                 if shown.len() > 3 { 4.0 } else { 3.0 - f64::from(u8::from(shown.len() == 2)) };
@@ -267,7 +288,7 @@ mod tests {
     #[test]
     fn points_have_places() {
         let frame = Rectangle { left: 10.0, top: 20.0, width: 100.0, height: 50.0 };
-        let panel = Panel { frame, x: (0.0, 2.0), y: (-1.0, 1.0), logarithmic: false };
+        let panel = Panel { frame, x: (0.0, 2.0), y: (-1.0, 1.0), scales: LINEAR };
         assert_eq!(panel.place((0.0, -1.0)), (10.0, 70.0));
         assert_eq!(panel.place((2.0, 1.0)), (110.0, 20.0));
     }

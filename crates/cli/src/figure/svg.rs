@@ -150,6 +150,18 @@ impl Svg {
         self.element(format_args!(r#"<rect {} fill="none" {stroke}/>"#, Place(at)));
     }
 
+    /// A filled circle.
+    pub fn disc(&mut self, centre: (f64, f64), radius: f64, colour: &str) {
+        let [x, y, r] = [centre.0, centre.1, radius].map(Px);
+        self.element(format_args!(r#"<circle cx="{x}" cy="{y}" r="{r}" fill="{colour}"/>"#));
+    }
+
+    /// A circle.
+    pub fn ring(&mut self, centre: (f64, f64), radius: f64, stroke: Stroke) {
+        let [x, y, r] = [centre.0, centre.1, radius].map(Px);
+        self.element(format_args!(r#"<circle cx="{x}" cy="{y}" r="{r}" fill="white" {stroke}/>"#));
+    }
+
     /// A straight line.
     pub fn line(&mut self, (x1, y1): (f64, f64), (x2, y2): (f64, f64), stroke: Stroke) {
         let [x1, y1, x2, y2] = [x1, y1, x2, y2].map(Px);

@@ -1,0 +1,139 @@
+//! What a study hands out: numbers for programs, tables for spreadsheets, pictures and sentences for people.
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::error::Failure;
+use crate::figure::Svg;
+use crate::output::OutputFile;
+
+/// The result of a study.
+#[derive(Debug)]
+pub struct Study {
+    /// The stem of its JSON file.
+    pub name: &'static str,
+    /// What it is about.
+    pub title: &'static str,
+    /// What was found, a sentence with its numbers each.
+    pub findings: Vec<String>,
+    /// All numbers.
+    pub json: Value,
+    /// The same as tables.
+    pub tables: Vec<Table>,
+    /// The same as pictures.
+    pub pictures: Vec<Picture>,
+}
+
+/// Rows of values.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// The stem of its CSV file.
+    pub name: &'static str,
+    /// What it shows.
+    pub title: String,
+    /// Its columns.
+    pub columns: Vec<Column>,
+    /// Its rows, with a value for each column.
+    pub rows: Vec<Vec<Cell>>,
+}
+
+/// A column of a table.
+#[derive(Clone, Copy, Debug)]
+pub struct Column {
+    /// Its name in the header.
+    pub name: &'static str,
+    /// What it holds, with the unit.
+    pub meaning: &'static str,
+}
+
+/// A value of a table.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cell {
+    /// A number; NaN is written as nothing.
+    Number(f64),
+    /// A count.
+    Count(u64),
+    /// Words.
+    Text(String),
+}
+
+/// A picture with what a reader needs to understand it.
+#[derive(Debug)]
+pub struct Picture {
+    /// The stem of its file.
+    pub name: &'static str,
+    /// What it shows.
+    pub caption: String,
+    /// It.
+    pub svg: Svg,
+}
+
+impl Cell {
+    /// As it stands in a file: numbers in the shortest form that reads back exactly.
+    pub fn text(&self) -> String {
+        match self {
+            Self::Number(value) if value.is_nan() => String::new(),
+            Self::Number(value) => format!("{value:?}"),
+            Self::Count(count) => count.to_string(),
+            Self::Text(text) => text.clone(),
+        }
+    }
+}
+
+impl Study {
+    /// Writes all files into `directory`, each at once or not at all.
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn write(&self, directory: &Path) -> Result<(), Failure> {
+        for table in &self.tables {
+            write(&directory.join(format!("{}.csv", table.name)), &table.csv())?;
+        }
+        for picture in &self.pictures {
+            let path = directory.join(format!("{}.svg", picture.name));
+            write(&path, picture.svg.document().as_bytes())?;
+        }
+        let json = format!("{:#}\n", self.json);
+        write(&directory.join(format!("{}.json", self.name)), json.as_bytes())
+    }
+}
+
+impl Table {
+    /// The table as a CSV file.
+    fn csv(&self) -> Vec<u8> {
+        let header = self.columns.iter().map(|column| column.name.to_owned()).collect();
+        let rows = self.rows.iter().map(|row| row.iter().map(Cell::text).collect());
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        for row in std::iter::once::<Vec<String>>(header).chain(rows) {
+            // Writing to memory cannot fail, and a row of another length than the header's shows in the file.
+            let _ = writer.write_record(&row);
+        }
+        writer.into_inner().unwrap_or_default()
+    }
+}
+
+/// Makes sure that files can be written into `directory`, before there is work to lose; creates it where it is missing.
+///
+/// # Errors
+/// It cannot be created or written.
+pub fn prepare(directory: &Path) -> Result<(), Failure> {
+    let failure = |error| Failure::output(directory, error);
+    fs::create_dir_all(directory).map_err(failure)?;
+    OutputFile::create(&directory.join("probe")).map(drop).map_err(failure)
+}
+
+/// Writes a file at once or not at all.
+///
+/// # Errors
+/// It cannot be written.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    let written = OutputFile::create(path).and_then(|mut file| {
+        file.write_all(bytes)?;
+        file.store()?;
+        file.publish()
+    });
+    written.map_err(|error| Failure::output(path, error))
+}
