@@ -9,6 +9,7 @@
 //! Source of the law: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008).
 
 mod account;
+mod boundaries;
 mod onset;
 
 mod precise;
@@ -20,6 +21,7 @@ mod trajectory;
 
 use crate::contact::{Collision, Contact, Regime, Side, Switch};
 use account::Account;
+pub use boundaries::{small_impact_boundary, top_boundary};
 use release::Release;
 use slide::{Slide, Sliding};
 use swing::Swing;

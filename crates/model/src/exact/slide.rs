@@ -39,7 +39,7 @@ pub struct Crest {
     /// Its root coordinate, in either half.
     pub root: f64,
     /// h there.
-    height: f64,
+    pub height: f64,
 }
 
 /// The start of a slip phase, in the orientation of its side.
