@@ -1,13 +1,15 @@
 //! Pictures: what all of them have in common.
 //!
 //! A picture is drawn as SVG; a PNG is that SVG rasterised, so that both look the same. Start reading in
-//! [`panel`] (axes and what is drawn against them) and [`collision`] (a picture); then [`svg`] and [`text`] (how shapes and
+//! [`panel`] (axes and what is drawn against them), [`course`] and [`collision`] (a picture); then [`svg`] and [`text`] (how shapes and
 //! words are written), [`style`] (colours and sizes), [`bitmap`] and [`label`] (maps), [`raster`] (PNG).
 
 pub mod atlas;
 mod bitmap;
 pub mod chart;
 pub mod collision;
+pub mod course;
+pub mod gallery;
 mod label;
 pub mod map;
 pub mod panel;

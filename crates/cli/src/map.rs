@@ -1,34 +1,39 @@
 //! A map of collisions: computed tile by tile, kept tile by tile, and put together at the end.
 //!
-//! Start reading here; then, in this order: `plane` (which collision belongs to which cell), `tile`
-//! and `tiles` (what is kept, and where), `npz` and `csv` (the finished map), `thumbnail` and
-//! `picture` (some of it, drawn).
+//! Start reading here; then, in this order: `plane` (which collision belongs to which cell), `tile`,
+//! `tiles` and `results` (what is kept, and where), `npz` and `csv` (the finished map), `thumbnail`
+//! and `picture` (some of it, drawn).
 
 mod csv;
-mod npz;
-mod picture;
+pub mod npz;
+pub mod picture;
 mod plane;
+mod results;
 mod thumbnail;
 mod tile;
 mod tiles;
 
 use std::fmt;
 use std::io::{self, Write};
+use std::ops::Range;
+use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 use stickslip_model::Switch;
 
-use crate::engine::require_finite;
+use crate::engine::{Engine, require_finite};
 use crate::error::Failure;
 use crate::figure::{Target, Unpublished};
 use crate::output::OutputFile;
 use crate::plan::{MapFormat, MapPlan};
 
 pub use plane::{Axis, Coordinates, Plane, Quantity};
+use results::Results;
 use thumbnail::Thumbnail;
-use tile::{NO_COUNT, NO_EPS_T, Tile};
+pub use tile::Tile;
+use tile::{NO_COUNT, NO_EPS_T};
 use tiles::{Found, Task, Tiles};
 
 /// Most columns and rows of the picture.
@@ -53,7 +58,8 @@ pub fn run(plan: &MapPlan) -> Result<(), Failure> {
     report(&tiles, &found);
     let bar = progress_bar(&tiles, &found);
     for index in found.missing {
-        let tile = pool.install(|| compute(plan, tiles.task(), index));
+        let points = tiles.task().range(index);
+        let tile = pool.install(|| compute(&plan.plane, &plan.engine, points));
         tiles.keep(index, &tile)?;
         bar.inc(tile.eps_t.len() as u64);
     }
@@ -65,7 +71,7 @@ pub fn run(plan: &MapPlan) -> Result<(), Failure> {
     };
     written.and_then(|()| file.store()).map_err(failed)?;
     let picture = plan.plot.as_ref().map(|target| draw(plan, &tiles, target)).transpose()?;
-    let outcome = outcome(plan, &tiles).map_err(failed)?;
+    let outcome = outcome(&plan.plane, &plan.engine, &plan.out, &tiles).map_err(failed)?;
     // Both are complete before one of them gets its name.
     file.publish().map_err(failed)?;
     if let Some(picture) = picture {
@@ -94,35 +100,40 @@ impl MapPlan {
         );
         Task { description, points: plane.points(), tile_points }
     }
-
-    /// The tangential restitution and the number of switches at a point, with the memory of
-    /// `switches` for their list.
-    ///
-    /// # Errors
-    /// Why there are none.
-    fn point(&self, point: usize, switches: &mut Vec<Switch>) -> Result<(f64, i32), String> {
-        let (column, row) = self.plane.cell(point);
-        let contact = self.plane.contact(column, row).map_err(|e| e.to_string())?;
-        let (collision, _) =
-            self.engine.collide(contact, std::mem::take(switches)).map_err(|e| e.to_string())?;
-        require_finite(&collision).map_err(|e| e.to_string())?;
-        let count = i32::try_from(collision.switches.len()).map_err(|e| e.to_string())?;
-        let eps_t = collision.eps_t();
-        *switches = collision.switches;
-        Ok((eps_t, count))
-    }
 }
 
-/// Computes a tile. Each point depends on itself alone, so that the order of work does not show.
-fn compute(plan: &MapPlan, task: &Task, index: usize) -> Tile {
+/// Computes successive points. Each depends on itself alone, so that the order of work does not show.
+pub fn compute(plane: &Plane, engine: &Engine, points: Range<usize>) -> Tile {
     let mut tile = Tile { eps_t: Vec::new(), switch_count: Vec::new() };
-    task.range(index)
+    points
         .into_par_iter()
-        .map_init(Vec::new, |memory, point| {
-            plan.point(point, memory).unwrap_or((NO_EPS_T, NO_COUNT))
+        .map_init(Vec::new, |memory, index| {
+            point(plane, engine, index, memory).unwrap_or((NO_EPS_T, NO_COUNT))
         })
         .unzip_into_vecs(&mut tile.eps_t, &mut tile.switch_count);
     tile
+}
+
+/// The tangential restitution and the number of switches at a point, with the memory of `switches`
+/// for their list.
+///
+/// # Errors
+/// Why there are none.
+fn point(
+    plane: &Plane,
+    engine: &Engine,
+    index: usize,
+    switches: &mut Vec<Switch>,
+) -> Result<(f64, i32), String> {
+    let (column, row) = plane.cell(index);
+    let contact = plane.contact(column, row).map_err(|e| e.to_string())?;
+    let (collision, _) =
+        engine.collide(contact, std::mem::take(switches)).map_err(|e| e.to_string())?;
+    require_finite(&collision).map_err(|e| e.to_string())?;
+    let count = i32::try_from(collision.switches.len()).map_err(|e| e.to_string())?;
+    let eps_t = collision.eps_t();
+    *switches = collision.switches;
+    Ok((eps_t, count))
 }
 
 /// Writes the picture, but for its name.
@@ -133,10 +144,18 @@ fn draw<'a>(plan: &MapPlan, tiles: &Tiles, target: &'a Target) -> Result<Unpubli
     target.write(&picture)
 }
 
-/// Says how many points could not be computed, if there are any, and why the first.
-fn outcome(plan: &MapPlan, tiles: &Tiles) -> io::Result<Option<Failure>> {
+/// Says how many points of the map at `path` could not be computed, if there are any, and why the first.
+///
+/// # Errors
+/// The results cannot be read.
+pub fn outcome(
+    plane: &Plane,
+    engine: &Engine,
+    path: &Path,
+    results: &impl Results,
+) -> io::Result<Option<Failure>> {
     let (mut failed, mut first) = (0, None);
-    tiles.each(|points, tile| {
+    results.each(|points, tile| {
         for (point, count) in points.zip(&tile.switch_count) {
             if *count == NO_COUNT {
                 failed += 1;
@@ -146,15 +165,14 @@ fn outcome(plan: &MapPlan, tiles: &Tiles) -> io::Result<Option<Failure>> {
         Ok(())
     })?;
     Ok(first.map(|first| {
-        let (column, row) = plan.plane.cell(first);
-        let [kappa, psi] =
-            [Quantity::Kappa, Quantity::Psi].map(|q| plan.plane.value(q, column, row));
-        // Computed once more for its reason, which the tiles do not keep.
-        let reason = plan.point(first, &mut Vec::new()).err().unwrap_or_default();
+        let (column, row) = plane.cell(first);
+        let [kappa, psi] = [Quantity::Kappa, Quantity::Psi].map(|q| plane.value(q, column, row));
+        // Computed once more for its reason, which the results do not keep.
+        let reason = point(plane, engine, first, &mut Vec::new()).err().unwrap_or_default();
         Failure::Points {
             failed,
-            points: plan.plane.points(),
-            path: plan.out.clone(),
+            points: plane.points(),
+            path: path.to_owned(),
             first: format!("kappa = {kappa:?}, psi = {psi:?}: {reason}"),
         }
     }))

@@ -1,11 +1,12 @@
 //! The picture of an atlas.
 
+use stickslip_model::exact;
 use stickslip_tracer::{Cubic, Location, Point, VertexKind};
 
 use super::boundary::Kind;
-use super::frame::{scaled, traced};
+use super::frame::{Frame, scaled, traced};
 use super::{Atlas, switch_count};
-use crate::figure::atlas::{self, Line};
+use crate::figure::atlas::{self, ClosedForms, Line};
 use crate::figure::{Svg, number};
 
 /// Most straight lines for the piece between two points.
@@ -17,24 +18,6 @@ const LINES: f64 = 60.0;
 pub fn draw(atlas: &Atlas) -> Svg {
     let Atlas { frame, map, .. } = atlas;
     let pair = |point: &Point| <(f64, f64)>::from(scaled(point));
-    let extent = map.window().extent();
-    let boundaries = map.curves().iter().map(|curve| {
-        let line = match curve.margin {
-            Kind::EndOfContact => Line::EndOfContact,
-            Kind::StickGraze => Line::StickGraze,
-            Kind::SlipGraze => Line::SlipGraze,
-        };
-        let mut points = vec![pair(&curve.nodes[0].point)];
-        for nodes in curve.nodes.windows(2) {
-            let cubic = Cubic::between(&nodes[0], &nodes[1]);
-            let length = (nodes[1].point - nodes[0].point).component_div(&extent).norm();
-            let lines = (LINES * length).ceil().clamp(1.0, MOST_LINES);
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-            let count = lines as u32;
-            points.extend((1..=count).map(|i| pair(&cubic.at(f64::from(i) / lines))));
-        }
-        (line, points)
-    });
     let vertices = |kind: VertexKind| {
         let of_kind = map.vertices().iter().filter(|vertex| vertex.kind == kind);
         of_kind.map(|vertex| pair(&vertex.point)).collect()
@@ -53,13 +36,52 @@ pub fn draw(atlas: &Atlas) -> Svg {
         title: &title,
         kappa: (frame.kappa.low, frame.kappa.high),
         psi: (frame.psi.low, frame.psi.high),
-        boundaries: boundaries.collect(),
+        boundaries: boundaries(atlas),
         crossings: vertices(VertexKind::Crossing),
         stops: vertices(VertexKind::Degenerate),
         counts: counts.collect(),
+        closed_forms: (frame.damping == 0.0).then(|| closed_forms(frame)),
     };
     atlas::draw(&picture, |(kappa, psi)| match map.locate(&traced([kappa, psi])) {
         Location::Region(region) => Some(region),
         _ => None,
     })
+}
+
+/// The boundaries with points (κ, ψ), dense enough for straight lines between them.
+pub fn boundaries(atlas: &Atlas) -> Vec<(Line, Vec<(f64, f64)>)> {
+    let extent = atlas.map.window().extent();
+    let pair = |point: &Point| <(f64, f64)>::from(scaled(point));
+    let lines = atlas.map.curves().iter().map(|curve| {
+        let line = match curve.margin {
+            Kind::EndOfContact => Line::EndOfContact,
+            Kind::StickGraze => Line::StickGraze,
+            Kind::SlipGraze => Line::SlipGraze,
+        };
+        let mut points = vec![pair(&curve.nodes[0].point)];
+        for nodes in curve.nodes.windows(2) {
+            let cubic = Cubic::between(&nodes[0], &nodes[1]);
+            let length = (nodes[1].point - nodes[0].point).component_div(&extent).norm();
+            let lines = (LINES * length).ceil().clamp(1.0, MOST_LINES);
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+            let count = lines as u32;
+            points.extend((1..=count).map(|i| pair(&cubic.at(f64::from(i) / lines))));
+        }
+        (line, points)
+    });
+    lines.collect()
+}
+
+fn closed_forms(frame: &Frame) -> ClosedForms {
+    /// From farther up, boundaries need not lead to their limits.
+    const SMALL: f64 = 0.05;
+    let limits = (1..)
+        .map(|n| {
+            let line = if n % 2 == 0 { Line::StickGraze } else { Line::EndOfContact };
+            (line, exact::small_impact_boundary(n))
+        })
+        .skip_while(|(_, kappa)| *kappa < frame.kappa.low)
+        .take_while(|(_, kappa)| *kappa <= frame.kappa.high)
+        .filter(|_| frame.psi.low <= SMALL);
+    ClosedForms { top: exact::top_boundary, limits: limits.collect() }
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::io::{BufWriter, Write};
 
-use rayon::ThreadPoolBuilder;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use stickslip_model::Contact;
 use stickslip_model::regularized::{GUARDS, Phase, Regularized, STATE};
 use stickslip_solver::{Dop853, Margin, Options, Start};
@@ -15,7 +15,8 @@ use stickslip_tracer::{
 use super::boundary::{Kind, itinerary};
 use super::document::Document;
 use super::frame::{Frame, scaled, traced};
-use super::{Atlas, Map, picture, verification};
+use super::verification::{self, Report};
+use super::{Atlas, Map, picture};
 use crate::error::Failure;
 use crate::output::OutputFile;
 use crate::plan::TracePlan;
@@ -32,10 +33,7 @@ pub fn run(plan: &TracePlan) -> Result<(), Failure> {
     let failed = |error| Failure::output(&plan.out, error);
     let mut file = OutputFile::create(&plan.out).map_err(failed)?;
 
-    let (atlas, unresolved) = make(plan)?;
-    let report = pool
-        .install(|| verification::verify(&atlas, unresolved))
-        .map_err(|error| Failure::Trace(error.to_string()))?;
+    let Made { atlas, report } = make(&pool, plan.frame, plan.tolerance)?;
     let objection = report.objection();
 
     let document = Document::new(&atlas, report);
@@ -59,9 +57,29 @@ pub fn run(plan: &TracePlan) -> Result<(), Failure> {
     }
 }
 
+/// An atlas, and what its verification found.
+#[derive(Clone, Debug)]
+pub struct Made {
+    /// The atlas.
+    pub atlas: Atlas,
+    /// What was found.
+    pub report: Report,
+}
+
+/// Traces the boundaries in `frame`, accurate to `tolerance` in ψ, and verifies the regions.
+///
+/// # Errors
+/// A run fails, or the curves make no regions.
+pub fn make(pool: &ThreadPool, frame: Frame, tolerance: f64) -> Result<Made, Failure> {
+    let (atlas, unresolved) = traced_atlas(frame, tolerance)?;
+    let report = pool
+        .install(|| verification::verify(&atlas, unresolved))
+        .map_err(|error| Failure::Trace(error.to_string()))?;
+    Ok(Made { atlas, report })
+}
+
 /// The atlas, and what the tracer could not explain.
-fn make(plan: &TracePlan) -> Result<(Atlas, Vec<String>), Failure> {
-    let frame = plan.frame;
+fn traced_atlas(frame: Frame, tolerance: f64) -> Result<(Atlas, Vec<String>), Failure> {
     let window = frame.window();
     let fallback = frame.contact(&window.low).map_err(|error| Failure::Trace(error.to_string()))?;
     let family = HybridFamily {
@@ -76,10 +94,8 @@ fn make(plan: &TracePlan) -> Result<(Atlas, Vec<String>), Failure> {
         },
         end: f64::INFINITY,
     };
-    let options = TraceOptions {
-        interpolation: frame.interpolation(plan.tolerance),
-        ..TraceOptions::default()
-    };
+    let options =
+        TraceOptions { interpolation: frame.interpolation(tolerance), ..TraceOptions::default() };
     let network = trace(&family, &window, &options).map_err(|error| {
         Failure::Trace(match error {
             TraceError::Run { point, source } => {
@@ -90,7 +106,7 @@ fn make(plan: &TracePlan) -> Result<(Atlas, Vec<String>), Failure> {
         })
     })?;
     let unresolved = verification::unresolved(&network);
-    let map = map(&frame, plan.tolerance, network, &fallback)?;
+    let map = map(&frame, tolerance, network, &fallback)?;
     let unbounded = map
         .regions()
         .iter()
@@ -99,7 +115,7 @@ fn make(plan: &TracePlan) -> Result<(Atlas, Vec<String>), Failure> {
         .map(|(index, region)| Ok((index, verification::itinerary(&frame, &region.sample)?)))
         .collect::<Result<BTreeMap<_, _>, String>>()
         .map_err(Failure::Trace)?;
-    Ok((Atlas { frame, tolerance: plan.tolerance, map, unbounded }, unresolved))
+    Ok((Atlas { frame, tolerance, map, unbounded }, unresolved))
 }
 
 /// Collisions at the traced points of a window.

@@ -2,7 +2,9 @@
 
 use super::label::{self, Cells};
 use super::panel::{Edge, Panel, Scale};
-use super::style::{BOUNDARY_END, BOUNDARY_SLIP, BOUNDARY_STICK, FRAME, INK, SMALL, TEXT, TITLE};
+use super::style::{
+    BOUNDARY_END, BOUNDARY_SLIP, BOUNDARY_STICK, CLOSED_FORM, FRAME, INK, SMALL, TEXT, TITLE,
+};
 use super::svg::{Anchor, Rectangle, Stroke, Svg, Words};
 
 /// What is drawn.
@@ -22,6 +24,17 @@ pub struct Atlas<'a> {
     pub stops: Vec<(f64, f64)>,
     /// The number of switches of each region.
     pub counts: Vec<usize>,
+    /// What is known without tracing.
+    pub closed_forms: Option<ClosedForms>,
+}
+
+/// Boundaries in closed form.
+#[derive(Clone, Debug)]
+pub struct ClosedForms {
+    /// ψ of the uppermost boundary at κ.
+    pub top: fn(f64) -> f64,
+    /// κ at which boundaries end as ψ → 0, with their kinds.
+    pub limits: Vec<(Line, f64)>,
 }
 
 /// The kinds of boundaries.
@@ -40,6 +53,11 @@ const HEIGHT: f64 = 660.0;
 const FRAME_AT: Rectangle = Rectangle { left: 72.0, top: 70.0, width: 810.0, height: 536.0 };
 const TITLE_AT: (f64, f64) = (72.0, 22.0);
 const LEGEND_Y: f64 = 50.0;
+const SECOND_LEGEND_Y: f64 = 68.0;
+/// What the second line of the legend takes.
+const LINE: f64 = 18.0;
+/// Height and half the width of the mark of a limit.
+const LIMIT: (f64, f64) = (6.0, 3.5);
 /// Half the side of a vertex's mark.
 const MARK: f64 = 2.5;
 /// Cells in which labels are placed, one to two pixels each.
@@ -53,7 +71,13 @@ pub fn draw(atlas: &Atlas<'_>, region: impl Fn((f64, f64)) -> Option<usize>) -> 
     legend(&mut svg);
     let wide = atlas.kappa.1 > 10.0 * atlas.kappa.0;
     let scales = (if wide { Scale::Logarithmic } else { Scale::Linear }, Scale::Linear);
-    let panel = Panel { frame: FRAME_AT, x: atlas.kappa, y: atlas.psi, scales };
+    let lines = if atlas.closed_forms.is_some() { LINE } else { 0.0 };
+    let frame =
+        Rectangle { top: FRAME_AT.top + lines, height: FRAME_AT.height - lines, ..FRAME_AT };
+    let panel = Panel { frame, x: atlas.kappa, y: atlas.psi, scales };
+    if let Some(closed_forms) = &atlas.closed_forms {
+        closed_forms.draw(&mut svg, &panel);
+    }
     for line in [Line::EndOfContact, Line::StickGraze, Line::SlipGraze] {
         svg.begin_group(line.name());
         for (_, points) in atlas.boundaries.iter().filter(|boundary| boundary.0 == line) {
@@ -87,9 +111,10 @@ fn labels(
     panel: &Panel,
     region: impl Fn((f64, f64)) -> Option<usize>,
 ) {
-    let cell = (FRAME_AT.width / f64::from(COLUMNS), FRAME_AT.height / f64::from(ROWS));
+    let frame = &panel.frame;
+    let cell = (frame.width / f64::from(COLUMNS), frame.height / f64::from(ROWS));
     let middle = |column: f64, row: f64| {
-        (FRAME_AT.left + (column + 0.5) * cell.0, FRAME_AT.top + (row + 0.5) * cell.1)
+        (frame.left + (column + 0.5) * cell.0, frame.top + (row + 0.5) * cell.1)
     };
     let mut values = Vec::with_capacity(usize::from(COLUMNS) * usize::from(ROWS));
     for row in 0..ROWS {
@@ -116,20 +141,57 @@ fn labels(
     svg.end_group();
 }
 
+impl ClosedForms {
+    fn draw(&self, svg: &mut Svg, panel: &Panel) {
+        let Rectangle { left, width, .. } = panel.frame;
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let pixels = 0..=width as u32;
+        let at = |pixel: u32| panel.value((left + f64::from(pixel), 0.0)).0;
+        let points = pixels.map(|pixel| (at(pixel), (self.top)(at(pixel))));
+        svg.begin_inside(panel.frame);
+        // Farther up nothing shows, and coordinates would grow without limit.
+        let shown = points.filter(|point| point.1 < 10.0 * panel.y.1);
+        panel.curve(svg, shown, CLOSED_FORM);
+        svg.end_inside();
+        svg.begin_group("limits");
+        for (line, kappa) in &self.limits {
+            limit(svg, panel.place((*kappa, panel.y.0)), *line);
+        }
+        svg.end_group();
+        let (left, y) = (FRAME_AT.left, SECOND_LEGEND_Y);
+        svg.line((left, y), (left + 28.0, y), CLOSED_FORM);
+        let text = "uppermost boundary, closed form";
+        svg.words((left + 34.0, y), Words::new(text, TEXT, Anchor::Start));
+        if !self.limits.is_empty() {
+            limit(svg, (left + 274.0, y - 0.5 * LIMIT.0), Line::EndOfContact);
+            limit(svg, (left + 286.0, y - 0.5 * LIMIT.0), Line::StickGraze);
+            let text = "κ_n = (nπ/2t_c)^2, limits of boundaries for vanishing ψ, n odd and even";
+            svg.words((left + 298.0, y), Words::new(text, TEXT, Anchor::Start));
+        }
+    }
+}
+
+/// An arrow that points up to a place.
+fn limit(svg: &mut Svg, (x, y): (f64, f64), line: Line) {
+    let (height, half) = LIMIT;
+    svg.area([(x, y), (x + half, y + height), (x - half, y + height)], line.stroke().colour);
+}
+
 impl Line {
+    /// How it is drawn.
+    pub fn stroke(self) -> Stroke {
+        match self {
+            Self::EndOfContact => BOUNDARY_END,
+            Self::StickGraze => BOUNDARY_STICK,
+            Self::SlipGraze => BOUNDARY_SLIP,
+        }
+    }
+
     fn name(self) -> &'static str {
         match self {
             Self::EndOfContact => "end-of-contact",
             Self::StickGraze => "stick-graze",
             Self::SlipGraze => "slip-graze",
-        }
-    }
-
-    fn stroke(self) -> Stroke {
-        match self {
-            Self::EndOfContact => BOUNDARY_END,
-            Self::StickGraze => BOUNDARY_STICK,
-            Self::SlipGraze => BOUNDARY_SLIP,
         }
     }
 }

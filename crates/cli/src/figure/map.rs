@@ -1,4 +1,4 @@
-//! The picture of a map: tangential restitution to the left, number of switches to the right.
+//! Pictures of maps: panels side by side, each with one quantity in colours.
 
 use std::collections::BTreeSet;
 use std::io;
@@ -6,14 +6,14 @@ use std::io;
 use super::bitmap::Bitmap;
 use super::label::{self, Cells};
 use super::panel::{Edge, LINEAR, Panel};
-use super::style::{self, SMALL, TEXT, TITLE};
-use super::svg::{Anchor, Rectangle, Svg, Words};
+use super::style::{self, FRAME, HALO, SMALL, TEXT, TITLE};
+use super::svg::{Anchor, Rectangle, Stroke, Svg, Words};
 
-/// What is drawn.
-#[derive(Clone, Copy, Debug)]
+/// A quantity on a plane.
+#[derive(Clone, Debug)]
 pub struct Map<'a> {
-    /// What holds for all of it.
-    pub title: &'a str,
+    /// What it is.
+    pub heading: &'a str,
     /// The axis along a row.
     pub horizontal: Axis<'a>,
     /// The axis along a column.
@@ -22,10 +22,21 @@ pub struct Map<'a> {
     pub columns: usize,
     /// Rows.
     pub rows: usize,
-    /// Tangential restitution row by row, the first at the lower end of the axis; NaN where there is none.
-    pub eps_t: &'a [f64],
-    /// Number of switches; negative where there is none.
-    pub switch_count: &'a [i32],
+    /// The quantity row by row, the first at the lower end of the axis.
+    pub values: Values<'a>,
+    /// Lines over it.
+    pub lines: Vec<(Stroke, Vec<(f64, f64)>)>,
+    /// Points over it with their names, in ascending order on a vertical line; the names stand to the right of the panel.
+    pub points: Vec<(&'a str, (f64, f64))>,
+}
+
+/// What is shown in colours.
+#[derive(Clone, Copy, Debug)]
+pub enum Values<'a> {
+    /// Tangential restitution; NaN where there is none.
+    Restitution(&'a [f64]),
+    /// Number of switches, with labels in the regions that have room for one; negative where there is none.
+    Switches(&'a [i32]),
 }
 
 /// One axis of a map.
@@ -37,12 +48,18 @@ pub struct Axis<'a> {
     pub range: (f64, f64),
 }
 
-const WIDTH: f64 = 1024.0;
+/// From one panel to the next.
+const STEP: f64 = 520.0;
 const HEIGHT: f64 = 456.0;
-const RESTITUTION: Rectangle = Rectangle { left: 72.0, top: 64.0, width: 370.0, height: 340.0 };
-const SWITCHES: Rectangle = Rectangle { left: 592.0, ..RESTITUTION };
+const FIRST: Rectangle = Rectangle { left: 72.0, top: 64.0, width: 370.0, height: 340.0 };
 /// Distance and width of the colour keys.
 const KEY: (f64, f64) = (12.0, 16.0);
+/// What the names of points need beside a panel.
+const NAMES: f64 = 22.0;
+/// Distance of names of points.
+const APART: f64 = 11.5;
+/// Radius of the mark of a point.
+const MARK: f64 = 2.2;
 /// Least pixels of the image of a panel, across and along.
 const FINE: usize = 600;
 const TITLE_AT: (f64, f64) = (72.0, 20.0);
@@ -54,21 +71,26 @@ const NO_SHADE: u8 = SHADES;
 /// Most numbers that stand beside the key of the switches.
 const MOST_NUMBERS: usize = 16;
 
-/// Draws `map`.
+/// Draws `maps` from left to right; `title` holds for all of them.
 ///
 /// # Errors
-/// The map has no cells.
-pub fn draw(map: &Map<'_>) -> io::Result<Svg> {
-    let mut svg = Svg::new(WIDTH, HEIGHT, map.title);
-    svg.words(TITLE_AT, Words::new(map.title, TITLE, Anchor::Start));
-    restitution(&mut svg, map)?;
-    switches(&mut svg, map)?;
+/// A map has no cells.
+pub fn draw(title: &str, maps: &[Map<'_>]) -> io::Result<Svg> {
+    let mut svg = Svg::new(STEP * maps.len() as f64 - 16.0, HEIGHT, title);
+    svg.words(TITLE_AT, Words::new(title, TITLE, Anchor::Start));
+    for (index, map) in maps.iter().enumerate() {
+        let frame = Rectangle { left: FIRST.left + STEP * index as f64, ..FIRST };
+        let panel = Panel { frame, x: map.horizontal.range, y: map.vertical.range, scales: LINEAR };
+        match map.values {
+            Values::Restitution(values) => restitution(&mut svg, map, &panel, values)?,
+            Values::Switches(counts) => switches(&mut svg, map, &panel, counts)?,
+        }
+    }
     Ok(svg)
 }
 
-fn restitution(svg: &mut Svg, map: &Map<'_>) -> io::Result<()> {
-    let panel = map.panel(RESTITUTION);
-    let finite = map.eps_t.iter().filter(|value| value.is_finite());
+fn restitution(svg: &mut Svg, map: &Map<'_>, panel: &Panel, values: &[f64]) -> io::Result<()> {
+    let finite = values.iter().filter(|value| value.is_finite());
     let largest = finite.fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let largest = if largest > 0.0 { largest } else { 1.0 };
     let middle = f64::from(SHADES / 2);
@@ -85,21 +107,20 @@ fn restitution(svg: &mut Svg, map: &Map<'_>) -> io::Result<()> {
         palette: palette.clone(),
     };
     palette.push(style::MISSING);
-    svg.image(panel.frame, &map.bitmap(|cell| shade(map.eps_t[cell]), palette).base64()?);
+    svg.image(panel.frame, &map.bitmap(|cell| shade(values[cell]), palette).base64()?);
 
-    let scale =
-        Panel { frame: beside(&panel), x: (0.0, 1.0), y: (-largest, largest), scales: LINEAR };
+    let frame = map.beside(panel);
+    let scale = Panel { frame, x: (0.0, 1.0), y: (-largest, largest), scales: LINEAR };
     svg.image(scale.frame, &key.base64()?);
     scale.border(svg);
     scale.ticks(svg, Edge::Right, true);
-    map.axes(svg, &panel, &format!("tangential restitution ε_t{}", scale.power(Edge::Right)));
+    map.over(svg, panel);
+    map.axes(svg, panel, &format!("{}{}", map.heading, scale.power(Edge::Right)));
     Ok(())
 }
 
-fn switches(svg: &mut Svg, map: &Map<'_>) -> io::Result<()> {
-    let panel = map.panel(SWITCHES);
-    let counts: BTreeSet<i32> =
-        map.switch_count.iter().copied().filter(|&count| count >= 0).collect();
+fn switches(svg: &mut Svg, map: &Map<'_>, panel: &Panel, values: &[i32]) -> io::Result<()> {
+    let counts: BTreeSet<i32> = values.iter().copied().filter(|&count| count >= 0).collect();
     let counts: Vec<i32> = counts.into_iter().collect();
     // Beyond that many, neighbours share a colour.
     let colours = counts.len().min(usize::from(u8::MAX));
@@ -111,11 +132,13 @@ fn switches(svg: &mut Svg, map: &Map<'_>) -> io::Result<()> {
     palette.push(style::MISSING);
     let missing = u8::try_from(colours).unwrap_or(u8::MAX);
     let colour = |count: i32| palette[usize::from(shade(count).unwrap_or(missing))];
-    let pixel = |cell: usize| shade(map.switch_count[cell]).unwrap_or(missing);
+    let pixel = |cell: usize| shade(values[cell]).unwrap_or(missing);
     svg.image(panel.frame, &map.bitmap(pixel, palette.clone()).base64()?);
+    map.over(svg, panel);
 
     svg.begin_group("regions");
-    let cells = Cells { columns: map.columns, values: map.switch_count };
+    let values = map.free_of_points(panel, values);
+    let cells = Cells { columns: map.columns, values: &values };
     let cell_width = panel.frame.width / map.columns as f64;
     let cell_height = panel.frame.height / map.rows as f64;
     let half_size = |count: i32| {
@@ -131,14 +154,10 @@ fn switches(svg: &mut Svg, map: &Map<'_>) -> io::Result<()> {
         svg.words((x, y), Words { colour: style::readable_on(colour(label.value)), ..words });
     }
     svg.end_group();
-    map.axes(svg, &panel, "number of switches");
+    map.axes(svg, panel, map.heading);
 
-    let key = Panel {
-        frame: beside(&panel),
-        x: (0.0, 1.0),
-        y: (0.0, counts.len().max(1) as f64),
-        scales: LINEAR,
-    };
+    let frame = map.beside(panel);
+    let key = Panel { frame, x: (0.0, 1.0), y: (0.0, counts.len().max(1) as f64), scales: LINEAR };
     // Each colour down to the bottom, under those that follow: no seams.
     for (rank, count) in counts.iter().enumerate().rev() {
         let (left, top) = key.place((0.0, rank as f64 + 1.0));
@@ -157,10 +176,6 @@ fn switches(svg: &mut Svg, map: &Map<'_>) -> io::Result<()> {
 }
 
 impl Map<'_> {
-    fn panel(&self, frame: Rectangle) -> Panel {
-        Panel { frame, x: self.horizontal.range, y: self.vertical.range, scales: LINEAR }
-    }
-
     /// The cells as pixels, the last row on top.
     ///
     /// Few cells are several pixels each, since not every viewer keeps the edges of pixels sharp.
@@ -183,10 +198,51 @@ impl Map<'_> {
         let at = (panel.frame.left, panel.frame.top - 14.0);
         svg.words(at, Words::new(heading, TEXT, Anchor::Start));
     }
-}
 
-/// The place of a colour key beside a panel.
-fn beside(panel: &Panel) -> Rectangle {
-    let (distance, width) = KEY;
-    Rectangle { left: panel.frame.right() + distance, width, ..panel.frame }
+    /// Lines and points over the colours.
+    fn over(&self, svg: &mut Svg, panel: &Panel) {
+        svg.begin_inside(panel.frame);
+        // Dark lines on dark colours need an edge.
+        for (_, points) in &self.lines {
+            panel.curve(svg, points.iter().copied(), HALO);
+        }
+        for (stroke, points) in &self.lines {
+            panel.curve(svg, points.iter().copied(), *stroke);
+        }
+        svg.end_inside();
+        let right = panel.frame.right();
+        let mut lowest = panel.frame.bottom() + 0.5 * APART;
+        svg.begin_group("points");
+        for (name, point) in &self.points {
+            let at = panel.place(*point);
+            lowest = at.1.min(lowest - APART);
+            for stroke in [HALO, Stroke { width: 0.7, ..FRAME }] {
+                svg.polyline([at, (right - 8.0, lowest), (right + 5.0, lowest)], stroke);
+            }
+            svg.words((right + 8.0, lowest), Words::new(name, TEXT, Anchor::Start));
+        }
+        for (_, point) in &self.points {
+            svg.ring(panel.place(*point), MARK, FRAME);
+        }
+        svg.end_group();
+    }
+
+    /// `values` without those where points and their names are, so that labels keep clear of them.
+    fn free_of_points(&self, panel: &Panel, values: &[i32]) -> Vec<i32> {
+        let leftmost = self.points.iter().map(|(_, point)| panel.place(*point).0 - 2.0 * MARK);
+        let leftmost = leftmost.fold(f64::INFINITY, f64::min) - panel.frame.left;
+        let free = |column: usize| {
+            (column + 1) as f64 * panel.frame.width <= leftmost * self.columns as f64
+        };
+        let value =
+            |(cell, value): (usize, &i32)| if free(cell % self.columns) { *value } else { -1 };
+        values.iter().enumerate().map(value).collect()
+    }
+
+    /// The place of a colour key beside a panel.
+    fn beside(&self, panel: &Panel) -> Rectangle {
+        let (distance, width) = KEY;
+        let names = if self.points.is_empty() { 0.0 } else { NAMES };
+        Rectangle { left: panel.frame.right() + distance + names, width, ..panel.frame }
+    }
 }

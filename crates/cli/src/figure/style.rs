@@ -24,6 +24,9 @@ pub const RULE: Stroke = Stroke::full("#888888", 0.8);
 /// Frames and ticks.
 pub const FRAME: Stroke = Stroke::full(INK, 1.0);
 
+/// The edge of lines over colours.
+pub const HALO: Stroke = Stroke::full("#FFFFFF", 2.6);
+
 /// Quantities of the normal motion.
 pub const NORMAL: Stroke = Stroke::full("#222222", 1.2);
 /// The same, mirrored.
@@ -37,6 +40,9 @@ pub const BOUNDARY_END: Stroke = Stroke::full("#222222", 1.6);
 pub const BOUNDARY_STICK: Stroke = Stroke { colour: "#0072B2", width: 1.6, dashes: "7 3" };
 /// Boundaries on which the spring all but sticks while sliding.
 pub const BOUNDARY_SLIP: Stroke = Stroke { colour: "#D55E00", width: 1.6, dashes: "2 2.5" };
+
+/// Beneath boundaries, where a closed form has them.
+pub const CLOSED_FORM: Stroke = Stroke::full("#F3C77B", 7.0);
 
 /// Phases of slip on side +1.
 pub const SLIP_POSITIVE: &str = "#F8D8A8";

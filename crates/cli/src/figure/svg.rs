@@ -117,6 +117,11 @@ impl Svg {
         Self { width, height, title: text::plain(title), body: String::new() }
     }
 
+    /// Its width.
+    pub fn width(&self) -> f64 {
+        self.width
+    }
+
     /// The whole document.
     pub fn document(&self) -> String {
         let Self { width, height, title, body } = self;
@@ -138,6 +143,21 @@ impl Svg {
     /// Ends the group begun last.
     pub fn end_group(&mut self) {
         self.element(format_args!("</g>"));
+    }
+
+    /// Of what follows only the part inside of a rectangle is shown, until [`Self::end_inside`].
+    pub fn begin_inside(&mut self, at: Rectangle) {
+        let [x, y, width, height] = [at.left, at.top, at.width, at.height].map(Px);
+        // Unlike a clip path it needs no name, which would have to be unique on a page of pictures.
+        self.element(format_args!(
+            r#"<svg {} viewBox="{x} {y} {width} {height}" overflow="hidden">"#,
+            Place(at)
+        ));
+    }
+
+    /// Ends what [`Self::begin_inside`] began.
+    pub fn end_inside(&mut self) {
+        self.element(format_args!("</svg>"));
     }
 
     /// A filled rectangle.
@@ -192,6 +212,14 @@ impl Svg {
         self.element(format_args!(
             r#"<polyline points="{list}" fill="none" stroke-linejoin="round" {stroke}/>"#
         ));
+    }
+
+    /// A filled polygon.
+    pub fn area(&mut self, corners: impl IntoIterator<Item = (f64, f64)>, colour: &str) {
+        let corners: Vec<String> =
+            corners.into_iter().map(|(x, y)| format!("{},{}", Px(x), Px(y))).collect();
+        let list = corners.join(" ");
+        self.element(format_args!(r#"<polygon points="{list}" fill="{colour}"/>"#));
     }
 
     /// An image of which every pixel becomes a sharp rectangle; `png` is its file in base 64.

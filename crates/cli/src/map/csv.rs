@@ -5,18 +5,18 @@ use std::io::{self, Write};
 use csv::Writer;
 
 use crate::map::plane::Plane;
-use crate::map::tiles::Tiles;
+use crate::map::results::Results;
 
 /// Writes the header and one row a point, row of the map by row.
 ///
 /// # Errors
-/// `out` cannot be written, or a tile cannot be read.
-pub fn write(out: impl Write, plane: &Plane, tiles: &Tiles) -> io::Result<()> {
+/// `out` cannot be written, or a piece of the results cannot be read.
+pub fn write(out: impl Write, plane: &Plane, results: &impl Results) -> io::Result<()> {
     let mut writer = Writer::from_writer(out);
     let quantities = plane.quantities();
     let names = quantities.iter().map(|quantity| quantity.name());
     writer.write_record(names.chain(["eps_t", "switch_count"]))?;
-    tiles.each(|points, tile| {
+    results.each(|points, tile| {
         for (point, (eps_t, count)) in points.zip(tile.eps_t.iter().zip(&tile.switch_count)) {
             let (column, row) = plane.cell(point);
             for quantity in quantities {

@@ -8,13 +8,13 @@ use std::io::{self, BufWriter, Write};
 use rawzip::{Error, ErrorKind, ZipArchiveWriter};
 
 use crate::map::plane::{Extent, Plane};
-use crate::map::tiles::Tiles;
+use crate::map::results::Results;
 
-/// Writes the coordinates and both arrays of results, of which one tile at a time is in memory.
+/// Writes the coordinates and both arrays of results, of which one piece at a time is in memory.
 ///
 /// # Errors
-/// `out` cannot be written, or a tile cannot be read.
-pub fn write(out: impl Write, plane: &Plane, tiles: &Tiles) -> io::Result<()> {
+/// `out` cannot be written, or a piece of the results cannot be read.
+pub fn write(out: impl Write, plane: &Plane, results: &impl Results) -> io::Result<()> {
     let mut archive = ZipArchiveWriter::new(out);
     let (columns, rows) = (plane.columns.cells, plane.rows.cells);
     let points = format!("{rows}, {columns}");
@@ -31,12 +31,12 @@ pub fn write(out: impl Write, plane: &Plane, tiles: &Tiles) -> io::Result<()> {
         })?;
     }
     array(&mut archive, "eps_t", "<f8", &points, |out| {
-        tiles.each(|_, tile| {
+        results.each(|_, tile| {
             tile.eps_t.iter().try_for_each(|value| out.write_all(&value.to_le_bytes()))
         })
     })?;
     array(&mut archive, "switch_count", "<i4", &points, |out| {
-        tiles.each(|_, tile| {
+        results.each(|_, tile| {
             tile.switch_count.iter().try_for_each(|count| out.write_all(&count.to_le_bytes()))
         })
     })?;

@@ -2,7 +2,7 @@
 
 use std::io;
 
-use crate::figure::map::{self, Map};
+use crate::figure::map::{self, Map, Values};
 use crate::figure::{Svg, number};
 use crate::map::plane::{Axis, Coordinates, Plane, Quantity};
 use crate::map::thumbnail::Thumbnail;
@@ -20,17 +20,35 @@ pub fn draw(plane: &Plane, thumbnail: &Thumbnail) -> io::Result<Svg> {
         }))
         .collect::<Vec<_>>()
         .join(", ");
+    let panel = |heading, values| panel(plane, heading, thumbnail.size(), values);
+    map::draw(
+        &title,
+        &[
+            panel("tangential restitution ε_t", Values::Restitution(&thumbnail.eps_t)),
+            panel("number of switches", Values::Switches(&thumbnail.switch_count)),
+        ],
+    )
+}
+
+/// `values`, given in so many columns and rows of the plane, as a panel of a picture.
+pub fn panel<'a>(
+    plane: &Plane,
+    heading: &'a str,
+    (columns, rows): (usize, usize),
+    values: Values<'a>,
+) -> Map<'a> {
     let [horizontal, vertical] = plane.axes().map(name);
     let axis = |name, axis: Axis| map::Axis { name, range: (axis.range.low, axis.range.high) };
-    map::draw(&Map {
-        title: &title,
+    Map {
+        heading,
         horizontal: axis(horizontal, plane.columns),
         vertical: axis(vertical, plane.rows),
-        columns: thumbnail.columns,
-        rows: thumbnail.rows,
-        eps_t: &thumbnail.eps_t,
-        switch_count: &thumbnail.switch_count,
-    })
+        columns,
+        rows,
+        values,
+        lines: Vec::new(),
+        points: Vec::new(),
+    }
 }
 
 /// What all collisions have in common, with symbols and units.

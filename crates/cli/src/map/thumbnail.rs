@@ -20,6 +20,11 @@ pub struct Thumbnail {
 }
 
 impl Thumbnail {
+    /// Columns and rows.
+    pub fn size(&self) -> (usize, usize) {
+        (self.columns, self.rows)
+    }
+
     /// Takes for each pixel the cell at its centre, of at most `most` × `most` pixels and never
     /// more than the map has cells. One tile at a time is in memory.
     ///

@@ -154,17 +154,6 @@ impl Tiles {
         })
     }
 
-    /// Hands every tile with its points to `take`, in order and one at a time.
-    ///
-    /// # Errors
-    /// A tile cannot be read, or `take` fails.
-    pub fn each(
-        &self,
-        mut take: impl FnMut(Range<usize>, Tile) -> io::Result<()>,
-    ) -> io::Result<()> {
-        (0..self.task.tiles()).try_for_each(|index| take(self.task.range(index), self.read(index)?))
-    }
-
     /// Removes the directory: the program's own files, and the rest only if that leaves nothing.
     ///
     /// What cannot be removed does no harm: the map is complete.
