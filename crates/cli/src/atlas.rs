@@ -2,9 +2,10 @@
 //!
 //! Start reading here; then, in this order: `frame` (the window and its coordinates), `boundary` (what the tracer's curves mean),
 //! `trace` and `verification` (how an atlas is made), `document` and `file` (how it is stored), `locate` (how it is looked up),
-//! `picture` (how it is drawn).
+//! `crossings` (its boundaries at one stiffness), `picture` (how it is drawn).
 
 mod boundary;
+mod crossings;
 mod document;
 mod file;
 mod frame;
@@ -18,7 +19,9 @@ use std::collections::BTreeMap;
 use stickslip_tracer::Subdivision;
 
 pub use boundary::Kind;
-pub use frame::{Frame, Ratio};
+pub use frame::{Frame, Ratio, scaled};
+pub use picture::{boundaries, draw};
+pub use trace::{Made, make};
 
 /// The window parted by its boundaries; labels are itineraries.
 pub type Map = Subdivision<String, Kind>;

@@ -72,6 +72,15 @@ pub struct Picture {
 }
 
 impl Cell {
+    /// As it stands in JSON; NaN becomes null.
+    fn json(&self) -> Value {
+        match self {
+            Self::Number(value) => Value::from(*value),
+            Self::Count(count) => Value::from(*count),
+            Self::Text(text) => Value::from(text.as_str()),
+        }
+    }
+
     /// As it stands in a file: numbers in the shortest form that reads back exactly.
     pub fn text(&self) -> String {
         match self {
@@ -102,6 +111,15 @@ impl Study {
 }
 
 impl Table {
+    /// The table as JSON: an object a row, with the names of the columns.
+    pub fn json(&self) -> Value {
+        let object = |row: &Vec<Cell>| {
+            let names = self.columns.iter().map(|column| column.name.to_owned());
+            Value::Object(names.zip(row.iter().map(Cell::json)).collect())
+        };
+        self.rows.iter().map(object).collect()
+    }
+
     /// The table as a CSV file.
     fn csv(&self) -> Vec<u8> {
         let header = self.columns.iter().map(|column| column.name.to_owned()).collect();
@@ -120,6 +138,12 @@ impl Table {
 /// # Errors
 /// It cannot be created or written.
 pub fn prepare(directory: &Path) -> Result<(), Failure> {
+    if directory.exists() && !directory.is_dir() {
+        let directory = directory.display();
+        return Err(Failure::Usage(format!(
+            "--out {directory} is not a directory; accepted is a directory, or a name that is not taken"
+        )));
+    }
     let failure = |error| Failure::output(directory, error);
     fs::create_dir_all(directory).map_err(failure)?;
     OutputFile::create(&directory.join("probe")).map(drop).map_err(failure)

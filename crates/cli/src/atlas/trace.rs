@@ -1,7 +1,8 @@
 //! An atlas made: boundaries traced, regions verified, both written.
 
 use std::collections::BTreeMap;
-use std::io::{BufWriter, Write};
+use std::io::{self, Write};
+use std::path::Path;
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use stickslip_model::Contact;
@@ -18,6 +19,7 @@ use super::frame::{Frame, scaled, traced};
 use super::verification::{self, Report};
 use super::{Atlas, Map, picture};
 use crate::error::Failure;
+use crate::figure::number;
 use crate::output::OutputFile;
 use crate::plan::TracePlan;
 
@@ -33,17 +35,12 @@ pub fn run(plan: &TracePlan) -> Result<(), Failure> {
     let failed = |error| Failure::output(&plan.out, error);
     let mut file = OutputFile::create(&plan.out).map_err(failed)?;
 
-    let Made { atlas, report } = make(&pool, plan.frame, plan.tolerance)?;
-    let objection = report.objection();
-
-    let document = Document::new(&atlas, report);
-    let mut out = BufWriter::new(&mut file);
-    serde_json::to_writer(&mut out, &document).map_err(|error| failed(error.into()))?;
-    out.write_all(b"\n").and_then(|()| out.flush()).map_err(failed)?;
-    drop(out);
+    let made = make(&pool, plan.frame, plan.tolerance)?;
+    let bytes = made.file().map_err(failed)?;
+    file.write_all(&bytes).map_err(failed)?;
     file.store().map_err(failed)?;
     let picture = match &plan.plot {
-        Some(target) => Some(target.write(&picture::draw(&atlas))?),
+        Some(target) => Some(target.write(&picture::draw(&made.atlas))?),
         None => None,
     };
     // Both are complete before one of them gets its name.
@@ -51,10 +48,7 @@ pub fn run(plan: &TracePlan) -> Result<(), Failure> {
     if let Some(picture) = picture {
         picture.publish()?;
     }
-    match objection {
-        Some(reason) => Err(Failure::Doubtful { path: plan.out.clone(), reason }),
-        None => Ok(()),
-    }
+    made.objection(&plan.out).map_or(Ok(()), Err)
 }
 
 /// An atlas, and what its verification found.
@@ -76,6 +70,39 @@ pub fn make(pool: &ThreadPool, frame: Frame, tolerance: f64) -> Result<Made, Fai
         .install(|| verification::verify(&atlas, unresolved))
         .map_err(|error| Failure::Trace(error.to_string()))?;
     Ok(Made { atlas, report })
+}
+
+impl Made {
+    /// The atlas as a file.
+    ///
+    /// # Errors
+    /// It does not fit into memory.
+    pub fn file(&self) -> io::Result<Vec<u8>> {
+        let mut bytes = serde_json::to_vec(&Document::new(&self.atlas, self.report.clone()))?;
+        bytes.push(b'\n');
+        Ok(bytes)
+    }
+
+    /// What speaks against the atlas in the file `path`.
+    pub fn objection(&self, path: &Path) -> Option<Failure> {
+        let reason = self.report.objection()?;
+        Some(Failure::Doubtful { path: path.to_owned(), reason })
+    }
+
+    /// What is in it and how it was verified, in a sentence.
+    pub fn summary(&self) -> String {
+        let Self { atlas: Atlas { map, .. }, report } = self;
+        let agree = if report.agrees { "all agree with it" } else { "not all agree with it" };
+        format!(
+            "Traced were {} boundaries, {} vertices and {} regions. Of {} collisions computed at random points and beside boundaries \
+             {agree}; with 95 % confidence less than {} of the plane is wrong.",
+            map.curves().len(),
+            map.vertices().len(),
+            map.regions().len(),
+            report.tried,
+            number(report.share_wrong_bound, 2)
+        )
+    }
 }
 
 /// The atlas, and what the tracer could not explain.

@@ -8,9 +8,12 @@ use super::style::TITLE;
 use super::svg::{Anchor, Rectangle, Svg, Words};
 use super::text::number;
 
+/// Pixels from the start of contact to its end, about.
+pub const PANEL_WIDTH: f64 = 664.0;
+
 const WIDTH: f64 = 760.0;
 const HEIGHT: f64 = 560.0;
-const FORCES: Rectangle = Rectangle { left: 80.0, top: 70.0, width: 664.0, height: 270.0 };
+const FORCES: Rectangle = Rectangle { left: 80.0, top: 70.0, width: PANEL_WIDTH, height: 270.0 };
 const VELOCITY: Rectangle = Rectangle { top: 352.0, height: 156.0, ..FORCES };
 /// Where the title and the legend are.
 const TITLE_AT: (f64, f64) = (80.0, 22.0);

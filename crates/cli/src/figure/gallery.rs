@@ -21,9 +21,12 @@ pub struct Exhibit {
     pub history: History,
 }
 
+/// Pixels from the start of contact to its end, about.
+pub const PANEL_WIDTH: f64 = 224.0;
+
 const COLUMNS: usize = 4;
 const WIDTH: f64 = 1024.0;
-const FIRST: Rectangle = Rectangle { left: 72.0, top: 92.0, width: 224.0, height: 128.0 };
+const FIRST: Rectangle = Rectangle { left: 72.0, top: 92.0, width: PANEL_WIDTH, height: 128.0 };
 /// From one panel to the next, across and along.
 const STEP: (f64, f64) = (239.0, 160.0);
 const TITLE_AT: (f64, f64) = (72.0, 22.0);

@@ -1,0 +1,53 @@
+//! Captions and findings as HTML.
+
+/// `text` with `<`, `>`, `&` and `"` escaped, what follows `_` and `^` lowered and raised, and what stands between back quotes set as
+/// code.
+///
+/// Lowered and raised is a word, or what stands in braces.
+pub fn html(text: &str) -> String {
+    let mut html = String::with_capacity(text.len());
+    for (index, part) in text.split('`').enumerate() {
+        if index % 2 == 1 {
+            html.push_str(&format!("<code>{}</code>", escaped(part)));
+        } else {
+            heights(&mut html, part);
+        }
+    }
+    html
+}
+
+/// `text` with the characters escaped that mean something in HTML.
+pub fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+fn heights(html: &mut String, mut rest: &str) {
+    while let Some(place) = rest.find(['_', '^']) {
+        let element = if rest[place..].starts_with('_') { "sub" } else { "sup" };
+        html.push_str(&escaped(&rest[..place]));
+        let after = &rest[place + 1..];
+        let braced = after.strip_prefix('{').and_then(|inner| inner.split_once('}'));
+        let (inside, remaining) = braced.unwrap_or_else(|| {
+            after.split_at(after.find(|c: char| !c.is_alphanumeric()).unwrap_or(after.len()))
+        });
+        html.push_str(&format!("<{element}>{}</{element}>", escaped(inside)));
+        rest = remaining;
+    }
+    html.push_str(&escaped(rest));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::html;
+
+    #[test]
+    fn words_are_lowered_and_raised() {
+        assert_eq!(html("g_t/g_n < 2μ/α"), "g<sub>t</sub>/g<sub>n</sub> &lt; 2μ/α");
+        assert_eq!(html("β^{−2/5}, ε_t^C"), "β<sup>−2/5</sup>, ε<sub>t</sub><sup>C</sup>");
+        assert_eq!(
+            html("`collide --psi <P>` a_b"),
+            "<code>collide --psi &lt;P&gt;</code> a<sub>b</sub>"
+        );
+        assert_eq!(html("w_final."), "w<sub>final</sub>.");
+    }
+}
