@@ -57,7 +57,7 @@ const KEY: (f64, f64) = (12.0, 16.0);
 /// What the names of points need beside a panel.
 const NAMES: f64 = 22.0;
 /// Distance of names of points.
-const APART: f64 = 11.5;
+const APART: f64 = 12.5;
 /// Radius of the mark of a point.
 const MARK: f64 = 2.2;
 /// Least pixels of the image of a panel, across and along.
@@ -76,10 +76,12 @@ const MOST_NUMBERS: usize = 16;
 /// # Errors
 /// A map has no cells.
 pub fn draw(title: &str, maps: &[Map<'_>]) -> io::Result<Svg> {
-    let mut svg = Svg::new(STEP * maps.len() as f64 - 16.0, HEIGHT, title);
+    let names = maps.iter().map(Map::names).fold(0.0, f64::max);
+    let step = STEP + names;
+    let mut svg = Svg::new(step * maps.len() as f64 - 16.0, HEIGHT, title);
     svg.words(TITLE_AT, Words::new(title, TITLE, Anchor::Start));
     for (index, map) in maps.iter().enumerate() {
-        let frame = Rectangle { left: FIRST.left + STEP * index as f64, ..FIRST };
+        let frame = Rectangle { left: FIRST.left + step * index as f64, ..FIRST };
         let panel = Panel { frame, x: map.horizontal.range, y: map.vertical.range, scales: LINEAR };
         match map.values {
             Values::Restitution(values) => restitution(&mut svg, map, &panel, values)?,
@@ -219,7 +221,7 @@ impl Map<'_> {
             for stroke in [HALO, Stroke { width: 0.7, ..FRAME }] {
                 svg.polyline([at, (right - 8.0, lowest), (right + 5.0, lowest)], stroke);
             }
-            svg.words((right + 8.0, lowest), Words::new(name, TEXT, Anchor::Start));
+            svg.words((right + 8.0, lowest), Words::new(name, SMALL, Anchor::Start));
         }
         for (_, point) in &self.points {
             svg.ring(panel.place(*point), MARK, FRAME);
@@ -239,10 +241,14 @@ impl Map<'_> {
         values.iter().enumerate().map(value).collect()
     }
 
+    /// What the names of points take between a panel and its key.
+    fn names(&self) -> f64 {
+        if self.points.is_empty() { 0.0 } else { NAMES }
+    }
+
     /// The place of a colour key beside a panel.
     fn beside(&self, panel: &Panel) -> Rectangle {
         let (distance, width) = KEY;
-        let names = if self.points.is_empty() { 0.0 } else { NAMES };
-        Rectangle { left: panel.frame.right() + distance + names, width, ..panel.frame }
+        Rectangle { left: panel.frame.right() + distance + self.names(), width, ..panel.frame }
     }
 }

@@ -63,7 +63,7 @@ pub fn run(bench: &Bench) -> Result<Section, Failure> {
         findings: vec![
             format!(
                 "The spring is so stiff, κ from {} at {} m/s down to {} at {} m/s, that contacts with up to {most} switches differ \
-                 little from pure sliding: ε_t by {} at most, at g_n = {} m/s and g_t = {} m/s.",
+                 little from pure sliding: ε_t by {} at most on this map, at g_n = {} m/s and g_t = {} m/s.",
                 reading(stiffness[0]),
                 reading(axis.centre(0)),
                 reading(stiffness[1]),

@@ -35,14 +35,14 @@ pub fn run(bench: &Bench) -> Result<Section, Failure> {
         let (most, above) = sweep.largest(|point| sweep.excess(point));
         let [least_at, most_at] = [least, most].map(|point| place(sweep, reading, point));
         findings.push(format!(
-            "With the {}, ε_t falls to {} at {} = {}, g_t/g_n = {}, and exceeds that of pure sliding by up to {}, at {} = {}, \
-             g_t/g_n = {}.",
+            "With the {}, ε_t falls to {} on this map, at {} = {}, g_t/g_n = {}, and exceeds that of pure sliding by up to {}, \
+             at {} = {}, g_t/g_n = {}.",
             reading.words(),
-            number(-below, 3),
+            number(-below, 5),
             reading.axis(),
             number(least_at[0], 3),
             number(least_at[1], 3),
-            number(above, 3),
+            number(above, 5),
             reading.axis(),
             number(most_at[0], 3),
             number(most_at[1], 3),

@@ -97,20 +97,18 @@ fn findings(
 ) -> Vec<String> {
     let axis_value = number(STIFFNESS, 4);
     let mut findings = vec![format!(
-        "The paper has up to eight switches at {} = {axis_value}. With the {} there are at most {} anywhere in the plane, with the \
-         {} {}.",
+        "The paper has up to eight switches at {} = {axis_value}. With the {} there are at most {} there, and {} in the whole plane.",
         Reading::Printed.axis(),
         Reading::Printed.words(),
+        counts(&lines[0]).into_iter().max().unwrap_or(0),
         most[0],
-        Reading::Axis.words(),
-        most[1]
     )];
     for (reading, line) in Reading::ALL.into_iter().zip(lines) {
         let counts: Vec<String> = counts(line).iter().map(ToString::to_string).collect();
         findings.push(format!(
-            "At {} = {axis_value}, where κ of (24) is {}, the numbers for falling g_t/g_n are {}.",
-            reading.axis(),
+            "κ = {}, the {}: the numbers for falling g_t/g_n are {}.",
             number(reading.kappa(STIFFNESS), 4),
+            reading.words(),
             counts.join(" ")
         ));
     }
@@ -179,10 +177,10 @@ fn table(lines: &[Vec<Interval>; 2], points: &[Point]) -> Table {
         name: "figure4",
         title: format!("intervals between boundaries at {} on the axis", number(STIFFNESS, 4)),
         columns: vec![
-            column("axis", "what the axis is read as"),
+            column("axis", "axis"),
             column("kappa", "κ of (24)"),
-            column("ratio_low", "g_t/g_n from"),
-            column("ratio_high", "to"),
+            column("ratio_low", "g_t/g_n above"),
+            column("ratio_high", "below"),
             column("switch_count", "switches"),
             column("itinerary", "phases"),
             column("points", "points"),

@@ -40,15 +40,15 @@ pub fn run(bench: &Bench) -> Result<Section, Failure> {
         name: "figure5",
         title: "the collisions at the points".to_owned(),
         columns: vec![
-            column("axis", "what the axis is read as"),
+            column("axis", "axis"),
             column("point", "point"),
             column("kappa", "κ of (24)"),
             column("ratio", "g_t/g_n"),
             column("switch_count", "switches"),
             column("itinerary", "phases"),
-            column("first_switch", "time of the first"),
-            column("last_switch", "time of the last"),
-            column("reversals", "reversals of the motion"),
+            column("first_switch", "first at"),
+            column("last_switch", "last at"),
+            column("reversals", "reversals"),
             column("eps_t", "ε_t"),
         ],
         rows: summary,
@@ -104,11 +104,11 @@ fn findings(reading: Reading, exhibits: &[Exhibit]) -> Vec<String> {
             number(middle - first, 2)
         ));
     }
-    let other =
-        |exhibit: &&Exhibit| 2 * exhibit.collision.reversals != exhibit.collision.switches.len();
+    let half =
+        |exhibit: &&Exhibit| 2 * exhibit.collision.reversals == exhibit.collision.switches.len();
     findings.push(format!(
-        "With the {reading}, the motion reverses half as often as the regime switches, but for {}.",
-        names(exhibits.iter().filter(other).collect())
+        "With the {reading}, the motion reverses half as often as the regime switches at {}, and not at the others.",
+        names(exhibits.iter().filter(half).collect())
     ));
     findings
 }
@@ -137,7 +137,7 @@ fn picture(reading: Reading, exhibits: &[Exhibit]) -> Picture {
     let kappa = number(reading.kappa(STIFFNESS), 4);
     let svg = gallery::draw(&title(&format!("κ = {kappa}")), exhibits);
     let caption = format!(
-        "The tangential force F_t/μ (blue) and its limits ±F_n (black, dashed) at the points of Figure 4, {}: κ of (24) is {kappa}. \
+        "The tangential force F_t/μ (blue) and its limits ±F_n (black, dashed) at the points of Figure 4 for κ = {kappa}, the {}. \
          While sliding, the force is at one of the limits. The contact lasts t_c = {}, the largest compression is in the middle.",
         reading.words(),
         number(exhibits.first().map_or(f64::NAN, |exhibit| exhibit.collision.contact_time), 5)

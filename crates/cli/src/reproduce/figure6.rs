@@ -39,10 +39,8 @@ pub fn run(_: &Bench) -> Result<Section, Failure> {
         minima.extend(minimum);
         let switches = collision.switches.len();
         findings.push(format!(
-            "With {} = {}, which is κ = {kappa}, there are {switches} switches and {} sliding episodes; the first minimum of the \
-             velocity is at t = {}.",
-            reading.axis(),
-            number(STIFFNESS, 4),
+            "κ = {kappa}, the {}: {switches} switches, {} sliding episodes, and the first minimum of the velocity at t = {}.",
+            reading.words(),
             switches / 2 + 1,
             minimum.map_or_else(|| "no time".to_owned(), |time| number(time, 3))
         ));
@@ -64,36 +62,40 @@ pub fn run(_: &Bench) -> Result<Section, Failure> {
         pictures.push(Picture {
             name,
             caption: format!(
-                "Forces and velocity at g_t/g_n = {}, {} = {}: κ of (24) is {kappa}.",
+                "Forces and velocity at g_t/g_n = {} and κ = {kappa}, the {}.",
                 number(RATIO, 4),
-                reading.axis(),
-                number(STIFFNESS, 4)
+                reading.words()
             ),
             svg: collision::draw(&collision, &history),
         });
     }
-    let late = minima.iter().filter(|time| **time > 1.0).count();
+    let late = match minima.iter().filter(|time| **time > 1.0).count() {
+        0 => "neither reading has",
+        1 => "one of the readings has",
+        _ => "both readings have",
+    };
     findings.push(format!(
-        "The paper has many sliding episodes, and the first minimum shortly after t = 1: {late} of both readings have it after t = 1."
+        "The paper has many sliding episodes, and the first minimum shortly after t = 1; {late} it after that."
     ));
     let column = |name, meaning| Column { name, meaning };
     let table = Table {
         name: "figure6",
         title: "the collisions".to_owned(),
         columns: vec![
-            column("axis", "what the axis is read as"),
+            column("axis", "axis"),
             column("kappa", "κ of (24)"),
             column("ratio", "g_t/g_n"),
             column("switch_count", "switches"),
             column("itinerary", "phases"),
-            column("first_minimum", "time of the first minimum of the velocity"),
+            column("first_minimum", "first minimum at"),
             column("eps_t", "ε_t"),
         ],
         rows: summary,
     };
     let json = json!({ "mu": MU, "alpha": ALPHA, "axis": STIFFNESS, "collisions": table.json() });
     tables.insert(0, table);
-    Ok(Study { name: "figure6", title: TITLE, findings, json, tables, pictures }.into())
+    let study = Study { name: "figure6", title: TITLE, findings, json, tables, pictures };
+    Ok(Section { shown: vec!["figure6"], ..study.into() })
 }
 
 /// When the force on the motion first turns from braking to driving forward: there the velocity is least.

@@ -21,7 +21,7 @@ pub const INTRODUCTION: [&str; 2] = [
 
 const STYLE: &str = include_str!("page.css");
 /// Pictures are not shown smaller than that, in parts of their size: letters would become too small.
-const LEAST_SCALE: f64 = 0.72;
+const LEAST_SCALE: f64 = 0.7;
 
 /// The page.
 pub fn html(sections: &[Section]) -> String {
@@ -104,8 +104,11 @@ fn figure(picture: &Picture) -> String {
 }
 
 fn table(table: &Table) -> String {
-    let head: String =
-        table.columns.iter().map(|column| format!("<th>{}</th>", markup(column.meaning))).collect();
+    let first = table.rows.first().into_iter().flatten();
+    let head = table.columns.iter().zip(first).map(|(column, below)| {
+        format!("<th class=\"{}\">{}</th>", class(below), markup(column.meaning))
+    });
+    let head: String = head.collect();
     let row = |row: &Vec<Cell>| {
         let cells: String = row.iter().map(cell).collect();
         format!("<tr>{cells}</tr>\n")
@@ -118,10 +121,19 @@ fn table(table: &Table) -> String {
 }
 
 fn cell(cell: &Cell) -> String {
+    let content = match cell {
+        Cell::Number(value) if value.is_nan() => String::new(),
+        Cell::Number(value) => markup(&number(*value, 5)),
+        Cell::Count(count) => count.to_string(),
+        Cell::Text(text) => markup(text),
+    };
+    format!("<td class=\"{}\">{content}</td>", class(cell))
+}
+
+fn class(cell: &Cell) -> &'static str {
     match cell {
-        Cell::Number(value) if value.is_nan() => "<td></td>".to_owned(),
-        Cell::Number(value) => format!("<td class=\"number\">{}</td>", markup(&number(*value, 5))),
-        Cell::Count(count) => format!("<td class=\"number\">{count}</td>"),
-        Cell::Text(text) => format!("<td>{}</td>", markup(text)),
+        Cell::Number(_) | Cell::Count(_) => "number",
+        Cell::Text(text) if !text.contains(' ') => "word",
+        Cell::Text(_) => "words",
     }
 }

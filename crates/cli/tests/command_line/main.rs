@@ -11,6 +11,7 @@ mod map_failures;
 mod map_interrupted;
 mod pictures;
 mod point;
+mod reproduce;
 mod usage;
 
 use std::fs;

@@ -1,0 +1,309 @@
+//! The page of everything: complete, independent of the rest of the world, and right.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::sync::LazyLock;
+
+use roxmltree::{Document, Node, ParsingOptions};
+
+use crate::{Workspace, npz, rows};
+
+/// One run for all tests that only look.
+static RUN: LazyLock<Workspace> = LazyLock::new(|| {
+    let workspace = Workspace::new();
+    let ran = workspace.run("reproduce --out out --cells 24 --threads 2");
+    assert_eq!((ran.code, ran.stdout.as_str()), (0, ""), "{}", ran.stderr);
+    let lines: Vec<&str> = ran.stderr.lines().collect();
+    assert_eq!(lines[0], "1 of 7: Figure 1: pure Coulomb sliding");
+    assert_eq!(lines.last(), Some(&"everything is on out/index.html"));
+    assert_eq!(lines.len(), 8);
+    workspace
+});
+
+const PICTURES: [&str; 9] = [
+    "boundaries",
+    "figure1",
+    "figure2",
+    "figure3",
+    "figure4",
+    "figure5_axis",
+    "figure5_printed",
+    "figure6_axis",
+    "figure6_printed",
+];
+
+const DATA: [&str; 22] = [
+    "atlas.json",
+    "boundaries.json",
+    "figure1.csv",
+    "figure1.json",
+    "figure2.json",
+    "figure2.npz",
+    "figure3.json",
+    "figure3_axis.npz",
+    "figure3_printed.npz",
+    "figure4.csv",
+    "figure4.json",
+    "figure4_axis.npz",
+    "figure4_boundaries.json",
+    "figure4_printed.npz",
+    "figure5.csv",
+    "figure5.json",
+    "figure5_axis.csv",
+    "figure5_printed.csv",
+    "figure6.csv",
+    "figure6.json",
+    "figure6_axis.csv",
+    "figure6_printed.csv",
+];
+
+fn expected_names() -> Vec<String> {
+    let pictures = PICTURES.iter().map(|name| format!("{name}.svg"));
+    let pages = ["index.html", "report.json", "report.md"].map(str::to_owned);
+    let mut names: Vec<String> = pictures.chain(DATA.map(str::to_owned)).chain(pages).collect();
+    names.sort();
+    names
+}
+
+/// The rows of a table by the names of its columns.
+fn table(name: &str) -> Vec<BTreeMap<String, String>> {
+    let rows = rows(&RUN.read(name));
+    let row = |row: &Vec<String>| rows[0].iter().cloned().zip(row.iter().cloned()).collect();
+    rows[1..].iter().map(row).collect()
+}
+
+fn page(text: &str) -> Document<'_> {
+    let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
+    Document::parse_with_options(text, options).expect("XML")
+}
+
+#[test]
+fn the_page_is_complete_and_needs_nothing_else() {
+    assert_eq!(RUN.names_in("out"), expected_names());
+    let text = RUN.read("out/index.html");
+    let page = page(&text);
+    for name in ["script", "link", "img", "iframe", "object", "base"] {
+        assert!(!page.descendants().any(|node| node.has_tag_name(name)), "{name}");
+    }
+    assert!(!text.contains("url(") && !text.contains("@import"));
+    let named = |name: &str| page.descendants().any(|node| node.attribute("id") == Some(name));
+    for node in page.descendants().filter(Node::is_element) {
+        assert_eq!(node.attribute("src"), None);
+        let Some(target) = node.attribute("href") else { continue };
+        let there = match target.split_once('#') {
+            Some(("", name)) => named(name),
+            _ if target.starts_with("data:image/png;base64,") => {
+                node.has_tag_name("image") || node.tag_name().name() == "image"
+            }
+            _ => RUN.path("out").join(target).is_file(),
+        };
+        assert!(there, "{}", &target[..target.len().min(60)]);
+    }
+    // Each picture is on it once, and in a file of its own.
+    let pictures: Vec<_> = page.descendants().filter(|node| node.has_tag_name("figure")).collect();
+    assert_eq!(pictures.len(), PICTURES.len());
+    for name in PICTURES {
+        let svg = RUN.read(&format!("out/{name}.svg"));
+        assert_eq!(text.matches(&svg).count(), 1, "{name}");
+        Document::parse(&svg).expect("XML");
+    }
+    // Identifiers are unique.
+    let mut ids: Vec<_> = page.descendants().filter_map(|node| node.attribute("id")).collect();
+    let count = ids.len();
+    ids.sort_unstable();
+    ids.dedup();
+    assert_eq!(ids.len(), count);
+}
+
+#[test]
+fn all_forms_say_the_same() {
+    let report: serde_json::Value =
+        serde_json::from_str(&RUN.read("out/report.json")).expect("JSON");
+    assert_eq!(report["schema"], "stickslip.report/1");
+    let parts = report["parts"].as_array().expect("parts");
+    let markdown = RUN.read("out/report.md");
+    let html = RUN.read("out/index.html");
+    let text = |node: Node<'_, '_>| -> String {
+        node.descendants().filter(Node::is_text).filter_map(|text| text.text()).collect()
+    };
+    let on_page: Vec<String> =
+        page(&html).descendants().filter(|node| node.has_tag_name("li")).map(text).collect();
+    let plain = |markup: &str| markup.replace(['_', '^', '{', '}', '`'], "");
+    let mut findings = 0;
+    for part in parts {
+        assert_eq!(part["objections"], serde_json::json!([]));
+        let name = part["name"].as_str().expect("a name");
+        let numbers = RUN.read(&format!("out/{name}.json"));
+        let numbers: serde_json::Value = serde_json::from_str(&numbers).expect("JSON");
+        assert_eq!(part["numbers"], numbers);
+        for finding in part["findings"].as_array().expect("findings") {
+            let finding = finding.as_str().expect("a sentence");
+            assert!(markdown.contains(finding), "{finding}");
+            assert!(on_page.contains(&plain(finding)), "{finding}");
+            findings += 1;
+        }
+    }
+    assert_eq!(parts.len(), 7);
+    assert!(findings > 15, "{findings}");
+}
+
+#[test]
+fn the_line_of_the_points_has_the_known_numbers_of_switches() {
+    let counts = |axis: &str| -> Vec<String> {
+        let rows = table("out/figure4.csv").into_iter().filter(|row| row["axis"] == axis);
+        rows.map(|row| row["switch_count"].clone()).collect()
+    };
+    assert_eq!(counts("ακ").join(" "), "0 2 4 6 8 6 8 6 4 6 4 2 4 2 4 2");
+    assert_eq!(counts("κ").join(" "), "0 2 4 2 4 2 4 2");
+    // Both lines are without gaps.
+    let rows = table("out/figure4.csv");
+    for pair in rows.windows(2).filter(|pair| pair[0]["axis"] == pair[1]["axis"]) {
+        assert_eq!(pair[0]["ratio_low"], pair[1]["ratio_high"]);
+    }
+    // An independent engine: the count changes across every end.
+    for row in rows.iter().filter(|row| row["ratio_low"] != "0.0") {
+        let end: f64 = row["ratio_low"].parse().expect("a number");
+        let counts = [1.0 - 1e-6, 1.0 + 1e-6].map(|factor| {
+            let ratio = end * factor;
+            let line = format!("collide --kappa {} --ratio {ratio:?} --format json", row["kappa"]);
+            let object: serde_json::Value =
+                serde_json::from_str(&RUN.run(&line).stdout).expect("JSON");
+            object["switch_count"].as_u64().expect("a count")
+        });
+        assert_eq!(counts[0].abs_diff(counts[1]), 2, "{end}");
+        assert_eq!(counts[1].to_string(), row["switch_count"]);
+    }
+}
+
+#[test]
+fn the_points_are_what_the_paper_says_of_them() {
+    let points = table("out/figure5.csv");
+    let of = |name: &str| {
+        let row = points.iter().find(|row| row["axis"] == "ακ" && row["point"] == name);
+        row.unwrap_or_else(|| panic!("no point {name}"))
+    };
+    let number = |name: &str, column: &str| -> f64 { of(name)[column].parse().expect("a number") };
+    // The largest compression.
+    let middle = 0.5 * 3.21806545971904;
+    assert!(of("a")["first_switch"].is_empty());
+    for name in ["b", "c", "d"] {
+        assert!(number(name, "first_switch") > middle, "{name}");
+    }
+    let before = middle - number("e", "first_switch");
+    assert!(before > 0.0 && before < 0.1, "{before}");
+    let [i, j, k] = ["i", "j", "k"].map(|name| number(name, "switch_count"));
+    assert_eq!([j - i, j - k], [2.0, 2.0]);
+    assert_eq!(number("o", "switch_count"), 2.0);
+    // The same ratios in both readings, and at most four switches with κ as printed.
+    let printed: Vec<_> = points.iter().filter(|row| row["axis"] == "κ").collect();
+    assert_eq!(printed.len(), 16);
+    for row in printed {
+        assert_eq!(row["ratio"], of(&row["point"])["ratio"]);
+        assert!(row["switch_count"].parse::<u32>().expect("a count") <= 4);
+    }
+}
+
+#[test]
+fn a_stiff_spring_has_neither_the_switches_nor_the_minimum_of_the_paper() {
+    let rows = table("out/figure6.csv");
+    let numbers: Vec<[f64; 3]> = rows
+        .iter()
+        .map(|row| {
+            ["kappa", "switch_count", "first_minimum"]
+                .map(|column| row[column].parse().expect("a number"))
+        })
+        .collect();
+    for (row, [kappa, switches, minimum]) in
+        numbers.iter().zip([[100.0, 4.0, 0.951], [350.0, 10.0, 0.878]])
+    {
+        assert_eq!(row[..2], [kappa, switches]);
+        assert!((row[2] - minimum).abs() < 1e-3, "{row:?}");
+    }
+}
+
+#[test]
+fn data_are_what_the_other_commands_make() {
+    let steel = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/steel_pair.json");
+    RUN.write("steel.json", fs::read(steel).expect("the example"));
+    for (line, out) in [
+        ("--kappa 0:20 --ratio 0:3.5", "figure3_printed"),
+        ("--kappa 0:70 --ratio 0:3.5", "figure3_axis"),
+        ("--kappa 0:20 --ratio 0:4", "figure4_printed"),
+        ("--kappa 0:70 --ratio 0:4", "figure4_axis"),
+        ("--bodies steel.json --normal 0:200 --tangential 0:200", "figure2"),
+    ] {
+        let line = format!("map {line} --size 24x24 --method exact --out {out}.npz");
+        assert_eq!(RUN.run(&line).code, 0, "{line}");
+        let name = format!("{out}.npz");
+        let [ours, theirs] = [RUN.path(&name), RUN.path("out").join(&name)]
+            .map(|path| fs::read(path).expect("a map"));
+        assert!(ours == theirs, "{out}");
+    }
+    let arrays = npz(&RUN.path("out/figure4_axis.npz"));
+    let names: Vec<&str> = arrays.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["kappa", "psi", "ratio", "eps_t", "switch_count"]);
+
+    let line = "trace --kappa 0.05:100 --psi 0.01:3 --out atlas.json --plot atlas.svg";
+    assert_eq!(RUN.run(line).code, 0);
+    assert!(RUN.read("atlas.json") == RUN.read("out/atlas.json"));
+    assert!(RUN.read("atlas.svg") == RUN.read("out/boundaries.svg"));
+    // The boundaries of Figure 4 are an atlas, too.
+    RUN.write("points.csv", "kappa,psi\n63,0.5\n");
+    let line = "locate --atlas out/figure4_boundaries.json --batch points.csv --out located.csv";
+    assert_eq!(RUN.run(line).code, 0);
+    assert!(RUN.read("located.csv").contains(",6,+o-o+o-,"));
+}
+
+#[test]
+fn the_same_bytes_with_one_thread() {
+    let workspace = Workspace::new();
+    let ran = workspace.run("reproduce --out new/out --cells 24 --threads 1");
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    assert_eq!(workspace.names_in("new/out"), expected_names());
+    for name in expected_names() {
+        let [one, two] =
+            [workspace.path("new/out"), RUN.path("out")].map(|out| fs::read(out.join(&name)));
+        assert!(one.expect("a file") == two.expect("a file"), "{name}");
+    }
+}
+
+#[test]
+fn what_was_made_before_a_failure_stays() {
+    let workspace = Workspace::new();
+    // A picture cannot take the name of a directory.
+    fs::create_dir_all(workspace.path("out/figure3.svg")).expect("a directory");
+    let ran = workspace.run("reproduce --out out --cells 8");
+    assert_eq!(ran.code, 1);
+    let expected = "error: out/figure3.svg: cannot be written: is a directory\n";
+    assert!(ran.stderr.ends_with(expected), "{}", ran.stderr);
+    // All of Figures 1 and 2, what of Figure 3 came before the picture, no page and nothing half written.
+    let mut names = expected_names();
+    names.retain(|name| {
+        ["figure1", "figure2"].iter().any(|figure| name.starts_with(figure))
+            || ["figure3.svg", "figure3_axis.npz", "figure3_printed.npz"].contains(&name.as_str())
+    });
+    assert_eq!(workspace.names_in("out"), names);
+}
+
+#[test]
+fn bad_directories_are_refused_before_any_work() {
+    let workspace = Workspace::with_input("a file");
+    for (line, code, expected) in [
+        ("reproduce", 2, "--out <DIR>"),
+        (
+            "reproduce --out in.csv",
+            2,
+            "error: --out in.csv is not a directory; accepted is a directory, or a name that is not taken\n",
+        ),
+        ("reproduce --out in.csv/out", 1, "error: in.csv/out: cannot be written: "),
+        ("reproduce --out out --threads 0", 2, "0 is not in 1..=1024"),
+    ] {
+        let ran = workspace.run(line);
+        assert_eq!(ran.code, code, "{line}: {}", ran.stderr);
+        assert!(ran.stderr.contains(expected), "{line}: {}", ran.stderr);
+        assert!(!ran.stderr.contains("1 of 7"), "{line}");
+    }
+    assert_eq!(workspace.names(), ["in.csv"]);
+    assert_eq!(workspace.read("in.csv"), "a file");
+}
