@@ -203,15 +203,20 @@ impl Map<'_> {
 
     /// Lines and points over the colours.
     fn over(&self, svg: &mut Svg, panel: &Panel) {
-        svg.begin_inside(panel.frame);
-        // Dark lines on dark colours need an edge.
-        for (_, points) in &self.lines {
-            panel.curve(svg, points.iter().copied(), HALO);
+        if !self.lines.is_empty() {
+            svg.begin_inside(panel.frame);
+            // Dark lines on dark colours need an edge.
+            for (_, points) in &self.lines {
+                panel.curve(svg, points.iter().copied(), HALO);
+            }
+            for (stroke, points) in &self.lines {
+                panel.curve(svg, points.iter().copied(), *stroke);
+            }
+            svg.end_inside();
         }
-        for (stroke, points) in &self.lines {
-            panel.curve(svg, points.iter().copied(), *stroke);
+        if self.points.is_empty() {
+            return;
         }
-        svg.end_inside();
         let right = panel.frame.right();
         let mut lowest = panel.frame.bottom() + 0.5 * APART;
         svg.begin_group("points");

@@ -9,8 +9,9 @@ use super::reading::{MU, ratio};
 use super::section::Section;
 use super::sweep::Sweep;
 use crate::error::Failure;
+use crate::figure::map::{self, Map};
+use crate::figure::number;
 use crate::figure::style::FRAME;
-use crate::figure::{map, number};
 use crate::map::{Axis, Coordinates, Plane, Quantity};
 use crate::range::Range;
 use crate::study::{Picture, Study};
@@ -52,11 +53,11 @@ pub fn run(bench: &Bench) -> Result<Section, Failure> {
         reading(SURFACE.tangential_stiffness_kg_per_s2),
         reading(MU)
     );
-    let mut restitution = sweep.restitution("tangential restitution ε_t");
-    restitution.lines = vec![(FRAME, limit_line(VELOCITY.high))];
-    let mut switches = sweep.switches("number of switches");
-    switches.lines = restitution.lines.clone();
-    let svg = map::draw(&title, &[restitution, switches]);
+    let panels =
+        [sweep.restitution("tangential restitution ε_t"), sweep.switches("number of switches")];
+    let lines = vec![(FRAME, limit_line(VELOCITY.high))];
+    let panels = panels.map(|panel| Map { lines: lines.clone(), ..panel });
+    let svg = map::draw(&title, &panels);
     let study = Study {
         name: "figure2",
         title: TITLE,

@@ -8,7 +8,7 @@ pub fn html(text: &str) -> String {
     let mut html = String::with_capacity(text.len());
     for (index, part) in text.split('`').enumerate() {
         if index % 2 == 1 {
-            html.push_str(&format!("<code>{}</code>", escaped(part)));
+            element(&mut html, "code", part);
         } else {
             heights(&mut html, part);
         }
@@ -23,17 +23,23 @@ pub fn escaped(text: &str) -> String {
 
 fn heights(html: &mut String, mut rest: &str) {
     while let Some(place) = rest.find(['_', '^']) {
-        let element = if rest[place..].starts_with('_') { "sub" } else { "sup" };
+        let name = if rest[place..].starts_with('_') { "sub" } else { "sup" };
         html.push_str(&escaped(&rest[..place]));
         let after = &rest[place + 1..];
         let braced = after.strip_prefix('{').and_then(|inner| inner.split_once('}'));
         let (inside, remaining) = braced.unwrap_or_else(|| {
             after.split_at(after.find(|c: char| !c.is_alphanumeric()).unwrap_or(after.len()))
         });
-        html.push_str(&format!("<{element}>{}</{element}>", escaped(inside)));
+        element(html, name, inside);
         rest = remaining;
     }
     html.push_str(&escaped(rest));
+}
+
+fn element(html: &mut String, name: &str, text: &str) {
+    for part in ["<", name, ">", &escaped(text), "</", name, ">"] {
+        html.push_str(part);
+    }
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 use super::markup::{escaped, html as markup};
 use super::section::Section;
 use crate::figure::number;
-use crate::study::{Cell, Picture, Table};
+use crate::study::{Cell, Picture, Study, Table};
 
 /// The title of the page and of the report.
 pub const TITLE: &str = "Tangential restitution of viscoelastic spheres, computed anew";
@@ -25,10 +25,9 @@ const LEAST_SCALE: f64 = 0.7;
 
 /// The page.
 pub fn html(sections: &[Section]) -> String {
-    let contents: String = sections.iter().map(entry).collect();
-    let introduction: String =
-        INTRODUCTION.iter().map(|text| format!("<p>{}</p>\n", markup(text))).collect();
-    let body: String = sections.iter().map(section).collect();
+    let contents = all(sections, entry);
+    let introduction = all(INTRODUCTION, |text| format!("<p>{}</p>\n", markup(text)));
+    let body = all(sections, section);
     format!(
         r#"<!DOCTYPE html>
 <html xmlns="http://www.w3.org/1999/xhtml" lang="en">
@@ -66,29 +65,22 @@ fn entry(section: &Section) -> String {
 }
 
 fn section(section: &Section) -> String {
-    let study = &section.study;
-    let objections = section.objections.iter();
-    let objections: String = objections
-        .map(|objection| {
-            format!("<p class=\"objection\">{}</p>\n", escaped(&objection.to_string()))
-        })
-        .collect();
-    let findings: String =
-        study.findings.iter().map(|finding| format!("<li>{}</li>\n", markup(finding))).collect();
-    let pictures: String = study.pictures.iter().map(figure).collect();
-    let tables = study.tables.iter().filter(|table| section.shown.contains(&table.name));
-    let tables: String = tables.map(self::table).collect();
-    let data = section.data();
-    let data = data.iter().map(|(name, title)| {
-        format!("<li><a href=\"{0}\">{0}</a> {1}</li>\n", escaped(name), markup(title))
+    let Study { name, title, findings, tables, pictures, .. } = &section.study;
+    let title = escaped(title);
+    let objections = all(&section.objections, |objection| {
+        format!("<p class=\"objection\">{}</p>\n", escaped(&objection.to_string()))
     });
-    let data: String = data.collect();
-    let json = format!("<li><a href=\"{0}.json\">{0}.json</a> all numbers</li>\n", study.name);
+    let findings = all(findings, |finding| format!("<li>{}</li>\n", markup(finding)));
+    let pictures = all(pictures, figure);
+    let shown = tables.iter().filter(|table| section.shown.contains(&table.name));
+    let tables = all(shown, table);
+    let numbers = (format!("{name}.json"), "all numbers");
+    let data = all(section.data().into_iter().chain([numbers]), |(file, title)| {
+        format!("<li><a href=\"{0}\">{0}</a> {1}</li>\n", escaped(&file), markup(title))
+    });
     format!(
-        "<section id=\"{}\">\n<h2>{}</h2>\n{objections}<ul class=\"findings\">\n{findings}</ul>\n{pictures}{tables}\
-         <ul class=\"data\">\n{data}{json}</ul>\n</section>\n",
-        study.name,
-        escaped(study.title),
+        "<section id=\"{name}\">\n<h2>{title}</h2>\n{objections}<ul class=\"findings\">\n{findings}</ul>\n{pictures}{tables}\
+         <ul class=\"data\">\n{data}</ul>\n</section>\n"
     )
 }
 
@@ -105,15 +97,10 @@ fn figure(picture: &Picture) -> String {
 
 fn table(table: &Table) -> String {
     let first = table.rows.first().into_iter().flatten();
-    let head = table.columns.iter().zip(first).map(|(column, below)| {
+    let head = all(table.columns.iter().zip(first), |(column, below)| {
         format!("<th class=\"{}\">{}</th>", class(below), markup(column.meaning))
     });
-    let head: String = head.collect();
-    let row = |row: &Vec<Cell>| {
-        let cells: String = row.iter().map(cell).collect();
-        format!("<tr>{cells}</tr>\n")
-    };
-    let rows: String = table.rows.iter().map(row).collect();
+    let rows = all(&table.rows, |row| format!("<tr>{}</tr>\n", all(row, cell)));
     format!(
         "<div class=\"wide\"><table>\n<caption>{}</caption>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}</tbody>\n</table></div>\n",
         markup(&table.title)
@@ -136,4 +123,9 @@ fn class(cell: &Cell) -> &'static str {
         Cell::Text(text) if !text.contains(' ') => "word",
         Cell::Text(_) => "words",
     }
+}
+
+/// One after the other.
+fn all<T>(items: impl IntoIterator<Item = T>, write: impl Fn(T) -> String) -> String {
+    items.into_iter().map(write).collect()
 }
