@@ -80,15 +80,26 @@ pub fn draw(title: &str, maps: &[Map<'_>]) -> io::Result<Svg> {
     let step = STEP + names;
     let mut svg = Svg::new(step * maps.len() as f64 - 16.0, HEIGHT, title);
     svg.words(TITLE_AT, Words::new(title, TITLE, Anchor::Start));
+    let counts = counts(maps);
     for (index, map) in maps.iter().enumerate() {
         let frame = Rectangle { left: FIRST.left + step * index as f64, ..FIRST };
         let panel = Panel { frame, x: map.horizontal.range, y: map.vertical.range, scales: LINEAR };
         match map.values {
             Values::Restitution(values) => restitution(&mut svg, map, &panel, values)?,
-            Values::Switches(counts) => switches(&mut svg, map, &panel, counts)?,
+            Values::Switches(values) => switches(&mut svg, map, &panel, values, &counts)?,
         }
     }
     Ok(svg)
+}
+
+/// All numbers of switches that occur, so that each has one colour in all panels.
+fn counts(maps: &[Map<'_>]) -> Vec<i32> {
+    let values = maps.iter().flat_map(|map| match map.values {
+        Values::Switches(values) => values,
+        Values::Restitution(_) => &[],
+    });
+    let counts: BTreeSet<i32> = values.copied().filter(|&count| count >= 0).collect();
+    counts.into_iter().collect()
 }
 
 fn restitution(svg: &mut Svg, map: &Map<'_>, panel: &Panel, values: &[f64]) -> io::Result<()> {
@@ -121,9 +132,13 @@ fn restitution(svg: &mut Svg, map: &Map<'_>, panel: &Panel, values: &[f64]) -> i
     Ok(())
 }
 
-fn switches(svg: &mut Svg, map: &Map<'_>, panel: &Panel, values: &[i32]) -> io::Result<()> {
-    let counts: BTreeSet<i32> = values.iter().copied().filter(|&count| count >= 0).collect();
-    let counts: Vec<i32> = counts.into_iter().collect();
+fn switches(
+    svg: &mut Svg,
+    map: &Map<'_>,
+    panel: &Panel,
+    values: &[i32],
+    counts: &[i32],
+) -> io::Result<()> {
     // Beyond that many, neighbours share a colour.
     let colours = counts.len().min(usize::from(u8::MAX));
     let shade = |count: i32| {

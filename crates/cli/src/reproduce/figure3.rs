@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::bench::{Bench, MOST_STIFFNESS};
 use super::reading::{ALPHA, MU, Reading};
-use super::section::Section;
+use super::section::{DataFile, Section};
 use super::sweep::Sweep;
 use crate::error::Failure;
 use crate::figure::map::{self, Axis as MapAxis, Map};
@@ -101,7 +101,7 @@ pub fn data(
     sweep: &Sweep,
     reading: Reading,
     figure: &str,
-) -> Result<(super::section::DataFile, Option<Failure>), Failure> {
+) -> Result<(DataFile, Option<Failure>), Failure> {
     let name = format!("{figure}_{}", reading.name());
     sweep.data(
         bench,

@@ -75,7 +75,7 @@ pub fn run(_: &Bench) -> Result<Section, Failure> {
         _ => "both readings have",
     };
     findings.push(format!(
-        "The paper has many sliding episodes, and the first minimum shortly after t = 1; {late} it after that."
+        "The paper has many sliding episodes, and the first minimum shortly after t = 1; {late} it after t = 1."
     ));
     let column = |name, meaning| Column { name, meaning };
     let table = Table {
