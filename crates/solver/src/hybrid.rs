@@ -96,7 +96,7 @@ pub struct SwitchEvent<Mode, const N: usize> {
     /// The guard that fired.
     pub guard: usize,
     /// Further guards of the mode that vanish at the same place, one bit each. Of guards that fire together
-    /// the one listed first decides the transition.
+    /// the one listed first decides the transition, unless it gives way ([`Guard::yielding`]).
     pub simultaneous: u32,
     /// The guard's largest value in the phase over its slope here, in units of s: an error of the guard relative to that value
     /// moves the switch by the error times this. Large near a graze.

@@ -58,6 +58,13 @@ pub struct Special<Margin> {
     pub solved: bool,
 }
 
+impl<Margin> Special<Margin> {
+    /// Whether it tells much better where a known vertex is.
+    pub(crate) fn improves(&self, stop: &Stop) -> bool {
+        self.solved && self.uncertainty < 0.2 * stop.uncertainty
+    }
+}
+
 /// A vertex that is known, where branches through it end.
 #[derive(Clone, Copy, Debug)]
 pub struct Stop {
@@ -314,11 +321,12 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
 
     /// Ends at a special point, which becomes the last node.
     fn finish_at(&mut self, special: Special<F::Margin>) -> Traced<(), F> {
-        let near = special.uncertainty + 1e-9 * self.runs.scale;
+        let near = special.uncertainty + SHORTEST * self.runs.scale;
         let known = self
             .stops
             .iter()
-            .position(|stop| (stop.point - special.point).norm() <= stop.uncertainty + near);
+            .position(|stop| (stop.point - special.point).norm() <= stop.uncertainty + near)
+            .filter(|&index| !special.improves(&self.stops[index]));
         let point = known.map_or(special.point, |index| self.stops[index].point);
         self.finish_with(known.map_or(End::Vertex(special), End::Known), point)
     }

@@ -115,6 +115,9 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
             margins.extend(special.margins.iter().cloned());
             margins.sort();
             margins.dedup();
+            if special.improves(&self.stops[index]) {
+                self.move_vertex(index, special);
+            }
             return index;
         }
         let mut margins = special.margins.clone();
@@ -128,6 +131,23 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         }
         self.part_curves(index);
         index
+    }
+
+    /// Puts a vertex where it is known better, with the curves that end there.
+    fn move_vertex(&mut self, index: usize, special: &Special<Margin>) {
+        self.stops[index] = Stop { point: special.point, uncertainty: special.uncertainty };
+        self.network.vertices[index].point = special.point;
+        self.network.vertices[index].kind = special.kind;
+        for curve in &mut self.network.curves {
+            let Some([start, end]) = curve.ends else { continue };
+            let last = curve.nodes.len() - 1;
+            for (node, vertex) in [(0, start), (last, end)] {
+                if vertex == index {
+                    curve.nodes[node].point = special.point;
+                }
+            }
+        }
+        self.rebuild_index();
     }
 
     /// Adds a curve; nodes that nearly coincide become one, ends go first.

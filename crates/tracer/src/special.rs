@@ -9,6 +9,9 @@ use crate::runs::{Runs, Traced};
 use crate::seed::{bisect, identify};
 use crate::touch::{graze, narrow};
 
+/// Crossings that are not known better, in parts of the window's shorter extent, are looked at as touches.
+const TANGENTIAL: f64 = 1e-9;
+
 /// The special point of a branch after `from` within a step `h` that failed; `beyond` is the place reached if its labels are
 /// wrong. `None` if it is not found from so far away.
 pub(crate) fn locate<F: Family>(
@@ -23,25 +26,30 @@ pub(crate) fn locate<F: Family>(
         margins.extend(wedge(branch, beyond)?);
     }
     for margin in margins {
+        let touch = || graze(branch, from, beyond, &margin, h);
         let met = match meet(branch, from, beyond, &margin, h)? {
-            None if narrow::<F>(from, beyond, &margin, h) => {
-                graze(branch, from, beyond, &margin, h)?
+            None if narrow::<F>(from, beyond, &margin, h) => touch()?.map(|point| (point, 0.0)),
+            // Where boundaries touch, values tell the place to half the digits only.
+            Some((point, off)) if off > TANGENTIAL * branch.runs.scale => {
+                let near = |touch: &Point| (touch - point).norm() <= 10.0 * off;
+                let better = |touch| (touch, 0.3 * off);
+                touch()?.filter(near).map(better).or(Some((point, off)))
             }
             met => met,
         };
-        if let Some(point) = met {
+        if let Some((point, off)) = met {
             let progress = (point - from.node.point).dot(&from.node.tangent);
-            found.push((progress, point, margin));
+            found.push((progress, point, off, margin));
         }
     }
     found.sort_by(|(one, ..), (two, ..)| one.total_cmp(two));
-    for (_, point, margin) in found {
+    for (_, point, off, margin) in found {
         if is_last(branch, from, &point)? {
             return Ok(Some(Special {
                 point,
                 kind: VertexKind::Crossing,
                 margins: vec![branch.margin.clone(), margin],
-                uncertainty: 0.0,
+                uncertainty: off,
                 solved: true,
             }));
         }
@@ -91,7 +99,7 @@ pub(crate) fn give_up<F: Family>(
             None => length = middle,
         }
     }
-    Ok(degenerate(branch, point, 1e-8 * scale, true))
+    Ok(degenerate(branch, point, 1e-7 * scale, true))
 }
 
 fn degenerate<F: Family>(
@@ -153,7 +161,7 @@ fn meet<F: Family>(
     beyond: Option<&FootholdOf<F>>,
     margin: &F::Margin,
     h: f64,
-) -> Traced<Option<Point>, F> {
+) -> Traced<Option<(Point, f64)>, F> {
     let runs = branch.runs;
     let start = from.node.point;
     let end = beyond.map_or_else(|| branch.predict(&from.node, h), |foothold| foothold.node.point);
@@ -166,7 +174,7 @@ fn meet<F: Family>(
         (None, Some(_)) => end,
         _ => return Ok(None),
     };
-    let Some(point) = crossing(
+    let Some((point, off)) = crossing(
         runs,
         [&branch.margin, margin],
         &guess,
@@ -179,7 +187,7 @@ fn meet<F: Family>(
     };
     let progress = (point - start).dot(&from.node.tangent);
     let slack = 1e-9 * runs.scale;
-    Ok((progress > -slack && progress < h + slack).then_some(point))
+    Ok((progress > -slack && progress < h + slack).then_some((point, off)))
 }
 
 /// Whether the branch holds up to `point` and not beyond it.

@@ -113,9 +113,9 @@ fn dip<F: Family>(
     let reach = 2.0 * (chords[0] + chords[1]);
     let crossed =
         crossing(runs, [&branch.margin, margin], &start, tangent, branch.radius(), reach)?;
-    Ok(crossed.map(|point| {
+    Ok(crossed.map(|(point, uncertainty)| {
         let along = (point - places[1].node.point).dot(&places[1].node.tangent);
-        (special(point, 0.0), along < 0.0)
+        (special(point, uncertainty), along < 0.0)
     }))
 }
 
@@ -172,8 +172,8 @@ fn parallel<F: Family>(
         length += shift;
         let turn = (now.sine - last.sine) / shift;
         last = now;
-        shift = -last.sine / turn;
-        if !(length + shift >= limits[0] && length + shift <= limits[1]) {
+        shift = (length - last.sine / turn).clamp(limits[0], limits[1]) - length;
+        if shift == 0.0 && (length == limits[0] || length == limits[1]) || shift.is_nan() {
             return Ok(None);
         }
         if shift.abs() <= 10.0 * runs.options.tolerance {
