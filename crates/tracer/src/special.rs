@@ -9,7 +9,8 @@ use crate::runs::{Runs, Traced};
 use crate::seed::{bisect, identify};
 use crate::touch::{graze, narrow};
 
-/// Crossings that are not known better, in parts of the window's shorter extent, are looked at as touches.
+/// Crossings that are not known better, in parts of the window's shorter extent, are looked at as touches: values tell the place
+/// of those to half the digits only.
 const TANGENTIAL: f64 = 1e-9;
 
 /// The special point of a branch after `from` within a step `h` that failed; `beyond` is the place reached if its labels are
@@ -26,14 +27,9 @@ pub(crate) fn locate<F: Family>(
         margins.extend(wedge(branch, beyond)?);
     }
     for margin in margins {
-        let touch = || graze(branch, from, beyond, &margin, h);
         let met = match meet(branch, from, beyond, &margin, h)? {
-            None if narrow::<F>(from, beyond, &margin, h) => touch()?.map(|point| (point, 0.0)),
-            // Where boundaries touch, values tell the place to half the digits only.
-            Some((point, off)) if off > TANGENTIAL * branch.runs.scale => {
-                let near = |touch: &Point| (touch - point).norm() <= 10.0 * off;
-                let better = |touch| (touch, 0.3 * off);
-                touch()?.filter(near).map(better).or(Some((point, off)))
+            None if narrow::<F>(from, beyond, &margin, h) => {
+                graze(branch, from, beyond, &margin, h)?.map(|point| (point, 0.0))
             }
             met => met,
         };
@@ -45,6 +41,13 @@ pub(crate) fn locate<F: Family>(
     found.sort_by(|(one, ..), (two, ..)| one.total_cmp(two));
     for (_, point, off, margin) in found {
         if is_last(branch, from, &point)? {
+            let (mut point, mut off) = (point, off);
+            if off > TANGENTIAL * branch.runs.scale
+                && let Some(touch) = graze(branch, from, beyond, &margin, h)?
+                && (touch - point).norm() <= 10.0 * off
+            {
+                (point, off) = (touch, 0.3 * off);
+            }
             return Ok(Some(Special {
                 point,
                 kind: VertexKind::Crossing,
