@@ -87,12 +87,11 @@ pub(crate) fn crossing<F: Family>(
             if sine < TRANSVERSAL {
                 return Ok(None);
             }
-            if update.norm() <= LAST * runs.scale {
+            if last <= LAST * runs.scale {
                 return Ok(Some((point, LAST * runs.scale)));
             }
             update *= 0.5;
             point += update;
-            last = f64::INFINITY;
             continue;
         };
         if inverse.is_none() {

@@ -49,7 +49,7 @@ pub use network::{Network, NetworkOf, TraceStatistics, Unresolved};
 pub use options::{InvalidTraceOption, TraceError, TraceOptions};
 pub use runs::Runs;
 pub use subdivision::{Region, Side, Subdivision};
-pub use trace::trace;
+pub use trace::{Tracer, trace};
 pub use verify::{
     Checkpoint, Mismatch, Origin, Reason, Traced, Unverified, Verification, Verified, VerifyError,
     VerifyOptions, until_verified, verify, verify_with,
