@@ -133,8 +133,23 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         index
     }
 
+    /// The curves that end at a vertex: their margins, with the nodes before the ends.
+    pub fn arrivals(&self, vertex: usize) -> Vec<(Node, Margin)> {
+        let mut found = Vec::new();
+        for curve in &self.network.curves {
+            let Some([start, end]) = curve.ends else { continue };
+            let before_last = curve.nodes.len() - 2;
+            for (node, at) in [(1, start), (before_last, end)] {
+                if at == vertex {
+                    found.push((curve.nodes[node], curve.margin.clone()));
+                }
+            }
+        }
+        found
+    }
+
     /// Puts a vertex where it is known better, with the curves that end there.
-    fn move_vertex(&mut self, index: usize, special: &Special<Margin>) {
+    pub fn move_vertex(&mut self, index: usize, special: &Special<Margin>) {
         self.stops[index] = Stop { point: special.point, uncertainty: special.uncertainty };
         self.network.vertices[index].point = special.point;
         self.network.vertices[index].kind = special.kind;

@@ -1,8 +1,8 @@
 //! All boundaries in a window.
 
 use crate::arc::Arc;
-use crate::branch::{Branch, End, Seed, SeedOf, Special};
-use crate::corrector::correct;
+use crate::branch::{Branch, End, SHORTEST, Seed, SeedOf, Special};
+use crate::corrector::{correct, crossing};
 use crate::curve::{Curve, Node, VertexKind};
 use crate::family::{Family, FreeRun, Point, Window};
 use crate::island::islands;
@@ -62,7 +62,8 @@ impl<'f, F: Family> Tracer<'f, F> {
         self.edges()?;
         self.vertices()?;
         self.grid()?;
-        self.close_vertices()
+        self.close_vertices()?;
+        self.polish()
     }
 
     /// Looks between pairs of places for boundaries that are not known yet; whether there are any.
@@ -77,6 +78,7 @@ impl<'f, F: Family> Tracer<'f, F> {
             self.vertices()?;
         }
         self.close_vertices()?;
+        self.polish()?;
         Ok(self.builder.network.curves.len() != before)
     }
 
@@ -157,6 +159,50 @@ impl<'f, F: Family> Tracer<'f, F> {
             if nearest < CIRCLES[0] * self.runs.scale {
                 self.circle(&point, 0.3 * nearest)?;
                 self.vertices()?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Solves again for vertices that are not known well, with the margins of all curves that end there: two of them may meet at a
+    /// large angle.
+    fn polish(&mut self) -> Traced<(), F> {
+        for index in 0..self.builder.stops.len() {
+            let stop = self.builder.stops[index];
+            if stop.uncertainty <= SHORTEST * self.runs.scale {
+                continue;
+            }
+            let mut arrivals: Vec<(Node, F::Margin)> = Vec::new();
+            for (node, margin) in self.builder.arrivals(index) {
+                let margin = self.runs.moved(&node.point, &margin)?;
+                arrivals.push((node, margin));
+            }
+            let mut best: Option<(Point, f64, [F::Margin; 2])> = None;
+            for (node, own) in &arrivals {
+                for (_, other) in arrivals.iter().filter(|(_, other)| other != own) {
+                    let reach = 2.0 * (node.point - stop.point).norm();
+                    let margins = [own, other];
+                    let found = crossing(
+                        &self.runs,
+                        margins,
+                        &node.point,
+                        &node.tangent,
+                        self.runs.scale,
+                        reach,
+                    )?;
+                    if let Some((point, off)) = found
+                        && (point - stop.point).norm() <= 10.0 * stop.uncertainty
+                        && off < best.as_ref().map_or(0.2 * stop.uncertainty, |best| best.1)
+                    {
+                        best = Some((point, off, margins.map(Clone::clone)));
+                    }
+                }
+            }
+            if let Some((point, uncertainty, margins)) = best {
+                let kind = VertexKind::Crossing;
+                let margins = margins.to_vec();
+                let special = Special { point, kind, margins, uncertainty, solved: true };
+                self.builder.move_vertex(index, &special);
             }
         }
         Ok(())
