@@ -51,6 +51,6 @@ pub use runs::Runs;
 pub use subdivision::{Region, Side, Subdivision};
 pub use trace::{Tracer, trace};
 pub use verify::{
-    Checkpoint, Mismatch, Origin, Reason, Traced, Unverified, Verification, Verified, VerifyError,
-    VerifyOptions, until_verified, verify, verify_with,
+    Checkpoint, Mismatch, Origin, Reason, Unverified, Verification, VerifyError, VerifyOptions,
+    verify, verify_with,
 };

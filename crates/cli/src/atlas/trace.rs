@@ -3,19 +3,20 @@
 use std::collections::BTreeMap;
 use std::io::{BufWriter, Write};
 
-use rayon::ThreadPoolBuilder;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use stickslip_model::Contact;
 use stickslip_model::regularized::{GUARDS, Phase, Regularized, STATE};
 use stickslip_solver::{Dop853, Margin, Options, Start};
 use stickslip_tracer::{
-    Curve, HybridFamily, Network, Node, Point, Problem, Subdivision, TraceError, TraceOptions,
-    Vertex, VertexKind, trace,
+    Curve, FamilyError, HybridFamily, Network, Node, Point, Problem, Subdivision, TraceError,
+    TraceOptions, Tracer, Vertex, VertexKind,
 };
 
 use super::boundary::{Kind, itinerary};
 use super::document::Document;
 use super::frame::{Frame, scaled, traced};
-use super::{Atlas, Map, picture, verification};
+use super::verification::{self, Report};
+use super::{Atlas, Map, picture};
 use crate::error::Failure;
 use crate::output::OutputFile;
 use crate::plan::TracePlan;
@@ -32,10 +33,7 @@ pub fn run(plan: &TracePlan) -> Result<(), Failure> {
     let failed = |error| Failure::output(&plan.out, error);
     let mut file = OutputFile::create(&plan.out).map_err(failed)?;
 
-    let (atlas, unresolved) = make(plan)?;
-    let report = pool
-        .install(|| verification::verify(&atlas, unresolved))
-        .map_err(|error| Failure::Trace(error.to_string()))?;
+    let (atlas, report) = make(plan, &pool)?;
     let objection = report.objection();
 
     let document = Document::new(&atlas, report);
@@ -59,8 +57,11 @@ pub fn run(plan: &TracePlan) -> Result<(), Failure> {
     }
 }
 
-/// The atlas, and what the tracer could not explain.
-fn make(plan: &TracePlan) -> Result<(Atlas, Vec<String>), Failure> {
+/// How often a verification may send the tracer back.
+const ROUNDS: u64 = 8;
+
+/// The atlas and its verification. As long as this comes upon other switches than the atlas has, the tracer looks again there.
+fn make(plan: &TracePlan, pool: &ThreadPool) -> Result<(Atlas, Report), Failure> {
     let frame = plan.frame;
     let window = frame.window();
     let fallback = frame.contact(&window.low).map_err(|error| Failure::Trace(error.to_string()))?;
@@ -80,17 +81,42 @@ fn make(plan: &TracePlan) -> Result<(Atlas, Vec<String>), Failure> {
         interpolation: frame.interpolation(plan.tolerance),
         ..TraceOptions::default()
     };
-    let network = trace(&family, &window, &options).map_err(|error| {
-        Failure::Trace(match error {
-            TraceError::Run { point, source } => {
-                let [kappa, psi] = scaled(&point);
-                format!("kappa = {kappa:?}, psi = {psi:?}: {}", source.kind)
-            }
-            error => error.to_string(),
-        })
-    })?;
-    let unresolved = verification::unresolved(&network);
-    let map = map(&frame, plan.tolerance, network, &fallback)?;
+    let mut tracer = Tracer::new(&family, &window, &options).map_err(failure)?;
+    tracer.explore().map_err(failure)?;
+    let mut round = 1;
+    loop {
+        let network = tracer.network();
+        let unresolved = verification::unresolved(&network);
+        let atlas = atlas(plan, network, &fallback)?;
+        let (report, brackets) = pool
+            .install(|| verification::verify(&atlas, unresolved, round))
+            .map_err(|error| Failure::Trace(error.to_string()))?;
+        let again = round < ROUNDS && tracer.look_between(&brackets).map_err(failure)?;
+        if !again {
+            return Ok((atlas, report));
+        }
+        round += 1;
+    }
+}
+
+fn failure(error: TraceError<FamilyError>) -> Failure {
+    Failure::Trace(match error {
+        TraceError::Run { point, source } => {
+            let [kappa, psi] = scaled(&point);
+            format!("kappa = {kappa:?}, psi = {psi:?}: {}", source.kind)
+        }
+        error => error.to_string(),
+    })
+}
+
+/// The atlas of a network.
+fn atlas(
+    plan: &TracePlan,
+    network: Network<Vec<usize>, Margin>,
+    fallback: &Contact,
+) -> Result<Atlas, Failure> {
+    let frame = plan.frame;
+    let map = map(&frame, plan.tolerance, network, fallback)?;
     let unbounded = map
         .regions()
         .iter()
@@ -99,7 +125,7 @@ fn make(plan: &TracePlan) -> Result<(Atlas, Vec<String>), Failure> {
         .map(|(index, region)| Ok((index, verification::itinerary(&frame, &region.sample)?)))
         .collect::<Result<BTreeMap<_, _>, String>>()
         .map_err(Failure::Trace)?;
-    Ok((Atlas { frame, tolerance: plan.tolerance, map, unbounded }, unresolved))
+    Ok(Atlas { frame, tolerance: plan.tolerance, map, unbounded })
 }
 
 /// Collisions at the traced points of a window.
