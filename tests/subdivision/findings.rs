@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use stickslip::tracer::{
-    Curve, Finding, Origin, Point, Side, Subdivision, SubdivisionError, VerifyError, VerifyOptions, Vertex,
-    VertexKind, verify,
+    Curve, Finding, Origin, Point, Side, Subdivision, SubdivisionError, VerifyError, VerifyOptions,
+    Vertex, VertexKind, verify,
 };
 
 use crate::planes::{Plane, TOLERANCE, circle, crossing_circles, even, inside, islands};
