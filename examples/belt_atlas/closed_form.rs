@@ -154,7 +154,7 @@ impl Belt {
 /// The distance of `point` from a boundary along `normal`, by Newton's method; `None` where the phase that grazes is shorter than
 /// 0.02, so that its sines cancel.
 pub fn distance(point: &Point, normal: &Point, switches: usize, at_end: bool) -> Option<f64> {
-    const REACH: f64 = 1e-8;
+    const REACH: f64 = 1e-10;
     let margin = |away: f64| {
         let place = point + normal * away;
         let belt = Belt { frequency: place.x, amplitude: place.y };
