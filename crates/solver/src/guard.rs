@@ -46,7 +46,8 @@ impl Guard {
     /// The guard starts from a zero of this order whenever the mode is entered.
     ///
     /// The zero is divided out before any root is looked for, so the guard can neither fire at the start
-    /// nor need a nudge away from it. What the state's rounding leaves at the start is taken as zero.
+    /// nor need a nudge away from it. What the state's rounding leaves at the start is taken as zero. Of a double zero least is left
+    /// where guard and slope are components of the state that start from exactly 0.
     #[must_use]
     pub const fn from_zero(self, order: u32) -> Self {
         Self { zero_order: order, ..self }
