@@ -2,9 +2,9 @@
 
 use std::collections::VecDeque;
 
-use crate::arc::Arc;
 use crate::curve::{Node, VertexKind};
 use crate::family::{Family, FreeRun, Point};
+use crate::hermite::Cubic;
 use crate::options::TraceError;
 use crate::runs::{Runs, Traced};
 use crate::special;
@@ -269,7 +269,7 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         edge: bool,
         shortened: bool,
     ) -> Traced<(), F> {
-        let arc = Arc::between(&from.node, &foothold.node);
+        let arc = Cubic::between(&from.node, &foothold.node);
         let options = &self.runs.options;
         let angle = from.node.tangent.angle(&foothold.node.tangent);
         self.radius = (arc.chord() / angle).min(self.runs.scale);
@@ -349,7 +349,7 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         let mut node = self.end_node(&last, &point)?;
         self.end = Some(end);
         let reaches = |stop: &Stop| (stop.point - point).norm() <= stop.uncertainty;
-        if let Some(index) = self.passed_stop(&Arc::between(&last, &node))
+        if let Some(index) = self.passed_stop(&Cubic::between(&last, &node))
             && !reaches(&self.stops[index])
         {
             node = self.end_node(&last, &self.stops[index].point)?;

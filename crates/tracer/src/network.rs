@@ -1,9 +1,9 @@
 //! The curves and vertices that a trace collects.
 
-use crate::arc::Arc;
 use crate::branch::{SHORTEST, Special, Stop};
 use crate::curve::{Curve, Node, Vertex};
 use crate::family::{Family, Point, Window};
+use crate::hermite::Cubic;
 
 /// All curves on which the label changes in a window, and where they end.
 #[derive(Clone, Debug, PartialEq)]
@@ -188,7 +188,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         curve.nodes = nodes;
         let index = self.network.curves.len();
         for piece in 0..curve.nodes.len() - 1 {
-            self.enter(index, piece, &Arc::between(&curve.nodes[piece], &curve.nodes[piece + 1]));
+            self.enter(index, piece, &Cubic::between(&curve.nodes[piece], &curve.nodes[piece + 1]));
         }
         self.network.curves.push(curve);
         Some(index)
@@ -211,7 +211,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
             let arc = self.arc(curve, piece);
             for [theta, place] in arc.crossings(a, b) {
                 let [left, right] = self.network.curves[curve].sides.clone();
-                let from_left = arc.velocity(theta).perp(&(b - a)) < 0.0;
+                let from_left = arc.derivative(theta).perp(&(b - a)) < 0.0;
                 let labels = if from_left { [left, right] } else { [right, left] };
                 found.push(Passage { place, labels });
             }
@@ -220,9 +220,9 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         found
     }
 
-    fn arc(&self, curve: usize, piece: usize) -> Arc {
+    fn arc(&self, curve: usize, piece: usize) -> Cubic {
         let nodes = &self.network.curves[curve].nodes;
-        Arc::between(&nodes[piece], &nodes[piece + 1])
+        Cubic::between(&nodes[piece], &nodes[piece + 1])
     }
 
     fn cell_range(&self, bounds: &[Point; 2]) -> [[usize; 2]; 2] {
@@ -240,7 +240,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         })
     }
 
-    fn enter(&mut self, curve: usize, piece: usize, arc: &Arc) {
+    fn enter(&mut self, curve: usize, piece: usize, arc: &Cubic) {
         let [columns, rows] = self.cell_range(&arc.bounds());
         for column in columns[0]..=columns[1] {
             for row in rows[0]..=rows[1] {

@@ -1,10 +1,10 @@
 //! Where a branch must end: the special points that its steps run into.
 
-use crate::arc::Arc;
 use crate::branch::{Branch, FootholdOf, Special};
 use crate::corrector::{correct, crossing, stationary};
 use crate::curve::{Node, VertexKind};
 use crate::family::{Family, Point};
+use crate::hermite::Cubic;
 use crate::runs::{Runs, Traced};
 use crate::seed::{bisect, identify};
 use crate::touch::{graze, narrow};
@@ -207,7 +207,7 @@ fn is_last<F: Family>(
     };
     let node = Node { point: *point, tangent: branch.tangent(&gradient) };
     let length = (point - from.node.point).norm();
-    if length > 1e-6 * runs.scale && !branch.is_clear(from, &Arc::between(&from.node, &node))? {
+    if length > 1e-6 * runs.scale && !branch.is_clear(from, &Cubic::between(&from.node, &node))? {
         return Ok(false);
     }
     let after = point + node.tangent * (0.03 * length).max(1e-6 * runs.scale);

@@ -1,10 +1,10 @@
 //! Boundaries that touch: special points that show neither in labels nor as a crossing of two margins.
 
-use crate::arc::Arc;
 use crate::branch::{Branch, Foothold, FootholdOf, Special};
 use crate::corrector::{correct, crossing};
 use crate::curve::{Node, VertexKind};
 use crate::family::{Family, Point};
+use crate::hermite::Cubic;
 use crate::runs::Traced;
 use crate::special::rivals;
 
@@ -70,14 +70,14 @@ fn dip<F: Family>(
 ) -> Traced<Option<Touch<F::Margin>>, F> {
     let runs = branch.runs;
     let arcs = [
-        Arc::between(&places[0].node, &places[1].node),
-        Arc::between(&places[1].node, &places[2].node),
+        Cubic::between(&places[0].node, &places[1].node),
+        Cubic::between(&places[1].node, &places[2].node),
     ];
     let place = |length: f64| {
         if length < 0.0 {
-            arcs[0].point(1.0 + length / arcs[0].chord())
+            arcs[0].at(1.0 + length / arcs[0].chord())
         } else {
-            arcs[1].point(length / arcs[1].chord())
+            arcs[1].at(length / arcs[1].chord())
         }
     };
     let chords = arcs.map(|arc| arc.chord());
@@ -212,11 +212,11 @@ pub(crate) fn graze<F: Family>(
     if is_twin(branch, margin)? {
         return Ok(None);
     }
-    let arc = Arc::between(&from.node, &end);
+    let arc = Cubic::between(&from.node, &end);
     let chord = arc.chord();
     let slack = 1e-8 * branch.runs.scale;
     for start in [[chord, 0.75 * chord], [0.0, 0.25 * chord]] {
-        let place = |length: f64| arc.point(length / chord);
+        let place = |length: f64| arc.at(length / chord);
         let found = parallel(branch, place, from, margin, start, [-slack, chord + slack])?;
         if let Some((_, probe)) = found
             && (probe.value / probe.slope).abs() <= branch.runs.options.interpolation

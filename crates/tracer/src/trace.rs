@@ -1,10 +1,10 @@
 //! All boundaries in a window.
 
-use crate::arc::Arc;
 use crate::branch::{Branch, End, SHORTEST, Seed, SeedOf, Special};
 use crate::corrector::{correct, crossing};
 use crate::curve::{Curve, Node, VertexKind};
 use crate::family::{Family, FreeRun, Point, Window};
+use crate::hermite::Cubic;
 use crate::island::islands;
 use crate::network::{Builder, NetworkOf, TraceStatistics, Unresolved};
 use crate::options::{TraceError, TraceOptions};
@@ -374,8 +374,8 @@ impl<'f, F: Family> Tracer<'f, F> {
         for index in std::mem::take(&mut self.builder.suspects) {
             let curve = &self.builder.network.curves[index];
             let piece = (curve.nodes.len() - 1) / 2;
-            let guess = Arc::between(&curve.nodes[piece], &curve.nodes[piece + 1]);
-            let (guess, tangent, reach) = (guess.point(0.5), guess.tangent(0.5), guess.chord());
+            let guess = Cubic::between(&curve.nodes[piece], &curve.nodes[piece + 1]);
+            let (guess, tangent, reach) = (guess.at(0.5), guess.tangent(0.5), guess.chord());
             let found =
                 match self.runs.gradient(&guess, &curve.margin, &tangent, self.runs.scale)? {
                     Some(gradient) => correct(&self.runs, &curve.margin, &guess, &gradient, reach)?
