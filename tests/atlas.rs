@@ -117,6 +117,23 @@ fn with_damping_the_subdivision_is_that_of_free_runs() {
     }
 }
 
+/// Where a stick phase shrinks to nothing at the end of contact, however short it and the slip after it are.
+#[test]
+fn with_damping_every_collision_ends_in_slip() {
+    let vertex = Point::new(2.1516695600135187, 0.011366168842137161);
+    let plane = CollisionPlane::new(KAPPA, PSI, 0.01).expect("collisions");
+    let mut counts = [0; 2];
+    for step in [1e-9, 1e-10, 1e-11, 1e-12, 1e-13] {
+        for i in -50..=50 {
+            let fired = label(&plane, &(vertex + Point::new(0.0, step * f64::from(i))))
+                .expect("a collision");
+            assert!([1, 3].contains(&fired.len()), "{fired:?} {i} × {step}");
+            counts[fired.len() / 2] += 1;
+        }
+    }
+    assert!(counts[0] > 50 && counts[1] > 50, "{counts:?}");
+}
+
 #[test]
 fn reference_boundaries_lie_on_traced_curves() {
     let plane = &*ATLAS;

@@ -46,9 +46,10 @@ impl<Mode, const N: usize> Observer<Mode, N> for Fired {
 fn first_of_two<M: Method>(
     method: M,
     values: fn(f64) -> [f64; 2],
+    guards: [Guard; 2],
     options: &Options,
 ) -> (f64, usize, u32) {
-    let system = Two { values, guards: [Guard::new(Direction::Falling).terminal(); 2] };
+    let system = Two { values, guards };
     let mut fired = Fired::default();
     let start = Start { mode: (), s: 0.0, state: State::from([0.0]) };
     let end = run(method, &system, start, 1.0, options, &mut fired).expect("planted");
@@ -59,18 +60,27 @@ fn first_of_two<M: Method>(
 
 #[test]
 fn of_two_guards_the_earlier_fires_and_of_equal_ones_the_first() {
+    let guard = Guard::new(Direction::Falling).terminal();
     for options in step_sizes() {
-        let both = |values: fn(f64) -> [f64; 2], expected: (f64, usize, u32)| {
-            for found in
-                [first_of_two(Dopri5, values, &options), first_of_two(Dop853, values, &options)]
-            {
+        let check = |values, guards, expected: (f64, usize, u32)| {
+            for found in [
+                first_of_two(Dopri5, values, guards, &options),
+                first_of_two(Dop853, values, guards, &options),
+            ] {
                 assert!((found.0 - expected.0).abs() < 1e-15, "{found:?} {options:?}");
                 assert_eq!((found.1, found.2), (expected.1, expected.2), "{options:?}");
             }
         };
+        let both = |values: fn(f64) -> [f64; 2], expected| check(values, [guard; 2], expected);
         // Equal places, in either order of steepness: the guard listed first decides, the other is named.
         both(|s| [0.43 - s, 2.0 * (0.43 - s)], (0.43, 0, 0b10));
         both(|s| [(0.43 - s) * (1.0 + s), 0.43 - s], (0.43, 0, 0b10));
+        // One that gives way is named, and fires only where it is the earlier one.
+        let yielding = [guard.yielding(), guard];
+        check(|s| [0.43 - s, 2.0 * (0.43 - s)], yielding, (0.43, 1, 0b01));
+        check(|s| [(0.43 - s) * (1.0 + s), 0.43 - s], yielding, (0.43, 1, 0b01));
+        check(|s| [0.37 - s, 0.43 - s], yielding, (0.37, 0, 0));
+        check(|s| [0.43 - s, 0.43 - s], [guard.yielding(); 2], (0.43, 0, 0b10));
         // Different places: the earlier, wherever it is listed.
         both(|s| [0.43 - s, 0.37 - s], (0.37, 1, 0));
         both(|s| [0.37 - s, 0.43 - s], (0.37, 0, 0));

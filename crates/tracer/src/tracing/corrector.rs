@@ -3,7 +3,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use crate::family::{Family, Point};
-use crate::runs::{Runs, Traced};
+use crate::tracing::runs::{Runs, Traced};
 
 /// A place on a boundary, with the margins evaluated to get there.
 pub(crate) struct Corrected {

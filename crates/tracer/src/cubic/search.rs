@@ -1,8 +1,8 @@
 //! What steps and searches ask of the cubic between two nodes.
 
-use crate::bernstein::each_root;
+use crate::cubic::Cubic;
+use crate::cubic::bernstein::each_root;
 use crate::family::Point;
-use crate::hermite::Cubic;
 
 impl Cubic {
     pub(crate) fn chord(&self) -> f64 {

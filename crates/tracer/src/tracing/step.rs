@@ -1,11 +1,11 @@
 //! One step of a branch: predict, correct, and see whether it is good.
 
-use crate::branch::{Branch, Foothold, FootholdOf};
-use crate::corrector::correct;
+use crate::cubic::Cubic;
 use crate::curve::Node;
 use crate::family::{Family, Point};
-use crate::hermite::Cubic;
-use crate::runs::Traced;
+use crate::tracing::branch::{Branch, Foothold, FootholdOf};
+use crate::tracing::corrector::correct;
+use crate::tracing::runs::Traced;
 
 /// What became of a step.
 pub(crate) enum Attempt<Label, Margin> {

@@ -1,9 +1,9 @@
 //! Runs against a subdivision: does the label of a region hold where it is tried?
 
 use crate::family::{Family, Point};
-use crate::finding::{Euler, SubdivisionError};
-use crate::locate::Location;
-use crate::subdivision::{Side, Subdivision};
+use crate::regions::finding::{Euler, SubdivisionError};
+use crate::regions::locate::Location;
+use crate::regions::subdivision::{Side, Subdivision};
 
 /// Where labels are tried, besides the sample point of every region.
 #[derive(Clone, Copy, Debug, PartialEq)]

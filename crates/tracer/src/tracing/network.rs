@@ -1,9 +1,9 @@
 //! The curves and vertices that a trace collects.
 
-use crate::branch::{SHORTEST, Special, Stop};
+use crate::cubic::Cubic;
 use crate::curve::{Curve, Node, Vertex};
 use crate::family::{Family, Point, Window};
-use crate::hermite::Cubic;
+use crate::tracing::branch::{SHORTEST, Special, Stop};
 
 /// All curves on which the label changes in a window, and where they end.
 #[derive(Clone, Debug, PartialEq)]

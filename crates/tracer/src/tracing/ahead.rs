@@ -1,11 +1,11 @@
 //! What lies ahead of a branch: vertices that are known, its own start, and the stretch before it ends.
 
-use crate::branch::{Branch, FootholdOf, SHORTEST, Stop};
-use crate::corrector::correct;
+use crate::cubic::Cubic;
 use crate::curve::Node;
 use crate::family::{Family, Point};
-use crate::hermite::Cubic;
-use crate::runs::Traced;
+use crate::tracing::branch::{Branch, FootholdOf, SHORTEST, Stop};
+use crate::tracing::corrector::correct;
+use crate::tracing::runs::Traced;
 
 impl<F: Family> Branch<'_, '_, F> {
     /// The first known vertex on the piece.

@@ -2,14 +2,14 @@
 
 use std::collections::VecDeque;
 
+use crate::cubic::Cubic;
 use crate::curve::{Node, VertexKind};
 use crate::family::{Family, FreeRun, Point};
-use crate::hermite::Cubic;
 use crate::options::TraceError;
-use crate::runs::{Runs, Traced};
-use crate::special;
-use crate::step::Attempt;
-use crate::touch::touch;
+use crate::tracing::runs::{Runs, Traced};
+use crate::tracing::special;
+use crate::tracing::step::Attempt;
+use crate::tracing::touch::touch;
 
 /// Nodes closer than this part of the window's shorter extent are one.
 pub(crate) const SHORTEST: f64 = 1e-9;

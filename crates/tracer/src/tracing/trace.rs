@@ -1,15 +1,15 @@
 //! All boundaries in a window.
 
-use crate::branch::{Branch, End, SHORTEST, Seed, SeedOf, Special};
-use crate::corrector::{correct, crossing};
+use crate::cubic::Cubic;
 use crate::curve::{Curve, Node, VertexKind};
 use crate::family::{Family, FreeRun, Point, Window};
-use crate::hermite::Cubic;
-use crate::island::islands;
-use crate::network::{Builder, NetworkOf, TraceStatistics, Unresolved};
 use crate::options::{TraceError, TraceOptions};
-use crate::runs::{Runs, Traced};
-use crate::seed::{Change, GridPlace, bisect, holds, identify};
+use crate::tracing::branch::{Branch, End, SHORTEST, Seed, SeedOf, Special};
+use crate::tracing::corrector::{correct, crossing};
+use crate::tracing::island::islands;
+use crate::tracing::network::{Builder, NetworkOf, TraceStatistics, Unresolved};
+use crate::tracing::runs::{Runs, Traced};
+use crate::tracing::seed::{Change, GridPlace, bisect, holds, identify};
 
 /// Traces every boundary of a family in a window: what a new [`Tracer`] finds.
 ///

@@ -1,12 +1,12 @@
 //! Boundaries that touch: special points that show neither in labels nor as a crossing of two margins.
 
-use crate::branch::{Branch, Foothold, FootholdOf, Special};
-use crate::corrector::{correct, crossing};
+use crate::cubic::Cubic;
 use crate::curve::{Node, VertexKind};
 use crate::family::{Family, Point};
-use crate::hermite::Cubic;
-use crate::runs::Traced;
-use crate::special::rivals;
+use crate::tracing::branch::{Branch, Foothold, FootholdOf, Special};
+use crate::tracing::corrector::{correct, crossing};
+use crate::tracing::runs::Traced;
+use crate::tracing::special::rivals;
 
 /// A special point, and whether it lies before the last foothold.
 type Touch<Margin> = (Special<Margin>, bool);
