@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 use std::io::{BufWriter, Write};
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use stickslip::collisions::CollisionPlane;
 use stickslip_model::Contact;
-use stickslip_model::regularized::{GUARDS, Phase, Regularized, STATE};
-use stickslip_solver::{Dop853, Margin, Options, Start};
+use stickslip_solver::Margin;
 use stickslip_tracer::{
-    Curve, FamilyError, HybridFamily, Network, Node, Point, Problem, Subdivision, TraceError,
-    TraceOptions, Tracer, Vertex, VertexKind,
+    Curve, FamilyError, Network, Node, Point, Subdivision, TraceError, TraceOptions, Tracer,
+    Vertex, VertexKind,
 };
 
 use super::boundary::{Kind, itinerary};
@@ -64,19 +64,11 @@ const ROUNDS: u64 = 8;
 fn make(plan: &TracePlan, pool: &ThreadPool) -> Result<(Atlas, Report), Failure> {
     let frame = plan.frame;
     let window = frame.window();
-    let fallback = frame.contact(&window.low).map_err(|error| Failure::Trace(error.to_string()))?;
-    let family = HybridFamily {
-        problem: Collisions { frame, fallback },
-        method: Dop853,
-        options: Options {
-            rtol: 1e-14,
-            atol: 1e-14,
-            first_step: Some(0.1),
-            max_step: 0.1,
-            ..Options::default()
-        },
-        end: f64::INFINITY,
-    };
+    let any = frame.contact(&window.low).map_err(|error| Failure::Trace(error.to_string()))?;
+    let Frame { kappa, psi, damping, .. } = frame;
+    let plane = CollisionPlane::new((kappa.low, kappa.high), (psi.low, psi.high), damping)
+        .map_err(|error| Failure::Trace(error.to_string()))?;
+    let family = plane.family();
     let options = TraceOptions {
         interpolation: frame.interpolation(plan.tolerance),
         ..TraceOptions::default()
@@ -87,7 +79,7 @@ fn make(plan: &TracePlan, pool: &ThreadPool) -> Result<(Atlas, Report), Failure>
     loop {
         let network = tracer.network();
         let unresolved = verification::unresolved(&network);
-        let atlas = atlas(plan, network, &fallback)?;
+        let atlas = atlas(plan, network, &any)?;
         let (report, brackets) = pool
             .install(|| verification::verify(&atlas, unresolved, round))
             .map_err(|error| Failure::Trace(error.to_string()))?;
@@ -113,10 +105,10 @@ fn failure(error: TraceError<FamilyError>) -> Failure {
 fn atlas(
     plan: &TracePlan,
     network: Network<Vec<usize>, Margin>,
-    fallback: &Contact,
+    any: &Contact,
 ) -> Result<Atlas, Failure> {
     let frame = plan.frame;
-    let map = map(&frame, plan.tolerance, network, fallback)?;
+    let map = map(&frame, plan.tolerance, network, any)?;
     let unbounded = map
         .regions()
         .iter()
@@ -126,23 +118,6 @@ fn atlas(
         .collect::<Result<BTreeMap<_, _>, String>>()
         .map_err(Failure::Trace)?;
     Ok(Atlas { frame, tolerance: plan.tolerance, map, unbounded })
-}
-
-/// Collisions at the traced points of a window.
-struct Collisions {
-    frame: Frame,
-    /// Stands for places outside of the window at which κ is no number.
-    fallback: Contact,
-}
-
-impl Problem<STATE, GUARDS> for Collisions {
-    type System = Regularized;
-
-    fn at(&self, point: &Point) -> (Regularized, Start<Phase, STATE>) {
-        let contact = self.frame.contact(point).unwrap_or(self.fallback);
-        let system = Regularized::new(contact);
-        (system, Start { mode: Phase::first(&contact), s: 0.0, state: system.start() })
-    }
 }
 
 /// The regions that the traced curves make. Points go through (κ, ψ), as they are written, so that a file makes the same regions
