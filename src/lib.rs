@@ -8,3 +8,5 @@ pub use stickslip_model as model;
 
 /// Curves in a parameter plane on which the switching changes.
 pub use stickslip_tracer as tracer;
+
+pub mod collisions;

@@ -27,6 +27,7 @@ fn crates_keep_to_the_arrows() {
         ("stickslip", "stickslip-solver"),
         ("stickslip", "stickslip-model"),
         ("stickslip", "stickslip-tracer"),
+        ("stickslip-cli", "stickslip"),
         ("stickslip-cli", "stickslip-solver"),
         ("stickslip-cli", "stickslip-model"),
         ("stickslip-cli", "stickslip-tracer"),

@@ -1,103 +1,137 @@
-//! The atlas of the undamped collision, κ from 0.05 to 100, ψ from 0.01 to 3: every boundary traced, the plane subdivided.
+//! Atlases of the collision: every boundary traced, the plane subdivided, and both held against collisions, references and closed
+//! forms.
 //!
-//! Traced in x = ln κ and y = ln(1 + ψ).
+//! `cargo run --release --example atlas_against_engines` does the same with more points, also up to κ = 1000.
 
 #[expect(dead_code, reason = "shared with other tests")]
 mod common;
 
 use std::sync::LazyLock;
 
-use stickslip::model::regularized::{OTHER_SIDE, Phase, Regularized, SAME_SIDE, STATE};
-use stickslip::model::{Contact, Side, exact};
-use stickslip::solver::{Dop853, Margin, Options, Place, Start};
+use rayon::prelude::*;
+use stickslip::collisions::CollisionPlane;
+use stickslip::model::{Collider, exact};
+use stickslip::solver::{Margin, Place};
 use stickslip::tracer::{
-    HybridFamily, Location, Point, Problem, Subdivision, TraceOptions, Window, trace,
+    Location, Point, Subdivision, TraceOptions, Tracer, VerifyOptions, verify_with,
 };
 
-struct Collisions;
+type Atlas = Subdivision<Vec<usize>, Margin>;
 
-impl Collisions {
-    fn contact(point: &Point) -> Contact {
-        // Tracing asks for points a little outside the window.
-        let psi = point.y.exp_m1().max(1e-9);
-        Contact::new(point.x.exp(), psi, 0.0).expect("in the window")
-    }
-
-    fn family(self) -> HybridFamily<Self, Dop853, STATE, 3> {
-        let options = Options {
-            rtol: 1e-14,
-            atol: 1e-14,
-            first_step: Some(0.1),
-            max_step: 0.1,
-            ..Options::default()
-        };
-        HybridFamily { problem: self, method: Dop853, options, end: f64::INFINITY }
-    }
-}
-
-impl Problem<STATE, 3> for Collisions {
-    type System = Regularized;
-
-    fn at(&self, point: &Point) -> (Regularized, Start<Phase, STATE>) {
-        let contact = Self::contact(point);
-        let system = Regularized::new(contact);
-        (system, Start { mode: Phase::first(&contact), s: 0.0, state: system.start() })
-    }
-}
-
-fn window() -> Window {
-    let at = |kappa: f64, psi: f64| Point::new(kappa.ln(), psi.ln_1p());
-    Window { low: at(0.05, 0.01), high: at(100.0, 3.0) }
-}
+const KAPPA: (f64, f64) = (0.05, 100.0);
+const PSI: (f64, f64) = (0.01, 3.0);
 
 /// Without damping, to 2e-13 at the nodes and 2e-12 between them.
-static ATLAS: LazyLock<Subdivision<Vec<usize>, Margin>> = LazyLock::new(|| {
-    let family = Collisions.family();
+static ATLAS: LazyLock<Atlas> = LazyLock::new(|| {
     let options = TraceOptions {
         tolerance: 2e-13,
         interpolation: 2e-12,
         noise: 2e-14,
         ..TraceOptions::default()
     };
-    let network = trace(&family, &window(), &options).expect("an atlas");
-    assert!(network.unresolved.is_empty(), "{:?}", network.unresolved);
-    Subdivision::new(network.window, network.curves, network.vertices, 1e-9).expect("a subdivision")
+    atlas(&undamped(), &options)
 });
 
-/// Guards that fire in the collision at `point`, by the exact engine.
-fn fired(point: &Point) -> Vec<usize> {
-    let collision = exact::collide(Collisions::contact(point)).expect("exact");
-    let mut side = Side::Positive;
-    let guard = |switch: &stickslip::model::Switch| {
-        let same = switch.side == side;
-        side = switch.side;
-        if same { SAME_SIDE } else { OTHER_SIDE }
+fn undamped() -> CollisionPlane {
+    CollisionPlane::new(KAPPA, PSI, 0.0).expect("collisions")
+}
+
+/// An atlas in which nothing is unresolved or inconsistent.
+fn atlas(plane: &CollisionPlane, options: &TraceOptions) -> Atlas {
+    let family = plane.family();
+    let mut tracer = Tracer::new(&family, &plane.window(), options).expect("options in range");
+    tracer.explore().expect("an atlas");
+    let network = tracer.into_network();
+    assert!(network.unresolved.is_empty(), "{:?}", network.unresolved);
+    let atlas = Subdivision::new(network.window, network.curves, network.vertices, 1e-9)
+        .expect("a subdivision");
+    assert!(atlas.findings().is_empty(), "{:?}", atlas.findings());
+    atlas
+}
+
+/// The switches of a collision: by the exact engine, which has no part in the atlas, where there is no damping.
+fn label(plane: &CollisionPlane, point: &Point) -> Result<Vec<usize>, String> {
+    let contact = plane.contact(point).expect("in the window");
+    let collision = if contact.damping() > 0.0 {
+        Collider::default().collide(contact).map_err(|error| error.to_string())
+    } else {
+        exact::collide(contact).map_err(|error| error.to_string())
     };
-    collision.switches.iter().map(guard).collect()
+    Ok(CollisionPlane::label(&collision?))
+}
+
+/// Random points, half of them uniform in κ, half in ln κ, and points beside every boundary: all have the switches of their regions.
+fn assert_right(plane: &CollisionPlane, atlas: &Atlas, kappa: (f64, f64), psi: (f64, f64)) {
+    const COUNT: usize = 100_000;
+    let mut random = fastrand::Rng::with_seed(1);
+    let points: Vec<Point> = (0..COUNT)
+        .map(|index| {
+            let part = random.f64();
+            let kappa = if index % 2 == 0 {
+                kappa.0 + part * (kappa.1 - kappa.0)
+            } else {
+                kappa.0 * (kappa.1 / kappa.0).powf(part)
+            };
+            CollisionPlane::point(kappa, psi.0 + random.f64() * (psi.1 - psi.0))
+        })
+        .collect();
+    let decided: usize = points
+        .par_iter()
+        .map(|point| {
+            let Location::Region(region) = atlas.locate(point) else { return 0 };
+            let expected = atlas.regions()[region].label.clone().ok_or("no label".to_owned());
+            assert_eq!(expected, label(plane, point), "{:?}", CollisionPlane::parameters(point));
+            1
+        })
+        .sum();
+    assert!(decided > COUNT - 10, "{decided}");
+    let near_points = 10_000_usize.div_ceil(2 * atlas.curves().len());
+    let options = VerifyOptions { random_points: 0, near_points, seed: 3, ..Default::default() };
+    let labels = |points: &[Point]| points.par_iter().map(|point| label(plane, point)).collect();
+    let verification = verify_with(atlas, &options, labels).expect("distances in order");
+    assert!(verification.agrees(), "{:?}", verification.mismatches);
+    assert!(verification.tried.iter().sum::<usize>() > 9_500);
 }
 
 #[test]
 fn the_subdivision_is_that_of_the_exact_engine() {
-    let plane = &*ATLAS;
-    assert!(plane.findings().is_empty(), "{:?}", plane.findings());
-    assert_eq!(plane.regions().len(), 33);
-    let mut random = fastrand::Rng::with_seed(1);
-    let mut decided = 0;
-    for _ in 0..100_000 {
-        let kappa = if random.bool() {
-            0.05 + 99.95 * random.f64()
-        } else {
-            0.05 * 2000_f64.powf(random.f64())
-        };
-        let psi = 0.01 + 2.99 * random.f64();
-        let point = Point::new(kappa.ln(), psi.ln_1p());
-        if let Location::Region(region) = plane.locate(&point) {
-            decided += 1;
-            let label = plane.regions()[region].label.as_ref();
-            assert_eq!(label, Some(&fired(&point)), "κ = {kappa}, ψ = {psi}");
+    assert_eq!(ATLAS.regions().len(), 33);
+    assert_right(&undamped(), &ATLAS, KAPPA, PSI);
+}
+
+#[test]
+fn soft_springs_too() {
+    let (kappa, psi) = ((0.001, 0.1), (0.01, 1100.0));
+    let plane = CollisionPlane::new(kappa, psi, 0.0).expect("collisions");
+    let atlas = atlas(&plane, &TraceOptions::default());
+    assert_right(&plane, &atlas, kappa, psi);
+}
+
+#[test]
+fn with_damping_the_subdivision_is_that_of_free_runs() {
+    for (damping, regions) in [(0.01, 42), (0.1, 50), (1.0, 45)] {
+        let plane = CollisionPlane::new(KAPPA, PSI, damping).expect("collisions");
+        let atlas = atlas(&plane, &TraceOptions::default());
+        assert_eq!(atlas.regions().len(), regions, "damping {damping}");
+        assert_right(&plane, &atlas, KAPPA, PSI);
+    }
+}
+
+/// Where a stick phase shrinks to nothing at the end of contact, however short it and the slip after it are.
+#[test]
+fn with_damping_every_collision_ends_in_slip() {
+    let vertex = Point::new(2.1516695600135187, 0.011366168842137161);
+    let plane = CollisionPlane::new(KAPPA, PSI, 0.01).expect("collisions");
+    let mut counts = [0; 2];
+    for step in [1e-9, 1e-10, 1e-11, 1e-12, 1e-13] {
+        for i in -50..=50 {
+            let fired = label(&plane, &(vertex + Point::new(0.0, step * f64::from(i))))
+                .expect("a collision");
+            assert!([1, 3].contains(&fired.len()), "{fired:?} {i} × {step}");
+            counts[fired.len() / 2] += 1;
         }
     }
-    assert!(decided > 99_990, "{decided}");
+    assert!(counts[0] > 50 && counts[1] > 50, "{counts:?}");
 }
 
 #[test]
@@ -107,8 +141,8 @@ fn reference_boundaries_lie_on_traced_curves() {
     let mut count = 0;
     for boundary in common::file("boundaries")["boundaries"].as_array().expect("boundaries") {
         let (kappa, psi) = (common::number(&boundary["kappa"]), common::number(&boundary["psi"]));
-        let point = Point::new(kappa.ln(), psi.ln_1p());
-        if !window().contains(&point) {
+        let point = CollisionPlane::point(kappa, psi);
+        if !plane.window().contains(&point) {
             continue;
         }
         let Location::OnBoundary { curve, .. } = plane.locate(&point) else {
@@ -144,15 +178,15 @@ fn the_top_boundary_is_the_closed_form() {
             continue;
         }
         for node in &curve.nodes {
-            let (kappa, psi) = (node.point.x.exp(), node.point.y.exp_m1());
-            if (window().high.y - node.point.y).abs() > 1e-9 {
+            let [kappa, psi] = CollisionPlane::parameters(&node.point);
+            if (ATLAS.window().high.y - node.point.y).abs() > 1e-9 {
                 largest = largest.max((psi - top(kappa)).abs());
                 nodes += 1;
             }
         }
     }
     println!("{nodes} nodes, largest distance {largest:.1e}");
-    assert!(nodes > 100 && largest < 1e-11);
+    assert!(nodes > 100 && largest < 1e-12);
 }
 
 /// ψ above which the collision has no switch: max(2, 1 − cos q (1 − B sin^{2/5} q)) where (7/5)Bσ² − σ^{8/5} − (2/5)B = 0

@@ -5,11 +5,11 @@ mod locate;
 mod map;
 mod method;
 mod reproduce;
+mod shared;
 mod trace;
 
 use std::path::PathBuf;
 
-use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::{Parser, Subcommand, ValueEnum};
 
 use crate::figure::Target;
@@ -20,6 +20,7 @@ pub use locate::LocateArguments;
 pub use map::MapArguments;
 pub use method::{Method, MethodArguments};
 pub use reproduce::ReproduceArguments;
+pub use shared::CollisionArguments;
 pub use trace::TraceArguments;
 
 /// Collisions of frictional viscoelastic spheres, with every switch between sticking and sliding.
@@ -73,20 +74,9 @@ pub struct CollideArguments {
     #[arg(value_parser = |text: &str| Parameter::Psi.parse(text))]
     pub psi: Option<f64>,
 
-    /// Coefficient of friction μ, with --ratio; above 0 [default: 0.4]
-    #[arg(long, value_name = "M", help_heading = "Collision", allow_hyphen_values = true)]
-    #[arg(value_parser = |text: &str| Parameter::Mu.parse(text))]
-    pub mu: Option<f64>,
-
-    /// Tangential inertia α, with --ratio; above 0, at most 1 [default: 2/7, homogeneous spheres]
-    #[arg(long, value_name = "A", help_heading = "Collision", allow_hyphen_values = true)]
-    #[arg(value_parser = |text: &str| Parameter::Alpha.parse(text))]
-    pub alpha: Option<f64>,
-
-    /// Scaled damping a = A β^⅖ g_n^⅕ of the normal force; 0 or above [default: 0]
-    #[arg(long, value_name = "D", help_heading = "Collision", allow_hyphen_values = true)]
-    #[arg(value_parser = |text: &str| Parameter::Damping.parse(text))]
-    pub damping: Option<f64>,
+    /// What the collision has beside κ and ψ.
+    #[command(flatten, next_help_heading = "Collision")]
+    pub collision: CollisionArguments,
 
     /// What computes a collision.
     #[command(flatten)]
@@ -99,7 +89,7 @@ pub struct CollideArguments {
 
     /// Picture of the forces and the velocity of one collision, beside what is printed
     #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output", conflicts_with = "batch")]
-    #[arg(value_parser = PathBufValueParser::new().try_map(Target::new))]
+    #[arg(value_parser = shared::picture())]
     pub plot: Option<Target>,
 
     /// CSV file with a header row and one collision a row
@@ -116,7 +106,7 @@ pub struct CollideArguments {
 
     /// Threads for a batch; 1 to 1024 [default: one for each core]; results do not depend on it
     #[arg(long, value_name = "N", help_heading = "Batch", allow_hyphen_values = true)]
-    #[arg(value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(value_parser = shared::threads())]
     pub threads: Option<u16>,
 }
 

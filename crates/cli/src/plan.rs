@@ -3,6 +3,7 @@
 mod locate;
 mod map;
 mod reproduce;
+mod rows;
 mod trace;
 
 use std::fs;
@@ -10,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use stickslip_model::Contact;
 
-use crate::args::{CollideArguments, Format};
+use crate::args::{CollideArguments, CollisionArguments, Format};
 use crate::engine::Engine;
 use crate::error::Failure;
 use crate::figure::Target;
@@ -66,14 +67,15 @@ impl CollidePlan {
     /// # Errors
     /// [`Failure::Usage`] says which options do not go together.
     pub fn new(arguments: &CollideArguments) -> Result<Self, Failure> {
-        let engine = arguments.method.engine(arguments.damping)?;
+        let CollisionArguments { mu, alpha, damping } = arguments.collision;
+        let engine = arguments.method.engine(damping)?;
         let given = Given {
             kappa: arguments.kappa,
             psi: arguments.psi,
             ratio: arguments.ratio,
-            mu: arguments.mu,
-            alpha: arguments.alpha,
-            damping: arguments.damping,
+            mu,
+            alpha,
+            damping,
         };
         let (Some(input), Some(out)) = (&arguments.batch, &arguments.out) else {
             let recipe = Recipe::new(&given, |_| None).map_err(|e| Failure::Usage(explain(e)))?;

@@ -305,6 +305,9 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
     #[inline(always)]
     fn guards(&self, phase: Phase) -> [Guard; GUARDS] {
         let end = Guard::new(Direction::Below).terminal();
+        // With damping the limits end at zero, and a spring that stands there slips before.
+        let damped_stick = phase.regime == Regime::Stick && self.contact.damping() > 0.0;
+        let end = if damped_stick { end.yielding() } else { end };
         let leave = Guard::new(Direction::Below);
         match (phase.regime, phase.progress) {
             // Without damping the contact starts at u = 0.
@@ -325,10 +328,17 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
         match phase.regime {
             Regime::Slip => [end, self.slip_guard(phase.side, y), 1.0],
             Regime::Stick => {
-                let force = u * (u * u + a * v);
                 let pull = phase.side.sign() * (self.spring_force * y[SPRING]);
-                let gap = if phase.progress == Progress::Settled { force - pull } else { y[GAP] };
-                [end, gap, force + pull]
+                if phase.progress == Progress::Settled {
+                    let force = u * (u * u + a * v);
+                    [end, force - pull, force + pull]
+                } else if a > 0.0 {
+                    // A phase may begin so late that u² + a v is nothing but rounding: the force is what gap and spring say.
+                    let gap = self.scale * y[GAP];
+                    [gap + pull, gap, gap + 2.0 * pull]
+                } else {
+                    [end, y[GAP], u * u * u + pull]
+                }
             }
         }
     }

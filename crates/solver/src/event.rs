@@ -187,7 +187,7 @@ where
         let end_values = on_their_side(&values);
         let mut event: Option<Event<N>> = None;
         loop {
-            let first = earliest(&statuses);
+            let first = self.earliest(&statuses);
             let Some((guard, crossing)) = first else {
                 let on = event.as_mut().map_or(&mut *step, |event| &mut event.step);
                 let mut found_any = false;
@@ -216,16 +216,16 @@ where
                 return Ok(Found::Event(next));
             }
             if let Some(event) = &event
-                && event.guard < guard
+                && self.precedes(event.guard, guard)
                 && next.elapsed >= (1.0 - TOGETHER) * event.elapsed
             {
-                // Both fire at the end of the shortened step: the one listed first stands.
+                // Both fire at the end of the shortened step: the one that precedes stands.
                 continue;
             }
             let mut at_nodes = self.values_on(&next.step);
             next.simultaneous = self.simultaneous(guard, &at_nodes);
-            if let Some((first, crossing)) = self.listed_before(&next, &values[5], on.h) {
-                // Of guards that fire together the one listed first decides, wherever rounding puts the others.
+            if let Some((first, crossing)) = self.preceding(&next, &values[5], on.h) {
+                // Of guards that fire together the one that precedes decides, wherever rounding puts the others.
                 statuses[first] = Status::Clear;
                 next = self.locate::<M>(on, first, &crossing, exact)?;
                 at_nodes = self.values_on(&next.step);
@@ -241,16 +241,42 @@ where
         }
     }
 
-    /// The first of the guards listed before that of `event` that fire with it on a step of `h` at whose end the guards have
+    /// Whether guard `first` decides if it fires together with guard `second`: of both, the one that does not give way, and else
+    /// the one listed first.
+    fn precedes(&self, first: usize, second: usize) -> bool {
+        let rank = |guard: usize| (self.phase.guards[guard].gives_way(), guard);
+        rank(first) < rank(second)
+    }
+
+    /// The crossing with the least step fraction; of equal ones that of the guard that precedes.
+    fn earliest(&self, statuses: &[Status; G]) -> Option<(usize, Crossing)> {
+        let mut first: Option<(usize, Crossing)> = None;
+        for (guard, status) in statuses.iter().enumerate() {
+            let Status::Fires(crossing) = *status else { continue };
+            let before = |(other, at): (usize, Crossing)| {
+                let (here, there) = (crossing.bracket.guess, at.bracket.guess);
+                here < there || (here == there && self.precedes(guard, other))
+            };
+            if first.is_none_or(before) {
+                first = Some((guard, crossing));
+            }
+        }
+        first
+    }
+
+    /// The first of the guards that precede that of `event` and fire with it on a step of `h` at whose end the guards have
     /// `end_values`.
-    fn listed_before(
+    fn preceding(
         &self,
         event: &Event<N>,
         end_values: &[f64; G],
         h: f64,
     ) -> Option<(usize, Crossing)> {
         let bracket = Bracket { low: 0.0, high: 1.0, guess: event.elapsed / h };
-        (0..event.guard).filter(|&first| event.simultaneous & (1 << first) != 0).find_map(|first| {
+        let together = |&first: &usize| {
+            event.simultaneous & (1 << first) != 0 && self.precedes(first, event.guard)
+        };
+        (0..G.min(32)).filter(together).find_map(|first| {
             let sign = match self.phase.guards[first].direction() {
                 Direction::Rising => -1.0,
                 Direction::Either => -end_values[first].signum(),
@@ -412,19 +438,6 @@ pub(crate) fn rounding<const N: usize>(
         change += (value(s, &moved) - here).abs();
     }
     if change.is_finite() { 4.0 * f64::EPSILON / SLIGHT * change } else { 0.0 }
-}
-
-/// The crossing with the least step fraction; of equal ones the guard listed first.
-fn earliest<const G: usize>(statuses: &[Status; G]) -> Option<(usize, Crossing)> {
-    let mut first: Option<(usize, Crossing)> = None;
-    for (guard, status) in statuses.iter().enumerate() {
-        if let Status::Fires(crossing) = *status
-            && first.is_none_or(|(_, other)| crossing.bracket.guess < other.bracket.guess)
-        {
-            first = Some((guard, crossing));
-        }
-    }
-    first
 }
 
 /// A guard along a step, for isolation.

@@ -30,6 +30,7 @@ pub struct Guard {
     direction: Direction,
     zero_order: u32,
     terminal: bool,
+    yields: bool,
 }
 
 impl Guard {
@@ -39,13 +40,14 @@ impl Guard {
     /// A guard that fires in `direction` and causes a transition.
     #[must_use]
     pub const fn new(direction: Direction) -> Self {
-        Self { direction, zero_order: 0, terminal: false }
+        Self { direction, zero_order: 0, terminal: false, yields: false }
     }
 
     /// The guard starts from a zero of this order whenever the mode is entered.
     ///
     /// The zero is divided out before any root is looked for, so the guard can neither fire at the start
-    /// nor need a nudge away from it. What the state's rounding leaves at the start is taken as zero.
+    /// nor need a nudge away from it. What the state's rounding leaves at the start is taken as zero. Of a double zero least is left
+    /// where guard and slope are components of the state that start from exactly 0.
     #[must_use]
     pub const fn from_zero(self, order: u32) -> Self {
         Self { zero_order: order, ..self }
@@ -55,6 +57,12 @@ impl Guard {
     #[must_use]
     pub const fn terminal(self) -> Self {
         Self { terminal: true, ..self }
+    }
+
+    /// The guard gives way to every other one that fires at the same place.
+    #[must_use]
+    pub const fn yielding(self) -> Self {
+        Self { yields: true, ..self }
     }
 
     /// When the guard fires.
@@ -73,5 +81,11 @@ impl Guard {
     #[must_use]
     pub const fn ends_run(&self) -> bool {
         self.terminal
+    }
+
+    /// Whether it gives way to the others.
+    #[must_use]
+    pub const fn gives_way(&self) -> bool {
+        self.yields
     }
 }

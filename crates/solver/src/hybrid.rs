@@ -37,8 +37,10 @@ pub trait HybridSystem<const N: usize, const G: usize> {
     /// The rates at which the guards of `mode` change along the solution through `y`, whose zeros are the guards' extrema; each may
     /// be multiplied by anything positive.
     ///
-    /// The provided one takes differences along the field over [`RATE_REACH`] to both sides, of fourth order in it; a system whose
-    /// guards change on a shorter scale gives its own. Only margins use it.
+    /// The provided one takes differences along the field over [`RATE_REACH`] to both sides, of fourth order in it, and so has a
+    /// rounding of about 1e-13 of the guards' terms. Only margins use it. A system whose guards change on a shorter scale gives its
+    /// own, and one whose boundaries are to be traced: near them there are phases so short that this rounding leaves a minimum
+    /// undecided, which ends the run with an error.
     fn guard_rates(&self, mode: Self::Mode, s: f64, y: &State<N>) -> [f64; G] {
         let slope = self.field(mode, s, y);
         let at = |reach: f64| self.guard_values(mode, s + reach, &(y + slope * reach));
@@ -96,7 +98,7 @@ pub struct SwitchEvent<Mode, const N: usize> {
     /// The guard that fired.
     pub guard: usize,
     /// Further guards of the mode that vanish at the same place, one bit each. Of guards that fire together
-    /// the one listed first decides the transition.
+    /// the one listed first decides the transition, unless it gives way ([`Guard::yielding`]).
     pub simultaneous: u32,
     /// The guard's largest value in the phase over its slope here, in units of s: an error of the guard relative to that value
     /// moves the switch by the error times this. Large near a graze.

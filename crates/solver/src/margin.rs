@@ -106,7 +106,8 @@ pub struct Margins {
     pub outcome: Outcome,
 }
 
-/// Part of the run below which its last phase may be about to vanish.
+/// Part of the run below which its last phase may be about to vanish: boundaries get their names from runs 1e-9 beside them, where
+/// a phase that vanishes there is shorter. One taken for vanishing without need only costs a longer run.
 const SHORT: f64 = 1e-6;
 
 /// Runs `system` freely and returns every margin that the run leaves.
@@ -148,7 +149,8 @@ where
             if !leaves_margins(about) || exited <= start.s {
                 continue;
             }
-            let found = watch(method, system, start, until, options, &[], guard)?;
+            let watched = (guard, f64::INFINITY);
+            let found = watch(method, system, start, until, options, &[], watched)?;
             let Some(found) = found else { continue };
             let mut add = |place, at: Extremum| {
                 let margin = Margin { exits: exits.clone(), guard, place };
@@ -190,7 +192,13 @@ where
     S: HybridSystem<N, G>,
 {
     let exits = &margin.exits;
-    let watched = watch(method, system, start, end, options, exits, margin.guard)?;
+    let enough = match margin.place {
+        // The minimum nearest to a place is the last one before it or the first one after it.
+        Place::Minimum { near, .. } => near.0,
+        Place::End => f64::INFINITY,
+    };
+    let watched = (margin.guard, enough);
+    let watched = watch(method, system, start, end, options, exits, watched)?;
     let Some(watched) = watched else { return Ok(None) };
     let (place, at) = match margin.place {
         Place::End => (Place::End, watched.end),
@@ -232,7 +240,8 @@ struct Watched {
     end: Option<Extremum>,
 }
 
-/// Follows `exits` and then watches `guard` to the end of the run; `None` if that ends before.
+/// Follows `exits` and then watches `guard` to its first minimum after `enough`, or to the end of the run; `None` if that ends
+/// before.
 fn watch<M, S, const N: usize, const G: usize>(
     method: M,
     system: &S,
@@ -240,13 +249,13 @@ fn watch<M, S, const N: usize, const G: usize>(
     end: f64,
     options: &Options,
     exits: &[Exit],
-    guard: usize,
+    (guard, enough): (usize, f64),
 ) -> Result<Option<Watched>, RunError>
 where
     M: Method,
     S: HybridSystem<N, G>,
 {
-    let prescribed = Prescribed { system, exits, watched: guard };
+    let prescribed = Prescribed { system, exits, watched: guard, enough };
     // A prescribed run may pass switches as close together as it likes.
     let options = Options { zeno: 0.0, ..*options };
     let mut watching = Watching::<S, G> {
@@ -260,7 +269,9 @@ where
         return Ok(None);
     }
     let mut seen = watching.seen;
-    if let Outcome::EndedByGuard { .. } = run.outcome {
+    if let Outcome::EndedByGuard { .. } = run.outcome
+        && run.mode.part != Part::Done
+    {
         let value = prescribed.value(run.mode.mode, guard, run.s, &run.state);
         seen.end = Some(Extremum { s: run.s, value });
     }
@@ -274,6 +285,8 @@ struct Prescribed<'a, S> {
     exits: &'a [Exit],
     /// The guard to watch once they are done.
     watched: usize,
+    /// It is not watched beyond its first minimum after this place.
+    enough: f64,
 }
 
 /// A mode with what has happened so far.
@@ -292,8 +305,10 @@ enum Part {
     Start,
     /// The guard of the exit is looked at, from a place inside the phase on.
     Armed,
-    /// So many minima of the guard that is watched are behind.
-    Minima(usize),
+    /// A minimum of the guard that is watched is behind.
+    Minimum,
+    /// The minimum that was asked for is behind.
+    Done,
 }
 
 /// What is waited for.
@@ -304,6 +319,8 @@ enum Awaited {
     Guard,
     /// A minimum of the guard.
     Minimum,
+    /// Nothing any more.
+    Nothing,
 }
 
 impl<S> Prescribed<'_, S> {
@@ -314,6 +331,7 @@ impl<S> Prescribed<'_, S> {
                 (exit.guard, Awaited::Place(exit.after.0))
             }
             Some(exit) => (exit.guard, Awaited::Guard),
+            None if at.part == Part::Done => (self.watched, Awaited::Nothing),
             None => (self.watched, Awaited::Minimum),
         }
     }
@@ -364,10 +382,11 @@ where
                 Awaited::Guard => Guard::new(Direction::Falling).from_zero(order),
                 Awaited::Minimum => {
                     // The rate rises from zero after a minimum.
-                    let after_minimum = matches!(at.part, Part::Minima(_));
+                    let after_minimum = at.part == Part::Minimum;
                     let order = if after_minimum { 1 } else { order.saturating_sub(1) };
                     Guard::new(Direction::Rising).from_zero(order)
                 }
+                Awaited::Nothing => Guard::new(Direction::Below).terminal(),
             }
         })
     }
@@ -382,6 +401,7 @@ where
             Awaited::Place(place) => place - s,
             Awaited::Guard => sign * values[subject],
             Awaited::Minimum => sign * self.system.guard_rates(at.mode, s, y)[subject],
+            Awaited::Nothing => -1.0,
         };
         values
     }
@@ -401,14 +421,14 @@ where
         s: f64,
         y: &State<N>,
     ) -> (Self::Mode, State<N>) {
-        let part = match (self.subject(&at).1, at.part) {
-            (Awaited::Guard, _) => {
+        let part = match self.subject(&at).1 {
+            Awaited::Guard => {
                 let (mode, y) = self.system.transition(at.mode, guard, s, y);
                 return (PhaseMode { mode, phase: at.phase + 1, part: Part::Start }, y);
             }
-            (Awaited::Place(_), _) => Part::Armed,
-            (Awaited::Minimum, Part::Minima(behind)) => Part::Minima(behind + 1),
-            (Awaited::Minimum, _) => Part::Minima(1),
+            Awaited::Place(_) => Part::Armed,
+            Awaited::Minimum if s < self.enough => Part::Minimum,
+            Awaited::Minimum | Awaited::Nothing => Part::Done,
         };
         (PhaseMode { part, ..at }, *y)
     }
@@ -430,7 +450,7 @@ where
             return;
         }
         match awaited {
-            Awaited::Place(_) => {}
+            Awaited::Place(_) | Awaited::Nothing => {}
             Awaited::Guard => self.seen.exits.push(event.s),
             Awaited::Minimum => {
                 let value = self.prescribed.value(event.from.mode, guard, event.s, &event.before);

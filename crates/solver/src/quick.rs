@@ -22,7 +22,7 @@ pub(crate) enum Quick {
     Negative,
     /// Falls through zero once, steeply.
     Falls {
-        /// The step fraction, to the accuracy of the quintic.
+        /// The step fraction, to about a thousandth of itself: where the search by steps of the method begins.
         theta: f64,
     },
     /// Anything else.
@@ -95,7 +95,7 @@ fn classify<const K: usize>(bernstein: &[f64; K], error: f64) -> Quick {
 }
 
 /// The root of a polynomial that falls through zero once, by Newton's method kept inside a
-/// bracket.
+/// bracket until it moves by less than a thousandth.
 fn falling_root<const K: usize>(bernstein: &[f64; K]) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     let mut theta = bernstein[0] / (bernstein[0] - bernstein[K - 1]);

@@ -1,56 +1,30 @@
 //! Curves in a parameter plane on which the switching of a piecewise-smooth ODE changes, and the subdivision of the plane
 //! that they make.
 //!
-//! In reading order: `family` (what is traced), `hybrid` (hybrid systems as families), `curve` (what comes out);
-//!
-//! - curves: `trace` (how all are found), `branch` (how one is followed), `step` (a step), `special`, `touch` and `ahead` (where it
-//!   ends), `seed` and `island` (where it starts), `corrector`, `runs`, `network`, `arc`;
-//! - regions: `hermite` (the cubics between nodes), `subdivision` with `faces`, `crossing`, `finding` and `interior`, `slabs` and
-//!   `locate` (where a point lies), `verify` (runs against the subdivision).
+//! In reading order: `family` (what is traced), `hybrid` (hybrid systems as families), `curve` (what comes out), `cubic` (curves
+//! between nodes), `options`; then `tracing` (how boundaries are found and followed) and `regions` (what they make of the window).
 
-mod ahead;
-mod arc;
-mod bernstein;
-mod branch;
-mod corrector;
-mod crossing;
+mod cubic;
 mod curve;
-mod faces;
 mod family;
-mod finding;
-mod hermite;
 mod hybrid;
-mod interior;
-mod island;
-mod locate;
-mod network;
 mod options;
-mod outline;
-mod piece;
-mod runs;
-mod seed;
-mod slabs;
-mod special;
-mod step;
-mod subdivision;
-mod touch;
-mod trace;
-mod union;
-mod verify;
+mod regions;
+mod tracing;
 
-pub use branch::{Branch, End, Seed, Special, Stop};
+pub use cubic::Cubic;
 pub use curve::{Curve, Node, Vertex, VertexKind};
 pub use family::{Family, FreeRun, Point, Window};
-pub use finding::{Euler, Finding, SubdivisionError};
-pub use hermite::Cubic;
 pub use hybrid::{FamilyError, FamilyErrorKind, HybridFamily, ModeOf, Problem};
-pub use locate::Location;
-pub use network::{Network, NetworkOf, TraceStatistics, Unresolved};
 pub use options::{InvalidTraceOption, TraceError, TraceOptions};
-pub use runs::Runs;
-pub use subdivision::{Region, Side, Subdivision};
-pub use trace::trace;
-pub use verify::{
-    Checkpoint, Mismatch, Origin, Reason, Traced, Unverified, Verification, Verified, VerifyError,
-    VerifyOptions, until_verified, verify, verify_with,
+pub use regions::finding::{Euler, Finding, SubdivisionError};
+pub use regions::locate::Location;
+pub use regions::subdivision::{Region, Side, Subdivision};
+pub use regions::verify::{
+    Checkpoint, Mismatch, Origin, Reason, Unverified, Verification, VerifyError, VerifyOptions,
+    verify, verify_with,
 };
+pub use tracing::branch::{Branch, End, Seed, Special, Stop};
+pub use tracing::network::{Network, NetworkOf, TraceStatistics, Unresolved};
+pub use tracing::runs::Runs;
+pub use tracing::trace::{Tracer, trace};

@@ -2,11 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::builder::{PathBufValueParser, TypedValueParser};
-
-use crate::args::MethodArguments;
+use crate::args::{CollisionArguments, MethodArguments, shared};
 use crate::figure::Target;
-use crate::parameter::Parameter;
 use crate::range::{Range, Size};
 
 /// Options of `map`.
@@ -47,20 +44,9 @@ pub struct MapArguments {
     #[arg(value_parser = Size::parse)]
     pub size: Size,
 
-    /// Coefficient of friction μ, with --ratio; above 0 [default: 0.4]
-    #[arg(long, value_name = "M", help_heading = "Collisions", allow_hyphen_values = true)]
-    #[arg(value_parser = |text: &str| Parameter::Mu.parse(text))]
-    pub mu: Option<f64>,
-
-    /// Tangential inertia α, with --ratio; above 0, at most 1 [default: 2/7, homogeneous spheres]
-    #[arg(long, value_name = "A", help_heading = "Collisions", allow_hyphen_values = true)]
-    #[arg(value_parser = |text: &str| Parameter::Alpha.parse(text))]
-    pub alpha: Option<f64>,
-
-    /// Scaled damping a = A β^⅖ g_n^⅕ of the normal force; 0 or above [default: 0]
-    #[arg(long, value_name = "D", help_heading = "Collisions", allow_hyphen_values = true)]
-    #[arg(value_parser = |text: &str| Parameter::Damping.parse(text))]
-    pub damping: Option<f64>,
+    /// What the collisions have beside κ and ψ.
+    #[command(flatten, next_help_heading = "Collisions")]
+    pub collisions: CollisionArguments,
 
     /// What computes the collisions.
     #[command(flatten)]
@@ -72,12 +58,12 @@ pub struct MapArguments {
 
     /// Picture of both: ε_t in colours, and the regions of equal numbers of switches
     #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
-    #[arg(value_parser = PathBufValueParser::new().try_map(Target::new))]
+    #[arg(value_parser = shared::picture())]
     pub plot: Option<Target>,
 
     /// Threads; 1 to 1024 [default: one for each core]; results do not depend on it
     #[arg(long, value_name = "N", help_heading = "Output", allow_hyphen_values = true)]
-    #[arg(value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(value_parser = shared::threads())]
     pub threads: Option<u16>,
 }
 

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use super::shared;
+
 /// Options of `reproduce`.
 #[derive(Debug, clap::Args)]
 pub struct ReproduceArguments {
@@ -11,7 +13,7 @@ pub struct ReproduceArguments {
 
     /// Threads; 1 to 1024 [default: one for each core]; results do not depend on it
     #[arg(long, value_name = "N", help_heading = "Output", allow_hyphen_values = true)]
-    #[arg(value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(value_parser = shared::threads())]
     pub threads: Option<u16>,
 
     /// Columns and rows of a map, for trials in a hurry

@@ -2,11 +2,9 @@
 
 use std::path::PathBuf;
 
-use clap::builder::{PathBufValueParser, TypedValueParser};
-
+use crate::args::{CollisionArguments, shared};
 use crate::figure::Target;
 use crate::number;
-use crate::parameter::Parameter;
 use crate::range::Range;
 
 /// Options of `trace`.
@@ -27,20 +25,9 @@ pub struct TraceArguments {
     #[arg(value_parser = Range::parse)]
     pub ratio: Option<Range>,
 
-    /// Coefficient of friction μ, with --ratio; above 0 [default: 0.4]
-    #[arg(long, value_name = "M", help_heading = "Collisions", allow_hyphen_values = true)]
-    #[arg(value_parser = |text: &str| Parameter::Mu.parse(text))]
-    pub mu: Option<f64>,
-
-    /// Tangential inertia α, with --ratio; above 0, at most 1 [default: 2/7, homogeneous spheres]
-    #[arg(long, value_name = "A", help_heading = "Collisions", allow_hyphen_values = true)]
-    #[arg(value_parser = |text: &str| Parameter::Alpha.parse(text))]
-    pub alpha: Option<f64>,
-
-    /// Scaled damping a = A β^⅖ g_n^⅕ of the normal force; 0 or above [default: 0]
-    #[arg(long, value_name = "D", help_heading = "Collisions", allow_hyphen_values = true)]
-    #[arg(value_parser = |text: &str| Parameter::Damping.parse(text))]
-    pub damping: Option<f64>,
+    /// What the collisions have beside κ and ψ.
+    #[command(flatten, next_help_heading = "Collisions")]
+    pub collisions: CollisionArguments,
 
     /// Accuracy of boundaries in ψ, between their points too; with HI of ψ, from 1e-11·(1 + HI) to
     /// 1e-9·(1 + HI), less in narrow windows [default: 1e-10·(1 + HI)]
@@ -54,12 +41,12 @@ pub struct TraceArguments {
 
     /// Picture of the boundaries, with the number of switches in each region
     #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
-    #[arg(value_parser = PathBufValueParser::new().try_map(Target::new))]
+    #[arg(value_parser = shared::picture())]
     pub plot: Option<Target>,
 
     /// Threads that verify; 1 to 1024 [default: one for each core]; results do not depend on it
     #[arg(long, value_name = "N", help_heading = "Output", allow_hyphen_values = true)]
-    #[arg(value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(value_parser = shared::threads())]
     pub threads: Option<u16>,
 }
 

@@ -1,5 +1,6 @@
 //! The window of an atlas, and the coordinates in which it is traced.
 
+use stickslip::collisions::CollisionPlane;
 use stickslip_model::{Contact, InvalidParameter};
 use stickslip_tracer::{Point, Window};
 
@@ -31,12 +32,12 @@ pub struct Ratio {
 
 /// The coordinates (ln κ, ln(1 + ψ)), in which boundaries bend evenly.
 pub fn traced([kappa, psi]: [f64; 2]) -> Point {
-    Point::new(kappa.ln(), psi.ln_1p())
+    CollisionPlane::point(kappa, psi)
 }
 
 /// κ and ψ of a traced point.
 pub fn scaled(point: &Point) -> [f64; 2] {
-    [point.x.exp(), point.y.exp_m1()]
+    CollisionPlane::parameters(point)
 }
 
 impl Frame {

@@ -5,12 +5,12 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use stickslip::collisions::CollisionPlane;
 use stickslip_model::Contact;
-use stickslip_model::regularized::{GUARDS, Phase, Regularized, STATE};
-use stickslip_solver::{Dop853, Margin, Options, Start};
+use stickslip_solver::Margin;
 use stickslip_tracer::{
-    Curve, HybridFamily, Network, Node, Point, Problem, Subdivision, TraceError, TraceOptions,
-    Vertex, VertexKind, trace,
+    Curve, FamilyError, Network, Node, Point, Subdivision, TraceError, TraceOptions, Tracer,
+    Vertex, VertexKind,
 };
 
 use super::boundary::{Kind, itinerary};
@@ -60,18 +60,6 @@ pub struct Made {
     pub report: Report,
 }
 
-/// Traces the boundaries in `frame`, accurate to `tolerance` in ψ, and verifies the regions.
-///
-/// # Errors
-/// A run fails, or the curves make no regions.
-pub fn make(pool: &ThreadPool, frame: Frame, tolerance: f64) -> Result<Made, Failure> {
-    let (atlas, unresolved) = traced_atlas(frame, tolerance)?;
-    let report = pool
-        .install(|| verification::verify(&atlas, unresolved))
-        .map_err(|error| Failure::Trace(error.to_string()))?;
-    Ok(Made { atlas, report })
-}
-
 impl Made {
     /// The atlas as a file.
     ///
@@ -105,35 +93,59 @@ impl Made {
     }
 }
 
-/// The atlas, and what the tracer could not explain.
-fn traced_atlas(frame: Frame, tolerance: f64) -> Result<(Atlas, Vec<String>), Failure> {
+/// How often a verification may send the tracer back.
+const ROUNDS: u64 = 8;
+
+/// Traces the boundaries in `frame`, accurate to `tolerance` in ψ, and verifies the regions. As long as this comes upon other
+/// switches than the atlas has, the tracer looks again there.
+///
+/// # Errors
+/// A run fails, or the curves make no regions.
+pub fn make(pool: &ThreadPool, frame: Frame, tolerance: f64) -> Result<Made, Failure> {
     let window = frame.window();
-    let fallback = frame.contact(&window.low).map_err(|error| Failure::Trace(error.to_string()))?;
-    let family = HybridFamily {
-        problem: Collisions { frame, fallback },
-        method: Dop853,
-        options: Options {
-            rtol: 1e-14,
-            atol: 1e-14,
-            first_step: Some(0.1),
-            max_step: 0.1,
-            ..Options::default()
-        },
-        end: f64::INFINITY,
-    };
+    let any = frame.contact(&window.low).map_err(|error| Failure::Trace(error.to_string()))?;
+    let Frame { kappa, psi, damping, .. } = frame;
+    let plane = CollisionPlane::new((kappa.low, kappa.high), (psi.low, psi.high), damping)
+        .map_err(|error| Failure::Trace(error.to_string()))?;
+    let family = plane.family();
     let options =
         TraceOptions { interpolation: frame.interpolation(tolerance), ..TraceOptions::default() };
-    let network = trace(&family, &window, &options).map_err(|error| {
-        Failure::Trace(match error {
-            TraceError::Run { point, source } => {
-                let [kappa, psi] = scaled(&point);
-                format!("kappa = {kappa:?}, psi = {psi:?}: {}", source.kind)
-            }
-            error => error.to_string(),
-        })
-    })?;
-    let unresolved = verification::unresolved(&network);
-    let map = map(&frame, tolerance, network, &fallback)?;
+    let mut tracer = Tracer::new(&family, &window, &options).map_err(failure)?;
+    tracer.explore().map_err(failure)?;
+    let mut round = 1;
+    loop {
+        let network = tracer.network();
+        let unresolved = verification::unresolved(&network);
+        let atlas = atlas(frame, tolerance, network, &any)?;
+        let (report, brackets) = pool
+            .install(|| verification::verify(&atlas, unresolved, round))
+            .map_err(|error| Failure::Trace(error.to_string()))?;
+        let again = round < ROUNDS && tracer.look_between(&brackets).map_err(failure)?;
+        if !again {
+            return Ok(Made { atlas, report });
+        }
+        round += 1;
+    }
+}
+
+fn failure(error: TraceError<FamilyError>) -> Failure {
+    Failure::Trace(match error {
+        TraceError::Run { point, source } => {
+            let [kappa, psi] = scaled(&point);
+            format!("kappa = {kappa:?}, psi = {psi:?}: {}", source.kind)
+        }
+        error => error.to_string(),
+    })
+}
+
+/// The atlas of a network.
+fn atlas(
+    frame: Frame,
+    tolerance: f64,
+    network: Network<Vec<usize>, Margin>,
+    any: &Contact,
+) -> Result<Atlas, Failure> {
+    let map = map(&frame, tolerance, network, any)?;
     let unbounded = map
         .regions()
         .iter()
@@ -142,24 +154,7 @@ fn traced_atlas(frame: Frame, tolerance: f64) -> Result<(Atlas, Vec<String>), Fa
         .map(|(index, region)| Ok((index, verification::itinerary(&frame, &region.sample)?)))
         .collect::<Result<BTreeMap<_, _>, String>>()
         .map_err(Failure::Trace)?;
-    Ok((Atlas { frame, tolerance, map, unbounded }, unresolved))
-}
-
-/// Collisions at the traced points of a window.
-struct Collisions {
-    frame: Frame,
-    /// Stands for places outside of the window at which κ is no number.
-    fallback: Contact,
-}
-
-impl Problem<STATE, GUARDS> for Collisions {
-    type System = Regularized;
-
-    fn at(&self, point: &Point) -> (Regularized, Start<Phase, STATE>) {
-        let contact = self.frame.contact(point).unwrap_or(self.fallback);
-        let system = Regularized::new(contact);
-        (system, Start { mode: Phase::first(&contact), s: 0.0, state: system.start() })
-    }
+    Ok(Atlas { frame, tolerance, map, unbounded })
 }
 
 /// The regions that the traced curves make. Points go through (κ, ψ), as they are written, so that a file makes the same regions

@@ -62,16 +62,21 @@ pub struct MismatchFields {
     near_boundary: bool,
 }
 
-/// Tries the regions of `atlas`, in parallel; `unresolved` is what is known to be open.
+/// Tries the regions of `atlas`, in parallel, at the points of a round; `unresolved` is what is known to be open. Also returns pairs
+/// of places between which a boundary is missing.
 ///
 /// # Errors
 /// The distances from boundaries are not in order, which is a defect.
-pub fn verify(atlas: &Atlas, mut unresolved: Vec<String>) -> Result<Report, VerifyError> {
+pub fn verify(
+    atlas: &Atlas,
+    mut unresolved: Vec<String>,
+    round: u64,
+) -> Result<(Report, Vec<[Point; 2]>), VerifyError> {
     let Atlas { frame, tolerance, map, .. } = atlas;
     let nearest = 10.0 * frame.resolution(*tolerance);
     let farthest = nearest.max(1e-3 * map.window().extent().min());
     let options =
-        VerifyOptions { random_points: 20_000, near_points: 20, nearest, farthest, seed: 1 };
+        VerifyOptions { random_points: 20_000, near_points: 20, nearest, farthest, seed: round };
     let verification = verify_with(map, &options, |points| {
         points.par_iter().map(|point| itinerary(frame, point)).collect()
     })?;
@@ -89,6 +94,7 @@ pub fn verify(atlas: &Atlas, mut unresolved: Vec<String>) -> Result<Report, Veri
         };
         unresolved.push(format!("kappa = {kappa:?}, psi = {psi:?}: {what}"));
     }
+    let brackets = verification.brackets();
     let agrees = verification.agrees() && unresolved.is_empty();
     let Verification { euler, mismatches, tried, untried_curves, .. } = verification;
     let mismatches = mismatches.into_iter().map(|mismatch| {
@@ -102,7 +108,7 @@ pub fn verify(atlas: &Atlas, mut unresolved: Vec<String>) -> Result<Report, Veri
             near_boundary: matches!(mismatch.checkpoint.origin, Origin::Near { .. }),
         }
     });
-    Ok(Report {
+    let report = Report {
         agrees,
         method: if frame.damping == 0.0 { "exact" } else { "dop853" }.to_owned(),
         euler: EulerFields {
@@ -122,7 +128,8 @@ pub fn verify(atlas: &Atlas, mut unresolved: Vec<String>) -> Result<Report, Veri
         untried_boundaries: untried_curves,
         share_tried: verification.tried_area,
         share_wrong_bound: verification.wrong_area_bound,
-    })
+    };
+    Ok((report, brackets))
 }
 
 impl Report {

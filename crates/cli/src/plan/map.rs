@@ -3,14 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use crate::args::{MapArguments, Method};
+use crate::atlas::Ratio;
 use crate::bodies::read_pair;
 use crate::engine::Engine;
 use crate::error::Failure;
 use crate::figure::Target;
 use crate::map::{Axis, Coordinates, Plane};
 use crate::plan::explain;
+use crate::plan::rows::Rows;
 use crate::range::Range;
-use crate::recipe::{DEFAULT_ALPHA, DEFAULT_MU, RecipeError};
+use crate::recipe::RecipeError;
 
 /// A map to be computed.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,7 +57,7 @@ impl MapPlan {
                 rows: Axis { range: rows, cells: size.rows },
                 coordinates,
             },
-            engine: arguments.method.engine(arguments.damping)?,
+            engine: arguments.method.engine(arguments.collisions.damping)?,
             out: arguments.out.clone(),
             format: format(&arguments.out)?,
             plot: arguments.plot.clone(),
@@ -66,22 +68,15 @@ impl MapPlan {
 
 /// The axes κ and ψ, or κ and g_t/g_n.
 fn scaled(arguments: &MapArguments) -> Result<(Range, Range, Coordinates), Failure> {
-    let MapArguments { kappa, psi, ratio, mu, alpha, .. } = *arguments;
-    let refused = |error| Failure::Usage(explain(error));
-    let damping = arguments.damping.unwrap_or(0.0);
-    let kappa = kappa.ok_or_else(|| refused(RecipeError::NoKappa))?;
-    match (psi, ratio) {
-        (Some(_), Some(_)) => Err(refused(RecipeError::PsiAndRatio)),
-        (None, None) => Err(refused(RecipeError::NoImpact)),
-        (Some(psi), None) => match [("mu", mu), ("alpha", alpha)].iter().find(|x| x.1.is_some()) {
-            Some((name, _)) => Err(refused(RecipeError::Unused { name })),
-            None => Ok((kappa, psi, Coordinates::Psi { damping })),
-        },
-        (None, Some(ratio)) => {
-            let (mu, alpha) = (mu.unwrap_or(DEFAULT_MU), alpha.unwrap_or(DEFAULT_ALPHA));
-            Ok((kappa, ratio, Coordinates::Ratio { mu, alpha, damping }))
+    let MapArguments { kappa, psi, ratio, collisions, .. } = *arguments;
+    let kappa = kappa.ok_or_else(|| Failure::Usage(explain(RecipeError::NoKappa)))?;
+    let damping = collisions.damping.unwrap_or(0.0);
+    Ok(match Rows::new(psi, ratio, collisions)? {
+        Rows::Psi(psi) => (kappa, psi, Coordinates::Psi { damping }),
+        Rows::Ratio(Ratio { range, mu, alpha }) => {
+            (kappa, range, Coordinates::Ratio { mu, alpha, damping })
         }
-    }
+    })
 }
 
 /// The axes g_n and g_t of the bodies in a file.

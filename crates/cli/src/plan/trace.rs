@@ -7,8 +7,9 @@ use crate::atlas::{Frame, Ratio};
 use crate::error::Failure;
 use crate::figure::Target;
 use crate::plan::explain;
+use crate::plan::rows::Rows;
 use crate::range::Range;
-use crate::recipe::{DEFAULT_ALPHA, DEFAULT_MU, RecipeError};
+use crate::recipe::RecipeError;
 
 /// An atlas to be traced.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,30 +53,25 @@ impl TracePlan {
 }
 
 fn frame(arguments: &TraceArguments) -> Result<Frame, Failure> {
-    let TraceArguments { kappa, psi, ratio, mu, alpha, .. } = *arguments;
-    let refused = |error| Failure::Usage(explain(error));
-    let kappa = positive("--kappa", kappa.ok_or_else(|| refused(RecipeError::NoKappa))?)?;
-    let (psi, ratio) = match (psi, ratio) {
-        (Some(_), Some(_)) => return Err(refused(RecipeError::PsiAndRatio)),
-        (None, None) => return Err(refused(RecipeError::NoImpact)),
-        (Some(psi), None) => match [("mu", mu), ("alpha", alpha)].iter().find(|x| x.1.is_some()) {
-            Some((name, _)) => return Err(refused(RecipeError::Unused { name })),
-            None => (positive("--psi", psi)?, None),
-        },
-        (None, Some(ratio)) => {
-            let range = positive("--ratio", ratio)?;
-            let (mu, alpha) = (mu.unwrap_or(DEFAULT_MU), alpha.unwrap_or(DEFAULT_ALPHA));
-            let [low, high] = [range.low, range.high].map(|ratio| ratio * alpha / mu);
+    let TraceArguments { kappa, psi, ratio, collisions, .. } = *arguments;
+    let kappa = kappa.ok_or_else(|| Failure::Usage(explain(RecipeError::NoKappa)))?;
+    let kappa = positive("--kappa", kappa)?;
+    let (psi, ratio) = match Rows::new(psi, ratio, collisions)? {
+        Rows::Psi(psi) => (positive("--psi", psi)?, None),
+        Rows::Ratio(ratio) => {
+            let Ratio { range, mu, alpha } = ratio;
+            let Range { low, high } = positive("--ratio", range)?;
+            let [low, high] = [low, high].map(|ratio| ratio * alpha / mu);
             if !(low > 0.0 && low < high && high.is_finite()) {
                 return Err(Failure::Usage(format!(
                     "psi = ratio·alpha/mu from {low:?} to {high:?} is out of range; accepted are \
                      finite numbers 0 < LO < HI"
                 )));
             }
-            (Range { low, high }, Some(Ratio { range, mu, alpha }))
+            (Range { low, high }, Some(ratio))
         }
     };
-    Ok(Frame { kappa, psi, ratio, damping: arguments.damping.unwrap_or(0.0) })
+    Ok(Frame { kappa, psi, ratio, damping: collisions.damping.unwrap_or(0.0) })
 }
 
 /// `range`, unless it begins at 0, where there is no collision.

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use crate::family::{Family, Point};
-use crate::runs::{Runs, Traced};
+use crate::tracing::runs::{Runs, Traced};
 
 /// A place on a boundary, with the margins evaluated to get there.
 pub(crate) struct Corrected {
@@ -58,7 +58,10 @@ pub(crate) fn correct<F: Family>(
     Ok(None)
 }
 
-/// The place near `guess` where two margins vanish together, by Newton's method; `direction` is that of differences.
+/// The place near `guess` where two margins vanish together, by Newton's method, and how far off it may be, which is much where
+/// they all but touch; `direction` is that of differences.
+///
+/// Where a margin stops to exist at the other's boundary, the place is approached from the side on which both do.
 pub(crate) fn crossing<F: Family>(
     runs: &Runs<'_, F>,
     margins: [&F::Margin; 2],
@@ -66,15 +69,30 @@ pub(crate) fn crossing<F: Family>(
     direction: &Point,
     radius: f64,
     reach: f64,
-) -> Traced<Option<Point>, F> {
+) -> Traced<Option<(Point, f64)>, F> {
+    /// An update that leads where a margin does not exist is trusted if it is less than this part of the window: what it leaves is
+    /// of second order.
+    const LAST: f64 = 1e-7;
+    /// The least sine of the angle between two boundaries with which it is.
+    const TRANSVERSAL: f64 = 0.03;
     let mut point = *guess;
+    let mut update = Point::zeros();
+    let mut sine = 0.0;
     let mut last = f64::INFINITY;
     let mut inverse: Option<Matrix2<f64>> = None;
-    for _ in 0..20 {
+    for _ in 0..40 {
         let (Some(first), Some(second)) =
             (runs.margin(&point, margins[0])?, runs.margin(&point, margins[1])?)
         else {
-            return Ok(None);
+            if sine < TRANSVERSAL {
+                return Ok(None);
+            }
+            if last <= LAST * runs.scale {
+                return Ok(Some((point, LAST * runs.scale)));
+            }
+            update *= 0.5;
+            point += update;
+            continue;
         };
         if inverse.is_none() {
             let (Some(one), Some(two)) = (
@@ -83,7 +101,7 @@ pub(crate) fn crossing<F: Family>(
             ) else {
                 return Ok(None);
             };
-            let sine = one.perp(&two).abs() / (one.norm() * two.norm());
+            sine = one.perp(&two).abs() / (one.norm() * two.norm());
             let independent = sine > 1e-7;
             if !independent {
                 return Ok(None);
@@ -91,7 +109,7 @@ pub(crate) fn crossing<F: Family>(
             inverse = Matrix2::from_rows(&[one.transpose(), two.transpose()]).try_inverse();
         }
         let Some(solver) = inverse else { return Ok(None) };
-        let update = solver * Vector2::new(first, second);
+        update = solver * Vector2::new(first, second);
         point -= update;
         let size = update.norm();
         let within = (point - guess).norm() <= reach;
@@ -100,7 +118,7 @@ pub(crate) fn crossing<F: Family>(
         }
         let resolution = runs.options.tolerance.max(runs.options.noise * solver.norm());
         if size <= runs.options.tolerance || (size <= 10.0 * resolution && size >= 0.5 * last) {
-            return Ok(Some(point));
+            return Ok(Some((point, 10.0 * resolution)));
         }
         // Gradients serve as long as the updates shrink fast.
         if size > 0.01 * last {

@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use crate::crossing::Edge;
 use crate::family::Point;
-use crate::piece::Piece;
-use crate::slabs::Slabs;
-use crate::union::DisjointSets;
+use crate::regions::crossing::Edge;
+use crate::regions::piece::Piece;
+use crate::regions::slabs::Slabs;
+use crate::regions::union::DisjointSets;
 
 /// The faces of both sides, left and right, of every edge; `None` is the outside.
 #[derive(Clone, Debug)]

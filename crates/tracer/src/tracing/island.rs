@@ -2,10 +2,10 @@
 
 use nalgebra::Matrix2;
 
-use crate::corrector::derivatives;
 use crate::family::{Family, Point};
-use crate::runs::{Runs, Traced};
-use crate::seed::GridPlace;
+use crate::tracing::corrector::derivatives;
+use crate::tracing::runs::{Runs, Traced};
+use crate::tracing::seed::GridPlace;
 
 /// Places near those of the grid where a margin has another sign than around: one for each least value among neighbours whose
 /// minimum lies on the other side of zero.

@@ -1,11 +1,11 @@
 //! One step of a branch: predict, correct, and see whether it is good.
 
-use crate::arc::Arc;
-use crate::branch::{Branch, Foothold, FootholdOf};
-use crate::corrector::correct;
+use crate::cubic::Cubic;
 use crate::curve::Node;
 use crate::family::{Family, Point};
-use crate::runs::Traced;
+use crate::tracing::branch::{Branch, Foothold, FootholdOf};
+use crate::tracing::corrector::correct;
+use crate::tracing::runs::Traced;
 
 /// What became of a step.
 pub(crate) enum Attempt<Label, Margin> {
@@ -104,9 +104,9 @@ impl<F: Family> Branch<'_, '_, F> {
             return Ok(Attempt::Turn(angle));
         }
         let node = Node { point: corrected.point, tangent };
-        let arc = Arc::between(&from.node, &node);
+        let arc = Cubic::between(&from.node, &node);
         // Off the middle, where the errors of fourth and of fifth order both show; the first has 0.7 of its maximum there.
-        let Some(value) = runs.margin(&arc.point(0.3), &self.margin)? else {
+        let Some(value) = runs.margin(&arc.at(0.3), &self.margin)? else {
             return Ok(Attempt::Lost);
         };
         let slope = 0.5 * (gradient.norm() + from.gradient.norm());
@@ -127,10 +127,10 @@ impl<F: Family> Branch<'_, '_, F> {
         };
         Ok(match self.foothold(&point, &gradient)? {
             Ok(foothold) => {
-                let arc = Arc::between(&from.node, &foothold.node);
+                let arc = Cubic::between(&from.node, &foothold.node);
                 if let Some(index) = self.passed_stop(&arc) {
                     let end = self.end_node(&from.node, &self.stops[index].point)?;
-                    let arc = Arc::between(&from.node, &end);
+                    let arc = Cubic::between(&from.node, &end);
                     // Another special point lies before the vertex: shorter steps find it.
                     if arc.chord() > 1e-6 * runs.scale && !self.is_clear(from, &arc)? {
                         return Ok(Attempt::Lost);
@@ -146,30 +146,30 @@ impl<F: Family> Branch<'_, '_, F> {
     pub(crate) fn predict(&self, from: &Node, h: f64) -> Point {
         let before = self.trail.len().checked_sub(2).map(|index| self.trail[index].node);
         if let Some(before) = before {
-            let arc = Arc::between(&before, from);
+            let arc = Cubic::between(&before, from);
             if h < 2.5 * arc.chord() && arc.chord() > 1e-6 * self.runs.scale {
-                return arc.point(1.0 + h / arc.chord());
+                return arc.at(1.0 + h / arc.chord());
             }
         }
         from.point + from.tangent * h
     }
 
     /// Where the piece leaves the window, solved on the edge; `None` if it does not.
-    pub(crate) fn leave_window(&self, arc: &Arc, gradient: &Point) -> Traced<Option<Point>, F> {
+    pub(crate) fn leave_window(&self, arc: &Cubic, gradient: &Point) -> Traced<Option<Point>, F> {
         let window = &self.runs.window;
-        if window.contains(&arc.point(1.0)) {
+        if window.contains(&arc.at(1.0)) {
             return Ok(None);
         }
         let (mut inside, mut outside) = (0.0, 1.0);
         for _ in 0..50 {
             let middle = 0.5 * (inside + outside);
-            if window.contains(&arc.point(middle)) { inside = middle } else { outside = middle }
+            if window.contains(&arc.at(middle)) { inside = middle } else { outside = middle }
         }
-        let exit = arc.point(outside);
+        let exit = arc.at(outside);
         let axis = usize::from(exit.y < window.low.y || exit.y > window.high.y);
         let edge =
             if exit[axis] > window.high[axis] { window.high[axis] } else { window.low[axis] };
-        let mut guess = arc.point(inside);
+        let mut guess = arc.at(inside);
         guess[axis] = edge;
         let mut along = *gradient;
         along[axis] = 0.0;

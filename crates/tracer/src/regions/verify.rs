@@ -1,10 +1,9 @@
 //! Runs against a subdivision: does the label of a region hold where it is tried?
 
-use crate::curve::{Curve, Vertex};
 use crate::family::{Family, Point};
-use crate::finding::{Euler, SubdivisionError};
-use crate::locate::Location;
-use crate::subdivision::{Side, Subdivision};
+use crate::regions::finding::{Euler, SubdivisionError};
+use crate::regions::locate::Location;
+use crate::regions::subdivision::{Side, Subdivision};
 
 /// Where labels are tried, besides the sample point of every region.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,6 +115,16 @@ pub struct Verification<Label, Error> {
 }
 
 impl<Label, Error> Verification<Label, Error> {
+    /// Pairs of places in one region by location, of which one has the label of the region and the other has not: between them
+    /// lies a boundary for [`Tracer::look_between`](crate::Tracer::look_between) to find.
+    #[must_use]
+    pub fn brackets(&self) -> Vec<[Point; 2]> {
+        let bracket = |mismatch: &Mismatch<Label>| {
+            mismatch.agreeing.map(|agreeing| [agreeing, mismatch.checkpoint.point])
+        };
+        self.mismatches.iter().filter_map(bracket).collect()
+    }
+
     /// Whether nothing speaks against the subdivision.
     #[must_use]
     pub fn agrees(&self) -> bool {
@@ -197,46 +206,6 @@ pub fn verify_with<Label: Clone + Ord, Margin, Error>(
     }
     Ok(judge.finish())
 }
-
-/// Makes a subdivision and verifies it; as long as something speaks against it, lets `retrace` look for what is missing.
-///
-/// `retrace` gets the subdivision and what was found, and returns all curves and vertices, or `None` when it finds nothing new.
-/// Each of at most `rounds` rounds tries other points.
-///
-/// # Errors
-/// Curves that make no subdivision, or distances that are not in order.
-pub fn until_verified<F: Family>(
-    family: &F,
-    mut plane: Subdivision<F::Label, F::Margin>,
-    options: &VerifyOptions,
-    rounds: u32,
-    mut retrace: impl FnMut(
-        &Subdivision<F::Label, F::Margin>,
-        &Verification<F::Label, F::Error>,
-    ) -> Option<Traced<F>>,
-) -> Result<Verified<F>, VerifyError> {
-    let mut verification = verify(&plane, family, options)?;
-    for round in 1..rounds {
-        if verification.agrees() {
-            break;
-        }
-        let Some((curves, vertices)) = retrace(&plane, &verification) else { break };
-        plane = Subdivision::new(*plane.window(), curves, vertices, plane.tolerance())?;
-        let seed = options.seed.wrapping_add(u64::from(round));
-        verification = verify(&plane, family, &VerifyOptions { seed, ..*options })?;
-    }
-    Ok((plane, verification))
-}
-
-/// Curves and vertices of a family.
-pub type Traced<F> =
-    (Vec<Curve<<F as Family>::Label, <F as Family>::Margin>>, Vec<Vertex<<F as Family>::Margin>>);
-
-/// A subdivision of a family, and what its verification found.
-pub type Verified<F> = (
-    Subdivision<<F as Family>::Label, <F as Family>::Margin>,
-    Verification<<F as Family>::Label, <F as Family>::Error>,
-);
 
 /// The sample points first, so that a region's label is known before it is needed.
 fn checkpoints<Label: Clone + Ord, Margin>(

@@ -1,8 +1,8 @@
 //! Which region a point lies in, and how far the nearest boundary is.
 
 use crate::family::Point;
-use crate::piece::Piece;
-use crate::subdivision::Subdivision;
+use crate::regions::piece::Piece;
+use crate::regions::subdivision::Subdivision;
 
 /// Where a point lies.
 #[derive(Clone, Copy, Debug, PartialEq)]

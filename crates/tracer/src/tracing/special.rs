@@ -1,13 +1,17 @@
 //! Where a branch must end: the special points that its steps run into.
 
-use crate::arc::Arc;
-use crate::branch::{Branch, FootholdOf, Special};
-use crate::corrector::{correct, crossing, stationary};
+use crate::cubic::Cubic;
 use crate::curve::{Node, VertexKind};
 use crate::family::{Family, Point};
-use crate::runs::{Runs, Traced};
-use crate::seed::{bisect, identify};
-use crate::touch::{graze, narrow};
+use crate::tracing::branch::{Branch, FootholdOf, Special};
+use crate::tracing::corrector::{correct, crossing, stationary};
+use crate::tracing::runs::{Runs, Traced};
+use crate::tracing::seed::{bisect, identify};
+use crate::tracing::touch::{graze, narrow};
+
+/// Crossings that are not known better, in parts of the window's shorter extent, are looked at as touches: values tell the place
+/// of those to half the digits only.
+const TANGENTIAL: f64 = 1e-9;
 
 /// The special point of a branch after `from` within a step `h` that failed; `beyond` is the place reached if its labels are
 /// wrong. `None` if it is not found from so far away.
@@ -25,23 +29,30 @@ pub(crate) fn locate<F: Family>(
     for margin in margins {
         let met = match meet(branch, from, beyond, &margin, h)? {
             None if narrow::<F>(from, beyond, &margin, h) => {
-                graze(branch, from, beyond, &margin, h)?
+                graze(branch, from, beyond, &margin, h)?.map(|point| (point, 0.0))
             }
             met => met,
         };
-        if let Some(point) = met {
+        if let Some((point, off)) = met {
             let progress = (point - from.node.point).dot(&from.node.tangent);
-            found.push((progress, point, margin));
+            found.push((progress, point, off, margin));
         }
     }
     found.sort_by(|(one, ..), (two, ..)| one.total_cmp(two));
-    for (_, point, margin) in found {
+    for (_, point, off, margin) in found {
         if is_last(branch, from, &point)? {
+            let (mut point, mut off) = (point, off);
+            if off > TANGENTIAL * branch.runs.scale
+                && let Some(touch) = graze(branch, from, beyond, &margin, h)?
+                && (touch - point).norm() <= 10.0 * off
+            {
+                (point, off) = (touch, 0.3 * off);
+            }
             return Ok(Some(Special {
                 point,
                 kind: VertexKind::Crossing,
                 margins: vec![branch.margin.clone(), margin],
-                uncertainty: 0.0,
+                uncertainty: off,
                 solved: true,
             }));
         }
@@ -91,7 +102,7 @@ pub(crate) fn give_up<F: Family>(
             None => length = middle,
         }
     }
-    Ok(degenerate(branch, point, 1e-8 * scale, true))
+    Ok(degenerate(branch, point, 1e-7 * scale, true))
 }
 
 fn degenerate<F: Family>(
@@ -153,7 +164,7 @@ fn meet<F: Family>(
     beyond: Option<&FootholdOf<F>>,
     margin: &F::Margin,
     h: f64,
-) -> Traced<Option<Point>, F> {
+) -> Traced<Option<(Point, f64)>, F> {
     let runs = branch.runs;
     let start = from.node.point;
     let end = beyond.map_or_else(|| branch.predict(&from.node, h), |foothold| foothold.node.point);
@@ -166,7 +177,7 @@ fn meet<F: Family>(
         (None, Some(_)) => end,
         _ => return Ok(None),
     };
-    let Some(point) = crossing(
+    let Some((point, off)) = crossing(
         runs,
         [&branch.margin, margin],
         &guess,
@@ -179,7 +190,7 @@ fn meet<F: Family>(
     };
     let progress = (point - start).dot(&from.node.tangent);
     let slack = 1e-9 * runs.scale;
-    Ok((progress > -slack && progress < h + slack).then_some(point))
+    Ok((progress > -slack && progress < h + slack).then_some((point, off)))
 }
 
 /// Whether the branch holds up to `point` and not beyond it.
@@ -196,7 +207,7 @@ fn is_last<F: Family>(
     };
     let node = Node { point: *point, tangent: branch.tangent(&gradient) };
     let length = (point - from.node.point).norm();
-    if length > 1e-6 * runs.scale && !branch.is_clear(from, &Arc::between(&from.node, &node))? {
+    if length > 1e-6 * runs.scale && !branch.is_clear(from, &Cubic::between(&from.node, &node))? {
         return Ok(false);
     }
     let after = point + node.tangent * (0.03 * length).max(1e-6 * runs.scale);

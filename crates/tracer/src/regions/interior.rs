@@ -1,10 +1,10 @@
 //! A point well inside every region.
 
-use crate::crossing::Edge;
-use crate::faces::Faces;
 use crate::family::Point;
-use crate::slabs::Slabs;
-use crate::subdivision::Region;
+use crate::regions::crossing::Edge;
+use crate::regions::faces::Faces;
+use crate::regions::slabs::Slabs;
+use crate::regions::subdivision::Region;
 
 /// Sets `sample` and `clearance` of every region.
 ///

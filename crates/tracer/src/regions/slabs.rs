@@ -1,7 +1,7 @@
 //! The plane cut into vertical slabs in which no piece begins or ends, so that the pieces of a slab have an order.
 
 use crate::family::Point;
-use crate::piece::Piece;
+use crate::regions::piece::Piece;
 
 /// Pieces, and for every slab between neighbouring `walls` the pieces that cross it, from below.
 #[derive(Clone, Debug)]

@@ -1,9 +1,9 @@
 //! The curves and vertices that a trace collects.
 
-use crate::arc::Arc;
-use crate::branch::{SHORTEST, Special, Stop};
+use crate::cubic::Cubic;
 use crate::curve::{Curve, Node, Vertex};
 use crate::family::{Family, Point, Window};
+use crate::tracing::branch::{SHORTEST, Special, Stop};
 
 /// All curves on which the label changes in a window, and where they end.
 #[derive(Clone, Debug, PartialEq)]
@@ -115,6 +115,9 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
             margins.extend(special.margins.iter().cloned());
             margins.sort();
             margins.dedup();
+            if special.improves(&self.stops[index]) {
+                self.move_vertex(index, special);
+            }
             return index;
         }
         let mut margins = special.margins.clone();
@@ -128,6 +131,38 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         }
         self.part_curves(index);
         index
+    }
+
+    /// The curves that end at a vertex: their margins, with the nodes before the ends.
+    pub fn arrivals(&self, vertex: usize) -> Vec<(Node, Margin)> {
+        let mut found = Vec::new();
+        for curve in &self.network.curves {
+            let Some([start, end]) = curve.ends else { continue };
+            let before_last = curve.nodes.len() - 2;
+            for (node, at) in [(1, start), (before_last, end)] {
+                if at == vertex {
+                    found.push((curve.nodes[node], curve.margin.clone()));
+                }
+            }
+        }
+        found
+    }
+
+    /// Puts a vertex where it is known better, with the curves that end there.
+    pub fn move_vertex(&mut self, index: usize, special: &Special<Margin>) {
+        self.stops[index] = Stop { point: special.point, uncertainty: special.uncertainty };
+        self.network.vertices[index].point = special.point;
+        self.network.vertices[index].kind = special.kind;
+        for curve in &mut self.network.curves {
+            let Some([start, end]) = curve.ends else { continue };
+            let last = curve.nodes.len() - 1;
+            for (node, vertex) in [(0, start), (last, end)] {
+                if vertex == index {
+                    curve.nodes[node].point = special.point;
+                }
+            }
+        }
+        self.rebuild_index();
     }
 
     /// Adds a curve; nodes that nearly coincide become one, ends go first.
@@ -153,7 +188,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         curve.nodes = nodes;
         let index = self.network.curves.len();
         for piece in 0..curve.nodes.len() - 1 {
-            self.enter(index, piece, &Arc::between(&curve.nodes[piece], &curve.nodes[piece + 1]));
+            self.enter(index, piece, &Cubic::between(&curve.nodes[piece], &curve.nodes[piece + 1]));
         }
         self.network.curves.push(curve);
         Some(index)
@@ -176,7 +211,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
             let arc = self.arc(curve, piece);
             for [theta, place] in arc.crossings(a, b) {
                 let [left, right] = self.network.curves[curve].sides.clone();
-                let from_left = arc.velocity(theta).perp(&(b - a)) < 0.0;
+                let from_left = arc.derivative(theta).perp(&(b - a)) < 0.0;
                 let labels = if from_left { [left, right] } else { [right, left] };
                 found.push(Passage { place, labels });
             }
@@ -185,9 +220,9 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         found
     }
 
-    fn arc(&self, curve: usize, piece: usize) -> Arc {
+    fn arc(&self, curve: usize, piece: usize) -> Cubic {
         let nodes = &self.network.curves[curve].nodes;
-        Arc::between(&nodes[piece], &nodes[piece + 1])
+        Cubic::between(&nodes[piece], &nodes[piece + 1])
     }
 
     fn cell_range(&self, bounds: &[Point; 2]) -> [[usize; 2]; 2] {
@@ -205,7 +240,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         })
     }
 
-    fn enter(&mut self, curve: usize, piece: usize, arc: &Arc) {
+    fn enter(&mut self, curve: usize, piece: usize, arc: &Cubic) {
         let [columns, rows] = self.cell_range(&arc.bounds());
         for column in columns[0]..=columns[1] {
             for row in rows[0]..=rows[1] {

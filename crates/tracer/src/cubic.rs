@@ -1,6 +1,9 @@
 //! The cubic between two nodes: how points with tangents are a curve.
 
-use crate::bernstein::each_root;
+pub(crate) mod bernstein;
+mod search;
+
+use crate::cubic::bernstein::each_root;
 use crate::curve::Node;
 use crate::family::Point;
 

@@ -1,9 +1,9 @@
 //! Where to start: from two places with different labels to a boundary between them.
 
-use crate::branch::{Seed, SeedOf};
-use crate::corrector::correct;
 use crate::family::{Family, FreeRun, Point};
-use crate::runs::{Runs, Traced};
+use crate::tracing::branch::{Seed, SeedOf};
+use crate::tracing::corrector::correct;
+use crate::tracing::runs::{Runs, Traced};
 
 impl<Label: Clone + Eq, Margin> Seed<Label, Margin> {
     /// A place between two others at which the label of the first one ends; `None` if their labels are the same, or no margin that

@@ -1,7 +1,7 @@
 //! Pieces of edges that are monotone in both coordinates and in direction.
 
+use crate::cubic::Cubic;
 use crate::family::Point;
-use crate::hermite::Cubic;
 
 /// A part of an edge, turned so that x increases, or y if it is vertical.
 #[derive(Clone, Copy, Debug)]

@@ -1,15 +1,15 @@
 //! What lies ahead of a branch: vertices that are known, its own start, and the stretch before it ends.
 
-use crate::arc::Arc;
-use crate::branch::{Branch, FootholdOf, SHORTEST, Stop};
-use crate::corrector::correct;
+use crate::cubic::Cubic;
 use crate::curve::Node;
 use crate::family::{Family, Point};
-use crate::runs::Traced;
+use crate::tracing::branch::{Branch, FootholdOf, SHORTEST, Stop};
+use crate::tracing::corrector::correct;
+use crate::tracing::runs::Traced;
 
 impl<F: Family> Branch<'_, '_, F> {
     /// The first known vertex on the piece.
-    pub(crate) fn passed_stop(&self, arc: &Arc) -> Option<usize> {
+    pub(crate) fn passed_stop(&self, arc: &Cubic) -> Option<usize> {
         let [low, high] = arc.bounds();
         let passed = |stop: &Stop| {
             let near = stop.uncertainty + SHORTEST * self.runs.scale;
@@ -37,10 +37,10 @@ impl<F: Family> Branch<'_, '_, F> {
                 continue;
             }
             let end = Node { point: stop.point, tangent: mirrored(&from.node.tangent, &chord) };
-            let arc = Arc::between(&from.node, &end);
+            let arc = Cubic::between(&from.node, &end);
             let mut runs_in = true;
             for theta in [0.3, 0.7] {
-                let value = runs.margin(&arc.point(theta), &self.margin)?;
+                let value = runs.margin(&arc.at(theta), &self.margin)?;
                 runs_in &= value.is_some_and(|value| {
                     value.abs() <= runs.options.interpolation * from.gradient.norm()
                 });
@@ -57,18 +57,18 @@ impl<F: Family> Branch<'_, '_, F> {
     }
 
     /// Whether the branch has its labels on a piece that ends at a vertex: at three places, and close to the vertex.
-    pub(crate) fn is_clear(&self, from: &FootholdOf<F>, arc: &Arc) -> Traced<bool, F> {
+    pub(crate) fn is_clear(&self, from: &FootholdOf<F>, arc: &Cubic) -> Traced<bool, F> {
         /// From the vertex, in parts of the window's shorter extent: the thin region between curves that touch there with a
         /// curvature of 1 is still wider than margins are exact.
         const CLOSE: f64 = 3e-5;
         let chord = arc.chord();
         for theta in [0.5, 0.9, 0.99] {
-            if !self.holds(from, &arc.point(theta), 0.3 * chord)? {
+            if !self.holds(from, &arc.at(theta), 0.3 * chord)? {
                 return Ok(false);
             }
         }
         let close = CLOSE * self.runs.scale / chord;
-        Ok(close > 0.5 || self.holds_closely(from, &arc.point(1.0 - close), 0.3 * chord)?)
+        Ok(close > 0.5 || self.holds_closely(from, &arc.at(1.0 - close), 0.3 * chord)?)
     }
 
     /// Whether the branch passes close to `guess` with its labels as near to it as can be told, so that not even a thin region
@@ -107,7 +107,7 @@ impl<F: Family> Branch<'_, '_, F> {
         })
     }
 
-    pub(crate) fn passes_origin(&self, arc: &Arc) -> bool {
+    pub(crate) fn passes_origin(&self, arc: &Cubic) -> bool {
         let (theta, distance) = arc.closest(&self.origin.point);
         distance < 1e-8 * self.runs.scale && theta > 0.0 && {
             arc.tangent(theta).dot(&self.origin.tangent) > 0.5

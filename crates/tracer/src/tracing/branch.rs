@@ -2,14 +2,14 @@
 
 use std::collections::VecDeque;
 
-use crate::arc::Arc;
+use crate::cubic::Cubic;
 use crate::curve::{Node, VertexKind};
 use crate::family::{Family, FreeRun, Point};
 use crate::options::TraceError;
-use crate::runs::{Runs, Traced};
-use crate::special;
-use crate::step::Attempt;
-use crate::touch::touch;
+use crate::tracing::runs::{Runs, Traced};
+use crate::tracing::special;
+use crate::tracing::step::Attempt;
+use crate::tracing::touch::touch;
 
 /// Nodes closer than this part of the window's shorter extent are one.
 pub(crate) const SHORTEST: f64 = 1e-9;
@@ -56,6 +56,13 @@ pub struct Special<Margin> {
     pub uncertainty: f64,
     /// Whether it was solved for; else it is only where the branch could not go on.
     pub solved: bool,
+}
+
+impl<Margin> Special<Margin> {
+    /// Whether it tells much better where a known vertex is.
+    pub(crate) fn improves(&self, stop: &Stop) -> bool {
+        self.solved && self.uncertainty < 0.2 * stop.uncertainty
+    }
 }
 
 /// A vertex that is known, where branches through it end.
@@ -262,7 +269,7 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         edge: bool,
         shortened: bool,
     ) -> Traced<(), F> {
-        let arc = Arc::between(&from.node, &foothold.node);
+        let arc = Cubic::between(&from.node, &foothold.node);
         let options = &self.runs.options;
         let angle = from.node.tangent.angle(&foothold.node.tangent);
         self.radius = (arc.chord() / angle).min(self.runs.scale);
@@ -314,11 +321,12 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
 
     /// Ends at a special point, which becomes the last node.
     fn finish_at(&mut self, special: Special<F::Margin>) -> Traced<(), F> {
-        let near = special.uncertainty + 1e-9 * self.runs.scale;
+        let near = special.uncertainty + SHORTEST * self.runs.scale;
         let known = self
             .stops
             .iter()
-            .position(|stop| (stop.point - special.point).norm() <= stop.uncertainty + near);
+            .position(|stop| (stop.point - special.point).norm() <= stop.uncertainty + near)
+            .filter(|&index| !special.improves(&self.stops[index]));
         let point = known.map_or(special.point, |index| self.stops[index].point);
         self.finish_with(known.map_or(End::Vertex(special), End::Known), point)
     }
@@ -341,7 +349,7 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         let mut node = self.end_node(&last, &point)?;
         self.end = Some(end);
         let reaches = |stop: &Stop| (stop.point - point).norm() <= stop.uncertainty;
-        if let Some(index) = self.passed_stop(&Arc::between(&last, &node))
+        if let Some(index) = self.passed_stop(&Cubic::between(&last, &node))
             && !reaches(&self.stops[index])
         {
             node = self.end_node(&last, &self.stops[index].point)?;

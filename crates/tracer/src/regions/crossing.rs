@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
+use crate::cubic::Cubic;
 use crate::family::Point;
-use crate::hermite::Cubic;
-use crate::piece::Piece;
-use crate::slabs::Slabs;
+use crate::regions::piece::Piece;
+use crate::regions::slabs::Slabs;
 
 /// An edge of the subdivision: its vertices, and its pieces in its direction.
 #[derive(Clone, Debug)]

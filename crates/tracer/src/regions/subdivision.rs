@@ -1,15 +1,15 @@
 //! Regions of the window, made from curves and vertices.
 
-use crate::crossing::{Crossings, Edge};
+use crate::cubic::Cubic;
 use crate::curve::{Curve, Node, Vertex, VertexKind};
-use crate::faces::Faces;
 use crate::family::{Point, Window};
-use crate::finding::{Euler, Finding, SubdivisionError};
-use crate::hermite::Cubic;
-use crate::interior;
-use crate::piece::Piece;
-use crate::slabs::Slabs;
-use crate::union::DisjointSets;
+use crate::regions::crossing::{Crossings, Edge};
+use crate::regions::faces::Faces;
+use crate::regions::finding::{Euler, Finding, SubdivisionError};
+use crate::regions::interior;
+use crate::regions::piece::Piece;
+use crate::regions::slabs::Slabs;
+use crate::regions::union::DisjointSets;
 
 /// A window of the plane parted by curves into regions.
 ///

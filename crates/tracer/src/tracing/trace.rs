@@ -1,24 +1,17 @@
 //! All boundaries in a window.
 
-use crate::arc::Arc;
-use crate::branch::{Branch, End, Seed, SeedOf, Special};
-use crate::corrector::correct;
+use crate::cubic::Cubic;
 use crate::curve::{Curve, Node, VertexKind};
-use crate::family::{Family, Point, Window};
-use crate::island::islands;
-use crate::network::{Builder, NetworkOf, Unresolved};
+use crate::family::{Family, FreeRun, Point, Window};
 use crate::options::{TraceError, TraceOptions};
-use crate::runs::{Runs, Traced};
-use crate::seed::{Change, GridPlace, bisect, holds, identify};
+use crate::tracing::branch::{Branch, End, SHORTEST, Seed, SeedOf, Special};
+use crate::tracing::corrector::{correct, crossing};
+use crate::tracing::island::islands;
+use crate::tracing::network::{Builder, NetworkOf, TraceStatistics, Unresolved};
+use crate::tracing::runs::{Runs, Traced};
+use crate::tracing::seed::{Change, GridPlace, bisect, holds, identify};
 
-/// Traces every boundary of a family in a window.
-///
-/// Seeds come from the window's edges, from circles around every vertex, from a grid, and from the minima of margins between its
-/// places. What can be missed are closed curves, or pieces between two vertices, that pass between all of those: strips and
-/// islands with no place of the grid inside whose margin has no minimum that the grid sees.
-///
-/// The family is evaluated up to a thousandth of the window's extent outside of it. Nodes are on their boundary to
-/// `options.tolerance`, or as far as the noise of margins allows, the cubics between them to `options.interpolation`.
+/// Traces every boundary of a family in a window: what a new [`Tracer`] finds.
 ///
 /// # Errors
 /// Options out of range, a window that is not a rectangle, a run that fails, a margin that is not a number.
@@ -27,39 +20,115 @@ pub fn trace<F: Family>(
     window: &Window,
     options: &TraceOptions,
 ) -> Result<NetworkOf<F>, TraceError<F::Error>> {
-    let runs = Runs::new(family, *window, *options)?;
-    let mut tracer = Tracer { runs: &runs, builder: Builder::new(*window), probed: 0 };
-    tracer.edges()?;
-    tracer.vertices()?;
-    tracer.grid()?;
-    tracer.close_vertices()?;
-    let mut network = tracer.builder.network;
-    [network.statistics.free_runs, network.statistics.prescribed_runs] = runs.counts();
-    Ok(network)
+    let mut tracer = Tracer::new(family, window, options)?;
+    tracer.explore()?;
+    Ok(tracer.into_network())
 }
 
-/// Radii of the circles around a vertex on which seeds are looked for, in parts of the window's shorter extent.
-const CIRCLES: [f64; 2] = [1e-3, 1e-5];
-
-struct Tracer<'a, 'f, F: Family> {
-    runs: &'a Runs<'f, F>,
+/// Looks for boundaries in a window, and keeps what it has found, so that it can be told to look again.
+///
+/// Seeds come from the window's edges, from circles around every vertex, from a grid, and from the minima of margins between its
+/// places. What can be missed are closed curves, or pieces between two vertices, that pass between all of those: strips and
+/// islands with no place of the grid inside whose margin has no minimum that the grid sees. A verification may come upon them, and
+/// [`Self::look_between`] then finds them.
+///
+/// The family is evaluated up to a thousandth of the window's extent outside of it. Nodes are on their boundary to
+/// `options.tolerance`, or as far as the noise of margins allows, the cubics between them to `options.interpolation`.
+pub struct Tracer<'f, F: Family> {
+    runs: Runs<'f, F>,
     builder: Builder<F::Label, F::Margin>,
     /// Vertices around which seeds were looked for.
     probed: usize,
 }
 
-impl<F: Family> Tracer<'_, '_, F> {
+/// Radii of the circles around a vertex on which seeds are looked for, in parts of the window's shorter extent.
+const CIRCLES: [f64; 2] = [1e-3, 1e-5];
+
+impl<'f, F: Family> Tracer<'f, F> {
+    /// A tracer that has found nothing yet.
+    ///
+    /// # Errors
+    /// Options out of range, a window that is not a rectangle.
+    pub fn new(family: &'f F, window: &Window, options: &TraceOptions) -> Traced<Self, F> {
+        let runs = Runs::new(family, *window, *options)?;
+        Ok(Self { runs, builder: Builder::new(*window), probed: 0 })
+    }
+
+    /// Looks everywhere.
+    ///
+    /// # Errors
+    /// A run fails, or a margin is not a number.
+    pub fn explore(&mut self) -> Traced<(), F> {
+        self.edges()?;
+        self.vertices()?;
+        self.grid()?;
+        self.close_vertices()?;
+        self.polish()
+    }
+
+    /// Looks between pairs of places for boundaries that are not known yet; whether there are any.
+    ///
+    /// # Errors
+    /// As [`Self::explore`].
+    pub fn look_between(&mut self, pairs: &[[Point; 2]]) -> Traced<bool, F> {
+        let before = self.builder.network.curves.len();
+        for &[a, b] in pairs {
+            let labels = [self.runs.label(&a)?, self.runs.label(&b)?];
+            self.scan([a, b], labels)?;
+            self.vertices()?;
+        }
+        self.close_vertices()?;
+        self.polish()?;
+        Ok(self.builder.network.curves.len() != before)
+    }
+
+    /// What has been found so far.
+    #[must_use]
+    pub fn network(&self) -> NetworkOf<F> {
+        let mut network = self.builder.network.clone();
+        [network.statistics.free_runs, network.statistics.prescribed_runs] = self.runs.counts();
+        network
+    }
+
+    /// What has been found.
+    #[must_use]
+    pub fn into_network(self) -> NetworkOf<F> {
+        let [free_runs, prescribed_runs] = self.runs.counts();
+        let mut network = self.builder.network;
+        network.statistics = TraceStatistics { free_runs, prescribed_runs, ..network.statistics };
+        network
+    }
+
     /// Seeds from the window's edges, a ten-millionth inside.
     fn edges(&mut self) -> Traced<(), F> {
         let inset = Point::repeat(1e-7 * self.runs.scale);
         let (low, high) = (self.runs.window.low + inset, self.runs.window.high - inset);
         let corners = [low, Point::new(high.x, low.y), high, Point::new(low.x, high.y), low];
         let parts = 2 * self.runs.options.cells;
-        let mut places = vec![low];
+        let mut last = (low, self.runs.free(&low)?);
         for side in corners.windows(2) {
-            places.extend((1..=parts).map(|i| side[0].lerp(&side[1], i as f64 / parts as f64)));
+            for i in 1..=parts {
+                let place = side[0].lerp(&side[1], i as f64 / parts as f64);
+                let next = (place, self.runs.free(&place)?);
+                self.divide(&last, &next, DIVISIONS)?;
+                last = next;
+            }
         }
-        self.walk(&places)
+        Ok(())
+    }
+
+    /// Scans a segment, in halves where its middle has another label or other margins than its ends let expect.
+    fn divide(&mut self, a: &GridPlace<F>, b: &GridPlace<F>, depth: u32) -> Traced<(), F> {
+        if depth == 0 {
+            return self.scan([a.0, b.0], [a.1.label.clone(), b.1.label.clone()]);
+        }
+        let place = a.0.lerp(&b.0, 0.5);
+        let middle = (place, self.runs.free(&place)?);
+        if is_expected(&a.1, &middle.1, &b.1) {
+            return self.scan([a.0, b.0], [a.1.label.clone(), b.1.label.clone()]);
+        }
+        self.divide(a, &middle, depth - 1)?;
+        self.divide(&middle, b, depth - 1)
     }
 
     /// Seeds from two circles around every vertex that has come up and does not lie on the window's edge.
@@ -90,6 +159,50 @@ impl<F: Family> Tracer<'_, '_, F> {
             if nearest < CIRCLES[0] * self.runs.scale {
                 self.circle(&point, 0.3 * nearest)?;
                 self.vertices()?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Solves again for vertices that are not known well, with the margins of all curves that end there: two of them may meet at a
+    /// large angle.
+    fn polish(&mut self) -> Traced<(), F> {
+        for index in 0..self.builder.stops.len() {
+            let stop = self.builder.stops[index];
+            if stop.uncertainty <= SHORTEST * self.runs.scale {
+                continue;
+            }
+            let mut arrivals: Vec<(Node, F::Margin)> = Vec::new();
+            for (node, margin) in self.builder.arrivals(index) {
+                let margin = self.runs.moved(&node.point, &margin)?;
+                arrivals.push((node, margin));
+            }
+            let mut best: Option<(Point, f64, [F::Margin; 2])> = None;
+            for (node, own) in &arrivals {
+                for (_, other) in arrivals.iter().filter(|(_, other)| other != own) {
+                    let reach = 2.0 * (node.point - stop.point).norm();
+                    let margins = [own, other];
+                    let found = crossing(
+                        &self.runs,
+                        margins,
+                        &node.point,
+                        &node.tangent,
+                        self.runs.scale,
+                        reach,
+                    )?;
+                    if let Some((point, off)) = found
+                        && (point - stop.point).norm() <= 10.0 * stop.uncertainty
+                        && off < best.as_ref().map_or(0.2 * stop.uncertainty, |best| best.1)
+                    {
+                        best = Some((point, off, margins.map(Clone::clone)));
+                    }
+                }
+            }
+            if let Some((point, uncertainty, margins)) = best {
+                let kind = VertexKind::Crossing;
+                let margins = margins.to_vec();
+                let special = Special { point, kind, margins, uncertainty, solved: true };
+                self.builder.move_vertex(index, &special);
             }
         }
         Ok(())
@@ -134,7 +247,7 @@ impl<F: Family> Tracer<'_, '_, F> {
                 }
             }
         }
-        for segment in islands(self.runs, &grid, cells, &cell)? {
+        for segment in islands(&self.runs, &grid, cells, &cell)? {
             let labels = [self.runs.label(&segment[0])?, self.runs.label(&segment[1])?];
             self.scan(segment, labels)?;
             self.vertices()?;
@@ -191,7 +304,7 @@ impl<F: Family> Tracer<'_, '_, F> {
             };
             let doubtful = first == second;
             let change = if !doubtful {
-                bisect(self.runs, &segment, [place, end], [first, second])?
+                bisect(&self.runs, &segment, [place, end], [first, second])?
             } else if let Some(passage) = &unexplained {
                 // A curve with other sides than here: there is a vertex on it that was missed.
                 let after = (end + 2.0 * gap).min(1.0);
@@ -206,7 +319,7 @@ impl<F: Family> Tracer<'_, '_, F> {
                 return Ok(());
             };
             let places = change.places.map(|place| a.lerp(&b, place));
-            match identify(self.runs, &places, &change.labels)? {
+            match identify(&self.runs, &places, &change.labels)? {
                 Some(seed) => self.seed(&seed)?,
                 // Where curves are closer together than can be parted, the labels next to one are not its own.
                 None if doubtful => {}
@@ -261,11 +374,11 @@ impl<F: Family> Tracer<'_, '_, F> {
         for index in std::mem::take(&mut self.builder.suspects) {
             let curve = &self.builder.network.curves[index];
             let piece = (curve.nodes.len() - 1) / 2;
-            let guess = Arc::between(&curve.nodes[piece], &curve.nodes[piece + 1]);
-            let (guess, tangent, reach) = (guess.point(0.5), guess.tangent(0.5), guess.chord());
+            let guess = Cubic::between(&curve.nodes[piece], &curve.nodes[piece + 1]);
+            let (guess, tangent, reach) = (guess.at(0.5), guess.tangent(0.5), guess.chord());
             let found =
                 match self.runs.gradient(&guess, &curve.margin, &tangent, self.runs.scale)? {
-                    Some(gradient) => correct(self.runs, &curve.margin, &guess, &gradient, reach)?
+                    Some(gradient) => correct(&self.runs, &curve.margin, &guess, &gradient, reach)?
                         .map(|found| (found.point, gradient)),
                     None => None,
                 };
@@ -275,7 +388,7 @@ impl<F: Family> Tracer<'_, '_, F> {
                     let on_left = gradient.dot(&Point::new(-tangent.y, tangent.x)) > 0.0;
                     let labels = if on_left { [left, right] } else { [right, left] };
                     let seed = Seed { point, tangent, margin: curve.margin.clone(), labels };
-                    holds(self.runs, &seed, &gradient)?
+                    holds(&self.runs, &seed, &gradient)?
                 }
                 None => false,
             };
@@ -297,7 +410,7 @@ impl<F: Family> Tracer<'_, '_, F> {
         forward: bool,
     ) -> Traced<Option<(Node, Vec<Node>, Option<usize>)>, F> {
         let stops = self.builder.stops.clone();
-        let Some(mut branch) = Branch::new(self.runs, seed, forward, &stops)? else {
+        let Some(mut branch) = Branch::new(&self.runs, seed, forward, &stops)? else {
             let between = [seed.point; 2];
             let labels = seed.labels.clone();
             self.builder.network.unresolved.push(Unresolved::Change { between, labels });
@@ -308,6 +421,7 @@ impl<F: Family> Tracer<'_, '_, F> {
             nodes.push(node?);
         }
         let last = nodes.last().map_or(seed.point, |node| node.point);
+        let (origin, rejected) = (branch.origin(), branch.rejected());
         let end = match branch.end().cloned() {
             Some(End::Closed) => None,
             Some(End::Known(index)) => Some(index),
@@ -330,7 +444,30 @@ impl<F: Family> Tracer<'_, '_, F> {
         };
         let statistics = &mut self.builder.network.statistics;
         statistics.nodes += nodes.len();
-        statistics.rejected += branch.rejected();
-        Ok(Some((branch.origin(), nodes, end)))
+        statistics.rejected += rejected;
+        Ok(Some((origin, nodes, end)))
     }
+}
+
+/// Halvings of a segment on the window's edge.
+const DIVISIONS: u32 = 4;
+
+/// Whether a run between two others is what these let expect: the same label, and margins near the mean of theirs.
+fn is_expected<L: Eq, M: PartialEq>(
+    a: &FreeRun<L, M>,
+    middle: &FreeRun<L, M>,
+    b: &FreeRun<L, M>,
+) -> bool {
+    let value = |run: &FreeRun<L, M>, margin: &M| {
+        run.margins.iter().find(|(own, _)| own == margin).map(|(_, value)| *value)
+    };
+    a.label == middle.label
+        && middle.label == b.label
+        && middle.margins.iter().all(|(margin, here)| match (value(a, margin), value(b, margin)) {
+            (Some(one), Some(two)) => {
+                let least = here.abs().min(one.abs()).min(two.abs());
+                (here - 0.5 * (one + two)).abs() <= 0.5 * least
+            }
+            _ => true,
+        })
 }

@@ -1,12 +1,12 @@
 //! Boundaries that touch: special points that show neither in labels nor as a crossing of two margins.
 
-use crate::arc::Arc;
-use crate::branch::{Branch, Foothold, FootholdOf, Special};
-use crate::corrector::{correct, crossing};
+use crate::cubic::Cubic;
 use crate::curve::{Node, VertexKind};
 use crate::family::{Family, Point};
-use crate::runs::Traced;
-use crate::special::rivals;
+use crate::tracing::branch::{Branch, Foothold, FootholdOf, Special};
+use crate::tracing::corrector::{correct, crossing};
+use crate::tracing::runs::Traced;
+use crate::tracing::special::rivals;
 
 /// A special point, and whether it lies before the last foothold.
 type Touch<Margin> = (Special<Margin>, bool);
@@ -70,14 +70,14 @@ fn dip<F: Family>(
 ) -> Traced<Option<Touch<F::Margin>>, F> {
     let runs = branch.runs;
     let arcs = [
-        Arc::between(&places[0].node, &places[1].node),
-        Arc::between(&places[1].node, &places[2].node),
+        Cubic::between(&places[0].node, &places[1].node),
+        Cubic::between(&places[1].node, &places[2].node),
     ];
     let place = |length: f64| {
         if length < 0.0 {
-            arcs[0].point(1.0 + length / arcs[0].chord())
+            arcs[0].at(1.0 + length / arcs[0].chord())
         } else {
-            arcs[1].point(length / arcs[1].chord())
+            arcs[1].at(length / arcs[1].chord())
         }
     };
     let chords = arcs.map(|arc| arc.chord());
@@ -113,9 +113,9 @@ fn dip<F: Family>(
     let reach = 2.0 * (chords[0] + chords[1]);
     let crossed =
         crossing(runs, [&branch.margin, margin], &start, tangent, branch.radius(), reach)?;
-    Ok(crossed.map(|point| {
+    Ok(crossed.map(|(point, uncertainty)| {
         let along = (point - places[1].node.point).dot(&places[1].node.tangent);
-        (special(point, 0.0), along < 0.0)
+        (special(point, uncertainty), along < 0.0)
     }))
 }
 
@@ -172,8 +172,8 @@ fn parallel<F: Family>(
         length += shift;
         let turn = (now.sine - last.sine) / shift;
         last = now;
-        shift = -last.sine / turn;
-        if !(length + shift >= limits[0] && length + shift <= limits[1]) {
+        shift = (length - last.sine / turn).clamp(limits[0], limits[1]) - length;
+        if shift == 0.0 && (length == limits[0] || length == limits[1]) || shift.is_nan() {
             return Ok(None);
         }
         if shift.abs() <= 10.0 * runs.options.tolerance {
@@ -212,11 +212,11 @@ pub(crate) fn graze<F: Family>(
     if is_twin(branch, margin)? {
         return Ok(None);
     }
-    let arc = Arc::between(&from.node, &end);
+    let arc = Cubic::between(&from.node, &end);
     let chord = arc.chord();
     let slack = 1e-8 * branch.runs.scale;
     for start in [[chord, 0.75 * chord], [0.0, 0.25 * chord]] {
-        let place = |length: f64| arc.point(length / chord);
+        let place = |length: f64| arc.at(length / chord);
         let found = parallel(branch, place, from, margin, start, [-slack, chord + slack])?;
         if let Some((_, probe)) = found
             && (probe.value / probe.slope).abs() <= branch.runs.options.interpolation

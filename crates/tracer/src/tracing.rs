@@ -1,0 +1,17 @@
+//! Boundaries, followed one by one.
+//!
+//! In reading order: `trace` (how all are found), `branch` (how one is followed), `step` (a step), `special`, `touch` and `ahead`
+//! (where it ends), `seed` and `island` (where it starts), `corrector` (onto a boundary), `runs` (the family, with its runs counted),
+//! `network` (what is collected).
+
+mod ahead;
+pub mod branch;
+mod corrector;
+mod island;
+pub mod network;
+pub mod runs;
+mod seed;
+mod special;
+mod step;
+mod touch;
+pub mod trace;

@@ -1,0 +1,89 @@
+//! Stick–slip of a mass on a moving belt: the period of its limit cycle against the closed form.
+//!
+//! A mass on a spring lies on a belt of velocity v, mass and stiffness 1. Friction holds it up to the static force F_s and drags it
+//! with the smaller kinetic force F_k while it slips:
+//!
+//! ```text
+//! stick:  x′ = v          until x = F_s
+//! slip:   x″ = F_k − x    until x′ = v
+//! ```
+//!
+//! With D = F_s − F_k, slip is x = F_k + D cos t + v sin t, whose velocity comes back to v after 2π − 2 atan(D/v), where
+//! x = F_k − D. The belt then carries the mass over 2D. The period is 2π − 2 atan(D/v) + 2D/v.
+//!
+//! Run with `cargo run --release --example friction_belt`.
+
+use std::error::Error;
+use std::f64::consts::TAU;
+
+use stickslip::solver::{
+    Direction, Dop853, Guard, HybridSystem, Options, Recorder, Start, State, run,
+};
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Mode {
+    Stick,
+    Slip,
+}
+
+struct Belt {
+    velocity: f64,
+    static_friction: f64,
+    kinetic_friction: f64,
+}
+
+impl HybridSystem<2, 1> for Belt {
+    type Mode = Mode;
+
+    fn field(&self, mode: Mode, _time: f64, y: &State<2>) -> State<2> {
+        match mode {
+            Mode::Stick => State::from([self.velocity, 0.0]),
+            Mode::Slip => State::from([y[1], self.kinetic_friction - y[0]]),
+        }
+    }
+
+    fn guards(&self, mode: Mode) -> [Guard; 1] {
+        // Slip starts with the velocity of the belt, where its guard is zero.
+        [Guard::new(Direction::Below).from_zero(u32::from(mode == Mode::Slip))]
+    }
+
+    fn guard_values(&self, mode: Mode, _time: f64, y: &State<2>) -> [f64; 1] {
+        match mode {
+            Mode::Stick => [self.static_friction - y[0]],
+            Mode::Slip => [self.velocity - y[1]],
+        }
+    }
+
+    fn transition(&self, mode: Mode, _guard: usize, _time: f64, y: &State<2>) -> (Mode, State<2>) {
+        let next = if mode == Mode::Stick { Mode::Slip } else { Mode::Stick };
+        (next, State::from([y[0], self.velocity]))
+    }
+}
+
+/// Follows the mass through fifty cycles and compares their periods with the closed form.
+///
+/// # Errors
+/// The run failed.
+pub fn main() -> Result<(), Box<dyn Error>> {
+    let belt = Belt { velocity: 0.5, static_friction: 1.0, kinetic_friction: 0.6 };
+    let drop = belt.static_friction - belt.kinetic_friction;
+    let period = TAU - 2.0 * (drop / belt.velocity).atan() + 2.0 * drop / belt.velocity;
+
+    let start = Start { mode: Mode::Stick, s: 0.0, state: State::from([0.0, belt.velocity]) };
+    let options = Options { rtol: 1e-13, atol: 1e-13, ..Options::default() };
+    let mut recorder = Recorder::default();
+    run(Dop853, &belt, start, 52.0 * period, &options, &mut recorder)?;
+
+    let slips: Vec<f64> = recorder
+        .switches
+        .iter()
+        .filter(|event| event.to == Mode::Slip)
+        .map(|event| event.s)
+        .collect();
+    let errors = slips.windows(2).map(|pair| (pair[1] - pair[0] - period).abs());
+    let largest = errors.fold(0.0, f64::max);
+    println!("{} cycles of period {period:.12}, off by at most {largest:.1e}", slips.len() - 1);
+    // Measured: 1.5e-13.
+    assert!(slips.len() > 50 && largest < 3e-13);
+    Ok(())
+}
