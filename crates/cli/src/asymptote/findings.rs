@@ -134,14 +134,14 @@ fn restitution_found(found: &[Restitution]) -> Option<String> {
     let [first, last] = [found.iter().find(|row| row.largest.is_some())?, found.last()?];
     Some(format!(
         "From ψ₀ = {} up to 2 the largest |ε_t| falls from {:.4} at κ = {} to {:.3e} at κ = {}, which is {:.3} κ^(−5/4)/ψ₀; \
-         the bound (27) is {:.1e} at ψ₀.",
+         the bound (27) is {} at ψ₀.",
         first.from.name(),
         first.eps_t(),
         brief(first.kappa),
         last.eps_t(),
         brief(last.kappa),
         last.eps_t() * last.lowest * last.kappa.powf(1.25),
-        1.0 / (last.lowest * last.kappa.sqrt())
+        brief(1.0 / (last.lowest * last.kappa.sqrt()))
     ))
 }
 
