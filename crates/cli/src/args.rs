@@ -1,5 +1,6 @@
 //! What may be typed: options with their syntax and ranges, and the help text.
 
+mod asymptote;
 mod impact;
 mod locate;
 mod map;
@@ -15,6 +16,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 use crate::figure::Target;
 use crate::parameter::Parameter;
 
+pub use asymptote::AsymptoteArguments;
 pub use impact::ImpactArguments;
 pub use locate::LocateArguments;
 pub use map::MapArguments;
@@ -53,6 +55,9 @@ pub enum Command {
     /// Compute the figures of the paper anew, and show everything on one page
     #[command(long_about = reproduce::ABOUT, after_long_help = reproduce::EXAMPLES)]
     Reproduce(ReproduceArguments),
+    /// Measure how the tangential restitution vanishes for stiff springs
+    #[command(long_about = asymptote::ABOUT, after_long_help = asymptote::EXAMPLES)]
+    Asymptote(AsymptoteArguments),
 }
 
 /// Options of `collide`.

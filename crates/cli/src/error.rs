@@ -5,6 +5,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use stickslip_model::stiff::StiffError;
+
 use crate::engine::EngineError;
 
 /// Why the program did not do what it was asked.
@@ -61,6 +63,9 @@ pub enum Failure {
         /// The first of them, and why it could not be computed.
         first: String,
     },
+    /// The limit of stiff springs cannot be studied.
+    #[error("the limit of stiff springs cannot be studied: {0}")]
+    Stiff(#[from] StiffError),
     /// Boundaries cannot be traced.
     #[error("the boundaries cannot be traced: {0}")]
     Trace(String),

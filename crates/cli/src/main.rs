@@ -2,10 +2,11 @@
 //! an exit code.
 //!
 //! Start reading here; then, in this order: `args` (what may be typed), `plan` (what it means),
-//! `collide`, `batch`, `impact`, `map`, `atlas` and `reproduce` (doing it), `input`, `bodies` and `json_input`
+//! `collide`, `batch`, `impact`, `map`, `atlas`, `asymptote` and `reproduce` (doing it), `input`, `bodies` and `json_input`
 //! (files read), `table`, `json`, `rows`, `figure` and `output` (results written).
 
 mod args;
+mod asymptote;
 mod atlas;
 mod batch;
 mod bodies;
@@ -35,7 +36,7 @@ use clap::Parser;
 
 use args::{Arguments, Command};
 use error::Failure;
-use plan::{CollidePlan, LocatePlan, MapPlan, ReproducePlan, TracePlan};
+use plan::{AsymptotePlan, CollidePlan, LocatePlan, MapPlan, ReproducePlan, TracePlan};
 
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
@@ -65,6 +66,10 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Map(arguments) => map::run(&MapPlan::new(arguments)?),
         Command::Trace(arguments) => atlas::trace::run(&TracePlan::new(arguments)?),
         Command::Locate(arguments) => atlas::locate::run(&LocatePlan::new(arguments)?),
+        Command::Asymptote(arguments) => {
+            let plan = AsymptotePlan::new(arguments)?;
+            study::carry_out(&plan.out, plan.threads, |progress| asymptote::run(&plan, progress))
+        }
         Command::Reproduce(arguments) => reproduce::run(&ReproducePlan::new(arguments)),
     }
 }

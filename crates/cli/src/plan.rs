@@ -1,5 +1,6 @@
 //! What the options mean together: raw arguments become a plan that can be carried out.
 
+mod asymptote;
 mod locate;
 mod map;
 mod reproduce;
@@ -17,6 +18,7 @@ use crate::error::Failure;
 use crate::figure::Target;
 use crate::recipe::{Given, Recipe, RecipeError};
 
+pub use asymptote::AsymptotePlan;
 pub use locate::LocatePlan;
 pub use map::{MapFormat, MapPlan};
 pub use reproduce::ReproducePlan;

@@ -1,9 +1,11 @@
 //! What a study hands out: numbers for programs, tables for spreadsheets, pictures and sentences for people.
 
 use std::fs;
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::Path;
 
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use rayon::ThreadPoolBuilder;
 use serde_json::Value;
 
 use crate::error::Failure;
@@ -131,6 +133,29 @@ impl Table {
         }
         writer.into_inner().unwrap_or_default()
     }
+}
+
+/// Makes a study on `threads` threads, `None` being one for each core, writes its files into `directory` and prints its findings.
+///
+/// # Errors
+/// Files cannot be written, which is tried first, or `make` fails.
+pub fn carry_out(
+    directory: &Path,
+    threads: Option<usize>,
+    make: impl FnOnce(&ProgressBar) -> Result<Study, Failure> + Send,
+) -> Result<(), Failure> {
+    prepare(directory)?;
+    let pool = ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()?;
+    // Shows itself on a terminal only.
+    let style = ProgressStyle::with_template("{bar:25} {percent}%, {eta} left");
+    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr())
+        .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    let study = pool.install(|| make(&bar));
+    bar.finish_and_clear();
+    let study = study?;
+    study.write(directory)?;
+    let mut out = io::stdout().lock();
+    Failure::unless_written(study.findings.iter().try_for_each(|line| writeln!(out, "{line}")))
 }
 
 /// Makes sure that files can be written into `directory`, before there is work to lose; creates it where it is missing.

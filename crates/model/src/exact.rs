@@ -14,7 +14,7 @@ mod onset;
 
 mod precise;
 mod release;
-mod root;
+pub(crate) mod root;
 mod slide;
 mod swing;
 mod trajectory;

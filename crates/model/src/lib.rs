@@ -29,6 +29,7 @@ pub mod encounter;
 mod energy;
 pub mod exact;
 pub mod history;
+pub mod inner;
 pub mod normal;
 mod observed;
 mod outcome;
@@ -39,6 +40,7 @@ mod refine;
 pub mod regularized;
 mod reversals;
 pub mod scaling;
+pub mod stiff;
 
 pub use bodies::{Body, Elasticity, Material, Sphere, Wall};
 pub use collision::{Collider, CollisionError};

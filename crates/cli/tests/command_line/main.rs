@@ -1,5 +1,6 @@
 //! The program as its users meet it: run as a process, judged by its output and exit code.
 
+mod asymptote;
 mod atlas;
 mod batch;
 mod batch_failures;

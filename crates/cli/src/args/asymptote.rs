@@ -1,0 +1,59 @@
+//! The options of `asymptote`.
+
+use std::path::PathBuf;
+
+use crate::parameter::Parameter;
+use crate::range::Range;
+
+/// Options of `asymptote`.
+#[derive(Debug, clap::Args)]
+pub struct AsymptoteArguments {
+    /// Interval of the scaled stiffness κ = k_t/(α m β^⅘ g_n^⅖), from 3 to 10¹⁰
+    #[arg(long, value_name = "LO:HI", help_heading = "Collisions", allow_hyphen_values = true)]
+    #[arg(value_parser = Range::parse, default_value = "10:1e8")]
+    pub kappa: Range,
+
+    /// Reduced impact ratios ψ = (g_t/g_n)·α/μ, with commas between them; above 0 and below 2
+    #[arg(long, value_name = "P,…", help_heading = "Collisions", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Psi.parse(text))]
+    #[arg(value_delimiter = ',', default_value = "0.3,1,1.7")]
+    pub psi: Vec<f64>,
+
+    /// Directory for the files of the study, made if it is missing
+    #[arg(long, value_name = "DIR", help_heading = "Output")]
+    pub out: PathBuf,
+
+    /// Threads; 1 to 1024 [default: one for each core]; results do not depend on it
+    #[arg(long, value_name = "N", help_heading = "Output", allow_hyphen_values = true)]
+    #[arg(value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
+/// Text of `asymptote --help`.
+pub const ABOUT: &str = "\
+Measure how ε_t tends to 0 for stiff springs, without damping: at each κ, the largest |w_final| of the \
+oscillation around each ψ, the exponent and the constant of its decay, the same constant and the course of \
+an oscillation from the problem of the last instants alone, the bound |ε_t| ≤ 1/(ψ√κ) and its missing factor, \
+the largest |ε_t| from some ψ on, and the number of switches.
+
+Exponent and constant are fitted from κ = 1000 on and need a decade and a half of it.";
+
+/// What follows it.
+pub const EXAMPLES: &str = "\
+Files in DIR:
+  asymptote.json                everything below
+  asymptote_envelope.csv        largest |w_final| at each κ, around each ψ, with theory and bounds
+  asymptote_restitution.csv     largest |ε_t| from some ψ on
+  asymptote_counts.csv          number of switches
+  asymptote_profile.csv         F(phase) of the inner problem
+  asymptote_collisions.csv      collisions over one oscillation at 10⁴, 10⁶ and 10⁸ beside F(phase)
+  asymptote_convergence.csv     how F(phase) converges
+  asymptote_*.svg               pictures
+
+What was found is printed, a line each.
+
+Examples:
+  stickslip asymptote --out asymptote
+  stickslip asymptote --kappa 1e3:1e6 --psi 0.1,0.5,1.9 --out asymptote
+
+Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

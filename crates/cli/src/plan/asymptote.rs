@@ -1,0 +1,67 @@
+//! What `asymptote` is to do.
+
+use std::path::PathBuf;
+
+use crate::args::AsymptoteArguments;
+use crate::error::Failure;
+use crate::range::Range;
+
+/// The stiffnesses of a study: from about 2 on all oscillations are alike, and at 10¹⁰ a collision has 100 000 switches.
+const STIFFNESS: Range = Range { low: 3.0, high: 1e10 };
+
+/// Most impact ratios: lines of a picture that can be told apart.
+const MOST_PSI: usize = 4;
+
+/// A study of the limit of stiff springs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AsymptotePlan {
+    /// Interval of the scaled stiffness.
+    pub kappa: Range,
+    /// Reduced impact ratios, each above 0 and below 2.
+    pub psi: Vec<f64>,
+    /// The directory of its files.
+    pub out: PathBuf,
+    /// Number of threads; `None` is one for each core.
+    pub threads: Option<usize>,
+}
+
+impl AsymptotePlan {
+    /// The plan that `arguments` make.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] says which value is out of its range.
+    pub fn new(arguments: &AsymptoteArguments) -> Result<Self, Failure> {
+        let AsymptoteArguments { kappa, psi, out, threads } = arguments;
+        if kappa.low < STIFFNESS.low || kappa.high > STIFFNESS.high {
+            return Err(Failure::Usage(format!(
+                "--kappa {:?}:{:?} is out of range; accepted is LO:HI with {:?} <= LO < HI <= {:?}",
+                kappa.low, kappa.high, STIFFNESS.low, STIFFNESS.high
+            )));
+        }
+        if psi.len() > MOST_PSI {
+            return Err(Failure::Usage(format!(
+                "--psi has {} values; accepted are at most {MOST_PSI}",
+                psi.len()
+            )));
+        }
+        if let Some(psi) = psi.iter().find(|psi| **psi >= 2.0) {
+            return Err(Failure::Usage(format!(
+                "--psi {psi:?} is out of range; accepted are numbers above 0 and below 2, from where \
+                 on there is no switch"
+            )));
+        }
+        if let Some(psi) =
+            (1..psi.len()).map(|i| psi[i]).find(|p| psi.iter().filter(|q| *q == p).count() > 1)
+        {
+            return Err(Failure::Usage(format!(
+                "--psi has {psi:?} twice; accepted is each value once"
+            )));
+        }
+        Ok(Self {
+            kappa: *kappa,
+            psi: psi.clone(),
+            out: out.clone(),
+            threads: threads.map(usize::from),
+        })
+    }
+}
