@@ -1,5 +1,6 @@
 //! What may be typed: options with their syntax and ranges, and the help text.
 
+mod converge;
 mod impact;
 mod locate;
 mod map;
@@ -14,6 +15,7 @@ use clap::{Parser, Subcommand, ValueEnum};
 use crate::figure::Target;
 use crate::parameter::Parameter;
 
+pub use converge::ConvergeArguments;
 pub use impact::ImpactArguments;
 pub use locate::LocateArguments;
 pub use map::MapArguments;
@@ -47,6 +49,9 @@ pub enum Command {
     /// Look up the switches of collisions in an atlas
     #[command(long_about = locate::ABOUT, after_long_help = locate::EXAMPLES)]
     Locate(LocateArguments),
+    /// Measure how errors fall with the step and the tolerance, and what they cost
+    #[command(long_about = converge::ABOUT, after_long_help = converge::EXAMPLES)]
+    Converge(ConvergeArguments),
 }
 
 /// Options of `collide`.

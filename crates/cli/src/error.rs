@@ -5,6 +5,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use stickslip_model::Contact;
+
 use crate::engine::EngineError;
 
 /// Why the program did not do what it was asked.
@@ -107,6 +109,12 @@ pub enum Failure {
 }
 
 impl Failure {
+    /// A point that cannot be computed.
+    pub fn computation(contact: &Contact, source: EngineError) -> Self {
+        let (kappa, psi, damping) = (contact.kappa(), contact.psi(), contact.damping());
+        Self::Computation { kappa, psi, damping, source }
+    }
+
     /// An unusable input file.
     pub fn input(path: &Path, reason: impl Display) -> Self {
         Self::Input { path: path.to_owned(), reason: reason.to_string() }

@@ -2,7 +2,7 @@
 //! an exit code.
 //!
 //! Start reading here; then, in this order: `args` (what may be typed), `plan` (what it means),
-//! `collide`, `batch`, `impact`, `map` and `atlas` (doing it), `input`, `bodies` and `json_input`
+//! `collide`, `batch`, `impact`, `map`, `atlas` and `converge` (doing it), `input`, `bodies` and `json_input`
 //! (files read), `table`, `json`, `rows`, `figure` and `output` (results written).
 
 mod args;
@@ -10,6 +10,7 @@ mod atlas;
 mod batch;
 mod bodies;
 mod collide;
+mod converge;
 mod engine;
 mod error;
 mod figure;
@@ -34,7 +35,7 @@ use clap::Parser;
 
 use args::{Arguments, Command};
 use error::Failure;
-use plan::{CollidePlan, LocatePlan, MapPlan, TracePlan};
+use plan::{CollidePlan, ConvergePlan, LocatePlan, MapPlan, TracePlan};
 
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
@@ -64,5 +65,9 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Map(arguments) => map::run(&MapPlan::new(arguments)?),
         Command::Trace(arguments) => atlas::trace::run(&TracePlan::new(arguments)?),
         Command::Locate(arguments) => atlas::locate::run(&LocatePlan::new(arguments)?),
+        Command::Converge(arguments) => {
+            let plan = ConvergePlan::new(arguments)?;
+            study::carry_out(&plan.out, plan.threads, |progress| converge::run(&plan, progress))
+        }
     }
 }

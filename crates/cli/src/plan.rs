@@ -1,5 +1,6 @@
 //! What the options mean together: raw arguments become a plan that can be carried out.
 
+mod converge;
 mod locate;
 mod map;
 mod trace;
@@ -15,6 +16,7 @@ use crate::error::Failure;
 use crate::figure::Target;
 use crate::recipe::{Given, Recipe, RecipeError};
 
+pub use converge::ConvergePlan;
 pub use locate::LocatePlan;
 pub use map::{MapFormat, MapPlan};
 pub use trace::TracePlan;

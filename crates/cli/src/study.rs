@@ -1,10 +1,12 @@
 //! What a study hands out: numbers for programs, tables for spreadsheets, pictures and sentences for people.
 
 use std::fs;
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::Path;
 
-use serde_json::Value;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use rayon::ThreadPoolBuilder;
+use serde_json::{Map, Value, json};
 
 use crate::error::Failure;
 use crate::figure::Svg;
@@ -19,7 +21,7 @@ pub struct Study {
     pub title: &'static str,
     /// What was found, a sentence with its numbers each.
     pub findings: Vec<String>,
-    /// All numbers.
+    /// All numbers, in an object; its file has the title, the findings and what the other files hold besides.
     pub json: Value,
     /// The same as tables.
     pub tables: Vec<Table>,
@@ -96,8 +98,28 @@ impl Study {
             let path = directory.join(format!("{}.svg", picture.name));
             write(&path, picture.svg.document().as_bytes())?;
         }
-        let json = format!("{:#}\n", self.json);
+        let mut json = self.json.clone();
+        if let Value::Object(fields) = &mut json {
+            fields.insert("title".to_owned(), self.title.into());
+            fields.insert("findings".to_owned(), self.findings.clone().into());
+            fields.insert("files".to_owned(), self.files());
+        }
+        let json = format!("{json:#}\n");
         write(&directory.join(format!("{}.json", self.name)), json.as_bytes())
+    }
+
+    /// What the files beside the JSON file hold.
+    fn files(&self) -> Value {
+        let tables = self.tables.iter().map(|table| {
+            let columns = table.columns.iter();
+            let columns: Map<_, _> =
+                columns.map(|column| (column.name.to_owned(), column.meaning.into())).collect();
+            (format!("{}.csv", table.name), json!({ "title": table.title, "columns": columns }))
+        });
+        let pictures = self.pictures.iter().map(|picture| {
+            (format!("{}.svg", picture.name), json!({ "caption": picture.caption }))
+        });
+        tables.chain(pictures).collect::<Map<_, _>>().into()
     }
 }
 
@@ -113,6 +135,29 @@ impl Table {
         }
         writer.into_inner().unwrap_or_default()
     }
+}
+
+/// Makes a study on `threads` threads, `None` being one for each core, writes its files into `directory` and prints its findings.
+///
+/// # Errors
+/// Files cannot be written, which is tried first, or `make` fails.
+pub fn carry_out(
+    directory: &Path,
+    threads: Option<usize>,
+    make: impl FnOnce(&ProgressBar) -> Result<Study, Failure> + Send,
+) -> Result<(), Failure> {
+    prepare(directory)?;
+    let pool = ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).build()?;
+    // Shows itself on a terminal only.
+    let style = ProgressStyle::with_template("{bar:25} {percent}%, {eta} left");
+    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr())
+        .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    let study = pool.install(|| make(&bar));
+    bar.finish_and_clear();
+    let study = study?;
+    study.write(directory)?;
+    let mut out = io::stdout().lock();
+    Failure::unless_written(study.findings.iter().try_for_each(|line| writeln!(out, "{line}")))
 }
 
 /// Makes sure that files can be written into `directory`, before there is work to lose; creates it where it is missing.

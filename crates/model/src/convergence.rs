@@ -11,7 +11,7 @@ use stickslip_solver::{
 
 use crate::collision::{Collider, CollisionError};
 use crate::contact::{Collision, Contact, Regime, Side};
-use crate::exact;
+use crate::exact::{self, ExactError};
 use crate::plain_time::{self, PlainTime};
 use crate::regularized::{self, Phase, Regularized};
 
@@ -82,12 +82,23 @@ impl Approximation {
 ///
 /// # Errors
 /// What the exact solution or the integrator reports.
-pub fn reference(contact: Contact) -> Result<Collision, Box<dyn std::error::Error + Send + Sync>> {
+pub fn reference(contact: Contact) -> Result<Collision, ReferenceError> {
     if contact.damping() > 0.0 {
         Ok(Collider::with_tolerances(Dop853, 1e-15, 1e-15).collide(contact)?)
     } else {
         Ok(exact::collide(contact)?)
     }
+}
+
+/// There is no [`reference`].
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum ReferenceError {
+    /// The exact solution does not take the contact.
+    #[error(transparent)]
+    Exact(#[from] ExactError),
+    /// The integration failed.
+    #[error(transparent)]
+    Collision(#[from] CollisionError),
 }
 
 /// Integrates the collision of `contact`.
@@ -103,7 +114,7 @@ pub fn reference(contact: Contact) -> Result<Collision, Box<dyn std::error::Erro
 /// let error = found.error(&reference(contact)?);
 /// // A switch is late by up to a step, of whatever order the method is.
 /// assert!(error.switch_times.is_some_and(|times| times.iter().any(|time| *time > 3e-4)));
-/// # Ok::<(), Box<dyn std::error::Error + Send + Sync>>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
@@ -186,7 +197,7 @@ impl Errors {
 /// assert!(coarse.comparable() && fine.comparable());
 /// let ratio = coarse.velocity.root_mean_square / fine.velocity.root_mean_square;
 /// assert!((ratio.log2() - 8.0).abs() < 0.5);
-/// # Ok::<(), Box<dyn std::error::Error + Send + Sync>>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn measure<M: Method>(
     method: M,

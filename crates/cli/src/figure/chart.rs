@@ -31,7 +31,7 @@ pub struct Axis<'a> {
 /// Points that belong together; those outside the axes or without a value are left out.
 #[derive(Clone, Debug)]
 pub struct Series {
-    /// Its name in the legend.
+    /// Its name in the legend; without one it is not there.
     pub name: String,
     /// Its points.
     pub points: Vec<(f64, f64)>,
@@ -73,16 +73,19 @@ const SIZE: f64 = 3.5;
 
 /// Draws `chart`.
 pub fn draw(chart: &Chart<'_>) -> Svg {
-    let lines = chart.series.len().div_ceil(2) as f64;
+    let named = || chart.series.iter().filter(|series| !series.name.is_empty());
+    let lines = named().count().div_ceil(2) as f64;
     let top = TOP + LINE * lines + 10.0;
     let mut svg = Svg::new(WIDTH, top + FRAME_HEIGHT + 56.0, chart.title);
     svg.words((LEFT, 22.0), Words::new(chart.title, TITLE, Anchor::Start));
     let frame = Rectangle { left: LEFT, top, width: WIDTH - LEFT - 20.0, height: FRAME_HEIGHT };
     let (x, y) = (&chart.x, &chart.y);
     let panel = Panel { frame, x: x.range, y: y.range, scales: (x.scale, y.scale) };
-    for (index, series) in chart.series.iter().enumerate() {
+    for (index, series) in named().enumerate() {
         let left = LEFT + COLUMN * (index % 2) as f64;
         legend(&mut svg, (left, TOP + LINE * (index / 2) as f64), series);
+    }
+    for series in &chart.series {
         svg.begin_group("series");
         curves(&mut svg, &panel, series);
         svg.end_group();
