@@ -50,15 +50,16 @@ impl Measurement {
             )
         };
         let fitted = "Thick where the order in the legend was fitted.";
+        let same = "With steps over switches, both methods have the same errors.";
         vec![
             Picture {
                 name: "convergence_steps_velocity",
-                caption: format!("Error of the final velocity against the step. {fitted}"),
+                caption: format!("Error of the final velocity against the step. {fitted} {same}"),
                 svg: steps(&VELOCITY),
             },
             Picture {
                 name: "convergence_steps_switches",
-                caption: format!("Error of switch times against the step. {fitted}"),
+                caption: format!("Error of switch times against the step. {fitted} {same}"),
                 svg: steps(&SWITCH_TIME),
             },
             Picture {
@@ -160,11 +161,11 @@ fn draw(title: &str, axis: &str, quantity: &Quantity, series: Vec<chart::Series>
         })
     };
     let (x, y) = (range(|point| point.0), range(|point| point.1));
-    let axes = |name, range: (f64, f64)| Axis {
-        name,
-        // A little room, so that marks on the edge are whole; anything where there is nothing to draw.
-        range: if range.0 < range.1 { (range.0 / 1.2, range.1 * 1.2) } else { (0.1, 1.0) },
-        scale: Scale::Logarithmic,
+    let axes = |name, (low, high): (f64, f64)| {
+        // Marks at the edge are whole; where there is nothing to draw, any range does.
+        let room = (high / low).powf(0.02);
+        let range = if low < high { (low / room, high * room) } else { (0.1, 1.0) };
+        Axis { name, range, scale: Scale::Logarithmic }
     };
     chart::draw(&Chart { title, x: axes(axis, x), y: axes(quantity.name, y), series })
 }

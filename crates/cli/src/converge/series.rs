@@ -13,6 +13,11 @@ const PER_OCTAVE: i32 = 4;
 const PER_DECADE: i32 = 4;
 /// The coarsest step for collisions up to a stiffness of 64, in whose swings the same number of steps fits beyond.
 const COARSEST: f64 = 0.25;
+/// A contact lasts 3.22 in scaled time and 2.62 in s without damping, and less with it. One that has not ended by this time,
+/// because steps are too coarse, has failed.
+const LONGEST: f64 = 16.0;
+/// Steps after which a contact in adaptive steps has failed, for collisions up to a stiffness of 64; they take up to 2500.
+const MOST_STEPS: f64 = 20_000.0;
 /// Quick measurements are repeated for this long, at most three times, and the shortest counts.
 const QUICK: Duration = Duration::from_millis(5);
 
@@ -125,11 +130,7 @@ impl Scheme {
             let powers = PER_DECADE..=15 * PER_DECADE;
             return powers.map(|i| 0.1_f64.powf(f64::from(i) / f64::from(PER_DECADE))).collect();
         }
-        let stiffest = references.iter().fold(0.0, |most: f64, c| most.max(c.contact.kappa()));
-        let mut coarsest = COARSEST;
-        while coarsest * stiffest.sqrt() > 8.0 * COARSEST {
-            coarsest *= 0.5;
-        }
+        let coarsest = coarsest(references);
         let at_rounding_early = (Pair::Dop853, Coordinates::Regularized, Switches::Located);
         let early = (self.pair, self.coordinates, self.switches) == at_rounding_early;
         let octaves = if early { 6 } else { 10 };
@@ -138,12 +139,15 @@ impl Scheme {
             .collect()
     }
 
-    fn switching(&self, value: f64) -> Switching {
-        let options = Options::default();
+    fn switching(&self, value: f64, coarsest: f64) -> Switching {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let max_steps = match self.control {
+            Control::Step => LONGEST / value,
+            Control::Tolerance => MOST_STEPS * COARSEST / coarsest,
+        } as usize;
+        let options = Options { max_steps, ..Options::default() };
         match (self.switches, self.control) {
-            (Switches::AtStepEnds, _) => {
-                Switching::AtStepEnds { step_size: value, max_steps: options.max_steps }
-            }
+            (Switches::AtStepEnds, _) => Switching::AtStepEnds { step_size: value, max_steps },
             (Switches::Located, Control::Step) => Switching::Located {
                 options: Options { step_size: StepSize::Fixed(value), ..options },
             },
@@ -162,9 +166,19 @@ impl Scheme {
     }
 }
 
+/// The coarsest step of a study of the collisions of `references`.
+fn coarsest(references: &[Collision]) -> f64 {
+    let stiffest = references.iter().fold(0.0, |most: f64, c| most.max(c.contact.kappa()));
+    let mut coarsest = COARSEST;
+    while coarsest * stiffest.sqrt() > 8.0 * COARSEST {
+        coarsest *= 0.5;
+    }
+    coarsest
+}
+
 impl Row {
     pub fn measure(scheme: &Scheme, value: f64, references: &[Collision]) -> Self {
-        let switching = scheme.switching(value);
+        let switching = scheme.switching(value, coarsest(references));
         let once = || match scheme.pair {
             Pair::Dopri5 => measure(Dopri5, references, scheme.coordinates, &switching),
             Pair::Dop853 => measure(Dop853, references, scheme.coordinates, &switching),

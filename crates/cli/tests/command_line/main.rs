@@ -3,6 +3,7 @@
 mod atlas;
 mod batch;
 mod batch_failures;
+mod converge;
 mod impact;
 mod impact_failures;
 mod map;
