@@ -60,7 +60,7 @@ fn measure(references: &[Collision], progress: &ProgressBar) -> Vec<Series> {
         .collect();
     progress.set_length(tasks.len() as u64);
     let measured = tasks.par_iter().map(|(scheme, value)| {
-        let row = Row::measure(scheme, *value, references);
+        let row = Row::measure(*scheme, *value, references);
         progress.inc(1);
         row
     });

@@ -1,6 +1,6 @@
 //! One collision integrated in ways that lose accuracy or keep it: what studies of convergence compare.
 //!
-//! [`integrate`] takes the coordinates and whether switches are located; [`Approximation::error`] compares with a [`reference`], and
+//! [`integrate`] takes the coordinates and whether switches are located; [`Approximation::error`] compares with a [`reference()`], and
 //! [`measure`] does so for several collisions at once, whose errors together show the order, where that of a single one passes
 //! through zero now and then.
 
@@ -90,7 +90,7 @@ pub fn reference(contact: Contact) -> Result<Collision, ReferenceError> {
     }
 }
 
-/// There is no [`reference`].
+/// There is no [`reference()`].
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ReferenceError {
     /// The exact solution does not take the contact.

@@ -90,14 +90,14 @@ impl Measurement {
             if let Some(Order { coarsest, finest, .. }) = order {
                 let range = finest * (1.0 - 1e-9)..=coarsest * (1.0 + 1e-9);
                 let fitted = points.iter().copied().filter(|(value, _)| range.contains(value));
-                let line = Some(Stroke { width: 3.6, ..stroke(&series.scheme) });
+                let line = Some(Stroke { width: 3.6, ..stroke(series.scheme) });
                 let points = fitted.collect();
                 lines.push(chart::Series { name: String::new(), points, line, mark: None });
             }
             let order = order.map_or("no fit".to_owned(), |order| {
                 format!("{:.3} ± {:.3}", order.order, order.standard_error)
             });
-            lines.push(drawn(&series.scheme, &order, points));
+            lines.push(drawn(series.scheme, &order, points));
         }
         draw(title, axis, quantity, lines)
     }
@@ -114,7 +114,7 @@ impl Measurement {
                 Control::Step => "fixed steps",
                 Control::Tolerance => "adaptive",
             };
-            drawn(&series.scheme, control, points)
+            drawn(series.scheme, control, points)
         });
         let axis = "evaluations of the right-hand side a collision";
         draw("Work and precision", axis, &VELOCITY, lines.collect())
@@ -130,7 +130,7 @@ fn points(series: &Series, x: impl Fn(&Row) -> f64, quantity: &Quantity) -> Vec<
 }
 
 /// A line with marks, by name.
-fn drawn(scheme: &Scheme, remark: &str, points: Vec<(f64, f64)>) -> chart::Series {
+fn drawn(scheme: Scheme, remark: &str, points: Vec<(f64, f64)>) -> chart::Series {
     let stroke = stroke(scheme);
     let shape = match (scheme.switches, scheme.coordinates) {
         (Switches::Located, Coordinates::Regularized) => Shape::Disc,
@@ -145,7 +145,7 @@ fn drawn(scheme: &Scheme, remark: &str, points: Vec<(f64, f64)>) -> chart::Serie
 }
 
 /// Dashes let the other pair's line show where both coincide.
-fn stroke(scheme: &Scheme) -> Stroke {
+fn stroke(scheme: Scheme) -> Stroke {
     match scheme.pair {
         Pair::Dopri5 => Stroke::full("#0072B2", 1.4),
         Pair::Dop853 => Stroke { colour: "#D55E00", width: 1.4, dashes: "6 4" },

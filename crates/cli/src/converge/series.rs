@@ -112,7 +112,7 @@ impl Scheme {
     }
 
     /// The names of its method, its coordinates and what it does with switches.
-    pub fn names(&self) -> [&'static str; 3] {
+    pub fn names(self) -> [&'static str; 3] {
         let coordinates = match self.coordinates {
             Coordinates::Regularized => "regularised",
             Coordinates::PlainTime => "plain time",
@@ -125,7 +125,7 @@ impl Scheme {
     }
 
     /// Its steps or tolerances, from coarse to fine.
-    pub fn values(&self, references: &[Collision]) -> Vec<f64> {
+    pub fn values(self, references: &[Collision]) -> Vec<f64> {
         if self.control == Control::Tolerance {
             let powers = PER_DECADE..=15 * PER_DECADE;
             return powers.map(|i| 0.1_f64.powf(f64::from(i) / f64::from(PER_DECADE))).collect();
@@ -139,7 +139,7 @@ impl Scheme {
             .collect()
     }
 
-    fn switching(&self, value: f64, coarsest: f64) -> Switching {
+    fn switching(self, value: f64, coarsest: f64) -> Switching {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let max_steps = match self.control {
             Control::Step => LONGEST / value,
@@ -158,7 +158,7 @@ impl Scheme {
     }
 
     /// The least factor that steps or tolerances of a fit span.
-    fn span(&self) -> f64 {
+    fn span(self) -> f64 {
         match self.control {
             Control::Step => 4.0,
             Control::Tolerance => 1e3,
@@ -177,7 +177,7 @@ fn coarsest(references: &[Collision]) -> f64 {
 }
 
 impl Row {
-    pub fn measure(scheme: &Scheme, value: f64, references: &[Collision]) -> Self {
+    pub fn measure(scheme: Scheme, value: f64, references: &[Collision]) -> Self {
         let switching = scheme.switching(value, coarsest(references));
         let once = || match scheme.pair {
             Pair::Dopri5 => measure(Dopri5, references, scheme.coordinates, &switching),

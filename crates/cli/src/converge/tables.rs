@@ -26,7 +26,7 @@ impl Measurement {
         let rows = self.series.iter().flat_map(|series| {
             let of = |quantity: &str, order: &Option<Order>| {
                 order.map(|order| {
-                    let mut row = scheme(&series.scheme);
+                    let mut row = scheme(series.scheme);
                     row.push(Cell::Text(series.scheme.control.name().to_owned()));
                     row.push(Cell::Text(quantity.to_owned()));
                     row.extend([order.order, order.standard_error, order.drift].map(Cell::Number));
@@ -81,7 +81,7 @@ impl Measurement {
         let rows = self.of(control).flat_map(|series| {
             series.rows.iter().map(|Row { value, errors, .. }| {
                 let Errors { failed, other_switches, velocity, switch_time, .. } = errors;
-                let mut row = scheme(&series.scheme);
+                let mut row = scheme(series.scheme);
                 row.push(Cell::Number(*value));
                 row.extend([*failed, *other_switches].map(|count| Cell::Count(count as u64)));
                 for spread in [velocity, switch_time] {
@@ -153,7 +153,7 @@ impl Measurement {
         ];
         let rows = self.series.iter().flat_map(|series| {
             series.rows.iter().map(|row| {
-                let mut cells = scheme(&series.scheme);
+                let mut cells = scheme(series.scheme);
                 cells.push(Cell::Text(series.scheme.control.name().to_owned()));
                 let error = row.errors.velocity.root_mean_square;
                 cells.extend([row.value, error, row.microseconds].map(Cell::Number));
@@ -182,6 +182,6 @@ fn with_scheme(columns: &[(&'static str, &'static str)]) -> Vec<Column> {
     scheme.iter().chain(columns).copied().map(column).collect()
 }
 
-fn scheme(scheme: &Scheme) -> Vec<Cell> {
+fn scheme(scheme: Scheme) -> Vec<Cell> {
     scheme.names().map(|name| Cell::Text(name.to_owned())).into()
 }

@@ -166,7 +166,7 @@ fn a_directory_that_cannot_be_written_is_a_failure_before_the_work() {
 fn help_names_every_file() {
     let ran = stickslip("converge --help");
     assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
-    for name in FILES.iter().filter(|name| !name.ends_with(".svg")) {
+    for name in FILES.iter().filter(|name| !name.contains(".svg")) {
         assert!(ran.stdout.contains(name), "{name}");
     }
 }
