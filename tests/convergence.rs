@@ -1,85 +1,103 @@
 //! Observed orders in fixed steps, through all switches of a collision.
 //!
-//! In the regularised coordinates both methods keep their order; in plain time the power 3/2 of the contact law takes it
-//! down to about 2.5, which is why the regularised coordinates exist.
+//! In the regularised coordinates both methods keep their order; in plain time the contact law takes it down, and without located
+//! switches nothing is left of it. [`fit_order`] chooses the steps.
 
-use stickslip::model::plain_time::{self, PlainTime};
-use stickslip::model::{Collider, Contact, exact};
-use stickslip::solver::{Dop853, Dopri5, Method, Options, Start, StepSize, run};
+use stickslip::model::convergence::{Coordinates, Switching, measure, reference};
+use stickslip::model::{Collision, Contact};
+use stickslip::solver::{Dop853, Dopri5, Method, Options, Order, StepSize, fit_order};
 
-/// Collisions with two to eight switches: their errors together show the order, where that of a single one passes
-/// through zero now and then.
-fn contacts() -> impl Iterator<Item = Contact> {
-    (0..60).map(|i| {
-        let (kappa, psi) = (8.0 + f64::from(i), 0.3 + 0.02 * f64::from(i % 12));
-        Contact::new(kappa, psi, 0.0).expect("valid")
+/// Collisions with two to eight switches, three to seven with damping.
+fn references(damping: f64) -> Vec<Collision> {
+    let contacts = [18.0, 63.0].map(|kappa| {
+        (1..20).map(move |i| Contact::new(kappa, 0.1 * f64::from(i), damping).expect("valid"))
+    });
+    contacts.into_iter().flatten().map(|contact| reference(contact).expect("a reference")).collect()
+}
+
+fn located(h: f64) -> Switching {
+    let options = Options { step_size: StepSize::Fixed(h), ..Options::default() };
+    Switching::Located { options }
+}
+
+fn at_step_ends(step_size: f64) -> Switching {
+    Switching::AtStepEnds { step_size, max_steps: 1_000_000 }
+}
+
+/// The orders of the final velocity and of the switch times over steps from 1/4 down by `octaves` octaves.
+fn orders<M: Method>(
+    method: M,
+    damping: f64,
+    coordinates: Coordinates,
+    (switching, octaves): (fn(f64) -> Switching, i32),
+) -> [Order; 2] {
+    let references = references(damping);
+    let steps = (0..=4 * octaves).map(|i| 0.25 * 0.5_f64.powf(f64::from(i) / 4.0));
+    let (mut velocities, mut times) = (Vec::new(), Vec::new());
+    for h in steps {
+        let errors = measure(method, &references, coordinates, &switching(h));
+        let or_nan = |error| if errors.comparable() { error } else { f64::NAN };
+        velocities.push((h, or_nan(errors.velocity.root_mean_square)));
+        times.push((h, or_nan(errors.switch_time.root_mean_square)));
+    }
+    [velocities, times].map(|errors| {
+        let order = fit_order(&errors, 4.0).expect("a range");
+        println!("{}, {coordinates:?}: {order:?}", M::NAME);
+        order
     })
 }
 
-fn fixed(h: f64) -> Options {
-    Options { step_size: StepSize::Fixed(h), ..Options::default() }
-}
-
-/// Order by least squares through (log h, log error).
-fn fitted_order(points: &[(f64, f64)]) -> f64 {
-    let n = points.len() as f64;
-    let logs: Vec<(f64, f64)> = points.iter().map(|(h, error)| (h.ln(), error.ln())).collect();
-    let mean = logs.iter().fold((0.0, 0.0), |sum, p| (sum.0 + p.0 / n, sum.1 + p.1 / n));
-    let products = logs.iter().map(|p| (p.0 - mean.0) * (p.1 - mean.1)).sum::<f64>();
-    products / logs.iter().map(|p| (p.0 - mean.0).powi(2)).sum::<f64>()
-}
-
-/// Root mean square errors of the final velocity for step sizes between `coarse` and `fine`.
-fn order(coarse: f64, fine: f64, velocity: impl Fn(Contact, f64) -> f64) -> f64 {
-    let count = 12;
-    let points: Vec<(f64, f64)> = (0..count)
-        .map(|i| {
-            let h = coarse * (fine / coarse).powf(f64::from(i) / f64::from(count - 1));
-            let squares = contacts().map(|contact| {
-                let expected = exact::collide(contact).expect("no damping").final_velocity;
-                (velocity(contact, h) - expected).powi(2)
-            });
-            (h, squares.sum::<f64>().sqrt())
-        })
-        .collect();
-    fitted_order(&points)
-}
-
-fn regularized<M: Method>(method: M, coarse: f64, fine: f64) -> f64 {
-    let velocity = |contact, h| {
-        let collision = Collider::unrefined(method, fixed(h)).collide(contact);
-        let collision = collision.expect("a collision");
-        let expected = exact::collide(contact).expect("no damping").itinerary();
-        assert_eq!(collision.itinerary(), expected, "{contact:?}, {h}");
-        collision.final_velocity
-    };
-    order(coarse, fine, velocity)
-}
-
-fn plain<M: Method>(method: M, coarse: f64, fine: f64) -> f64 {
-    order(coarse, fine, |contact, h| {
-        let system = PlainTime::new(contact);
-        let start = Start { mode: system.first(), s: 0.0, state: system.start() };
-        let end = run(method, &system, start, 10.0, &fixed(h), &mut ()).expect("a run");
-        end.state[plain_time::W]
-    })
+fn assert_orders(found: [Order; 2], expected: [f64; 2], within: f64) {
+    for (found, expected) in found.iter().zip(expected) {
+        assert!((found.order - expected).abs() < within, "{found:?}");
+        assert!(found.standard_error < 0.1, "{found:?}");
+    }
 }
 
 #[test]
 fn regularised_coordinates_keep_the_order() {
-    let dopri5 = regularized(Dopri5, 0.006, 0.0006);
-    let dop853 = regularized(Dop853, 0.025, 0.01);
-    println!("dopri5 {dopri5:.3}, dop853 {dop853:.3}");
-    assert!((dopri5 - 5.0).abs() < 0.1, "{dopri5}");
-    assert!((dop853 - 8.0).abs() < 0.2, "{dop853}");
+    use Coordinates::Regularized;
+    for damping in [0.0, 0.1] {
+        // 5.039 ± 0.003, 5.019 ± 0.002; 5.039 ± 0.003, 5.032 ± 0.003
+        assert_orders(orders(Dopri5, damping, Regularized, (located, 10)), [5.0; 2], 0.1);
+        // 7.830 ± 0.019, 7.929 ± 0.006; 7.809 ± 0.021, 7.901 ± 0.009
+        assert_orders(orders(Dop853, damping, Regularized, (located, 6)), [8.0; 2], 0.2);
+    }
 }
 
 #[test]
 fn plain_time_loses_it() {
-    let dopri5 = plain(Dopri5, 0.04, 0.001);
-    let dop853 = plain(Dop853, 0.04, 0.001);
-    println!("dopri5 {dopri5:.3}, dop853 {dop853:.3}");
-    for order in [dopri5, dop853] {
-        assert!((2.2..2.8).contains(&order), "{order}");
+    // 2.532 ± 0.018, 2.501 ± 0.000; 2.484 ± 0.006, 2.500 ± 0.000
+    let found = orders(Dopri5, 0.0, Coordinates::PlainTime, (located, 10));
+    assert_orders(found, [2.5; 2], 0.1);
+    let found = orders(Dop853, 0.0, Coordinates::PlainTime, (located, 9));
+    assert_orders(found, [2.5; 2], 0.1);
+}
+
+/// Contact then starts with a force like √t, and the steps must be shorter than the stick phase with which it starts.
+#[test]
+fn damping_in_plain_time_takes_away_another_order() {
+    let reference = [reference(Contact::new(18.0, 0.1, 1.0).expect("valid")).expect("a reference")];
+    let steps = (0..40).map(|i| 0.02 * 0.5_f64.powf(f64::from(i) / 4.0));
+    let errors = steps.map(|h| {
+        let errors = measure(Dop853, &reference, Coordinates::PlainTime, &located(h));
+        assert!(errors.comparable(), "{h}");
+        (h, errors.velocity.root_mean_square)
+    });
+    let order = fit_order(&errors.collect::<Vec<_>>(), 4.0).expect("a range");
+    println!("{order:?}");
+    assert!((order.order - 1.5).abs() < 0.01, "{order:?}");
+}
+
+#[test]
+fn steps_over_switches_leave_order_two_of_the_velocity_and_one_of_the_times() {
+    for coordinates in [Coordinates::Regularized, Coordinates::PlainTime] {
+        // 2.03 ± 0.02, 1.00 ± 0.01; 2.07 ± 0.04, 1.02 ± 0.01
+        let found = orders(Dopri5, 0.0, coordinates, (at_step_ends, 10));
+        assert_orders(found, [2.0, 1.0], 0.15);
+        let better = orders(Dop853, 0.0, coordinates, (at_step_ends, 10));
+        for (found, better) in found.iter().zip(better) {
+            assert!((found.order - better.order).abs() < 1e-3, "{found:?} {better:?}");
+        }
     }
 }

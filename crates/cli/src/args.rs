@@ -1,6 +1,7 @@
 //! What may be typed: options with their syntax and ranges, and the help text.
 
 mod asymptote;
+mod converge;
 mod impact;
 mod locate;
 mod map;
@@ -17,6 +18,7 @@ use crate::figure::Target;
 use crate::parameter::Parameter;
 
 pub use asymptote::AsymptoteArguments;
+pub use converge::ConvergeArguments;
 pub use impact::ImpactArguments;
 pub use locate::LocateArguments;
 pub use map::MapArguments;
@@ -58,6 +60,9 @@ pub enum Command {
     /// Measure how the tangential restitution vanishes for stiff springs
     #[command(long_about = asymptote::ABOUT, after_long_help = asymptote::EXAMPLES)]
     Asymptote(AsymptoteArguments),
+    /// Measure how errors fall with the step and the tolerance, and what they cost
+    #[command(long_about = converge::ABOUT, after_long_help = converge::EXAMPLES)]
+    Converge(ConvergeArguments),
 }
 
 /// Options of `collide`.

@@ -3,7 +3,7 @@
 use std::io::{self, BufWriter, Write};
 
 use crate::args::Format;
-use crate::engine::{EngineError, require_finite, require_finite_energy};
+use crate::engine::{require_finite, require_finite_energy};
 use crate::error::Failure;
 use crate::figure;
 use crate::plan::Point;
@@ -15,12 +15,7 @@ use crate::{json, table};
 /// The collision cannot be computed, or the picture or standard output cannot be written.
 pub fn run(point: &Point) -> Result<(), Failure> {
     let contact = point.contact;
-    let failed = |source: EngineError| Failure::Computation {
-        kappa: contact.kappa(),
-        psi: contact.psi(),
-        damping: contact.damping(),
-        source,
-    };
+    let failed = |source| Failure::computation(&contact, source);
     if let Some(target) = &point.plot {
         target.check()?;
     }

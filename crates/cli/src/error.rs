@@ -5,6 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use stickslip_model::Contact;
 use stickslip_model::stiff::StiffError;
 
 use crate::engine::EngineError;
@@ -112,6 +113,12 @@ pub enum Failure {
 }
 
 impl Failure {
+    /// A point that cannot be computed.
+    pub fn computation(contact: &Contact, source: EngineError) -> Self {
+        let (kappa, psi, damping) = (contact.kappa(), contact.psi(), contact.damping());
+        Self::Computation { kappa, psi, damping, source }
+    }
+
     /// An unusable input file.
     pub fn input(path: &Path, reason: impl Display) -> Self {
         Self::Input { path: path.to_owned(), reason: reason.to_string() }

@@ -49,12 +49,7 @@ pub fn run(arguments: &ImpactArguments) -> Result<(), Failure> {
         )));
     }
     let contact = encounter.contact();
-    let failed = |source: EngineError| Failure::Computation {
-        kappa: contact.kappa(),
-        psi: contact.psi(),
-        damping: contact.damping(),
-        source,
-    };
+    let failed = |source| Failure::computation(&contact, source);
     let (collision, statistics) = engine.collide(contact, Vec::new()).map_err(failed)?;
     engine::require_finite(&collision).map_err(failed)?;
     let impact = Impact::new(&encounter, collision);

@@ -2,7 +2,7 @@
 //! an exit code.
 //!
 //! Start reading here; then, in this order: `args` (what may be typed), `plan` (what it means),
-//! `collide`, `batch`, `impact`, `map`, `atlas`, `asymptote` and `reproduce` (doing it), `input`, `bodies` and `json_input`
+//! `collide`, `batch`, `impact`, `map`, `atlas`, `converge`, `asymptote` and `reproduce` (doing it), `input`, `bodies` and `json_input`
 //! (files read), `table`, `json`, `rows`, `figure` and `output` (results written).
 
 mod args;
@@ -11,6 +11,7 @@ mod atlas;
 mod batch;
 mod bodies;
 mod collide;
+mod converge;
 mod engine;
 mod error;
 mod figure;
@@ -36,7 +37,9 @@ use clap::Parser;
 
 use args::{Arguments, Command};
 use error::Failure;
-use plan::{AsymptotePlan, CollidePlan, LocatePlan, MapPlan, ReproducePlan, TracePlan};
+use plan::{
+    AsymptotePlan, CollidePlan, ConvergePlan, LocatePlan, MapPlan, ReproducePlan, TracePlan,
+};
 
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
@@ -66,6 +69,10 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Map(arguments) => map::run(&MapPlan::new(arguments)?),
         Command::Trace(arguments) => atlas::trace::run(&TracePlan::new(arguments)?),
         Command::Locate(arguments) => atlas::locate::run(&LocatePlan::new(arguments)?),
+        Command::Converge(arguments) => {
+            let plan = ConvergePlan::new(arguments)?;
+            study::carry_out(&plan.out, plan.threads, |progress| converge::run(&plan, progress))
+        }
         Command::Asymptote(arguments) => {
             let plan = AsymptotePlan::new(arguments)?;
             study::carry_out(&plan.out, plan.threads, |progress| asymptote::run(&plan, progress))

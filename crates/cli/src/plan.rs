@@ -1,6 +1,7 @@
 //! What the options mean together: raw arguments become a plan that can be carried out.
 
 mod asymptote;
+mod converge;
 mod locate;
 mod map;
 mod reproduce;
@@ -19,6 +20,7 @@ use crate::figure::Target;
 use crate::recipe::{Given, Recipe, RecipeError};
 
 pub use asymptote::AsymptotePlan;
+pub use converge::ConvergePlan;
 pub use locate::LocatePlan;
 pub use map::{MapFormat, MapPlan};
 pub use reproduce::ReproducePlan;

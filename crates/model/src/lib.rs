@@ -8,7 +8,7 @@
 //!
 //! Start reading in [`collision`]; then [`regularized`] (the equations), [`exact`] (the closed form),
 //! [`history`] (its course in time), [`scaling`] (SI units), [`bodies`] and [`encounter`] (spheres in three dimensions),
-//! [`normal`] and [`coulomb`] (formulas to compare with), [`plain_time`] (the equations as the paper has them, for studies).
+//! [`normal`] and [`coulomb`] (formulas to compare with), [`plain_time`] and [`convergence`] (the equations as the paper has them, for studies).
 //!
 //! ```
 //! use stickslip_model::{Collider, Contact, exact};
@@ -24,6 +24,7 @@
 pub mod bodies;
 pub mod collision;
 mod contact;
+pub mod convergence;
 pub mod coulomb;
 pub mod encounter;
 mod energy;

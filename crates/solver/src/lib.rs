@@ -8,7 +8,8 @@
 //!
 //! Start reading in [`hybrid`]; then, in this order: `event` (one step and its guards), `quick` and `isolate`
 //! (the decision), `locate` (the refinement), [`method`], [`Dopri5`] and [`Dop853`], `control`, `clock`, [`smooth`],
-//! [`trajectory`], [`mod@margin`].
+//! [`trajectory`], [`mod@margin`], `unlocated` and `order` (what is lost without all this, and how
+//! orders are measured).
 //!
 //! ```
 //! use stickslip_solver::{
@@ -54,9 +55,11 @@ mod locate;
 pub mod margin;
 pub mod method;
 mod options;
+mod order;
 mod quick;
 pub mod smooth;
 pub mod trajectory;
+mod unlocated;
 
 pub use dop853::Dop853;
 pub use dopri5::Dopri5;
@@ -68,5 +71,7 @@ pub use hybrid::{
 pub use margin::{Exit, Hint, Margin, Margins, NearMiss, Place, margin, margins};
 pub use method::{Dense, Method, State, Step, Tableau, Trial};
 pub use options::{InvalidOption, Options, StepSize};
+pub use order::{Order, fit_order};
 pub use smooth::integrate;
 pub use trajectory::{Recorder, Segment, Trajectory};
+pub use unlocated::run_over_switches;

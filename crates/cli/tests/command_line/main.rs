@@ -4,6 +4,7 @@ mod asymptote;
 mod atlas;
 mod batch;
 mod batch_failures;
+mod converge;
 mod impact;
 mod impact_failures;
 mod map;

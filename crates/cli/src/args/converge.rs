@@ -1,0 +1,78 @@
+//! The options of `converge`.
+
+use std::path::PathBuf;
+
+use crate::parameter::Parameter;
+
+/// Options of `converge`.
+#[derive(Debug, clap::Args)]
+pub struct ConvergeArguments {
+    /// Scaled stiffness κ of one collision, instead of the usual 38; above 0, at most 10⁶
+    #[arg(long, value_name = "K", help_heading = "Collision", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Kappa.parse(text))]
+    pub kappa: Option<f64>,
+
+    /// Its impact ratio g_t/g_n; above 0; gives ψ = G·α/μ
+    #[arg(long, value_name = "G", help_heading = "Collision", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Ratio.parse(text))]
+    pub ratio: Option<f64>,
+
+    /// Its reduced impact ratio ψ = (g_t/g_n)·α/μ, instead of --ratio; above 0
+    #[arg(long, value_name = "P", help_heading = "Collision", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Psi.parse(text))]
+    pub psi: Option<f64>,
+
+    /// Coefficient of friction μ, with --ratio; above 0 [default: 0.4]
+    #[arg(long, value_name = "M", help_heading = "Collision", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Mu.parse(text))]
+    pub mu: Option<f64>,
+
+    /// Tangential inertia α, with --ratio; above 0, at most 1 [default: 2/7, homogeneous spheres]
+    #[arg(long, value_name = "A", help_heading = "Collision", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Alpha.parse(text))]
+    pub alpha: Option<f64>,
+
+    /// Scaled damping a = A β^⅖ g_n^⅕ of the collision, or of all the usual ones; 0 or above [default: 0]
+    #[arg(long, value_name = "D", help_heading = "Collision", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Damping.parse(text))]
+    pub damping: Option<f64>,
+
+    /// Directory for the files of the study, made if it is missing
+    #[arg(long, value_name = "DIR", help_heading = "Output")]
+    pub out: PathBuf,
+
+    /// Threads; 1 to 1024 [default: one for each core]; results other than times do not depend on it
+    #[arg(long, value_name = "N", help_heading = "Output", allow_hyphen_values = true)]
+    #[arg(value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
+/// Text of `converge --help`.
+pub const ABOUT: &str = "\
+Measure how accurate the integrators are: the order with which errors fall in fixed steps, the errors \
+at a tolerance, and the work that an accuracy takes; for both Dormand–Prince pairs, in regularised \
+coordinates and in plain time, with switches located and with steps that run over them.
+
+Errors are those of the final tangential velocity and of all switch times, against the exact solution or, \
+with damping, against dop853 at a tolerance of 1e-15. Without --kappa they are root mean squares over 38 \
+collisions: κ = 18 and 63, ψ = 0.1, 0.2, … 1.9, with two to eight switches.";
+
+/// What follows it.
+pub const EXAMPLES: &str = "\
+Files in DIR:
+  convergence.json              everything below but times
+  convergence_orders.csv        fitted orders with their standard errors
+  convergence_steps.csv         errors and work in fixed steps
+  convergence_tolerances.csv    errors and work at tolerances
+  convergence_collisions.csv    each collision as `collide` computes it, with its errors
+  convergence_time.csv          measured times, the only file that differs from run to run
+  convergence_*.svg             pictures
+
+What was found is printed, a line each.
+
+Examples:
+  stickslip converge --out convergence
+  stickslip converge --damping 0.1 --out damped
+  stickslip converge --kappa 1000 --psi 0.5 --out stiff
+
+Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

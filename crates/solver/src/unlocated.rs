@@ -1,0 +1,242 @@
+//! Runs that step over switches, as codes without event location do: for comparison only.
+
+use crate::clock::Clock;
+use crate::error::RunError;
+use crate::guard::Direction;
+use crate::hybrid::{HybridSystem, Observer, Outcome, Run, Start, Statistics, SwitchEvent};
+use crate::method::{Method, Step, Trial};
+use crate::options::{Options, StepSize};
+
+/// Integrates `system` from `start` to `end` in steps of `step_size` that know nothing of switches: the guards are looked at where a
+/// step ends, and the first in the list that has fired by then switches there. At most `max_steps` are taken.
+///
+/// What fires and ceases to within a step is missed, and switches are late by up to a step, so that the order of the method is
+/// lost. [`run`](crate::run) is the same without these errors. A mode is entered as
+/// [`settled`](HybridSystem::settle), since the state at a late switch is not the one that the start of a phase is made for.
+///
+/// ```
+/// use stickslip_solver::{
+///     Direction, Dop853, Guard, HybridSystem, Outcome, Start, State, run_over_switches,
+/// };
+///
+/// /// A ball thrown up.
+/// struct Throw;
+///
+/// impl HybridSystem<2, 1> for Throw {
+///     type Mode = ();
+///     fn field(&self, (): (), _time: f64, y: &State<2>) -> State<2> {
+///         State::from([y[1], -9.81])
+///     }
+///     fn guards(&self, (): ()) -> [Guard; 1] {
+///         [Guard::new(Direction::Below).from_zero(1).terminal()]
+///     }
+///     fn guard_values(&self, (): (), _time: f64, y: &State<2>) -> [f64; 1] {
+///         [y[0]]
+///     }
+///     fn transition(&self, (): (), _guard: usize, _time: f64, y: &State<2>) -> ((), State<2>) {
+///         ((), *y)
+///     }
+/// }
+///
+/// let start = Start { mode: (), s: 0.0, state: State::from([0.0, 10.0]) };
+/// let end = run_over_switches(Dop853, &Throw, start, 100.0, 0.01, 1_000_000, &mut ())?;
+/// assert_eq!(end.outcome, Outcome::EndedByGuard { guard: 0 });
+/// // It comes down at 20/9.81 = 2.0387, and is looked for every hundredth.
+/// assert!((end.s - 2.04).abs() < 1e-12);
+/// # Ok::<(), stickslip_solver::RunError>(())
+/// ```
+///
+/// # Errors
+/// [`RunError`]: a step that is not finite and above 0, a right-hand side or guard that is not finite.
+pub fn run_over_switches<M, S, O, const N: usize, const G: usize>(
+    _method: M,
+    system: &S,
+    start: Start<S::Mode, N>,
+    end: f64,
+    step_size: f64,
+    max_steps: usize,
+    observer: &mut O,
+) -> Result<Run<S::Mode, N>, RunError>
+where
+    M: Method,
+    S: HybridSystem<N, G>,
+    O: Observer<S::Mode, N>,
+{
+    Options { step_size: StepSize::Fixed(step_size), ..Options::default() }.validate()?;
+    let Start { mut mode, s, mut state } = start;
+    if !(s.is_finite() && end > s) {
+        return Err(RunError::Span { from: s, to: end });
+    }
+    let mut clock = Clock::new(s);
+    let mut statistics = Statistics { field: 1, guards: 1, ..Statistics::default() };
+    let mut values = system.guard_values(mode, s, &state);
+    let mut slope = system.field(mode, s, &state);
+    let mut step = Step::blank();
+    let outcome = loop {
+        if statistics.accepted >= max_steps {
+            break Outcome::StepLimit;
+        }
+        let left = clock.until(end);
+        let (h, last) = if step_size >= left { (left, true) } else { (step_size, false) };
+        let trial = Trial { s: clock.s, y: &state, slope: &slope, h, tolerances: (1.0, 1.0) };
+        system.step::<M>(mode, &trial, &mut step);
+        statistics.accepted += 1;
+        statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
+        if !step.y1.sum().is_finite() {
+            return Err(RunError::Field { s: clock.s, step: statistics.accepted });
+        }
+        clock.advance(h);
+        state = step.y1;
+        let s = clock.s;
+        let ends = system.guard_values(mode, s, &state);
+        statistics.guards += 1;
+        let guards = system.guards(mode);
+        let mut fired = None;
+        for guard in (0..G).filter(|&guard| guards[guard].direction() != Direction::Off) {
+            if ends[guard].is_nan() {
+                return Err(RunError::GuardNotANumber { guard, s: step.s });
+            }
+            if fired.is_none() && fires(guards[guard].direction(), values[guard], ends[guard]) {
+                fired = Some(guard);
+            }
+        }
+        let from = mode;
+        mode = system.settle(mode);
+        if let Some(guard) = fired {
+            let terminal = guards[guard].ends_run();
+            let before = state;
+            if !terminal {
+                let (to, after) = system.transition(from, guard, s, &before);
+                (mode, state) = (system.settle(to), after);
+                statistics.switches += 1;
+            }
+            let to = if terminal { from } else { mode };
+            observer.on_switch(&SwitchEvent {
+                s,
+                guard,
+                simultaneous: 0,
+                flatness: f64::NAN,
+                from,
+                to,
+                before,
+                after: state,
+            });
+            if terminal {
+                break Outcome::EndedByGuard { guard };
+            }
+        }
+        if last {
+            break Outcome::ReachedEnd;
+        }
+        if mode == from && fired.is_none() {
+            (values, slope) = (ends, step.finish::<M>(&mut |s, y| system.field(mode, s, y)));
+            statistics.field += usize::from(!M::ERROR_USES_END);
+        } else {
+            values = system.guard_values(mode, s, &state);
+            slope = system.field(mode, s, &state);
+            statistics.field += 1;
+            statistics.guards += 1;
+        }
+    };
+    Ok(Run { outcome, s: clock.s, mode, state, statistics })
+}
+
+/// Whether a guard that stood at `before` has fired when it stands at `now`.
+fn fires(direction: Direction, before: f64, now: f64) -> bool {
+    let (falls, rises) = (before >= 0.0 && now < 0.0, before <= 0.0 && now > 0.0);
+    match direction {
+        Direction::Below => now < 0.0,
+        Direction::Falling => falls,
+        Direction::Rising => rises,
+        Direction::Either => falls || rises,
+        Direction::Off => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::guard::Guard;
+    use crate::method::State;
+    use crate::trajectory::Recorder;
+    use crate::{Dop853, Dopri5, run};
+
+    /// y' = 1 with one guard, a function of s, that changes nothing.
+    struct Planted(Direction, fn(f64) -> f64);
+
+    impl HybridSystem<1, 1> for Planted {
+        type Mode = ();
+
+        fn field(&self, (): (), _s: f64, _y: &State<1>) -> State<1> {
+            State::from([1.0])
+        }
+
+        fn guards(&self, (): ()) -> [Guard; 1] {
+            [Guard::new(self.0)]
+        }
+
+        fn guard_values(&self, (): (), s: f64, _y: &State<1>) -> [f64; 1] {
+            [self.1(s)]
+        }
+
+        fn transition(&self, (): (), _: usize, _s: f64, y: &State<1>) -> ((), State<1>) {
+            ((), *y)
+        }
+    }
+
+    fn start() -> Start<(), 1> {
+        Start { mode: (), s: 0.0, state: State::zeros() }
+    }
+
+    /// Where a run from 0 to 1 in steps of 1/8 switches.
+    fn switches(direction: Direction, guard: fn(f64) -> f64) -> Vec<f64> {
+        let mut recorder = Recorder::default();
+        let system = Planted(direction, guard);
+        let end = run_over_switches(Dopri5, &system, start(), 1.0, 0.125, 100, &mut recorder);
+        let end = end.unwrap();
+        assert_eq!((end.outcome, end.s), (Outcome::ReachedEnd, 1.0));
+        assert!((end.state[0] - 1.0).abs() < 1e-15);
+        assert_eq!(end.statistics.switches, recorder.switches.len());
+        recorder.switches.iter().map(|event| event.s).collect()
+    }
+
+    #[test]
+    fn switches_are_at_the_ends_of_steps_and_pairs_within_one_are_missed() {
+        assert_eq!(switches(Direction::Falling, |s| 0.3 - s), [0.375]);
+        let pair: fn(f64) -> f64 = |s| (s - 0.4) * (s - 0.45);
+        assert_eq!(switches(Direction::Either, pair), []);
+        let mut recorder = Recorder::default();
+        let options = Options { step_size: StepSize::Fixed(0.125), ..Options::default() };
+        run(Dopri5, &Planted(Direction::Either, pair), start(), 1.0, &options, &mut recorder)
+            .unwrap();
+        assert_eq!(recorder.switches.len(), 2);
+    }
+
+    #[test]
+    fn every_direction_fires_when_it_should() {
+        let wave = |s: f64| (2.0 * std::f64::consts::PI * s + 0.1).sin();
+        assert_eq!(switches(Direction::Falling, wave), [0.5]);
+        assert_eq!(switches(Direction::Rising, wave), [1.0]);
+        assert_eq!(switches(Direction::Either, wave), [0.5, 1.0]);
+        assert_eq!(switches(Direction::Below, wave), [0.5, 0.625, 0.75, 0.875]);
+        assert_eq!(switches(Direction::Off, |_| f64::NAN), []);
+    }
+
+    #[test]
+    fn counts_its_work_and_says_what_is_wrong() {
+        let system = Planted(Direction::Falling, |s| 0.3 - s);
+        let go = |h, steps, end| {
+            run_over_switches(Dop853, &system, start(), end, h, steps, &mut ()).map(|run| {
+                (run.outcome, run.statistics.accepted, run.statistics.field, run.statistics.guards)
+            })
+        };
+        // Twelve right-hand sides a step, and one for the start.
+        assert_eq!(go(0.125, 100, 1.0), Ok((Outcome::ReachedEnd, 8, 8 * 12, 8 + 2)));
+        assert_eq!(go(0.125, 3, 1.0), Ok((Outcome::StepLimit, 3, 3 * 12 + 1, 3 + 2)));
+        assert!(matches!(go(0.0, 9, 1.0), Err(RunError::Option(_))));
+        assert!(matches!(go(0.1, 9, -1.0), Err(RunError::Span { .. })));
+        let nan = Planted(Direction::Below, |s| if s > 0.2 { f64::NAN } else { 1.0 });
+        let failed = run_over_switches(Dop853, &nan, start(), 1.0, 0.125, 9, &mut ());
+        assert_eq!(failed.unwrap_err(), RunError::GuardNotANumber { guard: 0, s: 0.125 });
+    }
+}
