@@ -8,7 +8,8 @@
 //!
 //! Start reading in [`collision`]; then [`regularized`] (the equations), [`exact`] (the closed form),
 //! [`history`] (its course in time), [`scaling`] (SI units), [`bodies`] and [`encounter`] (spheres in three dimensions),
-//! [`normal`] and [`coulomb`] (formulas to compare with), [`plain_time`] (the equations as the paper has them, for studies).
+//! [`normal`], [`coulomb`] and [`landmarks`] (formulas to compare with), [`plain_time`] (the equations as the paper has them, for
+//! studies), [`unreset`] (another model of the spring).
 //!
 //! ```
 //! use stickslip_model::{Collider, Contact, exact};
@@ -29,6 +30,7 @@ pub mod encounter;
 mod energy;
 pub mod exact;
 pub mod history;
+pub mod landmarks;
 pub mod normal;
 mod observed;
 mod outcome;
@@ -39,6 +41,7 @@ mod refine;
 pub mod regularized;
 mod reversals;
 pub mod scaling;
+pub mod unreset;
 
 pub use bodies::{Body, Elasticity, Material, Sphere, Wall};
 pub use collision::{Collider, CollisionError};
