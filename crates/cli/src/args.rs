@@ -4,6 +4,7 @@ mod impact;
 mod locate;
 mod map;
 mod method;
+mod reproduce;
 mod trace;
 
 use std::path::PathBuf;
@@ -18,6 +19,7 @@ pub use impact::ImpactArguments;
 pub use locate::LocateArguments;
 pub use map::MapArguments;
 pub use method::{Method, MethodArguments};
+pub use reproduce::{AuditFormat, ReproduceArguments};
 pub use trace::TraceArguments;
 
 /// Collisions of frictional viscoelastic spheres, with every switch between sticking and sliding.
@@ -47,6 +49,9 @@ pub enum Command {
     /// Look up the switches of collisions in an atlas
     #[command(long_about = locate::ABOUT, after_long_help = locate::EXAMPLES)]
     Locate(LocateArguments),
+    /// Test statements of the paper
+    #[command(long_about = reproduce::ABOUT, after_long_help = reproduce::EXAMPLES)]
+    Reproduce(ReproduceArguments),
 }
 
 /// Options of `collide`.

@@ -2,11 +2,12 @@
 //! an exit code.
 //!
 //! Start reading here; then, in this order: `args` (what may be typed), `plan` (what it means),
-//! `collide`, `batch`, `impact`, `map` and `atlas` (doing it), `input`, `bodies` and `json_input`
+//! `collide`, `batch`, `impact`, `map`, `atlas` and `audit` (doing it), `input`, `bodies` and `json_input`
 //! (files read), `table`, `json`, `rows`, `figure` and `output` (results written).
 
 mod args;
 mod atlas;
+mod audit;
 mod batch;
 mod bodies;
 mod collide;
@@ -34,7 +35,7 @@ use clap::Parser;
 
 use args::{Arguments, Command};
 use error::Failure;
-use plan::{CollidePlan, LocatePlan, MapPlan, TracePlan};
+use plan::{CollidePlan, LocatePlan, MapPlan, ReproducePlan, TracePlan};
 
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
@@ -64,5 +65,6 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         Command::Map(arguments) => map::run(&MapPlan::new(arguments)?),
         Command::Trace(arguments) => atlas::trace::run(&TracePlan::new(arguments)?),
         Command::Locate(arguments) => atlas::locate::run(&LocatePlan::new(arguments)?),
+        Command::Reproduce(arguments) => audit::print(&ReproducePlan::new(arguments)),
     }
 }

@@ -2,6 +2,7 @@
 
 mod locate;
 mod map;
+mod reproduce;
 mod trace;
 
 use std::fs;
@@ -17,6 +18,7 @@ use crate::recipe::{Given, Recipe, RecipeError};
 
 pub use locate::LocatePlan;
 pub use map::{MapFormat, MapPlan};
+pub use reproduce::ReproducePlan;
 pub use trace::TracePlan;
 
 /// What `collide` is to do.

@@ -1,0 +1,271 @@
+//! Statements on the number of switches and of reversals: 6, 7, 8, 21, 23, 24.
+
+use stickslip_model::landmarks;
+
+use super::line::{Line, Stretch};
+use super::search::change;
+use super::statement::{Evidence, Finding, Verdict};
+use super::subject::{PRINTED, Subject, random};
+use crate::error::Failure;
+
+/// The counts of Fig. 5 as g_t/g_n falls.
+const FIGURE: &str = "0 2 4 6 8 6 8 6 4 6 4 2 4 2 4 2";
+
+/// 6: at κ = 18 up to eight switches.
+pub fn eight(subject: &Subject) -> Result<Finding, Failure> {
+    const MOST: usize = 8;
+    let [printed, read] = match subject.lines() {
+        Ok(lines) => lines,
+        Err(doubt) => return Ok(Finding::open(doubt.to_owned())),
+    };
+    let mut evidence = Evidence::default();
+    for line in [printed, read] {
+        evidence = evidence
+            .count(format!("most switches at kappa = {}", line.kappa), line.most())
+            .text(format!("switches as psi falls at kappa = {}", line.kappa), line.falling_text());
+        for stretch in &line.stretches[1..] {
+            let name = format!("psi of the boundary below {} at {}", stretch.itinerary, line.kappa);
+            evidence = evidence.number(name, stretch.low);
+        }
+    }
+    let explanation = format!(
+        "Every boundary at both stiffnesses was traced and solved for. At kappa = {PRINTED} of (24) there are at most {} switches, at \
+         kappa = 18/alpha = {} up to {}, in the sequence {}; that of the figures is {FIGURE}. What is plotted as kappa would then be \
+         alpha kappa.",
+        printed.most(),
+        read.kappa,
+        read.most(),
+        read.falling_text()
+    );
+    Ok(match (printed.most() == MOST, read.most() == MOST) {
+        (true, _) => Finding::new(Verdict::Holds, evidence, explanation),
+        (false, true) => {
+            let condition = "if the figures' kappa is alpha times that of (24)".to_owned();
+            Finding::under(condition, evidence, explanation)
+        }
+        _ => Finding::new(Verdict::DoesNotHold, evidence, explanation),
+    })
+}
+
+/// 7: there are half as many reversals as switches.
+pub fn reversals(subject: &Subject) -> Result<Finding, Failure> {
+    let lines = match subject.lines() {
+        Ok(lines) => lines,
+        Err(doubt) => return Ok(Finding::open(doubt.to_owned())),
+    };
+    let differs = |stretch: &&Stretch| 2 * stretch.reversals != stretch.switch_count;
+    let share = |line: &Line| {
+        let below = |stretch: &Stretch| stretch.high.min(2.0) - stretch.low.min(2.0);
+        line.stretches.iter().filter(differs).map(below).sum::<f64>() / 2.0
+    };
+    let shares = lines.map(share);
+    let mut evidence = Evidence::default();
+    for (line, share) in lines.into_iter().zip(shares) {
+        let name = format!("share of psi in (0, 2) where it is false at kappa = {}", line.kappa);
+        evidence = evidence.number(name, share);
+        for stretch in line.stretches.iter().filter(differs) {
+            let name = format!(
+                "kappa = {}, psi from {:.6} to {:.6}",
+                line.kappa, stretch.low, stretch.high
+            );
+            let Stretch { switch_count, reversals, .. } = stretch;
+            evidence =
+                evidence.text(name, format!("{switch_count} switches, {reversals} reversals"));
+        }
+    }
+    let [printed, read] = shares;
+    let explanation = format!(
+        "Reversals and switches were counted between all boundaries, which were solved for: both numbers change nowhere else. Half the \
+         switches are not the reversals in {:.2} % of psi from 0 to 2 at kappa = 18, in {:.2} % at 18/alpha = 63. The spring may bring the \
+         motion to rest without a switch, and a pair of switches near the end may leave it as it is.",
+        100.0 * printed,
+        100.0 * read
+    );
+    Ok(Finding::new(Verdict::of(printed.max(read) == 0.0), evidence, explanation))
+}
+
+/// 8: as the ratio falls, the count falls after its maximum, with brief rises by two.
+pub fn rises(subject: &Subject) -> Result<Finding, Failure> {
+    let lines = match subject.lines() {
+        Ok(lines) => lines,
+        Err(doubt) => return Ok(Finding::open(doubt.to_owned())),
+    };
+    let mut evidence = Evidence::default();
+    let mut true_at = [false; 2];
+    for (line, holds) in lines.into_iter().zip(&mut true_at) {
+        let Rises { number, by_two, share } = Rises::of(line);
+        evidence = evidence
+            .text(format!("switches as psi falls at kappa = {}", line.kappa), line.falling_text())
+            .count(format!("rises after the maximum at kappa = {}", line.kappa), number)
+            .number(format!("part of psi below the maximum on a rise, {}", line.kappa), share);
+        *holds = number > 0 && by_two && share < 0.5;
+    }
+    let explanation = format!(
+        "A stretch is on a rise if it has more switches than one at a larger psi below the first maximum; rises are brief if they take \
+         less than half of psi there. At 18 the sequence is {}, at 18/alpha {}.",
+        lines[0].falling_text(),
+        lines[1].falling_text()
+    );
+    Ok(match true_at {
+        [true, true] => Finding::new(Verdict::Holds, evidence, explanation),
+        [false, true] => {
+            let condition = "if the figures' kappa is alpha times that of (24)".to_owned();
+            Finding::under(condition, evidence, explanation)
+        }
+        [true, false] => Finding::under("at kappa = 18".to_owned(), evidence, explanation),
+        [false, false] => Finding::new(Verdict::DoesNotHold, evidence, explanation),
+    })
+}
+
+/// What the count does below its first maximum as ψ falls.
+struct Rises {
+    number: usize,
+    by_two: bool,
+    /// Part of ψ on a rise.
+    share: f64,
+}
+
+impl Rises {
+    fn of(line: &Line) -> Self {
+        let most = line.most();
+        let below: Vec<_> =
+            line.stretches.iter().rev().skip_while(|s| s.switch_count < most).collect();
+        let mut rises = Self { number: 0, by_two: true, share: 0.0 };
+        let mut least = most;
+        let mut risen = 0.0;
+        for pair in below.windows(2) {
+            let (before, now) = (pair[0].switch_count, pair[1].switch_count);
+            if now > before {
+                rises.number += 1;
+                rises.by_two &= now == before + 2;
+            }
+            least = least.min(now);
+            risen += if now > least { pair[1].width() } else { 0.0 };
+        }
+        rises.share = risen / below.first().map_or(1.0, |first| first.high);
+        rises
+    }
+}
+
+/// 21: at b, c, d all switches are in the decompression, at e the first one just before the largest compression.
+pub fn decompression(subject: &Subject) -> Result<Finding, Failure> {
+    let read = match subject.lines() {
+        Ok([_, read]) => read,
+        Err(doubt) => return Ok(Finding::open(doubt.to_owned())),
+    };
+    let kappa = read.kappa;
+    let middle = 0.5 * landmarks::CONTACT_TIME;
+    let first = |psi: f64| -> Result<f64, Failure> {
+        let collision = subject.collide(kappa, psi, 0.0)?;
+        Ok(collision.switches.first().map_or(f64::INFINITY, |switch| switch.time))
+    };
+    let falling: Vec<_> = read.stretches.iter().rev().collect();
+    let counts: Vec<_> = falling.iter().map(|stretch| stretch.switch_count).collect();
+    let [_, b, c, d, e, ..] = falling.as_slice() else {
+        let reason = format!("at kappa = {kappa} the counts are {counts:?}: there is no e");
+        return Ok(Finding::open(reason));
+    };
+    if counts[1..5] != [2, 4, 6, 8] {
+        let reason =
+            format!("at kappa = {kappa} the counts are {counts:?}, not those of the figure");
+        return Ok(Finding::open(reason));
+    }
+    let before = |psi| Ok(first(psi)? < middle);
+    let (low, high) = (e.low * (1.0 + 1e-9), b.high * (1.0 - 1e-9));
+    let passes = if before(low)? && !before(high)? { change(low, high, before)? } else { low };
+    let late = passes <= d.low;
+    let early_part = ((passes - e.low) / e.width()).clamp(0.0, 1.0);
+    let earliest = first(low)?;
+    let evidence = Evidence::default()
+        .number("time of largest compression", middle)
+        .number("psi at which the first switch passes it", passes)
+        .number("lower end of b (2 switches) in psi", b.low)
+        .number("lower end of c (4 switches) in psi", c.low)
+        .number("lower end of d (6 switches) in psi", d.low)
+        .number("lower end of e (8 switches) in psi", e.low)
+        .number("time of the first switch at the lower end of e", earliest)
+        .number("part of e in which the first switch comes before", early_part);
+    let explanation = format!(
+        "At kappa = 18/alpha the first switch passes the largest compression, t = {middle:.4}, at psi = {passes:.9}. The regions with 2, 4 \
+         and 6 switches end at psi = {:.6} above, so that all their switches are later. In the one with 8, down to psi = {:.6}, the first \
+         switch comes before in {:.1} % of it, at t = {earliest:.4} at the earliest.",
+        d.low,
+        e.low,
+        100.0 * early_part
+    );
+    if !late || early_part == 0.0 {
+        return Ok(Finding::new(Verdict::DoesNotHold, evidence, explanation));
+    }
+    if early_part == 1.0 {
+        return Ok(Finding::new(Verdict::Holds, evidence, explanation));
+    }
+    Ok(Finding::under(format!("if e lies below psi = {passes:.6}"), evidence, explanation))
+}
+
+/// 23: ε_t is negative after an odd number of reversals and positive after an even one.
+pub fn signs(subject: &Subject) -> Result<Finding, Failure> {
+    const TRIED: usize = 20_000;
+    let wrong = |tried: Vec<[f64; 3]>| -> Result<usize, Failure> {
+        let wrong = Subject::each(&tried, |[kappa, psi, damping]| {
+            let collision = subject.collide(kappa, psi, damping)?;
+            let negative = collision.reversals % 2 == 1;
+            Ok(usize::from(negative != (collision.final_velocity < 0.0)))
+        })?;
+        Ok(wrong.into_iter().sum())
+    };
+    let undamped = wrong(random(TRIED, 23, false))?;
+    let damped = wrong(random(TRIED / 5, 24, true))?;
+    let evidence = Evidence::default()
+        .count("random collisions without damping", TRIED)
+        .count("of them with the other sign", undamped)
+        .count("random collisions with damping", TRIED / 5)
+        .count("of them with the other sign (damped)", damped);
+    let explanation = format!(
+        "{undamped} of {TRIED} random collisions without damping and {damped} of {} with a from 0.001 to 1 have the other sign. Nothing \
+         else is possible where reversals are the changes of sign of the velocity; they are counted phase by phase, the sign is that at \
+         the end.",
+        TRIED / 5
+    );
+    Ok(Finding::new(Verdict::of(undamped + damped == 0), evidence, explanation))
+}
+
+/// 24: for a small enough ratio there are two switches.
+pub fn small_ratio(subject: &Subject) -> Result<Finding, Failure> {
+    const PSI: f64 = 1e-7;
+    const INTERVALS: u32 = 12;
+    let count = |kappa: f64| -> Result<usize, Failure> {
+        Ok(subject.collide(kappa, PSI, 0.0)?.switches.len())
+    };
+    let mark = |n: u32| if n == 0 { 0.01 } else { landmarks::small_impact_stiffness(n) };
+    let mut evidence = Evidence::default();
+    let mut counts = Vec::new();
+    let mut farthest = 0.0_f64;
+    for n in 0..INTERVALS {
+        let middle = 0.5 * (mark(n) + mark(n + 1));
+        let here = count(middle)?;
+        counts.push(here);
+        let name = format!("switches for kappa from {:.6} to {:.6}", mark(n), mark(n + 1));
+        evidence = evidence.count(name, here);
+        let beyond = 0.5 * (mark(n + 1) + mark(n + 2));
+        if count(beyond)? != here {
+            let changes = change(middle, beyond, |kappa| Ok(count(kappa)? == here))?;
+            farthest = farthest.max((changes / mark(n + 1) - 1.0).abs());
+        }
+    }
+    let evidence = evidence.number("largest relative distance of a change from kappa_n", farthest);
+    let text = counts.iter().map(usize::to_string).collect::<Vec<_>>().join(" ");
+    let explanation = format!(
+        "At psi = {PSI:e} the counts between kappa = 0 and the first {INTERVALS} of kappa_n = (n pi/(2 t_c))^2 are {text}; where they \
+         change was bisected, and lies within {farthest:.1e} of kappa_n."
+    );
+    let two: Vec<_> =
+        (0..).zip(&counts).filter(|(_, count)| **count == 2).map(|(n, _)| n).collect();
+    Ok(if two.len() == counts.len() {
+        Finding::new(Verdict::Holds, evidence, explanation)
+    } else if two.iter().copied().eq((0..INTERVALS).step_by(2)) {
+        let condition = "for kappa between kappa_2m and kappa_(2m+1), kappa_n = (n pi/(2 t_c))^2";
+        Finding::under(condition.to_owned(), evidence, explanation)
+    } else {
+        Finding::new(Verdict::DoesNotHold, evidence, explanation)
+    })
+}

@@ -1,0 +1,194 @@
+//! The switches over ψ at one stiffness, with every boundary located.
+//!
+//! The boundaries are traced in a narrow window around the stiffness, and solved for at it.
+
+use stickslip_model::regularized::{self, Phase, Regularized};
+use stickslip_model::unreset::{self, UnresetSpring};
+use stickslip_model::{Collision, Contact};
+use stickslip_solver::{Dop853, HybridSystem, Options, Start};
+use stickslip_tracer::{
+    Family, HybridFamily, Point, Problem, TraceOptions, Window, trace as traced,
+};
+
+use super::subject::{Model, Subject};
+
+/// Half the window's width in ln κ.
+const REACH: f64 = 0.05;
+/// The window in ψ; below it a sample tells that nothing changes.
+const PSI: [f64; 2] = [1e-3, 2.5];
+/// That sample.
+const SMALL_PSI: f64 = 1e-6;
+/// Collisions in each stretch that must have the same switches.
+const SAMPLES: usize = 20;
+
+/// All ψ from 0 to 2.5 at one κ.
+#[derive(Debug)]
+pub struct Line {
+    pub kappa: f64,
+    /// Parted by the boundaries, in order of rising ψ.
+    pub stretches: Vec<Stretch>,
+}
+
+/// An interval of ψ in which collisions have the same switches and reversals.
+#[derive(Debug)]
+pub struct Stretch {
+    pub low: f64,
+    pub high: f64,
+    pub itinerary: String,
+    pub switch_count: usize,
+    pub reversals: usize,
+}
+
+impl Line {
+    /// Numbers of switches as ψ falls.
+    pub fn falling(&self) -> Vec<usize> {
+        self.stretches.iter().rev().map(|stretch| stretch.switch_count).collect()
+    }
+
+    /// The same as text.
+    pub fn falling_text(&self) -> String {
+        self.falling().iter().map(usize::to_string).collect::<Vec<_>>().join(" ")
+    }
+
+    /// The largest number of switches.
+    pub fn most(&self) -> usize {
+        self.stretches.iter().map(|stretch| stretch.switch_count).max().unwrap_or(0)
+    }
+
+    /// The boundary above which there is no switch.
+    pub fn top(&self) -> f64 {
+        self.stretches.last().map_or(0.0, |stretch| stretch.low)
+    }
+}
+
+impl Stretch {
+    pub fn width(&self) -> f64 {
+        self.high - self.low
+    }
+}
+
+/// The line at `kappa`.
+///
+/// # Errors
+/// Why the boundaries are in doubt: what the tracer could not explain, or a collision that does not have the switches of its
+/// stretch.
+pub fn trace(model: Model, subject: &Subject, kappa: f64) -> Result<Line, String> {
+    let boundaries = match model {
+        Model::Reset => boundaries(Reset, kappa),
+        Model::UnresetSpring => boundaries(Unreset, kappa),
+    }?;
+    let ends = [&[0.0], boundaries.as_slice(), &[PSI[1]]].concat();
+    let stretches = ends.windows(2).map(|ends| stretch(subject, kappa, ends[0], ends[1]));
+    let stretches = stretches.collect::<Result<Vec<_>, _>>()?;
+    match stretches.windows(2).find(|pair| pair[0].itinerary == pair[1].itinerary) {
+        Some(pair) => Err(format!("nothing changes at kappa = {kappa}, psi = {}", pair[0].high)),
+        None => Ok(Line { kappa, stretches }),
+    }
+}
+
+fn stretch(subject: &Subject, kappa: f64, low: f64, high: f64) -> Result<Stretch, String> {
+    let collide = |psi| subject.collide(kappa, psi, 0.0).map_err(|error| error.to_string());
+    let middle = collide(0.5 * (low + high))?;
+    let small = (low == 0.0).then_some(SMALL_PSI);
+    let inside = (0..SAMPLES).map(|i| low + (high - low) * (i as f64 + 0.5) / SAMPLES as f64);
+    for psi in small.into_iter().chain(inside) {
+        let other = collide(psi)?;
+        let tells = |collision: &Collision| (collision.itinerary(), collision.reversals);
+        if tells(&other) != tells(&middle) {
+            let (found, expected) = (tells(&other), tells(&middle));
+            return Err(format!("kappa = {kappa}, psi = {psi} has {found:?}, not {expected:?}"));
+        }
+    }
+    let (switch_count, reversals) = (middle.switches.len(), middle.reversals);
+    Ok(Stretch { low, high, itinerary: middle.itinerary(), switch_count, reversals })
+}
+
+/// The ψ of all boundaries at `kappa`, in order.
+fn boundaries<P, const N: usize, const G: usize>(problem: P, kappa: f64) -> Result<Vec<f64>, String>
+where
+    P: Problem<N, G>,
+    P::System: HybridSystem<N, G>,
+{
+    let options = Options {
+        rtol: 1e-14,
+        atol: 1e-14,
+        first_step: Some(0.1),
+        max_step: 0.1,
+        ..Options::default()
+    };
+    let family = HybridFamily { problem, method: Dop853, options, end: f64::INFINITY };
+    let x = kappa.ln();
+    let [low, high] = PSI.map(f64::ln_1p);
+    let window = Window { low: Point::new(x - REACH, low), high: Point::new(x + REACH, high) };
+    let network =
+        traced(&family, &window, &TraceOptions::default()).map_err(|error| error.to_string())?;
+    if let Some(open) = network.unresolved.first() {
+        return Err(format!("the boundaries at kappa = {kappa} are in doubt: {open:?}"));
+    }
+    let mut found = Vec::new();
+    for curve in &network.curves {
+        for pair in curve.nodes.windows(2) {
+            let [from, to] = [pair[0].point, pair[1].point];
+            if (from.x < x) == (to.x < x) {
+                continue;
+            }
+            let guess = from.y + (to.y - from.y) * (x - from.x) / (to.x - from.x);
+            let margin = family.moved(&from, &curve.margin).map_err(|error| error.to_string())?;
+            let value = |y: f64| family.margin(&Point::new(x, y), &margin).ok().flatten();
+            let root = secant(value, guess);
+            let y = root.ok_or_else(|| format!("no boundary at kappa = {kappa} near {guess}"))?;
+            found.push(y.exp_m1());
+        }
+    }
+    found.sort_by(f64::total_cmp);
+    Ok(found)
+}
+
+/// The zero of `value` at `guess`, a millionth of an interpolation away at most.
+fn secant(value: impl Fn(f64) -> Option<f64>, guess: f64) -> Option<f64> {
+    let (mut last, mut at) = (guess, guess + 1e-7);
+    let (mut last_value, mut at_value) = (value(last)?, value(at)?);
+    for _ in 0..20 {
+        if at_value == last_value {
+            break;
+        }
+        let next = at - at_value * (at - last) / (at_value - last_value);
+        if (next - at).abs() < 1e-15 {
+            return Some(next);
+        }
+        (last, last_value) = (at, at_value);
+        (at, at_value) = (next, value(next)?);
+    }
+    // Steps of the size of a margin's rounding need not become smaller.
+    ((at - last).abs() < 1e-12).then_some(at)
+}
+
+/// Collisions of the two models at the traced points (ln κ, ln(1 + ψ)).
+struct Reset;
+struct Unreset;
+
+/// The collision at `point`; the tracer also asks for places a little outside of the window.
+fn contact(point: &Point) -> Contact {
+    let psi = point.y.exp_m1().max(0.5 * PSI[0]);
+    // κ is that of the window, times e^{±0.001} at most, and ψ is positive.
+    Contact::new(point.x.exp(), psi, 0.0).expect("in range")
+}
+
+impl Problem<{ regularized::STATE }, { regularized::GUARDS }> for Reset {
+    type System = Regularized;
+
+    fn at(&self, point: &Point) -> (Regularized, Start<Phase, { regularized::STATE }>) {
+        let contact = contact(point);
+        let system = Regularized::new(contact);
+        (system, Start { mode: Phase::first(&contact), s: 0.0, state: system.start() })
+    }
+}
+
+impl Problem<{ unreset::STATE }, { unreset::GUARDS }> for Unreset {
+    type System = UnresetSpring;
+
+    fn at(&self, point: &Point) -> (UnresetSpring, Start<Phase, { unreset::STATE }>) {
+        let system = UnresetSpring::new(contact(point));
+        (system, system.start())
+    }
+}
