@@ -23,9 +23,9 @@ use crate::energy::EnergyLedger;
 use crate::regularized::{END, OTHER_SIDE, Phase, Progress, SAME_SIDE};
 
 /// Components of the state.
-pub const STATE: usize = 6;
+const STATE: usize = 6;
 /// Guards of a phase.
-pub const GUARDS: usize = 4;
+const GUARDS: usize = 4;
 
 const U: usize = 0;
 const V: usize = 1;
@@ -38,7 +38,7 @@ const T: usize = 4;
 const DAMPING: usize = 5;
 
 /// Guard of the motion's reversals, after those of [`crate::regularized`].
-pub const TURN: usize = 3;
+const TURN: usize = 3;
 
 /// A collision with a spring that is not reset.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,7 +64,7 @@ pub struct UnresetCollision {
 /// # Errors
 /// As [`Collider::collide`].
 pub fn collide(contact: Contact) -> Result<UnresetCollision, CollisionError> {
-    let system = UnresetSpring { turns: true, ..UnresetSpring::new(contact) };
+    let system = UnresetSpring::new(contact);
     let (rtol, atol) = (Collider::<Dop853>::RTOL, Collider::<Dop853>::ATOL);
     let options =
         Options { rtol, atol, first_step: Some(0.1), max_step: 0.1, ..Options::default() };
@@ -103,27 +103,21 @@ pub fn collide(contact: Contact) -> Result<UnresetCollision, CollisionError> {
 }
 
 /// The contact as a hybrid system.
-#[derive(Clone, Copy, Debug)]
-pub struct UnresetSpring {
+#[derive(Clone, Copy)]
+struct UnresetSpring {
     contact: Contact,
     omega: f64,
     /// σ.
     velocity_unit: f64,
-    /// Whether reversals of the motion are events.
-    turns: bool,
 }
 
 impl UnresetSpring {
-    /// The system of one contact, whose guards fire where the regime changes and at the end.
-    #[must_use]
-    pub fn new(contact: Contact) -> Self {
+    fn new(contact: Contact) -> Self {
         let (omega, velocity_unit) = (contact.kappa().sqrt(), contact.psi().min(1.0));
-        Self { contact, omega, velocity_unit, turns: false }
+        Self { contact, omega, velocity_unit }
     }
 
-    /// The start of the contact.
-    #[must_use]
-    pub fn start(&self) -> Start<Phase, STATE> {
+    fn start(&self) -> Start<Phase, STATE> {
         let mut state = State::zeros();
         state[V] = 1.0;
         state[W] = self.contact.psi() / self.velocity_unit;
@@ -145,12 +139,6 @@ impl UnresetSpring {
 
     fn force(&self, y: &State<STATE>) -> f64 {
         y[U] * self.force_over_root(y)
-    }
-
-    /// dF/ds.
-    fn force_rate(&self, y: &State<STATE>) -> f64 {
-        let (u, v, inner) = (y[U], y[V], self.force_over_root(y));
-        v * inner + u * (2.0 * u * v - 2.0 * self.contact.damping() * u * u * inner)
     }
 
     /// s κ y.
@@ -186,7 +174,7 @@ impl HybridSystem<STATE, GUARDS> for UnresetSpring {
     fn guards(&self, phase: Phase) -> [Guard; GUARDS] {
         let end = Guard::new(Direction::Below).terminal();
         let leave = Guard::new(Direction::Below);
-        let turn = if self.turns { Guard::new(Direction::Either) } else { Guard::OFF };
+        let turn = Guard::new(Direction::Either);
         match (phase.regime, phase.progress) {
             // It goes on after a reversal.
             (Regime::Slip, Progress::Settled) => [end, leave, Guard::OFF, turn.from_zero(1)],
@@ -209,15 +197,6 @@ impl HybridSystem<STATE, GUARDS> for UnresetSpring {
         match phase.regime {
             Regime::Slip => [end, pull - force, 1.0, y[W]],
             Regime::Stick => [end, force - pull, force + pull, y[W]],
-        }
-    }
-
-    fn guard_rates(&self, phase: Phase, _s: f64, y: &State<STATE>) -> [f64; GUARDS] {
-        let stretch = phase.side.sign() * 2.0 * y[U] * self.contact.kappa() * self.velocity(y);
-        let force = self.force_rate(y);
-        match phase.regime {
-            Regime::Slip => [0.0, stretch - force, 0.0, 0.0],
-            Regime::Stick => [0.0, force - stretch, force + stretch, 0.0],
         }
     }
 

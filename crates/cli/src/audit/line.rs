@@ -1,16 +1,18 @@
 //! The switches over ψ at one stiffness, with every boundary located.
 //!
-//! The boundaries are traced in a narrow window around the stiffness, and solved for at it.
+//! The boundaries are traced in a narrow window around the stiffness, and solved for at it; those of another model are bisected
+//! between samples.
 
+use stickslip_model::Contact;
 use stickslip_model::regularized::{self, Phase, Regularized};
-use stickslip_model::unreset::{self, UnresetSpring};
-use stickslip_model::{Collision, Contact};
 use stickslip_solver::{Dop853, HybridSystem, Options, Start};
 use stickslip_tracer::{
     Family, HybridFamily, Point, Problem, TraceOptions, Window, trace as traced,
 };
 
-use super::subject::{Model, Subject};
+use super::search::change;
+use super::subject::{Model, Subject, geometric};
+use crate::error::Failure;
 
 /// Half the window's width in ln κ.
 const REACH: f64 = 0.05;
@@ -29,12 +31,22 @@ pub struct Line {
     pub stretches: Vec<Stretch>,
 }
 
-/// An interval of ψ in which collisions have the same switches and reversals.
+/// An interval of ψ in which collisions have the same switches.
 #[derive(Debug)]
 pub struct Stretch {
     pub low: f64,
     pub high: f64,
     pub itinerary: String,
+    pub switch_count: usize,
+    /// Parted further where the number of reversals changes.
+    pub parts: Vec<Part>,
+}
+
+/// An interval of ψ in which collisions have the same switches and reversals.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    pub low: f64,
+    pub high: f64,
     pub switch_count: usize,
     pub reversals: usize,
 }
@@ -59,11 +71,10 @@ impl Line {
     pub fn top(&self) -> f64 {
         self.stretches.last().map_or(0.0, |stretch| stretch.low)
     }
-}
 
-impl Stretch {
-    pub fn width(&self) -> f64 {
-        self.high - self.low
+    /// All parts of all stretches.
+    pub fn parts(&self) -> impl Iterator<Item = &Part> {
+        self.stretches.iter().flat_map(|stretch| &stretch.parts)
     }
 }
 
@@ -72,43 +83,53 @@ impl Stretch {
 /// # Errors
 /// Why the boundaries are in doubt: what the tracer could not explain, or a collision that does not have the switches of its
 /// stretch.
-pub fn trace(model: Model, subject: &Subject, kappa: f64) -> Result<Line, String> {
-    let boundaries = match model {
-        Model::Reset => boundaries(Reset, kappa),
-        Model::UnresetSpring => boundaries(Unreset, kappa),
+pub fn line(subject: &Subject, kappa: f64) -> Result<Line, String> {
+    let boundaries = match subject.model {
+        Model::Reset => traced(kappa),
+        Model::UnresetSpring => bisected(subject, kappa),
     }?;
     let ends = [&[0.0], boundaries.as_slice(), &[PSI[1]]].concat();
     let stretches = ends.windows(2).map(|ends| stretch(subject, kappa, ends[0], ends[1]));
     let stretches = stretches.collect::<Result<Vec<_>, _>>()?;
     match stretches.windows(2).find(|pair| pair[0].itinerary == pair[1].itinerary) {
-        Some(pair) => Err(format!("nothing changes at kappa = {kappa}, psi = {}", pair[0].high)),
+        Some(pair) => Err(format!("nothing changes at κ = {kappa}, ψ = {}", pair[0].high)),
         None => Ok(Line { kappa, stretches }),
     }
 }
 
+/// The stretch between two neighbouring boundaries, which samples must confirm.
+///
+/// Without a boundary, the number of reversals changes only where the velocity at the end passes 0. With a reset spring that is a
+/// boundary itself; with another one it is bisected between samples.
 fn stretch(subject: &Subject, kappa: f64, low: f64, high: f64) -> Result<Stretch, String> {
     let collide = |psi| subject.collide(kappa, psi, 0.0).map_err(|error| error.to_string());
-    let middle = collide(0.5 * (low + high))?;
-    let small = (low == 0.0).then_some(SMALL_PSI);
-    let inside = (0..SAMPLES).map(|i| low + (high - low) * (i as f64 + 0.5) / SAMPLES as f64);
-    for psi in small.into_iter().chain(inside) {
+    let first = if low == 0.0 { SMALL_PSI } else { low + (high - low) * 1e-3 };
+    let start = collide(first)?;
+    let (itinerary, switch_count) = (start.itinerary(), start.switches.len());
+    let mut part = Part { low, high, switch_count, reversals: start.reversals };
+    let mut parts = Vec::new();
+    let mut before = first;
+    for i in 0..SAMPLES {
+        let psi = low + (high - low) * (i as f64 + 0.5) / SAMPLES as f64;
         let other = collide(psi)?;
-        let tells = |collision: &Collision| (collision.itinerary(), collision.reversals);
-        if tells(&other) != tells(&middle) {
-            let (found, expected) = (tells(&other), tells(&middle));
-            return Err(format!("kappa = {kappa}, psi = {psi} has {found:?}, not {expected:?}"));
+        if other.itinerary() != itinerary {
+            let found = other.itinerary();
+            return Err(format!("κ = {kappa}, ψ = {psi} has {found}, not {itinerary}"));
         }
+        if other.reversals != part.reversals {
+            let same = |psi| Ok(subject.collide(kappa, psi, 0.0)?.reversals == part.reversals);
+            let high = change(before, psi, same).map_err(|error| error.to_string())?;
+            parts.push(Part { high, ..part });
+            part = Part { low: high, reversals: other.reversals, ..part };
+        }
+        before = psi;
     }
-    let (switch_count, reversals) = (middle.switches.len(), middle.reversals);
-    Ok(Stretch { low, high, itinerary: middle.itinerary(), switch_count, reversals })
+    parts.push(part);
+    Ok(Stretch { low, high, itinerary, switch_count, parts })
 }
 
 /// The ψ of all boundaries at `kappa`, in order.
-fn boundaries<P, const N: usize, const G: usize>(problem: P, kappa: f64) -> Result<Vec<f64>, String>
-where
-    P: Problem<N, G>,
-    P::System: HybridSystem<N, G>,
-{
+fn traced(kappa: f64) -> Result<Vec<f64>, String> {
     let options = Options {
         rtol: 1e-14,
         atol: 1e-14,
@@ -116,14 +137,14 @@ where
         max_step: 0.1,
         ..Options::default()
     };
-    let family = HybridFamily { problem, method: Dop853, options, end: f64::INFINITY };
+    let family = HybridFamily { problem: Collisions, method: Dop853, options, end: f64::INFINITY };
     let x = kappa.ln();
     let [low, high] = PSI.map(f64::ln_1p);
     let window = Window { low: Point::new(x - REACH, low), high: Point::new(x + REACH, high) };
     let network =
-        traced(&family, &window, &TraceOptions::default()).map_err(|error| error.to_string())?;
+        trace(&family, &window, &TraceOptions::default()).map_err(|error| error.to_string())?;
     if let Some(open) = network.unresolved.first() {
-        return Err(format!("the boundaries at kappa = {kappa} are in doubt: {open:?}"));
+        return Err(format!("the boundaries at κ = {kappa} are in doubt: {open:?}"));
     }
     let mut found = Vec::new();
     for curve in &network.curves {
@@ -136,7 +157,8 @@ where
             let margin = family.moved(&from, &curve.margin).map_err(|error| error.to_string())?;
             let value = |y: f64| family.margin(&Point::new(x, y), &margin).ok().flatten();
             let root = secant(value, guess);
-            let y = root.ok_or_else(|| format!("no boundary at kappa = {kappa} near {guess}"))?;
+            let y =
+                root.ok_or_else(|| format!("no boundary at κ = {kappa} near ln(1 + ψ) = {guess}"))?;
             found.push(y.exp_m1());
         }
     }
@@ -144,7 +166,26 @@ where
     Ok(found)
 }
 
-/// The zero of `value` at `guess`, a millionth of an interpolation away at most.
+/// The same from samples, for another model than the tracer's: what lies between two of them is missed.
+fn bisected(subject: &Subject, kappa: f64) -> Result<Vec<f64>, String> {
+    let itinerary = |psi| subject.collide(kappa, psi, 0.0).map(|collision| collision.itinerary());
+    let psis: Vec<f64> = geometric(PSI[0], PSI[1], 4000).collect();
+    let found = || -> Result<Vec<f64>, Failure> {
+        let mut found = Vec::new();
+        let mut before = itinerary(psis[0])?;
+        for pair in psis.windows(2) {
+            let after = itinerary(pair[1])?;
+            if before != after {
+                found.push(change(pair[0], pair[1], |psi| Ok(itinerary(psi)? == before))?);
+            }
+            before = after;
+        }
+        Ok(found)
+    };
+    found().map_err(|error| error.to_string())
+}
+
+/// The zero of `value` near `guess`.
 fn secant(value: impl Fn(f64) -> Option<f64>, guess: f64) -> Option<f64> {
     let (mut last, mut at) = (guess, guess + 1e-7);
     let (mut last_value, mut at_value) = (value(last)?, value(at)?);
@@ -163,9 +204,8 @@ fn secant(value: impl Fn(f64) -> Option<f64>, guess: f64) -> Option<f64> {
     ((at - last).abs() < 1e-12).then_some(at)
 }
 
-/// Collisions of the two models at the traced points (ln κ, ln(1 + ψ)).
-struct Reset;
-struct Unreset;
+/// Collisions at the traced points (ln κ, ln(1 + ψ)).
+struct Collisions;
 
 /// The collision at `point`; the tracer also asks for places a little outside of the window.
 fn contact(point: &Point) -> Contact {
@@ -174,21 +214,12 @@ fn contact(point: &Point) -> Contact {
     Contact::new(point.x.exp(), psi, 0.0).expect("in range")
 }
 
-impl Problem<{ regularized::STATE }, { regularized::GUARDS }> for Reset {
+impl Problem<{ regularized::STATE }, { regularized::GUARDS }> for Collisions {
     type System = Regularized;
 
     fn at(&self, point: &Point) -> (Regularized, Start<Phase, { regularized::STATE }>) {
         let contact = contact(point);
         let system = Regularized::new(contact);
         (system, Start { mode: Phase::first(&contact), s: 0.0, state: system.start() })
-    }
-}
-
-impl Problem<{ unreset::STATE }, { unreset::GUARDS }> for Unreset {
-    type System = UnresetSpring;
-
-    fn at(&self, point: &Point) -> (UnresetSpring, Start<Phase, { unreset::STATE }>) {
-        let system = UnresetSpring::new(contact(point));
-        (system, system.start())
     }
 }

@@ -7,20 +7,20 @@ use stickslip_solver::{
     Direction, Dop853, Guard, HybridSystem, Options, Outcome, Start, State, run,
 };
 
-use super::statement::{Evidence, Finding, Verdict};
-use super::subject::{Model, Subject, random};
+use super::statement::{Evidence, Finding, Stop, Verdict};
+use super::subject::{Model, Subject, each, random};
 use crate::error::Failure;
 
 /// 2: three independent parameters, which are κ, g_t/g_n and μ/α.
-pub fn three(subject: &Subject) -> Result<Finding, Failure> {
+pub fn three(subject: &Subject) -> Result<Finding, Stop> {
     const CLOSE: f64 = 1e-9;
     let mut draw = Rng::with_seed(2);
-    let contacts = random(300, 2, false);
+    let contacts = random(1000, 2, false);
     let cases: Vec<_> = contacts
         .iter()
         .map(|&[kappa, psi, _]| [kappa, psi, 0.05 * 60_f64.powf(draw.f64())])
         .collect();
-    let differences = Subject::each(&cases, |[kappa, psi, friction]| {
+    let differences = each(&cases, |&[kappa, psi, friction]| {
         let reference = subject.collide(kappa, psi, 0.0)?.eps_t();
         let system = ThreeParameters { model: subject.model, kappa, friction };
         Ok((system.eps_t(psi * friction)? - reference).abs() * psi)
@@ -34,7 +34,7 @@ pub fn three(subject: &Subject) -> Result<Finding, Failure> {
     }
     // Neither of the two can be spared.
     let spread = |cases: &[[f64; 3]]| -> Result<f64, Failure> {
-        let eps_t = Subject::each(cases, |[k, p, _]| Ok(subject.collide(k, p, 0.0)?.eps_t()))?;
+        let eps_t = each(cases, |&[k, p, _]| Ok(subject.collide(k, p, 0.0)?.eps_t()))?;
         let [low, high] = eps_t
             .iter()
             .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &e| [low.min(e), high.max(e)]);
@@ -43,16 +43,16 @@ pub fn three(subject: &Subject) -> Result<Finding, Failure> {
     let over_kappa = spread(&[1.0, 2.0, 4.0, 8.0, 16.0].map(|kappa| [kappa, 0.5, 0.0]))?;
     let over_psi = spread(&[0.2, 0.5, 0.8, 1.1, 1.4].map(|psi| [5.0, psi, 0.0]))?;
     let evidence = Evidence::default()
-        .count("random triples of kappa, g_t/g_n and mu/alpha", cases.len())
-        .number("largest difference of w at equal kappa and psi", largest)
-        .number("largest relative error of kappa and psi from random spheres in SI units", in_si)
-        .number("spread of eps_t over kappa at psi = 0.5", over_kappa)
-        .number("spread of eps_t over psi at kappa = 5", over_psi);
+        .count("random triples of κ, g_t/g_n and μ/α", cases.len())
+        .number("largest difference of w at equal κ and ψ", largest)
+        .number("largest relative error of κ and ψ from random spheres in SI units", in_si)
+        .number("spread of ε_t over κ at ψ = 0.5", over_kappa)
+        .number("spread of ε_t over ψ at κ = 5", over_psi);
     let explanation = format!(
-        "The scaled equations with kappa, g_t/g_n and mu/alpha were integrated for {} random triples, and differ in w at the end, in \
-         units of mu/alpha, by {largest:.1e} at most from those with kappa and psi = (g_t/g_n) alpha/mu alone: spring and velocity \
-         may be measured in units of mu/alpha. Two parameters suffice if that is below {CLOSE:e}; both are needed, since eps_t varies \
-         by {over_kappa:.2} with kappa and by {over_psi:.2} with psi. Damping adds one.",
+        "The scaled equations with κ, g_t/g_n and μ/α were integrated for {} random triples, and differ in w at the end, in \
+         units of μ/α, by {largest:.1e} at most from those with κ and ψ = (g_t/g_n) α/μ alone: spring and velocity \
+         may be measured in units of μ/α. Two parameters suffice if that is below {CLOSE:e}; both are needed, since ε_t varies \
+         by {over_kappa:.2} with κ and by {over_psi:.2} with ψ. Damping adds one.",
         cases.len()
     );
     let two = largest < CLOSE && in_si < CLOSE && over_kappa.min(over_psi) > 0.01;

@@ -1,8 +1,6 @@
 //! An audit written: as text, as Markdown, and as a study.
 
-use std::fmt::Write;
-
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use super::{Audit, Statement};
 use crate::study::{Cell, Column, Study, Table};
@@ -15,18 +13,17 @@ impl Audit {
 
     /// A table of verdicts, and all statements below it.
     pub fn markdown(&self) -> String {
-        let mut out =
-            String::from("| # | statement | in the paper | verdict |\n|---|---|---|---|\n");
-        for statement in &self.statements {
+        let row = |statement: &Statement| {
             let Statement { number, paraphrase, place, .. } = statement;
-            // Writing into a string does not fail.
-            let _ =
-                writeln!(out, "| {number} | {paraphrase} | {place} | {} |", statement.verdict());
-        }
-        for statement in &self.statements {
-            out += &statement.markdown();
-        }
-        out
+            format!(
+                "| {number} | {} | {place} | {} |\n",
+                cell(paraphrase),
+                cell(&statement.verdict())
+            )
+        };
+        let rows: String = self.statements.iter().map(row).collect();
+        let sections: String = self.statements.iter().map(Statement::markdown).collect();
+        format!("| # | statement | in the paper | verdict |\n|---|---|---|---|\n{rows}{sections}")
     }
 
     /// The tables `audit` and `audit_evidence`, and all of it as JSON.
@@ -99,7 +96,7 @@ impl Audit {
                     Cell::Count(count) => json!(count),
                     Cell::Text(text) => json!(text),
                 };
-                (name.clone(), value)
+                json!({ "name": name, "value": value })
             });
             json!({
                 "number": number,
@@ -107,7 +104,7 @@ impl Audit {
                 "place": place,
                 "verdict": finding.verdict.to_string(),
                 "condition": finding.condition,
-                "evidence": evidence.collect::<Map<_, _>>(),
+                "evidence": evidence.collect::<Vec<_>>(),
                 "explanation": finding.explanation,
                 "command": statement.command(),
             })
@@ -136,30 +133,61 @@ impl Statement {
 
     fn text(&self) -> String {
         let Self { number, paraphrase, place, finding } = self;
-        let mut out = format!("Statement {number}, {place}: {paraphrase}\n");
-        out += &format!("Verdict: {}\n\n", self.verdict());
         let width = finding.evidence.iter().map(|(name, _)| name.chars().count()).max();
-        for (name, value) in finding.evidence.iter() {
-            let width = width.unwrap_or(0);
-            out += &format!("  {name:width$}  {}\n", value.text());
-        }
-        out += if width.is_some() { "\n" } else { "" };
-        out += &format!("{}\n", finding.explanation);
-        out += &format!("Alone: {}\n", self.command());
-        out
+        let evidence = finding.evidence.iter().map(|(name, value)| {
+            format!("  {name:width$}  {}\n", value.text(), width = width.unwrap_or(0))
+        });
+        format!(
+            "Statement {number}, {place}: {paraphrase}\nVerdict: {}\n\n{}{}{}Alone: {}\n",
+            self.verdict(),
+            evidence.collect::<String>(),
+            width.map_or("", |_| "\n"),
+            wrapped(&finding.explanation),
+            self.command(),
+        )
     }
 
     fn markdown(&self) -> String {
         let Self { number, paraphrase, place, finding } = self;
-        let mut out = format!("\n## {number}. {paraphrase}\n\n");
-        out += &format!("{place}. **{}.** {}\n\n", self.verdict(), finding.explanation);
-        if finding.evidence.iter().next().is_some() {
-            out += "| evidence | value |\n|---|---|\n";
-        }
-        for (name, value) in finding.evidence.iter() {
-            out += &format!("| {name} | {} |\n", value.text());
-        }
-        out += &format!("\n`{}`\n", self.command());
-        out
+        let row =
+            |(name, value): &(String, Cell)| format!("| {} | {} |\n", cell(name), value.text());
+        let rows: String = finding.evidence.iter().map(row).collect();
+        let table = if rows.is_empty() {
+            String::new()
+        } else {
+            format!("| evidence | value |\n|---|---|\n{rows}\n")
+        };
+        format!(
+            "\n## {number}. {paraphrase}\n\n{place}. **{}.** {}\n\n{table}`{}`\n",
+            self.verdict(),
+            finding.explanation,
+            self.command(),
+        )
     }
+}
+
+/// `text` in a cell of a Markdown table.
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|")
+}
+
+/// `text` in lines for a terminal.
+fn wrapped(text: &str) -> String {
+    const WIDTH: usize = 96;
+    let mut out = String::new();
+    let mut column = 0;
+    for word in text.split_whitespace() {
+        let length = word.chars().count();
+        if column > 0 && column + 1 + length > WIDTH {
+            out.push('\n');
+            column = 0;
+        } else if column > 0 {
+            out.push(' ');
+            column += 1;
+        }
+        out += word;
+        column += length;
+    }
+    out.push('\n');
+    out
 }

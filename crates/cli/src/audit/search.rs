@@ -4,6 +4,7 @@ use argmin::core::{CostFunction, Error, Executor};
 use argmin::solver::goldensectionsearch::GoldenSectionSearch;
 use argmin::solver::neldermead::NelderMead;
 
+use super::subject::each;
 use crate::error::Failure;
 
 /// A place and the value there.
@@ -13,8 +14,26 @@ pub struct Extremum<T> {
     pub value: f64,
 }
 
-/// The maximum of `value` on the interval from `low` to `high`, where it must have one only; to about 1e-9 of its length.
+/// The maximum of `value`: the best of `places`, which are in order, improved by golden section between its neighbours.
 pub fn maximum(
+    places: &[f64],
+    value: impl Fn(f64) -> Result<f64, Failure> + Send + Sync,
+) -> Result<Extremum<f64>, Failure> {
+    let values = each(places, |&at| value(at))?;
+    let Some(best) = (0..values.len()).max_by(|&a, &b| values[a].total_cmp(&values[b])) else {
+        return Err(Failure::Audit("a maximum is asked for without a place".to_owned()));
+    };
+    let (low, high) = (places[best.saturating_sub(1)], places[(best + 1).min(places.len() - 1)]);
+    let found = between(low, high, value)?;
+    Ok(if found.value > values[best] {
+        found
+    } else {
+        Extremum { at: places[best], value: values[best] }
+    })
+}
+
+/// The maximum of `value` on an interval in which it has one only, to 1e-9 of its length.
+fn between(
     low: f64,
     high: f64,
     value: impl Fn(f64) -> Result<f64, Failure>,
@@ -33,7 +52,7 @@ pub fn maximum(
             let start = 0.5 * (low + high);
             Executor::new(Cost(value), solver).configure(|s| s.param(start).max_iters(200)).run()
         })
-        .map_err(failure)?;
+        .map_err(|error| failure(&error))?;
     let state = solved.state();
     Ok(Extremum { at: state.best_param.unwrap_or(f64::NAN), value: -state.best_cost })
 }
@@ -59,7 +78,7 @@ pub fn maximum_near(
     let solved = NelderMead::new(corners)
         .with_sd_tolerance(1e-14)
         .and_then(|solver| Executor::new(Cost(value), solver).configure(|s| s.max_iters(400)).run())
-        .map_err(failure)?;
+        .map_err(|error| failure(&error))?;
     let state = solved.state();
     let at = state.best_param.as_ref().map_or([f64::NAN; 2], |best| [best[0], best[1]]);
     Ok(Extremum { at, value: -state.best_cost })
@@ -80,6 +99,6 @@ pub fn change(
     }
 }
 
-fn failure(error: Error) -> Failure {
+fn failure(error: &Error) -> Failure {
     Failure::Audit(error.to_string())
 }

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::error::Failure;
 use crate::study::Cell;
 
 /// A statement of the paper, tested.
@@ -37,6 +38,14 @@ pub enum Verdict {
     HoldsWithACondition,
     DoesNotHold,
     CannotBeDecided,
+}
+
+/// Why there is no finding.
+pub enum Stop {
+    /// A collision cannot be computed.
+    Failed(Failure),
+    /// The numbers leave it open, and how.
+    Open(String),
 }
 
 /// Numbers with their names.
@@ -83,6 +92,12 @@ impl fmt::Display for Verdict {
             Self::DoesNotHold => "does not hold",
             Self::CannotBeDecided => "cannot be decided",
         })
+    }
+}
+
+impl From<Failure> for Stop {
+    fn from(failure: Failure) -> Self {
+        Self::Failed(failure)
     }
 }
 

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use stickslip_model::{Collider, Collision, Contact, exact, landmarks, unreset};
 
 use super::line::{self, Line};
+use super::statement::Stop;
 use crate::engine::EngineError;
 use crate::error::Failure;
 use crate::recipe::{DEFAULT_ALPHA, DEFAULT_MU};
@@ -75,7 +76,7 @@ impl Subject {
 
     /// The largest elongation of the spring without damping.
     pub fn largest_spring(&self, kappa: f64, psi: f64) -> Result<f64, Failure> {
-        let none = || Failure::Audit(format!("no spring at kappa = {kappa:?}, psi = {psi:?}"));
+        let none = || Failure::Audit(format!("no spring at κ = {kappa:?}, ψ = {psi:?}"));
         match self.model {
             Model::Reset => {
                 landmarks::largest_spring(&self.collide(kappa, psi, 0.0)?).ok_or_else(none)
@@ -86,23 +87,28 @@ impl Subject {
         }
     }
 
-    /// The switches over ψ at the stiffness of the figures, in both readings; the error is a doubt.
-    pub fn lines(&self) -> Result<[&Line; 2], &str> {
+    /// The switches over ψ at the stiffness of the figures, in both readings.
+    ///
+    /// Made by the first who asks, on that thread alone: who waits for it may be part of the same pool.
+    pub fn lines(&self) -> Result<[&Line; 2], Stop> {
         let line = |index: usize, kappa| {
-            let made = self.lines[index].get_or_init(|| line::trace(self.model, self, kappa));
-            made.as_ref().map_err(String::as_str)
+            let made = self.lines[index].get_or_init(|| line::line(self, kappa));
+            made.as_ref().map_err(|doubt| Stop::Open(doubt.clone()))
         };
         Ok([line(0, PRINTED)?, line(1, READ)?])
     }
+}
 
-    /// `of` each of `contacts`, in their order; in parallel.
-    pub fn each<T: Send>(
-        contacts: &[[f64; 3]],
-        of: impl Fn([f64; 3]) -> Result<T, Failure> + Sync,
-    ) -> Result<Vec<T>, Failure> {
-        let results: Vec<_> = contacts.par_iter().map(|&contact| of(contact)).collect();
-        results.into_iter().collect()
-    }
+/// `of` each of `inputs`, in their order; in parallel.
+///
+/// # Errors
+/// The first in that order.
+pub fn each<T: Sync, U: Send>(
+    inputs: &[T],
+    of: impl Fn(&T) -> Result<U, Failure> + Send + Sync,
+) -> Result<Vec<U>, Failure> {
+    let results: Vec<_> = inputs.par_iter().map(of).collect();
+    results.into_iter().collect()
 }
 
 /// Random collisions [κ, ψ, a]: κ from 0.05 to 1000 and, if damped, a from 0.001 to 1, evenly in the logarithm; ψ from 0.01 to 3.
