@@ -5,10 +5,8 @@
 
 use stickslip_model::Contact;
 use stickslip_model::regularized::{self, Phase, Regularized};
-use stickslip_solver::{Dop853, HybridSystem, Options, Start};
-use stickslip_tracer::{
-    Family, HybridFamily, Point, Problem, TraceOptions, Window, trace as traced,
-};
+use stickslip_solver::{Dop853, Options, Start};
+use stickslip_tracer::{Family, HybridFamily, Point, Problem, TraceOptions, Window, trace};
 
 use super::search::change;
 use super::subject::{Model, Subject, geometric};

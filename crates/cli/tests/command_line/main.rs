@@ -1,6 +1,7 @@
 //! The program as its users meet it: run as a process, judged by its output and exit code.
 
 mod atlas;
+mod audit;
 mod batch;
 mod batch_failures;
 mod impact;
