@@ -141,9 +141,11 @@ pub fn close_to_zero(subject: &Subject) -> Result<Finding, Stop> {
     );
     Ok(match close {
         0 => Finding::new(Verdict::Holds, evidence, explanation),
-        n if n < kappas.len() => {
-            Finding::under(format!("from κ = {:.1} on", kappas[n]), evidence, explanation)
-        }
+        n if n < kappas.len() => Finding::under(
+            format!("from κ = {:.1} on, of those tried", kappas[n]),
+            evidence,
+            explanation,
+        ),
         _ => Finding::new(Verdict::DoesNotHold, evidence, explanation),
     })
 }

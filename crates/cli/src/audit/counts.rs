@@ -27,14 +27,13 @@ pub fn eight(subject: &Subject) -> Result<Finding, Stop> {
             evidence = evidence.number(name, pair[0].high);
         }
     }
+    let [at_printed, at_read] = [printed, read].map(Line::falling_text);
     let explanation = format!(
-        "Every boundary at both stiffnesses was traced and solved for. At κ = {PRINTED} of (24) there are at most {} switches, at \
-         κ = 18/α = {} up to {}, in the sequence {}; that of the figures is {FIGURE}. What is plotted as κ would then be \
-         ακ.",
-        printed.most(),
+        "Every boundary at both stiffnesses was {}. As ψ falls, the counts are {at_printed} at κ = {PRINTED} of (24), and {at_read} at \
+         18/α = {}; those of the figures are {FIGURE}{}.",
+        printed.method,
         read.kappa,
-        read.most(),
-        read.falling_text()
+        if at_read == FIGURE { ", as if ακ were plotted" } else { "" }
     );
     Ok(match (printed.most() == MOST, read.most() == MOST) {
         (true, _) => Finding::new(Verdict::Holds, evidence, explanation),
@@ -70,9 +69,10 @@ pub fn reversals(subject: &Subject) -> Result<Finding, Stop> {
     }
     let [printed, read] = shares;
     let explanation = format!(
-        "Reversals and switches were counted between all boundaries, which were solved for: both numbers change nowhere else. Half the \
+        "Reversals and switches were counted between all boundaries, which were {}: both numbers change nowhere else. Half the \
          switches are not the reversals in {:.2} % of ψ from 0 to 2 at κ = 18, in {:.2} % at 18/α = 63. In {more} of the {} \
          intervals in which this is so there are more reversals: a spring that sticks turns the motion round and back without a switch.",
+        lines[0].method,
         100.0 * printed,
         100.0 * read,
         intervals.len()
@@ -162,7 +162,10 @@ pub fn decompression(subject: &Subject) -> Result<Finding, Stop> {
     let before = |psi| Ok(first(psi)? < middle);
     let (low, high) = (e.low * (1.0 + 1e-9), b.high * (1.0 - 1e-9));
     let passes = if before(low)? && !before(high)? { change(low, high, before)? } else { low };
-    let late = passes <= d.low;
+    let samples: Vec<f64> =
+        (0..1000).map(|i| d.low + (b.high - d.low) * (f64::from(i) + 0.5) / 1000.0).collect();
+    let early = each(&samples, |&psi| before(psi))?.into_iter().filter(|&early| early).count();
+    let late = passes <= d.low && early == 0;
     let early_part = ((passes - e.low) / (e.high - e.low)).clamp(0.0, 1.0);
     let earliest = first(low)?;
     let evidence = Evidence::default()
@@ -173,12 +176,14 @@ pub fn decompression(subject: &Subject) -> Result<Finding, Stop> {
         .number("lower end of d (6 switches) in ψ", d.low)
         .number("lower end of e (8 switches) in ψ", e.low)
         .number("time of the first switch at the lower end of e", earliest)
+        .count("of 1000 ψ in b, c, d, those with a first switch before", early)
         .number("part of e in which the first switch comes before", early_part);
     let explanation = format!(
-        "At κ = 18/α the first switch passes the largest compression, t = {middle:.4}, at ψ = {passes:.9}. The regions with 2, 4 \
-         and 6 switches end at ψ = {:.6} above, so that all their switches are later. In the one with 8, down to ψ = {:.6}, the first \
-         switch comes before in {:.1} % of it, at t = {earliest:.4} at the earliest.",
+        "At κ = 18/α the first switch passes the largest compression, t = {middle:.4}, at ψ = {passes:.9}. The regions with 2, 4 and 6 \
+         switches reach down to ψ = {:.6}, {} that. In the one with 8, down to ψ = {:.6}, the first switch comes before in {:.1} % of \
+         ψ, at t = {earliest:.4} at its lower end.",
         d.low,
+        if passes <= d.low { "above" } else { "below" },
         e.low,
         100.0 * early_part
     );

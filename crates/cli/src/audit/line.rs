@@ -25,6 +25,8 @@ const SAMPLES: usize = 20;
 #[derive(Debug)]
 pub struct Line {
     pub kappa: f64,
+    /// How the boundaries were found.
+    pub method: &'static str,
     /// Parted by the boundaries, in order of rising ψ.
     pub stretches: Vec<Stretch>,
 }
@@ -82,16 +84,16 @@ impl Line {
 /// Why the boundaries are in doubt: what the tracer could not explain, or a collision that does not have the switches of its
 /// stretch.
 pub fn line(subject: &Subject, kappa: f64) -> Result<Line, String> {
-    let boundaries = match subject.model {
-        Model::Reset => traced(kappa),
-        Model::UnresetSpring => bisected(subject, kappa),
-    }?;
+    let (method, boundaries) = match subject.model {
+        Model::Reset => ("traced and solved for", traced(kappa)?),
+        Model::UnresetSpring => ("bisected between 4000 samples", bisected(subject, kappa)?),
+    };
     let ends = [&[0.0], boundaries.as_slice(), &[PSI[1]]].concat();
     let stretches = ends.windows(2).map(|ends| stretch(subject, kappa, ends[0], ends[1]));
     let stretches = stretches.collect::<Result<Vec<_>, _>>()?;
     match stretches.windows(2).find(|pair| pair[0].itinerary == pair[1].itinerary) {
         Some(pair) => Err(format!("nothing changes at κ = {kappa}, ψ = {}", pair[0].high)),
-        None => Ok(Line { kappa, stretches }),
+        None => Ok(Line { kappa, method, stretches }),
     }
 }
 
@@ -219,5 +221,32 @@ impl Problem<{ regularized::STATE }, { regularized::GUARDS }> for Collisions {
         let contact = contact(point);
         let system = Regularized::new(contact);
         (system, Start { mode: Phase::first(&contact), s: 0.0, state: system.start() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Both ways to the boundaries: sampling finds all at this stiffness, and bisecting the exact solution is good to rounding.
+    #[test]
+    fn traced_boundaries_are_those_between_samples() {
+        let subject = Subject::new(Model::Reset);
+        let (traced, bisected) = (traced(18.0).unwrap(), bisected(&subject, 18.0).unwrap());
+        assert_eq!((traced.len(), bisected.len()), (7, 7));
+        for (one, other) in traced.iter().zip(bisected) {
+            assert!((one - other).abs() < 2e-14, "{one} {other}");
+        }
+    }
+
+    /// The velocity at the end of an unreset spring passes 0 between two boundaries.
+    #[test]
+    fn a_stretch_is_parted_where_the_reversals_change() {
+        let subject = Subject::new(Model::UnresetSpring);
+        let stretch = stretch(&subject, 18.0, 0.0666, 0.116).unwrap();
+        let [one, other] = stretch.parts.as_slice() else { panic!("{stretch:?}") };
+        assert_eq!((one.reversals, other.reversals, one.high), (4, 3, other.low));
+        let velocity = |psi| subject.collide(18.0, psi, 0.0).unwrap().final_velocity;
+        assert!(velocity(one.high * (1.0 - 1e-9)) > 0.0 && velocity(one.high * (1.0 + 1e-9)) < 0.0);
     }
 }
