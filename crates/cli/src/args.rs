@@ -23,7 +23,7 @@ pub use impact::ImpactArguments;
 pub use locate::LocateArguments;
 pub use map::MapArguments;
 pub use method::{Method, MethodArguments};
-pub use reproduce::ReproduceArguments;
+pub use reproduce::{AuditFormat, ReproduceArguments};
 pub use shared::CollisionArguments;
 pub use trace::TraceArguments;
 

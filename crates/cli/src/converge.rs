@@ -20,6 +20,7 @@ use crate::plan::ConvergePlan;
 use crate::study::Study;
 use collisions::Accuracy;
 use series::{Row, Scheme, Series};
+pub use tables::{ORDERS, TIMES};
 
 /// All that is measured.
 struct Measurement {

@@ -70,6 +70,9 @@ pub enum Failure {
     /// Boundaries cannot be traced.
     #[error("the boundaries cannot be traced: {0}")]
     Trace(String),
+    /// A statement cannot be tested.
+    #[error("the statements cannot be tested: {0}")]
+    Audit(String),
     /// Something speaks against an atlas.
     #[error("{}: the atlas is complete, but may be wrong: {reason}", path.display())]
     Doubtful {

@@ -2,12 +2,13 @@
 //! an exit code.
 //!
 //! Start reading here; then, in this order: `args` (what may be typed), `plan` (what it means),
-//! `collide`, `batch`, `impact`, `map`, `atlas`, `converge`, `asymptote` and `reproduce` (doing it), `input`, `bodies` and `json_input`
-//! (files read), `table`, `json`, `rows`, `figure` and `output` (results written).
+//! `collide`, `batch`, `impact`, `map`, `atlas`, `converge`, `asymptote`, `audit` and `reproduce` (doing it), `input`, `bodies` and
+//! `json_input` (files read), `table`, `json`, `rows`, `figure` and `output` (results written).
 
 mod args;
 mod asymptote;
 mod atlas;
+mod audit;
 mod batch;
 mod bodies;
 mod collide;
@@ -77,6 +78,9 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             let plan = AsymptotePlan::new(arguments)?;
             study::carry_out(&plan.out, plan.threads, |progress| asymptote::run(&plan, progress))
         }
-        Command::Reproduce(arguments) => reproduce::run(&ReproducePlan::new(arguments)),
+        Command::Reproduce(arguments) => match ReproducePlan::new(arguments) {
+            ReproducePlan::Page(plan) => reproduce::run(&plan),
+            ReproducePlan::Statements(plan) => audit::print(&plan),
+        },
     }
 }

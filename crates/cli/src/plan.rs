@@ -23,7 +23,7 @@ pub use asymptote::AsymptotePlan;
 pub use converge::ConvergePlan;
 pub use locate::LocatePlan;
 pub use map::{MapFormat, MapPlan};
-pub use reproduce::ReproducePlan;
+pub use reproduce::{PagePlan, ReproducePlan, StatementsPlan};
 pub use trace::TracePlan;
 
 /// What `collide` is to do.

@@ -1,7 +1,7 @@
 //! The figures of the paper computed anew, and a page that shows everything.
 //!
 //! Start reading here; then, in this order: `section` (what a part hands out), `bench` (what parts share), `reading` (the two
-//! meanings of κ), `figure1` to `figure6` and `boundaries` (the parts), `points` (where a…o are), `sweep` and `course`
+//! meanings of κ), `figure1` to `figure6`, `boundaries` and `studies` (the parts), `points` (where a…o are), `sweep` and `course`
 //! (what several figures need), `page`, `report` and `markup` (what people and programs read).
 
 mod bench;
@@ -19,12 +19,13 @@ mod points;
 mod reading;
 mod report;
 mod section;
+mod studies;
 mod sweep;
 
 use std::io::{self, Write};
 
 use crate::error::Failure;
-use crate::plan::ReproducePlan;
+use crate::plan::PagePlan;
 use crate::study;
 use bench::Bench;
 use section::Section;
@@ -46,13 +47,16 @@ const PARTS: &[Part] = &[
     Part { title: figure5::TITLE, run: figure5::run },
     Part { title: figure6::TITLE, run: figure6::run },
     Part { title: boundaries::TITLE, run: boundaries::run },
+    Part { title: studies::CONVERGENCE, run: studies::convergence },
+    Part { title: studies::STIFF, run: studies::stiff },
+    Part { title: studies::STATEMENTS, run: studies::statements },
 ];
 
 /// Computes all parts, writes each when it is done, and the page at the end.
 ///
 /// # Errors
 /// Files cannot be written, a part fails, or something speaks against a result; in the last case the page is complete and says so.
-pub fn run(plan: &ReproducePlan) -> Result<(), Failure> {
+pub fn run(plan: &PagePlan) -> Result<(), Failure> {
     study::prepare(&plan.out)?;
     let bench = Bench::new(plan)?;
     let mut sections = Vec::with_capacity(PARTS.len());

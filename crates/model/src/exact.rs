@@ -25,7 +25,8 @@ pub use boundaries::{small_impact_boundary, top_boundary};
 use release::Release;
 use slide::{Slide, Sliding};
 use swing::Swing;
-use trajectory::{CONTACT_TIME, Moment, Point};
+pub use trajectory::CONTACT_TIME;
+use trajectory::{Moment, Point};
 
 /// Most switches of a collision that [`collide`] lists, about 190 MB of them.
 ///

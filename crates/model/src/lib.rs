@@ -8,7 +8,8 @@
 //!
 //! Start reading in [`collision`]; then [`regularized`] (the equations), [`exact`] (the closed form),
 //! [`history`] (its course in time), [`scaling`] (SI units), [`bodies`] and [`encounter`] (spheres in three dimensions),
-//! [`normal`] and [`coulomb`] (formulas to compare with), [`plain_time`] and [`convergence`] (the equations as the paper has them, for studies).
+//! [`normal`], [`coulomb`] and [`largest`] (formulas to compare with), [`stiff`] and [`inner`] (the limit of stiff springs), [`plain_time`] and
+//! [`convergence`] (the equations as the paper has them, for studies), [`unreset`] (another model of the spring).
 //!
 //! ```
 //! use stickslip_model::{Collider, Contact, exact};
@@ -31,6 +32,7 @@ mod energy;
 pub mod exact;
 pub mod history;
 pub mod inner;
+pub mod largest;
 pub mod normal;
 mod observed;
 mod outcome;
@@ -42,6 +44,7 @@ pub mod regularized;
 mod reversals;
 pub mod scaling;
 pub mod stiff;
+pub mod unreset;
 
 pub use bodies::{Body, Elasticity, Material, Sphere, Wall};
 pub use collision::{Collider, CollisionError};

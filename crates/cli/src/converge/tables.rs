@@ -7,6 +7,11 @@ use super::Measurement;
 use super::series::{Control, Pair, Row, Scheme, Series};
 use crate::study::{Cell, Column, Table};
 
+/// The table of fitted orders.
+pub const ORDERS: &str = "convergence_orders";
+/// The table of measured times, the only one that differs from run to run.
+pub const TIMES: &str = "convergence_time";
+
 impl Measurement {
     pub fn tables(&self) -> Vec<Table> {
         vec![
@@ -48,7 +53,7 @@ impl Measurement {
             ("points", "how many are fitted"),
         ];
         Table {
-            name: "convergence_orders",
+            name: ORDERS,
             title: "Fitted orders".to_owned(),
             columns: with_scheme(&columns),
             rows: rows.flatten().collect(),
@@ -161,7 +166,7 @@ impl Measurement {
             })
         });
         Table {
-            name: "convergence_time",
+            name: TIMES,
             title: "Measured times, not the same in another run".to_owned(),
             columns: with_scheme(&columns),
             rows: rows.collect(),

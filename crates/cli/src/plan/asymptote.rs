@@ -1,6 +1,6 @@
 //! What `asymptote` is to do.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::args::AsymptoteArguments;
 use crate::error::Failure;
@@ -26,6 +26,12 @@ pub struct AsymptotePlan {
 }
 
 impl AsymptotePlan {
+    /// The usual study.
+    pub fn usual(out: &Path) -> Self {
+        let kappa = Range { low: 10.0, high: 1e8 };
+        Self { kappa, psi: vec![0.3, 1.0, 1.7], out: out.to_owned(), threads: None }
+    }
+
     /// The plan that `arguments` make.
     ///
     /// # Errors

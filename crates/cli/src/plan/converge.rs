@@ -1,6 +1,6 @@
 //! What `converge` is to do.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use stickslip_model::Contact;
 
@@ -24,6 +24,14 @@ pub struct ConvergePlan {
 }
 
 impl ConvergePlan {
+    /// The usual study, without damping.
+    ///
+    /// # Errors
+    /// None of its collisions is out of range.
+    pub fn usual(out: &Path) -> Result<Self, Failure> {
+        Ok(Self { contacts: usual(0.0)?, out: out.to_owned(), threads: None })
+    }
+
     /// The plan that `arguments` make.
     ///
     /// # Errors

@@ -7,8 +7,9 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::reading::{ALPHA, MU, Reading};
 use crate::atlas::{Frame, Made, make};
+use crate::audit::Model;
 use crate::error::Failure;
-use crate::plan::ReproducePlan;
+use crate::plan::PagePlan;
 use crate::range::Range;
 
 /// The tools of the parts.
@@ -20,6 +21,8 @@ pub struct Bench {
     pub pool: ThreadPool,
     /// Columns and rows of a map.
     pub cells: usize,
+    /// The model of the spring of which the statements are tested.
+    pub model: Model,
     /// The boundaries of Figure 4, once they are traced.
     boundaries: OnceLock<Made>,
 }
@@ -34,11 +37,12 @@ impl Bench {
     ///
     /// # Errors
     /// They cannot be started.
-    pub fn new(plan: &ReproducePlan) -> Result<Self, Failure> {
+    pub fn new(plan: &PagePlan) -> Result<Self, Failure> {
         Ok(Self {
             out: plan.out.clone(),
             pool: ThreadPoolBuilder::new().num_threads(plan.threads.unwrap_or(0)).build()?,
             cells: plan.cells,
+            model: plan.model,
             boundaries: OnceLock::new(),
         })
     }

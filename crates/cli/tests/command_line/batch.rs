@@ -194,7 +194,7 @@ fn earlier_results_are_replaced() {
 
 #[test]
 fn the_reference_collisions_in_one_file() {
-    let cases = reference("undamped_random.json");
+    let cases = reference("undamped_random.json", "cases");
     let mut input = "kappa,psi\n".to_owned();
     for case in &cases {
         let (kappa, psi) = (case["kappa"].as_str().unwrap(), case["psi"].as_str().unwrap());

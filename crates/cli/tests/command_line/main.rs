@@ -2,6 +2,7 @@
 
 mod asymptote;
 mod atlas;
+mod audit;
 mod batch;
 mod batch_failures;
 mod converge;
@@ -163,12 +164,12 @@ fn array(file: &[u8]) -> Array {
     }
 }
 
-/// The cases of a file of reference values.
-fn reference(name: &str) -> Vec<serde_json::Value> {
+/// The list named `key`, `cases` or `boundaries`, of a file of reference values.
+fn reference(name: &str, key: &str) -> Vec<serde_json::Value> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data").join(name);
     let text = fs::read_to_string(path).expect("reference data");
     let file: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-    file["cases"].as_array().expect("cases").clone()
+    file[key].as_array().expect("a list").clone()
 }
 
 /// A decimal string of the reference data.

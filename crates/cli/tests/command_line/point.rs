@@ -154,7 +154,7 @@ fn a_ratio_becomes_psi() {
 
 #[test]
 fn methods_agree_with_the_reference_values() {
-    let cases = reference("undamped_paper.json");
+    let cases = reference("undamped_paper.json", "cases");
     let paper = cases.iter().filter(|case| decimal(&case["psi"]) > 0.1).take(20);
     let mut compared = 0;
     for case in paper {
