@@ -45,18 +45,10 @@ impl Measurement {
 
     /// How closely the reference is met, where it is a calculation of the same kind.
     fn agreement(&self) -> String {
-        let scheme = Scheme {
-            pair: Pair::Dop853,
-            coordinates: Coordinates::Regularized,
-            switches: Switches::Located,
-            control: Control::Step,
-        };
-        let rows = self.series.iter().find(|series| series.scheme == scheme).map(|s| &s.rows);
-        let closest =
-            rows.into_iter().flatten().filter(|row| row.errors.comparable()).min_by(|a, b| {
-                let error = |row: &Row| row.errors.velocity.root_mean_square;
-                error(a).total_cmp(&error(b))
-            });
+        let error = |row: &Row| row.errors.velocity.root_mean_square;
+        let [_, dop853] = self.both(Control::Step, Switches::Located, Coordinates::Regularized);
+        let rows = dop853.rows.iter().filter(|row| row.errors.comparable());
+        let closest = rows.min_by(|a, b| error(a).total_cmp(&error(b)));
         match closest {
             Some(Row { value, errors, .. }) if self.is_damped() => format!(
                 ", from which dop853 in fixed steps of {value:.4} differs by {:.1e} in the final \
@@ -211,7 +203,7 @@ impl Measurement {
     fn both(&self, control: Control, switches: Switches, variables: Coordinates) -> [&Series; 2] {
         let of = |pair| {
             let scheme = Scheme { pair, coordinates: variables, switches, control };
-            // Every scheme has its series.
+            // All schemes are measured.
             self.series.iter().find(|series| series.scheme == scheme).unwrap()
         };
         Pair::BOTH.map(of)
