@@ -6,7 +6,7 @@ use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use rayon::ThreadPoolBuilder;
-use serde_json::Value;
+use serde_json::{Map, Value, json};
 
 use crate::error::Failure;
 use crate::figure::Svg;
@@ -21,7 +21,7 @@ pub struct Study {
     pub title: &'static str,
     /// What was found, a sentence with its numbers each.
     pub findings: Vec<String>,
-    /// All numbers.
+    /// All numbers, in an object; its file has the title, the findings and what the other files hold besides.
     pub json: Value,
     /// The same as tables.
     pub tables: Vec<Table>,
@@ -98,8 +98,28 @@ impl Study {
             let path = directory.join(format!("{}.svg", picture.name));
             write(&path, picture.svg.document().as_bytes())?;
         }
-        let json = format!("{:#}\n", self.json);
+        let mut json = self.json.clone();
+        if let Value::Object(fields) = &mut json {
+            fields.insert("title".to_owned(), self.title.into());
+            fields.insert("findings".to_owned(), self.findings.clone().into());
+            fields.insert("files".to_owned(), self.files());
+        }
+        let json = format!("{json:#}\n");
         write(&directory.join(format!("{}.json", self.name)), json.as_bytes())
+    }
+
+    /// What the files beside the JSON file hold.
+    fn files(&self) -> Value {
+        let tables = self.tables.iter().map(|table| {
+            let columns = table.columns.iter();
+            let columns: Map<_, _> =
+                columns.map(|column| (column.name.to_owned(), column.meaning.into())).collect();
+            (format!("{}.csv", table.name), json!({ "title": table.title, "columns": columns }))
+        });
+        let pictures = self.pictures.iter().map(|picture| {
+            (format!("{}.svg", picture.name), json!({ "caption": picture.caption }))
+        });
+        tables.chain(pictures).collect::<Map<_, _>>().into()
     }
 }
 

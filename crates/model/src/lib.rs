@@ -8,7 +8,8 @@
 //!
 //! Start reading in [`collision`]; then [`regularized`] (the equations), [`exact`] (the closed form),
 //! [`history`] (its course in time), [`scaling`] (SI units), [`bodies`] and [`encounter`] (spheres in three dimensions),
-//! [`normal`] and [`coulomb`] (formulas to compare with), [`plain_time`] (the equations as the paper has them, for studies).
+//! [`normal`] and [`coulomb`] (formulas to compare with), [`plain_time`] (the equations as the paper has them, for studies),
+//! [`inner`] and [`stiff`] (the limit of stiff springs).
 //!
 //! ```
 //! use stickslip_model::{Collider, Contact, exact};
