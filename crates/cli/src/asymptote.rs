@@ -105,7 +105,6 @@ impl Measurement {
                 "psi": self.excess.worst.psi,
                 "exceeded": [self.excess.kappa.0, self.excess.kappa.1],
             },
-            "findings": findings,
         });
         for table in &tables {
             let name = table.name.trim_start_matches("asymptote_");

@@ -18,7 +18,7 @@ impl Measurement {
             ),
         }
         findings.push(format!(
-            "The inner problem alone gives the constant {:.15} and the correction {:.12} κ^(−5/4), in closed form: the \
+            "The inner problem alone gives the constant {:.15} and the correction {:.12} κ^{{−5/4}}, in closed form: the \
              last stick phase lasts a quarter of a period, from σ = {:.12} to {:.12}.",
             self.peak.velocity, self.peak.correction, self.peak.onset, self.peak.release
         ));
@@ -27,7 +27,7 @@ impl Measurement {
         findings.extend(compared.iter().filter_map(|found| profile_found(found, *compared_psi)));
         findings.push(format!(
             "The bound (27), |w_final| ≤ 1/√κ, is exceeded between κ = {:.6} and {:.6}: by a factor of {:.6} at κ = {:.6}, \
-             ψ = {:.6}. With its missing factor (5/4)^(3/5) = {BOUND_FACTOR:.6} it holds: the largest is {:.4} of it.",
+             ψ = {:.6}. With its missing factor (5/4)^{{3/5}} = {BOUND_FACTOR:.6} it holds there: the largest is {:.4} of it.",
             self.excess.kappa.0,
             self.excess.kappa.1,
             self.excess.ratio,
@@ -43,18 +43,20 @@ impl Measurement {
     /// What holds at the stiffest.
     fn envelope_found(&self) -> String {
         let points = || self.points.iter().flatten();
-        let integrated = points().map(|point| (point.integrated - point.crest.velocity).abs());
+        let integrated = points().filter(|point| point.integrated.is_finite());
+        let off = integrated.clone().map(|point| (point.integrated - point.crest.velocity).abs());
         let [first, .., last] = &self.points[0][..] else { return String::new() };
         format!(
-            "The largest |w_final| falls from {:.6} at κ = {} to {:.6e} at κ = {} around ψ = {}; dop853 repeats all {} tops \
+            "The largest |w_final| falls from {:.6} at κ = {} to {:.6e} at κ = {} around ψ = {}; dop853 repeats {} of {} tops \
              within {:.1e}.",
             first.crest.velocity,
             brief(first.kappa),
             last.crest.velocity,
             brief(last.kappa),
             first.psi,
+            integrated.count(),
             points().count(),
-            integrated.fold(0.0, f64::max)
+            off.fold(0.0, f64::max)
         )
     }
 
@@ -62,7 +64,7 @@ impl Measurement {
         let Self { peak, .. } = self;
         [
             format!(
-                "|w_final| = C κ^(−p) with p = {}; with the terms κ^(−5/4) and κ^(−5/2) beside it p = {}. Fitted to {} \
+                "|w_final| = C κ^{{−p}} with p = {}; with the terms κ^{{−5/4}} and κ^{{−5/2}} beside it p = {}. Fitted to {} \
                  stiffnesses from 1000 on; values of ψ differ by {:.0e}, relative.",
                 shown(fits.plain_exponent),
                 shown(fits.exponent),
@@ -70,13 +72,13 @@ impl Measurement {
                 fits.spread
             ),
             format!(
-                "κ^(5/4)|w_final| tends to {}, the inner problem's {:.13} within {:.0e}.",
+                "κ^{{5/4}}|w_final| tends to {}, the inner problem's {:.13} within {:.0e}.",
                 shown(fits.constant),
                 peak.velocity,
                 (fits.constant.value - peak.velocity).abs()
             ),
             format!(
-                "It does so with the power κ^(−{}) and the coefficient {}; the theory says 5/4 and {:.9}.",
+                "It does so with the power κ^{{−{}}} and the coefficient {}; the theory says 5/4 and {:.9}.",
                 shown(fits.power),
                 shown(fits.correction),
                 peak.correction
@@ -122,7 +124,7 @@ fn profile_found(collisions: &[Compared], psi: f64) -> Option<String> {
     let difference = largest(|c| (c.velocity - c.inner).abs());
     Some(format!(
         "At κ = {}, {} collisions over one oscillation around ψ = {psi} lie on F(phase) within {difference:.2e}, which is {:.1} \
-         κ^(−5/4); √κ/π times the time left at the first switch gives their phase within {:.4}.",
+         κ^{{−5/4}}; √κ/π times the time left at the first switch gives their phase within {:.4}.",
         brief(first.kappa),
         collisions.len(),
         difference * first.kappa.powf(1.25),
@@ -133,7 +135,7 @@ fn profile_found(collisions: &[Compared], psi: f64) -> Option<String> {
 fn restitution_found(found: &[Restitution]) -> Option<String> {
     let [first, last] = [found.iter().find(|row| row.largest.is_some())?, found.last()?];
     Some(format!(
-        "From ψ₀ = {} up to 2 the largest |ε_t| falls from {:.4} at κ = {} to {:.3e} at κ = {}, which is {:.3} κ^(−5/4)/ψ₀; \
+        "From ψ₀ = {} up to 2 the largest |ε_t| falls from {:.4} at κ = {} to {:.3e} at κ = {}, which is {:.3} κ^{{−5/4}}/ψ₀; \
          the bound (27) is {} at ψ₀.",
         first.from.name(),
         first.eps_t(),

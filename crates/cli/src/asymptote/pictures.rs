@@ -33,15 +33,15 @@ impl Measurement {
         vec![
             Picture {
                 name: "asymptote_envelope",
-                caption: "The largest |w_final| of the oscillation around each ψ, the limit Fκ^(−5/4) of the inner \
+                caption: "The largest |w_final| of the oscillation around each ψ, the limit Fκ^{−5/4} of the inner \
                           problem, and the bound (27) with and without its factor."
                     .to_owned(),
                 svg: self.envelope(),
             },
             Picture {
                 name: "asymptote_correction",
-                caption: "What κ^(5/4)|w_final| lacks to the constant of the inner problem, and the next order's coefficient \
-                          times κ^(−5/4)."
+                caption: "What κ^{5/4}|w_final| lacks to the constant of the inner problem, and the next order's coefficient \
+                          times κ^{−5/4}."
                     .to_owned(),
                 svg: self.correction(),
             },

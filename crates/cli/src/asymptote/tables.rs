@@ -66,10 +66,10 @@ const ENVELOPE: [Column; 11] = [
     column("psi_largest", "ψ of the top of the oscillation around it"),
     column("w_final", "|w_final| there"),
     column("w_integrated", "the same by dop853"),
-    column("w_scaled", "κ^(5/4) |w_final|"),
-    column("w_theory", "F κ^(−5/4) with the largest F of the inner problem"),
+    column("w_scaled", "κ^{5/4} |w_final|"),
+    column("w_theory", "F κ^{−5/4} with the largest F of the inner problem"),
     column("bound_printed", "1/√κ, the bound (27) as printed"),
-    column("bound_corrected", "(5/4)^(3/5)/√κ"),
+    column("bound_corrected", "(5/4)^{3/5}/√κ"),
     column("last_onset", "√κ · (time left where the last stick phase starts)"),
     column("switch_count", "number of switches"),
 ];
@@ -142,7 +142,7 @@ const COLLISIONS: [Column; 6] = [
     KAPPA,
     column("psi", "impact ratio ψ"),
     column("phase", "phase of the last onset"),
-    column("w_scaled", "κ^(5/4) |w_final|"),
+    column("w_scaled", "κ^{5/4} |w_final|"),
     column("f", "F of the inner problem at that phase"),
     column(
         "phase_ahead",

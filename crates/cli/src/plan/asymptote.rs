@@ -56,8 +56,7 @@ impl AsymptotePlan {
                  on there is no switch"
             )));
         }
-        if let Some(psi) =
-            (1..psi.len()).map(|i| psi[i]).find(|p| psi.iter().filter(|q| *q == p).count() > 1)
+        if let Some((_, psi)) = psi.iter().enumerate().find(|(i, value)| psi[..*i].contains(value))
         {
             return Err(Failure::Usage(format!(
                 "--psi has {psi:?} twice; accepted is each value once"
