@@ -23,7 +23,8 @@ use account::Account;
 use release::Release;
 use slide::{Slide, Sliding};
 use swing::Swing;
-use trajectory::{CONTACT_TIME, Moment, Point};
+pub(crate) use trajectory::CONTACT_TIME;
+use trajectory::{Moment, Point};
 
 /// Most switches of a collision that [`collide`] lists, about 190 MB of them.
 ///
