@@ -267,7 +267,6 @@ impl Observer<Phase, STATE> for Account {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::regularized::{Regularized, U as ROOT};
 
     fn collision(kappa: f64, psi: f64, damping: f64) -> UnresetCollision {
         collide(Contact::new(kappa, psi, damping).unwrap()).unwrap()
@@ -302,6 +301,7 @@ mod tests {
         }
     }
 
+    /// Largest differences: 3e-11 in w, and 6e-6, part of a step at the end, in y.
     #[test]
     fn obeys_the_law_in_plain_time() {
         for (kappa, psi, damping) in
@@ -309,11 +309,11 @@ mod tests {
         {
             let UnresetCollision { collision, largest_spring } = collision(kappa, psi, damping);
             let (velocity, largest, reversals) = in_plain_time(kappa, psi, damping);
-            assert!((collision.final_velocity - velocity).abs() < 2e-4, "{kappa} {psi} {damping}");
-            assert!((largest_spring - largest).abs() < 2e-5, "{kappa} {psi} {damping}");
+            assert!((collision.final_velocity - velocity).abs() < 6e-11, "{kappa} {psi} {damping}");
+            assert!((largest_spring - largest).abs() < 1e-5, "{kappa} {psi} {damping}");
             assert_eq!(collision.reversals, reversals);
-            assert!(collision.energy.tangential_unbalanced().abs() < 1e-11);
-            assert!(collision.energy.normal_unbalanced().abs() < 1e-11);
+            assert!(collision.energy.tangential_unbalanced().abs() < 5e-14);
+            assert!(collision.energy.normal_unbalanced().abs() < 1e-12);
         }
     }
 
@@ -334,6 +334,5 @@ mod tests {
         let unreset = collide(contact).unwrap().collision;
         assert!((reset.eps_n - unreset.eps_n).abs() < 1e-12);
         assert!((reset.contact_time - unreset.contact_time).abs() < 1e-12);
-        assert_eq!(Regularized::new(contact).start()[ROOT], 0.0);
     }
 }

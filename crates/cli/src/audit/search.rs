@@ -68,6 +68,9 @@ pub fn maximum_near(
     Ok(Extremum { at: [at[0], at[1]], value })
 }
 
+/// What argmin returns.
+type Solved<O, S, P> = Result<OptimizationResult<O, S, IterState<P, (), (), (), (), f64>>, Error>;
+
 /// A function whose maximum is looked for, and its first failure: argmin panics where a cost fails at the start.
 struct Cost<P, F> {
     value: F,
@@ -81,10 +84,7 @@ impl<P: Clone, F: Fn(&P) -> Result<f64, Failure>> Cost<P, F> {
     }
 
     /// The best place and the value there.
-    fn best<O, S>(
-        &self,
-        solved: Result<OptimizationResult<O, S, IterState<P, (), (), (), (), f64>>, Error>,
-    ) -> Result<(P, f64), Failure> {
+    fn best<O, S>(&self, solved: Solved<O, S, P>) -> Result<(P, f64), Failure> {
         if let Some(failure) = self.failed.take() {
             return Err(failure);
         }
