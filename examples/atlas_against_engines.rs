@@ -18,8 +18,10 @@ use stickslip::tracer::{
     Location, Point, Subdivision, TraceOptions, Tracer, VerifyOptions, verify_with,
 };
 
+type Interval = (f64, f64);
+
 /// κ, ψ and damping.
-const WINDOWS: [((f64, f64), (f64, f64), f64); 6] = [
+const WINDOWS: [(Interval, Interval, f64); 6] = [
     ((0.05, 100.0), (0.01, 3.0), 0.0),
     ((0.05, 1000.0), (0.01, 3.0), 0.0),
     ((0.001, 0.1), (0.01, 1100.0), 0.0),
@@ -120,11 +122,11 @@ fn atlas(plane: &CollisionPlane) -> Result<(Atlas, bool), Box<dyn Error>> {
     Err("no round is the last one".into())
 }
 
-fn random_points(kappa: (f64, f64), psi: (f64, f64), count: usize) -> Vec<Point> {
+fn random_points(kappa: Interval, psi: Interval, count: usize) -> Vec<Point> {
     let mut random = fastrand::Rng::with_seed(7);
     let point = |index: usize| {
         let part = random.f64();
-        let kappa = if index % 2 == 0 {
+        let kappa = if index.is_multiple_of(2) {
             kappa.0 + part * (kappa.1 - kappa.0)
         } else {
             kappa.0 * (kappa.1 / kappa.0).powf(part)

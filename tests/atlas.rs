@@ -67,7 +67,7 @@ fn assert_right(plane: &CollisionPlane, atlas: &Atlas, kappa: (f64, f64), psi: (
     let points: Vec<Point> = (0..COUNT)
         .map(|index| {
             let part = random.f64();
-            let kappa = if index % 2 == 0 {
+            let kappa = if index.is_multiple_of(2) {
                 kappa.0 + part * (kappa.1 - kappa.0)
             } else {
                 kappa.0 * (kappa.1 / kappa.0).powf(part)
@@ -169,6 +169,45 @@ fn reference_boundaries_lie_on_traced_curves() {
 }
 
 #[test]
+fn vertices_on_the_top_boundary_are_where_they_must_be() {
+    // Where ψ_g passes 2, and where the two stationary points of the guard merge.
+    let known = [(0.5701023788418932873, 2.0), (1.568459328886909846, 1.0)];
+    for (kappa, psi) in known {
+        let place = CollisionPlane::point(kappa, psi);
+        let nearest = ATLAS.vertices().iter().map(|vertex| (vertex.point - place).norm());
+        let nearest = nearest.fold(f64::INFINITY, f64::min);
+        println!("vertex at κ = {kappa}, ψ = {psi}: {nearest:.1e} off");
+        assert!(nearest < 1e-10);
+    }
+}
+
+/// At small ψ boundaries cross at κ_n, with a distance that falls with ψ.
+#[test]
+fn boundaries_run_into_the_limits_of_small_impacts() {
+    let mut last = f64::INFINITY;
+    for low in [1e-2, 1e-3, 1e-4] {
+        let plane = CollisionPlane::new((0.1, 30.0), (low, 0.05), 0.0).expect("collisions");
+        let atlas = atlas(&plane, &TraceOptions::default());
+        let bottom = atlas.window().low.y;
+        let mut kappas: Vec<f64> = atlas
+            .vertices()
+            .iter()
+            .filter(|vertex| (vertex.point.y - bottom).abs() < 1e-12)
+            .map(|vertex| CollisionPlane::parameters(&vertex.point)[0])
+            .collect();
+        kappas.sort_by(f64::total_cmp);
+        // κ_11 is 28.8, κ_12 34.3.
+        assert_eq!(kappas.len(), 11, "{kappas:?}");
+        let distance =
+            (1..).zip(&kappas).map(|(n, kappa)| kappa / exact::small_impact_boundary(n) - 1.0);
+        let largest = distance.fold(0.0_f64, |most, distance| most.max(distance.abs()));
+        println!("ψ = {low:e}: within {largest:.1e} of κ_n");
+        assert!(largest < 0.3 * last);
+        last = largest;
+    }
+}
+
+#[test]
 fn the_top_boundary_is_the_closed_form() {
     let mut largest = 0.0_f64;
     let mut nodes = 0;
@@ -180,32 +219,11 @@ fn the_top_boundary_is_the_closed_form() {
         for node in &curve.nodes {
             let [kappa, psi] = CollisionPlane::parameters(&node.point);
             if (ATLAS.window().high.y - node.point.y).abs() > 1e-9 {
-                largest = largest.max((psi - top(kappa)).abs());
+                largest = largest.max((psi - exact::top_boundary(kappa)).abs());
                 nodes += 1;
             }
         }
     }
     println!("{nodes} nodes, largest distance {largest:.1e}");
     assert!(nodes > 100 && largest < 1e-12);
-}
-
-/// ψ above which the collision has no switch: max(2, 1 − cos q (1 − B sin^{2/5} q)) where (7/5)Bσ² − σ^{8/5} − (2/5)B = 0
-/// for σ = sin q; the larger of both roots in (0, 1) belongs to the minimum of the guard.
-fn top(kappa: f64) -> f64 {
-    let b = 1.5 / kappa * 1.25_f64.powf(0.2);
-    let stationary = |sine: f64| 1.4 * b * sine * sine - sine.powf(1.6) - 0.4 * b;
-    if stationary(1.0) <= 0.0 {
-        return 2.0;
-    }
-    let (mut low, mut high) = (0.0, 1.0);
-    while high - low > f64::EPSILON {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            break;
-        }
-        if stationary(middle) < 0.0 { low = middle } else { high = middle }
-    }
-    let cosine = (1.0 - low * low).sqrt();
-    let graze = [1.0, -1.0].map(|sign| 1.0 - sign * cosine * (1.0 - b * low.powf(0.4)));
-    graze.into_iter().fold(2.0, f64::max)
 }

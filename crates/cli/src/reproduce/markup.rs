@@ -3,7 +3,7 @@
 /// `text` with `<`, `>`, `&` and `"` escaped, what follows `_` and `^` lowered and raised, and what stands between back quotes set as
 /// code.
 ///
-/// Lowered and raised is a word, or what stands in braces.
+/// Lowered and raised is a word, or what stands in braces or parentheses.
 pub fn html(text: &str) -> String {
     let mut html = String::with_capacity(text.len());
     for (index, part) in text.split('`').enumerate() {
@@ -26,8 +26,9 @@ fn heights(html: &mut String, mut rest: &str) {
         let name = if rest[place..].starts_with('_') { "sub" } else { "sup" };
         html.push_str(&escaped(&rest[..place]));
         let after = &rest[place + 1..];
-        let braced = after.strip_prefix('{').and_then(|inner| inner.split_once('}'));
-        let (inside, remaining) = braced.unwrap_or_else(|| {
+        let within = |open, close| after.strip_prefix(open)?.split_once(close);
+        let enclosed = within('{', '}').or_else(|| within('(', ')'));
+        let (inside, remaining) = enclosed.unwrap_or_else(|| {
             after.split_at(after.find(|c: char| !c.is_alphanumeric()).unwrap_or(after.len()))
         });
         element(html, name, inside);
@@ -50,6 +51,7 @@ mod tests {
     fn words_are_lowered_and_raised() {
         assert_eq!(html("g_t/g_n < 2μ/α"), "g<sub>t</sub>/g<sub>n</sub> &lt; 2μ/α");
         assert_eq!(html("β^{−2/5}, ε_t^C"), "β<sup>−2/5</sup>, ε<sub>t</sub><sup>C</sup>");
+        assert_eq!(html("h^(5/2) at w_0(t)"), "h<sup>5/2</sup> at w<sub>0</sub>(t)");
         assert_eq!(
             html("`collide --psi <P>` a_b"),
             "<code>collide --psi &lt;P&gt;</code> a<sub>b</sub>"
