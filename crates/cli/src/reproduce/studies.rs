@@ -8,11 +8,11 @@ use crate::error::Failure;
 use crate::plan::{AsymptotePlan, ConvergePlan};
 use crate::{asymptote, audit, converge};
 
-/// Titles of the parts.
-pub const CONVERGENCE: &str = "Convergence";
-/// …
-pub const STIFF: &str = "Stiff springs";
-/// …
+/// Title of [`convergence`].
+pub const CONVERGENCE: &str = "Convergence of the integrators";
+/// Title of [`stiff`].
+pub const STIFF: &str = "The limit of stiff springs";
+/// Title of [`statements`].
 pub const STATEMENTS: &str = "Statements of the paper";
 
 /// The study of convergence, without what differs from run to run.

@@ -15,14 +15,23 @@ static RUN: LazyLock<Workspace> = LazyLock::new(|| {
     let ran = workspace.run("reproduce --out out --cells 24 --threads 2");
     assert_eq!((ran.code, ran.stdout.as_str()), (0, ""), "{}", ran.stderr);
     let lines: Vec<&str> = ran.stderr.lines().collect();
-    assert_eq!(lines[0], "1 of 7: Figure 1: pure Coulomb sliding");
+    assert_eq!(lines[0], "1 of 10: Figure 1: pure Coulomb sliding");
     assert_eq!(lines.last(), Some(&"everything is on out/index.html"));
-    assert_eq!(lines.len(), 8);
+    assert_eq!(lines.len(), 11);
     workspace
 });
 
-const PICTURES: [&str; 9] = [
+const PICTURES: [&str; 18] = [
+    "asymptote_correction",
+    "asymptote_counts",
+    "asymptote_envelope",
+    "asymptote_profile",
     "boundaries",
+    "convergence_steps_switches",
+    "convergence_steps_velocity",
+    "convergence_tolerances_switches",
+    "convergence_tolerances_velocity",
+    "convergence_work",
     "figure1",
     "figure2",
     "figure3",
@@ -33,9 +42,24 @@ const PICTURES: [&str; 9] = [
     "figure6_printed",
 ];
 
-const DATA: [&str; 22] = [
+const DATA: [&str; 37] = [
+    "asymptote.json",
+    "asymptote_collisions.csv",
+    "asymptote_convergence.csv",
+    "asymptote_counts.csv",
+    "asymptote_envelope.csv",
+    "asymptote_profile.csv",
+    "asymptote_restitution.csv",
     "atlas.json",
+    "audit.csv",
+    "audit.json",
+    "audit_evidence.csv",
     "boundaries.json",
+    "convergence.json",
+    "convergence_collisions.csv",
+    "convergence_orders.csv",
+    "convergence_steps.csv",
+    "convergence_tolerances.csv",
     "figure1.csv",
     "figure1.json",
     "figure2.json",
@@ -144,7 +168,7 @@ fn all_forms_say_the_same() {
             findings += 1;
         }
     }
-    assert_eq!(parts.len(), 7);
+    assert_eq!(parts.len(), 10);
     assert!(findings > 15, "{findings}");
 }
 
@@ -302,7 +326,7 @@ fn bad_directories_are_refused_before_any_work() {
         let ran = workspace.run(line);
         assert_eq!(ran.code, code, "{line}: {}", ran.stderr);
         assert!(ran.stderr.contains(expected), "{line}: {}", ran.stderr);
-        assert!(!ran.stderr.contains("1 of 7"), "{line}");
+        assert!(!ran.stderr.contains("1 of 10"), "{line}");
     }
     assert_eq!(workspace.names(), ["in.csv"]);
     assert_eq!(workspace.read("in.csv"), "a file");
