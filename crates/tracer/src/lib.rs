@@ -5,6 +5,7 @@
 //!
 //! - curves: `trace` (how all are found), `branch` (how one is followed), `step` (a step), `special`, `touch` and `ahead` (where it
 //!   ends), `seed` and `island` (where it starts), `corrector`, `runs`, `network`, `arc`;
+//!   `naming` (what its ends are) and `extrema`;
 //! - regions: `hermite` (the cubics between nodes), `subdivision` with `faces`, `crossing`, `finding` and `interior`, `slabs` and
 //!   `locate` (where a point lies), `verify` (runs against the subdivision).
 
@@ -15,6 +16,7 @@ mod branch;
 mod corrector;
 mod crossing;
 mod curve;
+mod extrema;
 mod faces;
 mod family;
 mod finding;
@@ -23,6 +25,7 @@ mod hybrid;
 mod interior;
 mod island;
 mod locate;
+mod naming;
 mod network;
 mod options;
 mod outline;
@@ -40,6 +43,7 @@ mod verify;
 
 pub use branch::{Branch, End, Seed, Special, Stop};
 pub use curve::{Curve, Node, Vertex, VertexKind};
+pub use extrema::Extremum;
 pub use family::{Family, FreeRun, Point, Window};
 pub use finding::{Euler, Finding, SubdivisionError};
 pub use hermite::Cubic;

@@ -35,10 +35,11 @@ pub fn draw(atlas: &Atlas) -> Svg {
         }
         (line, points)
     });
-    let vertices = |kind: VertexKind| {
-        let of_kind = map.vertices().iter().filter(|vertex| vertex.kind == kind);
-        of_kind.map(|vertex| pair(&vertex.point)).collect()
+    let vertices = |kinds: &[VertexKind]| {
+        let of_kinds = map.vertices().iter().filter(|vertex| kinds.contains(&vertex.kind));
+        of_kinds.map(|vertex| pair(&vertex.point)).collect()
     };
+    let turns = [VertexKind::Degenerate, VertexKind::GrazeAtEnd, VertexKind::VanishingPhase];
     let counts = (0..map.regions().len()).map(|region| switch_count(atlas.itinerary(region)));
     let (mu, alpha) = (frame.ratio.map(|ratio| ratio.mu), frame.ratio.map(|ratio| ratio.alpha));
     let parameters = [("a", Some(frame.damping)), ("μ", mu), ("α", alpha)];
@@ -54,8 +55,8 @@ pub fn draw(atlas: &Atlas) -> Svg {
         kappa: (frame.kappa.low, frame.kappa.high),
         psi: (frame.psi.low, frame.psi.high),
         boundaries: boundaries.collect(),
-        crossings: vertices(VertexKind::Crossing),
-        stops: vertices(VertexKind::Degenerate),
+        crossings: vertices(&[VertexKind::Crossing]),
+        stops: vertices(&turns),
         counts: counts.collect(),
     };
     atlas::draw(&picture, |(kappa, psi)| match map.locate(&traced([kappa, psi])) {

@@ -8,8 +8,8 @@ use stickslip_model::Contact;
 use stickslip_model::regularized::{GUARDS, Phase, Regularized, STATE};
 use stickslip_solver::{Dop853, Margin, Options, Start};
 use stickslip_tracer::{
-    Curve, FamilyError, HybridFamily, Network, Node, Point, Problem, Subdivision, TraceError,
-    TraceOptions, Tracer, Vertex, VertexKind,
+    Curve, Extremum, FamilyError, HybridFamily, Network, Node, Point, Problem, Subdivision,
+    TraceError, TraceOptions, Tracer, Vertex,
 };
 
 use super::boundary::{Kind, itinerary};
@@ -33,10 +33,10 @@ pub fn run(plan: &TracePlan) -> Result<(), Failure> {
     let failed = |error| Failure::output(&plan.out, error);
     let mut file = OutputFile::create(&plan.out).map_err(failed)?;
 
-    let (atlas, report) = make(plan, &pool)?;
+    let (atlas, extrema, report) = make(plan, &pool)?;
     let objection = report.objection();
 
-    let document = Document::new(&atlas, report);
+    let document = Document::new(&atlas, &extrema, report);
     let mut out = BufWriter::new(&mut file);
     serde_json::to_writer(&mut out, &document).map_err(|error| failed(error.into()))?;
     out.write_all(b"\n").and_then(|()| out.flush()).map_err(failed)?;
@@ -60,8 +60,8 @@ pub fn run(plan: &TracePlan) -> Result<(), Failure> {
 /// How often a verification may send the tracer back.
 const ROUNDS: u64 = 8;
 
-/// The atlas and its verification. As long as this comes upon other switches than the atlas has, the tracer looks again there.
-fn make(plan: &TracePlan, pool: &ThreadPool) -> Result<(Atlas, Report), Failure> {
+/// The atlas with the extrema of its boundaries and its verification. As long as this comes upon other switches than the atlas has, the tracer looks again there.
+fn make(plan: &TracePlan, pool: &ThreadPool) -> Result<(Atlas, Vec<Extremum>, Report), Failure> {
     let frame = plan.frame;
     let window = frame.window();
     let fallback = frame.contact(&window.low).map_err(|error| Failure::Trace(error.to_string()))?;
@@ -85,7 +85,8 @@ fn make(plan: &TracePlan, pool: &ThreadPool) -> Result<(Atlas, Report), Failure>
     tracer.explore().map_err(failure)?;
     let mut round = 1;
     loop {
-        let network = tracer.network();
+        let mut network = tracer.network();
+        network.name_vertices();
         let unresolved = verification::unresolved(&network);
         let atlas = atlas(plan, network, &fallback)?;
         let (report, brackets) = pool
@@ -93,7 +94,7 @@ fn make(plan: &TracePlan, pool: &ThreadPool) -> Result<(Atlas, Report), Failure>
             .map_err(|error| Failure::Trace(error.to_string()))?;
         let again = round < ROUNDS && tracer.look_between(&brackets).map_err(failure)?;
         if !again {
-            return Ok((atlas, report));
+            return Ok((atlas, tracer.extrema().map_err(failure)?, report));
         }
         round += 1;
     }
@@ -165,15 +166,10 @@ fn map(
         ends: curve.ends,
     });
     let curves: Vec<_> = curves.collect();
-    let vertices = network.vertices.into_iter().enumerate().map(|(index, vertex)| {
-        let ends = curves.iter().filter_map(|curve| curve.ends).flatten();
-        let meeting = ends.filter(|&end| end == index).count();
-        let kind = match vertex.kind {
-            // The tracer names what it finds first; where others go on, boundaries meet.
-            VertexKind::Degenerate if meeting > 2 => VertexKind::Crossing,
-            kind => kind,
-        };
-        Vertex { point: written(&vertex.point), kind, margins: Vec::new() }
+    let vertices = network.vertices.into_iter().map(|vertex| Vertex {
+        point: written(&vertex.point),
+        kind: vertex.kind,
+        margins: Vec::new(),
     });
     let vertices: Vec<_> = vertices.collect();
     let resolution = frame.resolution(tolerance);

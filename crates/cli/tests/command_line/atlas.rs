@@ -195,6 +195,51 @@ fn a_window_without_a_boundary_is_one_region() {
     );
 }
 
+fn of_kind<'a>(atlas: &'a Value, kind: &str) -> Vec<&'a Value> {
+    list(atlas, "vertices").iter().filter(|vertex| vertex["kind"] == kind).collect()
+}
+
+#[test]
+fn special_points_have_names() {
+    let workspace = Workspace::new();
+    // Grazes while sliding and while sticking merge where their law has B = 1, at ψ = 1.
+    let ran = workspace.run("trace --kappa 1.4:1.7 --psi 0.9:1.1 --out a.json");
+    assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
+    let atlas: Value = serde_json::from_str(&workspace.read("a.json")).unwrap();
+    let [cusp] = of_kind(&atlas, "degenerate")[..] else { panic!("{}", atlas["vertices"]) };
+    // As accurate as a cusp is: 1e-7 of the window.
+    assert!((cusp["kappa"].as_f64().unwrap() - 1.568459328886909846).abs() < 1e-6, "{cusp}");
+    assert!((cusp["psi"].as_f64().unwrap() - 1.0).abs() < 1e-6, "{cusp}");
+    assert_eq!(list(&atlas, "extrema").len(), 0);
+
+    // The spring is at zero at the end of contact: a boundary that runs straight up to where a graze takes over.
+    let ran = workspace.run("trace --kappa 0.8:1.2 --psi 0.2:0.5 --damping 0.1 --out a.json");
+    assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
+    let atlas: Value = serde_json::from_str(&workspace.read("a.json")).unwrap();
+    let [end] = of_kind(&atlas, "graze-at-end")[..] else { panic!("{}", atlas["vertices"]) };
+    assert_eq!(list(end, "boundaries").len(), 3);
+    workspace.write("p.csv", "kappa,psi\n0.9,0.4\n");
+    assert_eq!(workspace.run("locate --atlas a.json --batch p.csv --out o.csv").code, 0);
+}
+
+#[test]
+fn boundaries_that_turn_back_have_extrema() {
+    let workspace = Workspace::new();
+    let ran = workspace.run("trace --kappa 7:9 --psi 0.06:0.1 --damping 0.1 --out a.json");
+    assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
+    let atlas: Value = serde_json::from_str(&workspace.read("a.json")).unwrap();
+    let [extremum] = list(&atlas, "extrema") else { panic!("{}", atlas["extrema"]) };
+    assert_eq!(extremum["of"], "kappa");
+    let place = ["kappa", "psi"].map(|name| extremum[name].as_f64().unwrap());
+    let boundary =
+        &atlas["boundaries"][usize::try_from(extremum["boundary"].as_u64().unwrap()).unwrap()];
+    let points: Vec<_> = list(boundary, "points").iter().map(pair).collect();
+    // No point of the boundary is beyond it, the nearest ones are a little on one side, and it lies among them.
+    assert!(points.iter().all(|point| point[0] > place[0]), "{place:?} {points:?}");
+    assert!(points.iter().any(|point| point[1] > place[1]));
+    assert!(points.iter().any(|point| point[1] < place[1]));
+}
+
 #[test]
 fn with_damping_collisions_begin_in_stick() {
     let workspace = Workspace::new();
