@@ -2,14 +2,16 @@
 //!
 //! Start reading here; then, in this order: `frame` (the window and its coordinates), `boundary` (what the tracer's curves mean),
 //! `trace` and `verification` (how an atlas is made), `document` and `file` (how it is stored), `locate` (how it is looked up),
-//! `picture` (how it is drawn).
+//! `polyline`, `picture` and `geojson` (how it is drawn, here and elsewhere).
 
 mod boundary;
 mod document;
 mod file;
 mod frame;
+mod geojson;
 pub mod locate;
 mod picture;
+mod polyline;
 pub mod trace;
 mod verification;
 

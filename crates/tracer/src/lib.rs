@@ -51,6 +51,7 @@ pub use hybrid::{FamilyError, FamilyErrorKind, HybridFamily, ModeOf, Problem};
 pub use locate::Location;
 pub use network::{Network, NetworkOf, TraceStatistics, Unresolved};
 pub use options::{InvalidTraceOption, TraceError, TraceOptions};
+pub use outline::Stretch;
 pub use runs::Runs;
 pub use subdivision::{Region, Side, Subdivision};
 pub use trace::{Tracer, trace};

@@ -1,17 +1,13 @@
 //! The picture of an atlas.
 
-use stickslip_tracer::{Cubic, Location, Point, VertexKind};
+use stickslip_tracer::{Location, Point, VertexKind};
 
 use super::boundary::Kind;
 use super::frame::{scaled, traced};
+use super::polyline::polyline;
 use super::{Atlas, switch_count};
 use crate::figure::atlas::{self, Line};
 use crate::figure::{Svg, number};
-
-/// Most straight lines for the piece between two points.
-const MOST_LINES: f64 = 16.0;
-/// Straight lines for a piece as long as the window is high.
-const LINES: f64 = 60.0;
 
 /// Draws `atlas`.
 pub fn draw(atlas: &Atlas) -> Svg {
@@ -24,15 +20,7 @@ pub fn draw(atlas: &Atlas) -> Svg {
             Kind::StickGraze => Line::StickGraze,
             Kind::SlipGraze => Line::SlipGraze,
         };
-        let mut points = vec![pair(&curve.nodes[0].point)];
-        for nodes in curve.nodes.windows(2) {
-            let cubic = Cubic::between(&nodes[0], &nodes[1]);
-            let length = (nodes[1].point - nodes[0].point).component_div(&extent).norm();
-            let lines = (LINES * length).ceil().clamp(1.0, MOST_LINES);
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-            let count = lines as u32;
-            points.extend((1..=count).map(|i| pair(&cubic.at(f64::from(i) / lines))));
-        }
+        let points = polyline(curve, &extent).into_iter().map(Into::into).collect();
         (line, points)
     });
     let vertices = |kinds: &[VertexKind]| {

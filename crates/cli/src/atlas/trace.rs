@@ -1,7 +1,8 @@
 //! An atlas made: boundaries traced, regions verified, both written.
 
 use std::collections::BTreeMap;
-use std::io::{BufWriter, Write};
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use stickslip_model::Contact;
@@ -16,7 +17,7 @@ use super::boundary::{Kind, itinerary};
 use super::document::Document;
 use super::frame::{Frame, scaled, traced};
 use super::verification::{self, Report};
-use super::{Atlas, Map, picture};
+use super::{Atlas, Map, geojson, picture};
 use crate::error::Failure;
 use crate::output::OutputFile;
 use crate::plan::TracePlan;
@@ -30,30 +31,65 @@ pub fn run(plan: &TracePlan) -> Result<(), Failure> {
         target.check()?;
     }
     let pool = ThreadPoolBuilder::new().num_threads(plan.threads.unwrap_or(0)).build()?;
-    let failed = |error| Failure::output(&plan.out, error);
-    let mut file = OutputFile::create(&plan.out).map_err(failed)?;
+    let file = Output::create(&plan.out)?;
+    let geography = plan.geojson.as_deref().map(Output::create).transpose()?;
 
     let (atlas, extrema, report) = make(plan, &pool)?;
     let objection = report.objection();
 
     let document = Document::new(&atlas, &extrema, report);
-    let mut out = BufWriter::new(&mut file);
-    serde_json::to_writer(&mut out, &document).map_err(|error| failed(error.into()))?;
-    out.write_all(b"\n").and_then(|()| out.flush()).map_err(failed)?;
-    drop(out);
-    file.store().map_err(failed)?;
+    let file = file.write(|out| serde_json::to_writer(out, &document).map_err(Into::into))?;
+    let geography = match geography {
+        Some(file) => Some(file.write(|out| geojson::write(out, &atlas.map, &document))?),
+        None => None,
+    };
     let picture = match &plan.plot {
         Some(target) => Some(target.write(&picture::draw(&atlas))?),
         None => None,
     };
-    // Both are complete before one of them gets its name.
-    file.publish().map_err(failed)?;
+    // All are complete before one of them gets its name.
+    file.publish()?;
+    if let Some(geography) = geography {
+        geography.publish()?;
+    }
     if let Some(picture) = picture {
         picture.publish()?;
     }
     match objection {
         Some(reason) => Err(Failure::Doubtful { path: plan.out.clone(), reason }),
         None => Ok(()),
+    }
+}
+
+/// A file of text with its name for errors.
+struct Output<'a> {
+    path: &'a Path,
+    file: OutputFile,
+}
+
+impl<'a> Output<'a> {
+    fn create(path: &'a Path) -> Result<Self, Failure> {
+        let file = OutputFile::create(path).map_err(|error| Failure::output(path, error))?;
+        Ok(Self { path, file })
+    }
+
+    /// Writes all of it, with the end of a line.
+    fn write(
+        mut self,
+        content: impl FnOnce(&mut BufWriter<&mut OutputFile>) -> io::Result<()>,
+    ) -> Result<Self, Failure> {
+        let mut out = BufWriter::new(&mut self.file);
+        let written =
+            content(&mut out).and_then(|()| out.write_all(b"\n")).and_then(|()| out.flush());
+        drop(out);
+        written
+            .and_then(|()| self.file.store())
+            .map_err(|error| Failure::output(self.path, error))?;
+        Ok(self)
+    }
+
+    fn publish(self) -> Result<(), Failure> {
+        self.file.publish().map_err(|error| Failure::output(self.path, error))
     }
 }
 
