@@ -2,15 +2,17 @@
 //!
 //! Start reading here; then, in this order: `frame` (the window and its coordinates), `boundary` (what the tracer's curves mean),
 //! `trace` and `verification` (how an atlas is made), `document` and `file` (how it is stored), `locate` (how it is looked up),
-//! `crossings` (its boundaries at one stiffness), `picture` (how it is drawn).
+//! `crossings` (its boundaries at one stiffness), `polyline`, `picture` and `geojson` (how it is drawn, here and elsewhere).
 
 mod boundary;
 mod crossings;
 mod document;
 mod file;
 mod frame;
+mod geojson;
 pub mod locate;
 mod picture;
+mod polyline;
 pub mod trace;
 mod verification;
 

@@ -38,7 +38,7 @@ pub struct Vertex<Margin> {
     pub margins: Vec<Margin>,
 }
 
-/// What a vertex is.
+/// What a vertex is. A trace tells the first four apart, [`Network::name_vertices`](crate::Network::name_vertices) all of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VertexKind {
     /// A boundary leaves the window.
@@ -49,4 +49,8 @@ pub enum VertexKind {
     Crossing,
     /// The margin that vanishes stops to exist: its extremum merges with another one or with the end of its phase.
     Degenerate,
+    /// The minimum of a guard that vanishes reaches the end of the run: the guard's value there takes over.
+    GrazeAtEnd,
+    /// Values at the end of the run vanish together, of one phase and of others that begin as it ends.
+    VanishingPhase,
 }

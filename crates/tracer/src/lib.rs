@@ -19,12 +19,14 @@ pub use hybrid::{FamilyError, FamilyErrorKind, HybridFamily, ModeOf, Problem};
 pub use options::{InvalidTraceOption, TraceError, TraceOptions};
 pub use regions::finding::{Euler, Finding, SubdivisionError};
 pub use regions::locate::Location;
+pub use regions::outline::Stretch;
 pub use regions::subdivision::{Region, Side, Subdivision};
 pub use regions::verify::{
     Checkpoint, Mismatch, Origin, Reason, Unverified, Verification, VerifyError, VerifyOptions,
     verify, verify_with,
 };
 pub use tracing::branch::{Branch, End, Seed, Special, Stop};
+pub use tracing::extrema::Extremum;
 pub use tracing::network::{Network, NetworkOf, TraceStatistics, Unresolved};
 pub use tracing::runs::Runs;
 pub use tracing::trace::{Tracer, trace};

@@ -9,7 +9,7 @@ mod faces;
 pub mod finding;
 mod interior;
 pub mod locate;
-mod outline;
+pub mod outline;
 mod piece;
 mod slabs;
 pub mod subdivision;

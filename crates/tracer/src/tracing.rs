@@ -2,12 +2,14 @@
 //!
 //! In reading order: `trace` (how all are found), `branch` (how one is followed), `step` (a step), `special`, `touch` and `ahead`
 //! (where it ends), `seed` and `island` (where it starts), `corrector` (onto a boundary), `runs` (the family, with its runs counted),
-//! `network` (what is collected).
+//! `network` (what is collected), `naming` (what vertices are), `extrema` (of boundaries in a parameter).
 
 mod ahead;
 pub mod branch;
 mod corrector;
+pub mod extrema;
 mod island;
+mod naming;
 pub mod network;
 pub mod runs;
 mod seed;

@@ -4,7 +4,8 @@ use std::convert::Infallible;
 use std::f64::consts::TAU;
 
 use stickslip_tracer::{
-    Curve, Family, FreeRun, Network, Point, TraceError, TraceOptions, VertexKind, Window, trace,
+    Curve, Family, FreeRun, Network, Point, TraceError, TraceOptions, Tracer, VertexKind, Window,
+    trace,
 };
 
 /// One guard a function, asked in order: it fires where the function is negative. A margin's itinerary is what the guards before it
@@ -122,6 +123,59 @@ fn a_closed_circle() {
     let runs = network.statistics.free_runs + network.statistics.prescribed_runs;
     assert!(curve.nodes.len() < 100, "{}", curve.nodes.len());
     assert!(runs < 2500, "{runs}");
+}
+
+/// The places where the curves of `functions` are extremal, by coordinate, in the order of the other coordinate.
+fn extrema(functions: Vec<fn(&Point) -> f64>) -> [Vec<Point>; 2] {
+    let family = Guards(functions);
+    let mut tracer = Tracer::new(&family, &SQUARE, &exact()).unwrap();
+    tracer.explore().unwrap();
+    let found = tracer.extrema().unwrap();
+    [0, 1].map(|axis| {
+        let of_axis = found.iter().filter(|extremum| extremum.axis == axis);
+        let mut points: Vec<Point> = of_axis.map(|extremum| extremum.point).collect();
+        points.sort_by(|one, other| (one.x + one.y).total_cmp(&(other.x + other.y)));
+        points
+    })
+}
+
+fn assert_at(points: &[Point], expected: &[[f64; 2]]) {
+    assert_eq!(points.len(), expected.len(), "{points:?}");
+    for (point, expected) in points.iter().zip(expected) {
+        let off = (point - Point::from(*expected)).norm();
+        assert!(off < 1e-9, "{point:?}, not {expected:?}: {off:e}");
+    }
+}
+
+#[test]
+fn a_circle_has_two_extrema_in_each_coordinate() {
+    let [x, y] = extrema(vec![|p| (p - Point::new(0.1, 0.2)).norm_squared() - 0.25]);
+    assert_at(&x, &[[-0.4, 0.2], [0.6, 0.2]]);
+    assert_at(&y, &[[0.1, -0.3], [0.1, 0.7]]);
+    // In pieces between two vertices it has as many.
+    let [x, y] =
+        extrema(vec![|p| (p - Point::new(0.1, 0.2)).norm_squared() - 0.25, |p| p.x - p.y + 0.05]);
+    assert_at(&x, &[[-0.4, 0.2], [0.6, 0.2]]);
+    assert_at(&y, &[[0.1, -0.3], [0.1, 0.7]]);
+}
+
+/// A small circle with a gradient that varies; its node of least x may be an extremum itself.
+#[test]
+fn extrema_of_a_small_circle() {
+    let [x, y] = extrema(vec![|p| {
+        (4.0 * p.x + p.y).exp() * ((p - Point::new(0.123, 0.456)).norm_squared() - 1e-6)
+    }]);
+    assert_at(&x, &[[0.122, 0.456], [0.124, 0.456]]);
+    assert_at(&y, &[[0.123, 0.455], [0.123, 0.457]]);
+}
+
+#[test]
+fn straight_lines_have_no_extrema_nor_have_inflections() {
+    let lines: Vec<fn(&Point) -> f64> =
+        vec![|p| p.x - 0.2 + 1e-13 * (1e5 * p.y).sin(), |p| p.y + 0.3, |p| {
+            p.y - 0.4 - (p.x - 0.6).powi(3)
+        }];
+    assert!(extrema(lines).iter().all(Vec::is_empty));
 }
 
 #[test]

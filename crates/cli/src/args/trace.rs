@@ -44,6 +44,10 @@ pub struct TraceArguments {
     #[arg(value_parser = shared::picture())]
     pub plot: Option<Target>,
 
+    /// GeoJSON file of regions, boundaries and vertices; coordinates are κ and ψ, not degrees
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub geojson: Option<PathBuf>,
+
     /// Threads that verify; 1 to 1024 [default: one for each core]; results do not depend on it
     #[arg(long, value_name = "N", help_heading = "Output", allow_hyphen_values = true)]
     #[arg(value_parser = shared::threads())]
@@ -53,7 +57,8 @@ pub struct TraceArguments {
 /// Text of `trace --help`.
 pub const ABOUT: &str = "\
 Trace every boundary in a window of the (κ, ψ) plane on which the switches of a collision change, \
-where boundaries meet, and the regions between them.
+where boundaries meet or turn into others (crossing, degenerate, graze-at-end, vanishing-phase), \
+where they are extremal in κ or ψ, and the regions between them.
 
 The regions are verified: collisions at 20 000 random points of the window, and at 40 beside each \
 boundary, must have the switches of their region. If one has not, or something remained open, the \
@@ -65,5 +70,6 @@ Examples:
   stickslip trace --kappa 5:100 --psi 0.05:3 --out atlas.json --plot atlas.svg
   stickslip trace --kappa 5:20 --ratio 0.3:3.5 --mu 0.4 --alpha 2/7 --out atlas.json
   stickslip trace --kappa 5:20 --psi 0.2:2.5 --damping 0.05 --out damped.json
+  stickslip trace --kappa 5:20 --psi 0.2:2.5 --out atlas.json --geojson atlas.geojson
 
 Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

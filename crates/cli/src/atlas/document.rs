@@ -1,7 +1,7 @@
 //! The layout of an atlas as a file, schema "stickslip.atlas/1".
 
 use serde::{Deserialize, Serialize};
-use stickslip_tracer::{Curve, Node, VertexKind};
+use stickslip_tracer::{Curve, Extremum, Node, VertexKind};
 
 use super::boundary::{Kind, in_order};
 use super::frame::scaled;
@@ -20,6 +20,9 @@ pub struct Document {
     pub tolerance: f64,
     pub boundaries: Vec<BoundaryFields>,
     pub vertices: Vec<VertexFields>,
+    /// Where boundaries are extremal in κ or ψ.
+    #[serde(default)]
+    pub extrema: Vec<ExtremumFields>,
     pub regions: Vec<RegionFields>,
     pub verification: Report,
 }
@@ -91,6 +94,25 @@ pub enum Meeting {
     Crossing,
     /// What vanishes on the boundary stops to exist.
     Degenerate,
+    /// A graze reaches the end of contact.
+    GrazeAtEnd,
+    /// Ends of contact of a phase and of the next.
+    VanishingPhase,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+pub struct ExtremumFields {
+    pub boundary: usize,
+    pub of: Parameter,
+    pub kappa: f64,
+    pub psi: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Parameter {
+    Kappa,
+    Psi,
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -108,7 +130,7 @@ pub struct RegionFields {
 
 impl Document {
     /// `atlas` as it is to be written.
-    pub fn new(atlas: &Atlas, verification: Report) -> Self {
+    pub fn new(atlas: &Atlas, extrema: &[Extremum], verification: Report) -> Self {
         let Atlas { frame, tolerance, map, .. } = atlas;
         let corners: Vec<Meeting> =
             map.vertices().iter().map(|vertex| Meeting::from(vertex.kind)).collect();
@@ -153,6 +175,7 @@ impl Document {
                 .map(|(id, curve)| BoundaryFields::new(atlas, id, curve, &corners))
                 .collect(),
             vertices: vertices.collect(),
+            extrema: extrema.iter().map(ExtremumFields::new).collect(),
             regions: regions.collect(),
             verification,
         }
@@ -165,7 +188,7 @@ impl BoundaryFields {
         let why = |end: usize| match curve.ends.map(|ends| corners[ends[end]]) {
             None => Why::Closed,
             Some(Meeting::WindowEdge | Meeting::WindowCorner) => Why::Window,
-            Some(Meeting::Crossing | Meeting::Degenerate) => Why::Vertex,
+            Some(_) => Why::Vertex,
         };
         let point = |node: &Node| atlas.frame.snapped(scaled(&node.point));
         Self {
@@ -182,6 +205,14 @@ impl BoundaryFields {
     }
 }
 
+impl ExtremumFields {
+    fn new(extremum: &Extremum) -> Self {
+        let [kappa, psi] = scaled(&extremum.point);
+        let of = if extremum.axis == 0 { Parameter::Kappa } else { Parameter::Psi };
+        Self { boundary: extremum.curve, of, kappa, psi }
+    }
+}
+
 impl Switching {
     fn new(itinerary: &str) -> Self {
         Self { switch_count: switch_count(itinerary), itinerary: itinerary.to_owned() }
@@ -195,6 +226,8 @@ impl From<VertexKind> for Meeting {
             VertexKind::WindowCorner => Self::WindowCorner,
             VertexKind::Crossing => Self::Crossing,
             VertexKind::Degenerate => Self::Degenerate,
+            VertexKind::GrazeAtEnd => Self::GrazeAtEnd,
+            VertexKind::VanishingPhase => Self::VanishingPhase,
         }
     }
 }
@@ -206,6 +239,8 @@ impl From<Meeting> for VertexKind {
             Meeting::WindowCorner => Self::WindowCorner,
             Meeting::Crossing => Self::Crossing,
             Meeting::Degenerate => Self::Degenerate,
+            Meeting::GrazeAtEnd => Self::GrazeAtEnd,
+            Meeting::VanishingPhase => Self::VanishingPhase,
         }
     }
 }

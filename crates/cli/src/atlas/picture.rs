@@ -1,27 +1,24 @@
 //! The picture of an atlas.
 
 use stickslip_model::exact;
-use stickslip_tracer::{Cubic, Location, Point, VertexKind};
+use stickslip_tracer::{Location, Point, VertexKind};
 
 use super::boundary::Kind;
 use super::frame::{Frame, scaled, traced};
+use super::polyline::polyline;
 use super::{Atlas, switch_count};
 use crate::figure::atlas::{self, ClosedForms, Line};
 use crate::figure::{Svg, number};
-
-/// Most straight lines for the piece between two points.
-const MOST_LINES: f64 = 16.0;
-/// Straight lines for a piece as long as the window is high.
-const LINES: f64 = 60.0;
 
 /// Draws `atlas`.
 pub fn draw(atlas: &Atlas) -> Svg {
     let Atlas { frame, map, .. } = atlas;
     let pair = |point: &Point| <(f64, f64)>::from(scaled(point));
-    let vertices = |kind: VertexKind| {
-        let of_kind = map.vertices().iter().filter(|vertex| vertex.kind == kind);
-        of_kind.map(|vertex| pair(&vertex.point)).collect()
+    let vertices = |kinds: &[VertexKind]| {
+        let of_kinds = map.vertices().iter().filter(|vertex| kinds.contains(&vertex.kind));
+        of_kinds.map(|vertex| pair(&vertex.point)).collect()
     };
+    let turns = [VertexKind::Degenerate, VertexKind::GrazeAtEnd, VertexKind::VanishingPhase];
     let counts = (0..map.regions().len()).map(|region| switch_count(atlas.itinerary(region)));
     let (mu, alpha) = (frame.ratio.map(|ratio| ratio.mu), frame.ratio.map(|ratio| ratio.alpha));
     let parameters = [("a", Some(frame.damping)), ("μ", mu), ("α", alpha)];
@@ -37,8 +34,8 @@ pub fn draw(atlas: &Atlas) -> Svg {
         kappa: (frame.kappa.low, frame.kappa.high),
         psi: (frame.psi.low, frame.psi.high),
         boundaries: boundaries(atlas),
-        crossings: vertices(VertexKind::Crossing),
-        stops: vertices(VertexKind::Degenerate),
+        crossings: vertices(&[VertexKind::Crossing]),
+        stops: vertices(&turns),
         counts: counts.collect(),
         closed_forms: (frame.damping == 0.0).then(|| closed_forms(frame)),
     };
@@ -51,22 +48,13 @@ pub fn draw(atlas: &Atlas) -> Svg {
 /// The boundaries with points (κ, ψ), dense enough for straight lines between them.
 pub fn boundaries(atlas: &Atlas) -> Vec<(Line, Vec<(f64, f64)>)> {
     let extent = atlas.map.window().extent();
-    let pair = |point: &Point| <(f64, f64)>::from(scaled(point));
     let lines = atlas.map.curves().iter().map(|curve| {
         let line = match curve.margin {
             Kind::EndOfContact => Line::EndOfContact,
             Kind::StickGraze => Line::StickGraze,
             Kind::SlipGraze => Line::SlipGraze,
         };
-        let mut points = vec![pair(&curve.nodes[0].point)];
-        for nodes in curve.nodes.windows(2) {
-            let cubic = Cubic::between(&nodes[0], &nodes[1]);
-            let length = (nodes[1].point - nodes[0].point).component_div(&extent).norm();
-            let lines = (LINES * length).ceil().clamp(1.0, MOST_LINES);
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-            let count = lines as u32;
-            points.extend((1..=count).map(|i| pair(&cubic.at(f64::from(i) / lines))));
-        }
+        let points = polyline(curve, &extent).into_iter().map(Into::into).collect();
         (line, points)
     });
     lines.collect()

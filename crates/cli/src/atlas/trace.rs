@@ -9,15 +9,15 @@ use stickslip::collisions::CollisionPlane;
 use stickslip_model::Contact;
 use stickslip_solver::Margin;
 use stickslip_tracer::{
-    Curve, FamilyError, Network, Node, Point, Subdivision, TraceError, TraceOptions, Tracer,
-    Vertex, VertexKind,
+    Curve, Extremum, FamilyError, Network, Node, Point, Subdivision, TraceError, TraceOptions,
+    Tracer, Vertex,
 };
 
 use super::boundary::{Kind, itinerary};
 use super::document::Document;
 use super::frame::{Frame, scaled, traced};
 use super::verification::{self, Report};
-use super::{Atlas, Map, picture};
+use super::{Atlas, Map, geojson, picture};
 use crate::error::Failure;
 use crate::figure::number;
 use crate::output::OutputFile;
@@ -32,19 +32,24 @@ pub fn run(plan: &TracePlan) -> Result<(), Failure> {
         target.check()?;
     }
     let pool = ThreadPoolBuilder::new().num_threads(plan.threads.unwrap_or(0)).build()?;
-    let failed = |error| Failure::output(&plan.out, error);
-    let mut file = OutputFile::create(&plan.out).map_err(failed)?;
+    let file = Output::create(&plan.out)?;
+    let geography = plan.geojson.as_deref().map(Output::create).transpose()?;
 
     let made = make(&pool, plan.frame, plan.tolerance)?;
-    let bytes = made.file().map_err(failed)?;
-    file.write_all(&bytes).map_err(failed)?;
-    file.store().map_err(failed)?;
+    let file = file.write(made.file())?;
+    let geography = match geography {
+        Some(file) => Some(file.write(geojson::file(&made.atlas.map, &made.document()))?),
+        None => None,
+    };
     let picture = match &plan.plot {
         Some(target) => Some(target.write(&picture::draw(&made.atlas))?),
         None => None,
     };
-    // Both are complete before one of them gets its name.
-    file.publish().map_err(failed)?;
+    // All are complete before one of them gets its name.
+    file.publish()?;
+    if let Some(geography) = geography {
+        geography.publish()?;
+    }
     if let Some(picture) = picture {
         picture.publish()?;
     }
@@ -56,17 +61,24 @@ pub fn run(plan: &TracePlan) -> Result<(), Failure> {
 pub struct Made {
     /// The atlas.
     pub atlas: Atlas,
+    /// The extrema of its boundaries.
+    pub extrema: Vec<Extremum>,
     /// What was found.
     pub report: Report,
 }
 
 impl Made {
+    /// The atlas as it is written.
+    fn document(&self) -> Document {
+        Document::new(&self.atlas, &self.extrema, self.report.clone())
+    }
+
     /// The atlas as a file.
     ///
     /// # Errors
     /// It does not fit into memory.
     pub fn file(&self) -> io::Result<Vec<u8>> {
-        let mut bytes = serde_json::to_vec(&Document::new(&self.atlas, self.report.clone()))?;
+        let mut bytes = serde_json::to_vec(&self.document())?;
         bytes.push(b'\n');
         Ok(bytes)
     }
@@ -79,7 +91,7 @@ impl Made {
 
     /// What is in it and how it was verified, in a sentence.
     pub fn summary(&self) -> String {
-        let Self { atlas: Atlas { map, .. }, report } = self;
+        let Self { atlas: Atlas { map, .. }, report, .. } = self;
         let agree = if report.agrees { "all agree with it" } else { "not all agree with it" };
         format!(
             "Traced were {} boundaries, {} vertices and {} regions. Of {} collisions computed at random points and beside boundaries \
@@ -90,6 +102,32 @@ impl Made {
             report.tried,
             number(report.share_wrong_bound, 2)
         )
+    }
+}
+
+/// A file of text with its name for errors.
+struct Output<'a> {
+    path: &'a Path,
+    file: OutputFile,
+}
+
+impl<'a> Output<'a> {
+    fn create(path: &'a Path) -> Result<Self, Failure> {
+        let file = OutputFile::create(path).map_err(|error| Failure::output(path, error))?;
+        Ok(Self { path, file })
+    }
+
+    /// Writes all of it.
+    fn write(mut self, content: io::Result<Vec<u8>>) -> Result<Self, Failure> {
+        content
+            .and_then(|content| self.file.write_all(&content))
+            .and_then(|()| self.file.store())
+            .map_err(|error| Failure::output(self.path, error))?;
+        Ok(self)
+    }
+
+    fn publish(self) -> Result<(), Failure> {
+        self.file.publish().map_err(|error| Failure::output(self.path, error))
     }
 }
 
@@ -114,7 +152,8 @@ pub fn make(pool: &ThreadPool, frame: Frame, tolerance: f64) -> Result<Made, Fai
     tracer.explore().map_err(failure)?;
     let mut round = 1;
     loop {
-        let network = tracer.network();
+        let mut network = tracer.network();
+        network.name_vertices();
         let unresolved = verification::unresolved(&network);
         let atlas = atlas(frame, tolerance, network, &any)?;
         let (report, brackets) = pool
@@ -122,7 +161,8 @@ pub fn make(pool: &ThreadPool, frame: Frame, tolerance: f64) -> Result<Made, Fai
             .map_err(|error| Failure::Trace(error.to_string()))?;
         let again = round < ROUNDS && tracer.look_between(&brackets).map_err(failure)?;
         if !again {
-            return Ok(Made { atlas, report });
+            let extrema = tracer.extrema().map_err(failure)?;
+            return Ok(Made { atlas, extrema, report });
         }
         round += 1;
     }
@@ -177,15 +217,10 @@ fn map(
         ends: curve.ends,
     });
     let curves: Vec<_> = curves.collect();
-    let vertices = network.vertices.into_iter().enumerate().map(|(index, vertex)| {
-        let ends = curves.iter().filter_map(|curve| curve.ends).flatten();
-        let meeting = ends.filter(|&end| end == index).count();
-        let kind = match vertex.kind {
-            // The tracer names what it finds first; where others go on, boundaries meet.
-            VertexKind::Degenerate if meeting > 2 => VertexKind::Crossing,
-            kind => kind,
-        };
-        Vertex { point: written(&vertex.point), kind, margins: Vec::new() }
+    let vertices = network.vertices.into_iter().map(|vertex| Vertex {
+        point: written(&vertex.point),
+        kind: vertex.kind,
+        margins: Vec::new(),
     });
     let vertices: Vec<_> = vertices.collect();
     let resolution = frame.resolution(tolerance);

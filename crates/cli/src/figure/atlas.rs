@@ -214,5 +214,5 @@ fn legend(svg: &mut Svg) {
     svg.fill(mark((left + 4.0, LEGEND_Y)), INK);
     svg.words((left + 12.0, LEGEND_Y), Words::new("crossing", TEXT, Anchor::Start));
     svg.outline(mark((left + 88.0, LEGEND_Y)), FRAME);
-    svg.words((left + 96.0, LEGEND_Y), Words::new("end inside", TEXT, Anchor::Start));
+    svg.words((left + 96.0, LEGEND_Y), Words::new("other vertex", TEXT, Anchor::Start));
 }

@@ -22,6 +22,8 @@ pub struct TracePlan {
     pub out: PathBuf,
     /// Where it is drawn, if it is.
     pub plot: Option<Target>,
+    /// Where it goes as GeoJSON, if it does.
+    pub geojson: Option<PathBuf>,
     /// Number of threads; `None` is one for each core.
     pub threads: Option<usize>,
 }
@@ -42,11 +44,18 @@ impl TracePlan {
                  in this window"
             )));
         }
+        if arguments.geojson.as_ref() == Some(&arguments.out) {
+            return Err(Failure::Usage(format!(
+                "--geojson {} is --out as well; accepted are two files",
+                arguments.out.display()
+            )));
+        }
         Ok(Self {
             frame,
             tolerance,
             out: arguments.out.clone(),
             plot: arguments.plot.clone(),
+            geojson: arguments.geojson.clone(),
             threads: arguments.threads.map(usize::from),
         })
     }

@@ -195,6 +195,114 @@ fn a_window_without_a_boundary_is_one_region() {
     );
 }
 
+fn of_kind<'a>(atlas: &'a Value, kind: &str) -> Vec<&'a Value> {
+    list(atlas, "vertices").iter().filter(|vertex| vertex["kind"] == kind).collect()
+}
+
+#[test]
+fn special_points_have_names() {
+    let workspace = Workspace::new();
+    // Grazes while sliding and while sticking merge where their law has B = 1, at ψ = 1.
+    let ran = workspace.run("trace --kappa 1.4:1.7 --psi 0.9:1.1 --out a.json");
+    assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
+    let atlas: Value = serde_json::from_str(&workspace.read("a.json")).unwrap();
+    let [cusp] = of_kind(&atlas, "degenerate")[..] else { panic!("{}", atlas["vertices"]) };
+    // As accurate as a cusp is: 1e-7 of the window.
+    assert!((cusp["kappa"].as_f64().unwrap() - 1.568459328886909846).abs() < 1e-6, "{cusp}");
+    assert!((cusp["psi"].as_f64().unwrap() - 1.0).abs() < 1e-6, "{cusp}");
+    assert_eq!(list(&atlas, "extrema").len(), 0);
+
+    // The spring is at zero at the end of contact: a boundary that runs straight up to where a graze takes over.
+    let ran = workspace.run("trace --kappa 0.8:1.2 --psi 0.2:0.5 --damping 0.1 --out a.json");
+    assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
+    let atlas: Value = serde_json::from_str(&workspace.read("a.json")).unwrap();
+    let [end] = of_kind(&atlas, "graze-at-end")[..] else { panic!("{}", atlas["vertices"]) };
+    assert_eq!(list(end, "boundaries").len(), 3);
+    workspace.write("p.csv", "kappa,psi\n0.9,0.4\n");
+    assert_eq!(workspace.run("locate --atlas a.json --batch p.csv --out o.csv").code, 0);
+}
+
+#[test]
+fn boundaries_that_turn_back_have_extrema() {
+    let workspace = Workspace::new();
+    let ran = workspace.run("trace --kappa 7:9 --psi 0.06:0.1 --damping 0.1 --out a.json");
+    assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
+    let atlas: Value = serde_json::from_str(&workspace.read("a.json")).unwrap();
+    let [extremum] = list(&atlas, "extrema") else { panic!("{}", atlas["extrema"]) };
+    assert_eq!(extremum["of"], "kappa");
+    let place = ["kappa", "psi"].map(|name| extremum[name].as_f64().unwrap());
+    let boundary =
+        &atlas["boundaries"][usize::try_from(extremum["boundary"].as_u64().unwrap()).unwrap()];
+    let points: Vec<_> = list(boundary, "points").iter().map(pair).collect();
+    // No point of the boundary is beyond it, the nearest ones are a little on one side, and it lies among them.
+    assert!(points.iter().all(|point| point[0] > place[0]), "{place:?} {points:?}");
+    assert!(points.iter().any(|point| point[1] > place[1]));
+    assert!(points.iter().any(|point| point[1] < place[1]));
+}
+
+#[test]
+fn geojson_holds_what_the_atlas_has() {
+    let workspace = Workspace::new();
+    let ran = workspace.run(&format!("{WINDOW} --out a.json --geojson a.geojson"));
+    assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
+    assert_eq!(workspace.names(), ["a.geojson", "a.json"]);
+    assert_eq!(workspace.read("a.json"), atlas().0);
+    let (map, atlas): (Value, Value) =
+        (serde_json::from_str(&workspace.read("a.geojson")).unwrap(), parsed());
+    assert_eq!(map["type"], "FeatureCollection");
+    let features = list(&map, "features");
+    let of = |name: &str| -> Vec<&Value> {
+        features.iter().filter(|feature| feature["properties"]["feature"] == name).collect()
+    };
+    let (regions, boundaries, vertices) = (of("region"), of("boundary"), of("vertex"));
+    assert_eq!(regions.len() + boundaries.len() + vertices.len(), features.len());
+    assert_eq!(regions.len(), list(&atlas, "regions").len());
+    assert_eq!(boundaries.len(), list(&atlas, "boundaries").len());
+    assert_eq!(vertices.len(), list(&atlas, "vertices").len());
+    for (feature, vertex) in vertices.iter().zip(list(&atlas, "vertices")) {
+        assert_eq!(feature["geometry"]["type"], "Point");
+        assert_eq!(feature["properties"]["kind"], vertex["kind"]);
+        let place = ["kappa", "psi"].map(|name| vertex[name].as_f64().unwrap());
+        assert_eq!(pair(&feature["geometry"]["coordinates"]), place);
+    }
+    for (feature, boundary) in boundaries.iter().zip(list(&atlas, "boundaries")) {
+        assert_eq!(feature["geometry"]["type"], "LineString");
+        assert_eq!(feature["properties"]["kind"], boundary["kind"]);
+        assert_eq!(feature["properties"]["below_itinerary"], boundary["below"]["itinerary"]);
+        assert!(list(&feature["geometry"], "coordinates").len() >= list(boundary, "points").len());
+    }
+    // In the plane of ln κ and ln(1 + ψ) every polygon has its region's share of the window, and so all have its area.
+    let window = 4.0_f64.ln() * (3.5_f64 / 1.2).ln();
+    for (feature, region) in regions.iter().zip(list(&atlas, "regions")) {
+        assert_eq!(feature["properties"]["itinerary"], region["itinerary"]);
+        assert_eq!(feature["geometry"]["type"], "Polygon", "{region}");
+        let rings = list(&feature["geometry"], "coordinates");
+        let mut area = 0.0;
+        for ring in rings {
+            let points: Vec<[f64; 2]> = ring
+                .as_array()
+                .unwrap()
+                .iter()
+                .map(|point| [pair(point)[0].ln(), pair(point)[1].ln_1p()])
+                .collect();
+            assert_eq!(points[0], points[points.len() - 1]);
+            area += points
+                .windows(2)
+                .map(|side| 0.5 * (side[0][0] * side[1][1] - side[0][1] * side[1][0]))
+                .sum::<f64>();
+        }
+        let share = region["area_share"].as_f64().unwrap();
+        assert!((area / window - share).abs() < 1e-4, "{} {share}", area / window);
+    }
+    let ran = workspace.run(&format!("{WINDOW} --out b.json --geojson b.json"));
+    assert_eq!(ran.code, 2);
+    assert!(ran.stderr.contains("--geojson b.json"), "{}", ran.stderr);
+    let ran = workspace.run(&format!("{WINDOW} --out b.json --geojson no/b.json"));
+    assert_eq!(ran.code, 1);
+    assert!(ran.stderr.contains("no/b.json: cannot be written"), "{}", ran.stderr);
+    assert_eq!(workspace.names(), ["a.geojson", "a.json"]);
+}
+
 #[test]
 fn with_damping_collisions_begin_in_stick() {
     let workspace = Workspace::new();

@@ -1,6 +1,7 @@
-//! The window's boundary, cut at its corners and at the vertices on it.
+//! The window's boundary, cut at its corners and at the vertices on it, and the outlines of regions.
 
 use crate::family::{Point, Window};
+use crate::regions::subdivision::{Side, Subdivision};
 
 impl Window {
     /// The corners, counterclockwise from `low`.
@@ -41,6 +42,62 @@ impl Window {
             size.x + size.y + (self.high.x - point.x)
         } else {
             2.0 * size.x + size.y + (self.high.y - point.y)
+        }
+    }
+}
+
+/// A part of the outline of a region.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stretch {
+    /// A whole curve, by its index, with the side of it on which the region lies: backwards if that is the right.
+    Curve(usize, Side),
+    /// A straight part of the window's boundary.
+    Window([Point; 2]),
+}
+
+impl<Label, Margin> Subdivision<Label, Margin> {
+    /// The rings around a region, which lies on their left: one around all of it counterclockwise and one clockwise around each
+    /// island. Where the region touches itself at a vertex, rings end there, so that none comes to a vertex twice; it may then have
+    /// several counterclockwise ones. With [findings](Self::findings), rings that do not close are left out.
+    #[must_use]
+    pub fn outlines(&self, region: usize) -> Vec<Vec<Stretch>> {
+        let mut rings = Vec::new();
+        let mut unused = Vec::new();
+        for (index, edge) in self.edges.iter().enumerate() {
+            for (side, face) in
+                [Side::Left, Side::Right].into_iter().zip(self.faces.of_edges[index])
+            {
+                if face != Some(region) {
+                    continue;
+                }
+                let stretch = if index < self.curves.len() {
+                    Stretch::Curve(index, side)
+                } else {
+                    // A side of the window is one piece, in its direction or turned.
+                    let piece = &self.slabs.pieces[edge.pieces.start];
+                    let [first, last] = [piece.first(), piece.last()];
+                    Stretch::Window(if piece.forward { [first, last] } else { [last, first] })
+                };
+                match (edge.ends, side) {
+                    (None, _) => rings.push(vec![stretch]),
+                    (Some([from, to]), Side::Left) => unused.push((from, to, stretch)),
+                    (Some([from, to]), Side::Right) => unused.push((to, from, stretch)),
+                }
+            }
+        }
+        let mut path: Vec<(usize, usize, Stretch)> = Vec::new();
+        loop {
+            let at = path.last().map(|&(_, to, _)| to);
+            let next = unused.iter().position(|&(from, ..)| at.is_none_or(|at| at == from));
+            match next {
+                Some(next) => path.push(unused.remove(next)),
+                None if path.is_empty() => return rings,
+                None => path.clear(),
+            }
+            let end = path.last().map(|&(_, to, _)| to);
+            if let Some(start) = path.iter().position(|&(from, ..)| Some(from) == end) {
+                rings.push(path.drain(start..).map(|(_, _, stretch)| stretch).collect());
+            }
         }
     }
 }

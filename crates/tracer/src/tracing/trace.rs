@@ -6,6 +6,7 @@ use crate::family::{Family, FreeRun, Point, Window};
 use crate::options::{TraceError, TraceOptions};
 use crate::tracing::branch::{Branch, End, SHORTEST, Seed, SeedOf, Special};
 use crate::tracing::corrector::{correct, crossing};
+use crate::tracing::extrema::{Extremum, extrema};
 use crate::tracing::island::islands;
 use crate::tracing::network::{Builder, NetworkOf, TraceStatistics, Unresolved};
 use crate::tracing::runs::{Runs, Traced};
@@ -97,6 +98,19 @@ impl<'f, F: Family> Tracer<'f, F> {
         let mut network = self.builder.network;
         network.statistics = TraceStatistics { free_runs, prescribed_runs, ..network.statistics };
         network
+    }
+
+    /// Where the curves found so far are extremal in a coordinate, solved for on the boundaries, to about 1e-9 of their radius of
+    /// curvature along them.
+    ///
+    /// A curve that runs along an axis to 1e-6 in its direction has none, and an extremum counts only if the curve departs from it in
+    /// its coordinate by more than ten times `options.interpolation` on both sides, before the next one or the end. Ends of curves
+    /// are none.
+    ///
+    /// # Errors
+    /// A run fails, or a margin is not a number.
+    pub fn extrema(&self) -> Traced<Vec<Extremum>, F> {
+        extrema(&self.runs, &self.builder.network.curves)
     }
 
     /// Seeds from the window's edges, a ten-millionth inside.

@@ -1,0 +1,192 @@
+//! Where boundaries are extremal in a parameter.
+
+use crate::cubic::Cubic;
+use crate::curve::{Curve, Node};
+use crate::family::{Family, Point};
+use crate::tracing::corrector::correct;
+use crate::tracing::runs::{Runs, Traced};
+use crate::tracing::seed::identify;
+
+/// A place between the ends of a curve where one coordinate is greatest or least along it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extremum {
+    /// The curve, by its index in the network.
+    pub curve: usize,
+    /// The coordinate, 0 or 1: the curve's tangent has no component along its axis.
+    pub axis: usize,
+    /// The place, on the boundary.
+    pub point: Point,
+}
+
+/// Components of unit tangents up to this are none: those of a boundary that is straight along the other axis are rounding.
+const STRAIGHT: f64 = 1e-6;
+
+/// The extrema of `curves`, in their order and from start to end.
+pub(crate) fn extrema<F: Family>(
+    runs: &Runs<'_, F>,
+    curves: &[Curve<F::Label, F::Margin>],
+) -> Traced<Vec<Extremum>, F> {
+    let mut found = Vec::new();
+    for (index, curve) in curves.iter().enumerate() {
+        let mut on_curve = Vec::new();
+        for axis in 0..2 {
+            let mut places = Vec::new();
+            for bracket in brackets(curve, axis) {
+                places.extend(solve(runs, curve, axis, &bracket)?);
+            }
+            let known = 10.0 * runs.options.interpolation;
+            for (place, point) in pronounced(curve, axis, places, known) {
+                on_curve.push((place, Extremum { curve: index, axis, point }));
+            }
+        }
+        on_curve.sort_by(|(one, _), (other, _)| one.total_cmp(other));
+        found.extend(on_curve.into_iter().map(|(_, extremum)| extremum));
+    }
+    Ok(found)
+}
+
+/// Those of the successive extrema of a curve that are higher or lower than their neighbours, or the curve's ends, by more than
+/// `known`.
+fn pronounced<Label, Margin>(
+    curve: &Curve<Label, Margin>,
+    axis: usize,
+    places: Vec<(f64, Point)>,
+    known: f64,
+) -> Vec<(f64, Point)> {
+    let heights: Vec<f64> = places.iter().map(|(_, point)| point[axis]).collect();
+    let (first, last) = match curve.ends {
+        Some(_) => (curve.nodes.first(), curve.nodes.last()),
+        None => (None, None),
+    };
+    let before = first.map(|node| node.point[axis]).or(heights.last().copied());
+    let after = last.map(|node| node.point[axis]).or(heights.first().copied());
+    let line: Vec<f64> = before.into_iter().chain(heights.iter().copied()).chain(after).collect();
+    let stands_out =
+        |around: &[f64]| [0, 2].iter().all(|&side| (around[side] - around[1]).abs() > known);
+    places
+        .into_iter()
+        .zip(line.windows(3))
+        .filter(|(_, around)| stands_out(around))
+        .map(|(place, _)| place)
+        .collect()
+}
+
+/// Successive nodes of a curve between which a component of the tangent changes its sign.
+struct Bracket {
+    /// Index of the first one.
+    first: usize,
+    nodes: Vec<Node>,
+}
+
+fn brackets<Label, Margin>(curve: &Curve<Label, Margin>, axis: usize) -> Vec<Bracket> {
+    let bends = |node: &Node| node.tangent[axis].abs() > STRAIGHT;
+    let Some(start) = curve.nodes.iter().position(bends) else { return Vec::new() };
+    let mut nodes = curve.nodes.clone();
+    if curve.ends.is_none() {
+        // The last node repeats the first one.
+        nodes.extend_from_slice(&curve.nodes[1..=start]);
+    }
+    let mut found = Vec::new();
+    let mut first = start;
+    for last in start + 1..nodes.len() {
+        if !bends(&nodes[last]) {
+            continue;
+        }
+        if (nodes[first].tangent[axis] < 0.0) != (nodes[last].tangent[axis] < 0.0) {
+            found.push(Bracket { first, nodes: nodes[first..=last].to_vec() });
+        }
+        first = last;
+    }
+    found
+}
+
+impl Bracket {
+    /// The cubic at a place that counts pieces, and the parameter on it.
+    fn piece(&self, place: f64) -> (Cubic, f64) {
+        let pieces = self.nodes.windows(2);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let piece = (place.max(0.0) as usize).min(pieces.len() - 1);
+        (Cubic::between(&self.nodes[piece], &self.nodes[piece + 1]), place - piece as f64)
+    }
+}
+
+/// The extremum in a bracket, with its place along the curve counted in pieces: where the component of the tangent vanishes on the
+/// boundary itself, by the method of Illinois (Dowell and Jarratt, 1971). `None` if the component does not vanish but jumps, as at
+/// the end of a curve whose tangent there is not known, or if the boundary cannot be followed.
+fn solve<F: Family>(
+    runs: &Runs<'_, F>,
+    curve: &Curve<F::Label, F::Margin>,
+    axis: usize,
+    bracket: &Bracket,
+) -> Traced<Option<(f64, Point)>, F> {
+    const ROUNDS: usize = 60;
+    let margin = margin(runs, curve, bracket)?;
+    let (mut low, mut high) = (0.0, (bracket.nodes.len() - 1) as f64);
+    let [mut below, mut above] =
+        [0, bracket.nodes.len() - 1].map(|node| bracket.nodes[node].tangent[axis]);
+    let chord = (bracket.nodes[0].point - bracket.nodes[bracket.nodes.len() - 1].point).norm();
+    let close = 1e-10 * runs.scale / chord;
+    let mut last = f64::INFINITY;
+    let mut kept_low = None;
+    for _ in 0..ROUNDS {
+        let place = (low * above - high * below) / (above - below);
+        let (arc, theta) = bracket.piece(place);
+        let Some(node) = on_boundary(runs, &margin, &arc, theta)? else { return Ok(None) };
+        let component = node.tangent[axis];
+        if component.abs() <= STRAIGHT && (place - last).abs() <= close || component == 0.0 {
+            return Ok(Some((bracket.first as f64 + place, node.point)));
+        }
+        last = place;
+        if (component < 0.0) == (below < 0.0) {
+            (low, below) = (place, component);
+            if kept_low == Some(false) {
+                above *= 0.5;
+            }
+            kept_low = Some(false);
+        } else {
+            (high, above) = (place, component);
+            if kept_low == Some(true) {
+                below *= 0.5;
+            }
+            kept_low = Some(true);
+        }
+    }
+    Ok(None)
+}
+
+/// The curve's margin as it is called in the middle of a bracket, by the free runs beside it, or as far as it moves along.
+fn margin<F: Family>(
+    runs: &Runs<'_, F>,
+    curve: &Curve<F::Label, F::Margin>,
+    bracket: &Bracket,
+) -> Traced<F::Margin, F> {
+    let (arc, theta) = bracket.piece(0.5 * (bracket.nodes.len() - 1) as f64);
+    let (point, tangent) = (arc.at(theta), arc.tangent(theta));
+    let left = Point::new(-tangent.y, tangent.x);
+    let offset = runs.options.offset.max(4.0 * runs.options.interpolation);
+    let beside = [point + left * offset, point - left * offset];
+    match identify(runs, &beside, &curve.sides)? {
+        Some(seed) => Ok(seed.margin),
+        None => runs.moved(&point, &curve.margin),
+    }
+}
+
+/// The place of the boundary beside that of a cubic, with its tangent in the cubic's direction.
+fn on_boundary<F: Family>(
+    runs: &Runs<'_, F>,
+    margin: &F::Margin,
+    arc: &Cubic,
+    theta: f64,
+) -> Traced<Option<Node>, F> {
+    let (guess, along) = (arc.at(theta), arc.tangent(theta));
+    let radius = arc.chord() / arc.tangent(0.0).angle(&arc.tangent(1.0));
+    let Some(gradient) = runs.gradient(&guess, margin, &along, radius)? else { return Ok(None) };
+    let reach = 0.3 * arc.chord() + 100.0 * runs.options.tolerance;
+    let Some(found) = correct(runs, margin, &guess, &gradient, reach)? else { return Ok(None) };
+    let Some(gradient) = runs.gradient(&found.point, margin, &along, radius)? else {
+        return Ok(None);
+    };
+    let tangent = Point::new(gradient.y, -gradient.x).normalize();
+    let forward = tangent.dot(&along) > 0.0;
+    Ok(Some(Node { point: found.point, tangent: if forward { tangent } else { -tangent } }))
+}

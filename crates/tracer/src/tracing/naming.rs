@@ -1,0 +1,55 @@
+//! What the vertices of a hybrid system are.
+
+use stickslip_solver::{Margin, Place};
+
+use crate::curve::VertexKind;
+use crate::tracing::network::Network;
+
+impl<Label> Network<Label, Margin> {
+    /// Names the vertices inside the window by the margins of the curves that end there.
+    ///
+    /// The tracer tells how it found a vertex, and other curves may have come to end there since. A boundary that crosses another
+    /// one goes on beyond it, so that four curves or more end at a [`VertexKind::Crossing`], whatever vanishes there: the graze and
+    /// the end of one phase may do so independently of each other. Where fewer end, a boundary turns into another:
+    ///
+    /// - a minimum and the end of the same phase: [`VertexKind::GrazeAtEnd`];
+    /// - ends of the run only: [`VertexKind::VanishingPhase`];
+    /// - else [`VertexKind::Degenerate`].
+    pub fn name_vertices(&mut self) {
+        let mut arrivals: Vec<Vec<&Margin>> = vec![Vec::new(); self.vertices.len()];
+        for curve in &self.curves {
+            for end in curve.ends.into_iter().flatten() {
+                arrivals[end].push(&curve.margin);
+            }
+        }
+        for (vertex, margins) in self.vertices.iter_mut().zip(&arrivals) {
+            let at_window =
+                matches!(vertex.kind, VertexKind::WindowEdge | VertexKind::WindowCorner);
+            if !at_window && !margins.is_empty() {
+                vertex.kind = kind(margins);
+            }
+        }
+    }
+}
+
+/// What a vertex inside the window is at which curves with these margins end.
+fn kind(margins: &[&Margin]) -> VertexKind {
+    let (ends, minima): (Vec<&Margin>, Vec<&Margin>) =
+        margins.iter().copied().partition(|margin| margin.place == Place::End);
+    let meets_end = |minimum: &&Margin| ends.iter().any(|end| same_phase(minimum, end));
+    if margins.len() >= 4 {
+        VertexKind::Crossing
+    } else if minima.is_empty() {
+        VertexKind::VanishingPhase
+    } else if minima.iter().any(meets_end) {
+        VertexKind::GrazeAtEnd
+    } else {
+        VertexKind::Degenerate
+    }
+}
+
+/// Whether the same guards fired before; where each is looked at from does not matter.
+fn same_phase(one: &Margin, other: &Margin) -> bool {
+    let [one, other] = [one, other].map(|margin| margin.exits.iter().map(|exit| exit.guard));
+    one.eq(other)
+}
