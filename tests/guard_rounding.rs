@@ -80,11 +80,10 @@ fn a_rate_that_cancels_within_leaves_its_minimum() {
             let value = 1.0 + amplitude * (frequency * minimum).cos() - velocity * minimum;
             let found = belt.margins();
             let first = &found.near_misses[0];
-            println!("{own_rates} {away:e}: {:e} {:e}", first.s - minimum, first.value - value);
             assert!(first.margin.exits.is_empty());
-            // Rounding over the curvature, which is 5e-4.
-            assert!((first.s - minimum).abs() < 1e-9, "{own_rates} {away}");
-            assert!((first.value - value).abs() < 1e-14, "{own_rates} {away}");
+            // Measured: 1.5e-13, the rounding of 0.5 over the curvature, which is 5e-4, and 1.7e-15.
+            assert!((first.s - minimum).abs() < 3e-13, "{own_rates} {away}");
+            assert!((first.value - value).abs() < 4e-15, "{own_rates} {away}");
             assert_eq!(found.outcome, Outcome::EndedByGuard { guard: 1 });
         }
     }
@@ -117,8 +116,8 @@ fn margins_by_differences_are_those_by_rates() {
             }
         }
     }
-    println!("{compared} margins, largest difference {largest:e}");
-    assert!(compared > 1000 && largest < 1e-11);
+    // Measured: 1.1e-14 over 1288 margins.
+    assert!(compared > 1000 && largest < 3e-14, "{compared} {largest:e}");
 }
 
 /// y′ = 1 with guard 0.5 + e + 0.5 cos y, which dips below zero at π if e < 0 and whose rounding is that of 0.5.
@@ -172,8 +171,8 @@ fn a_dip_of_rounding_depth_is_not_identically_zero() {
                         [crossings(Dopri5, &dip, y, &options), crossings(Dop853, &dip, y, &options)]
                     {
                         let name = format!("{direction:?} {raised:e} {y} {max_step:e}: {found:?}");
-                        println!("{name}");
-                        if raised == -1e-14 || raised <= -1e-13 || raised > 1e-15 {
+                        // Where the depth is that of the rounding it may show or not.
+                        if raised.abs() > 2e-16 || raised >= 0.0 {
                             assert_eq!(found.len(), expected, "{name}");
                         }
                         // Half the width of the dip, widened by the rounding of 0.5.

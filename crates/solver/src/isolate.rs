@@ -98,8 +98,8 @@ pub(crate) fn first_crossing<C: Curve>(
             }
             let error = accuracy.on(&panel, zero_order);
             before = Some((0.0, opening)).filter(|_| opening.abs() > error);
-            // A shorter step brings the opening nearer to zero, and with it the error of the dense output, but not rounding.
-            if before.is_none() && accuracy.dense > 0.25 * error {
+            // A shorter step brings the opening nearer to zero, but not what noise and rounding do at the start.
+            if before.is_none() && 2.0 * accuracy.lasting(&panel, zero_order) < error {
                 return Ok(Verdict::TooCoarse);
             }
         }
@@ -279,6 +279,11 @@ impl Accuracy {
     fn on(&self, panel: &Panel, order: u32) -> f64 {
         let state = self.state.0 + panel.high * self.state.1;
         self.dense + (self.rounding + state + self.noise) / power(panel.theta(-COSINES[1]), order)
+    }
+
+    /// The part of it that does not diminish with the step.
+    fn lasting(&self, panel: &Panel, order: u32) -> f64 {
+        (self.state.0 + self.noise) / power(panel.theta(-COSINES[1]), order)
     }
 }
 
