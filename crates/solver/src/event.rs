@@ -359,7 +359,8 @@ where
             self.statistics.resteps += 1;
             self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
             // Written so that NaN ends it.
-            if !(longer.error < 1.0) {
+            let good = longer.error < 1.0;
+            if !good {
                 return false;
             }
             let values = self.values_on(&longer).map(|at_node| at_node[guard]);
@@ -379,10 +380,9 @@ where
     ) -> Result<Option<Status>, RunError> {
         // At the start it may stand for the side from which the guard came.
         if values[0].abs() <= f64::MIN_POSITIVE && values[1..].iter().all(|&value| value == 0.0) {
-            return match self.leaves_zero::<M>(guard, step) {
-                true => Ok(Some(Status::Clear)),
-                false => Err(RunError::GuardIdenticallyZero { guard, s: step.s }),
-            };
+            let identically = RunError::GuardIdenticallyZero { guard, s: step.s };
+            let leaves = self.leaves_zero::<M>(guard, step);
+            return leaves.then_some(Some(Status::Clear)).ok_or(identically);
         }
         self.statistics.isolations += 1;
         let (system, mode) = (self.system, self.phase.mode);

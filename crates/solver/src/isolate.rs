@@ -90,9 +90,7 @@ pub(crate) fn first_crossing<C: Curve>(
     if zero_order > 0 {
         let panel = Panel::new(&mut quotient, 0.0, OPENING);
         let opening = panel.at(-1.0);
-        if side != 0.0 {
-            before = Some((0.0, opening.abs().max(f64::MIN_POSITIVE).copysign(side)));
-        } else {
+        if side == 0.0 {
             if panel.tail() > accuracy.on(&panel, zero_order) {
                 accuracy.noise = quotient.noise(0.5 * OPENING, 0.5 * OPENING + NARROWEST);
             }
@@ -102,6 +100,8 @@ pub(crate) fn first_crossing<C: Curve>(
             if before.is_none() && 2.0 * accuracy.lasting(&panel, zero_order) < error {
                 return Ok(Verdict::TooCoarse);
             }
+        } else {
+            before = Some((0.0, opening.abs().max(f64::MIN_POSITIVE).copysign(side)));
         }
     }
     if domain && before.is_some_and(|(_, value)| value < 0.0) {
