@@ -69,11 +69,6 @@ impl HybridSystem<2, 2> for Belt {
         [if mode == Mode::Slip { y[0] } else { -y[1] }, OBSERVED - t]
     }
 
-    fn guard_rates(&self, mode: Mode, t: f64, y: &State<2>) -> [f64; 2] {
-        let rates = self.field(mode, t, y);
-        [if mode == Mode::Slip { rates[0] } else { -rates[1] }, -1.0]
-    }
-
     fn transition(&self, mode: Mode, _: usize, _: f64, y: &State<2>) -> (Mode, State<2>) {
         match mode {
             Mode::Stick => (Mode::Slip, State::zeros()),

@@ -4,13 +4,17 @@ use crate::error::RunError;
 use crate::guard::{Direction, Guard};
 use crate::hybrid::{Grazing, HybridSystem, Observer, Statistics};
 use crate::isolate::{Bracket, Curve, Touch, Verdict, first_crossing};
-use crate::method::{Dense, Method, State, Step};
+use crate::method::{Dense, Method, State, Step, Trial};
 use crate::quick::{self, Quick};
 
 /// Relative change of state and time by which a guard's sensitivity to them is measured.
 const SLIGHT: f64 = 1e-12;
 /// Guards closer to a switch than this part of the step fire together with it.
 const TOGETHER: f64 = 1e-12;
+
+/// A guard that is zero throughout a step is looked at on longer ones, each four times as long as the one before, at most
+/// this often: a step of the least length that moves the time becomes one of ordinary length.
+const LONGER: i32 = 26;
 
 /// The mode that is active, with its guards as they stand.
 #[derive(Clone, Copy, Debug)]
@@ -136,6 +140,8 @@ impl Crossing {
 pub(crate) struct Examination<'a, S: HybridSystem<N, G>, O, const N: usize, const G: usize> {
     pub(crate) system: &'a S,
     pub(crate) phase: &'a Phase<S::Mode, G>,
+    /// The step that was asked for.
+    pub(crate) trial: &'a Trial<'a, N>,
     pub(crate) statistics: &'a mut Statistics,
     pub(crate) observer: &'a mut O,
 }
@@ -342,6 +348,29 @@ where
         }
     }
 
+    /// Whether a guard that is zero throughout a step is so only because the step is short, and not throughout the longest step
+    /// that meets the tolerance.
+    fn leaves_zero<M: Method>(&mut self, guard: usize, step: &Step<N>) -> bool {
+        let (system, mode) = (self.system, self.phase.mode);
+        let mut longer = Step::blank();
+        for k in 1..=LONGER {
+            let h = step.h * 4_f64.powi(k);
+            system.step::<M>(mode, &Trial { h, ..*self.trial }, &mut longer);
+            self.statistics.resteps += 1;
+            self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
+            // Written so that NaN ends it.
+            let good = longer.error < 1.0;
+            if !good {
+                return false;
+            }
+            let values = self.values_on(&longer).map(|at_node| at_node[guard]);
+            if values[1..].iter().any(|&value| value != 0.0 && !value.is_nan()) {
+                return true;
+            }
+        }
+        false
+    }
+
     /// Decides by isolation; `None` if the step is too coarse for that.
     fn isolate<M: Method>(
         &mut self,
@@ -349,8 +378,11 @@ where
         step: &mut Step<N>,
         values: &[f64; 6],
     ) -> Result<Option<Status>, RunError> {
-        if values.iter().all(|&value| value == 0.0) {
-            return Err(RunError::GuardIdenticallyZero { guard, s: step.s });
+        // At the start it may stand for the side from which the guard came.
+        if values[0].abs() <= f64::MIN_POSITIVE && values[1..].iter().all(|&value| value == 0.0) {
+            let identically = RunError::GuardIdenticallyZero { guard, s: step.s };
+            let leaves = self.leaves_zero::<M>(guard, step);
+            return leaves.then_some(Some(Status::Clear)).ok_or(identically);
         }
         self.statistics.isolations += 1;
         let (system, mode) = (self.system, self.phase.mode);
@@ -417,8 +449,13 @@ fn largest<const G: usize>(guard: usize, values: &[[f64; G]; 6]) -> f64 {
 /// Values at a step's end; one that is exactly zero keeps the side from which it came.
 fn on_their_side<const G: usize>(values: &[[f64; G]; 6]) -> [f64; G] {
     std::array::from_fn(|guard| {
-        let (before, end) = (values[4][guard], values[5][guard]);
-        if end == 0.0 && before != 0.0 { f64::MIN_POSITIVE.copysign(before) } else { end }
+        let end = values[5][guard];
+        if end != 0.0 {
+            return end;
+        }
+        let mut before = values[..5].iter().rev().map(|at_node| at_node[guard]);
+        let before = before.find(|&value| value != 0.0);
+        before.map_or(end, |value| f64::MIN_POSITIVE.copysign(value))
     })
 }
 

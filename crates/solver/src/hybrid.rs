@@ -14,9 +14,6 @@ use crate::guard::Guard;
 use crate::method::{Dense, Method, State, Step, Trial};
 use crate::options::{Options, StepSize};
 
-/// Distance in the independent variable over which [`HybridSystem::guard_rates`] takes differences.
-pub const RATE_REACH: f64 = 1e-3;
-
 /// A piecewise-smooth ODE of `N` components with at most `G` guards in a mode.
 ///
 /// The right-hand side and the guards of a mode must be smooth also a little beyond the guards' zeros, since
@@ -35,20 +32,13 @@ pub trait HybridSystem<const N: usize, const G: usize> {
     fn guard_values(&self, mode: Self::Mode, s: f64, y: &State<N>) -> [f64; G];
 
     /// The rates at which the guards of `mode` change along the solution through `y`, whose zeros are the guards' extrema; each may
-    /// be multiplied by anything positive.
+    /// be multiplied by anything positive. NaN where they are not known, as in the provided version.
     ///
-    /// The provided one takes differences along the field over [`RATE_REACH`] to both sides, of fourth order in it, and so has a
-    /// rounding of about 1e-13 of the guards' terms. Only margins use it. A system whose guards change on a shorter scale gives its
-    /// own, and one whose boundaries are to be traced: near them there are phases so short that this rounding leaves a minimum
-    /// undecided, which ends the run with an error.
-    fn guard_rates(&self, mode: Self::Mode, s: f64, y: &State<N>) -> [f64; G] {
-        let slope = self.field(mode, s, y);
-        let at = |reach: f64| self.guard_values(mode, s + reach, &(y + slope * reach));
-        let [far, near] = [2.0, 1.0].map(|k| (at(k * RATE_REACH), at(-k * RATE_REACH)));
-        std::array::from_fn(|guard| {
-            let difference = |(ahead, behind): &([f64; G], [f64; G])| ahead[guard] - behind[guard];
-            (8.0 * difference(&near) - difference(&far)) / (12.0 * RATE_REACH)
-        })
+    /// Only margins use them. Rates that are not known are replaced by differences of the guards along the field, of fourth order,
+    /// over a small part of the longest step so far ([`mod@crate::margin`]): five times the guards, and some 1e-13 of rounding. A
+    /// guard that changes on a much shorter scale than the solution needs its own rate, or a `max_step` on that scale.
+    fn guard_rates(&self, _mode: Self::Mode, _s: f64, _y: &State<N>) -> [f64; G] {
+        [f64::NAN; G]
     }
 
     /// The mode in which a phase goes on once its first step is done.
@@ -342,6 +332,7 @@ where
             let mut examination = Examination {
                 system,
                 phase: &self.phase,
+                trial: &trial,
                 statistics: &mut self.statistics,
                 observer: self.observer,
             };

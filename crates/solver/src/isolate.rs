@@ -10,6 +10,7 @@
 const TERMS: usize = 9;
 /// Panels narrower than 2^−`DEPTH` of the step are not cut further.
 const DEPTH: u32 = 12;
+const NARROWEST: f64 = 1.0 / (1_u32 << DEPTH) as f64;
 /// Panels are halved at most this often between critical points; stretches that are flat to within the error
 /// end the search earlier.
 const CRITICAL_DEPTH: u32 = 45;
@@ -19,6 +20,13 @@ const CRITICAL_DEPTH: u32 = 45;
 const SAFETY: f64 = 4.0;
 /// The part of the step whose expansion gives the value at the start of a quotient.
 const OPENING: f64 = 0.25;
+/// A value counts as beyond its noise at this multiple of the noise's standard deviation.
+const BEYOND_NOISE: f64 = 32.0;
+/// Points in a row from which the noise is measured, and the order of the differences that are taken of them.
+const ROW: usize = 9;
+const DIFFERENCES: usize = 6;
+/// By how much such a difference is larger than the noise: the square root of the sum of its squared weights, C(12, 6).
+const DIFFERENCED: f64 = 30.397_368_307_141_3;
 
 /// A guard's value along a step.
 pub(crate) trait Curve {
@@ -73,22 +81,30 @@ pub(crate) fn first_crossing<C: Curve>(
     mut on_touch: impl FnMut(Touch),
 ) -> Result<Verdict, C::Error> {
     let mut quotient = Quotient { curve, order: zero_order };
-    let accuracy = quotient.accuracy();
+    let mut accuracy = quotient.accuracy();
     if accuracy.dense.is_nan() {
         return Ok(Verdict::TooCoarse);
     }
     // The last point whose sign is known, and the value there.
-    let mut before = (0.0, start);
+    let mut before = Some((0.0, start));
     if zero_order > 0 {
         let panel = Panel::new(&mut quotient, 0.0, OPENING);
         let opening = panel.at(-1.0);
-        before.1 =
-            if side == 0.0 { opening } else { opening.abs().max(f64::MIN_POSITIVE).copysign(side) };
-        if side == 0.0 && opening.abs() <= accuracy.on(&panel, zero_order) {
-            return Ok(Verdict::TooCoarse);
+        if side == 0.0 {
+            if panel.tail() > accuracy.on(&panel, zero_order) {
+                accuracy.noise = quotient.noise(0.5 * OPENING, 0.5 * OPENING + NARROWEST);
+            }
+            let error = accuracy.on(&panel, zero_order);
+            before = Some((0.0, opening)).filter(|_| opening.abs() > error);
+            // A shorter step brings the opening nearer to zero, but not what noise and rounding do at the start.
+            if before.is_none() && 2.0 * accuracy.lasting(&panel, zero_order) < error {
+                return Ok(Verdict::TooCoarse);
+            }
+        } else {
+            before = Some((0.0, opening.abs().max(f64::MIN_POSITIVE).copysign(side)));
         }
     }
-    if domain && before.1 < 0.0 {
+    if domain && before.is_some_and(|(_, value)| value < 0.0) {
         return Ok(Verdict::StartsBelow);
     }
     let mut pending = [(0.0, 0.0); DEPTH as usize + 2];
@@ -98,12 +114,18 @@ pub(crate) fn first_crossing<C: Curve>(
         count -= 1;
         let (low, high) = pending[count];
         let panel = Panel::new(&mut quotient, low, high);
-        let error = accuracy.on(&panel, zero_order);
+        let mut error = accuracy.on(&panel, zero_order);
         if panel.tail().is_nan() {
             return Ok(Verdict::TooCoarse);
         }
+        let narrow = high - low < 1.5 * NARROWEST;
+        if panel.tail() > error && narrow {
+            // What no panel is narrow enough for may be noise, which a shorter step would not diminish.
+            accuracy.noise = accuracy.noise.max(quotient.noise(low, high));
+            error = accuracy.on(&panel, zero_order);
+        }
         if panel.tail() > error {
-            if high - low < 1.5 / f64::from(1_u32 << DEPTH) {
+            if narrow {
                 return Ok(Verdict::TooCoarse);
             }
             let middle = 0.5 * (low + high);
@@ -127,20 +149,24 @@ pub(crate) fn first_crossing<C: Curve>(
                 if local < 1.0 {
                     on_touch(Touch { theta, margin: value * power(theta, zero_order) });
                 }
-                let hidden = if zero_order > 0 { accuracy.state.0 } else { 0.0 };
+                let hidden = accuracy.noise + if zero_order > 0 { accuracy.state.0 } else { 0.0 };
                 if value.abs() * power(theta, zero_order) <= hidden {
                     // On neither side: what follows tells whether the guard goes through.
                     continue;
                 }
             }
-            if before.1 >= 0.0 && value < 0.0 {
-                let guess = panel_root(&mut quotient, before, (theta, value));
-                return Ok(Verdict::Crossing(Bracket { low: before.0, high: theta, guess }));
-            }
             if value.is_nan() {
                 return Ok(Verdict::TooCoarse);
             }
-            before = (theta, value);
+            match before {
+                Some(before) if before.1 >= 0.0 && value < 0.0 => {
+                    let guess = panel_root(&mut quotient, before, (theta, value));
+                    return Ok(Verdict::Crossing(Bracket { low: before.0, high: theta, guess }));
+                }
+                // The first side that shows is the one to which the curve leaves its zero.
+                None if domain && value < 0.0 => return Ok(Verdict::StartsBelow),
+                _ => before = Some((theta, value)),
+            }
         }
     }
     Ok(Verdict::None)
@@ -190,7 +216,8 @@ impl<C: Curve> Quotient<'_, C> {
     }
 
     fn accuracy(&mut self) -> Accuracy {
-        let mut accuracy = Accuracy { dense: 0.0, rounding: 0.0, state: self.curve.rounding() };
+        let state = self.curve.rounding();
+        let mut accuracy = Accuracy { dense: 0.0, rounding: 0.0, state, noise: 0.0 };
         for j in 1..16 {
             let theta = f64::from(j) / 16.0;
             let divisor = power(theta, self.order);
@@ -207,6 +234,33 @@ impl<C: Curve> Quotient<'_, C> {
         }
         accuracy
     }
+
+    /// How far the curve's values scatter between two step fractions, beyond which they mean something.
+    ///
+    /// High differences of successive values are left by noise alone, which is estimated from them (Moré and Wild, SIAM J. Sci.
+    /// Comput. 33 (2011) 1292). What a function does diminishes when the values move together, and a jump is in one place; noise
+    /// is neither: of two spacings the smaller estimate counts, of three places the middle one.
+    fn noise(&mut self, low: f64, high: f64) -> f64 {
+        let mut at = [0.0, 1.0 / 3.0, 2.0 / 3.0].map(|place| {
+            let start = low + place * (high - low);
+            let [wide, narrow] = [32.0, 128.0].map(|parts| {
+                let spacing = (high - low) / parts;
+                let mut row: [f64; ROW] =
+                    std::array::from_fn(|i| self.curve.dense(start + i as f64 * spacing).0);
+                for order in 1..=DIFFERENCES {
+                    for i in 0..ROW - order {
+                        row[i] = row[i + 1] - row[i];
+                    }
+                }
+                let left = &row[..ROW - DIFFERENCES];
+                let square = left.iter().map(|d| d * d).sum::<f64>() / left.len() as f64;
+                square.sqrt() / DIFFERENCED
+            });
+            if wide < narrow { wide } else { narrow }
+        });
+        at.sort_unstable_by(f64::total_cmp);
+        if at[2].is_finite() { BEYOND_NOISE * at[1] } else { 0.0 }
+    }
 }
 
 /// How well a quotient is known along the dense output.
@@ -217,12 +271,19 @@ struct Accuracy {
     rounding: f64,
     /// What rounding of state and time does to the guard, at the start of the step and at most.
     state: (f64, f64),
+    /// What the guard's values scatter beyond that, where it was measured.
+    noise: f64,
 }
 
 impl Accuracy {
     fn on(&self, panel: &Panel, order: u32) -> f64 {
         let state = self.state.0 + panel.high * self.state.1;
-        self.dense + (self.rounding + state) / power(panel.theta(-COSINES[1]), order)
+        self.dense + (self.rounding + state + self.noise) / power(panel.theta(-COSINES[1]), order)
+    }
+
+    /// The part of it that does not diminish with the step.
+    fn lasting(&self, panel: &Panel, order: u32) -> f64 {
+        (self.state.0 + self.noise) / power(panel.theta(-COSINES[1]), order)
     }
 }
 

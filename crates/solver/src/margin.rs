@@ -7,15 +7,21 @@
 //!
 //! A minimum of a guard is a zero of its rate. It is found as any other switch is: decided on every step, and refined by steps of
 //! the method itself.
+//!
+//! Where a system does not know its rates they are differences. Their reach follows the run: error control knows on which scale
+//! the solution changes, so the reach is a small part of the longest step so far, whatever the unit of time. The rounding that
+//! they bring is measured where a decision would fail for it.
 
+use std::cell::Cell;
 use std::cmp::Ordering;
 use std::hash::{Hash, Hasher};
 
+use crate::control::first_step;
 use crate::error::RunError;
 use crate::guard::{Direction, Guard};
 use crate::hybrid::{HybridSystem, Observer, Outcome, Start, SwitchEvent, run};
 use crate::method::{Method, State, Step, Trial};
-use crate::options::Options;
+use crate::options::{Options, StepSize};
 
 /// A place in a phase, which moves with the parameters: two that differ in nothing else are the same.
 #[derive(Clone, Copy, Debug)]
@@ -109,6 +115,9 @@ pub struct Margins {
 /// Part of the run below which its last phase may be about to vanish: boundaries get their names from runs 1e-9 beside them, where
 /// a phase that vanishes there is shorter. One taken for vanishing without need only costs a longer run.
 const SHORT: f64 = 1e-6;
+
+/// Part of a step over which differences reach: their fourth power leaves 1e-11 of a rate, their rounding some 1e-13.
+const REACH: f64 = 1.0 / 256.0;
 
 /// Runs `system` freely and returns every margin that the run leaves.
 ///
@@ -255,7 +264,8 @@ where
     M: Method,
     S: HybridSystem<N, G>,
 {
-    let prescribed = Prescribed { system, exits, watched: guard, enough };
+    let reach = Reach::new::<M, S, N, G>(system, &start, end, options);
+    let prescribed = Prescribed { system, exits, watched: guard, enough, reach };
     // A prescribed run may pass switches as close together as it likes.
     let options = Options { zeno: 0.0, ..*options };
     let mut watching = Watching::<S, G> {
@@ -287,6 +297,50 @@ struct Prescribed<'a, S> {
     watched: usize,
     /// It is not watched beyond its first minimum after this place.
     enough: f64,
+    reach: Reach,
+}
+
+/// How far the differences reach that stand in for unknown rates.
+struct Reach {
+    /// Where the step at hand starts.
+    start: Cell<f64>,
+    distance: Cell<f64>,
+}
+
+impl Reach {
+    /// For a run that is yet to take its first step.
+    fn new<M, S, const N: usize, const G: usize>(
+        system: &S,
+        start: &Start<S::Mode, N>,
+        end: f64,
+        options: &Options,
+    ) -> Self
+    where
+        M: Method,
+        S: HybridSystem<N, G>,
+    {
+        let Start { mode, s, state } = *start;
+        let longest = (end - s).min(options.max_step);
+        let first = match (options.step_size, options.first_step) {
+            (StepSize::Fixed(h), _) | (_, Some(h)) => h.min(longest),
+            _ => {
+                let mut field = |s: f64, y: &State<N>| system.field(mode, s, y);
+                let slope = field(s, &state);
+                let tolerances = (options.rtol, options.atol);
+                first_step::<M, N>(&mut field, s, &state, &slope, tolerances, longest)
+            }
+        };
+        Self { start: Cell::new(s), distance: Cell::new(REACH * first) }
+    }
+
+    /// A step is tried from `s`, so that the one before it was accepted as far as there.
+    fn follow(&self, s: f64) {
+        let distance = REACH * (s - self.start.replace(s));
+        // Seldom, so that rates seldom change between two steps.
+        if distance >= 2.0 * self.distance.get() {
+            self.distance.set(distance);
+        }
+    }
 }
 
 /// A mode with what has happened so far.
@@ -334,6 +388,29 @@ impl<S> Prescribed<'_, S> {
             None if at.part == Part::Done => (self.watched, Awaited::Nothing),
             None => (self.watched, Awaited::Minimum),
         }
+    }
+
+    /// The rate of `guard`, or differences where it is not known.
+    fn rate<const N: usize, const G: usize>(
+        &self,
+        mode: <S as HybridSystem<N, G>>::Mode,
+        guard: usize,
+        s: f64,
+        y: &State<N>,
+    ) -> f64
+    where
+        S: HybridSystem<N, G>,
+    {
+        let rate = self.system.guard_rates(mode, s, y)[guard];
+        if !rate.is_nan() {
+            return rate;
+        }
+        let (slope, reach) = (self.system.field(mode, s, y), self.reach.distance.get());
+        let at =
+            |reach: f64| self.system.guard_values(mode, s + reach, &(y + slope * reach))[guard];
+        let near = at(reach) - at(-reach);
+        let far = at(2.0 * reach) - at(-2.0 * reach);
+        (8.0 * near - far) / (12.0 * reach)
     }
 
     /// The guard's value, positive where it does not fire.
@@ -400,7 +477,7 @@ where
         values[subject] = match awaited {
             Awaited::Place(place) => place - s,
             Awaited::Guard => sign * values[subject],
-            Awaited::Minimum => sign * self.system.guard_rates(at.mode, s, y)[subject],
+            Awaited::Minimum => sign * self.rate(at.mode, subject, s, y),
             Awaited::Nothing => -1.0,
         };
         values
@@ -411,6 +488,7 @@ where
     }
 
     fn step<M: Method>(&self, at: Self::Mode, trial: &Trial<'_, N>, step: &mut Step<N>) {
+        self.reach.follow(trial.s);
         self.system.step::<M>(at.mode, trial, step);
     }
 
