@@ -169,15 +169,16 @@ fn reference_boundaries_lie_on_traced_curves() {
 }
 
 #[test]
-fn vertices_on_the_top_boundary_are_where_they_must_be() {
-    // Where ψ_g passes 2, and where the two stationary points of the guard merge.
-    let known = [(0.5701023788418932873, 2.0), (1.568459328886909846, 1.0)];
-    for (kappa, psi) in known {
+fn vertices_are_where_they_must_be() {
+    // The corner of the top boundary, where ψ_g passes 2, and the cusp, where the stationary points of the guard merge: its place
+    // is known to no more than the rounding of a guard that is flat there.
+    let known = [(0.5701023788418932873, 2.0, 1e-10), (1.568459328886909846, 1.0, 1e-6)];
+    for (kappa, psi, accuracy) in known {
         let place = CollisionPlane::point(kappa, psi);
         let nearest = ATLAS.vertices().iter().map(|vertex| (vertex.point - place).norm());
         let nearest = nearest.fold(f64::INFINITY, f64::min);
         println!("vertex at κ = {kappa}, ψ = {psi}: {nearest:.1e} off");
-        assert!(nearest < 1e-10);
+        assert!(nearest < accuracy);
     }
 }
 
