@@ -12,6 +12,7 @@ mod map;
 mod map_failures;
 #[cfg(unix)]
 mod map_interrupted;
+mod notebooks_data;
 mod pictures;
 mod point;
 mod reproduce;

@@ -1,0 +1,263 @@
+//! The data for notebooks: the commands of their README files make them, every column is described, and the notebooks
+//! find what they read.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::{Array, Workspace, npz, rows};
+
+/// On the machine that made the data all bits are the same, whatever the optimisation; other machines have other
+/// mathematical libraries.
+const RELATIVE: f64 = 1e-9;
+
+/// Errors that are left beside the relative one where a number is a difference of larger ones, by the beginning of the
+/// file's name.
+const ABSOLUTE: [(&str, f64); 12] = [
+    ("asymptote_collisions", 1e-9),
+    ("asymptote_convergence", 1e-10),
+    ("asymptote_counts", 0.0),
+    ("asymptote_envelope", 0.0),
+    ("asymptote_profile", 1e-12),
+    ("asymptote_restitution", 0.0),
+    ("atlas", 1e-9),
+    ("convergence_orders", 1e-2), // Slopes through errors of 1e-14.
+    ("convergence", 1e-12),
+    ("figure4_boundaries", 1e-9),
+    ("figure", 1e-10),
+    ("statements", 1e-9),
+];
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn read(path: &Path) -> String {
+    fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+fn names(directory: &Path) -> BTreeSet<String> {
+    let entries = fs::read_dir(directory).expect("a directory");
+    let name = |entry: std::io::Result<fs::DirEntry>| entry.expect("an entry").file_name();
+    entries.map(|entry| name(entry).into_string().expect("UTF-8")).collect()
+}
+
+fn extension(name: &str) -> &str {
+    name.rsplit_once('.').map_or("", |(_, extension)| extension)
+}
+
+/// What the commands of a folder make in a workspace.
+struct Made {
+    folder: PathBuf,
+    workspace: Workspace,
+    /// Standard output that goes to a file, by its name.
+    printed: BTreeMap<String, String>,
+}
+
+impl Made {
+    /// Runs what the folder's README says. What `out` has of the figures has 40 cells along an axis, so that the
+    /// table of Figure 1 is that of every fifth velocity.
+    fn new(name: &str) -> Self {
+        let folder = repository().join("notebooks-data").join(name);
+        let workspace = Workspace::new();
+        for directory in [format!("notebooks-data/{name}"), "examples".to_owned()] {
+            fs::create_dir_all(workspace.path(&directory)).expect("a directory");
+        }
+        let bodies = "examples/steel_pair.json";
+        fs::copy(repository().join(bodies), workspace.path(bodies)).expect("the example");
+        let mut printed = BTreeMap::new();
+        let readme = read(&folder.join("README.md"));
+        let lines: Vec<_> = readme
+            .lines()
+            .filter_map(|line| line.strip_prefix("cargo run --release -- "))
+            .collect();
+        assert!(!lines.is_empty());
+        for line in lines {
+            let (line, _) = line.split_once(" && ").unwrap_or((line, ""));
+            let (command, target) = line.split_once(" > ").unwrap_or((line, ""));
+            let cells = if command == "reproduce --out out" { " --cells 40" } else { "" };
+            let ran = workspace.run(&format!("{command}{cells}"));
+            assert_eq!(ran.code, 0, "{line}: {}", ran.stderr);
+            if let Some((_, name)) = target.rsplit_once('/') {
+                printed.insert(name.to_owned(), ran.stdout);
+            }
+        }
+        Self { folder, workspace, printed }
+    }
+
+    /// Where a command has put the file.
+    fn path(&self, name: &str) -> PathBuf {
+        let direct = self.workspace.path("notebooks-data");
+        let direct = direct.join(self.folder.file_name().expect("a name")).join(name);
+        if direct.exists() { direct } else { self.workspace.path("out").join(name) }
+    }
+
+    /// Compares all files of the folder, and looks for them and their columns in its README.
+    fn check(&self) {
+        let readme = read(&self.folder.join("README.md"));
+        for name in names(&self.folder).iter().filter(|name| *name != "README.md") {
+            let stored = self.folder.join(name);
+            let (_, absolute) = ABSOLUTE
+                .iter()
+                .find(|(start, _)| name.starts_with(start))
+                .unwrap_or_else(|| panic!("no tolerance for {name}"));
+            let described = |column: &str| {
+                assert!(readme.contains(&format!("`{column}`")), "{name}: {column}");
+            };
+            if extension(name) == "npz" {
+                let [ours, theirs] = [&stored, &self.path(name)].map(|path| npz(path));
+                for (array, _) in &ours {
+                    described(array);
+                }
+                compare_arrays(&ours, &theirs, *absolute);
+                continue;
+            }
+            let ours = read(&stored);
+            let theirs = self.printed.get(name).cloned().unwrap_or_else(|| read(&self.path(name)));
+            if let Err(difference) = compare(&ours, &theirs, *absolute) {
+                panic!("{name}: {difference}");
+            }
+            if extension(name) == "csv" {
+                for column in &rows(&ours)[0] {
+                    described(column);
+                }
+            }
+        }
+    }
+}
+
+/// Compares arrays: doubles within the tolerance, everything else exactly.
+fn compare_arrays(one: &[(String, Array)], other: &[(String, Array)], absolute: f64) {
+    assert_eq!(one.len(), other.len());
+    for ((name, ours), (other, theirs)) in one.iter().zip(other) {
+        assert_eq!((name, &ours.shape), (other, &theirs.shape));
+        if ours.element == "<i4" {
+            assert!(ours.integers() == theirs.integers(), "{name}");
+            continue;
+        }
+        for (ours, theirs) in ours.doubles().into_iter().zip(theirs.doubles()) {
+            assert!(close(ours, theirs, absolute), "{name}: {ours} {theirs}");
+        }
+    }
+}
+
+fn close(one: f64, other: f64, absolute: f64) -> bool {
+    (one - other).abs() <= absolute + RELATIVE * one.abs().max(other.abs())
+}
+
+/// Compares texts: numbers with a point or an exponent within the tolerance, everything else exactly.
+fn compare(one: &str, other: &str, absolute: f64) -> Result<(), String> {
+    if one.lines().count() != other.lines().count() {
+        return Err(format!("{} and {} lines", one.lines().count(), other.lines().count()));
+    }
+    for (number, (one, other)) in (1..).zip(one.lines().zip(other.lines())) {
+        let [one, other] = [one, other].map(tokens);
+        let same = one.len() == other.len() && one.iter().zip(&other).all(|(one, other)| {
+            let real = |token: &str| {
+                token.contains(['.', 'e']).then(|| token.parse::<f64>().ok()).flatten()
+            };
+            one == other
+                || matches!((real(one), real(other)), (Some(a), Some(b)) if close(a, b, absolute))
+        });
+        if !same {
+            let different = one.iter().zip(&other).find(|(one, other)| one != other);
+            return Err(format!("line {number}: {different:?}"));
+        }
+    }
+    Ok(())
+}
+
+/// A line cut into what may be numbers and what is between.
+fn tokens(line: &str) -> Vec<&str> {
+    line.split_inclusive([',', ' ', '[', ']', '"', ';'])
+        .flat_map(|part| {
+            let cut = part.len() - usize::from(part.ends_with([',', ' ', '[', ']', '"', ';']));
+            let (token, separator) = part.split_at(cut);
+            // The end of a sentence.
+            let (token, end) = token.split_at(token.trim_end_matches(['.', ':', ')']).len());
+            [token, end, separator]
+        })
+        .collect()
+}
+
+#[test]
+fn figures_are_made_by_their_commands() {
+    Made::new("figures").check();
+}
+
+#[test]
+fn boundaries_are_made_by_their_command() {
+    Made::new("boundaries").check();
+}
+
+#[test]
+fn convergence_is_made_by_its_command() {
+    Made::new("convergence").check();
+}
+
+#[test]
+fn stiff_springs_are_made_by_their_command() {
+    Made::new("stiff_springs").check();
+}
+
+#[test]
+fn statements_are_made_by_their_command() {
+    Made::new("statements").check();
+}
+
+#[test]
+fn there_is_no_other_folder() {
+    let folders = ["boundaries", "convergence", "figures", "statements", "stiff_springs"];
+    let all = folders.iter().chain(&["README.md", "make.sh"]).map(|name| (*name).to_owned());
+    assert_eq!(names(&repository().join("notebooks-data")), all.collect());
+}
+
+#[test]
+fn a_dropped_column_and_a_changed_number_are_noticed() {
+    let text = "kappa,w,count,itinerary\n10.0,0.25,4,+o-\n1e3,-2.5e-7,12,o\n";
+    assert_eq!(compare(text, text, 0.0), Ok(()));
+    for (from, to, same) in [
+        ("0.25", "0.2500000001", true),
+        ("-2.5e-7", "-2.5000000001e-7", true),
+        ("0.25", "0.250000001", false),
+        ("-2.5e-7", "2.5e-7", false),
+        ("0.25", "", false),
+        (",4", ",5", false),
+        (",12", ",12.0", false),
+        ("+o-", "+o", false),
+        ("w,", "", false),
+        ("1e3,-2.5e-7,12,o\n", "", false),
+    ] {
+        assert_eq!(compare(text, &text.replace(from, to), 0.0).is_ok(), same, "{from} {to}");
+    }
+    assert!(compare("within 1.1e-15, it", "within 2.2e-15, it", 1e-9).is_ok());
+    assert!(compare("up to 1.5.", "up to 1.6.", 1e-9).is_err());
+    assert!(compare("[[1.0,2.0]]", "[[1.0,2.1]]", 1e-9).is_err());
+}
+
+#[test]
+fn notebooks_have_no_outputs_and_find_what_they_read() {
+    let folder = repository().join("notebooks");
+    let notebooks: Vec<_> =
+        names(&folder).into_iter().filter(|name| extension(name) == "ipynb").collect();
+    assert_eq!(notebooks.len(), 2);
+    for name in notebooks {
+        let mut used = 0;
+        let notebook: serde_json::Value =
+            serde_json::from_str(&read(&folder.join(&name))).expect("JSON");
+        for cell in notebook["cells"].as_array().expect("cells") {
+            let source = cell["source"].as_array().expect("lines").iter();
+            let source: String = source.map(|line| line.as_str().expect("a line")).collect();
+            if cell["cell_type"] != "code" {
+                continue;
+            }
+            assert_eq!(cell["outputs"], serde_json::json!([]), "{name}");
+            for file in source.split("DATA / \"").skip(1) {
+                let (file, _) = file.split_once('"').expect("a name");
+                assert!(repository().join("notebooks-data").join(file).is_file(), "{name}: {file}");
+                used += 1;
+            }
+        }
+        assert!(used > 0, "{name} reads nothing");
+    }
+}
