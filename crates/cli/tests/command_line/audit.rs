@@ -224,7 +224,9 @@ fn a_statement_that_is_not_there() {
     }
     let ran = stickslip("reproduce");
     assert_eq!((ran.code, ran.stdout.as_str()), (2, ""));
-    assert!(ran.stderr.contains("--statement"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("--out"), "{}", ran.stderr);
+    let ran = stickslip("reproduce --statement 1 --out out");
+    assert_eq!((ran.code, ran.stdout.as_str()), (2, ""));
 }
 
 #[test]

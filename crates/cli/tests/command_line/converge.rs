@@ -154,10 +154,14 @@ fn bad_input_is_refused() {
 fn a_directory_that_cannot_be_written_is_a_failure_before_the_work() {
     let workspace = Workspace::new();
     workspace.write("file", "");
-    for out in ["file", "file/below", "/proc/none"] {
+    for (out, code, why) in [
+        ("file", 2, "is not a directory"),
+        ("file/below", 1, "cannot be written"),
+        ("/proc/none", 1, "cannot be written"),
+    ] {
         let ran = workspace.run(&format!("converge --out {out}"));
-        assert_eq!((ran.code, ran.stdout.as_str()), (1, ""), "{out}");
-        assert!(ran.stderr.contains(out) && ran.stderr.contains("cannot be written"), "{out}");
+        assert_eq!((ran.code, ran.stdout.as_str()), (code, ""), "{out}");
+        assert!(ran.stderr.contains(out) && ran.stderr.contains(why), "{out}");
     }
     assert_eq!(workspace.names(), ["file"]);
 }
