@@ -3,10 +3,8 @@
 //! The boundaries are traced in a narrow window around the stiffness, and solved for at it; those of another model are bisected
 //! between samples.
 
-use stickslip_model::Contact;
-use stickslip_model::regularized::{self, Phase, Regularized};
-use stickslip_solver::{Dop853, Options, Start};
-use stickslip_tracer::{Family, HybridFamily, Point, Problem, TraceOptions, Window, trace};
+use stickslip::collisions::CollisionPlane;
+use stickslip_tracer::{Family, Point, TraceOptions, trace};
 
 use super::search::change;
 use super::subject::{Model, Subject, geometric};
@@ -15,7 +13,7 @@ use crate::error::Failure;
 /// Half the window's width in ln κ.
 const REACH: f64 = 0.05;
 /// The window in ψ; below it a sample tells that nothing changes.
-const PSI: [f64; 2] = [1e-3, 2.5];
+const PSI: (f64, f64) = (1e-3, 2.5);
 /// That sample.
 const SMALL_PSI: f64 = 1e-6;
 /// Collisions in each stretch that must have the same switches.
@@ -88,7 +86,7 @@ pub fn line(subject: &Subject, kappa: f64) -> Result<Line, String> {
         Model::Reset => ("traced and solved for", traced(kappa)?),
         Model::UnresetSpring => ("bisected between 4000 samples", bisected(subject, kappa)?),
     };
-    let ends = [&[0.0], boundaries.as_slice(), &[PSI[1]]].concat();
+    let ends = [&[0.0], boundaries.as_slice(), &[PSI.1]].concat();
     let stretches = ends.windows(2).map(|ends| stretch(subject, kappa, ends[0], ends[1]));
     let stretches = stretches.collect::<Result<Vec<_>, _>>()?;
     match stretches.windows(2).find(|pair| pair[0].itinerary == pair[1].itinerary) {
@@ -130,19 +128,11 @@ fn stretch(subject: &Subject, kappa: f64, low: f64, high: f64) -> Result<Stretch
 
 /// The ψ of all boundaries at `kappa`, in order.
 fn traced(kappa: f64) -> Result<Vec<f64>, String> {
-    let options = Options {
-        rtol: 1e-14,
-        atol: 1e-14,
-        first_step: Some(0.1),
-        max_step: 0.1,
-        ..Options::default()
-    };
-    let family = HybridFamily { problem: Collisions, method: Dop853, options, end: f64::INFINITY };
-    let x = kappa.ln();
-    let [low, high] = PSI.map(f64::ln_1p);
-    let window = Window { low: Point::new(x - REACH, low), high: Point::new(x + REACH, high) };
-    let network =
-        trace(&family, &window, &TraceOptions::default()).map_err(|error| error.to_string())?;
+    let window = (kappa * (-REACH).exp(), kappa * REACH.exp());
+    let plane = CollisionPlane::new(window, PSI, 0.0).map_err(|error| error.to_string())?;
+    let (family, x) = (plane.family(), kappa.ln());
+    let network = trace(&family, &plane.window(), &TraceOptions::default())
+        .map_err(|error| error.to_string())?;
     if let Some(open) = network.unresolved.first() {
         return Err(format!("the boundaries at κ = {kappa} are in doubt: {open:?}"));
     }
@@ -169,7 +159,7 @@ fn traced(kappa: f64) -> Result<Vec<f64>, String> {
 /// The same from samples, for another model than the tracer's: what lies between two of them is missed.
 fn bisected(subject: &Subject, kappa: f64) -> Result<Vec<f64>, String> {
     let itinerary = |psi| subject.collide(kappa, psi, 0.0).map(|collision| collision.itinerary());
-    let psis: Vec<f64> = geometric(PSI[0], PSI[1], 4000).collect();
+    let psis: Vec<f64> = geometric(PSI.0, PSI.1, 4000).collect();
     let found = || -> Result<Vec<f64>, Failure> {
         let mut found = Vec::new();
         let mut before = itinerary(psis[0])?;
@@ -202,26 +192,6 @@ fn secant(value: impl Fn(f64) -> Option<f64>, guess: f64) -> Option<f64> {
     }
     // Steps of the size of a margin's rounding need not become smaller.
     ((at - last).abs() < 1e-12).then_some(at)
-}
-
-/// Collisions at the traced points (ln κ, ln(1 + ψ)).
-struct Collisions;
-
-/// The collision at `point`; the tracer also asks for places a little outside of the window.
-fn contact(point: &Point) -> Contact {
-    let psi = point.y.exp_m1().max(0.5 * PSI[0]);
-    // κ is that of the window, times e^{±0.001} at most, and ψ is positive.
-    Contact::new(point.x.exp(), psi, 0.0).expect("in range")
-}
-
-impl Problem<{ regularized::STATE }, { regularized::GUARDS }> for Collisions {
-    type System = Regularized;
-
-    fn at(&self, point: &Point) -> (Regularized, Start<Phase, { regularized::STATE }>) {
-        let contact = contact(point);
-        let system = Regularized::new(contact);
-        (system, Start { mode: Phase::first(&contact), s: 0.0, state: system.start() })
-    }
 }
 
 #[cfg(test)]
