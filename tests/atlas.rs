@@ -41,7 +41,7 @@ fn atlas(plane: &CollisionPlane, options: &TraceOptions) -> Atlas {
     let family = plane.family();
     let mut tracer = Tracer::new(&family, &plane.window(), options).expect("options in range");
     tracer.explore().expect("an atlas");
-    let network = tracer.into_network();
+    let network = tracer.network();
     assert!(network.unresolved.is_empty(), "{:?}", network.unresolved);
     let atlas = Subdivision::new(network.window, network.curves, network.vertices, 1e-9)
         .expect("a subdivision");
@@ -165,14 +165,14 @@ fn reference_boundaries_lie_on_traced_curves() {
         count += 1;
     }
     println!("{count} reference points, largest distance in ψ {largest:.1e}");
-    assert!(count == 26 && largest < 1e-11);
+    assert!(count == 26 && largest < 4e-12);
 }
 
 #[test]
 fn vertices_are_where_they_must_be() {
     // The corner of the top boundary, where ψ_g passes 2, and the cusp, where the stationary points of the guard merge: its place
     // is known to no more than the rounding of a guard that is flat there.
-    let known = [(0.5701023788418932873, 2.0, 1e-10), (1.568459328886909846, 1.0, 1e-6)];
+    let known = [(0.5701023788418932873, 2.0, 1e-10), (1.568459328886909846, 1.0, 1e-7)];
     for (kappa, psi, accuracy) in known {
         let place = CollisionPlane::point(kappa, psi);
         let nearest = ATLAS.vertices().iter().map(|vertex| (vertex.point - place).norm());
@@ -226,5 +226,5 @@ fn the_top_boundary_is_the_closed_form() {
         }
     }
     println!("{nodes} nodes, largest distance {largest:.1e}");
-    assert!(nodes > 100 && largest < 1e-12);
+    assert!(nodes > 100 && largest < 1e-13);
 }

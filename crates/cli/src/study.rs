@@ -75,7 +75,7 @@ pub struct Picture {
 
 impl Cell {
     /// As it stands in JSON; NaN becomes null.
-    fn json(&self) -> Value {
+    pub fn json(&self) -> Value {
         match self {
             Self::Number(value) => Value::from(*value),
             Self::Count(count) => Value::from(*count),

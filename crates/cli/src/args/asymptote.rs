@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::shared;
 use crate::parameter::Parameter;
 use crate::range::Range;
 
@@ -25,7 +26,7 @@ pub struct AsymptoteArguments {
 
     /// Threads; 1 to 1024 [default: one for each core]; results do not depend on it
     #[arg(long, value_name = "N", help_heading = "Output", allow_hyphen_values = true)]
-    #[arg(value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(value_parser = shared::threads())]
     pub threads: Option<u16>,
 }
 

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::shared::{self, CollisionArguments};
 use crate::parameter::Parameter;
 
 /// Options of `converge`.
@@ -22,20 +23,9 @@ pub struct ConvergeArguments {
     #[arg(value_parser = |text: &str| Parameter::Psi.parse(text))]
     pub psi: Option<f64>,
 
-    /// Coefficient of friction μ, with --ratio; above 0 [default: 0.4]
-    #[arg(long, value_name = "M", help_heading = "Collision", allow_hyphen_values = true)]
-    #[arg(value_parser = |text: &str| Parameter::Mu.parse(text))]
-    pub mu: Option<f64>,
-
-    /// Tangential inertia α, with --ratio; above 0, at most 1 [default: 2/7, homogeneous spheres]
-    #[arg(long, value_name = "A", help_heading = "Collision", allow_hyphen_values = true)]
-    #[arg(value_parser = |text: &str| Parameter::Alpha.parse(text))]
-    pub alpha: Option<f64>,
-
-    /// Scaled damping a = A β^⅖ g_n^⅕ of the collision, or of all the usual ones; 0 or above [default: 0]
-    #[arg(long, value_name = "D", help_heading = "Collision", allow_hyphen_values = true)]
-    #[arg(value_parser = |text: &str| Parameter::Damping.parse(text))]
-    pub damping: Option<f64>,
+    /// What the collision has beside κ and ψ; damping is also that of the usual ones.
+    #[command(flatten, next_help_heading = "Collision")]
+    pub collision: CollisionArguments,
 
     /// Directory for the files of the study, made if it is missing
     #[arg(long, value_name = "DIR", help_heading = "Output")]
@@ -43,7 +33,7 @@ pub struct ConvergeArguments {
 
     /// Threads; 1 to 1024 [default: one for each core]; results other than times do not depend on it
     #[arg(long, value_name = "N", help_heading = "Output", allow_hyphen_values = true)]
-    #[arg(value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(value_parser = shared::threads())]
     pub threads: Option<u16>,
 }
 
@@ -55,7 +45,7 @@ coordinates and in plain time, with switches located and with steps that run ove
 
 Errors are those of the final tangential velocity and of all switch times, against the exact solution or, \
 with damping, against dop853 at a tolerance of 1e-15. Without --kappa they are root mean squares over 38 \
-collisions: κ = 18 and 63, ψ = 0.1, 0.2, … 1.9, with two to eight switches.";
+collisions: κ = 18 and 63, ψ = 0.1, 0.2, … 1.9, with two to eight switches; --damping is then that of all.";
 
 /// What follows it.
 pub const EXAMPLES: &str = "\

@@ -1,7 +1,7 @@
 //! The window of an atlas, and the coordinates in which it is traced.
 
 use stickslip::collisions::CollisionPlane;
-use stickslip_model::{Contact, InvalidParameter};
+use stickslip_model::InvalidParameter;
 use stickslip_tracer::{Point, Window};
 
 use crate::range::Range;
@@ -93,13 +93,12 @@ impl Frame {
         [snap(kappa, self.kappa), snap(psi, self.psi)]
     }
 
-    /// The collision at a traced point. The tracer also asks for places a little outside of the window, where ψ may not be
-    /// positive.
+    /// The collisions in the window.
     ///
     /// # Errors
-    /// κ has left the range of numbers.
-    pub fn contact(&self, point: &Point) -> Result<Contact, InvalidParameter> {
-        let [kappa, psi] = scaled(point);
-        Contact::new(kappa, psi.max(0.5 * self.psi.low), self.damping)
+    /// No collision has these values.
+    pub fn plane(&self) -> Result<CollisionPlane, InvalidParameter> {
+        let Self { kappa, psi, damping, .. } = *self;
+        CollisionPlane::new((kappa.low, kappa.high), (psi.low, psi.high), damping)
     }
 }

@@ -5,8 +5,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use stickslip::collisions::CollisionPlane;
-use stickslip_model::Contact;
+use stickslip_model::{Contact, InvalidParameter};
 use stickslip_solver::Margin;
 use stickslip_tracer::{
     Curve, Extremum, FamilyError, Network, Node, Point, Subdivision, TraceError, TraceOptions,
@@ -140,11 +139,10 @@ const ROUNDS: u64 = 8;
 /// # Errors
 /// A run fails, or the curves make no regions.
 pub fn make(pool: &ThreadPool, frame: Frame, tolerance: f64) -> Result<Made, Failure> {
-    let window = frame.window();
-    let any = frame.contact(&window.low).map_err(|error| Failure::Trace(error.to_string()))?;
-    let Frame { kappa, psi, damping, .. } = frame;
-    let plane = CollisionPlane::new((kappa.low, kappa.high), (psi.low, psi.high), damping)
-        .map_err(|error| Failure::Trace(error.to_string()))?;
+    let invalid = |error: InvalidParameter| Failure::Trace(error.to_string());
+    let plane = frame.plane().map_err(invalid)?;
+    let window = plane.window();
+    let any = plane.contact(&window.low).map_err(invalid)?;
     let family = plane.family();
     let options =
         TraceOptions { interpolation: frame.interpolation(tolerance), ..TraceOptions::default() };

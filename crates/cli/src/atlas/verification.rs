@@ -158,7 +158,8 @@ impl Report {
 /// # Errors
 /// Why it cannot be computed.
 pub fn itinerary(frame: &Frame, point: &Point) -> Result<String, String> {
-    let contact = frame.contact(point).map_err(|error| error.to_string())?;
+    let contact = frame.plane().and_then(|plane| plane.contact(point));
+    let contact = contact.map_err(|error| error.to_string())?;
     if frame.damping == 0.0 {
         return exact::collide(contact).map(|c| c.itinerary()).map_err(|e| e.to_string());
     }

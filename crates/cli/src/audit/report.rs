@@ -90,14 +90,10 @@ impl Audit {
     fn json(&self) -> Value {
         let statements = self.statements.iter().map(|statement| {
             let Statement { number, paraphrase, place, finding } = statement;
-            let evidence = finding.evidence.iter().map(|(name, value)| {
-                let value = match value {
-                    Cell::Number(number) => json!(number),
-                    Cell::Count(count) => json!(count),
-                    Cell::Text(text) => json!(text),
-                };
-                json!({ "name": name, "value": value })
-            });
+            let evidence = finding
+                .evidence
+                .iter()
+                .map(|(name, value)| json!({ "name": name, "value": value.json() }));
             json!({
                 "number": number,
                 "statement": paraphrase,

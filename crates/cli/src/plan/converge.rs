@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use stickslip_model::Contact;
 
-use crate::args::ConvergeArguments;
+use crate::args::{CollisionArguments, ConvergeArguments};
 use crate::error::Failure;
 use crate::plan::explain;
 use crate::recipe::{Given, Recipe};
@@ -37,7 +37,8 @@ impl ConvergePlan {
     /// # Errors
     /// [`Failure::Usage`] says which options do not go together.
     pub fn new(arguments: &ConvergeArguments) -> Result<Self, Failure> {
-        let ConvergeArguments { kappa, psi, ratio, mu, alpha, damping, .. } = *arguments;
+        let ConvergeArguments { kappa, psi, ratio, collision, .. } = *arguments;
+        let CollisionArguments { mu, alpha, damping } = collision;
         let contacts = if [kappa, psi, ratio, mu, alpha].iter().all(Option::is_none) {
             usual(damping.unwrap_or(0.0))?
         } else {

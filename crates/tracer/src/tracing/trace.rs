@@ -8,7 +8,7 @@ use crate::tracing::branch::{Branch, End, SHORTEST, Seed, SeedOf, Special};
 use crate::tracing::corrector::{correct, crossing};
 use crate::tracing::extrema::{Extremum, extrema};
 use crate::tracing::island::islands;
-use crate::tracing::network::{Builder, NetworkOf, TraceStatistics, Unresolved};
+use crate::tracing::network::{Builder, NetworkOf, Unresolved};
 use crate::tracing::runs::{Runs, Traced};
 use crate::tracing::seed::{Change, GridPlace, bisect, holds, identify};
 
@@ -23,7 +23,7 @@ pub fn trace<F: Family>(
 ) -> Result<NetworkOf<F>, TraceError<F::Error>> {
     let mut tracer = Tracer::new(family, window, options)?;
     tracer.explore()?;
-    Ok(tracer.into_network())
+    Ok(tracer.network())
 }
 
 /// Looks for boundaries in a window, and keeps what it has found, so that it can be told to look again.
@@ -88,15 +88,6 @@ impl<'f, F: Family> Tracer<'f, F> {
     pub fn network(&self) -> NetworkOf<F> {
         let mut network = self.builder.network.clone();
         [network.statistics.free_runs, network.statistics.prescribed_runs] = self.runs.counts();
-        network
-    }
-
-    /// What has been found.
-    #[must_use]
-    pub fn into_network(self) -> NetworkOf<F> {
-        let [free_runs, prescribed_runs] = self.runs.counts();
-        let mut network = self.builder.network;
-        network.statistics = TraceStatistics { free_runs, prescribed_runs, ..network.statistics };
         network
     }
 
