@@ -140,6 +140,14 @@ impl<M: Method> Collider<M> {
         Ok(run.statistics)
     }
 
+    pub(crate) fn method(&self) -> M {
+        self.method
+    }
+
+    pub(crate) fn options(&self) -> &Options {
+        &self.options
+    }
+
     /// Integrates one collision and keeps its course in time, up to [`History::MOST_STEPS`] steps of it.
     ///
     /// # Errors

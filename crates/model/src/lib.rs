@@ -9,7 +9,7 @@
 //! Start reading in [`collision`]; then [`regularized`] (the equations), [`exact`] (the closed form),
 //! [`history`] (its course in time), [`scaling`] (SI units), [`bodies`] and [`encounter`] (spheres in three dimensions),
 //! [`normal`], [`coulomb`] and [`largest`] (formulas to compare with), [`stiff`] and [`inner`] (the limit of stiff springs), [`plain_time`] and
-//! [`convergence`] (the equations as the paper has them, for studies), [`unreset`] (another model of the spring).
+//! [`convergence`] (the equations as the paper has them, for studies), [`sensitivity`] (derivatives), [`unreset`] (another model of the spring).
 //!
 //! ```
 //! use stickslip_model::{Collider, Contact, exact};
@@ -33,6 +33,7 @@ pub mod exact;
 pub mod history;
 pub mod inner;
 pub mod largest;
+mod law;
 pub mod normal;
 mod observed;
 mod outcome;
@@ -43,6 +44,7 @@ mod refine;
 pub mod regularized;
 mod reversals;
 pub mod scaling;
+pub mod sensitivity;
 pub mod stiff;
 pub mod unreset;
 
@@ -56,3 +58,4 @@ pub use nalgebra::Vector3;
 pub use observed::Observed;
 pub use outcome::{EnergyAccount, ForceSwitch, Outcome};
 pub use scaling::{Impact, Pair, Surface};
+pub use sensitivity::{Derived, Sensitivity};

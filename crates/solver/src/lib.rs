@@ -8,7 +8,7 @@
 //!
 //! Start reading in [`hybrid`]; then, in this order: `event` (one step and its guards), `quick` and `isolate`
 //! (the decision), `locate` (the refinement), [`method`], [`Dopri5`] and [`Dop853`], `control`, `clock`, [`smooth`],
-//! [`trajectory`], [`mod@margin`], `unlocated` and `order` (what is lost without all this, and how
+//! [`trajectory`], [`mod@margin`], [`sensitivity`], `unlocated` and `order` (what is lost without all this, and how
 //! orders are measured).
 //!
 //! ```
@@ -57,6 +57,7 @@ pub mod method;
 mod options;
 mod order;
 mod quick;
+pub mod sensitivity;
 pub mod smooth;
 pub mod trajectory;
 mod unlocated;
@@ -72,6 +73,7 @@ pub use margin::{Exit, Hint, Margin, Margins, NearMiss, Place, margin, margins};
 pub use method::{Dense, Method, State, Step, Tableau, Trial};
 pub use options::{InvalidOption, Options, StepSize};
 pub use order::{Order, fit_order};
+pub use sensitivity::{Change, Differentiable, Sensitivities, SwitchSensitivity, sensitivities};
 pub use smooth::integrate;
 pub use trajectory::{Recorder, Segment, Trajectory};
 pub use unlocated::run_over_switches;
