@@ -8,7 +8,7 @@
 //!
 //! Start reading in [`hybrid`]; then, in this order: `event` (one step and its guards), `quick` and `isolate`
 //! (the decision), `locate` (the refinement), [`method`], [`Dopri5`] and [`Dop853`], `control`, `clock`, [`smooth`],
-//! [`trajectory`], [`mod@margin`], [`sensitivity`], `unlocated` and `order` (what is lost without all this, and how
+//! [`trajectory`], [`mod@margin`] and `prescribed`, [`sensitivity`], `unlocated` and `order` (what is lost without all this, and how
 //! orders are measured).
 //!
 //! ```
@@ -56,6 +56,7 @@ pub mod margin;
 pub mod method;
 mod options;
 mod order;
+mod prescribed;
 mod quick;
 pub mod sensitivity;
 pub mod smooth;
