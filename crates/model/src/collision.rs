@@ -170,11 +170,14 @@ impl Collision {
         }
     }
 
-    /// Forgets everything but its memory.
+    /// Forgets everything but its memory, which stays where it is.
     pub(crate) fn reset(&mut self, contact: Contact) {
-        let mut switches = std::mem::take(&mut self.switches);
-        switches.clear();
-        *self = Self { switches, ..Self::before(contact) };
+        self.contact = contact;
+        (self.eps_n, self.final_velocity, self.contact_time) = (f64::NAN, f64::NAN, f64::NAN);
+        self.start = Phase::first(&contact).regime;
+        self.switches.clear();
+        self.reversals = 0;
+        self.energy = EnergyLedger::default();
     }
 }
 
