@@ -7,13 +7,25 @@ use stickslip_solver::{
 
 use crate::family::{Family, FreeRun, Point};
 
-/// A hybrid system at every point of a parameter plane.
+/// A hybrid system at every point of a parameter plane: a function from points to systems and starts of their runs is one.
 pub trait Problem<const N: usize, const G: usize> {
     /// The system.
     type System: HybridSystem<N, G>;
 
     /// The system at `point`, and where its run starts.
     fn at(&self, point: &Point) -> (Self::System, Start<ModeOf<Self, N, G>, N>);
+}
+
+impl<F, S, const N: usize, const G: usize> Problem<N, G> for F
+where
+    F: Fn(&Point) -> (S, Start<S::Mode, N>),
+    S: HybridSystem<N, G>,
+{
+    type System = S;
+
+    fn at(&self, point: &Point) -> (S, Start<S::Mode, N>) {
+        self(point)
+    }
 }
 
 /// A mode of a problem's system.
