@@ -72,7 +72,7 @@ pub enum Place {
         /// Its number in its phase, from 0, where it was found.
         number: usize,
     },
-    /// Where a terminal guard ends the run.
+    /// Where the run ends, at a terminal guard or at the end of its span.
     End,
 }
 
@@ -279,9 +279,8 @@ where
         return Ok(None);
     }
     let mut seen = watching.seen;
-    if let Outcome::EndedByGuard { .. } = run.outcome
-        && run.mode.part != Part::Done
-    {
+    let ended = matches!(run.outcome, Outcome::EndedByGuard { .. } | Outcome::ReachedEnd);
+    if ended && run.mode.part != Part::Done {
         let value = prescribed.value(run.mode.mode, guard, run.s, &run.state);
         seen.end = Some(Extremum { s: run.s, value });
     }
