@@ -41,7 +41,8 @@ pub struct HybridFamily<P, M, const N: usize, const G: usize> {
     pub method: M,
     /// Options of every run. Margins are as accurate as these make the runs.
     pub options: Options,
-    /// Where every run ends, if no terminal guard ends it before.
+    /// Where every run ends, if no terminal guard ends it before. Runs that stop before for another reason, as at an accumulation of
+    /// switches, are errors: the window or the end has to be such that there are none.
     pub end: f64,
 }
 
@@ -62,7 +63,7 @@ pub enum FamilyErrorKind {
     #[error(transparent)]
     Run(#[from] RunError),
     /// The run did not come to its end.
-    #[error("the run did not come to its end: {0:?}")]
+    #[error("the run did not come to its end, nor to a guard that ends it: {0:?}")]
     Unfinished(Outcome),
 }
 

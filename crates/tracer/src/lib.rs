@@ -1,7 +1,7 @@
 //! Curves in a parameter plane on which the switching of a piecewise-smooth ODE changes, and the subdivision of the plane
 //! that they make.
 //!
-//! A system of the solver, given as a function of two parameters, is traced; what is labelled by the guards that fire are regions:
+//! A system of the solver, given as a function of two parameters, is traced; regions are labelled by the guards that fire in them:
 //!
 //! ```
 //! use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
@@ -38,18 +38,19 @@
 //! }
 //!
 //! let options = Options::with_tolerance(1e-14);
-//! let family = HybridFamily { problem: drop, method: Dop853, options, end: 4.0 };
-//! let window = Window { low: Point::new(0.5, 0.3), high: Point::new(2.0, 0.7) };
+//! let family = HybridFamily { problem: drop, method: Dop853, options, end: 2.4 };
+//! let window = Window { low: Point::new(0.5, 0.5), high: Point::new(2.0, 0.8) };
 //! let network = trace(&family, &window, &TraceOptions::default())?;
+//! assert!(network.unresolved.is_empty());
 //!
-//! // The second bounce is at √(2x)(1 + 2y): where that is 4, a boundary passes.
+//! // The second bounce is at √(2x)(1 + 2y): where that is 2.4, a boundary passes.
 //! let second = |point: &Point| (2.0 * point.x).sqrt() * (1.0 + 2.0 * point.y);
-//! let on_second = |point: &Point| (second(point) - 4.0).abs() < 1e-10;
-//! assert!(network.curves.iter().any(|curve| curve.nodes.iter().all(|node| on_second(&node.point))));
+//! let on_second = |point: &Point| (second(point) - 2.4).abs() < 1e-11;
+//! assert!(network.curves[0].nodes.iter().all(|node| on_second(&node.point)));
 //!
 //! let regions = Subdivision::new(window, network.curves, network.vertices, 1e-9)?;
-//! let Location::Region(region) = regions.locate(&Point::new(1.0, 0.5)) else { panic!("a boundary") };
-//! // The guards that fire in this region before time 4: those of two bounces.
+//! let Location::Region(region) = regions.locate(&Point::new(0.6, 0.55)) else { panic!("a boundary") };
+//! // The guards that fire in this region before the end: those of two bounces.
 //! assert_eq!(regions.regions()[region].label, Some(vec![0, 0]));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
