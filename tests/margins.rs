@@ -124,3 +124,12 @@ fn the_end_of_the_span_leaves_a_margin() {
         free.near_misses.iter().any(|miss| miss.margin.place == Place::End && miss.value > 0.0)
     );
 }
+
+/// Phases that another one follows have no end of the run.
+#[test]
+fn only_the_last_phase_leaves_a_margin_at_the_end() {
+    let run = free(63.0, 0.5);
+    let at_end = run.near_misses.iter().filter(|miss| miss.margin.place == Place::End);
+    let phases: Vec<usize> = at_end.map(|miss| miss.margin.exits.len()).collect();
+    assert_eq!((run.fired.len(), &phases[..]), (6, &[6][..]));
+}

@@ -170,7 +170,7 @@ where
                 add(Place::Minimum { near: Hint(minimum.s), number }, minimum);
                 after = if exit == Some(guard) { 0.5 * (minimum.s + exited) } else { after };
             }
-            if let Some(at_end) = found.end.filter(|_| exit != Some(guard)) {
+            if let Some(at_end) = found.end.filter(|_| lasts && exit != Some(guard)) {
                 add(Place::End, at_end);
             }
         }
