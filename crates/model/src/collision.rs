@@ -5,7 +5,7 @@ use stickslip_solver::{
     run,
 };
 
-use crate::contact::{Collision, Contact, Regime, Switch};
+use crate::contact::{Collision, Contact, Regime, Switch, Switches};
 use crate::energy::EnergyLedger;
 use crate::history::History;
 use crate::regularized::{DAMPING, END, Phase, Regularized, STATE, T, U, V};
@@ -82,7 +82,10 @@ impl<M: Method> Collider<M> {
         Ok(collision)
     }
 
-    /// The same into a collision whose memory is used again, so that a sweep allocates nothing.
+    /// The same into a collision whose memory is used again.
+    ///
+    /// That saves a copy, and memory for collisions with more than [`FEW_SWITCHES`](crate::FEW_SWITCHES) switches; others allocate
+    /// nothing either way.
     ///
     /// # Errors
     /// As [`Self::collide`]; `collision` then holds what was found so far.
@@ -92,11 +95,7 @@ impl<M: Method> Collider<M> {
         collision: &mut Collision,
     ) -> Result<Statistics, CollisionError> {
         let system = Regularized::new(contact);
-        *collision = Collision {
-            switches: std::mem::take(&mut collision.switches),
-            ..Collision::before(contact)
-        };
-        collision.switches.clear();
+        collision.reset(contact);
         let phase = Phase::first(&contact);
         let start = Start { mode: phase, s: 0.0, state: system.start() };
         let mut account = Account {
@@ -173,10 +172,20 @@ impl Collision {
             final_velocity: f64::NAN,
             contact_time: f64::NAN,
             start: Phase::first(&contact).regime,
-            switches: Vec::new(),
+            switches: Switches::new(),
             reversals: 0,
             energy: EnergyLedger::default(),
         }
+    }
+
+    /// Forgets everything but its memory, which stays where it is.
+    pub(crate) fn reset(&mut self, contact: Contact) {
+        self.contact = contact;
+        (self.eps_n, self.final_velocity, self.contact_time) = (f64::NAN, f64::NAN, f64::NAN);
+        self.start = Phase::first(&contact).regime;
+        self.switches.clear();
+        self.reversals = 0;
+        self.energy = EnergyLedger::default();
     }
 }
 

@@ -50,7 +50,9 @@ pub mod unreset;
 
 pub use bodies::{Body, Elasticity, Material, Sphere, Wall};
 pub use collision::{Collider, CollisionError};
-pub use contact::{Collision, Contact, InvalidParameter, Regime, Side, Switch};
+pub use contact::{
+    Collision, Contact, FEW_SWITCHES, InvalidParameter, Regime, Side, Switch, Switches,
+};
 pub use encounter::{Encounter, EncounterError, Motion, Plane};
 pub use energy::EnergyLedger;
 pub use history::{History, PhaseHistory, Snapshot};

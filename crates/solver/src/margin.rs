@@ -67,7 +67,7 @@ pub enum Place {
         /// Its number in its phase, from 0, where it was found.
         number: usize,
     },
-    /// Where a terminal guard ends the run.
+    /// Where the run ends, at a terminal guard or at the end of its span.
     End,
 }
 
@@ -162,7 +162,7 @@ where
                 add(Place::Minimum { near: Hint(minimum.s), number }, minimum);
                 after = if exit == Some(guard) { 0.5 * (minimum.s + exited) } else { after };
             }
-            if let Some(at_end) = found.end.filter(|_| exit != Some(guard)) {
+            if let Some(at_end) = found.end.filter(|_| lasts && exit != Some(guard)) {
                 add(Place::End, at_end);
             }
         }

@@ -62,9 +62,8 @@ where
         return Ok(None);
     }
     let mut seen = watching.seen;
-    if let Outcome::EndedByGuard { .. } = run.outcome
-        && run.mode.part != Part::Done
-    {
+    let ended = matches!(run.outcome, Outcome::EndedByGuard { .. } | Outcome::ReachedEnd);
+    if ended && run.mode.part != Part::Done {
         let value = prescribed.value(run.mode.mode, guard, run.s, &run.state);
         seen.end = Some(Extremum { s: run.s, value });
     }
