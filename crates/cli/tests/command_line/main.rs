@@ -5,9 +5,11 @@ mod atlas;
 mod audit;
 mod batch;
 mod batch_failures;
+mod completions;
 mod converge;
 mod impact;
 mod impact_failures;
+mod man;
 mod map;
 mod map_failures;
 #[cfg(unix)]
@@ -17,6 +19,7 @@ mod pictures;
 mod point;
 mod reproduce;
 mod usage;
+mod version;
 
 use std::fs;
 use std::path::{Path, PathBuf};
