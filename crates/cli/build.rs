@@ -24,7 +24,8 @@ fn main() {
     tell("TARGET", &variable("TARGET"));
     tell("FEATURES", &variable("CARGO_CFG_TARGET_FEATURE").replace(',', " "));
     let flags = variable("CARGO_ENCODED_RUSTFLAGS");
-    let processor = flags.split('\x1f').filter_map(|flag| flag.split_once("target-cpu=")).last();
+    let processor =
+        flags.split('\x1f').filter_map(|flag| flag.split_once("target-cpu=")).next_back();
     tell("PROCESSOR", processor.map_or("least of the target", |(_, name)| name));
     tell("COMPILER", &output(&variable("RUSTC"), &["--version"]).unwrap_or_default());
     tell("PROFILE", &format!("{}, opt-level {}", variable("PROFILE"), variable("OPT_LEVEL")));

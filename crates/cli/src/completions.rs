@@ -11,7 +11,7 @@ use crate::error::Failure;
 ///
 /// # Errors
 /// Standard output cannot be written.
-pub fn run(arguments: &CompletionsArguments) -> Result<(), Failure> {
+pub fn run(arguments: CompletionsArguments) -> Result<(), Failure> {
     let mut script = Vec::new();
     let name = env!("CARGO_BIN_NAME");
     clap_complete::generate(arguments.shell, &mut Arguments::command(), name, &mut script);

@@ -86,7 +86,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             ReproducePlan::Page(plan) => reproduce::run(&plan),
             ReproducePlan::Statements(plan) => audit::print(&plan),
         },
-        Command::Completions(arguments) => completions::run(arguments),
+        Command::Completions(arguments) => completions::run(*arguments),
         Command::Man(arguments) => man::run(arguments),
     }
 }

@@ -56,3 +56,7 @@ pub use nalgebra::Vector3;
 pub use observed::Observed;
 pub use outcome::{EnergyAccount, ForceSwitch, Outcome};
 pub use scaling::{Impact, Pair, Surface};
+
+#[doc = include_str!("../README.md")]
+#[cfg(doctest)]
+pub struct Readme;

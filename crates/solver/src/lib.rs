@@ -75,3 +75,7 @@ pub use order::{Order, fit_order};
 pub use smooth::integrate;
 pub use trajectory::{Recorder, Segment, Trajectory};
 pub use unlocated::run_over_switches;
+
+#[doc = include_str!("../README.md")]
+#[cfg(doctest)]
+pub struct Readme;
