@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
+use std::path::Path;
 
 use cargo_metadata::semver::Version;
 use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package, PackageId};
@@ -33,6 +34,10 @@ which fails where an expression cannot be met with licences that ask for nothing
 
 #[test]
 fn licences_are_accepted_and_listed() {
+    if !Path::new(env!("CARGO_MANIFEST_DIR")).join("crates").is_dir() {
+        // A published package has the facade alone, and with it another list.
+        return;
+    }
     let metadata = metadata();
     let shipped = shipped(&metadata);
     let mut lists = [BTreeMap::new(), BTreeMap::new()];

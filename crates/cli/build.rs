@@ -1,4 +1,5 @@
 //! Tells the program what it is made from and for; `--version` shows it. The same sources, target and compiler give the same text.
+//! Tells the process tests whether the data that they read are there.
 
 use std::env;
 use std::fs;
@@ -18,6 +19,10 @@ const SOURCES: [&str; 7] = [
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rustc-check-cfg=cfg(in_repository)");
+    if Path::new("../../tests/data/README.md").exists() {
+        println!("cargo::rustc-cfg=in_repository");
+    }
     let variable = |name| env::var(name).unwrap_or_default();
     let commit = packaged_commit().or_else(repository_commit);
     tell("COMMIT", commit.as_deref().unwrap_or("not known"));
