@@ -34,7 +34,8 @@ fn crates_keep_to_the_arrows() {
         ("stickslip-model", "stickslip-solver"),
         ("stickslip-tracer", "stickslip-solver"),
     ];
-    assert!(edges.len() >= 6, "{edges:?}");
+    // As many are those of the facade, which a published package has alone.
+    assert!(edges.len() >= 3, "{edges:?}");
     for (from, to) in &edges {
         assert!(allowed.contains(&(from, to)), "{from} must not depend on {to}");
     }

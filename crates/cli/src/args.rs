@@ -1,9 +1,11 @@
 //! What may be typed: options with their syntax and ranges, and the help text.
 
 mod asymptote;
+mod completions;
 mod converge;
 mod impact;
 mod locate;
+mod man;
 mod map;
 mod method;
 mod reproduce;
@@ -16,11 +18,14 @@ use clap::{Parser, Subcommand, ValueEnum};
 
 use crate::figure::Target;
 use crate::parameter::Parameter;
+use crate::version;
 
 pub use asymptote::AsymptoteArguments;
+pub use completions::CompletionsArguments;
 pub use converge::ConvergeArguments;
 pub use impact::ImpactArguments;
 pub use locate::LocateArguments;
+pub use man::ManArguments;
 pub use map::MapArguments;
 pub use method::{Method, MethodArguments};
 pub use reproduce::{AuditFormat, ReproduceArguments};
@@ -29,7 +34,7 @@ pub use trace::TraceArguments;
 
 /// Collisions of frictional viscoelastic spheres, with every switch between sticking and sliding.
 #[derive(Debug, Parser)]
-#[command(name = "stickslip", version, after_help = EXIT_CODES)]
+#[command(name = "stickslip", version, long_version = version::long(), after_help = EXIT_CODES)]
 pub struct Arguments {
     /// What to do.
     #[command(subcommand)]
@@ -63,6 +68,12 @@ pub enum Command {
     /// Measure how errors fall with the step and the tolerance, and what they cost
     #[command(long_about = converge::ABOUT, after_long_help = converge::EXAMPLES)]
     Converge(ConvergeArguments),
+    /// Print a script that completes commands and options in a shell
+    #[command(after_long_help = completions::EXAMPLES)]
+    Completions(CompletionsArguments),
+    /// Print a manual page with all commands, or write a page for each
+    #[command(after_long_help = man::EXAMPLES)]
+    Man(ManArguments),
 }
 
 /// Options of `collide`.

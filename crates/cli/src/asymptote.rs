@@ -18,6 +18,7 @@ use stickslip_model::stiff::{self, BOUND_FACTOR, Excess};
 
 use crate::error::Failure;
 use crate::plan::AsymptotePlan;
+use crate::schema;
 use crate::study::{Cell, Study, Table};
 use fit::Fits;
 use points::{Lowest, Point, Restitution};
@@ -89,7 +90,7 @@ impl Measurement {
     fn study(&self) -> Study {
         let (findings, tables) = (self.findings(), self.tables());
         let mut json = json!({
-            "schema": "stickslip.asymptote/1",
+            "schema": schema::ASYMPTOTE,
             "inner_problem": {
                 "largest": self.peak.velocity,
                 "last_onset": self.peak.onset,

@@ -77,12 +77,21 @@ fn read<T>(path: &Path, make: impl FnOnce(Bodies) -> Result<T, String>) -> Resul
 
 #[cfg(test)]
 mod tests {
+    use serde_json::{Value, json};
     use stickslip_model::Material;
 
     use super::*;
 
-    fn example(name: &str) -> std::path::PathBuf {
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(name)
+    fn sphere(height_m: f64, velocity_m_per_s: [f64; 3]) -> Value {
+        json!({
+            "radius_m": 0.02,
+            "material": {"young_modulus_pa": 210e9, "poisson_ratio": 0.3, "density_kg_per_m3": 7850},
+            "motion": {
+                "position_m": [0, 0, height_m],
+                "velocity_m_per_s": velocity_m_per_s,
+                "spin_rad_per_s": [0, 0, 0],
+            },
+        })
     }
 
     #[test]
@@ -92,8 +101,19 @@ mod tests {
         let surface =
             Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e12, damping_time_s: 0.0 };
         let expected = Pair::equal_spheres(0.02, &steel, &surface).unwrap();
-        for name in ["steel_pair.json", "steel_spheres.json"] {
-            assert_eq!(read_pair(&example(name)).unwrap(), expected, "{name}");
+        let mut spheres = [sphere(0.04, [4.0, 0.0, -20.0]), sphere(0.0, [0.0; 3])];
+        for with_motion in [true, false] {
+            if !with_motion {
+                for sphere in &mut spheres {
+                    sphere.as_object_mut().unwrap().remove("motion").unwrap();
+                }
+            }
+            let surface = json!({
+                "friction": 0.4, "tangential_stiffness_kg_per_s2": 1e12, "damping_time_s": 0,
+            });
+            let file = tempfile::NamedTempFile::new().unwrap();
+            fs::write(&file, json!({"spheres": spheres, "surface": surface}).to_string()).unwrap();
+            assert_eq!(read_pair(file.path()).unwrap(), expected, "{with_motion}");
         }
     }
 }

@@ -17,6 +17,7 @@ use stickslip_model::convergence::{ReferenceError, reference};
 
 use crate::error::Failure;
 use crate::plan::ConvergePlan;
+use crate::schema;
 use crate::study::Study;
 use collisions::Accuracy;
 use series::{Row, Scheme, Series};
@@ -78,7 +79,7 @@ fn measure(references: &[Collision], progress: &ProgressBar) -> Vec<Series> {
 impl Measurement {
     fn study(&self) -> Study {
         let json = json!({
-            "schema": "stickslip.convergence/1",
+            "schema": schema::CONVERGENCE,
             "reference": self.reference(),
             "collisions": self.accuracies.iter().map(Accuracy::json).collect::<Vec<_>>(),
             "series": self.series.iter().map(Series::json).collect::<Vec<_>>(),

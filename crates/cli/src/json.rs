@@ -7,6 +7,7 @@ use stickslip_model::{Collision, EnergyLedger, Side};
 use stickslip_solver::Statistics;
 
 use crate::engine::Engine;
+use crate::schema;
 
 /// Writes `collision` as one JSON object and a line end.
 ///
@@ -100,7 +101,7 @@ impl Object {
     fn new(engine: &Engine, collision: &Collision, statistics: Option<&Statistics>) -> Self {
         let contact = &collision.contact;
         Self {
-            schema: "stickslip.collision/1",
+            schema: schema::COLLISION,
             parameters: Parameters {
                 kappa: contact.kappa(),
                 psi: contact.psi(),

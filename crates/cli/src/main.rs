@@ -2,7 +2,7 @@
 //! an exit code.
 //!
 //! Start reading here; then, in this order: `args` (what may be typed), `plan` (what it means),
-//! `collide`, `batch`, `impact`, `map`, `atlas`, `converge`, `asymptote`, `audit` and `reproduce` (doing it), `input`, `bodies` and
+//! `collide`, `batch`, `impact`, `map`, `atlas`, `converge`, `asymptote`, `audit` and `reproduce` (doing it), `completions`, `man` and `version` (the program about itself), `input`, `bodies` and
 //! `json_input` (files read), `table`, `json`, `rows`, `figure` and `output` (results written).
 
 mod args;
@@ -12,6 +12,7 @@ mod audit;
 mod batch;
 mod bodies;
 mod collide;
+mod completions;
 mod converge;
 mod engine;
 mod error;
@@ -20,6 +21,7 @@ mod impact;
 mod input;
 mod json;
 mod json_input;
+mod man;
 mod map;
 mod number;
 mod output;
@@ -29,8 +31,10 @@ mod range;
 mod recipe;
 mod reproduce;
 mod rows;
+mod schema;
 mod study;
 mod table;
+mod version;
 
 use std::process::ExitCode;
 
@@ -82,5 +86,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             ReproducePlan::Page(plan) => reproduce::run(&plan),
             ReproducePlan::Statements(plan) => audit::print(&plan),
         },
+        Command::Completions(arguments) => completions::run(*arguments),
+        Command::Man(arguments) => man::run(arguments),
     }
 }

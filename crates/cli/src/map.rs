@@ -27,6 +27,7 @@ use crate::error::Failure;
 use crate::figure::{Target, Unpublished};
 use crate::output::OutputFile;
 use crate::plan::{MapFormat, MapPlan};
+use crate::version;
 
 pub use plane::{Axis, Coordinates, Plane, Quantity};
 use results::Results;
@@ -92,9 +93,10 @@ impl MapPlan {
         };
         // Digits that read back as the same numbers are as good as their bits.
         let description = format!(
-            "program: {} {}, tiles 1\n{plane}method: {}{method}\npoints a tile: {tile_points}\n",
+            "program: {} {}, {}, tiles 1\n{plane}method: {}{method}\npoints a tile: {tile_points}\n",
             env!("CARGO_BIN_NAME"),
             env!("CARGO_PKG_VERSION"),
+            version::build(),
             self.engine.name(),
         );
         Task { description, points: plane.points(), tile_points }

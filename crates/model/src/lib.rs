@@ -61,3 +61,7 @@ pub use observed::Observed;
 pub use outcome::{EnergyAccount, ForceSwitch, Outcome};
 pub use scaling::{Impact, Pair, Surface};
 pub use sensitivity::{Derived, Sensitivity};
+
+#[doc = include_str!("../README.md")]
+#[cfg(doctest)]
+pub struct Readme;

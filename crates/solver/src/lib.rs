@@ -97,3 +97,7 @@ pub use sensitivity::{Change, Differentiable, Sensitivities, SwitchSensitivity, 
 pub use smooth::integrate;
 pub use trajectory::{Recorder, Segment, Trajectory};
 pub use unlocated::run_over_switches;
+
+#[doc = include_str!("../README.md")]
+#[cfg(doctest)]
+pub struct Readme;

@@ -13,6 +13,10 @@ pub const MAX_STAGES: usize = 16;
 /// They are nodes of Dormand–Prince 8(5,3) whose stages are of order 4: their errors are of fifth order in h.
 pub const INTERIOR_NODES: [f64; 4] = [1.0 / 4.0, 1.0 / 3.0, 3.0 / 5.0, 6.0 / 7.0];
 
+/// Whether steps of this build round a product and the sum it goes into once, together: where the processor that it is built for
+/// has the instruction. The last digits of results depend on it.
+pub const FUSED_PRODUCTS: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
+
 /// Coefficients of an embedded explicit Runge–Kutta pair with a continuous extension.
 ///
 /// Row `i` of `a` holds the weights of stage `i`; rows from `stages` on belong to the dense output,
@@ -273,7 +277,7 @@ fn combine<const N: usize>(
 /// sum + factor·k, rounded once where the processor does that in one instruction: half the arithmetic of a step.
 #[inline(always)]
 fn add_multiple<const N: usize>(sum: &State<N>, k: &State<N>, factor: f64) -> State<N> {
-    if cfg!(any(target_feature = "fma", target_arch = "aarch64")) {
+    if FUSED_PRODUCTS {
         State::from_fn(|i, _| k[i].mul_add(factor, sum[i]))
     } else {
         sum + k * factor

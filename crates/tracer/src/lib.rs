@@ -1,6 +1,11 @@
 //! Curves in a parameter plane on which the switching of a piecewise-smooth ODE changes, and the subdivision of the plane
 //! that they make.
 //!
+//! What is traced is a [`Family`]: at each point of the plane a run has a label, its itinerary, and leaves margins, one of which vanishes where the
+//! label changes. A [`HybridFamily`] makes one of a hybrid system of `stickslip_solver` that depends on two parameters. [`trace`] finds
+//! the boundaries in a [`Window`] and follows them between their vertices; a [`Subdivision`] answers what lies between them, and
+//! [`verify`] asks runs at random places whether it is true.
+//!
 //! A system of the solver, given as a function of two parameters, is traced; regions are labelled by the guards that fire in them:
 //!
 //! ```
@@ -87,3 +92,7 @@ pub use tracing::extrema::Extremum;
 pub use tracing::network::{Network, NetworkOf, TraceStatistics, Unresolved};
 pub use tracing::runs::Runs;
 pub use tracing::trace::{Tracer, trace};
+
+#[doc = include_str!("../README.md")]
+#[cfg(doctest)]
+pub struct Readme;

@@ -7,9 +7,7 @@ use super::boundary::{Kind, in_order};
 use super::frame::scaled;
 use super::verification::Report;
 use super::{Atlas, switch_count};
-
-/// Name and version of the layout.
-pub const SCHEMA: &str = "stickslip.atlas/1";
+use crate::schema;
 
 /// An atlas as it is written.
 #[derive(Debug, Serialize, Deserialize)]
@@ -161,7 +159,7 @@ impl Document {
         });
         let boundaries = map.curves().iter().enumerate();
         Self {
-            schema: SCHEMA.to_owned(),
+            schema: schema::ATLAS.to_owned(),
             window: WindowFields {
                 kappa: [frame.kappa.low, frame.kappa.high],
                 psi: [frame.psi.low, frame.psi.high],

@@ -7,12 +7,13 @@ use std::path::Path;
 use stickslip_tracer::{Curve, Location, Node, Point, Subdivision, Vertex};
 
 use super::boundary::{Kind, in_order};
-use super::document::{BoundaryFields, Document, SCHEMA, Switching, WindowFields};
+use super::document::{BoundaryFields, Document, Switching, WindowFields};
 use super::frame::traced;
 use super::{Atlas, Frame, switch_count};
 use crate::error::Failure;
 use crate::json_input;
 use crate::range::Range;
+use crate::schema::ATLAS;
 
 impl Atlas {
     /// Reads `path`.
@@ -23,9 +24,9 @@ impl Atlas {
         let unusable = |reason: String| Failure::input(path, reason);
         let text = fs::read(path).map_err(|error| unusable(format!("cannot be read: {error}")))?;
         let schema: Schema = json_input::parse(&text).map_err(unusable)?;
-        if schema.schema != SCHEMA {
+        if schema.schema != ATLAS {
             return Err(unusable(format!(
-                "schema is {:?}; accepted is {SCHEMA:?}, which stickslip trace writes",
+                "schema is {:?}; accepted is {ATLAS:?}, which stickslip trace writes",
                 schema.schema
             )));
         }

@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use super::{Audit, Statement};
+use crate::schema;
 use crate::study::{Cell, Column, Study, Table};
 
 impl Audit {
@@ -106,7 +107,7 @@ impl Audit {
             })
         });
         json!({
-            "schema": "stickslip.audit/1",
+            "schema": schema::AUDIT,
             "model": self.model.name(),
             "statements": statements.collect::<Vec<_>>(),
         })

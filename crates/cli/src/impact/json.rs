@@ -9,6 +9,7 @@ use stickslip_solver::Statistics;
 use super::{Comparison, Impact};
 use crate::engine::Engine;
 use crate::json::{Method, Work, side};
+use crate::schema;
 
 /// Writes `impact` as one JSON object and a line end.
 ///
@@ -119,7 +120,7 @@ impl<'a> Object<'a> {
         let (scaled, pair) = (&encounter.impact, &encounter.impact.pair);
         let contact = encounter.contact();
         Self {
-            schema: "stickslip.impact/1",
+            schema: schema::IMPACT,
             method: Method::from(engine),
             parameters: Parameters {
                 kappa: contact.kappa(),

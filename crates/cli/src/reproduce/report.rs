@@ -7,13 +7,14 @@ use serde_json::{Value, json};
 use super::page::{INTRODUCTION, TITLE};
 use super::section::Section;
 use crate::figure::number;
+use crate::schema;
 use crate::study::{Cell, Table};
 
 /// Everything for programs, schema "stickslip.report/1".
 pub fn json(sections: &[Section]) -> String {
     let parts: Vec<Value> = sections.iter().map(part).collect();
     let report = json!({
-        "schema": "stickslip.report/1",
+        "schema": schema::REPORT,
         "program": { "name": env!("CARGO_BIN_NAME"), "version": env!("CARGO_PKG_VERSION") },
         "title": TITLE,
         "parts": parts,

@@ -1,13 +1,19 @@
 //! The program as its users meet it: run as a process, judged by its output and exit code.
+//!
+//! The tests read data, examples and notebooks of the repository; in the published package they are empty.
+
+#![cfg(in_repository)]
 
 mod asymptote;
 mod atlas;
 mod audit;
 mod batch;
 mod batch_failures;
+mod completions;
 mod converge;
 mod impact;
 mod impact_failures;
+mod man;
 mod map;
 mod map_failures;
 #[cfg(unix)]
@@ -17,6 +23,7 @@ mod pictures;
 mod point;
 mod reproduce;
 mod usage;
+mod version;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -102,11 +102,7 @@ fn unknown_commands_and_options() {
 }
 
 #[test]
-fn help_and_version_are_results() {
-    let ran = stickslip("--version");
-    let version = format!("stickslip {}\n", env!("CARGO_PKG_VERSION"));
-    assert_eq!((ran.code, ran.stdout, ran.stderr.as_str()), (0, version, ""));
-
+fn help_is_a_result() {
     let ran = stickslip("collide --help");
     assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
     for part in ["--kappa", "at most 1", "1e-15 to 0.1", "Examples:", "Exit codes:", "2/7"] {

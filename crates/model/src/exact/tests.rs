@@ -1,97 +1,12 @@
-//! Reference data, and laws that every collision has to keep.
+//! Laws that every collision has to keep. `tests/exact.rs` of the workspace compares with the reference data.
 
 use std::f64::consts::PI;
-use std::fs;
-
-use serde_json::Value;
 
 use super::trajectory::{Half, MIDDLE_ROOT};
 use super::*;
 
-const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data");
-
 fn exact(kappa: f64, psi: f64) -> Collision {
     collide(Contact::new(kappa, psi, 0.0).unwrap()).unwrap()
-}
-
-fn number(value: &Value) -> f64 {
-    value.as_str().unwrap().parse().unwrap()
-}
-
-fn read(name: &str) -> Value {
-    serde_json::from_str(&fs::read_to_string(format!("{DATA}/{name}.json")).unwrap()).unwrap()
-}
-
-/// Largest errors of the switches of one collision: time, spring, velocity, and of the time left
-/// relative to itself.
-#[derive(Default)]
-struct Errors {
-    time: f64,
-    spring: f64,
-    velocity: f64,
-    time_left: f64,
-}
-
-/// Compares one collision with its reference, itinerary and final velocity included.
-fn compare(case: &Value) -> Errors {
-    let (kappa, psi) = (number(&case["kappa"]), number(&case["psi"]));
-    let collision = exact(kappa, psi);
-    let place = format!("kappa = {kappa}, psi = {psi}");
-    let reference = case["switches"].as_array().unwrap();
-    assert_eq!(collision.switches.len(), reference.len(), "{place}");
-    let error = (collision.final_velocity - number(&case["w_final"])).abs();
-    assert!(error < 1e-15, "{place}: w is off by {error}");
-    let mut errors = Errors::default();
-    for (switch, reference) in collision.switches.iter().zip(reference) {
-        assert_eq!(switch.to.to_string(), reference["to"].as_str().unwrap(), "{place}");
-        assert_eq!(switch.side.sign(), reference["side"].as_f64().unwrap(), "{place}");
-        let off = |value: f64, name: &str| (value - number(&reference[name])).abs();
-        errors.time = errors.time.max(off(switch.time, "time"));
-        errors.spring = errors.spring.max(off(switch.spring, "y"));
-        errors.velocity = errors.velocity.max(off(switch.velocity, "w"));
-        let left = off(switch.time_left, "time_left") / number(&reference["time_left"]);
-        errors.time_left = errors.time_left.max(left);
-    }
-    errors
-}
-
-#[test]
-fn paper_and_random_collisions_agree_with_the_references() {
-    for (name, count) in [("undamped_paper", 33), ("undamped_random", 200)] {
-        let data = read(name);
-        let cases = data["cases"].as_array().unwrap();
-        assert_eq!(cases.len(), count);
-        assert_eq!(number(&data["contact_time"]), CONTACT_TIME);
-        for case in cases {
-            let errors = compare(case);
-            assert!(errors.time < 1e-14 && errors.spring < 1e-14 && errors.velocity < 1e-14);
-            assert!(errors.time_left < 1e-12, "{} {}", case["kappa"], errors.time_left);
-        }
-    }
-}
-
-#[test]
-fn collisions_beside_switch_boundaries_agree_with_the_references() {
-    let data = read("undamped_hard");
-    for case in data["cases"].as_array().unwrap() {
-        let errors = compare(case);
-        assert!(errors.time < 1e-11 && errors.spring < 1e-11 && errors.velocity < 1e-11);
-        // Close to the end the time left goes as w², and w is known to about 4e-16.
-        let known = 2.0 * 4e-16 / number(&case["w_final"]).abs();
-        assert!(errors.time_left < known + 1e-11, "{} {}", case["psi"], errors.time_left);
-    }
-}
-
-#[test]
-fn counts_change_at_the_switch_boundaries() {
-    for boundary in read("boundaries")["boundaries"].as_array().unwrap() {
-        let (kappa, psi) = (number(&boundary["kappa"]), number(&boundary["psi"]));
-        let count = |psi| exact(kappa, psi).switches.len() as u64;
-        for distance in [1e-14, 1e-13, 1e-9] {
-            assert_eq!(Some(count(psi * (1.0 - distance))), boundary["below"].as_u64());
-            assert_eq!(Some(count(psi * (1.0 + distance))), boundary["above"].as_u64());
-        }
-    }
 }
 
 #[test]

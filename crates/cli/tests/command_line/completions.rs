@@ -1,0 +1,84 @@
+//! Scripts for shells: all commands are in them, and a shell that is here can read them.
+
+use std::process::Command;
+
+use crate::{Workspace, stickslip};
+
+const COMMANDS: [&str; 10] = [
+    "collide",
+    "impact",
+    "map",
+    "trace",
+    "locate",
+    "reproduce",
+    "asymptote",
+    "converge",
+    "completions",
+    "man",
+];
+
+#[test]
+fn every_shell_learns_every_command() {
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let ran = stickslip(&format!("completions {shell}"));
+        assert_eq!((ran.code, ran.stderr.as_str()), (0, ""), "{shell}");
+        for part in COMMANDS.into_iter().chain(["kappa", "damping", "threads"]) {
+            assert!(ran.stdout.contains(part), "{shell}: no {part}");
+        }
+    }
+}
+
+#[test]
+fn shells_that_are_here_read_their_scripts() {
+    let workspace = Workspace::new();
+    for shell in ["bash", "zsh", "fish"] {
+        workspace.write("script", stickslip(&format!("completions {shell}")).stdout);
+        let read = Command::new(shell).arg("-n").arg(workspace.path("script")).output();
+        match read {
+            Ok(read) => assert!(
+                read.status.success() && read.stderr.is_empty(),
+                "{shell}: {}",
+                String::from_utf8_lossy(&read.stderr)
+            ),
+            Err(_) => println!("skipped: there is no {shell}"),
+        }
+    }
+}
+
+/// What bash offers for the last of `words`.
+fn offered(words: &[&str]) -> Option<String> {
+    let workspace = Workspace::new();
+    let script = stickslip("completions bash").stdout;
+    let words_list = words.join(" ");
+    let last = words.len() - 1;
+    let (word, before) = (words[last], words[last - 1]);
+    let script = format!(
+        "{script}\nCOMP_WORDS=({words_list}); COMP_CWORD={last}\n\
+         _stickslip stickslip '{word}' '{before}'\necho \"${{COMPREPLY[@]}}\"\n"
+    );
+    workspace.write("script", script);
+    let ran = Command::new("bash").arg(workspace.path("script")).output().ok()?;
+    Some(String::from_utf8(ran.stdout).expect("UTF-8"))
+}
+
+#[test]
+fn bash_completes_commands_options_and_values() {
+    for (words, expected) in [
+        (&["stickslip", "col"][..], "collide\n"),
+        (&["stickslip", "collide", "--kap"], "--kappa\n"),
+        (&["stickslip", "collide", "--method", "dop"], "dopri5 dop853\n"),
+    ] {
+        if let Some(offered) = offered(words) {
+            assert_eq!(offered, expected, "{words:?}");
+        }
+    }
+}
+
+#[test]
+fn an_unknown_shell_is_refused() {
+    let ran = stickslip("completions csh");
+    assert_eq!((ran.code, ran.stdout.as_str()), (2, ""));
+    for part in ["csh", "bash", "elvish", "fish", "powershell", "zsh"] {
+        assert!(ran.stderr.contains(part), "no {part} in {}", ran.stderr);
+    }
+}
