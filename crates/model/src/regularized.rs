@@ -394,7 +394,12 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
         _s: f64,
         y: &State<STATE>,
     ) -> (Phase, State<STATE>) {
-        let next = phase.after(guard == OTHER_SIDE);
+        let mut other_side = guard == OTHER_SIDE;
+        if phase.regime == Regime::Stick && self.contact.damping() > 0.0 && y[SPRING] != 0.0 {
+            // Where the limit falls to 0 with the spring at rounding, only the spring still tells which side it is on.
+            other_side = (y[SPRING] > 0.0) != (phase.side == Side::Positive);
+        }
+        let next = phase.after(other_side);
         let mut y = *y;
         y[T] = 0.0;
         y[GAP] = 0.0;
