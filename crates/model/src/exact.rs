@@ -20,6 +20,7 @@ mod swing;
 mod trajectory;
 
 use crate::contact::{Collision, Contact, Regime, Side, Switch};
+use crate::domain::{self, OutOfDomain};
 use account::Account;
 pub use boundaries::{small_impact_boundary, top_boundary};
 use release::Release;
@@ -48,14 +49,9 @@ pub enum ExactError {
         /// The contact's scaled damping.
         damping: f64,
     },
-    /// The spring is so stiff that its phase has no digits to spare.
-    #[error("kappa = {kappa} is above {limit}, up to which the phase of the spring is resolved")]
-    TooStiff {
-        /// The contact's scaled stiffness.
-        kappa: f64,
-        /// The largest accepted, [`MOST_STIFFNESS`].
-        limit: f64,
-    },
+    /// The contact is out of range.
+    #[error(transparent)]
+    Domain(#[from] OutOfDomain),
     /// The spring is too stiff for a list of its switches.
     #[error(
         "more than {limit} switches at kappa = {kappa}, psi = {psi}: \
@@ -100,9 +96,9 @@ pub enum ExactError {
 /// ```
 ///
 /// # Errors
-/// [`ExactError::Damped`] if the contact is damped, [`ExactError::TooStiff`] if κ is above
-/// [`MOST_STIFFNESS`], [`ExactError::TooManySwitches`] if there are more switches than
-/// [`MOST_SWITCHES`].
+/// [`ExactError::Damped`] if the contact is damped, [`ExactError::Domain`] unless κ is from 1e-100
+/// to [`MOST_STIFFNESS`] and ψ from 1e-100 to 1e100, [`ExactError::TooManySwitches`] if there are
+/// more switches than [`MOST_SWITCHES`].
 pub fn collide(contact: Contact) -> Result<Collision, ExactError> {
     let mut collision = Collision::before(contact);
     collide_into(contact, &mut collision)?;
@@ -140,9 +136,7 @@ fn collide_within(
     if contact.damping() != 0.0 {
         return Err(ExactError::Damped { damping: contact.damping() });
     }
-    if contact.kappa() > MOST_STIFFNESS {
-        return Err(ExactError::TooStiff { kappa: contact.kappa(), limit: MOST_STIFFNESS });
-    }
+    domain::exact(&contact)?;
     let switches = &mut collision.switches;
     let slide = Slide::new(contact.kappa());
     let mut account = Account::default();

@@ -27,12 +27,14 @@ pub mod collision;
 mod contact;
 pub mod convergence;
 pub mod coulomb;
+mod domain;
 pub mod encounter;
 mod energy;
 pub mod exact;
 pub mod history;
 pub mod inner;
 pub mod largest;
+mod last_slip;
 mod law;
 pub mod normal;
 mod observed;
@@ -53,6 +55,7 @@ pub use collision::{Collider, CollisionError};
 pub use contact::{
     Collision, Contact, FEW_SWITCHES, InvalidParameter, Regime, Side, Switch, Switches,
 };
+pub use domain::OutOfDomain;
 pub use encounter::{Encounter, EncounterError, Motion, Plane};
 pub use energy::EnergyLedger;
 pub use history::{History, PhaseHistory, Snapshot};

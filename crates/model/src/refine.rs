@@ -65,7 +65,7 @@ pub(crate) fn refine<M: Method>(method: M, options: &Options, collision: &mut Co
         sliding: sliding.nearest(),
         spring_left: 0.5 * contact.kappa() * spring * spring,
         normal_final: 0.5 * collision.eps_n * collision.eps_n,
-        compression_left: 0.4 * last.u.nearest().powi(5),
+        compression_left: 0.4 * last.u.nearest().max(0.0).powi(5),
         ..collision.energy
     };
     true

@@ -146,6 +146,16 @@ impl Regularized {
         force / self.contact.kappa()
     }
 
+    /// The phase that follows `phase` where `guard` fires at `y`.
+    pub(crate) fn next(&self, phase: Phase, guard: usize, y: &State<STATE>) -> Phase {
+        let mut other_side = guard == OTHER_SIDE;
+        if phase.regime == Regime::Stick && self.is_damped() && y[SPRING] != 0.0 {
+            // Where the limit falls to 0 with the spring at rounding, only the spring still tells which side it is on.
+            other_side = (y[SPRING] > 0.0) != (phase.side == Side::Positive);
+        }
+        phase.after(other_side)
+    }
+
     #[inline(always)]
     fn is_damped(&self) -> bool {
         self.contact.damping() > 0.0
@@ -279,7 +289,7 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
         _s: f64,
         y: &State<STATE>,
     ) -> (Phase, State<STATE>) {
-        let next = phase.after(guard == OTHER_SIDE);
+        let next = self.next(phase, guard, y);
         let y = if self.is_damped() {
             self.law.enter::<true>(next, array(y))
         } else {

@@ -12,7 +12,7 @@ use stickslip_solver::{
 };
 
 use crate::collision::{Collider, CollisionError};
-use crate::contact::Contact;
+use crate::contact::{Contact, Regime};
 use crate::law::{Law, Parameter};
 use crate::regularized::{
     END, GUARDS, OTHER_SIDE, Phase, Regularized, SAME_SIDE, STATE, T, U, V, W, array,
@@ -83,7 +83,7 @@ impl<M: Method> Collider<M> {
             start,
             by,
             f64::INFINITY,
-            self.options(),
+            &self.options_for(&contact)?,
         )?;
         let phases = found.switches.iter().chain([&found.end]);
         let mut time = [0.0; 1 + PARAMETERS];
@@ -109,12 +109,15 @@ impl<M: Method> Collider<M> {
         let final_velocity = derived(component(end, W).map(|part| system.law.velocity_unit * part));
         let earlier = if contact.damping() > 0.0 { 0.0 } else { 1.0 };
         let contact_time = derived(time);
+        // A contact that sticks to its end, to rounding, has its last switch there.
+        let sticks = end.mode.regime == Regime::Stick;
+        let switches = found.switches.len() + usize::from(sticks);
         Ok(Sensitivity {
             eps_n: derived(component(end, V).map(|part| -part)),
             eps_t: final_velocity.over_psi(contact.psi()),
             final_velocity,
             contact_time: Derived { damping: contact_time.damping - earlier, ..contact_time },
-            switch_times: times[..found.switches.len()].iter().copied().map(derived).collect(),
+            switch_times: times[..switches].iter().copied().map(derived).collect(),
         })
     }
 }
@@ -189,8 +192,8 @@ impl Differentiable<STATE, GUARDS, PARAMETERS> for Regularized {
         y: &State<STATE>,
         change: &Change<STATE>,
     ) -> State<STATE> {
+        let next = self.next(phase, guard, y);
         let (law, y) = self.along(y, change);
-        let next = phase.after(guard == OTHER_SIDE);
         law.enter::<true>(next, &y).map(|part| part.eps).into()
     }
 }
