@@ -48,7 +48,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     let end = integrate(Dop853, field, 0.0, start, PERIOD, &options, &mut recorder)?;
     let gap = (end.state - start).norm();
 
-    let (_, half_way) = recorder.trajectory.at(0.5 * PERIOD).ok_or("outside the run")?;
+    let ((), half_way) = recorder.trajectory.at(0.5 * PERIOD).ok_or("outside the run")?;
     let off = (half_way - State::from(HALF_WAY)).norm();
     let (mut drift, mut asymmetry, mut farthest) = (0.0_f64, 0.0_f64, 0.0_f64);
     for i in 0..=1000 {

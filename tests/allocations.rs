@@ -39,7 +39,7 @@ fn collisions_allocate_nothing<E: Error>(
         }
         let mut collision = None;
         let counted = measure(|| {
-            collision = Some(collide(contact).unwrap_or_else(|e| panic!("{contact:?}: {e}")))
+            collision = Some(collide(contact).unwrap_or_else(|e| panic!("{contact:?}: {e}")));
         });
         assert_eq!(counted.count_total, 0, "{contact:?}");
         let collision = collision.expect("a collision");
