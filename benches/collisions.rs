@@ -3,28 +3,18 @@
 //! The mean over the 200 random reference collisions is the figure to compare with other programs; every group runs on one
 //! thread.
 
+#[path = "inputs/contacts.rs"]
+mod contacts;
+
 use std::hint::black_box;
 
+use contacts::contacts;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use stickslip::model::regularized::{self, Phase, Regularized};
 use stickslip::model::{Collider, Collision, Contact, exact};
 use stickslip::solver::{
     Dop853, Guard, HybridSystem, Method, Options, Start, State, Step, StepSize, Trial, run,
 };
-
-/// The 200 collisions of tests/data/undamped_random.json.
-fn contacts() -> Vec<Contact> {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/undamped_random.json");
-    let text = std::fs::read_to_string(path).expect("the reference file");
-    let file: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-    let number = |value: &serde_json::Value| value.as_str().and_then(|text| text.parse().ok());
-    file["cases"]
-        .as_array()
-        .expect("cases")
-        .iter()
-        .filter_map(|case| Contact::new(number(&case["kappa"])?, number(&case["psi"])?, 0.0).ok())
-        .collect()
-}
 
 fn random_collisions(criterion: &mut Criterion) {
     let contacts = contacts();
@@ -42,12 +32,9 @@ fn random_collisions(criterion: &mut Criterion) {
     });
     group.bench_function("exact", |bencher| {
         bencher.iter(|| {
-            let mut switches = Vec::new();
             for &contact in &contacts {
-                let collision = exact::collide_reusing(black_box(contact), switches);
-                let collision = collision.expect("a collision");
+                exact::collide_into(black_box(contact), &mut collision).expect("a collision");
                 black_box(collision.final_velocity);
-                switches = collision.switches;
             }
         });
     });

@@ -16,15 +16,7 @@
 use std::error::Error;
 use std::f64::consts::TAU;
 
-use stickslip::solver::{
-    Direction, Dop853, Guard, HybridSystem, Options, Recorder, Start, State, run,
-};
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Mode {
-    Stick,
-    Slip,
-}
+use stickslip::solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State, run};
 
 struct Belt {
     velocity: f64,
@@ -33,30 +25,23 @@ struct Belt {
 }
 
 impl HybridSystem<2, 1> for Belt {
-    type Mode = Mode;
+    /// Whether it sticks.
+    type Mode = bool;
 
-    fn field(&self, mode: Mode, _time: f64, y: &State<2>) -> State<2> {
-        match mode {
-            Mode::Stick => State::from([self.velocity, 0.0]),
-            Mode::Slip => State::from([y[1], self.kinetic_friction - y[0]]),
-        }
+    fn field(&self, sticks: bool, _time: f64, y: &State<2>) -> State<2> {
+        State::from([y[1], if sticks { 0.0 } else { self.kinetic_friction - y[0] }])
     }
 
-    fn guards(&self, mode: Mode) -> [Guard; 1] {
-        // Slip starts with the velocity of the belt, where its guard is zero.
-        [Guard::new(Direction::Below).from_zero(u32::from(mode == Mode::Slip))]
+    fn guards(&self, _sticks: bool) -> [Guard; 1] {
+        [Guard::new(Direction::Below)]
     }
 
-    fn guard_values(&self, mode: Mode, _time: f64, y: &State<2>) -> [f64; 1] {
-        match mode {
-            Mode::Stick => [self.static_friction - y[0]],
-            Mode::Slip => [self.velocity - y[1]],
-        }
+    fn guard_values(&self, sticks: bool, _time: f64, y: &State<2>) -> [f64; 1] {
+        [if sticks { self.static_friction - y[0] } else { self.velocity - y[1] }]
     }
 
-    fn transition(&self, mode: Mode, _guard: usize, _time: f64, y: &State<2>) -> (Mode, State<2>) {
-        let next = if mode == Mode::Stick { Mode::Slip } else { Mode::Stick };
-        (next, State::from([y[0], self.velocity]))
+    fn transition(&self, sticks: bool, _: usize, _time: f64, y: &State<2>) -> (bool, State<2>) {
+        (!sticks, State::from([y[0], self.velocity]))
     }
 }
 
@@ -69,17 +54,12 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     let drop = belt.static_friction - belt.kinetic_friction;
     let period = TAU - 2.0 * (drop / belt.velocity).atan() + 2.0 * drop / belt.velocity;
 
-    let start = Start { mode: Mode::Stick, s: 0.0, state: State::from([0.0, belt.velocity]) };
-    let options = Options { rtol: 1e-13, atol: 1e-13, ..Options::default() };
-    let mut recorder = Recorder::default();
-    run(Dop853, &belt, start, 52.0 * period, &options, &mut recorder)?;
+    let start = Start { mode: true, s: 0.0, state: State::from([0.0, belt.velocity]) };
+    let options = Options::with_tolerance(1e-13);
+    let mut switches = Vec::new();
+    run(Dop853, &belt, start, 52.0 * period, &options, &mut switches)?;
 
-    let slips: Vec<f64> = recorder
-        .switches
-        .iter()
-        .filter(|event| event.to == Mode::Slip)
-        .map(|event| event.s)
-        .collect();
+    let slips: Vec<f64> = switches.iter().filter(|event| event.from).map(|event| event.s).collect();
     let errors = slips.windows(2).map(|pair| (pair[1] - pair[0] - period).abs());
     let largest = errors.fold(0.0, f64::max);
     println!("{} cycles of period {period:.12}, off by at most {largest:.1e}", slips.len() - 1);

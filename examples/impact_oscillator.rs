@@ -43,7 +43,7 @@ impl HybridSystem<2, 1> for Oscillator {
 /// The run failed.
 pub fn main() -> Result<(), Box<dyn Error>> {
     let oscillator = Oscillator { restitution: 0.7 };
-    let options = Options { rtol: 1e-15, atol: 1e-15, ..Options::default() };
+    let options = Options::with_tolerance(1e-15);
     let turn = |delta: f64| {
         let start = Start { mode: (), s: 0.0, state: State::from([0.0, 1.0 + delta]) };
         run(Dop853, &oscillator, start, TAU, &options, &mut ())

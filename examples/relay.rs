@@ -7,9 +7,7 @@
 
 use std::error::Error;
 
-use stickslip::solver::{
-    Direction, Dop853, Guard, HybridSystem, Options, Recorder, Start, State, run,
-};
+use stickslip::solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State, run};
 
 struct Relay {
     gain: f64,
@@ -42,15 +40,15 @@ impl HybridSystem<1, 1> for Relay {
 /// # Errors
 /// The run failed.
 pub fn main() -> Result<(), Box<dyn Error>> {
-    let options = Options { rtol: 1e-13, atol: 1e-13, ..Options::default() };
+    let options = Options::with_tolerance(1e-13);
     for hysteresis in [0.9, 0.1, 1e-3] {
         let relay = Relay { gain: 1.0, hysteresis };
         let half = ((relay.gain + hysteresis) / (relay.gain - hysteresis)).ln();
         let start = Start { mode: true, s: 0.0, state: State::from([0.0]) };
-        let mut recorder = Recorder::default();
-        run(Dop853, &relay, start, 100.0 * half, &options, &mut recorder)?;
+        let mut switches = Vec::new();
+        run(Dop853, &relay, start, 100.0 * half, &options, &mut switches)?;
 
-        let times: Vec<f64> = recorder.switches.iter().map(|event| event.s).collect();
+        let times: Vec<f64> = switches.iter().map(|event| event.s).collect();
         let errors = times.windows(2).map(|pair| (pair[1] - pair[0] - half).abs());
         let largest = errors.fold(0.0, f64::max);
         let period = 2.0 * half;

@@ -55,7 +55,7 @@ impl Belt {
     }
 
     fn margins(&self) -> Margins {
-        let options = Options { rtol: 1e-14, atol: 1e-14, ..Options::default() };
+        let options = Options::with_tolerance(1e-14);
         margins(Dop853, self, self.start(), f64::INFINITY, &options).expect("margins")
     }
 }

@@ -127,7 +127,7 @@ fn detest<M: Method, const N: usize>(
     let mut worst = 0.0_f64;
     for digits in [6, 8, 10, 12] {
         let tolerance = 10.0_f64.powi(-digits);
-        let options = Options { rtol: tolerance, atol: tolerance, ..Options::default() };
+        let options = Options::with_tolerance(tolerance);
         let run = integrate(method, &field, 0.0, State::from(start), 20.0, &options, &mut ())
             .expect("a smooth problem");
         let error = (run.state - end).norm();
@@ -192,7 +192,7 @@ fn work_counters_stay_as_they_are() {
     // A change here changes what every run costs, and must be meant. Each run's first step is estimated, which
     // costs one evaluation beside the one at the start; a step costs 6 (5(4)), or 11 and one more if it is
     // accepted (8(5,3)).
-    let options = Options { rtol: 1e-10, atol: 1e-10, ..Options::default() };
+    let options = Options::with_tolerance(1e-10);
     let start = State::from(pericentre(0.9));
     let run = integrate(Dopri5, kepler, 0.0, start, 20.0, &options, &mut ()).expect("smooth");
     assert_eq!(work(&run), (1006, 1, 2 + 6 * 1007));

@@ -127,7 +127,7 @@ impl Distances {
 /// # Errors
 /// The trace failed, or its curves make no subdivision.
 pub fn main() -> Result<(), Box<dyn Error>> {
-    let options = Options { rtol: 1e-14, atol: 1e-14, ..Options::default() };
+    let options = Options::with_tolerance(1e-14);
     let family = HybridFamily { problem: Belts, method: Dop853, options, end: f64::INFINITY };
     let network = trace(&family, &WINDOW, &TraceOptions::default())?;
     assert!(network.unresolved.is_empty(), "{:?}", network.unresolved);

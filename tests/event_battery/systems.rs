@@ -81,7 +81,7 @@ impl HybridSystem<1, 1> for Relay {
 /// The relay's switches against k ln 3.
 pub fn relay<M: Method>(method: M, switches: u32) -> Score {
     let span = 3.0_f64.ln();
-    let options = Options { rtol: 1e-14, atol: 1e-14, ..Options::default() };
+    let options = Options::with_tolerance(1e-14);
     let mut times = Times::default();
     let start = Start { mode: true, s: 0.0, state: State::from([-1.0]) };
     let end = (f64::from(switches) + 0.5) * span;
@@ -203,7 +203,7 @@ pub fn oscillator<M: Method>(method: M, level: f64, tolerance: f64) -> Score {
     planted.retain(|s| *s < 100.0);
     let mut times = Times::default();
     let start = Start { mode: (), s: 0.0, state: State::from([0.0, 1.0]) };
-    let options = Options { rtol: 1e-13, atol: 1e-13, ..Options::default() };
+    let options = Options::with_tolerance(1e-13);
     run(method, &Oscillator { level }, start, 100.0, &options, &mut times).expect("an oscillator");
     let mut score = Score::default();
     score.add(&planted, &times.switches, tolerance);

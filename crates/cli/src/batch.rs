@@ -72,14 +72,12 @@ type Computed = Result<(Summary, Vec<Switch>), String>;
 fn compute(engine: Engine, portion: &[Row], with_switches: bool, computed: &mut Vec<Computed>) {
     portion
         .par_iter()
-        .map_init(Vec::new, |memory, row| {
+        .map(|row| {
             let contact = row.contact.clone()?;
-            let (collision, _) =
-                engine.collide(contact, std::mem::take(memory)).map_err(|e| e.to_string())?;
+            let (collision, _) = engine.collide(contact).map_err(|e| e.to_string())?;
             require_finite(&collision).map_err(|e| e.to_string())?;
             let summary = Summary::from(&collision);
-            let switches = if with_switches { collision.switches.clone() } else { Vec::new() };
-            *memory = collision.switches;
+            let switches = if with_switches { collision.switches.to_vec() } else { Vec::new() };
             Ok((summary, switches))
         })
         .collect_into_vec(computed);

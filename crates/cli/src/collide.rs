@@ -19,7 +19,7 @@ pub fn run(point: &Point) -> Result<(), Failure> {
     if let Some(target) = &point.plot {
         target.check()?;
     }
-    let (collision, statistics) = point.engine.collide(contact, Vec::new()).map_err(failed)?;
+    let (collision, statistics) = point.engine.collide(contact).map_err(failed)?;
     require_finite(&collision).map_err(failed)?;
     require_finite_energy(&collision.energy).map_err(failed)?;
     if let Some(target) = &point.plot {

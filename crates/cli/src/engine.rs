@@ -1,7 +1,7 @@
 //! What computes a collision: an integrator with its tolerances, or the exact solution.
 
 use stickslip_model::{
-    Collider, Collision, CollisionError, Contact, EnergyLedger, History, Switch,
+    Collider, Collision, CollisionError, Contact, EnergyLedger, History,
     exact::{self, ExactError},
 };
 use stickslip_solver::{Dop853, Dopri5, InvalidOption, Options, Statistics};
@@ -37,7 +37,7 @@ impl Engine {
         }
     }
 
-    /// Computes the collision of `contact`, with the memory of `switches` for its list.
+    /// Computes the collision of `contact`.
     ///
     /// The statistics are those of the integrator.
     ///
@@ -46,9 +46,8 @@ impl Engine {
     pub fn collide(
         &self,
         contact: Contact,
-        switches: Vec<Switch>,
     ) -> Result<(Collision, Option<Statistics>), EngineError> {
-        let mut collision = Collision { switches, ..Collision::before(contact) };
+        let mut collision = Collision::before(contact);
         let statistics = match *self {
             Self::Dop853(Tolerances { rtol, atol }) => {
                 let collider = Collider::with_tolerances(Dop853, rtol, atol);
@@ -59,7 +58,7 @@ impl Engine {
                 collider.collide_into(contact, &mut collision)?
             }
             Self::Exact => {
-                let collision = exact::collide_reusing(contact, collision.switches)?;
+                exact::collide_into(contact, &mut collision)?;
                 return Ok((collision, None));
             }
         };

@@ -50,7 +50,7 @@ pub fn run(arguments: &ImpactArguments) -> Result<(), Failure> {
     }
     let contact = encounter.contact();
     let failed = |source| Failure::computation(&contact, source);
-    let (collision, statistics) = engine.collide(contact, Vec::new()).map_err(failed)?;
+    let (collision, statistics) = engine.collide(contact).map_err(failed)?;
     engine::require_finite(&collision).map_err(failed)?;
     let impact = Impact::new(&encounter, collision);
     impact.require_finite().map_err(failed)?;

@@ -21,7 +21,6 @@ use std::path::Path;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
-use stickslip_model::Switch;
 
 use crate::engine::{Engine, require_finite};
 use crate::error::Failure;
@@ -109,33 +108,22 @@ pub fn compute(plane: &Plane, engine: &Engine, points: Range<usize>) -> Tile {
     let mut tile = Tile { eps_t: Vec::new(), switch_count: Vec::new() };
     points
         .into_par_iter()
-        .map_init(Vec::new, |memory, index| {
-            point(plane, engine, index, memory).unwrap_or((NO_EPS_T, NO_COUNT))
-        })
+        .map(|index| point(plane, engine, index).unwrap_or((NO_EPS_T, NO_COUNT)))
         .unzip_into_vecs(&mut tile.eps_t, &mut tile.switch_count);
     tile
 }
 
-/// The tangential restitution and the number of switches at a point, with the memory of `switches`
-/// for their list.
+/// The tangential restitution and the number of switches at a point.
 ///
 /// # Errors
 /// Why there are none.
-fn point(
-    plane: &Plane,
-    engine: &Engine,
-    index: usize,
-    switches: &mut Vec<Switch>,
-) -> Result<(f64, i32), String> {
+fn point(plane: &Plane, engine: &Engine, index: usize) -> Result<(f64, i32), String> {
     let (column, row) = plane.cell(index);
     let contact = plane.contact(column, row).map_err(|e| e.to_string())?;
-    let (collision, _) =
-        engine.collide(contact, std::mem::take(switches)).map_err(|e| e.to_string())?;
+    let (collision, _) = engine.collide(contact).map_err(|e| e.to_string())?;
     require_finite(&collision).map_err(|e| e.to_string())?;
     let count = i32::try_from(collision.switches.len()).map_err(|e| e.to_string())?;
-    let eps_t = collision.eps_t();
-    *switches = collision.switches;
-    Ok((eps_t, count))
+    Ok((collision.eps_t(), count))
 }
 
 /// Writes the picture, but for its name.
@@ -170,7 +158,7 @@ pub fn outcome(
         let (column, row) = plane.cell(first);
         let [kappa, psi] = [Quantity::Kappa, Quantity::Psi].map(|q| plane.value(q, column, row));
         // Computed once more for its reason, which the results do not keep.
-        let reason = point(plane, engine, first, &mut Vec::new()).err().unwrap_or_default();
+        let reason = point(plane, engine, first).err().unwrap_or_default();
         Failure::Points {
             failed,
             points: plane.points(),

@@ -5,11 +5,12 @@ use stickslip_solver::{
     run,
 };
 
-use crate::contact::{Collision, Contact, Regime, Switch};
+use crate::contact::{Collision, Contact, Regime, Switch, Switches};
+use crate::domain::{self, OutOfDomain};
 use crate::energy::EnergyLedger;
 use crate::history::History;
 use crate::regularized::{DAMPING, END, Phase, Regularized, STATE, T, U, V};
-use crate::{refine, reversals};
+use crate::{last_slip, refine, reversals};
 
 /// Above this flatness of a switch, in s, its time would be worth clearly less than the state: the collision is refined.
 const FLAT: f64 = 30.0;
@@ -19,6 +20,9 @@ const FLAT: f64 = 30.0;
 /// Where u is nearly linear, close to both ends of contact, the embedded estimates miss most of the error; there the step is held
 /// to the length on which u bends elsewhere.
 const LONGEST_STEP: f64 = 0.1;
+
+/// Length in s of a damped contact's first stick phase below which the first step has the length of that phase.
+const BRIEF: f64 = 1e-9;
 
 /// Integrates collisions with one method and one set of options.
 ///
@@ -82,7 +86,10 @@ impl<M: Method> Collider<M> {
         Ok(collision)
     }
 
-    /// The same into a collision whose memory is used again, so that a sweep allocates nothing.
+    /// The same into a collision whose memory is used again.
+    ///
+    /// That saves a copy, and memory for collisions with more than [`FEW_SWITCHES`](crate::FEW_SWITCHES) switches; others allocate
+    /// nothing either way.
     ///
     /// # Errors
     /// As [`Self::collide`]; `collision` then holds what was found so far.
@@ -91,12 +98,9 @@ impl<M: Method> Collider<M> {
         contact: Contact,
         collision: &mut Collision,
     ) -> Result<Statistics, CollisionError> {
+        let options = self.options_for(&contact)?;
         let system = Regularized::new(contact);
-        *collision = Collision {
-            switches: std::mem::take(&mut collision.switches),
-            ..Collision::before(contact)
-        };
-        collision.switches.clear();
+        collision.reset(contact);
         let phase = Phase::first(&contact);
         let start = Start { mode: phase, s: 0.0, state: system.start() };
         let mut account = Account {
@@ -108,36 +112,41 @@ impl<M: Method> Collider<M> {
             sliding: 0.0,
             flatness: 0.0,
         };
-        let run = run(self.method, &system, start, f64::INFINITY, &self.options, &mut account)?;
-        account.leave(run.mode, &run.state);
-        let (sliding, flatness) = (account.sliding, account.flatness);
+        let run = run(self.method, &system, start, f64::INFINITY, &options, &mut account)?;
         if run.outcome != (Outcome::EndedByGuard { guard: END }) {
-            return Err(CollisionError::Unfinished { outcome: run.outcome, time: account.elapsed });
+            let time = account.elapsed + run.state[T];
+            return Err(CollisionError::Unfinished { outcome: run.outcome, time });
         }
-        collision.contact_time = collision.switches.last().map_or(0.0, |s| s.time) + run.state[T];
-        let mut left = run.state[T];
+        let last_slip = account.finish(run.mode, &run.state);
+        let (sliding, flatness) = (account.sliding, account.flatness);
+        collision.contact_time = collision.switches.last().map_or(0.0, |s| s.time) + last_slip;
+        let mut left = last_slip;
         for switch in collision.switches.iter_mut().rev() {
             // `time_left` holds the duration of the phase that the switch ended.
             left += std::mem::replace(&mut switch.time_left, left);
         }
-        let spring = system.spring(run.mode, &run.state);
-        let compression = run.state[U].powi(5);
+        // Without damping the contact ends at u = 0, which rounding may put on either side.
+        let compression = run.state[U].max(0.0).powi(5);
         collision.eps_n = -run.state[V];
         collision.final_velocity = system.velocity(&run.state);
         collision.energy = EnergyLedger {
             tangential_initial: 0.5 * contact.psi() * contact.psi(),
             tangential_final: 0.5 * collision.final_velocity * collision.final_velocity,
             sliding,
-            spring_left: 0.5 * contact.kappa() * spring * spring,
+            spring_left: 0.0,
             normal_initial: 0.5,
             normal_final: 0.5 * run.state[V] * run.state[V],
             damping: run.state[DAMPING],
             compression_left: 0.4 * compression,
         };
-        if self.refined && flatness > FLAT {
-            refine::refine(self.method, &self.options, collision);
+        if self.refined && flatness > FLAT && run.mode.regime == Regime::Slip {
+            refine::refine(self.method, &options, collision);
         }
         Ok(run.statistics)
+    }
+
+    pub(crate) fn method(&self) -> M {
+        self.method
     }
 
     /// Integrates one collision and keeps its course in time, up to [`History::MOST_STEPS`] steps of it.
@@ -146,12 +155,24 @@ impl<M: Method> Collider<M> {
     /// As [`Self::collide`].
     pub fn history(&self, contact: Contact) -> Result<History, CollisionError> {
         let max_steps = self.options.max_steps.min(History::MOST_STEPS);
-        let options = Options { max_steps, ..self.options };
+        let options = Options { max_steps, ..self.options_for(&contact)? };
         let (history, outcome) = History::record(self.method, &options, contact)?;
         if outcome == (Outcome::EndedByGuard { guard: END }) {
             return Ok(history);
         }
         Err(CollisionError::Unfinished { outcome, time: history.duration() })
+    }
+
+    /// The options for `contact`, if it is one that can be integrated.
+    pub(crate) fn options_for(&self, contact: &Contact) -> Result<Options, OutOfDomain> {
+        domain::integrated(contact)?;
+        let mut options = self.options;
+        let onset = contact.damping() / (contact.kappa() * contact.psi());
+        // A first phase so much shorter than a step is lost in the rounding of the guard that ends it.
+        if contact.damping() > 0.0 && onset < BRIEF {
+            options.first_step = options.first_step.map(|h| h.min(4.0 * onset));
+        }
+        Ok(options)
     }
 }
 
@@ -165,16 +186,29 @@ impl Collision {
             final_velocity: f64::NAN,
             contact_time: f64::NAN,
             start: Phase::first(&contact).regime,
-            switches: Vec::new(),
+            switches: Switches::new(),
             reversals: 0,
             energy: EnergyLedger::default(),
         }
+    }
+
+    /// Forgets everything but its memory, which stays where it is.
+    pub(crate) fn reset(&mut self, contact: Contact) {
+        self.contact = contact;
+        (self.eps_n, self.final_velocity, self.contact_time) = (f64::NAN, f64::NAN, f64::NAN);
+        self.start = Phase::first(&contact).regime;
+        self.switches.clear();
+        self.reversals = 0;
+        self.energy = EnergyLedger::default();
     }
 }
 
 /// Why a collision could not be integrated.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum CollisionError {
+    /// The contact is out of the integrator's range.
+    #[error(transparent)]
+    Domain(#[from] OutOfDomain),
     /// The integration failed.
     #[error(transparent)]
     Run(#[from] RunError),
@@ -205,23 +239,56 @@ struct Account<'a> {
 }
 
 impl Account<'_> {
-    /// Closes a phase that ends in state `y`.
-    fn leave(&mut self, phase: Phase, y: &State<STATE>) {
+    /// Closes a phase that ends in state `y`, where the spring's elongation is `spring`.
+    fn leave(&mut self, phase: Phase, y: &State<STATE>, spring: f64) {
         let kappa = self.collision.contact.kappa();
         let (v0, w0) = (self.entered[V], self.system.velocity(&self.entered));
         let w1 = self.system.velocity(y);
-        self.elapsed += y[T];
         self.collision.reversals += match phase.regime {
             Regime::Slip => usize::from(reversals::changed(w0, w1)),
             Regime::Stick => reversals::on_spring(kappa, (self.spring, w0), w1, y[T]),
         };
         if phase.regime == Regime::Slip {
             // s w = s w₀ + v − v₀ and F dt = −dv turn ∫ F (s w − dL/dt) dt into differences.
-            let force = self.system.normal_force(&self.entered);
-            let end_force = self.system.normal_force(y);
             let work = (v0 - y[V]) * (phase.side.sign() * w0 + 0.5 * (y[V] - v0));
-            self.sliding += work - 0.5 * (end_force * end_force - force * force) / kappa;
+            self.sliding += work - 0.5 * kappa * (spring * spring - self.spring * self.spring);
         }
+        self.spring = spring;
+        self.entered = *y;
+    }
+
+    /// Closes the phase in whose state `y` the contact ends; the duration of the last slip.
+    fn finish(&mut self, phase: Phase, y: &State<STATE>) -> f64 {
+        let (slip, length) = match phase.regime {
+            Regime::Slip => (phase, y[T]),
+            Regime::Stick => {
+                let slip = last_slip::after(phase, self.system.spring(phase, y));
+                self.switch(phase, slip, y);
+                (slip, 0.0)
+            }
+        };
+        let short = match self.collision.switches.last() {
+            Some(switch) => last_slip::time_left(&self.system, y, switch.spring),
+            None => None,
+        };
+        // The limit, on which the spring is, is 0 at the end.
+        self.leave(slip, y, 0.0);
+        short.unwrap_or(length)
+    }
+
+    /// Takes down the switch from phase `from` to phase `to` in state `y`.
+    fn switch(&mut self, from: Phase, to: Phase, y: &State<STATE>) {
+        // A spring that sticks is known better than its limit, where that is small.
+        self.leave(from, y, self.system.spring(from, y));
+        self.elapsed += y[T];
+        self.collision.switches.push(Switch {
+            time: self.elapsed,
+            time_left: y[T],
+            to: to.regime,
+            side: to.side,
+            spring: self.spring,
+            velocity: self.system.velocity(y),
+        });
     }
 }
 
@@ -230,17 +297,7 @@ impl Observer<Phase, STATE> for Account<'_> {
         if event.guard == END {
             return;
         }
-        self.leave(event.from, &event.before);
         self.flatness = self.flatness.max(event.flatness);
-        self.spring = self.system.spring(event.to, &event.after);
-        self.entered = event.after;
-        self.collision.switches.push(Switch {
-            time: self.elapsed,
-            time_left: event.before[T],
-            to: event.to.regime,
-            side: event.to.side,
-            spring: self.spring,
-            velocity: self.system.velocity(&event.after),
-        });
+        self.switch(event.from, event.to, &event.before);
     }
 }

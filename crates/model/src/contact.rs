@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use smallvec::SmallVec;
+
 use crate::energy::EnergyLedger;
 
 /// One collision in scaled variables: the two numbers that decide the switching, and the damping.
@@ -138,6 +140,12 @@ pub struct Switch {
     pub velocity: f64,
 }
 
+/// Switches of which a collision allocates nothing: as many as it may have below κ = 240.
+pub const FEW_SWITCHES: usize = 16;
+
+/// The switches of a collision: a slice whose first [`FEW_SWITCHES`] lie in the collision itself.
+pub type Switches = SmallVec<[Switch; FEW_SWITCHES]>;
+
 /// The outcome of one collision in reduced variables.
 ///
 /// The same type comes from the integrator and from the exact engine.
@@ -154,7 +162,7 @@ pub struct Collision {
     /// The regime in which the contact starts: slip without damping, stick with it.
     pub start: Regime,
     /// Every switch, in order of time.
-    pub switches: Vec<Switch>,
+    pub switches: Switches,
     /// Number of sign changes of the tangential velocity during contact.
     pub reversals: usize,
     /// Where the energy went.

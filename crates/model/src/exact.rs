@@ -20,6 +20,7 @@ mod swing;
 mod trajectory;
 
 use crate::contact::{Collision, Contact, Regime, Side, Switch};
+use crate::domain::{self, OutOfDomain};
 use account::Account;
 pub use boundaries::{small_impact_boundary, top_boundary};
 use release::Release;
@@ -48,14 +49,9 @@ pub enum ExactError {
         /// The contact's scaled damping.
         damping: f64,
     },
-    /// The spring is so stiff that its phase has no digits to spare.
-    #[error("kappa = {kappa} is above {limit}, up to which the phase of the spring is resolved")]
-    TooStiff {
-        /// The contact's scaled stiffness.
-        kappa: f64,
-        /// The largest accepted, [`MOST_STIFFNESS`].
-        limit: f64,
-    },
+    /// The contact is out of range.
+    #[error(transparent)]
+    Domain(#[from] OutOfDomain),
     /// The spring is too stiff for a list of its switches.
     #[error(
         "more than {limit} switches at kappa = {kappa}, psi = {psi}: \
@@ -100,48 +96,48 @@ pub enum ExactError {
 /// ```
 ///
 /// # Errors
-/// [`ExactError::Damped`] if the contact is damped, [`ExactError::TooStiff`] if κ is above
-/// [`MOST_STIFFNESS`], [`ExactError::TooManySwitches`] if there are more switches than
-/// [`MOST_SWITCHES`].
+/// [`ExactError::Damped`] if the contact is damped, [`ExactError::Domain`] unless κ is from 1e-100
+/// to [`MOST_STIFFNESS`] and ψ from 1e-100 to 1e100, [`ExactError::TooManySwitches`] if there are
+/// more switches than [`MOST_SWITCHES`].
 pub fn collide(contact: Contact) -> Result<Collision, ExactError> {
-    collide_reusing(contact, Vec::new())
+    let mut collision = Collision::before(contact);
+    collide_into(contact, &mut collision)?;
+    Ok(collision)
 }
 
-/// As [`collide`], with the memory of `switches` for the result's list: a sweep that hands back
-/// each result's list does not allocate. What `switches` holds is dropped.
+/// As [`collide`], into a collision whose memory is used again: no number of switches makes a sweep allocate more than once.
 ///
 /// ```
-/// use stickslip_model::{Contact, exact};
+/// use stickslip_model::{Collision, Contact, exact};
 ///
-/// let mut switches = Vec::new();
+/// let contact = |psi| Contact::new(18.0, psi, 0.0);
+/// let mut collision = Collision::before(contact(0.5)?);
 /// let mut count = 0;
 /// for psi in [0.5, 1.0, 1.5] {
-///     let collision = exact::collide_reusing(Contact::new(18.0, psi, 0.0)?, switches)?;
+///     exact::collide_into(contact(psi)?, &mut collision)?;
 ///     count += collision.switches.len();
-///     switches = collision.switches;
 /// }
 /// assert_eq!(count, 10);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
-/// As [`collide`].
-pub fn collide_reusing(contact: Contact, switches: Vec<Switch>) -> Result<Collision, ExactError> {
-    collide_within(contact, switches, MOST_SWITCHES)
+/// As [`collide`]; `collision` then holds the switches found so far.
+pub fn collide_into(contact: Contact, collision: &mut Collision) -> Result<(), ExactError> {
+    collide_within(contact, collision, MOST_SWITCHES)
 }
 
 fn collide_within(
     contact: Contact,
-    mut switches: Vec<Switch>,
+    collision: &mut Collision,
     limit: usize,
-) -> Result<Collision, ExactError> {
+) -> Result<(), ExactError> {
+    collision.reset(contact);
     if contact.damping() != 0.0 {
         return Err(ExactError::Damped { damping: contact.damping() });
     }
-    if contact.kappa() > MOST_STIFFNESS {
-        return Err(ExactError::TooStiff { kappa: contact.kappa(), limit: MOST_STIFFNESS });
-    }
-    switches.clear();
+    domain::exact(&contact)?;
+    let switches = &mut collision.switches;
     let slide = Slide::new(contact.kappa());
     let mut account = Account::default();
     let mut side = Side::Positive;
@@ -191,16 +187,12 @@ fn collide_within(
     let velocity = sliding.velocity_at(Moment::END, end).0;
     account.slip(&sliding, Moment::END, end, velocity);
     let final_velocity = side.sign() * velocity;
-    Ok(Collision {
-        contact,
-        eps_n: 1.0,
-        final_velocity,
-        contact_time: CONTACT_TIME,
-        start: Regime::Slip,
-        switches,
-        reversals: account.reversals,
-        energy: account.ledger(contact.psi(), final_velocity),
-    })
+    collision.eps_n = 1.0;
+    collision.final_velocity = final_velocity;
+    collision.contact_time = CONTACT_TIME;
+    collision.reversals = account.reversals;
+    collision.energy = account.ledger(contact.psi(), final_velocity);
+    Ok(())
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@
 //! Start reading in [`collision`]; then [`regularized`] (the equations), [`exact`] (the closed form),
 //! [`history`] (its course in time), [`scaling`] (SI units), [`bodies`] and [`encounter`] (spheres in three dimensions),
 //! [`normal`], [`coulomb`] and [`largest`] (formulas to compare with), [`stiff`] and [`inner`] (the limit of stiff springs), [`plain_time`] and
-//! [`convergence`] (the equations as the paper has them, for studies), [`unreset`] (another model of the spring).
+//! [`convergence`] (the equations as the paper has them, for studies), [`sensitivity`] (derivatives), [`unreset`] (another model of the spring).
 //!
 //! ```
 //! use stickslip_model::{Collider, Contact, exact};
@@ -27,12 +27,15 @@ pub mod collision;
 mod contact;
 pub mod convergence;
 pub mod coulomb;
+mod domain;
 pub mod encounter;
 mod energy;
 pub mod exact;
 pub mod history;
 pub mod inner;
 pub mod largest;
+mod last_slip;
+mod law;
 pub mod normal;
 mod observed;
 mod outcome;
@@ -43,12 +46,16 @@ mod refine;
 pub mod regularized;
 mod reversals;
 pub mod scaling;
+pub mod sensitivity;
 pub mod stiff;
 pub mod unreset;
 
 pub use bodies::{Body, Elasticity, Material, Sphere, Wall};
 pub use collision::{Collider, CollisionError};
-pub use contact::{Collision, Contact, InvalidParameter, Regime, Side, Switch};
+pub use contact::{
+    Collision, Contact, FEW_SWITCHES, InvalidParameter, Regime, Side, Switch, Switches,
+};
+pub use domain::OutOfDomain;
 pub use encounter::{Encounter, EncounterError, Motion, Plane};
 pub use energy::EnergyLedger;
 pub use history::{History, PhaseHistory, Snapshot};
@@ -56,6 +63,7 @@ pub use nalgebra::Vector3;
 pub use observed::Observed;
 pub use outcome::{EnergyAccount, ForceSwitch, Outcome};
 pub use scaling::{Impact, Pair, Surface};
+pub use sensitivity::{Derived, Sensitivity};
 
 #[doc = include_str!("../README.md")]
 #[cfg(doctest)]

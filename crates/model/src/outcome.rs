@@ -1,8 +1,9 @@
 //! What an encounter leaves: motions, switches and energy in SI units.
 
 use nalgebra::Vector3;
+use smallvec::SmallVec;
 
-use crate::contact::{Collision, Regime, Side};
+use crate::contact::{Collision, FEW_SWITCHES, Regime, Side};
 use crate::encounter::{Encounter, Motion, Party};
 use crate::observed::Observed;
 
@@ -20,7 +21,7 @@ pub struct Outcome {
     /// Duration of the contact in s.
     pub contact_time_s: f64,
     /// Every switch between slip and stick, in order of time; none in a central impact.
-    pub switches: Vec<ForceSwitch>,
+    pub switches: SmallVec<[ForceSwitch; FEW_SWITCHES]>,
     /// Where the energy went.
     pub energy: EnergyAccount,
     /// What experiments report.
@@ -116,7 +117,8 @@ impl Encounter {
             spring_left_j: ledger.spring_left * tangential_unit_j,
             compression_left_j: ledger.compression_left * normal_unit_j,
         };
-        let switches = if self.tangent.is_some() { self.switches(collision) } else { Vec::new() };
+        let switches =
+            if self.tangent.is_some() { self.switches(collision) } else { SmallVec::new() };
         Outcome {
             motions,
             impulse_n_s: impulse,
@@ -129,7 +131,7 @@ impl Encounter {
         }
     }
 
-    fn switches(&self, collision: &Collision) -> Vec<ForceSwitch> {
+    fn switches(&self, collision: &Collision) -> SmallVec<[ForceSwitch; FEW_SWITCHES]> {
         let impact = &self.impact;
         let surface = &impact.pair.surface;
         let in_si = |switch: &crate::Switch| {

@@ -5,9 +5,10 @@
 //! switches there are; here the same itinerary is followed once more by a Taylor method in pairs of numbers, whose errors
 //! near 1e-21 leave the times good to rounding.
 
+use smallvec::SmallVec;
 use stickslip_solver::{Method, Observer, Options, Start, SwitchEvent, run};
 
-use crate::contact::{Collision, Contact, Regime, Side};
+use crate::contact::{Collision, Contact, FEW_SWITCHES, Regime, Side};
 use crate::energy::EnergyLedger;
 use crate::pair::Pair;
 use crate::regularized::{Phase, Regularized, STATE};
@@ -17,6 +18,11 @@ const DEGREE: usize = 24;
 /// Size of the first neglected terms of a step.
 const TOLERANCE: f64 = 1e-22;
 
+/// Phases of a collision that allocates nothing.
+const PHASES: usize = FEW_SWITCHES + 1;
+/// Phases with their lengths in s.
+type Phases = SmallVec<[(Phase, f64); PHASES]>;
+
 /// Replaces times, states, restitution and energies of `collision`, except what damping took, by ones computed with twice the digits.
 ///
 /// Returns false and changes nothing if Newton's method leaves the neighbourhood of a switch that the integrator found.
@@ -25,7 +31,7 @@ pub(crate) fn refine<M: Method>(method: M, options: &Options, collision: &mut Co
     let Some(phases) = phases(method, options, contact) else { return false };
     let mut state = Motion::start(contact);
     let mut sliding = ZERO;
-    let mut ends = Vec::with_capacity(phases.len());
+    let mut ends = SmallVec::<[Motion; PHASES]>::new();
     for (index, (phase, length)) in phases.iter().enumerate() {
         let exit = phases.get(index + 1).map(|(next, _)| *next);
         let Some(end) = state.follow(contact, *phase, exit, *length) else { return false };
@@ -59,17 +65,17 @@ pub(crate) fn refine<M: Method>(method: M, options: &Options, collision: &mut Co
         sliding: sliding.nearest(),
         spring_left: 0.5 * contact.kappa() * spring * spring,
         normal_final: 0.5 * collision.eps_n * collision.eps_n,
-        compression_left: 0.4 * last.u.nearest().powi(5),
+        compression_left: 0.4 * last.u.nearest().max(0.0).powi(5),
         ..collision.energy
     };
     true
 }
 
 /// The phases that the integrator finds, with their lengths in s.
-fn phases<M: Method>(method: M, options: &Options, contact: Contact) -> Option<Vec<(Phase, f64)>> {
+fn phases<M: Method>(method: M, options: &Options, contact: Contact) -> Option<Phases> {
     /// Notes phases and where they end.
     #[derive(Default)]
-    struct Itinerary(Vec<(Phase, f64)>, f64);
+    struct Itinerary(Phases, f64);
 
     impl Observer<Phase, STATE> for Itinerary {
         fn on_switch(&mut self, event: &SwitchEvent<Phase, STATE>) {

@@ -22,6 +22,7 @@
 use stickslip_solver::{Direction, Guard, HybridSystem, Method, State, Step, Trial};
 
 use crate::contact::{Contact, Regime, Side};
+use crate::law::{Force, Law};
 
 /// Components of the state.
 pub const STATE: usize = 8;
@@ -100,43 +101,14 @@ impl Phase {
 #[derive(Clone, Copy, Debug)]
 pub struct Regularized {
     contact: Contact,
-    /// c.
-    scale: f64,
-    /// 1/c².
-    rate_scale: f64,
-    /// 2ωc and 2ω/c: rates of the spring and of the velocity.
-    spring_rate: f64,
-    velocity_rate: f64,
-    /// κ y over the component [`SPRING`].
-    spring_force: f64,
-    /// σ = min(1, ψ), the size of the velocity.
-    velocity_unit: f64,
-}
-
-/// The force F and its first two derivatives with respect to s.
-#[derive(Clone, Copy)]
-struct Force {
-    value: f64,
-    first: f64,
-    second: f64,
+    pub(crate) law: Law<f64>,
 }
 
 impl Regularized {
     /// The system of one contact.
     #[must_use]
     pub fn new(contact: Contact) -> Self {
-        let omega = contact.kappa().sqrt();
-        let scale = omega.sqrt().max(1.0);
-        let velocity_unit = contact.psi().min(1.0);
-        Self {
-            contact,
-            scale,
-            rate_scale: 1.0 / (scale * scale),
-            spring_rate: 2.0 * omega * scale,
-            velocity_rate: 2.0 * omega / scale,
-            spring_force: omega / scale * velocity_unit,
-            velocity_unit,
-        }
+        Self { contact, law: Law::new(&contact) }
     }
 
     /// The contact.
@@ -148,18 +120,14 @@ impl Regularized {
     /// The state at the start of contact.
     #[must_use]
     pub fn start(&self) -> State<STATE> {
-        let mut y = State::zeros();
-        y[V] = 1.0;
-        y[W] = self.contact.psi() / self.velocity_unit;
-        y[RATE] = self.rate_scale * self.contact.damping();
-        y
+        self.law.start(self.contact.psi()).into()
     }
 
     /// Reduced tangential velocity w.
     #[inline(always)]
     #[must_use]
     pub fn velocity(&self, y: &State<STATE>) -> f64 {
-        self.velocity_unit * y[W]
+        self.law.velocity(array(y))
     }
 
     /// Scaled normal force F = x^{3/2} + a √x v.
@@ -173,94 +141,36 @@ impl Regularized {
     pub fn spring(&self, phase: Phase, y: &State<STATE>) -> f64 {
         let force = match phase.regime {
             Regime::Slip => phase.side.sign() * self.normal_force(y),
-            Regime::Stick => self.spring_force * y[SPRING],
+            Regime::Stick => self.law.spring_force * y[SPRING],
         };
         force / self.contact.kappa()
     }
 
-    #[inline(always)]
-    fn force(&self, u: f64, v: f64) -> Force {
-        if self.contact.damping() > 0.0 {
-            self.force_of::<true>(u, v)
-        } else {
-            self.force_of::<false>(u, v)
+    /// The phase that follows `phase` where `guard` fires at `y`.
+    pub(crate) fn next(&self, phase: Phase, guard: usize, y: &State<STATE>) -> Phase {
+        let mut other_side = guard == OTHER_SIDE;
+        if phase.regime == Regime::Stick && self.is_damped() && y[SPRING] != 0.0 {
+            // Where the limit falls to 0 with the spring at rounding, only the spring still tells which side it is on.
+            other_side = (y[SPRING] > 0.0) != (phase.side == Side::Positive);
         }
+        phase.after(other_side)
     }
 
     #[inline(always)]
-    fn force_of<const DAMPED: bool>(&self, u: f64, v: f64) -> Force {
-        let uu = u * u;
-        if DAMPED {
-            let a = self.contact.damping();
-            let f1 = uu + a * v;
-            let dv = -2.0 * uu * f1;
-            let df1 = 2.0 * u * v + a * dv;
-            let ddv = -2.0 * u * (2.0 * v * f1 + u * df1);
-            let ddf1 = 2.0 * (v * v + u * dv) + a * ddv;
-            Force {
-                value: u * f1,
-                first: v * f1 + u * df1,
-                second: dv * f1 + 2.0 * v * df1 + u * ddf1,
-            }
-        } else {
-            let dv = -2.0 * uu * uu;
-            Force { value: uu * u, first: 3.0 * uu * v, second: 3.0 * u * (2.0 * v * v + u * dv) }
-        }
+    fn is_damped(&self) -> bool {
+        self.contact.damping() > 0.0
     }
 
     #[inline(always)]
-    fn slip<const DAMPED: bool>(&self, side: Side, y: &State<STATE>) -> State<STATE> {
-        let (u, v) = (y[U], y[V]);
-        let dv = self.deceleration::<DAMPED>(u, v);
-        let pull = side.sign() / self.velocity_unit * dv;
-        State::from([v, dv, 0.0, pull, 2.0 * u, self.loss::<DAMPED>(u, v), 0.0, 0.0])
+    fn force(&self, u: f64, v: f64) -> Force<f64> {
+        if self.is_damped() { self.law.force::<true>(u, v) } else { self.law.force::<false>(u, v) }
     }
+}
 
-    #[inline(always)]
-    fn stick<const DAMPED: bool>(&self, y: &State<STATE>) -> State<STATE> {
-        let (u, v) = (y[U], y[V]);
-        let dv = self.deceleration::<DAMPED>(u, v);
-        let stretch = (self.spring_rate * u) * y[W];
-        let pull = -(self.velocity_rate * u) * y[SPRING];
-        State::from([v, dv, stretch, pull, 2.0 * u, self.loss::<DAMPED>(u, v), 0.0, 0.0])
-    }
-
-    /// Stick with its gap.
-    #[inline(always)]
-    fn first_stick<const DAMPED: bool>(&self, side: Side, y: &State<STATE>) -> State<STATE> {
-        let (u, v, w) = (y[U], y[V], self.velocity(y));
-        let (sign, kappa) = (side.sign(), self.contact.kappa());
-        let pull = self.spring_force * y[SPRING];
-        let rate = self.force_of::<DAMPED>(u, v).second
-            + 2.0 * sign * kappa * (2.0 * u * u * pull - v * w);
-        let mut slope = self.stick::<DAMPED>(y);
-        slope[GAP] = self.scale * y[RATE];
-        slope[RATE] = self.rate_scale * rate;
-        slope
-    }
-
-    #[inline(always)]
-    fn deceleration<const DAMPED: bool>(&self, u: f64, v: f64) -> f64 {
-        let uu = u * u;
-        if DAMPED { -2.0 * uu * (uu + self.contact.damping() * v) } else { -2.0 * (uu * uu) }
-    }
-
-    #[inline(always)]
-    fn loss<const DAMPED: bool>(&self, u: f64, v: f64) -> f64 {
-        if DAMPED { 2.0 * self.contact.damping() * (u * v) * (u * v) } else { 0.0 }
-    }
-
-    /// The guard of slip on side s: s w − dL/dt, in the form that has no zero of its own where u = 0.
-    #[inline(always)]
-    fn slip_guard(&self, side: Side, y: &State<STATE>) -> f64 {
-        let (u, v, w) = (y[U], y[V], self.velocity(y));
-        let pull = self.contact.kappa() * side.sign() * w;
-        if self.contact.damping() > 0.0 {
-            2.0 * u * pull - self.force(u, v).first
-        } else {
-            pull - 1.5 * u * v
-        }
-    }
+/// The components of a state.
+#[inline(always)]
+pub(crate) fn array(y: &State<STATE>) -> &[f64; STATE] {
+    &y.data.0[0]
 }
 
 impl HybridSystem<STATE, GUARDS> for Regularized {
@@ -268,15 +178,12 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
 
     #[inline(always)]
     fn field(&self, phase: Phase, _s: f64, y: &State<STATE>) -> State<STATE> {
-        let settled = phase.progress == Progress::Settled;
-        match (phase.regime, self.contact.damping() > 0.0) {
-            (Regime::Slip, false) => self.slip::<false>(phase.side, y),
-            (Regime::Slip, true) => self.slip::<true>(phase.side, y),
-            (Regime::Stick, false) if settled => self.stick::<false>(y),
-            (Regime::Stick, true) if settled => self.stick::<true>(y),
-            (Regime::Stick, false) => self.first_stick::<false>(phase.side, y),
-            (Regime::Stick, true) => self.first_stick::<true>(phase.side, y),
-        }
+        let slope = if self.is_damped() {
+            self.law.field::<true>(phase, array(y))
+        } else {
+            self.law.field::<false>(phase, array(y))
+        };
+        slope.into()
     }
 
     /// Each right-hand side has a step compiled for itself, which knows the components that stand still: these cost nothing, and
@@ -289,10 +196,13 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
                 let slope = &mut trial.slope.clone_owned();
                 $(slope[$still] = 0.0;)*
                 let trial = &Trial { slope, ..*trial };
-                step.take::<M>(&mut |_, y| self.$law::<$damped>($($side,)? y), trial);
+                let mut field = |_, y: &State<STATE>| {
+                    self.law.$law::<$damped>($($side,)? array(y)).into()
+                };
+                step.take::<M>(&mut field, trial);
             }};
         }
-        match (phase.regime, self.contact.damping() > 0.0) {
+        match (phase.regime, self.is_damped()) {
             (Regime::Slip, false) => take!(slip false (side); SPRING DAMPING GAP RATE),
             (Regime::Slip, true) => take!(slip true (side); SPRING GAP RATE),
             (Regime::Stick, false) if settled => take!(stick false (); DAMPING GAP RATE),
@@ -306,7 +216,7 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
     fn guards(&self, phase: Phase) -> [Guard; GUARDS] {
         let end = Guard::new(Direction::Below).terminal();
         // With damping the limits end at zero, and a spring that stands there slips before.
-        let damped_stick = phase.regime == Regime::Stick && self.contact.damping() > 0.0;
+        let damped_stick = phase.regime == Regime::Stick && self.is_damped();
         let end = if damped_stick { end.yielding() } else { end };
         let leave = Guard::new(Direction::Below);
         match (phase.regime, phase.progress) {
@@ -322,24 +232,10 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
 
     #[inline(always)]
     fn guard_values(&self, phase: Phase, _s: f64, y: &State<STATE>) -> [f64; GUARDS] {
-        let a = self.contact.damping();
-        let (u, v) = (y[U], y[V]);
-        let end = if a > 0.0 { u * u + a * v } else { u };
-        match phase.regime {
-            Regime::Slip => [end, self.slip_guard(phase.side, y), 1.0],
-            Regime::Stick => {
-                let pull = phase.side.sign() * (self.spring_force * y[SPRING]);
-                if phase.progress == Progress::Settled {
-                    let force = u * (u * u + a * v);
-                    [end, force - pull, force + pull]
-                } else if a > 0.0 {
-                    // A phase may begin so late that u² + a v is nothing but rounding: the force is what gap and spring say.
-                    let gap = self.scale * y[GAP];
-                    [gap + pull, gap, gap + 2.0 * pull]
-                } else {
-                    [end, y[GAP], u * u * u + pull]
-                }
-            }
+        if self.is_damped() {
+            self.law.guards::<true>(phase, array(y))
+        } else {
+            self.law.guards::<false>(phase, array(y))
         }
     }
 
@@ -347,16 +243,14 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
     fn guard_rates(&self, phase: Phase, _s: f64, y: &State<STATE>) -> [f64; GUARDS] {
         let a = self.contact.damping();
         let (u, v) = (y[U], y[V]);
-        let dv = self.deceleration::<true>(u, v);
+        let dv = self.law.deceleration::<true>(u, v);
         let end = if a > 0.0 { 2.0 * u * v + a * dv } else { v };
         let force = self.force(u, v);
         match phase.regime {
             Regime::Slip => {
                 // s κ w' = κ dv, with w' = −2s u F = s dv.
-                let (pull, pull_rate) = (
-                    self.contact.kappa() * phase.side.sign() * self.velocity(y),
-                    self.contact.kappa() * dv,
-                );
+                let pull = self.law.stretching(phase.side, array(y));
+                let pull_rate = self.contact.kappa() * dv;
                 let leave = if a > 0.0 {
                     2.0 * (v * pull + u * pull_rate) - force.second
                 } else {
@@ -366,13 +260,14 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
             }
             Regime::Stick => {
                 let shared = if a > 0.0 { 1.0 } else { u };
-                let stretch = phase.side.sign() * self.spring_force * self.spring_rate * y[W];
+                let Law { spring_force, spring_rate, scale, .. } = self.law;
+                let stretch = phase.side.sign() * spring_force * spring_rate * y[W];
                 let (force, pull) =
                     if a > 0.0 { (force.first, u * stretch) } else { (3.0 * u * v, stretch) };
                 let gap = if phase.progress == Progress::Settled {
                     force - pull
                 } else {
-                    self.scale * y[RATE] / shared
+                    scale * y[RATE] / shared
                 };
                 [end, gap, force + pull]
             }
@@ -394,15 +289,12 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
         _s: f64,
         y: &State<STATE>,
     ) -> (Phase, State<STATE>) {
-        let next = phase.after(guard == OTHER_SIDE);
-        let mut y = *y;
-        y[T] = 0.0;
-        y[GAP] = 0.0;
-        y[RATE] = 0.0;
-        y[SPRING] = match next.regime {
-            Regime::Stick => next.side.sign() * self.normal_force(&y) / self.spring_force,
-            Regime::Slip => 0.0,
+        let next = self.next(phase, guard, y);
+        let y = if self.is_damped() {
+            self.law.enter::<true>(next, array(y))
+        } else {
+            self.law.enter::<false>(next, array(y))
         };
-        (next, y)
+        (next, y.into())
     }
 }

@@ -17,7 +17,9 @@ pub enum RunError {
         to: f64,
     },
     /// The initial state, or one that a transition returned, is not finite.
-    #[error("the state at s = {s} is not finite (component {component})")]
+    #[error(
+        "component {component} of the state at s = {s}, where the run or a phase starts, is not finite"
+    )]
     State {
         /// Where.
         s: f64,
@@ -42,7 +44,7 @@ pub enum RunError {
         /// Steps tried so far.
         step: usize,
     },
-    /// A guard is not a number.
+    /// A guard is not a number; it is looked at a little beyond its zeros too.
     #[error("guard {guard} is not a number near s = {s}")]
     GuardNotANumber {
         /// The guard's index.
@@ -50,16 +52,23 @@ pub enum RunError {
         /// Where the step started.
         s: f64,
     },
-    /// A guard is zero throughout a step, so that its crossings mean nothing.
-    #[error("guard {guard} is identically zero on a step from s = {s}")]
+    /// A guard is zero throughout a step, so that its crossings mean nothing. Where a mode has no use for it, it is
+    /// [`Guard::OFF`](crate::Guard::OFF).
+    #[error(
+        "guard {guard} is identically zero on a step from s = {s}; a mode that does not use it turns it off"
+    )]
     GuardIdenticallyZero {
         /// The guard's index.
         guard: usize,
         /// Where the step started.
         s: f64,
     },
-    /// A guard has more structure than any step can resolve.
-    #[error("guard {guard} cannot be resolved near s = {s} by a step of {h:e}")]
+    /// A guard has more structure than any step can resolve: it is not smooth there, or does not start from the zero of which
+    /// [`Guard::from_zero`](crate::Guard::from_zero) tells.
+    #[error(
+        "guard {guard} cannot be resolved near s = {s} by a step of {h:e}: it is not smooth, or does not start from the zero that it \
+         is said to start from"
+    )]
     GuardUnresolved {
         /// The guard's index.
         guard: usize,

@@ -106,11 +106,11 @@ pub(crate) struct Event<const N: usize> {
 }
 
 /// The result of examining a step.
-pub(crate) enum Found<const N: usize, const G: usize> {
+pub(crate) enum Found<const G: usize> {
     /// No guard fires; their values at the step's end.
     Nothing([f64; G]),
-    /// A guard fires.
-    Event(Event<N>),
+    /// A guard fires; the event is in its place.
+    Event,
     /// This guard is not resolved: a shorter step is needed.
     TooCoarse(usize),
 }
@@ -151,9 +151,13 @@ where
     S: HybridSystem<N, G>,
     O: Observer<S::Mode, N>,
 {
-    /// Finds the first guard that fires on `step`.
+    /// Finds the first guard that fires on `step`, and puts it into `event`, which is empty.
     #[inline]
-    pub(crate) fn look<M: Method>(&mut self, step: &mut Step<N>) -> Result<Found<N, G>, RunError> {
+    pub(crate) fn look<M: Method>(
+        &mut self,
+        step: &mut Step<N>,
+        event: &mut Option<Event<N>>,
+    ) -> Result<Found<G>, RunError> {
         if G == 0 {
             return Ok(Found::Nothing(self.phase.values));
         }
@@ -165,7 +169,7 @@ where
         if statuses.iter().all(|&status| status == Status::Clear) {
             Ok(Found::Nothing(on_their_side(&values)))
         } else {
-            self.decide::<M>(step, values, statuses)
+            self.decide::<M>(step, event, values, statuses)
         }
     }
 
@@ -187,11 +191,11 @@ where
     fn decide<M: Method>(
         &mut self,
         step: &mut Step<N>,
+        event: &mut Option<Event<N>>,
         mut values: [[f64; G]; 6],
         mut statuses: [Status; G],
-    ) -> Result<Found<N, G>, RunError> {
+    ) -> Result<Found<G>, RunError> {
         let end_values = on_their_side(&values);
-        let mut event: Option<Event<N>> = None;
         loop {
             let first = self.earliest(&statuses);
             let Some((guard, crossing)) = first else {
@@ -201,6 +205,7 @@ where
                     if statuses[guard] == Status::Unclear {
                         let column = values.map(|at_node| at_node[guard]);
                         let Some(status) = self.isolate::<M>(guard, on, &column)? else {
+                            *event = None;
                             return Ok(Found::TooCoarse(guard));
                         };
                         found_any |= status != Status::Clear;
@@ -210,7 +215,8 @@ where
                 if found_any {
                     continue;
                 }
-                return Ok(event.map_or(Found::Nothing(end_values), Found::Event));
+                let nothing = Found::Nothing(end_values);
+                return Ok(if event.is_some() { Found::Event } else { nothing });
             };
             statuses[guard] = Status::Clear;
             let on = event.as_ref().map_or(&*step, |event| &event.step);
@@ -219,9 +225,10 @@ where
                 || statuses.iter().any(|&status| status != Status::Clear);
             let mut next = self.locate::<M>(on, guard, &crossing, exact)?;
             if next.elapsed == 0.0 {
-                return Ok(Found::Event(next));
+                *event = Some(next);
+                return Ok(Found::Event);
             }
-            if let Some(event) = &event
+            if let Some(event) = &*event
                 && self.precedes(event.guard, guard)
                 && next.elapsed >= (1.0 - TOGETHER) * event.elapsed
             {
@@ -243,7 +250,7 @@ where
                     *status = self.glance::<M>(other, &values);
                 }
             }
-            event = Some(next);
+            *event = Some(next);
         }
     }
 

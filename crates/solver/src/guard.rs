@@ -4,7 +4,8 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     /// As soon as it is negative: the guard bounds the domain of its mode. One that is negative when the
-    /// mode is entered fires there and then.
+    /// mode is entered fires there and then, so that transitions lead to where it is not; a run whose transitions do not ends as
+    /// [`Outcome::Zeno`](crate::Outcome::Zeno).
     Below,
     /// When it falls through zero; one that starts negative waits until it has risen.
     Falling,
@@ -43,7 +44,10 @@ impl Guard {
         Self { direction, zero_order: 0, terminal: false, yields: false }
     }
 
-    /// The guard starts from a zero of this order whenever the mode is entered.
+    /// The guard starts from a zero of this order whenever the mode is entered, also where the run starts.
+    ///
+    /// There is no need to say so of a guard that is exactly 0 there and rises. It takes this where rounding may leave
+    /// something else than 0, and where the zero is double: which way the guard leaves it would be anybody's guess.
     ///
     /// The zero is divided out before any root is looked for, so the guard can neither fire at the start
     /// nor need a nudge away from it. What the state's rounding leaves at the start is taken as zero. Of a double zero least is left

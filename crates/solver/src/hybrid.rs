@@ -60,13 +60,17 @@ pub trait HybridSystem<const N: usize, const G: usize> {
     }
 
     /// The mode and state that follow when `guard` of `mode` fires at `y`.
+    ///
+    /// The provided one changes nothing. It serves guards that end the run, and those that take note of a crossing and go on.
     fn transition(
         &self,
         mode: Self::Mode,
-        guard: usize,
-        s: f64,
+        _guard: usize,
+        _s: f64,
         y: &State<N>,
-    ) -> (Self::Mode, State<N>);
+    ) -> (Self::Mode, State<N>) {
+        (mode, *y)
+    }
 }
 
 /// Where a run starts.
@@ -281,31 +285,37 @@ where
             (StepSize::Fixed(h), _) | (StepSize::Adaptive, Some(h)) => h,
             (StepSize::Adaptive, None) => self.estimate_first_step::<M>(),
         };
-        let mut step = Step::blank();
+        let (mut step, mut event) = (Step::blank(), None);
         loop {
             if self.statistics.tried() >= self.options.max_steps {
                 return Ok(Outcome::StepLimit);
             }
-            let Some(event) = self.advance::<M>(&mut step)? else {
-                if self.clock.s >= self.end {
-                    return Ok(Outcome::ReachedEnd);
+            self.advance::<M>(&mut step, &mut event)?;
+            if let Some(event) = &event {
+                if let Some(outcome) = self.switch(event)? {
+                    return Ok(outcome);
                 }
-                continue;
-            };
-            if let Some(outcome) = self.switch(&event)? {
-                return Ok(outcome);
+            } else if self.clock.s >= self.end {
+                return Ok(Outcome::ReachedEnd);
             }
         }
     }
 
     /// Takes one step that is good enough; if it meets a switch, it ends there. Takes none beyond the limit of steps.
-    fn advance<M: Method>(&mut self, step: &mut Step<N>) -> Result<Option<Event<N>>, RunError> {
+    ///
+    /// Events hold a step: they are written where they stay, since to return them would copy one on every step.
+    fn advance<M: Method>(
+        &mut self,
+        step: &mut Step<N>,
+        event: &mut Option<Event<N>>,
+    ) -> Result<(), RunError> {
+        *event = None;
         let (system, mode) = (self.system, self.phase.mode);
         let mut field = |s: f64, y: &State<N>| system.field(mode, s, y);
         let mut cuts = 0;
         loop {
             if self.statistics.tried() >= self.options.max_steps {
-                return Ok(None);
+                return Ok(());
             }
             let left = self.clock.until(self.end);
             let h = self.h.min(self.options.max_step);
@@ -336,12 +346,9 @@ where
                 statistics: &mut self.statistics,
                 observer: self.observer,
             };
-            let event = match examination.look::<M>(step)? {
-                Found::Nothing(values) => {
-                    self.phase.advance(values);
-                    None
-                }
-                Found::Event(event) => Some(event),
+            match examination.look::<M>(step, event)? {
+                Found::Nothing(values) => self.phase.advance(values),
+                Found::Event => {}
                 Found::TooCoarse(guard) => {
                     self.statistics.too_coarse += 1;
                     cuts += 1;
@@ -352,7 +359,7 @@ where
                     }
                     continue;
                 }
-            };
+            }
             self.statistics.accepted += 1;
             if self.options.step_size == StepSize::Adaptive {
                 self.h = if last && event.is_none() {
@@ -363,13 +370,13 @@ where
             } else if let StepSize::Fixed(h) = self.options.step_size {
                 self.h = h;
             }
-            if let Some(mut event) = event {
+            if let Some(event) = event {
                 if O::WANTS_SEGMENTS && event.step.h > 0.0 {
                     let dense = event.step.dense::<M>(&mut field);
                     self.observer.on_segment(mode, &dense);
                 }
                 self.clock.advance(event.elapsed);
-                return Ok(Some(event));
+                return Ok(());
             }
             if O::WANTS_SEGMENTS {
                 let dense = step.dense::<M>(&mut field);
@@ -390,7 +397,7 @@ where
                 self.statistics.guards += 1;
                 self.refresh_slope()?;
             }
-            return Ok(None);
+            return Ok(());
         }
     }
 

@@ -14,7 +14,7 @@ pub enum StepSize {
 /// ```
 /// use stickslip_solver::Options;
 ///
-/// let options = Options { rtol: 1e-9, ..Options::default() };
+/// let options = Options { max_step: 0.1, ..Options::with_tolerance(1e-9) };
 /// assert!(options.validate().is_ok());
 /// assert!(Options { rtol: f64::NAN, ..options }.validate().is_err());
 /// ```
@@ -55,6 +55,12 @@ impl Default for Options {
 }
 
 impl Options {
+    /// The default options with `tolerance` for both the relative and the absolute tolerance.
+    #[must_use]
+    pub fn with_tolerance(tolerance: f64) -> Self {
+        Self { rtol: tolerance, atol: tolerance, ..Self::default() }
+    }
+
     /// Checks every field.
     ///
     /// # Errors

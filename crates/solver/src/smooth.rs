@@ -24,10 +24,6 @@ impl<F: Fn(f64, &State<N>) -> State<N>, const N: usize> HybridSystem<N, 0> for S
     fn guard_values(&self, (): (), _s: f64, _y: &State<N>) -> [f64; 0] {
         []
     }
-
-    fn transition(&self, (): (), _guard: usize, _s: f64, y: &State<N>) -> ((), State<N>) {
-        ((), *y)
-    }
 }
 
 /// Integrates the smooth ODE y' = `field`(s, y) from (`s`, `y`) to `end`.

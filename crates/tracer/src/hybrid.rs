@@ -7,13 +7,25 @@ use stickslip_solver::{
 
 use crate::family::{Family, FreeRun, Point};
 
-/// A hybrid system at every point of a parameter plane.
+/// A hybrid system at every point of a parameter plane: a function from points to systems and starts of their runs is one.
 pub trait Problem<const N: usize, const G: usize> {
     /// The system.
     type System: HybridSystem<N, G>;
 
     /// The system at `point`, and where its run starts.
     fn at(&self, point: &Point) -> (Self::System, Start<ModeOf<Self, N, G>, N>);
+}
+
+impl<F, S, const N: usize, const G: usize> Problem<N, G> for F
+where
+    F: Fn(&Point) -> (S, Start<S::Mode, N>),
+    S: HybridSystem<N, G>,
+{
+    type System = S;
+
+    fn at(&self, point: &Point) -> (S, Start<S::Mode, N>) {
+        self(point)
+    }
 }
 
 /// A mode of a problem's system.
@@ -29,7 +41,8 @@ pub struct HybridFamily<P, M, const N: usize, const G: usize> {
     pub method: M,
     /// Options of every run. Margins are as accurate as these make the runs.
     pub options: Options,
-    /// Where every run ends, if no terminal guard ends it before.
+    /// Where every run ends, if no terminal guard ends it before. Runs that stop before for another reason, as at an accumulation of
+    /// switches, are errors: the window or the end has to be such that there are none.
     pub end: f64,
 }
 
@@ -50,7 +63,7 @@ pub enum FamilyErrorKind {
     #[error(transparent)]
     Run(#[from] RunError),
     /// The run did not come to its end.
-    #[error("the run did not come to its end: {0:?}")]
+    #[error("the run did not come to its end, nor to a guard that ends it: {0:?}")]
     Unfinished(Outcome),
 }
 

@@ -74,7 +74,7 @@ pub fn engine(pair: Pair) -> Engine {
 
 impl PairAccuracy {
     fn new(pair: Pair, reference: &Collision) -> Result<Self, EngineError> {
-        let (collision, statistics) = engine(pair).collide(reference.contact, Vec::new())?;
+        let (collision, statistics) = engine(pair).collide(reference.contact)?;
         let statistics = statistics.unwrap_or_default();
         let switches = collision.switches.iter().map(|s| (s.time, s.to, s.side)).collect();
         let final_velocity = collision.final_velocity;

@@ -14,7 +14,7 @@ use crate::study::{Cell, Column};
 /// It cannot be computed.
 pub fn collide(kappa: f64, psi: f64) -> Result<Collision, Failure> {
     let contact = contact(kappa, psi)?;
-    let collided = Engine::Exact.collide(contact, Vec::new());
+    let collided = Engine::Exact.collide(contact);
     collided.map(|(collision, _)| collision).map_err(|source| failure(&contact, source))
 }
 

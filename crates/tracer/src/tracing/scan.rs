@@ -1,0 +1,194 @@
+//! From a segment on which the label changes to the curves that change it.
+
+use crate::cubic::Cubic;
+use crate::curve::{Curve, Node, VertexKind};
+use crate::family::{Family, Point};
+use crate::tracing::branch::{Branch, End, Seed, SeedOf, Special};
+use crate::tracing::corrector::correct;
+use crate::tracing::network::Unresolved;
+use crate::tracing::runs::Traced;
+use crate::tracing::seed::{Change, bisect, holds, identify};
+use crate::tracing::trace::Tracer;
+
+impl<F: Family> Tracer<'_, F> {
+    /// Traces every curve that changes the label along a segment, if it is not among the known curves.
+    ///
+    /// The curves that cross the segment explain how the label changes along it; only where their sides do not fit together, or
+    /// with the labels at the ends, is the boundary looked for by bisection.
+    pub(crate) fn scan(&mut self, segment: [Point; 2], labels: [F::Label; 2]) -> Traced<(), F> {
+        /// Changes on one segment; more are left to the grid's other edges.
+        const CHANGES: usize = 64;
+        let [a, b] = segment;
+        let gap = 2e-9 * self.runs.scale / (b - a).norm();
+        let [mut label, last] = labels;
+        let mut place = 0.0;
+        for _ in 0..CHANGES {
+            let mut unexplained = None;
+            for passage in self.builder.passages(&a, &b) {
+                if passage.place <= place {
+                    continue;
+                }
+                if passage.labels[0] != label {
+                    unexplained = Some(passage);
+                    break;
+                }
+                place = passage.place + gap;
+                label = passage.labels[1].clone();
+            }
+            let end = unexplained.as_ref().map_or(1.0, |passage| passage.place - gap);
+            if place >= 1.0 || (unexplained.is_none() && last == label) {
+                return Ok(());
+            }
+            // Labels are asked for, as far as they come from curves.
+            let first = if place > 0.0 { self.runs.label(&a.lerp(&b, place))? } else { label };
+            let second = match &unexplained {
+                Some(_) if end > place => self.runs.label(&a.lerp(&b, end))?,
+                Some(_) => first.clone(),
+                None => last.clone(),
+            };
+            let doubtful = first == second;
+            let change = if !doubtful {
+                bisect(&self.runs, &segment, [place, end], [first, second])?
+            } else if let Some(passage) = &unexplained {
+                // A curve with other sides than here: there is a vertex on it that was missed.
+                let after = (end + 2.0 * gap).min(1.0);
+                let labels = [second, self.runs.label(&a.lerp(&b, after))?];
+                if labels[0] == labels[1] || labels == passage.labels {
+                    place = after;
+                    [_, label] = labels;
+                    continue;
+                }
+                Change { places: [end, after], labels }
+            } else {
+                return Ok(());
+            };
+            let places = change.places.map(|place| a.lerp(&b, place));
+            match identify(&self.runs, &places, &change.labels)? {
+                Some(seed) => self.seed(&seed)?,
+                // Where curves are closer together than can be parted, the labels next to one are not its own.
+                None if doubtful => {}
+                None => {
+                    let labels = change.labels.clone();
+                    let unresolved = Unresolved::Change { between: places, labels };
+                    self.builder.network.unresolved.push(unresolved);
+                }
+            }
+            place = change.places[1];
+            label = change.labels[1].clone();
+        }
+        Ok(())
+    }
+
+    /// Traces the curve through a seed in both directions, unless it is known.
+    fn seed(&mut self, seed: &SeedOf<F>) -> Traced<(), F> {
+        if self.builder.covers(&seed.point, &seed.labels) || !self.runs.window.contains(&seed.point)
+        {
+            return Ok(());
+        }
+        let network = &mut self.builder.network;
+        if network.curves.len() >= self.runs.options.max_curves {
+            network.unresolved.push(Unresolved::TooManyCurves { point: seed.point });
+            return Ok(());
+        }
+        network.statistics.seeds += 1;
+        let Some((origin, forward, end)) = self.follow(seed, true)? else {
+            return Ok(());
+        };
+        let (nodes, ends) = match end {
+            None => (std::iter::once(origin).chain(forward).collect(), None),
+            Some(end) => {
+                let Some((_, backward, start)) = self.follow(seed, false)? else { return Ok(()) };
+                let turned = |node: &Node| Node { tangent: -node.tangent, ..*node };
+                let mut nodes: Vec<Node> = backward.iter().rev().map(turned).collect();
+                nodes.push(origin);
+                nodes.extend(forward);
+                // A branch that closes one way and ends the other way met the vertex just at its origin.
+                (nodes, Some([start.unwrap_or(end), end]))
+            }
+        };
+        let sides = seed.labels.clone();
+        self.builder.add_curve(Curve { margin: seed.margin.clone(), sides, nodes, ends });
+        Ok(())
+    }
+
+    /// Takes out the parts of curves whose labels are wrong: two vertices lay between two nodes, and only one of them was found
+    /// later. The circles around it find the right curves.
+    fn look_at_suspects(&mut self) -> Traced<(), F> {
+        let mut wrong = Vec::new();
+        for index in std::mem::take(&mut self.builder.suspects) {
+            let curve = &self.builder.network.curves[index];
+            let piece = (curve.nodes.len() - 1) / 2;
+            let guess = Cubic::between(&curve.nodes[piece], &curve.nodes[piece + 1]);
+            let (guess, tangent, reach) = (guess.at(0.5), guess.tangent(0.5), guess.chord());
+            let found =
+                match self.runs.gradient(&guess, &curve.margin, &tangent, self.runs.scale)? {
+                    Some(gradient) => correct(&self.runs, &curve.margin, &guess, &gradient, reach)?
+                        .map(|found| (found.point, gradient)),
+                    None => None,
+                };
+            let holds = match found {
+                Some((point, gradient)) => {
+                    let [left, right] = curve.sides.clone();
+                    let on_left = gradient.dot(&Point::new(-tangent.y, tangent.x)) > 0.0;
+                    let labels = if on_left { [left, right] } else { [right, left] };
+                    let seed = Seed { point, tangent, margin: curve.margin.clone(), labels };
+                    holds(&self.runs, &seed, &gradient)?
+                }
+                None => false,
+            };
+            if !holds {
+                wrong.push(index);
+            }
+        }
+        if !wrong.is_empty() {
+            self.builder.remove_curves(&wrong);
+        }
+        Ok(())
+    }
+
+    /// Origin, nodes, and the vertex at the end, `None` if it closes; `None` in place of all if no branch starts there.
+    #[expect(clippy::type_complexity)]
+    fn follow(
+        &mut self,
+        seed: &SeedOf<F>,
+        forward: bool,
+    ) -> Traced<Option<(Node, Vec<Node>, Option<usize>)>, F> {
+        let stops = self.builder.stops.clone();
+        let Some(mut branch) = Branch::new(&self.runs, seed, forward, &stops)? else {
+            let between = [seed.point; 2];
+            let labels = seed.labels.clone();
+            self.builder.network.unresolved.push(Unresolved::Change { between, labels });
+            return Ok(None);
+        };
+        let mut nodes = Vec::new();
+        for node in &mut branch {
+            nodes.push(node?);
+        }
+        let last = nodes.last().map_or(seed.point, |node| node.point);
+        let (origin, rejected) = (branch.origin(), branch.rejected());
+        let end = match branch.end().cloned() {
+            Some(End::Closed) => None,
+            Some(End::Known(index)) => Some(index),
+            Some(End::Vertex(special)) => {
+                let index = self.builder.add_vertex(&special);
+                self.look_at_suspects()?;
+                Some(index)
+            }
+            Some(End::Limit) | None => {
+                self.builder.network.unresolved.push(Unresolved::TooManyNodes { point: last });
+                let special = Special {
+                    point: last,
+                    kind: VertexKind::Degenerate,
+                    margins: vec![seed.margin.clone()],
+                    uncertainty: 0.0,
+                    solved: true,
+                };
+                Some(self.builder.add_vertex(&special))
+            }
+        };
+        let statistics = &mut self.builder.network.statistics;
+        statistics.nodes += nodes.len();
+        statistics.rejected += rejected;
+        Ok(Some((origin, nodes, end)))
+    }
+}
