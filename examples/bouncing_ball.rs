@@ -8,6 +8,7 @@
 
 use std::error::Error;
 
+use stickslip::solver::method::FUSED_PRODUCTS;
 use stickslip::solver::{
     Direction, Dop853, Guard, HybridSystem, Options, Outcome, Start, State, run,
 };
@@ -57,8 +58,8 @@ pub fn main() -> Result<(), Box<dyn Error>> {
         println!(
             "r = {restitution}: at rest after {accumulation:.12} s and {bounces} bounces, off by {error:.1e}"
         );
-        // Measured: 6.6e-15 at most.
-        assert!(error < 1.5e-14);
+        // Measured: 6.6e-15 at most; 9.0e-14 where products are rounded, 3e-16 a bounce.
+        assert!(error < if FUSED_PRODUCTS { 1.5e-14 } else { 2e-13 });
     }
     Ok(())
 }

@@ -10,6 +10,7 @@
 use std::error::Error;
 use std::f64::consts::TAU;
 
+use stickslip::solver::method::FUSED_PRODUCTS;
 use stickslip::solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State, run};
 
 struct Oscillator {
@@ -64,8 +65,9 @@ pub fn main() -> Result<(), Box<dyn Error>> {
         if let Some((delta_before, moved_before)) = last {
             let exponent = (moved_before / moved).ln() / (delta_before / delta).ln();
             println!("{:>14} exponent {exponent:.7}", "");
-            // (1 + δ/2)/(1 + δ) goes to 1. Measured: within 0.16 δ, then within 4.7e-7.
-            assert!((exponent - 0.5).abs() < 0.2 * delta_before + 1e-6);
+            // (1 + δ/2)/(1 + δ) goes to 1. Measured: within 0.16 δ, then within 4.7e-7; 1.3e-6 where products are rounded.
+            let rounding = if FUSED_PRODUCTS { 1e-6 } else { 3e-6 };
+            assert!((exponent - 0.5).abs() < 0.2 * delta_before + rounding);
         }
         last = Some((delta, moved));
     }
