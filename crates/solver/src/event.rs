@@ -1,90 +1,20 @@
 //! One step and its guards: which of them fires first, if any.
 
+use crate::along_step::AlongStep;
 use crate::error::RunError;
-use crate::guard::{Direction, Guard};
+use crate::guard::Direction;
 use crate::hybrid::{Grazing, HybridSystem, Observer, Statistics};
-use crate::isolate::{Bracket, Curve, Touch, Verdict, first_crossing};
-use crate::method::{Dense, Method, State, Step, Trial};
+use crate::isolate::{Bracket, Touch, Verdict, first_crossing};
+use crate::method::{Method, State, Step, Trial};
+use crate::phase::Phase;
 use crate::quick::{self, Quick};
 
-/// Relative change of state and time by which a guard's sensitivity to them is measured.
-const SLIGHT: f64 = 1e-12;
 /// Guards closer to a switch than this part of the step fire together with it.
 const TOGETHER: f64 = 1e-12;
 
 /// A guard that is zero throughout a step is looked at on longer ones, each four times as long as the one before, at most
 /// this often: a step of the least length that moves the time becomes one of ordinary length.
 const LONGER: i32 = 26;
-
-/// The mode that is active, with its guards as they stand.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Phase<Mode, const G: usize> {
-    pub(crate) mode: Mode,
-    pub(crate) guards: [Guard; G],
-    /// Values of the guards at the start of the next step.
-    pub(crate) values: [f64; G],
-    /// Whether a guard starts the next step from a known zero.
-    pub(crate) at_zero: bool,
-    /// Orders of the zeros from which the guards start the next step.
-    pub(crate) zero_orders: [u32; G],
-    /// Signs with which the guards leave these zeros; 0 where it is not known.
-    pub(crate) sides: [f64; G],
-    /// Largest absolute values of the guards at the ends of the phase's steps.
-    pub(crate) largest: [f64; G],
-}
-
-impl<Mode: Copy, const G: usize> Phase<Mode, G> {
-    pub(crate) fn enter<S: HybridSystem<N, G, Mode = Mode>, const N: usize>(
-        system: &S,
-        mode: Mode,
-        s: f64,
-        y: &State<N>,
-    ) -> Result<Self, RunError> {
-        let guards = system.guards(mode);
-        let values = system.guard_values(mode, s, y);
-        for guard in 0..G {
-            if guards[guard].direction() != Direction::Off && values[guard].is_nan() {
-                return Err(RunError::GuardNotANumber { guard, s });
-            }
-        }
-        Ok(Self {
-            mode,
-            guards,
-            values,
-            at_zero: guards.iter().any(|guard| guard.zero_order() > 0),
-            zero_orders: guards.map(|guard| guard.zero_order()),
-            sides: [0.0; G],
-            largest: values.map(f64::abs),
-        })
-    }
-
-    /// The mode goes on after `event`: where the guard's value still stands at that zero, it starts from a known one,
-    /// and if `unchanged` leaves it on the side to which it fired.
-    pub(crate) fn resume<const N: usize>(&mut self, event: &Event<N>, unchanged: bool) {
-        let guard = event.guard;
-        if self.values[guard].abs() <= event.residual {
-            self.at_zero = true;
-            self.zero_orders[guard] = self.zero_orders[guard].max(1);
-            if unchanged {
-                self.sides[guard] = -event.sign;
-            }
-        }
-    }
-
-    /// A step is done, and the start of the phase lies behind.
-    #[inline]
-    pub(crate) fn advance(&mut self, values: [f64; G]) {
-        self.values = values;
-        if self.at_zero {
-            self.at_zero = false;
-            self.zero_orders = [0; G];
-            self.sides = [0.0; G];
-        }
-        for (largest, value) in self.largest.iter_mut().zip(values) {
-            *largest = if value.abs() > *largest { value.abs() } else { *largest };
-        }
-    }
-}
 
 /// A guard fires on a step.
 #[derive(Clone, Copy, Debug)]
@@ -464,79 +394,4 @@ fn on_their_side<const G: usize>(values: &[[f64; G]; 6]) -> [f64; G] {
         let before = before.find(|&value| value != 0.0);
         before.map_or(end, |value| f64::MIN_POSITIVE.copysign(value))
     })
-}
-
-/// What rounding of time and state to some units in the last place does to a guard's `value` at `y`.
-///
-/// Zero where the guard has no value nearby: nothing is known of it beyond its domain.
-pub(crate) fn rounding<const N: usize>(
-    value: impl Fn(f64, &State<N>) -> f64,
-    s: f64,
-    y: &State<N>,
-) -> f64 {
-    let here = value(s, y);
-    let mut change = (value(s + SLIGHT * s.abs(), y) - here).abs();
-    for i in 0..N {
-        let mut moved = *y;
-        moved[i] += SLIGHT * moved[i].abs();
-        change += (value(s, &moved) - here).abs();
-    }
-    if change.is_finite() { 4.0 * f64::EPSILON / SLIGHT * change } else { 0.0 }
-}
-
-/// A guard along a step, for isolation.
-struct AlongStep<'a, S: HybridSystem<N, G>, M, const N: usize, const G: usize> {
-    system: &'a S,
-    mode: S::Mode,
-    guard: usize,
-    sign: f64,
-    step: &'a Step<N>,
-    dense: &'a Dense<N>,
-    statistics: &'a mut Statistics,
-    method: std::marker::PhantomData<M>,
-}
-
-impl<S, M, const N: usize, const G: usize> AlongStep<'_, S, M, N, G>
-where
-    S: HybridSystem<N, G>,
-{
-    fn value(&mut self, theta: f64, y: &State<N>) -> f64 {
-        self.statistics.guards += 1;
-        let s = self.step.s + theta * self.step.h;
-        self.sign * self.system.guard_values(self.mode, s, y)[self.guard]
-    }
-}
-
-impl<S, M, const N: usize, const G: usize> Curve for AlongStep<'_, S, M, N, G>
-where
-    S: HybridSystem<N, G>,
-    M: Method,
-{
-    type Error = RunError;
-
-    fn dense(&mut self, theta: f64) -> (f64, f64) {
-        let (fine, coarse) = (self.dense.at(theta), self.dense.coarse_at(theta));
-        (self.value(theta, &fine), self.value(theta, &coarse))
-    }
-
-    fn rounding(&mut self) -> (f64, f64) {
-        self.statistics.guards += 3 * (N + 2);
-        let value = |s: f64, y: &State<N>| self.system.guard_values(self.mode, s, y)[self.guard];
-        let [start, middle, end] = [0.0, 0.5, 1.0]
-            .map(|theta| rounding(value, self.step.s + theta * self.step.h, &self.dense.at(theta)));
-        (start, start.max(middle).max(end))
-    }
-
-    fn truth(&mut self, theta: f64) -> Result<f64, RunError> {
-        let (system, mode, step) = (self.system, self.mode, self.step);
-        let mut shorter = Step::blank();
-        system.step::<M>(mode, &step.shortened(theta * step.h), &mut shorter);
-        self.statistics.resteps += 1;
-        self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
-        let value = self.value(theta, &shorter.y1);
-        if value.is_nan() {
-            return Err(RunError::GuardNotANumber { guard: self.guard, s: step.s });
-        }
-        Ok(value)
-    }
 }

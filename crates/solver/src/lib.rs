@@ -6,8 +6,8 @@
 //! the step fraction, whose monotone pieces are isolated. Switch times come from steps of the method to
 //! the switch, not from the dense output.
 //!
-//! Start reading in [`hybrid`]; then, in this order: `event` (one step and its guards), `quick` and `isolate`
-//! (the decision), `locate` (the refinement), [`method`], [`Dopri5`] and [`Dop853`], `control`, `clock`, [`smooth`],
+//! Start reading in [`hybrid`]; then, in this order: `runner` (from switch to switch), `phase` and `event` (one step and its guards),
+//! `quick`, `isolate` and `chebyshev` (the decision), `locate` (the refinement), [`method`], [`Dopri5`] and [`Dop853`], `control`, `clock`, [`smooth`],
 //! [`trajectory`], [`mod@margin`] and `prescribed`, [`sensitivity`], `unlocated` and `order` (what is lost without all this, and how
 //! orders are measured).
 //!
@@ -61,6 +61,8 @@
 //! accumulate), `friction_belt` (stick–slip), `relay` (feedback with hysteresis), `impact_oscillator` (near grazing), `arenstorf`
 //! (smooth, with dense output).
 
+mod along_step;
+mod chebyshev;
 mod clock;
 mod control;
 mod dop853;
@@ -75,8 +77,10 @@ pub mod margin;
 pub mod method;
 mod options;
 mod order;
+mod phase;
 mod prescribed;
 mod quick;
+mod runner;
 pub mod sensitivity;
 pub mod smooth;
 pub mod trajectory;
@@ -86,13 +90,12 @@ pub use dop853::Dop853;
 pub use dopri5::Dopri5;
 pub use error::RunError;
 pub use guard::{Direction, Guard};
-pub use hybrid::{
-    Grazing, HybridSystem, Observer, Outcome, Run, Start, Statistics, SwitchEvent, run,
-};
+pub use hybrid::{Grazing, HybridSystem, Observer, Outcome, Run, Start, Statistics, SwitchEvent};
 pub use margin::{Exit, Hint, Margin, Margins, NearMiss, Place, margin, margins};
 pub use method::{Dense, Method, State, Step, Tableau, Trial};
 pub use options::{InvalidOption, Options, StepSize};
 pub use order::{Order, fit_order};
+pub use runner::run;
 pub use sensitivity::{Change, Differentiable, Sensitivities, SwitchSensitivity, sensitivities};
 pub use smooth::integrate;
 pub use trajectory::{Recorder, Segment, Trajectory};

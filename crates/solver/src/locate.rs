@@ -3,8 +3,9 @@
 //! The dense output only says where to start: each iterate is a step from the same start to a trial place,
 //! so a switch is as accurate as any other point of the run.
 
+use crate::along_step::rounding;
 use crate::error::RunError;
-use crate::event::{Crossing, Event, Examination, rounding};
+use crate::event::{Crossing, Event, Examination};
 use crate::hybrid::{HybridSystem, Observer};
 use crate::method::{Method, State, Step};
 

@@ -13,10 +13,11 @@ use std::hash::{Hash, Hasher};
 
 use crate::error::RunError;
 use crate::guard::{Direction, Guard};
-use crate::hybrid::{HybridSystem, Observer, Outcome, Start, SwitchEvent, run};
+use crate::hybrid::{HybridSystem, Observer, Outcome, Start, SwitchEvent};
 use crate::method::Method;
 use crate::options::Options;
 use crate::prescribed::{Extremum, watch};
+use crate::runner::run;
 
 /// A place in a phase, which moves with the parameters: two that differ in nothing else are the same.
 #[derive(Clone, Copy, Debug)]

@@ -2,9 +2,10 @@
 
 use crate::error::RunError;
 use crate::guard::Guard;
-use crate::hybrid::{HybridSystem, Observer, Run, Start, run};
+use crate::hybrid::{HybridSystem, Observer, Run, Start};
 use crate::method::{Method, State};
 use crate::options::Options;
+use crate::runner::run;
 
 /// A right-hand side without guards.
 #[derive(Clone, Copy, Debug)]

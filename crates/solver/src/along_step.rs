@@ -1,0 +1,84 @@
+//! A guard along a step, and what rounding does to it.
+
+use crate::error::RunError;
+use crate::hybrid::{HybridSystem, Statistics};
+use crate::isolate::Curve;
+use crate::method::{Dense, Method, State, Step};
+
+/// Relative change of state and time by which a guard's sensitivity to them is measured.
+const SLIGHT: f64 = 1e-12;
+
+/// What rounding of time and state to some units in the last place does to a guard's `value` at `y`.
+///
+/// Zero where the guard has no value nearby: nothing is known of it beyond its domain.
+pub(crate) fn rounding<const N: usize>(
+    value: impl Fn(f64, &State<N>) -> f64,
+    s: f64,
+    y: &State<N>,
+) -> f64 {
+    let here = value(s, y);
+    let mut change = (value(s + SLIGHT * s.abs(), y) - here).abs();
+    for i in 0..N {
+        let mut moved = *y;
+        moved[i] += SLIGHT * moved[i].abs();
+        change += (value(s, &moved) - here).abs();
+    }
+    if change.is_finite() { 4.0 * f64::EPSILON / SLIGHT * change } else { 0.0 }
+}
+
+/// A guard along a step, for isolation.
+pub(crate) struct AlongStep<'a, S: HybridSystem<N, G>, M, const N: usize, const G: usize> {
+    pub(crate) system: &'a S,
+    pub(crate) mode: S::Mode,
+    pub(crate) guard: usize,
+    pub(crate) sign: f64,
+    pub(crate) step: &'a Step<N>,
+    pub(crate) dense: &'a Dense<N>,
+    pub(crate) statistics: &'a mut Statistics,
+    pub(crate) method: std::marker::PhantomData<M>,
+}
+
+impl<S, M, const N: usize, const G: usize> AlongStep<'_, S, M, N, G>
+where
+    S: HybridSystem<N, G>,
+{
+    fn value(&mut self, theta: f64, y: &State<N>) -> f64 {
+        self.statistics.guards += 1;
+        let s = self.step.s + theta * self.step.h;
+        self.sign * self.system.guard_values(self.mode, s, y)[self.guard]
+    }
+}
+
+impl<S, M, const N: usize, const G: usize> Curve for AlongStep<'_, S, M, N, G>
+where
+    S: HybridSystem<N, G>,
+    M: Method,
+{
+    type Error = RunError;
+
+    fn dense(&mut self, theta: f64) -> (f64, f64) {
+        let (fine, coarse) = (self.dense.at(theta), self.dense.coarse_at(theta));
+        (self.value(theta, &fine), self.value(theta, &coarse))
+    }
+
+    fn rounding(&mut self) -> (f64, f64) {
+        self.statistics.guards += 3 * (N + 2);
+        let value = |s: f64, y: &State<N>| self.system.guard_values(self.mode, s, y)[self.guard];
+        let [start, middle, end] = [0.0, 0.5, 1.0]
+            .map(|theta| rounding(value, self.step.s + theta * self.step.h, &self.dense.at(theta)));
+        (start, start.max(middle).max(end))
+    }
+
+    fn truth(&mut self, theta: f64) -> Result<f64, RunError> {
+        let (system, mode, step) = (self.system, self.mode, self.step);
+        let mut shorter = Step::blank();
+        system.step::<M>(mode, &step.shortened(theta * step.h), &mut shorter);
+        self.statistics.resteps += 1;
+        self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
+        let value = self.value(theta, &shorter.y1);
+        if value.is_nan() {
+            return Err(RunError::GuardNotANumber { guard: self.guard, s: step.s });
+        }
+        Ok(value)
+    }
+}

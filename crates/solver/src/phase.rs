@@ -1,0 +1,77 @@
+//! The mode that is active, with its guards.
+
+use crate::error::RunError;
+use crate::event::Event;
+use crate::guard::{Direction, Guard};
+use crate::hybrid::HybridSystem;
+use crate::method::State;
+
+/// The mode that is active, with its guards as they stand.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Phase<Mode, const G: usize> {
+    pub(crate) mode: Mode,
+    pub(crate) guards: [Guard; G],
+    /// Values of the guards at the start of the next step.
+    pub(crate) values: [f64; G],
+    /// Whether a guard starts the next step from a known zero.
+    pub(crate) at_zero: bool,
+    /// Orders of the zeros from which the guards start the next step.
+    pub(crate) zero_orders: [u32; G],
+    /// Signs with which the guards leave these zeros; 0 where it is not known.
+    pub(crate) sides: [f64; G],
+    /// Largest absolute values of the guards at the ends of the phase's steps.
+    pub(crate) largest: [f64; G],
+}
+
+impl<Mode: Copy, const G: usize> Phase<Mode, G> {
+    pub(crate) fn enter<S: HybridSystem<N, G, Mode = Mode>, const N: usize>(
+        system: &S,
+        mode: Mode,
+        s: f64,
+        y: &State<N>,
+    ) -> Result<Self, RunError> {
+        let guards = system.guards(mode);
+        let values = system.guard_values(mode, s, y);
+        for guard in 0..G {
+            if guards[guard].direction() != Direction::Off && values[guard].is_nan() {
+                return Err(RunError::GuardNotANumber { guard, s });
+            }
+        }
+        Ok(Self {
+            mode,
+            guards,
+            values,
+            at_zero: guards.iter().any(|guard| guard.zero_order() > 0),
+            zero_orders: guards.map(|guard| guard.zero_order()),
+            sides: [0.0; G],
+            largest: values.map(f64::abs),
+        })
+    }
+
+    /// The mode goes on after `event`: where the guard's value still stands at that zero, it starts from a known one,
+    /// and if `unchanged` leaves it on the side to which it fired.
+    pub(crate) fn resume<const N: usize>(&mut self, event: &Event<N>, unchanged: bool) {
+        let guard = event.guard;
+        if self.values[guard].abs() <= event.residual {
+            self.at_zero = true;
+            self.zero_orders[guard] = self.zero_orders[guard].max(1);
+            if unchanged {
+                self.sides[guard] = -event.sign;
+            }
+        }
+    }
+
+    /// A step is done, and the start of the phase lies behind.
+    #[inline]
+    pub(crate) fn advance(&mut self, values: [f64; G]) {
+        self.values = values;
+        if self.at_zero {
+            self.at_zero = false;
+            self.zero_orders = [0; G];
+            self.sides = [0.0; G];
+        }
+        for (largest, value) in self.largest.iter_mut().zip(values) {
+            *largest = if value.abs() > *largest { value.abs() } else { *largest };
+        }
+    }
+}

@@ -1,0 +1,295 @@
+//! A run of a hybrid system from switch to switch.
+//!
+//! One accepted step is `advance`; whether it contains a switch is the business of `event`.
+
+use crate::clock::{Clock, Zeno};
+use crate::control::{Controller, first_step};
+use crate::error::RunError;
+use crate::event::{Event, Examination, Found};
+use crate::hybrid::{HybridSystem, Observer, Outcome, Run, Start, Statistics, SwitchEvent};
+use crate::method::{Method, State, Step, Trial};
+use crate::options::{Options, StepSize};
+use crate::phase::Phase;
+
+/// Integrates `system` from `start` to `end`, through every switch on the way.
+///
+/// `end` may be infinite where a terminal guard ends the run. Nothing is allocated.
+///
+/// # Errors
+/// [`RunError`]: invalid options, a right-hand side or guard that is not finite, a tolerance that no step
+/// meets, a guard that is identically zero.
+pub fn run<M, S, O, const N: usize, const G: usize>(
+    _method: M,
+    system: &S,
+    start: Start<S::Mode, N>,
+    end: f64,
+    options: &Options,
+    observer: &mut O,
+) -> Result<Run<S::Mode, N>, RunError>
+where
+    M: Method,
+    S: HybridSystem<N, G>,
+    O: Observer<S::Mode, N>,
+{
+    options.validate()?;
+    if !(start.s.is_finite() && end > start.s) {
+        return Err(RunError::Span { from: start.s, to: end });
+    }
+    let mut runner = Runner {
+        system,
+        options,
+        observer,
+        end,
+        clock: Clock::new(start.s),
+        phase: Phase::enter(system, start.mode, start.s, &start.state)?,
+        state: start.state,
+        slope: State::zeros(),
+        other_h: None,
+        h: 0.0,
+        controller: Controller::new(),
+        zeno: Zeno::new(start.s),
+        statistics: Statistics { guards: 1, ..Statistics::default() },
+    };
+    let outcome = runner.run::<M>()?;
+    Ok(Run {
+        outcome,
+        s: runner.clock.s,
+        mode: runner.phase.mode,
+        state: runner.state,
+        statistics: runner.statistics,
+    })
+}
+
+/// The state of a run between two steps.
+struct Runner<'a, S: HybridSystem<N, G>, O, const N: usize, const G: usize> {
+    system: &'a S,
+    options: &'a Options,
+    observer: &'a mut O,
+    end: f64,
+    clock: Clock,
+    phase: Phase<S::Mode, G>,
+    state: State<N>,
+    /// Derivative of the state.
+    slope: State<N>,
+    /// Size of the next step.
+    h: f64,
+    /// The same for the phase after this one, as the phase before this one left it: modes mostly alternate.
+    other_h: Option<f64>,
+    controller: Controller,
+    zeno: Zeno,
+    statistics: Statistics,
+}
+
+impl<S, O, const N: usize, const G: usize> Runner<'_, S, O, N, G>
+where
+    S: HybridSystem<N, G>,
+    O: Observer<S::Mode, N>,
+{
+    fn run<M: Method>(&mut self) -> Result<Outcome, RunError> {
+        self.refresh_slope()?;
+        self.h = match (self.options.step_size, self.options.first_step) {
+            (StepSize::Fixed(h), _) | (StepSize::Adaptive, Some(h)) => h,
+            (StepSize::Adaptive, None) => self.estimate_first_step::<M>(),
+        };
+        let (mut step, mut event) = (Step::blank(), None);
+        loop {
+            if self.statistics.tried() >= self.options.max_steps {
+                return Ok(Outcome::StepLimit);
+            }
+            self.advance::<M>(&mut step, &mut event)?;
+            if let Some(event) = &event {
+                if let Some(outcome) = self.switch(event)? {
+                    return Ok(outcome);
+                }
+            } else if self.clock.s >= self.end {
+                return Ok(Outcome::ReachedEnd);
+            }
+        }
+    }
+
+    /// Takes one step that is good enough; if it meets a switch, it ends there. Takes none beyond the limit of steps.
+    ///
+    /// Events hold a step: they are written where they stay, since to return them would copy one on every step.
+    fn advance<M: Method>(
+        &mut self,
+        step: &mut Step<N>,
+        event: &mut Option<Event<N>>,
+    ) -> Result<(), RunError> {
+        *event = None;
+        let (system, mode) = (self.system, self.phase.mode);
+        let mut field = |s: f64, y: &State<N>| system.field(mode, s, y);
+        let mut cuts = 0;
+        loop {
+            if self.statistics.tried() >= self.options.max_steps {
+                return Ok(());
+            }
+            let left = self.clock.until(self.end);
+            let h = self.h.min(self.options.max_step);
+            let (h, last) = if h >= left { (left, true) } else { (h, false) };
+            let trial = Trial {
+                s: self.clock.s,
+                y: &self.state,
+                slope: &self.slope,
+                h,
+                tolerances: (self.options.rtol, self.options.atol),
+            };
+            system.step::<M>(mode, &trial, step);
+            self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
+            let error = match self.options.step_size {
+                StepSize::Adaptive => step.error,
+                StepSize::Fixed(_) => step.y1.sum() * 0.0,
+            };
+            // Written so that NaN rejects.
+            let good = error < 1.0;
+            if !good {
+                self.reject::<M>(h, error)?;
+                continue;
+            }
+            let mut examination = Examination {
+                system,
+                phase: &self.phase,
+                trial: &trial,
+                statistics: &mut self.statistics,
+                observer: self.observer,
+            };
+            match examination.look::<M>(step, event)? {
+                Found::Nothing(values) => self.phase.advance(values),
+                Found::Event => {}
+                Found::TooCoarse(guard) => {
+                    self.statistics.too_coarse += 1;
+                    cuts += 1;
+                    self.h = 0.2 * h;
+                    // A step that does not move the time gets nowhere.
+                    if cuts > 60 || self.h <= f64::EPSILON * self.clock.s.abs() {
+                        return Err(RunError::GuardUnresolved { guard, s: self.clock.s, h });
+                    }
+                    continue;
+                }
+            }
+            self.statistics.accepted += 1;
+            if self.options.step_size == StepSize::Adaptive {
+                self.h = if last && event.is_none() {
+                    self.h
+                } else {
+                    self.controller.accepted::<M>(h, error)
+                };
+            } else if let StepSize::Fixed(h) = self.options.step_size {
+                self.h = h;
+            }
+            if let Some(event) = event {
+                if O::WANTS_SEGMENTS && event.step.h > 0.0 {
+                    let dense = event.step.dense::<M>(&mut field);
+                    self.observer.on_segment(mode, &dense);
+                }
+                self.clock.advance(event.elapsed);
+                return Ok(());
+            }
+            if O::WANTS_SEGMENTS {
+                let dense = step.dense::<M>(&mut field);
+                self.observer.on_segment(mode, &dense);
+            }
+            self.state = step.y1;
+            self.slope = step.finish::<M>(&mut field);
+            self.statistics.field += usize::from(!M::ERROR_USES_END);
+            self.clock.advance(h);
+            if last {
+                self.clock.arrive(self.end);
+            }
+            let settled = system.settle(mode);
+            if settled != mode {
+                let largest = self.phase.largest;
+                self.phase = Phase::enter(system, settled, self.clock.s, &self.state)?;
+                self.phase = Phase { at_zero: false, zero_orders: [0; G], largest, ..self.phase };
+                self.statistics.guards += 1;
+                self.refresh_slope()?;
+            }
+            return Ok(());
+        }
+    }
+
+    fn reject<M: Method>(&mut self, h: f64, error: f64) -> Result<(), RunError> {
+        self.statistics.rejected += 1;
+        let step = self.statistics.accepted + self.statistics.rejected;
+        let s = self.clock.s;
+        if let StepSize::Fixed(_) = self.options.step_size {
+            return Err(RunError::Field { s, step });
+        }
+        self.h = self.controller.rejected::<M>(h, error);
+        if self.h <= f64::EPSILON * s.abs().max(f64::MIN_POSITIVE) {
+            return Err(if error.is_finite() {
+                RunError::Tolerance { s, h, step }
+            } else {
+                RunError::Field { s, step }
+            });
+        }
+        Ok(())
+    }
+
+    /// Reports the switch and enters the next phase, or ends the run.
+    fn switch(&mut self, event: &Event<N>) -> Result<Option<Outcome>, RunError> {
+        let (s, from, guard) = (self.clock.s, self.phase.mode, event.guard);
+        let ends = self.phase.guards[guard].ends_run();
+        let (to, after) = if ends {
+            (from, event.state)
+        } else {
+            self.system.transition(from, guard, s, &event.state)
+        };
+        self.statistics.switches += usize::from(!ends);
+        self.observer.on_switch(&SwitchEvent {
+            s,
+            guard,
+            simultaneous: event.simultaneous,
+            flatness: self.phase.largest[guard] / event.slope,
+            from,
+            to,
+            before: event.state,
+            after,
+        });
+        self.state = after;
+        if ends {
+            return Ok(Some(Outcome::EndedByGuard { guard }));
+        }
+        if self.statistics.switches >= self.options.max_switches {
+            return Ok(Some(Outcome::SwitchLimit));
+        }
+        if let Some(accumulation) = self.zeno.after_switch(s, self.clock.phase, self.options.zeno) {
+            return Ok(Some(Outcome::Zeno { accumulation }));
+        }
+        self.clock.phase = 0.0;
+        self.phase = Phase::enter(self.system, to, s, &after)?;
+        self.statistics.guards += 1;
+        if self.options.step_size == StepSize::Adaptive {
+            let h = self.other_h.replace(self.h).unwrap_or(self.h);
+            self.h = h;
+            self.controller.begin();
+        }
+        if to == from {
+            self.phase.resume(event, after == event.state);
+        }
+        self.refresh_slope()?;
+        Ok(None)
+    }
+
+    fn refresh_slope(&mut self) -> Result<(), RunError> {
+        let s = self.clock.s;
+        if let Some(component) = self.state.iter().position(|v| !v.is_finite()) {
+            return Err(RunError::State { s, component });
+        }
+        self.slope = self.system.field(self.phase.mode, s, &self.state);
+        self.statistics.field += 1;
+        if self.slope.iter().all(|v| v.is_finite()) {
+            Ok(())
+        } else {
+            Err(RunError::Field { s, step: self.statistics.accepted + self.statistics.rejected })
+        }
+    }
+
+    fn estimate_first_step<M: Method>(&mut self) -> f64 {
+        let (system, mode) = (self.system, self.phase.mode);
+        let mut field = |s: f64, y: &State<N>| system.field(mode, s, y);
+        self.statistics.field += 1;
+        let longest = self.clock.until(self.end).min(self.options.max_step);
+        let tolerances = (self.options.rtol, self.options.atol);
+        first_step::<M, N>(&mut field, self.clock.s, &self.state, &self.slope, tolerances, longest)
+    }
+}
