@@ -3,7 +3,6 @@
 use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use stickslip_model::Contact;
 use stickslip_model::stiff::StiffError;
@@ -143,12 +142,13 @@ impl Failure {
         }
     }
 
-    /// 2 for bad usage or input, 1 for everything that fails later.
-    pub fn exit_code(&self) -> ExitCode {
-        ExitCode::from(match self {
+    /// The exit code: 2 for bad usage or input, 1 for everything that fails later.
+    #[must_use]
+    pub fn code(&self) -> u8 {
+        match self {
             Self::Usage(_) | Self::Input { .. } => 2,
             _ => 1,
-        })
+        }
     }
 
     /// Says on standard error what went wrong.

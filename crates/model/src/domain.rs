@@ -5,7 +5,9 @@ use crate::exact::MOST_STIFFNESS;
 
 /// A contact is beyond what an engine computes.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("{quantity} = {value:?} is out of the range of {engine}; accepted is {least:e} to {most:e}")]
+#[error(
+    "{quantity} = {value:?} is out of the range of {engine}; accepted is {least:e} to {most:e}"
+)]
 pub struct OutOfDomain {
     /// The engine.
     pub engine: &'static str,
