@@ -14,6 +14,7 @@ use stickslip::model::{Collider, Collision, Contact};
 use stickslip::solver::{Dop853, Dopri5};
 
 #[path = "../tests/checks/collision.rs"]
+#[allow(dead_code, reason = "the fuzz targets and tests use the rest")]
 mod checks;
 
 /// What became of the collisions of a part of the range.

@@ -9,7 +9,7 @@ mod hybrid;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestError, TestRng, TestRunner};
-use stickslip::model::Contact;
+use stickslip::model::{Collider, Contact};
 
 /// Holds `check` for `cases` values, the same ones every time.
 fn hold<S: Strategy>(cases: u32, strategy: &S, check: impl Fn(S::Value) -> Result<(), String>) {
@@ -66,4 +66,22 @@ fn polynomials_as_guards() {
 #[test]
 fn expressions_as_systems() {
     hold(3000, &vec(any::<u8>(), 0..200), |bytes| hybrid::expressions(&bytes));
+}
+
+/// Found by fuzzing.
+#[test]
+fn faults_found_before() {
+    // A slip that turns round just before the end of contact, beyond what rounding parts.
+    let contact = Contact::new(0.45739746090475863, 3.5193950124344e-23, 0.0).unwrap();
+    collision::every_engine(contact).unwrap();
+    // Damped: the last slip on the wrong side, with a spring of rounding; none at all; a first stick too short for a step.
+    for (kappa, psi, damping) in [
+        (4.528382313822378e-11, 1.2650261948417832e-11, 0.14066568840160276),
+        (9.231192025160803e-12, 3.493996029379889e-12, 74.88341304204822),
+        (412.9473860211958, 2.091379436460536e7, 5.2526582745142626e-12),
+    ] {
+        let contact = Contact::new(kappa, psi, damping).unwrap();
+        let held = collision::integrated(&Collider::default(), contact).unwrap();
+        assert!(held.is_ok(), "{contact:?}: {held:?}");
+    }
 }

@@ -37,7 +37,7 @@ pub fn atlas(json: &[u8]) -> Result<(), String> {
         let points = format!("{path}.points");
         // A file that cannot be written is found missing.
         let _ = fs::write(&points, POINTS);
-        format!("locate --atlas {path} --batch {points} --out {path}.out --threads 1")
+        format!("locate --atlas {path} --batch {points} --out {path}.out")
     })
 }
 
