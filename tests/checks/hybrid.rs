@@ -273,7 +273,7 @@ impl Bytes<'_> {
     fn expression(&mut self) -> Expression {
         Expression([(); 8].map(|()| {
             let operation = self.byte();
-            let number = if operation % 12 == 0 { self.number() } else { 0.0 };
+            let number = if operation.is_multiple_of(12) { self.number() } else { 0.0 };
             (operation, number)
         }))
     }
