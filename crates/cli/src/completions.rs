@@ -13,7 +13,7 @@ use crate::error::Failure;
 /// Standard output cannot be written.
 pub fn run(arguments: CompletionsArguments) -> Result<(), Failure> {
     let mut script = Vec::new();
-    let name = env!("CARGO_BIN_NAME");
+    let name = crate::NAME;
     clap_complete::generate(arguments.shell, &mut Arguments::command(), name, &mut script);
     Failure::unless_written(io::stdout().lock().write_all(&script))
 }

@@ -3,7 +3,6 @@
 use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use stickslip_model::Contact;
 use stickslip_model::stiff::StiffError;
@@ -117,6 +116,7 @@ pub enum Failure {
 
 impl Failure {
     /// A point that cannot be computed.
+    #[must_use]
     pub fn computation(contact: &Contact, source: EngineError) -> Self {
         let (kappa, psi, damping) = (contact.kappa(), contact.psi(), contact.damping());
         Self::Computation { kappa, psi, damping, source }
@@ -143,12 +143,13 @@ impl Failure {
         }
     }
 
-    /// 2 for bad usage or input, 1 for everything that fails later.
-    pub fn exit_code(&self) -> ExitCode {
-        ExitCode::from(match self {
+    /// The exit code: 2 for bad usage or input, 1 for everything that fails later.
+    #[must_use]
+    pub fn code(&self) -> u8 {
+        match self {
             Self::Usage(_) | Self::Input { .. } => 2,
             _ => 1,
-        })
+        }
     }
 
     /// Says on standard error what went wrong.

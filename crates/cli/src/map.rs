@@ -94,7 +94,7 @@ impl MapPlan {
         // Digits that read back as the same numbers are as good as their bits.
         let description = format!(
             "program: {} {}, {}, tiles 1\n{plane}method: {}{method}\npoints a tile: {tile_points}\n",
-            env!("CARGO_BIN_NAME"),
+            crate::NAME,
             env!("CARGO_PKG_VERSION"),
             version::build(),
             self.engine.name(),

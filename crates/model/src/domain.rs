@@ -40,12 +40,13 @@ const EXACT: Domain = Domain {
     damping: (0.0, 0.0),
 };
 
-/// The integrators without damping: the first and the last switch lie within (κψ)² and (κψ)^{2/3} of the ends of contact.
+/// The integrators without damping: a slip that has turned round sticks once more at u = (2/3)κ|w| before it ends at u = 0, which
+/// rounding parts down to this ψ.
 const UNDAMPED: Domain = Domain {
     engine: "the integrator",
-    kappa: (1e-30, 1e10),
-    psi: (1e-30, 1e30),
-    pull: (1e-40, 1e40),
+    kappa: (1e-20, 1e10),
+    psi: (1e-13, 1e30),
+    pull: (1e-33, 1e40),
     damping: (0.0, 0.0),
 };
 

@@ -54,7 +54,7 @@ pub fn html(sections: &[Section]) -> String {
 </body>
 </html>
 "#,
-        env!("CARGO_BIN_NAME"),
+        crate::NAME,
         env!("CARGO_PKG_VERSION"),
     )
 }

@@ -15,7 +15,7 @@ pub fn json(sections: &[Section]) -> String {
     let parts: Vec<Value> = sections.iter().map(part).collect();
     let report = json!({
         "schema": schema::REPORT,
-        "program": { "name": env!("CARGO_BIN_NAME"), "version": env!("CARGO_PKG_VERSION") },
+        "program": { "name": crate::NAME, "version": env!("CARGO_PKG_VERSION") },
         "title": TITLE,
         "parts": parts,
     });

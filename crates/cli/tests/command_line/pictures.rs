@@ -41,7 +41,7 @@ fn collisions_have_axes_phases_and_every_switch() {
         // Both pairs of switches lie within a millionth of an end of contact.
         ("--kappa 18 --psi 1e-7", 2, 2),
         ("--kappa 5 --psi 1e6", 0, 1),
-        ("--kappa 1e-3 --psi 1e-20", 2, 2),
+        ("--kappa 1e-3 --psi 1e-13", 2, 2),
     ] {
         let ran = workspace.run(&format!("collide {line} --plot a.svg"));
         assert_eq!((ran.code, ran.stderr.as_str()), (0, ""), "{line}");

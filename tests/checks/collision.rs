@@ -1,0 +1,160 @@
+//! What holds of every collision, whatever its parameters.
+
+use stickslip::model::exact::{self, ExactError};
+use stickslip::model::{
+    Collider, Collision, CollisionError, Contact, EnergyLedger, Regime, Side, Switch,
+};
+use stickslip::solver::{Dopri5, Method};
+
+/// Part of ψ² by which energies may not balance at the default tolerances of Dormand–Prince 8(5,3).
+const BALANCE: f64 = 1e-9;
+/// Largest difference of w between integrator and exact solution, in units of ψ.
+const VELOCITY: f64 = 1e-9;
+/// Largest difference of a switch time.
+const TIME: f64 = 1e-8;
+/// Relative change of ψ that may change which switches the engines find.
+const UNDECIDED: f64 = 1e-11;
+
+/// Collides `contact` by every engine that takes it, and holds what is true of the results.
+///
+/// # Errors
+/// What does not hold.
+pub fn every_engine(contact: Contact) -> Result<(), String> {
+    let accurate = integrated(&Collider::default(), contact)?;
+    let _ = integrated(&Collider::new(Dopri5), contact)?;
+    if let (Ok(integrated), Ok(closed)) = (accurate, exact(contact)?) {
+        agree(&integrated, &closed).map_err(|reason| format!("{contact:?}: {reason}"))?;
+    }
+    Ok(())
+}
+
+/// Integrates `contact` and holds that a result is one.
+///
+/// # Errors
+/// What does not hold of the result.
+pub fn integrated<M: Method>(
+    collider: &Collider<M>,
+    contact: Contact,
+) -> Result<Result<Collision, CollisionError>, String> {
+    let result = collider.collide(contact);
+    if let Ok(collision) = &result {
+        sound(collision).map_err(|reason| format!("{contact:?}: {reason}"))?;
+    }
+    Ok(result)
+}
+
+/// Holds that two engines found the same, unless a change of ψ in the last digits changes what there is to find.
+///
+/// # Errors
+/// What differs.
+pub fn agree(integrated: &Collision, closed: &Collision) -> Result<(), String> {
+    let contact = closed.contact;
+    if integrated.itinerary() != closed.itinerary() {
+        let moved = |factor: f64| {
+            let moved = Contact::new(contact.kappa(), contact.psi() * factor, 0.0).ok()?;
+            exact::collide(moved).ok().map(|collision| collision.itinerary())
+        };
+        let here = Some(closed.itinerary());
+        let decided = moved(1.0 + UNDECIDED) == here && moved(1.0 - UNDECIDED) == here;
+        let (one, other) = (integrated.itinerary(), closed.itinerary());
+        return require(!decided, || format!("itineraries {one} and {other}"));
+    }
+    let velocities = (integrated.final_velocity, closed.final_velocity);
+    require((velocities.0 - velocities.1).abs() <= VELOCITY * contact.psi(), || {
+        format!("w = {velocities:?}")
+    })?;
+    for (one, other) in integrated.switches.iter().zip(&closed.switches) {
+        require((one.time - other.time).abs() <= TIME, || format!("{one:?} and {other:?}"))?;
+    }
+    Ok(())
+}
+
+/// The exact solution of `contact`, and holds that it is one.
+///
+/// # Errors
+/// What does not hold of the result.
+pub fn exact(contact: Contact) -> Result<Result<Collision, ExactError>, String> {
+    let result = exact::collide(contact);
+    if let Ok(collision) = &result {
+        sound(collision).map_err(|reason| format!("exact, {contact:?}: {reason}"))?;
+    }
+    Ok(result)
+}
+
+/// Holds what is true of every collision.
+fn sound(collision: &Collision) -> Result<(), String> {
+    let Collision { contact, eps_n, final_velocity, contact_time, start, switches, .. } = collision;
+    require(collision.eps_t().is_finite(), || format!("ε_t = {:e}", collision.eps_t()))?;
+    require(contact_time.is_finite() && *contact_time > 0.0, || {
+        format!("contact time {contact_time:e}")
+    })?;
+    let damped = contact.damping() > 0.0;
+    // Rounding of v: without damping ε_n is 1.
+    require(*eps_n >= 0.0 && *eps_n <= 1.0 + 1e-11, || format!("ε_n = {eps_n:e}"))?;
+    require(damped || (eps_n - 1.0).abs() <= 1e-11, || format!("ε_n = {eps_n:e} without damping"))?;
+    require(final_velocity.abs() <= contact.psi() * (1.0 + 1e-9), || {
+        format!("|w| has grown to {final_velocity:e}")
+    })?;
+    let first = if damped { Regime::Stick } else { Regime::Slip };
+    require(*start == first, || format!("starts in {start}"))?;
+    require(switches.len().is_multiple_of(2) != damped, || {
+        format!("{} switches: {}", switches.len(), collision.itinerary())
+    })?;
+    in_turns(collision)?;
+    in_time(switches, *contact_time)?;
+    let reversed = collision.reversals % 2 == 1;
+    require(*final_velocity == 0.0 || reversed == (*final_velocity < 0.0), || {
+        format!("{} reversals, and w = {final_velocity:e}", collision.reversals)
+    })?;
+    balanced(&collision.energy, contact.psi())
+}
+
+/// Regimes alternate, slip on the side that its switch says, and the spring is on the side of its limit.
+fn in_turns(collision: &Collision) -> Result<(), String> {
+    let (mut regime, mut side) = (collision.start, Side::Positive);
+    for (index, switch) in collision.switches.iter().enumerate() {
+        let Switch { to, spring, velocity, .. } = *switch;
+        let place = || format!("switch {index} of {}: {switch:?}", collision.itinerary());
+        require(to != regime, place)?;
+        require(to == Regime::Slip || switch.side == side, place)?;
+        require(velocity.is_finite() && spring.is_finite(), place)?;
+        require(switch.side.sign() * spring >= 0.0, place)?;
+        (regime, side) = (to, switch.side);
+    }
+    require(regime == Regime::Slip, || format!("ends in {regime}"))
+}
+
+/// Times rise, and times left fall, both within the contact; together they make it up, to the rounding of their sums.
+fn in_time(switches: &[Switch], contact_time: f64) -> Result<(), String> {
+    let rounding = f64::EPSILON * contact_time * (switches.len() + 4) as f64;
+    let (mut time, mut left) = (0.0, contact_time + rounding);
+    for (index, switch) in switches.iter().enumerate() {
+        let place =
+            || format!("switch {index} of {}: {switch:?}, t_c {contact_time:e}", switches.len());
+        require(switch.time >= time && switch.time <= contact_time, place)?;
+        require(switch.time_left <= left && switch.time_left >= 0.0, place)?;
+        let sum = switch.time + switch.time_left;
+        require((sum - contact_time).abs() <= rounding, place)?;
+        (time, left) = (switch.time, switch.time_left);
+    }
+    Ok(())
+}
+
+/// No energy is negative, and none is lost.
+fn balanced(energy: &EnergyLedger, psi: f64) -> Result<(), String> {
+    let EnergyLedger { tangential_final, spring_left, normal_final, compression_left, .. } =
+        *energy;
+    // Sliding is an impulse, which rounding of v leaves known to 1e-16, times a velocity.
+    let error = BALANCE * psi * psi + 1e-15 * psi;
+    let place = || format!("{energy:?}");
+    require(tangential_final >= 0.0 && spring_left >= 0.0, place)?;
+    require(normal_final >= 0.0 && compression_left >= 0.0, place)?;
+    require(energy.sliding >= -error, place)?;
+    require(energy.damping >= 0.0, place)?;
+    require(energy.tangential_unbalanced().abs() <= error, place)?;
+    require(energy.normal_unbalanced().abs() <= BALANCE, place)
+}
+
+fn require(holds: bool, otherwise: impl FnOnce() -> String) -> Result<(), String> {
+    if holds { Ok(()) } else { Err(otherwise()) }
+}
