@@ -116,6 +116,7 @@ pub enum Failure {
 
 impl Failure {
     /// A point that cannot be computed.
+    #[must_use]
     pub fn computation(contact: &Contact, source: EngineError) -> Self {
         let (kappa, psi, damping) = (contact.kappa(), contact.psi(), contact.damping());
         Self::Computation { kappa, psi, damping, source }
