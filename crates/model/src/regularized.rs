@@ -54,10 +54,6 @@ pub const SAME_SIDE: usize = 1;
 /// Guard of the switch to slip on the other side.
 pub const OTHER_SIDE: usize = 2;
 
-/// κψ below which rounding of u does not part the last stick of a slip that has turned round from the end of contact. Where the
-/// integrators accept it (ψ ≥ 1e-13, so that κ < 0.1), no slip turns round.
-const PARTED: f64 = 1e-14;
-
 /// A phase of the contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Phase {
@@ -219,13 +215,9 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
     #[inline(always)]
     fn guards(&self, phase: Phase) -> [Guard; GUARDS] {
         let end = Guard::new(Direction::Below).terminal();
-        // With damping the limits end at zero, and a spring that stands there slips before. Without it a slip that has turned round
-        // sticks once more, at u = (2/3)κ|w|, before it ends.
-        let earlier = match phase.regime {
-            Regime::Stick => self.is_damped(),
-            Regime::Slip => !self.is_damped() && self.contact.kappa() * self.contact.psi() > PARTED,
-        };
-        let end = if earlier { end.yielding() } else { end };
+        // With damping the limits end at zero, and a spring that stands there slips before.
+        let damped_stick = phase.regime == Regime::Stick && self.is_damped();
+        let end = if damped_stick { end.yielding() } else { end };
         let leave = Guard::new(Direction::Below);
         match (phase.regime, phase.progress) {
             // Without damping the contact starts at u = 0.
