@@ -3,7 +3,6 @@
 
 #![cfg(in_repository)]
 
-#[expect(dead_code, reason = "only fuzz targets carry out an impact, which prints")]
 #[path = "checks.rs"]
 #[allow(dead_code, reason = "a fuzz target uses the rest")]
 mod checks;
