@@ -78,12 +78,12 @@ fn value(coefficients: &[f64; COEFFICIENTS], y: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * y + coefficient)
 }
 
-/// Where which guards fired.
-struct Fired(Vec<(usize, f64)>);
+/// Where which guards fired, one bit each.
+struct Fired(Vec<(u32, f64)>);
 
 impl<Mode, const N: usize> Observer<Mode, N> for Fired {
     fn on_switch(&mut self, event: &SwitchEvent<Mode, N>) {
-        self.0.push((event.guard, event.s));
+        self.0.push((1 << event.guard | event.simultaneous, event.s));
     }
 }
 
@@ -120,7 +120,8 @@ fn follow_signs<M: Method>(
         for i in 1..=512 {
             let s = f64::from(i) / 512.0;
             let here = value(coefficients, s);
-            let crossings = fired.0.iter().filter(|(which, at)| *which == guard && *at < s).count();
+            let crossings =
+                fired.0.iter().filter(|(which, at)| which >> guard & 1 == 1 && *at < s).count();
             let expected = if crossings.is_multiple_of(2) { first } else { -first };
             if clear(here) && (here > 0.0) != (expected > 0.0) {
                 return Err(format!("{}: guard {guard} is {here:e} at {s}", place(&fired)));

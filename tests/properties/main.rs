@@ -1,5 +1,5 @@
 //! What must hold whatever the input, for a bounded number of random cases. The fuzz targets (`fuzz/`) hold the same
-//! for as long as they run; `cargo test --release --test properties -- --ignored` for a million collisions.
+//! for as long as they run; `cargo run --release --example full_range -- 1000000` for a million collisions.
 
 #[path = "../checks/collision.rs"]
 mod collision;
@@ -9,7 +9,8 @@ mod hybrid;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestError, TestRng, TestRunner};
-use stickslip::model::{Collider, Contact};
+use stickslip::model::{Collider, CollisionError, Contact};
+use stickslip::solver::Dopri5;
 
 /// Holds `check` for `cases` values, the same ones every time.
 fn hold<S: Strategy>(cases: u32, strategy: &S, check: impl Fn(S::Value) -> Result<(), String>) {
@@ -74,7 +75,10 @@ fn faults_found_before() {
     // A slip that turns round just before the end of contact, beyond what rounding parts.
     let contact = Contact::new(0.45739746090475863, 3.5193950124344e-23, 0.0).unwrap();
     collision::every_engine(contact).unwrap();
-    // Damped: the last slip on the wrong side, with a spring of rounding; none at all; a first stick too short for a step.
+    // Damped: a contact that does not end; the last slip on the wrong side, with a spring of rounding; none at all; a first stick too short for a step.
+    let endless = Contact::new(1.9704603153077205, 2853343.992432598, 393262.591084441).unwrap();
+    let refused = Collider::new(Dopri5).collide(endless);
+    assert!(matches!(refused, Err(CollisionError::Domain(_))), "{refused:?}");
     for (kappa, psi, damping) in [
         (4.528382313822378e-11, 1.2650261948417832e-11, 0.14066568840160276),
         (9.231192025160803e-12, 3.493996029379889e-12, 74.88341304204822),

@@ -124,7 +124,16 @@ impl Failure {
 
     /// An unusable input file.
     pub fn input(path: &Path, reason: impl Display) -> Self {
-        Self::Input { path: path.to_owned(), reason: reason.to_string() }
+        // What the reason quotes of the file may not break the line.
+        let mut shown = String::new();
+        for character in reason.to_string().chars() {
+            if character.is_control() {
+                shown.extend(character.escape_default());
+            } else {
+                shown.push(character);
+            }
+        }
+        Self::Input { path: path.to_owned(), reason: shown }
     }
 
     /// An output file that cannot be written.

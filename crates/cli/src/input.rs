@@ -191,7 +191,7 @@ fn recipe(header: &ByteRecord, given: &Given, columns: &Columns) -> Result<Recip
     }
     let names: Vec<&[u8]> = header.iter().map(<[u8]>::trim_ascii).collect();
     for (index, name) in names.iter().enumerate() {
-        let shown = shown(name);
+        let shown = String::from_utf8_lossy(name);
         if names[..index].contains(name) {
             return Err(format!("two columns are named '{shown}'; accepted are different names"));
         }
@@ -212,17 +212,8 @@ fn recipe(header: &ByteRecord, given: &Given, columns: &Columns) -> Result<Recip
         } else {
             "kappa or psi is missing; accepted are columns kappa and psi".to_owned()
         };
-        let columns: Vec<String> = names.iter().map(|name| shown(name)).collect();
-        format!("{problem}; the columns are: {}", columns.join(", "))
+        format!("{problem}; the columns are: {}", String::from_utf8_lossy(&names.join(&b", "[..])))
     })
-}
-
-/// A column's name such that it can be shown on a line.
-fn shown(name: &[u8]) -> String {
-    String::from_utf8_lossy(name)
-        .chars()
-        .flat_map(|c| if c.is_control() { c.escape_default().collect() } else { vec![c] })
-        .collect()
 }
 
 /// What is wrong with the columns.
