@@ -79,6 +79,8 @@ fn faults_found_before() {
     let endless = Contact::new(1.9704603153077205, 2853343.992432598, 393262.591084441).unwrap();
     let refused = Collider::new(Dopri5).collide(endless);
     assert!(matches!(refused, Err(CollisionError::Domain(_))), "{refused:?}");
+    let near = Contact::new(1.8127441000105495, 1.3735892388069372e-19, 4.5484799780780684e-10);
+    collision::every_engine(near.unwrap()).unwrap();
     for (kappa, psi, damping) in [
         (4.528382313822378e-11, 1.2650261948417832e-11, 0.14066568840160276),
         (9.231192025160803e-12, 3.493996029379889e-12, 74.88341304204822),

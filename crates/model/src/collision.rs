@@ -24,6 +24,9 @@ const LONGEST_STEP: f64 = 0.1;
 /// Length in s of a damped contact's first stick phase below which the first step has the length of that phase.
 const BRIEF: f64 = 1e-9;
 
+/// Most steps over √κ; Dormand–Prince 5(4) takes 170 at tolerances of 1e-15.
+const MOST_STEPS_PER_OSCILLATION: f64 = 400.0;
+
 /// Integrates collisions with one method and one set of options.
 ///
 /// ```
@@ -167,6 +170,16 @@ impl<M: Method> Collider<M> {
     pub(crate) fn options_for(&self, contact: &Contact) -> Result<Options, OutOfDomain> {
         domain::integrated(contact)?;
         let mut options = self.options;
+        if self.refined {
+            // Where rounding keeps a contact from ending, it would take hours to the general limit.
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "κ is within 0 and 1e10"
+            )]
+            let most = 50_000 + (MOST_STEPS_PER_OSCILLATION * contact.kappa().sqrt()) as usize;
+            options.max_steps = options.max_steps.min(most);
+        }
         let onset = contact.damping() / (contact.kappa() * contact.psi());
         // A first phase so much shorter than a step is lost in the rounding of the guard that ends it.
         if contact.damping() > 0.0 && onset < BRIEF {
