@@ -235,11 +235,14 @@ where
             self.system.transition(from, guard, s, &event.state)
         };
         self.statistics.switches += usize::from(!ends);
+        let largest = self.phase.largest[guard];
+        // A guard that was never anything but zero has no size.
+        let flatness = if largest == 0.0 { 0.0 } else { largest / event.slope };
         self.observer.on_switch(&SwitchEvent {
             s,
             guard,
             simultaneous: event.simultaneous,
-            flatness: self.phase.largest[guard] / event.slope,
+            flatness,
             from,
             to,
             before: event.state,
