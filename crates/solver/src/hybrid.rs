@@ -143,9 +143,9 @@ pub enum Outcome {
     },
     /// The end of the span.
     ReachedEnd,
-    /// [`Options::max_steps`] was reached.
+    /// [`Options::max_steps`](crate::Options::max_steps) was reached.
     StepLimit,
-    /// [`Options::max_switches`] was reached.
+    /// [`Options::max_switches`](crate::Options::max_switches) was reached.
     SwitchLimit,
     /// The switches accumulate.
     Zeno {
