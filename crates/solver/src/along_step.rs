@@ -8,19 +8,20 @@ use crate::method::{Dense, Method, State, Step};
 /// Relative change of state and time by which a guard's sensitivity to them is measured.
 const SLIGHT: f64 = 1e-12;
 
-/// What rounding of time and state to some units in the last place does to a guard's `value` at `y`.
+/// What rounding of time and state to some units in the last place does to a guard's `value` at `y`, if they round like numbers
+/// of the sizes of `s_like` and `y_like`.
 ///
 /// Zero where the guard has no value nearby: nothing is known of it beyond its domain.
 pub(crate) fn rounding<const N: usize>(
     value: impl Fn(f64, &State<N>) -> f64,
-    s: f64,
-    y: &State<N>,
+    (s, y): (f64, &State<N>),
+    (s_like, y_like): (f64, &State<N>),
 ) -> f64 {
     let here = value(s, y);
-    let mut change = (value(s + SLIGHT * s.abs(), y) - here).abs();
+    let mut change = (value(s + SLIGHT * s_like.abs(), y) - here).abs();
     for i in 0..N {
         let mut moved = *y;
-        moved[i] += SLIGHT * moved[i].abs();
+        moved[i] += SLIGHT * y_like[i].abs();
         change += (value(s, &moved) - here).abs();
     }
     if change.is_finite() { 4.0 * f64::EPSILON / SLIGHT * change } else { 0.0 }
@@ -64,8 +65,10 @@ where
     fn rounding(&mut self) -> (f64, f64) {
         self.statistics.guards += 3 * (N + 2);
         let value = |s: f64, y: &State<N>| self.system.guard_values(self.mode, s, y)[self.guard];
-        let [start, middle, end] = [0.0, 0.5, 1.0]
-            .map(|theta| rounding(value, self.step.s + theta * self.step.h, &self.dense.at(theta)));
+        let [start, middle, end] = [0.0, 0.5, 1.0].map(|theta| {
+            let (s, y) = (self.step.s + theta * self.step.h, self.dense.at(theta));
+            rounding(value, (s, &y), (s, &y))
+        });
         (start, start.max(middle).max(end))
     }
 

@@ -21,6 +21,8 @@ const LONGER: i32 = 26;
 pub(crate) struct Event<const N: usize> {
     pub(crate) guard: usize,
     pub(crate) simultaneous: u32,
+    /// Guards that crossed as well, at the same place or a hair before, and gave way to this one.
+    pub(crate) passed: u32,
     /// Absolute slope of the guard there.
     pub(crate) slope: f64,
     /// From the start of the step.
@@ -33,6 +35,21 @@ pub(crate) struct Event<const N: usize> {
     pub(crate) sign: f64,
     /// The step that ends there.
     pub(crate) step: Step<N>,
+}
+
+impl<const N: usize> Event<N> {
+    fn pass(&mut self, guard: usize) {
+        self.passed |= bit(guard);
+    }
+
+    pub(crate) fn has_passed(&self, guard: usize) -> bool {
+        self.passed & bit(guard) != 0
+    }
+}
+
+/// 0 for guards that are too many to be told apart.
+pub(crate) fn bit(guard: usize) -> u32 {
+    if guard < 32 { 1 << guard } else { 0 }
 }
 
 /// The result of examining a step.
@@ -154,25 +171,31 @@ where
                 || event.is_some()
                 || statuses.iter().any(|&status| status != Status::Clear);
             let mut next = self.locate::<M>(on, guard, &crossing, exact)?;
+            if std::env::var("DBG").is_ok() { eprintln!("s={} h={} guard {guard} {crossing:?} elapsed {} sides {:?} orders {:?} values {:?}", on.s, on.h, next.elapsed, self.phase.sides, self.phase.zero_orders, values); }
             if next.elapsed == 0.0 {
                 *event = Some(next);
                 return Ok(Found::Event);
             }
-            if let Some(event) = &*event
-                && self.precedes(event.guard, guard)
+            if let Some(event) = event.as_mut()
                 && next.elapsed >= (1.0 - TOGETHER) * event.elapsed
             {
-                // Both fire at the end of the shortened step: the one that precedes stands.
-                continue;
+                if self.precedes(event.guard, guard) {
+                    // Both fire at the end of the shortened step: the one that precedes stands.
+                    event.pass(guard);
+                    continue;
+                }
+                next.passed = event.passed;
+                next.pass(event.guard);
             }
             let mut at_nodes = self.values_on(&next.step);
             next.simultaneous = self.simultaneous(guard, &at_nodes);
-            if let Some((first, crossing)) = self.preceding(&next, &values[5], on.h) {
+            let on = event.as_mut().map_or(&mut *step, |event| &mut event.step);
+            if let Some(preceding) = self.preceding::<M>(&next, on, &values, &statuses)? {
                 // Of guards that fire together the one that precedes decides, wherever rounding puts the others.
-                statuses[first] = Status::Clear;
-                next = self.locate::<M>(on, first, &crossing, exact)?;
+                next = preceding;
+                statuses[next.guard] = Status::Clear;
                 at_nodes = self.values_on(&next.step);
-                next.simultaneous = self.simultaneous(first, &at_nodes);
+                next.simultaneous = self.simultaneous(next.guard, &at_nodes);
             }
             values = at_nodes;
             for (other, status) in statuses.iter_mut().enumerate() {
@@ -207,26 +230,39 @@ where
         first
     }
 
-    /// The first of the guards that precede that of `event` and fire with it on a step of `h` at whose end the guards have
-    /// `end_values`.
-    fn preceding(
-        &self,
+    /// The first of the guards that precede that of `event` and fire with it, where `step` is the one that `event` shortens, with its
+    /// `values` and `statuses`.
+    fn preceding<M: Method>(
+        &mut self,
         event: &Event<N>,
-        end_values: &[f64; G],
-        h: f64,
-    ) -> Option<(usize, Crossing)> {
-        let bracket = Bracket { low: 0.0, high: 1.0, guess: event.elapsed / h };
-        let together = |&first: &usize| {
-            event.simultaneous & (1 << first) != 0 && self.precedes(first, event.guard)
-        };
-        (0..G.min(32)).filter(together).find_map(|first| {
-            let sign = match self.phase.guards[first].direction() {
-                Direction::Rising => -1.0,
-                Direction::Either => -end_values[first].signum(),
-                _ => 1.0,
-            };
-            (sign * end_values[first] < 0.0).then_some((first, Crossing { sign, bracket }))
-        })
+        step: &mut Step<N>,
+        values: &[[f64; G]; 6],
+        statuses: &[Status; G],
+    ) -> Result<Option<Event<N>>, RunError> {
+        for first in 0..G.min(32) {
+            if event.simultaneous & bit(first) == 0 || !self.precedes(first, event.guard) {
+                continue;
+            }
+            let mut status = statuses[first];
+            if status == Status::Unclear {
+                let column = values.map(|at_node| at_node[first]);
+                status = self.isolate::<M>(first, step, &column)?.unwrap_or(Status::Unclear);
+            }
+            let Status::Fires(Crossing { sign, bracket }) = status else { continue };
+            let guess = event.elapsed / step.h;
+            let Bracket { low, high, .. } = bracket;
+            if low <= (1.0 + TOGETHER) * guess && (1.0 - TOGETHER) * guess <= high {
+                let crossing = Crossing { sign, bracket: Bracket { guess, ..bracket } };
+                let mut preceding = self.locate::<M>(step, first, &crossing, true)?;
+                // One that touches zero here may fire later.
+                if preceding.elapsed <= (1.0 + TOGETHER) * event.elapsed {
+                    preceding.passed = event.passed;
+                    preceding.pass(event.guard);
+                    return Ok(Some(preceding));
+                }
+            }
+        }
+        Ok(None)
     }
 
     /// Guards other than `guard` that are at zero where the step ends.
@@ -264,12 +300,15 @@ where
             return Status::Clear;
         }
         let sign = if direction == Direction::Rising { -1.0 } else { 1.0 };
-        let order = self.phase.zero_orders[guard];
+        let (order, side) = (self.phase.zero_orders[guard], sign * self.phase.sides[guard]);
         let column = values.map(|at_node| sign * at_node[guard]);
         let falls = |sign: f64, theta: f64| {
             Status::Fires(Crossing { sign, bracket: Bracket { low: 0.0, high: 1.0, guess: theta } })
         };
         match quick::look(&column, order, M::QUICK_ERROR) {
+            // The side to which the guard is known to go is hidden by rounding, or followed by a crossing.
+            Quick::Positive if side < 0.0 => Status::Unclear,
+            Quick::Negative if side > 0.0 => Status::Unclear,
             Quick::Negative if direction == Direction::Below => {
                 Status::Fires(Crossing::at_start(sign))
             }

@@ -6,6 +6,8 @@
 //! monotone piece the signs at the ends decide. Where a sign lies within the error of the dense
 //! output, the method itself is asked, by a step to that point.
 
+use std::ops::ControlFlow;
+
 use crate::chebyshev::{COSINES, TERMS, clenshaw, differentiate, dominated, expand, monotone_root};
 
 /// Panels narrower than 2^−`DEPTH` of the step are not cut further.
@@ -78,12 +80,16 @@ pub(crate) fn first_crossing<C: Curve>(
     (zero_order, side): (u32, f64),
     domain: bool,
     (start, end): (f64, f64),
-    mut on_touch: impl FnMut(Touch),
+    on_touch: impl FnMut(Touch),
 ) -> Result<Verdict, C::Error> {
     let mut quotient = Quotient { curve, order: zero_order };
     let mut accuracy = quotient.accuracy();
     if accuracy.dense.is_nan() {
         return Ok(Verdict::TooCoarse);
+    }
+    if side != 0.0 {
+        // What is left there is taken as zero.
+        accuracy.state.0 = accuracy.state.0.max(start.abs());
     }
     // The last point whose sign is known, and the value there.
     let mut before = Some((0.0, start));
@@ -107,26 +113,83 @@ pub(crate) fn first_crossing<C: Curve>(
     if domain && before.is_some_and(|(_, value)| value < 0.0) {
         return Ok(Verdict::StartsBelow);
     }
+    let hidden = if zero_order > 0 { accuracy.state.0 } else { 0.0 };
+    let walked = walk(&mut quotient, &mut accuracy, hidden, end, on_touch, |quotient, point| {
+        match before {
+            Some(before) if before.1 >= 0.0 && point.1 < 0.0 => {
+                let guess = panel_root(quotient, before, point);
+                let bracket = Bracket { low: before.0, high: point.0, guess };
+                return ControlFlow::Break(Verdict::Crossing(bracket));
+            }
+            // The first side that shows is the one to which the curve leaves its zero.
+            None if domain && point.1 < 0.0 => return ControlFlow::Break(Verdict::StartsBelow),
+            _ => before = Some(point),
+        }
+        ControlFlow::Continue(())
+    })?;
+    Ok(match walked {
+        Some(ControlFlow::Break(verdict)) => verdict,
+        Some(ControlFlow::Continue(())) => Verdict::None,
+        None => Verdict::TooCoarse,
+    })
+}
+
+/// The signs of a curve where its first and its last side shows on a step; at the ends of it what is within `hidden` of zero is on
+/// neither. 0 where none shows; `None` if a shorter step is needed.
+pub(crate) fn sides<C: Curve>(
+    curve: &mut C,
+    hidden: f64,
+    end: f64,
+) -> Result<Option<[f64; 2]>, C::Error> {
+    let mut quotient = Quotient { curve, order: 0 };
+    let mut accuracy = quotient.accuracy();
+    if accuracy.dense.is_nan() {
+        return Ok(None);
+    }
+    accuracy.noise = hidden;
+    let mut sides = [0.0; 2];
+    let inside = accuracy.state.1;
+    let walked = walk(&mut quotient, &mut accuracy, inside, end, |_| {}, |_, (theta, value)| {
+        if theta < 1.0 || value.abs() > hidden + inside {
+            let side = value.signum();
+            sides = [if sides[0] == 0.0 { side } else { sides[0] }, side];
+        }
+        ControlFlow::<()>::Continue(())
+    })?;
+    Ok(walked.map(|_| sides))
+}
+
+/// Visits, from left to right, points between which a quotient is monotone, each with the value there, which ends at `end`; leaves
+/// out those whose value the noise and `hidden`, in the guard, leave on neither side. `None` if the step is too coarse.
+fn walk<C: Curve, B>(
+    quotient: &mut Quotient<'_, C>,
+    accuracy: &mut Accuracy,
+    hidden: f64,
+    end: f64,
+    mut on_touch: impl FnMut(Touch),
+    mut visit: impl FnMut(&mut Quotient<'_, C>, (f64, f64)) -> ControlFlow<B>,
+) -> Result<Option<ControlFlow<B>>, C::Error> {
+    let order = quotient.order;
     let mut pending = [(0.0, 0.0); DEPTH as usize + 2];
     pending[0] = (0.0, 1.0);
     let mut count = 1;
     while count > 0 {
         count -= 1;
         let (low, high) = pending[count];
-        let panel = Panel::new(&mut quotient, low, high);
-        let mut error = accuracy.on(&panel, zero_order);
+        let panel = Panel::new(quotient, low, high);
+        let mut error = accuracy.on(&panel, order);
         if panel.tail().is_nan() {
-            return Ok(Verdict::TooCoarse);
+            return Ok(None);
         }
         let narrow = high - low < 1.5 * NARROWEST;
         if panel.tail() > error && narrow {
             // What no panel is narrow enough for may be noise, which a shorter step would not diminish.
             accuracy.noise = accuracy.noise.max(quotient.noise(low, high));
-            error = accuracy.on(&panel, zero_order);
+            error = accuracy.on(&panel, order);
         }
         if panel.tail() > error {
             if narrow {
-                return Ok(Verdict::TooCoarse);
+                return Ok(None);
             }
             let middle = 0.5 * (low + high);
             pending[count] = (middle, high);
@@ -138,7 +201,7 @@ pub(crate) fn first_crossing<C: Curve>(
         panel.critical_points(-1.0, 1.0, error, CRITICAL_DEPTH, &mut points);
         points.push(1.0);
         if points.overflowed {
-            return Ok(Verdict::TooCoarse);
+            return Ok(None);
         }
         for &local in points.as_slice() {
             let theta = panel.theta(local);
@@ -147,29 +210,23 @@ pub(crate) fn first_crossing<C: Curve>(
             if !at_end && value.abs() <= error {
                 value = quotient.truth(theta)?;
                 if local < 1.0 {
-                    on_touch(Touch { theta, margin: value * power(theta, zero_order) });
+                    on_touch(Touch { theta, margin: value * power(theta, order) });
                 }
-                let hidden = accuracy.noise + if zero_order > 0 { accuracy.state.0 } else { 0.0 };
-                if value.abs() * power(theta, zero_order) <= hidden {
+                if value.abs() * power(theta, order) <= accuracy.noise + hidden {
                     // On neither side: what follows tells whether the guard goes through.
                     continue;
                 }
             }
             if value.is_nan() {
-                return Ok(Verdict::TooCoarse);
+                return Ok(None);
             }
-            match before {
-                Some(before) if before.1 >= 0.0 && value < 0.0 => {
-                    let guess = panel_root(&mut quotient, before, (theta, value));
-                    return Ok(Verdict::Crossing(Bracket { low: before.0, high: theta, guess }));
-                }
-                // The first side that shows is the one to which the curve leaves its zero.
-                None if domain && value < 0.0 => return Ok(Verdict::StartsBelow),
-                _ => before = Some((theta, value)),
+            let visited = visit(quotient, (theta, value));
+            if visited.is_break() {
+                return Ok(Some(visited));
             }
         }
     }
-    Ok(Verdict::None)
+    Ok(Some(ControlFlow::Continue(())))
 }
 
 /// Where the dense output puts the root between two points of opposite sign (Illinois' rule).

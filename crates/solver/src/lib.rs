@@ -83,6 +83,7 @@ mod quick;
 mod runner;
 pub mod sensitivity;
 pub mod smooth;
+mod together;
 pub mod trajectory;
 mod unlocated;
 

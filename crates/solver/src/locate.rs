@@ -38,6 +38,7 @@ where
         let event = |elapsed, state, residual: f64, slope: f64, step| Event {
             guard,
             simultaneous: 0,
+            passed: 0,
             slope: slope.abs(),
             elapsed,
             state,
@@ -196,7 +197,7 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Near<'_, S, N, G> {
     }
 
     fn rounding(&self, s: f64, y: &State<N>) -> f64 {
-        rounding(|s, y| self.value(s, y), s, y)
+        rounding(|s, y| self.value(s, y), (s, y), (s, y))
     }
 
     fn probe(&self, s: f64, y: &State<N>) -> Probe<N> {

@@ -5,6 +5,7 @@ use crate::event::Event;
 use crate::guard::{Direction, Guard};
 use crate::hybrid::HybridSystem;
 use crate::method::State;
+use crate::together::Standing;
 
 /// The mode that is active, with its guards as they stand.
 #[derive(Clone, Copy, Debug)]
@@ -48,17 +49,20 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
         })
     }
 
-    /// The mode goes on after `event`: where the guard's value still stands at that zero, it starts from a known one,
-    /// and if `unchanged` leaves it on the side to which it fired.
-    pub(crate) fn resume<const N: usize>(&mut self, event: &Event<N>, unchanged: bool) {
+    /// The mode goes on after `event`, in another state: if the guard's value still stands at that zero, it starts from a known one.
+    pub(crate) fn resume<const N: usize>(&mut self, event: &Event<N>) {
         let guard = event.guard;
         if self.values[guard].abs() <= event.residual {
             self.at_zero = true;
             self.zero_orders[guard] = self.zero_orders[guard].max(1);
-            if unchanged {
-                self.sides[guard] = -event.sign;
-            }
         }
+    }
+
+    /// Nothing has changed but where the guards stand.
+    pub(crate) fn stand(&mut self, standing: &Standing<G>) {
+        self.at_zero = true;
+        self.zero_orders = standing.zero_orders;
+        self.sides = standing.sides;
     }
 
     /// A step is done, and the start of the phase lies behind.

@@ -10,6 +10,7 @@ use crate::hybrid::{HybridSystem, Observer, Outcome, Run, Start, Statistics, Swi
 use crate::method::{Method, State, Step, Trial};
 use crate::options::{Options, StepSize};
 use crate::phase::Phase;
+use crate::together::{Passage, Standing};
 
 /// Integrates `system` from `start` to `end`, through every switch on the way.
 ///
@@ -98,7 +99,7 @@ where
             }
             self.advance::<M>(&mut step, &mut event)?;
             if let Some(event) = &event {
-                if let Some(outcome) = self.switch(event)? {
+                if let Some(outcome) = self.switch::<M>(event)? {
                     return Ok(outcome);
                 }
             } else if self.clock.s >= self.end {
@@ -226,7 +227,7 @@ where
     }
 
     /// Reports the switch and enters the next phase, or ends the run.
-    fn switch(&mut self, event: &Event<N>) -> Result<Option<Outcome>, RunError> {
+    fn switch<M: Method>(&mut self, event: &Event<N>) -> Result<Option<Outcome>, RunError> {
         let (s, from, guard) = (self.clock.s, self.phase.mode, event.guard);
         let ends = self.phase.guards[guard].ends_run();
         let (to, after) = if ends {
@@ -235,13 +236,15 @@ where
             self.system.transition(from, guard, s, &event.state)
         };
         self.statistics.switches += usize::from(!ends);
+        let unchanged = !ends && to == from && after == event.state;
+        let standing = unchanged.then(|| self.standing::<M>(event));
         let largest = self.phase.largest[guard];
         // A guard that was never anything but zero has no size.
         let flatness = if largest == 0.0 { 0.0 } else { largest / event.slope };
         self.observer.on_switch(&SwitchEvent {
             s,
             guard,
-            simultaneous: event.simultaneous,
+            simultaneous: standing.map_or(event.simultaneous, |standing| standing.fired),
             flatness,
             from,
             to,
@@ -266,11 +269,27 @@ where
             self.h = h;
             self.controller.begin();
         }
-        if to == from {
-            self.phase.resume(event, after == event.state);
+        if let Some(standing) = standing {
+            self.phase.stand(&standing);
+        } else if to == from {
+            self.phase.resume(event);
         }
         self.refresh_slope()?;
         Ok(None)
+    }
+
+    fn standing<M: Method>(&mut self, event: &Event<N>) -> Standing<G> {
+        let ahead = self.h.min(self.options.max_step).min(self.clock.until(self.end));
+        let passage = Passage {
+            system: self.system,
+            phase: &self.phase,
+            event,
+            s: self.clock.s,
+            ahead,
+            options: self.options,
+            statistics: &mut self.statistics,
+        };
+        passage.standing::<M>()
     }
 
     fn refresh_slope(&mut self) -> Result<(), RunError> {
