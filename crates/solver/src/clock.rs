@@ -37,7 +37,7 @@ impl Clock {
 /// Watches for switches that accumulate.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Zeno {
-    start: f64,
+    pub(crate) start: f64,
     phase: f64,
     shrinking: usize,
 }

@@ -114,7 +114,7 @@ where
         }
         let statuses = std::array::from_fn(|guard| self.glance::<M>(guard, &values));
         if statuses.iter().all(|&status| status == Status::Clear) {
-            Ok(Found::Nothing(on_their_side(&values)))
+            Ok(Found::Nothing(self.on_their_side(&values)))
         } else {
             self.decide::<M>(step, event, values, statuses)
         }
@@ -142,7 +142,7 @@ where
         mut values: [[f64; G]; 6],
         mut statuses: [Status; G],
     ) -> Result<Found<G>, RunError> {
-        let end_values = on_their_side(&values);
+        let end_values = self.on_their_side(&values);
         loop {
             let first = self.earliest(&statuses);
             let Some((guard, crossing)) = first else {
@@ -276,6 +276,23 @@ where
             .fold(0, |bits, other| bits | 1 << other)
     }
 
+    /// Values at a step's end; one that is exactly zero keeps the side from which it came, and so does one that has not yet come
+    /// away from its zero.
+    fn on_their_side(&self, values: &[[f64; G]; 6]) -> [f64; G] {
+        std::array::from_fn(|guard| {
+            let (end, side) = (values[5][guard], self.phase.sides[guard]);
+            if side != 0.0 && end.abs() <= self.phase.hidden[guard] {
+                return f64::MIN_POSITIVE.copysign(side);
+            }
+            if end != 0.0 {
+                return end;
+            }
+            let mut before = values[..5].iter().rev().map(|at_node| at_node[guard]);
+            let before = before.find(|&value| value != 0.0);
+            before.map_or(end, |value| f64::MIN_POSITIVE.copysign(value))
+        })
+    }
+
     /// Guards at [`quick::NODES`] of a step.
     #[inline(always)]
     fn values_on(&mut self, step: &Step<N>) -> [[f64; G]; 6] {
@@ -305,21 +322,25 @@ where
         let falls = |sign: f64, theta: f64| {
             Status::Fires(Crossing { sign, bracket: Bracket { low: 0.0, high: 1.0, guess: theta } })
         };
-        match quick::look(&column, order, M::QUICK_ERROR) {
-            // The side to which the guard is known to go is hidden by rounding, or followed by a crossing.
-            Quick::Positive if side < 0.0 => Status::Unclear,
-            Quick::Negative if side > 0.0 => Status::Unclear,
+        let look = |sign: f64| {
+            let look = quick::look(&column.map(|value| sign * value), order, M::QUICK_ERROR);
+            // Against the side to which the guard is known to go rounding stands, or a crossing at once.
+            match look {
+                Quick::Positive | Quick::Falls { .. } if sign * side < 0.0 => Quick::Unclear,
+                Quick::Negative if sign * side > 0.0 => Quick::Unclear,
+                look => look,
+            }
+        };
+        match look(1.0) {
             Quick::Negative if direction == Direction::Below => {
                 Status::Fires(Crossing::at_start(sign))
             }
             Quick::Positive | Quick::Negative => Status::Clear,
             Quick::Falls { theta } => falls(sign, theta),
-            Quick::Unclear if direction == Direction::Either => {
-                match quick::look(&column.map(|value| -value), order, M::QUICK_ERROR) {
-                    Quick::Falls { theta } => falls(-1.0, theta),
-                    _ => Status::Unclear,
-                }
-            }
+            Quick::Unclear if direction == Direction::Either => match look(-1.0) {
+                Quick::Falls { theta } => falls(-1.0, theta),
+                _ => Status::Unclear,
+            },
             Quick::Unclear => Status::Unclear,
         }
     }
@@ -356,6 +377,10 @@ where
     ) -> Result<Option<Status>, RunError> {
         // At the start it may stand for the side from which the guard came.
         if values[0].abs() <= f64::MIN_POSITIVE && values[1..].iter().all(|&value| value == 0.0) {
+            if step.h < self.trial.h {
+                // It is asked on a longer step what becomes of it.
+                return Ok(Some(Status::Clear));
+            }
             let identically = RunError::GuardIdenticallyZero { guard, s: step.s };
             let leaves = self.leaves_zero::<M>(guard, step);
             return leaves.then_some(Some(Status::Clear)).ok_or(identically);
@@ -387,7 +412,7 @@ where
             let mut count = 0;
             let verdict = first_crossing(
                 &mut curve,
-                (order, sign * self.phase.sides[guard]),
+                (order, sign * self.phase.sides[guard], self.phase.hidden[guard]),
                 below,
                 (sign * values[0], sign * values[5]),
                 |touch: Touch| {
@@ -420,17 +445,4 @@ where
 /// Largest absolute value of a guard at the nodes of a step.
 fn largest<const G: usize>(guard: usize, values: &[[f64; G]; 6]) -> f64 {
     values.iter().fold(0.0, |size, at_node| size.max(at_node[guard].abs()))
-}
-
-/// Values at a step's end; one that is exactly zero keeps the side from which it came.
-fn on_their_side<const G: usize>(values: &[[f64; G]; 6]) -> [f64; G] {
-    std::array::from_fn(|guard| {
-        let end = values[5][guard];
-        if end != 0.0 {
-            return end;
-        }
-        let mut before = values[..5].iter().rev().map(|at_node| at_node[guard]);
-        let before = before.find(|&value| value != 0.0);
-        before.map_or(end, |value| f64::MIN_POSITIVE.copysign(value))
-    })
 }

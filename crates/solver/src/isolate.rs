@@ -77,7 +77,7 @@ pub(crate) enum Verdict {
 /// Touches met before the crossing go to `on_touch`.
 pub(crate) fn first_crossing<C: Curve>(
     curve: &mut C,
-    (zero_order, side): (u32, f64),
+    (zero_order, side, hidden): (u32, f64, f64),
     domain: bool,
     (start, end): (f64, f64),
     on_touch: impl FnMut(Touch),
@@ -89,7 +89,7 @@ pub(crate) fn first_crossing<C: Curve>(
     }
     if side != 0.0 {
         // What is left there is taken as zero.
-        accuracy.state.0 = accuracy.state.0.max(start.abs());
+        accuracy.state.0 = accuracy.state.0.max(hidden);
     }
     // The last point whose sign is known, and the value there.
     let mut before = Some((0.0, start));
@@ -113,8 +113,12 @@ pub(crate) fn first_crossing<C: Curve>(
     if domain && before.is_some_and(|(_, value)| value < 0.0) {
         return Ok(Verdict::StartsBelow);
     }
+    let at_end = if side == 0.0 { -1.0 } else { hidden };
     let hidden = if zero_order > 0 { accuracy.state.0 } else { 0.0 };
     let walked = walk(&mut quotient, &mut accuracy, hidden, end, on_touch, |quotient, point| {
+        if point.0 >= 1.0 && point.1.abs() <= at_end {
+            return ControlFlow::Continue(());
+        }
         match before {
             Some(before) if before.1 >= 0.0 && point.1 < 0.0 => {
                 let guess = panel_root(quotient, before, point);
@@ -157,6 +161,11 @@ pub(crate) fn sides<C: Curve>(
         ControlFlow::<()>::Continue(())
     })?;
     Ok(walked.map(|_| sides))
+}
+
+/// How far a curve's values scatter where the step ends.
+pub(crate) fn noise_at_end<C: Curve>(curve: &mut C) -> f64 {
+    Quotient { curve, order: 0 }.noise(1.0 - NARROWEST, 1.0)
 }
 
 /// Visits, from left to right, points between which a quotient is monotone, each with the value there, which ends at `end`; leaves

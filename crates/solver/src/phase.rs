@@ -20,6 +20,8 @@ pub(crate) struct Phase<Mode, const G: usize> {
     pub(crate) zero_orders: [u32; G],
     /// Signs with which the guards leave these zeros; 0 where it is not known.
     pub(crate) sides: [f64; G],
+    /// Values that are as good as zero where such a sign is known.
+    pub(crate) hidden: [f64; G],
     /// Largest absolute values of the guards at the ends of the phase's steps.
     pub(crate) largest: [f64; G],
 }
@@ -45,6 +47,7 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
             at_zero: guards.iter().any(|guard| guard.zero_order() > 0),
             zero_orders: guards.map(|guard| guard.zero_order()),
             sides: [0.0; G],
+            hidden: [0.0; G],
             largest: values.map(f64::abs),
         })
     }
@@ -63,6 +66,7 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
         self.at_zero = true;
         self.zero_orders = standing.zero_orders;
         self.sides = standing.sides;
+        self.hidden = standing.hidden;
     }
 
     /// A step is done, and the start of the phase lies behind.

@@ -270,6 +270,11 @@ where
             self.controller.begin();
         }
         if let Some(standing) = standing {
+            // A step that does not move the time gets nowhere, and would find every guard where it stands.
+            if self.clock.until(self.end) <= f64::EPSILON * s.abs().max(s - self.zeno.start) {
+                self.clock.arrive(self.end);
+                return Ok(Some(Outcome::ReachedEnd));
+            }
             self.phase.stand(&standing);
         } else if to == from {
             self.phase.resume(event);

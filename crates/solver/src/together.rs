@@ -5,17 +5,25 @@
 //! not taken, to which it goes. It crosses if the two differ, and fires together with the guard that fired if that is its direction.
 //! Either way it starts the next step from a known zero, which it leaves to a known side.
 
+use std::marker::PhantomData;
+
 use crate::along_step::{AlongStep, rounding};
 use crate::event::{Event, bit};
 use crate::guard::Direction;
 use crate::hybrid::{HybridSystem, Statistics};
-use crate::isolate::sides;
-use crate::method::{Method, State, Step, Trial};
+use crate::isolate::{noise_at_end, sides};
+use crate::method::{Dense, Method, State, Step, Trial};
 use crate::options::{Options, StepSize};
 use crate::phase::Phase;
+use crate::quick::NODES;
 
 /// A step ahead is cut to a fifth at most this often, like a step that is too coarse.
 const CUTS: usize = 60;
+
+/// Guards further from zero than this part of their largest value on the step are not at it.
+const NEAR: f64 = 1e-9;
+/// Roundings of that value that a guard may be off by.
+const ROUNDINGS: f64 = 64.0;
 
 /// Where the guards stand after an event that changes nothing.
 #[derive(Clone, Copy, Debug)]
@@ -26,6 +34,8 @@ pub(crate) struct Standing<const G: usize> {
     pub(crate) zero_orders: [u32; G],
     /// The signs with which they leave these zeros; 0 where it is not known.
     pub(crate) sides: [f64; G],
+    /// Values that are as good as zero there.
+    pub(crate) hidden: [f64; G],
 }
 
 /// All that tells where the guards stand after an event that changes nothing.
@@ -46,27 +56,29 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
     pub(crate) fn standing<M: Method>(mut self) -> Standing<G> {
         let (event, phase) = (self.event, self.phase);
         let stays = event.elapsed == 0.0;
-        let mut standing = Standing { fired: 0, zero_orders: [0; G], sides: [0.0; G] };
+        let mut standing = Standing { fired: 0, zero_orders: [0; G], sides: [0.0; G], hidden: [0.0; G] };
         let mut fired = 0;
-        let mut stand = |guard: usize, side: f64| {
+        let mut stand = |guard: usize, side: f64, hidden: f64| {
             // No time has passed since the zero that was known.
             let order = if stays { phase.zero_orders[guard] } else { 0 };
             standing.zero_orders[guard] = order.max(1);
             standing.sides[guard] = side;
+            standing.hidden[guard] = hidden;
         };
-        stand(event.guard, -event.sign);
         self.statistics.guards += 1;
         let values = self.system.guard_values(phase.mode, self.s, &event.state);
+        let hidden = self.hidden::<M>(event.guard, 0.0);
+        stand(event.guard, -event.sign, hidden.max(values[event.guard].abs()));
         for guard in (0..G).filter(|&guard| guard != event.guard) {
             let direction = phase.guards[guard].direction();
             if direction == Direction::Off {
                 continue;
             }
             if stays && phase.zero_orders[guard] > 0 {
-                stand(guard, phase.sides[guard]);
+                stand(guard, phase.sides[guard], phase.hidden[guard]);
                 continue;
             }
-            let hidden = self.hidden(guard);
+            let hidden = self.hidden::<M>(guard, values[guard]);
             let at_zero = values[guard].abs() <= hidden;
             let (from, to) = if at_zero {
                 (self.side_before::<M>(guard, hidden), self.side_behind::<M>(guard, hidden))
@@ -89,22 +101,47 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
                 fired |= bit(guard);
             }
             if fires && by_itself && direction != Direction::Below {
-                stand(guard, from);
+                stand(guard, from, hidden.max(values[guard].abs()));
             } else if at_zero {
-                stand(guard, if to == 0.0 { from } else { to });
+                stand(guard, if to == 0.0 { from } else { to }, hidden);
             }
         }
         standing.fired = fired;
         standing
     }
 
-    /// What rounding leaves of a guard at its zero, in units that the step up to there has.
-    fn hidden(&mut self, guard: usize) -> f64 {
+    /// What rounding leaves of a guard at its zero, on the scales of the step that ends there; 0 if its `value` is far from that.
+    fn hidden<M: Method>(&mut self, guard: usize, value: f64) -> f64 {
+        let (system, phase, event) = (self.system, self.phase, self.event);
+        let value_at = |s: f64, y: &State<N>| system.guard_values(phase.mode, s, y)[guard];
+        let mut step = self.up_to_here::<M>();
+        let at_nodes = step.interior.iter().zip(&NODES[1..]);
+        let at_nodes = at_nodes.map(|(y, theta)| value_at(step.s + theta * step.h, y).abs());
+        let largest = at_nodes.fold(phase.values[guard].abs(), f64::max);
+        self.statistics.guards += NODES.len() - 2;
+        let known = if phase.zero_orders[guard] > 0 { phase.hidden[guard] } else { 0.0 };
+        if value.abs() > known && value.abs() > NEAR * largest {
+            return 0.0;
+        }
         self.statistics.guards += N + 2;
-        let (mode, step) = (self.phase.mode, &self.event.step);
-        let value = |s: f64, y: &State<N>| self.system.guard_values(mode, s, y)[guard];
-        let like = self.event.state.zip_map(&step.y0, |y, y0| y.abs().max(y0.abs()));
-        rounding(value, (self.s, &self.event.state), (self.s.abs().max(step.s.abs()), &like))
+        let like = event.state.zip_map(&step.y0, |y, y0| y.abs().max(y0.abs()));
+        let (here, like) = ((self.s, &event.state), (self.s.abs().max(step.s.abs()), &like));
+        let rounding = rounding(value_at, here, like) + ROUNDINGS * f64::EPSILON * largest;
+        let dense = self.dense::<M>(&mut step);
+        let noise = noise_at_end(&mut self.curve::<M>(guard, &step, &dense));
+        known.max(rounding).max(noise)
+    }
+
+    /// The step that ends at the event.
+    fn up_to_here<M: Method>(&mut self) -> Step<N> {
+        let mut step = Step::blank();
+        self.system.step::<M>(
+            self.phase.mode,
+            &self.event.step.shortened(self.event.elapsed),
+            &mut step,
+        );
+        self.count::<M>();
+        step
     }
 
     fn side_at_start(&self, guard: usize) -> f64 {
@@ -126,9 +163,7 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
         if elapsed == 0.0 || (start != 0.0 && self.phase.guards[guard].direction() == Direction::Either) {
             return start;
         }
-        let mut step = Step::blank();
-        self.system.step::<M>(self.phase.mode, &self.event.step.shortened(elapsed), &mut step);
-        self.count::<M>();
+        let mut step = self.up_to_here::<M>();
         match self.sides::<M>(guard, hidden, &mut step) {
             Some([_, last]) if last != 0.0 => last,
             _ => start,
@@ -166,23 +201,33 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
         self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
     }
 
-    /// The first and the last side that a guard shows inside a step; `None` if the step does not tell.
-    fn sides<M: Method>(&mut self, guard: usize, hidden: f64, step: &mut Step<N>) -> Option<[f64; 2]> {
-        let (system, mode) = (self.system, self.phase.mode);
-        let dense = step.dense::<M>(&mut |s, y| system.field(mode, s, y));
-        self.statistics.field += M::DENSE_STAGES - 1;
+    /// The first and the last side that a guard shows on a step; `None` if the step does not tell.
+    fn sides<M: Method>(
+        &mut self,
+        guard: usize,
+        hidden: f64,
+        step: &mut Step<N>,
+    ) -> Option<[f64; 2]> {
         self.statistics.guards += 1;
-        let end = system.guard_values(mode, step.s + step.h, &step.y1)[guard];
-        let mut curve = AlongStep::<'_, S, M, N, G> {
-            system,
-            mode,
-            guard,
-            sign: 1.0,
-            step,
-            dense: &dense,
-            statistics: &mut *self.statistics,
-            method: std::marker::PhantomData,
-        };
-        sides(&mut curve, hidden, end).ok().flatten()
+        let end = self.system.guard_values(self.phase.mode, step.s + step.h, &step.y1)[guard];
+        let dense = self.dense::<M>(step);
+        sides(&mut self.curve::<M>(guard, step, &dense), hidden, end).ok().flatten()
+    }
+
+    fn dense<M: Method>(&mut self, step: &mut Step<N>) -> Dense<N> {
+        let (system, mode) = (self.system, self.phase.mode);
+        self.statistics.field += M::DENSE_STAGES - 1;
+        step.dense::<M>(&mut |s, y| system.field(mode, s, y))
+    }
+
+    fn curve<'b, M: Method>(
+        &'b mut self,
+        guard: usize,
+        step: &'b Step<N>,
+        dense: &'b Dense<N>,
+    ) -> AlongStep<'b, S, M, N, G> {
+        let statistics = &mut *self.statistics;
+        let (system, mode, method) = (self.system, self.phase.mode, PhantomData);
+        AlongStep { system, mode, guard, sign: 1.0, step, dense, statistics, method }
     }
 }
