@@ -252,10 +252,13 @@ where
             let guess = event.elapsed / step.h;
             let Bracket { low, high, .. } = bracket;
             if low <= (1.0 + TOGETHER) * guess && (1.0 - TOGETHER) * guess <= high {
+                // From close to a zero that is known the search would find that one.
+                let known = self.phase.sides[first] != 0.0;
+                let guess = if known { bracket.guess } else { guess };
                 let crossing = Crossing { sign, bracket: Bracket { guess, ..bracket } };
                 let mut preceding = self.locate::<M>(step, first, &crossing, true)?;
-                // One that touches zero here may fire later.
-                if preceding.elapsed <= (1.0 + TOGETHER) * event.elapsed {
+                // One that touches zero here may fire elsewhere.
+                if (preceding.elapsed - event.elapsed).abs() <= TOGETHER * event.elapsed {
                     preceding.passed = event.passed;
                     preceding.pass(event.guard);
                     return Ok(Some(preceding));
@@ -315,6 +318,9 @@ where
         let direction = self.phase.guards[guard].direction();
         if direction == Direction::Off {
             return Status::Clear;
+        }
+        if self.phase.due[guard] {
+            return Status::Fires(Crossing::at_start(self.phase.sides[guard]));
         }
         let sign = if direction == Direction::Rising { -1.0 } else { 1.0 };
         let (order, side) = (self.phase.zero_orders[guard], sign * self.phase.sides[guard]);
@@ -427,6 +433,7 @@ where
                 let s = step.s + touch.theta * step.h;
                 self.observer.on_grazing(&Grazing { s, mode, guard, margin: sign * touch.margin });
             }
+            if std::env::var("DBG").is_ok() { eprintln!("   isolate {guard} sign {sign} h {} {verdict:?} hidden {:e} side {} end {:e}", step.h, self.phase.hidden[guard], self.phase.sides[guard], values[5]); }
             let crossing = match verdict {
                 Verdict::None => continue,
                 Verdict::TooCoarse => return Ok(None),

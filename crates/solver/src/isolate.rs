@@ -115,10 +115,8 @@ pub(crate) fn first_crossing<C: Curve>(
     }
     let at_end = if side == 0.0 { -1.0 } else { hidden };
     let hidden = if zero_order > 0 { accuracy.state.0 } else { 0.0 };
+    let end = (end, at_end);
     let walked = walk(&mut quotient, &mut accuracy, hidden, end, on_touch, |quotient, point| {
-        if point.0 >= 1.0 && point.1.abs() <= at_end {
-            return ControlFlow::Continue(());
-        }
         match before {
             Some(before) if before.1 >= 0.0 && point.1 < 0.0 => {
                 let guess = panel_root(quotient, before, point);
@@ -153,11 +151,10 @@ pub(crate) fn sides<C: Curve>(
     accuracy.noise = hidden;
     let mut sides = [0.0; 2];
     let inside = accuracy.state.1;
-    let walked = walk(&mut quotient, &mut accuracy, inside, end, |_| {}, |_, (theta, value)| {
-        if theta < 1.0 || value.abs() > hidden + inside {
-            let side = value.signum();
-            sides = [if sides[0] == 0.0 { side } else { sides[0] }, side];
-        }
+    let end = (end, hidden + inside);
+    let walked = walk(&mut quotient, &mut accuracy, inside, end, |_| {}, |_, (_, value)| {
+        let side = value.signum();
+        sides = [if sides[0] == 0.0 { side } else { sides[0] }, side];
         ControlFlow::<()>::Continue(())
     })?;
     Ok(walked.map(|_| sides))
@@ -165,16 +162,17 @@ pub(crate) fn sides<C: Curve>(
 
 /// How far a curve's values scatter where the step ends.
 pub(crate) fn noise_at_end<C: Curve>(curve: &mut C) -> f64 {
-    Quotient { curve, order: 0 }.noise(1.0 - NARROWEST, 1.0)
+    Quotient { curve, order: 0 }.noise(1.0 - NARROWEST / 64.0, 1.0)
 }
 
-/// Visits, from left to right, points between which a quotient is monotone, each with the value there, which ends at `end`; leaves
-/// out those whose value the noise and `hidden`, in the guard, leave on neither side. `None` if the step is too coarse.
+/// Visits, from left to right, points between which a quotient is monotone, each with the value there; leaves out those whose
+/// value the noise and `hidden`, in the guard, leave on neither side. The value at the end is given, with what leaves that on
+/// neither side: the middle of the last piece then stands for it. `None` if the step is too coarse.
 fn walk<C: Curve, B>(
     quotient: &mut Quotient<'_, C>,
     accuracy: &mut Accuracy,
     hidden: f64,
-    end: f64,
+    (end, hidden_end): (f64, f64),
     mut on_touch: impl FnMut(Touch),
     mut visit: impl FnMut(&mut Quotient<'_, C>, (f64, f64)) -> ControlFlow<B>,
 ) -> Result<Option<ControlFlow<B>>, C::Error> {
@@ -212,10 +210,20 @@ fn walk<C: Curve, B>(
         if points.overflowed {
             return Ok(None);
         }
+        let mut last = -1.0;
         for &local in points.as_slice() {
-            let theta = panel.theta(local);
+            let mut theta = panel.theta(local);
             let at_end = theta >= 1.0;
             let mut value = if at_end { end } else { panel.at(local) };
+            if at_end && value.abs() <= hidden_end {
+                let middle = 0.5 * (last + local);
+                value = panel.at(middle);
+                if value.abs() <= error {
+                    continue;
+                }
+                theta = panel.theta(middle);
+            }
+            last = local;
             if !at_end && value.abs() <= error {
                 value = quotient.truth(theta)?;
                 if local < 1.0 {

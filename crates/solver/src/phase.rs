@@ -22,6 +22,8 @@ pub(crate) struct Phase<Mode, const G: usize> {
     pub(crate) sides: [f64; G],
     /// Values that are as good as zero where such a sign is known.
     pub(crate) hidden: [f64; G],
+    /// Guards that have crossed already, from the other side, and fire at the start of the next step.
+    pub(crate) due: [bool; G],
     /// Largest absolute values of the guards at the ends of the phase's steps.
     pub(crate) largest: [f64; G],
 }
@@ -48,6 +50,7 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
             zero_orders: guards.map(|guard| guard.zero_order()),
             sides: [0.0; G],
             hidden: [0.0; G],
+            due: [false; G],
             largest: values.map(f64::abs),
         })
     }
@@ -67,6 +70,7 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
         self.zero_orders = standing.zero_orders;
         self.sides = standing.sides;
         self.hidden = standing.hidden;
+        self.due = standing.due;
     }
 
     /// A step is done, and the start of the phase lies behind.
@@ -77,6 +81,7 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
             self.at_zero = false;
             self.zero_orders = [0; G];
             self.sides = [0.0; G];
+            self.due = [false; G];
         }
         for (largest, value) in self.largest.iter_mut().zip(values) {
             *largest = if value.abs() > *largest { value.abs() } else { *largest };

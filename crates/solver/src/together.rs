@@ -21,7 +21,7 @@ use crate::quick::NODES;
 const CUTS: usize = 60;
 
 /// Guards further from zero than this part of their largest value on the step are not at it.
-const NEAR: f64 = 1e-9;
+const NEAR: f64 = 1e-3;
 /// Roundings of that value that a guard may be off by.
 const ROUNDINGS: f64 = 64.0;
 
@@ -36,6 +36,8 @@ pub(crate) struct Standing<const G: usize> {
     pub(crate) sides: [f64; G],
     /// Values that are as good as zero there.
     pub(crate) hidden: [f64; G],
+    /// Guards that have crossed from that side, and fire next.
+    pub(crate) due: [bool; G],
 }
 
 /// All that tells where the guards stand after an event that changes nothing.
@@ -56,8 +58,8 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
     pub(crate) fn standing<M: Method>(mut self) -> Standing<G> {
         let (event, phase) = (self.event, self.phase);
         let stays = event.elapsed == 0.0;
-        let mut standing = Standing { fired: 0, zero_orders: [0; G], sides: [0.0; G], hidden: [0.0; G] };
-        let mut fired = 0;
+        let mut standing = Standing { fired: 0, zero_orders: [0; G], sides: [0.0; G], hidden: [0.0; G], due: [false; G] };
+        let (mut fired, mut due) = (0, [false; G]);
         let mut stand = |guard: usize, side: f64, hidden: f64| {
             // No time has passed since the zero that was known.
             let order = if stays { phase.zero_orders[guard] } else { 0 };
@@ -76,6 +78,7 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
             }
             if stays && phase.zero_orders[guard] > 0 {
                 stand(guard, phase.sides[guard], phase.hidden[guard]);
+                due[guard] = phase.due[guard];
                 continue;
             }
             let hidden = self.hidden::<M>(guard, values[guard]);
@@ -100,36 +103,38 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
             if fires && !by_itself {
                 fired |= bit(guard);
             }
-            if fires && by_itself && direction != Direction::Below {
+            due[guard] = fires && by_itself && direction != Direction::Below;
+            if due[guard] {
                 stand(guard, from, hidden.max(values[guard].abs()));
             } else if at_zero {
                 stand(guard, if to == 0.0 { from } else { to }, hidden);
             }
         }
-        standing.fired = fired;
-        standing
+        Standing { fired, due, ..standing }
     }
 
-    /// What rounding leaves of a guard at its zero, on the scales of the step that ends there; 0 if its `value` is far from that.
+    /// What rounding leaves of a guard at its zero, on the scales of the step that ends there; less if its `value` is far from that.
     fn hidden<M: Method>(&mut self, guard: usize, value: f64) -> f64 {
         let (system, phase, event) = (self.system, self.phase, self.event);
         let value_at = |s: f64, y: &State<N>| system.guard_values(phase.mode, s, y)[guard];
-        let mut step = self.up_to_here::<M>();
-        let at_nodes = step.interior.iter().zip(&NODES[1..]);
-        let at_nodes = at_nodes.map(|(y, theta)| value_at(step.s + theta * step.h, y).abs());
-        let largest = at_nodes.fold(phase.values[guard].abs(), f64::max);
-        self.statistics.guards += NODES.len() - 2;
-        let known = if phase.zero_orders[guard] > 0 { phase.hidden[guard] } else { 0.0 };
-        if value.abs() > known && value.abs() > NEAR * largest {
-            return 0.0;
-        }
         self.statistics.guards += N + 2;
-        let like = event.state.zip_map(&step.y0, |y, y0| y.abs().max(y0.abs()));
-        let (here, like) = ((self.s, &event.state), (self.s.abs().max(step.s.abs()), &like));
-        let rounding = rounding(value_at, here, like) + ROUNDINGS * f64::EPSILON * largest;
+        let like = event.state.zip_map(&event.step.y0, |y, y0| y.abs().max(y0.abs()));
+        let (here, like) = ((self.s, &event.state), (self.s.abs().max(event.step.s.abs()), &like));
+        let rounding = rounding(value_at, here, like);
+        let known = if phase.zero_orders[guard] > 0 { phase.hidden[guard] } else { 0.0 };
+        let hidden = known.max(rounding);
+        let step = self.up_to_here::<M>();
+        let nodes = step.interior.iter().zip(&NODES[1..]);
+        let nodes = nodes.map(|(y, theta)| value_at(step.s + theta * step.h, y).abs());
+        let largest = nodes.fold(phase.values[guard].abs(), f64::max);
+        self.statistics.guards += NODES.len() - 2;
+        if value.abs() > hidden && value.abs() > NEAR * largest {
+            return hidden;
+        }
+        let mut step = step;
         let dense = self.dense::<M>(&mut step);
         let noise = noise_at_end(&mut self.curve::<M>(guard, &step, &dense));
-        known.max(rounding).max(noise)
+        hidden.max(noise).max(ROUNDINGS * f64::EPSILON * largest)
     }
 
     /// The step that ends at the event.
