@@ -171,7 +171,6 @@ where
                 || event.is_some()
                 || statuses.iter().any(|&status| status != Status::Clear);
             let mut next = self.locate::<M>(on, guard, &crossing, exact)?;
-            if std::env::var("DBG").is_ok() { eprintln!("s={} h={} guard {guard} {crossing:?} elapsed {} sides {:?} orders {:?} values {:?}", on.s, on.h, next.elapsed, self.phase.sides, self.phase.zero_orders, values); }
             if next.elapsed == 0.0 {
                 *event = Some(next);
                 return Ok(Found::Event);
@@ -433,7 +432,6 @@ where
                 let s = step.s + touch.theta * step.h;
                 self.observer.on_grazing(&Grazing { s, mode, guard, margin: sign * touch.margin });
             }
-            if std::env::var("DBG").is_ok() { eprintln!("   isolate {guard} sign {sign} h {} {verdict:?} hidden {:e} side {} end {:e}", step.h, self.phase.hidden[guard], self.phase.sides[guard], values[5]); }
             let crossing = match verdict {
                 Verdict::None => continue,
                 Verdict::TooCoarse => return Ok(None),
@@ -441,7 +439,7 @@ where
                 Verdict::Crossing(bracket) => Crossing { sign, bracket },
             };
             found = match found {
-                Status::Fires(other) if other.bracket.guess <= crossing.bracket.guess => found,
+                Status::Fires(other) if other.bracket.low <= crossing.bracket.low => found,
                 _ => Status::Fires(crossing),
             };
         }

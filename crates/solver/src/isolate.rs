@@ -152,11 +152,18 @@ pub(crate) fn sides<C: Curve>(
     let mut sides = [0.0; 2];
     let inside = accuracy.state.1;
     let end = (end, hidden + inside);
-    let walked = walk(&mut quotient, &mut accuracy, inside, end, |_| {}, |_, (_, value)| {
-        let side = value.signum();
-        sides = [if sides[0] == 0.0 { side } else { sides[0] }, side];
-        ControlFlow::<()>::Continue(())
-    })?;
+    let walked = walk(
+        &mut quotient,
+        &mut accuracy,
+        inside,
+        end,
+        |_| {},
+        |_, (_, value)| {
+            let side = value.signum();
+            sides = [if sides[0] == 0.0 { side } else { sides[0] }, side];
+            ControlFlow::<()>::Continue(())
+        },
+    )?;
     Ok(walked.map(|_| sides))
 }
 

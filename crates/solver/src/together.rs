@@ -58,7 +58,13 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
     pub(crate) fn standing<M: Method>(mut self) -> Standing<G> {
         let (event, phase) = (self.event, self.phase);
         let stays = event.elapsed == 0.0;
-        let mut standing = Standing { fired: 0, zero_orders: [0; G], sides: [0.0; G], hidden: [0.0; G], due: [false; G] };
+        let mut standing = Standing {
+            fired: 0,
+            zero_orders: [0; G],
+            sides: [0.0; G],
+            hidden: [0.0; G],
+            due: [false; G],
+        };
         let (mut fired, mut due) = (0, [false; G]);
         let mut stand = |guard: usize, side: f64, hidden: f64| {
             // No time has passed since the zero that was known.
@@ -165,7 +171,9 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
         let start = self.side_at_start(guard);
         let elapsed = self.event.elapsed;
         // One that fires either way has kept its side: it would have fired.
-        if elapsed == 0.0 || (start != 0.0 && self.phase.guards[guard].direction() == Direction::Either) {
+        if elapsed == 0.0
+            || (start != 0.0 && self.phase.guards[guard].direction() == Direction::Either)
+        {
             return start;
         }
         let mut step = self.up_to_here::<M>();
@@ -187,7 +195,11 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
             }
             let tolerances = (self.options.rtol, self.options.atol);
             let mut step = Step::blank();
-            self.system.step::<M>(mode, &Trial { s: self.s, y, slope: &slope, h, tolerances }, &mut step);
+            self.system.step::<M>(
+                mode,
+                &Trial { s: self.s, y, slope: &slope, h, tolerances },
+                &mut step,
+            );
             self.count::<M>();
             let good = match self.options.step_size {
                 StepSize::Adaptive => step.error < 1.0,
