@@ -282,9 +282,9 @@ where
     /// away from its zero.
     fn on_their_side(&self, values: &[[f64; G]; 6]) -> [f64; G] {
         std::array::from_fn(|guard| {
-            let (end, side) = (values[5][guard], self.phase.sides[guard]);
-            if side != 0.0 && end.abs() <= self.phase.hidden[guard] {
-                return f64::MIN_POSITIVE.copysign(side);
+            let end = values[5][guard];
+            if self.stays(guard, &values.map(|at_node| at_node[guard])) {
+                return f64::MIN_POSITIVE.copysign(self.phase.sides[guard]);
             }
             if end != 0.0 {
                 return end;
@@ -293,6 +293,12 @@ where
             let before = before.find(|&value| value != 0.0);
             before.map_or(end, |value| f64::MIN_POSITIVE.copysign(value))
         })
+    }
+
+    /// Whether a guard that starts from a known zero, and leaves it to a known side, has not yet come away from it.
+    fn stays(&self, guard: usize, values: &[f64; 6]) -> bool {
+        let hidden = self.phase.hidden[guard];
+        self.phase.sides[guard] != 0.0 && values.iter().all(|value| value.abs() <= hidden)
     }
 
     /// Guards at [`quick::NODES`] of a step.
@@ -401,6 +407,7 @@ where
             _ => &[1.0],
         };
         let below = self.phase.guards[guard].direction() == Direction::Below;
+        let end = if self.stays(guard, values) { 0.0 } else { values[5] };
         let mut found = Status::Clear;
         for &sign in signs {
             let mut curve = AlongStep::<'_, S, M, N, G> {
@@ -419,7 +426,7 @@ where
                 &mut curve,
                 (order, sign * self.phase.sides[guard], self.phase.hidden[guard]),
                 below,
-                (sign * values[0], sign * values[5]),
+                (sign * values[0], sign * end),
                 |touch: Touch| {
                     if let Some(place) = touches.get_mut(count) {
                         *place = Some(touch);

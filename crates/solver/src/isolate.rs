@@ -113,9 +113,8 @@ pub(crate) fn first_crossing<C: Curve>(
     if domain && before.is_some_and(|(_, value)| value < 0.0) {
         return Ok(Verdict::StartsBelow);
     }
-    let at_end = if side == 0.0 { -1.0 } else { hidden };
     let hidden = if zero_order > 0 { accuracy.state.0 } else { 0.0 };
-    let end = (end, at_end);
+    let end = (end, -1.0);
     let walked = walk(&mut quotient, &mut accuracy, hidden, end, on_touch, |quotient, point| {
         match before {
             Some(before) if before.1 >= 0.0 && point.1 < 0.0 => {
@@ -167,9 +166,12 @@ pub(crate) fn sides<C: Curve>(
     Ok(walked.map(|_| sides))
 }
 
-/// How far a curve's values scatter where the step ends.
+/// How far a curve's values scatter where the step ends, if that is more than their own rounding there.
 pub(crate) fn noise_at_end<C: Curve>(curve: &mut C) -> f64 {
-    Quotient { curve, order: 0 }.noise(1.0 - NARROWEST / 64.0, 1.0)
+    let start = 1.0 - NARROWEST / 64.0;
+    let largest = curve.dense(start).0.abs().max(curve.dense(1.0).0.abs());
+    let noise = Quotient { curve, order: 0 }.noise(start, 1.0);
+    if noise > BEYOND_NOISE * f64::EPSILON * largest { noise } else { 0.0 }
 }
 
 /// Visits, from left to right, points between which a quotient is monotone, each with the value there; leaves out those whose

@@ -22,8 +22,6 @@ const CUTS: usize = 60;
 
 /// Guards further from zero than this part of their largest value on the step are not at it.
 const NEAR: f64 = 1e-3;
-/// Roundings of that value that a guard may be off by.
-const ROUNDINGS: f64 = 64.0;
 
 /// Where the guards stand after an event that changes nothing.
 #[derive(Clone, Copy, Debug)]
@@ -140,7 +138,7 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
         let mut step = step;
         let dense = self.dense::<M>(&mut step);
         let noise = noise_at_end(&mut self.curve::<M>(guard, &step, &dense));
-        hidden.max(noise).max(ROUNDINGS * f64::EPSILON * largest)
+        hidden.max(noise)
     }
 
     /// The step that ends at the event.
