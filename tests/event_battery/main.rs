@@ -7,6 +7,7 @@
 mod guards;
 mod planted;
 mod systems;
+mod together;
 
 use planted::{Score, cases, dip, score, triple};
 use stickslip::solver::{Dop853, Dopri5};
@@ -42,6 +43,10 @@ fn print_the_table() {
     for digits in [5, 7, 9, 11, 13] {
         let case = triple(digits);
         score(&case).print(&case.name, "1e-3 … 1, adaptive");
+    }
+    for case in together::cases() {
+        together::score(&case)
+            .print(&format!("two or three guards: {}", case.name), "1e-3 … 1, adaptive");
     }
     for width in [0.3, 0.1, 0.05, 0.03] {
         dip(width, 1.0).print(&format!("dip of half width {width}"), "1");
