@@ -12,7 +12,14 @@ use stickslip::solver::{
 pub fn polynomials(bytes: &[u8]) -> Result<(), String> {
     let mut bytes = Bytes(bytes);
     let step_size = bytes.step_size();
-    let guards = [bytes.polynomial(), bytes.polynomial()];
+    signs([bytes.polynomial(), bytes.polynomial()], step_size)
+}
+
+/// The same for the polynomials with these coefficients, lowest first, on [0, 1].
+///
+/// # Errors
+/// What does not hold.
+pub fn signs(guards: [[f64; COEFFICIENTS]; 2], step_size: StepSize) -> Result<(), String> {
     follow_signs(Dop853, &Polynomials { guards }, step_size)?;
     follow_signs(Dopri5, &Polynomials { guards }, step_size)
 }
@@ -44,7 +51,7 @@ pub fn expressions(bytes: &[u8]) -> Result<(), String> {
 }
 
 /// Degrees up to which the six values of the first look decide by themselves.
-const COEFFICIENTS: usize = 6;
+pub const COEFFICIENTS: usize = 6;
 
 /// y' = 1 with two polynomials as guards that fire in either direction.
 struct Polynomials {

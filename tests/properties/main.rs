@@ -10,7 +10,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestError, TestRng, TestRunner};
 use stickslip::model::{Collider, CollisionError, Contact};
-use stickslip::solver::Dopri5;
+use stickslip::solver::{Dopri5, StepSize};
 
 /// Holds `check` for `cases` values, the same ones every time.
 fn hold<S: Strategy>(cases: u32, strategy: &S, check: impl Fn(S::Value) -> Result<(), String>) {
@@ -62,6 +62,35 @@ fn collisions_of_any_bit_pattern() {
 #[test]
 fn polynomials_as_guards() {
     hold(20_000, &vec(any::<u8>(), 0..16), |bytes| hybrid::polynomials(&bytes));
+}
+
+/// The coefficients of the polynomial with these roots, in 64ths: those that fit are exact.
+fn with_roots(roots: &[u8], factor: f64) -> [f64; hybrid::COEFFICIENTS] {
+    let mut coefficients = [0.0; hybrid::COEFFICIENTS];
+    coefficients[0] = factor;
+    for &root in roots {
+        let root = f64::from(root) / 64.0;
+        for i in (0..hybrid::COEFFICIENTS).rev() {
+            let before = if i == 0 { 0.0 } else { coefficients[i - 1] };
+            coefficients[i] = before - root * coefficients[i];
+        }
+    }
+    coefficients
+}
+
+#[test]
+fn polynomials_with_common_roots() {
+    let roots = (1..64_u8, 1..3_usize, 1..3_usize, vec(1..64_u8, 0..3), vec(1..64_u8, 0..3));
+    let factors = prop::sample::select(vec![1.0, -1.0, 0.25, -3.0]);
+    let step = prop_oneof![
+        Just(StepSize::Adaptive),
+        (1..128_u8).prop_map(|part| StepSize::Fixed(f64::from(part) / 128.0)),
+    ];
+    hold(5000, &(roots, factors, step), |((common, first, second, one, other), factor, step)| {
+        let one = [vec![common; first], one].concat();
+        let other = [vec![common; second], other].concat();
+        hybrid::signs([with_roots(&one, factor), with_roots(&other, 1.0)], step)
+    });
 }
 
 #[test]
