@@ -87,6 +87,11 @@ pub struct SwitchEvent<Mode, const N: usize> {
     pub guard: usize,
     /// Further guards of the mode that vanish at the same place, one bit each. Of guards that fire together
     /// the one listed first decides the transition, unless it gives way ([`Guard::yielding`]).
+    ///
+    /// Where mode and state go on unchanged these are the guards that cross here in their direction, as far as rounding tells: they
+    /// have fired with this event and do not fire again. One that only touches is not among them, nor one whose zero can be told
+    /// apart, which fires by itself. A terminal guard and one of [`Direction::Below`](crate::Direction::Below) are not either: they
+    /// fire next, by an event of their own at the same place.
     pub simultaneous: u32,
     /// The guard's largest value in the phase over its slope here, in units of s: an error of the guard relative to that value
     /// moves the switch by the error times this. Large near a graze.
