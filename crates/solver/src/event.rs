@@ -151,11 +151,7 @@ where
                     if statuses[guard] == Status::Unclear {
                         let on = event.as_mut().map_or(&mut *step, |event| &mut event.step);
                         let column = values.map(|at_node| at_node[guard]);
-                        let mut status = self.isolate::<M>(guard, on, &column)?;
-                        if status.is_none() && event.is_some() {
-                            status = self.isolate_before::<M>(guard, step, event.as_ref())?;
-                        }
-                        let Some(status) = status else {
+                        let Some(status) = self.isolate::<M>(guard, on, &column)? else {
                             *event = None;
                             return Ok(Found::TooCoarse(guard));
                         };
@@ -208,28 +204,6 @@ where
             }
             *event = Some(next);
         }
-    }
-
-    /// Decides by the whole of `step` what a guard does before an event so near its start that rounding hides it there.
-    fn isolate_before<M: Method>(
-        &mut self,
-        guard: usize,
-        step: &mut Step<N>,
-        event: Option<&Event<N>>,
-    ) -> Result<Option<Status>, RunError> {
-        let Some(event) = event else { return Ok(None) };
-        let column = self.values_on(step).map(|at_node| at_node[guard]);
-        let status = self.isolate::<M>(guard, step, &column)?;
-        let part = event.elapsed / step.h;
-        Ok(status.map(|status| match status {
-            Status::Fires(Crossing { sign, bracket: Bracket { low, guess, .. } })
-                if guess < part =>
-            {
-                let bracket = Bracket { low: low / part, high: 1.0, guess: guess / part };
-                Status::Fires(Crossing { sign, bracket })
-            }
-            _ => Status::Clear,
-        }))
     }
 
     /// Whether guard `first` decides if it fires together with guard `second`: of both, the one that does not give way, and else
