@@ -146,10 +146,10 @@ where
         loop {
             let first = self.earliest(&statuses);
             let Some((guard, crossing)) = first else {
+                let on = event.as_mut().map_or(&mut *step, |event| &mut event.step);
                 let mut found_any = false;
                 for guard in 0..G {
                     if statuses[guard] == Status::Unclear {
-                        let on = event.as_mut().map_or(&mut *step, |event| &mut event.step);
                         let column = values.map(|at_node| at_node[guard]);
                         let Some(status) = self.isolate::<M>(guard, on, &column)? else {
                             *event = None;

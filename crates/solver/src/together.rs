@@ -127,7 +127,7 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
         let rounding = rounding(value_at, here, like);
         let known = if phase.zero_orders[guard] > 0 { phase.hidden[guard] } else { 0.0 };
         let hidden = known.max(rounding);
-        let step = self.up_to_here::<M>();
+        let mut step = self.up_to_here::<M>();
         let nodes = step.interior.iter().zip(&NODES[1..]);
         let nodes = nodes.map(|(y, theta)| value_at(step.s + theta * step.h, y).abs());
         let largest = nodes.fold(phase.values[guard].abs(), f64::max);
@@ -135,7 +135,6 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
         if value.abs() > hidden && value.abs() > NEAR * largest {
             return hidden;
         }
-        let mut step = step;
         let dense = self.dense::<M>(&mut step);
         let noise = noise_at_end(&mut self.curve::<M>(guard, &step, &dense));
         hidden.max(noise)
@@ -188,7 +187,7 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
         self.statistics.field += 1;
         let mut h = self.ahead;
         for _ in 0..CUTS {
-            if !(h > 0.0) {
+            if h <= 0.0 {
                 break;
             }
             let tolerances = (self.options.rtol, self.options.atol);
