@@ -89,7 +89,8 @@ fn fast_release(swing: &Swing) -> (Moment, u32) {
         if high == Moment::END {
             return (exit(swing, k, low, high, None), k);
         }
-        if let Some(top) = top_above_limit(swing, k, low, high) {
+        let top = top(swing, k, low, high);
+        if exceeds_limit(swing, k, top) {
             return (exit(swing, k, low, top, None), k);
         }
         (from, k) = calm.skip(swing, zero, k + 1);
@@ -155,7 +156,8 @@ fn slow_release(swing: &Swing, crest: f64) -> (Moment, u32) {
             if zero == Moment::END {
                 return (exit(swing, 0, fall, zero, None), 0);
             }
-            if let Some(top) = top_above_limit(swing, 0, fall, zero) {
+            let top = top(swing, 0, fall, zero);
+            if exceeds_limit(swing, 0, top) {
                 return (exit(swing, 0, fall, top, None), 0);
             }
         }
@@ -163,25 +165,42 @@ fn slow_release(swing: &Swing, crest: f64) -> (Moment, u32) {
     // The second half swing lasts to the end of contact, where W → 0 from above and R → ∞. Only
     // before `rise` can R have a top.
     if zero.is_before(rise) && swing.gap(1, rise, Point::at(rise)).turning() < 0.0 {
-        return match top_above_limit(swing, 1, zero, rise) {
-            Some(top) => (exit(swing, 1, zero, top, None), 1),
-            None => (exit(swing, 1, rise, Moment::END, None), 1),
+        let top = top(swing, 1, zero, rise);
+        return if exceeds_limit(swing, 1, top) {
+            (exit(swing, 1, zero, top, None), 1)
+        } else {
+            (exit(swing, 1, rise, Moment::END, None), 1)
         };
     }
     (exit(swing, 1, zero, Moment::END, None), 1)
 }
 
-/// The top of R between `low`, where W > 0, and `high`, where W < 0, if R > 1 there.
-fn top_above_limit(swing: &Swing, k: u32, low: Moment, high: Moment) -> Option<Moment> {
-    let top = root_between(low, high, None, |moment, point| {
-        let gap = swing.gap(k, moment, point);
-        along_root(moment, gap.turning(), -gap.q * pull(swing.bend, point.u), 0.0)
-    });
-    (swing.gap(k, top, Point::at(top)).value < 0.0).then_some(top)
+/// The top of R between `low`, where W > 0, and `high`, where W < 0.
+pub fn top(swing: &Swing, k: u32, low: Moment, high: Moment) -> Moment {
+    root_between(low, high, None, |moment, point| turning(swing, k, moment, point))
+}
+
+/// The lowest place of R between `low`, where W < 0, and `high`, where W > 0.
+pub fn bottom(swing: &Swing, k: u32, low: Moment, high: Moment) -> Moment {
+    root_between(low, high, None, |moment, point| {
+        let Jet { value, slope, curvature } = turning(swing, k, moment, point);
+        Jet { value: -value, slope: -slope, curvature: -curvature }
+    })
+}
+
+/// W along the root coordinate.
+fn turning(swing: &Swing, k: u32, moment: Moment, point: Point) -> Jet {
+    let gap = swing.gap(k, moment, point);
+    along_root(moment, gap.turning(), -gap.q * pull(swing.bend, point.u), 0.0)
+}
+
+/// Whether R > 1 at `moment`.
+pub fn exceeds_limit(swing: &Swing, k: u32, moment: Moment) -> bool {
+    swing.gap(k, moment, Point::at(moment)).value < 0.0
 }
 
 /// The one zero of D on half swing `k` between `low`, where D > 0, and `high`, where D < 0.
-fn exit(swing: &Swing, k: u32, low: Moment, high: Moment, guess: Option<Moment>) -> Moment {
+pub fn exit(swing: &Swing, k: u32, low: Moment, high: Moment, guess: Option<Moment>) -> Moment {
     let guess = guess.or_else(|| (high == Moment::END).then(|| guess_before_end(swing)));
     let moment = root_between(low, high, guess, |moment, point| {
         let gap = swing.gap(k, moment, point);
@@ -205,7 +224,7 @@ fn settled(swing: &Swing, k: u32, moment: Moment) -> Moment {
 ///
 /// D has a double zero at the start of the phase, so D/τ², here multiplied by a constant power
 /// of τ, is solved instead.
-fn first_exit(swing: &Swing, rise: Moment, fall: Moment) -> Moment {
+pub fn first_exit(swing: &Swing, rise: Moment, fall: Moment) -> Moment {
     // D̈ falls through 0 at `rise`: were it straight, the phase would be three times as long.
     let guess = swing.start.after(3.0 * swing.start.time_until(rise));
     let moment = root_between(rise, fall, Some(guess), |moment, point| {
