@@ -133,7 +133,7 @@ fn both_engines_trace_the_same_atlas() {
         for node in &curve.nodes {
             match ATLAS.locate(&node.point) {
                 Location::OnBoundary { .. } => {}
-                _ => off = off.max(ATLAS.vertical_distance(&node.point).unwrap_or(0.0)),
+                _ => off = off.max(ATLAS.vertical_distance(&node.point).expect("a curve")),
             }
         }
     }
