@@ -13,7 +13,7 @@ use stickslip::collisions::{CollisionFamily, CollisionPlane};
 use stickslip::model::{Collider, exact};
 use stickslip::solver::{Margin, Place};
 use stickslip::tracer::{
-    Location, Point, Subdivision, TraceOptions, Tracer, VerifyOptions, verify_with,
+    Location, Node, Point, Subdivision, TraceOptions, Tracer, VerifyOptions, verify_with,
 };
 
 type Atlas = Subdivision<Vec<usize>, Margin>;
@@ -102,7 +102,8 @@ fn the_subdivision_is_that_of_collisions() {
     assert_right(&undamped(), &ATLAS, KAPPA, PSI);
 }
 
-/// Margins of the exact solution and of the integrator, which share nothing, lead to the same vertices and curves.
+/// Margins of the exact solution and of the integrator, which share nothing, lead to the same vertices and curves; these have all
+/// nodes in common to 1e-9.
 #[test]
 fn both_engines_trace_the_same_atlas() {
     let plane = undamped();
@@ -128,17 +129,12 @@ fn both_engines_trace_the_same_atlas() {
         curves
     };
     assert_eq!(curves(&integrated), curves(&ATLAS));
-    let mut off = 0.0_f64;
-    for curve in integrated.curves() {
-        for node in &curve.nodes {
-            match ATLAS.locate(&node.point) {
-                Location::OnBoundary { .. } => {}
-                _ => off = off.max(ATLAS.vertical_distance(&node.point).expect("a curve")),
-            }
-        }
+    // Ends are vertices.
+    let between = integrated.curves().iter().flat_map(|c| &c.nodes[1..c.nodes.len() - 1]);
+    for Node { point, .. } in between {
+        let place = ATLAS.locate(point);
+        assert!(matches!(place, Location::OnBoundary { .. }), "{point:?}: {place:?}");
     }
-    println!("nodes off by {off:.1e}");
-    assert!(off < 1e-8);
 }
 
 #[test]
