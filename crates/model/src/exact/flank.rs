@@ -1,10 +1,29 @@
-//! The pieces of a half swing on which the spring gains on its limit, R = q/L rises: only there a stick phase can end.
+//! The pieces of a half swing on which the spring gains on its limit: only there a stick phase can end.
+//!
+//! On a half swing, on which q = ±y > 0, the ratio R = q/L rises or falls with the sign of
+//! W = L q̇ − L̇ q, and
+//!
+//! dW/dt = −q (κL + L̈).
+//!
+//! The bracket is positive for κ ≥ 1.568…; otherwise it is negative between the two crests of
+//! [`Slide`](super::slide::Slide) and positive outside. So W is monotone on known pieces and R
+//! between the zeros of W: whether R reaches 1 is decided by its values at the ends of such
+//! pieces, and where it does, the root is the only one in a known bracket.
+//!
+//! The phase starts with R = 1 and W = 0. As long as the bracket is positive R falls from there:
+//! the side the phase comes from cannot be met again on the first half swing.
 
 use std::f64::consts::PI;
 
-use super::release::{bottom, exceeds_limit, exit, first_exit, top};
-use super::swing::Swing;
-use super::trajectory::{Half, Moment, Point};
+use super::precise::refined_exit;
+use super::root::{Jet, bracketed};
+use super::slide::pull;
+use super::swing::{Swing, half_swing_sign};
+use super::trajectory::{Half, MIDDLE_ROOT, Moment, Point};
+
+/// The ratio of dD/dt to dq/dt below which an exit is improved: at it rounding of the angle √κ·τ,
+/// a few 1e-16, moves the exit by about 1e-14.
+const SLOW: f64 = 0.05;
 
 /// Where R rises on one half swing of a stick phase.
 pub struct Flanks {
@@ -13,8 +32,8 @@ pub struct Flanks {
     low: Low,
     /// Where it turns round; without it, R rises to infinity at the end of contact.
     top: Option<Moment>,
-    /// Where, after a top, it rises once more, to infinity at the end of contact.
-    again: Option<Moment>,
+    /// After a top it falls, turns round once more between these places, and rises to infinity at the end of contact.
+    again: Option<[Moment; 2]>,
 }
 
 /// Where R starts to rise on a half swing.
@@ -51,7 +70,8 @@ impl Flanks {
         Some(Self { half_swing, low: Low::Zero(start), top, again: None })
     }
 
-    /// κ < 1.568…, first half swing.
+    /// κ < 1.568…, first half swing: W falls from 0 up to the first crest, rises up to the second, then falls. R can come back to 1 only
+    /// if W has become positive by the second.
     fn first(swing: &Swing, crest: f64) -> Option<Self> {
         let [rise, fall] = crests(crest);
         let zero = swing.moment_at_angle(0.0);
@@ -63,7 +83,8 @@ impl Flanks {
         Some(Self { half_swing: 0, low: Low::Between(rise, fall), top, again: None })
     }
 
-    /// κ < 1.568…, second half swing, which lasts to the end of contact.
+    /// κ < 1.568…, second half swing, which lasts to the end of contact: there W → 0 from above and R → ∞. Only before the first crest R
+    /// can have a top.
     fn second(swing: &Swing, crest: f64) -> Option<Self> {
         let [rise, fall] = crests(crest);
         let zero = swing.moment_at_angle(0.0);
@@ -75,7 +96,7 @@ impl Flanks {
             half_swing: 1,
             low: Low::Zero(zero),
             top: turns.then(|| top(swing, 1, zero, rise)),
-            again: turns.then(|| bottom(swing, 1, rise, fall)),
+            again: turns.then_some([rise, fall]),
         })
     }
 
@@ -88,7 +109,10 @@ impl Flanks {
     pub fn exit(&self, swing: &Swing, after_top: bool) -> Option<(Moment, bool)> {
         let k = self.half_swing;
         let after = || {
-            let low = self.again.filter(|&low| !exceeds_limit(swing, k, low))?;
+            let [rise, fall] = self.again?;
+            let below = |&low: &Moment| !exceeds_limit(swing, k, low);
+            let low = Some(rise).filter(below);
+            let low = low.or_else(|| Some(bottom(swing, k, rise, fall)).filter(below))?;
             Some((exit(swing, k, low, Moment::END, None), true))
         };
         let before = || {
@@ -111,4 +135,113 @@ impl Flanks {
 /// The zeros of κL + L̈ in the two halves of the contact.
 fn crests(root: f64) -> [Moment; 2] {
     [Half::Compression, Half::Decompression].map(|half| Moment { half, root })
+}
+
+/// The top of R between `low`, where W > 0, and `high`, where W < 0.
+pub fn top(swing: &Swing, k: u32, low: Moment, high: Moment) -> Moment {
+    root_between(low, high, None, |moment, point| turning(swing, k, moment, point))
+}
+
+/// The lowest place of R between `low`, where W < 0, and `high`, where W > 0.
+fn bottom(swing: &Swing, k: u32, low: Moment, high: Moment) -> Moment {
+    root_between(low, high, None, |moment, point| {
+        let Jet { value, slope, curvature } = turning(swing, k, moment, point);
+        Jet { value: -value, slope: -slope, curvature: -curvature }
+    })
+}
+
+/// W along the root coordinate.
+fn turning(swing: &Swing, k: u32, moment: Moment, point: Point) -> Jet {
+    let gap = swing.gap(k, moment, point);
+    along_root(moment, gap.turning(), -gap.q * pull(swing.bend, point.u), 0.0)
+}
+
+/// Whether R > 1 at `moment`.
+pub fn exceeds_limit(swing: &Swing, k: u32, moment: Moment) -> bool {
+    swing.gap(k, moment, Point::at(moment)).value < 0.0
+}
+
+/// The one zero of D on half swing `k` between `low`, where D > 0, and `high`, where D < 0.
+pub fn exit(swing: &Swing, k: u32, low: Moment, high: Moment, guess: Option<Moment>) -> Moment {
+    let guess = guess.or_else(|| (high == Moment::END).then(|| guess_before_end(swing)));
+    let moment = root_between(low, high, guess, |moment, point| {
+        let gap = swing.gap(k, moment, point);
+        along_root(moment, gap.value, gap.rate, gap.acceleration)
+    });
+    settled(swing, k, moment)
+}
+
+/// `moment`, a zero of D, improved where rounding in D has moved it: beside a graze, D falls
+/// through 0 slowly.
+fn settled(swing: &Swing, k: u32, moment: Moment) -> Moment {
+    let gap = swing.gap(k, moment, Point::at(moment));
+    if gap.rate.abs() < SLOW * gap.q_rate.abs() {
+        refined_exit(swing, half_swing_sign(k), moment, gap.rate)
+    } else {
+        moment
+    }
+}
+
+/// The zero of D on the first half swing between `rise`, where D ≥ 0, and `fall`, where D < 0.
+///
+/// D has a double zero at the start of the phase, so D/τ², here multiplied by a constant power
+/// of τ, is solved instead.
+fn first_exit(swing: &Swing, rise: Moment, fall: Moment) -> Moment {
+    // D̈ falls through 0 at `rise`: were it straight, the phase would be three times as long.
+    let guess = swing.start.after(3.0 * swing.start.time_until(rise));
+    let moment = root_between(rise, fall, Some(guess), |moment, point| {
+        let gap = swing.gap(0, moment, point);
+        let tau = swing.start.time_until(moment);
+        let scaled = gap.value / tau;
+        let rate = (gap.rate - 2.0 * scaled) / tau;
+        let acceleration = (gap.acceleration - (4.0 * gap.rate - 6.0 * scaled) / tau) / tau;
+        along_root(moment, scaled, rate, acceleration)
+    });
+    if swing.is_onset(0, moment) { moment } else { settled(swing, 0, moment) }
+}
+
+/// The exit if the spring stood still at where it ends and the limit were r³/κ.
+fn guess_before_end(swing: &Swing) -> Moment {
+    let (end, _) = swing.motion(swing.start.time_left());
+    let root = (swing.kappa * end.abs()).cbrt().min(MIDDLE_ROOT);
+    Moment { half: Half::Decompression, root }
+}
+
+/// A function's derivatives in time as derivatives in the root coordinate.
+fn along_root(moment: Moment, value: f64, rate: f64, acceleration: f64) -> Jet {
+    let time_per_root = moment.time_per_root();
+    // d²t/dr² = (dt/dr)/r
+    let bend = if moment.half == Half::Compression { 2.0 } else { -2.0 };
+    Jet {
+        value,
+        slope: rate * time_per_root,
+        curvature: acceleration * time_per_root * time_per_root + rate * bend,
+    }
+}
+
+/// The root between `low`, where f > 0, and `high`, where f < 0, in whichever half it lies.
+fn root_between(
+    mut low: Moment,
+    mut high: Moment,
+    guess: Option<Moment>,
+    f: impl Fn(Moment, Point) -> Jet,
+) -> Moment {
+    if low.half != high.half {
+        let middle = Moment { half: Half::Decompression, root: MIDDLE_ROOT };
+        if f(middle, Point::at(middle)).value < 0.0 {
+            high = Moment { half: Half::Compression, ..middle };
+        } else {
+            low = middle;
+        }
+    }
+    let half = low.half;
+    let guess = match guess {
+        Some(moment) if moment.half == half => moment.root,
+        _ => 0.5 * (low.root + high.root),
+    };
+    let root = bracketed(low.root, high.root, guess, |root| {
+        let moment = Moment { half, root };
+        f(moment, Point::at(moment))
+    });
+    Moment { half, root }
 }
