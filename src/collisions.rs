@@ -93,7 +93,8 @@ impl CollisionPlane {
         Contact::new(kappa, psi.max(0.5 * self.low.psi()), self.low.damping())
     }
 
-    /// The collisions to trace: without damping by the exact solution, which takes a twentieth of the time, else by integration.
+    /// The collisions to trace: without damping by the exact solution, with which a trace takes a tenth of the time, else by
+    /// integration.
     #[must_use]
     pub fn family(self) -> CollisionFamily {
         if self.low.damping() == 0.0 { CollisionFamily::Exact(self) } else { self.integrated() }
