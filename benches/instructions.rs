@@ -15,7 +15,7 @@ use std::error::Error;
 use std::hint::black_box;
 use std::process::Command;
 
-use stickslip::collisions::CollisionPlane;
+use stickslip::collisions::{CollisionFamily, CollisionPlane};
 use stickslip::model::{Collider, Collision, exact};
 use stickslip::solver::{Dop853, Dopri5, Method};
 use stickslip::tracer::{Family, TraceOptions, trace};
@@ -23,16 +23,21 @@ use stickslip::tracer::{Family, TraceOptions, trace};
 /// What is counted: its row in the table, and a function that does it some times over and returns how many units one time has.
 type Workload = (&'static str, fn(usize) -> usize);
 
-const WORKLOADS: [Workload; 11] = [
+const WORKLOADS: [Workload; 14] = [
     ("collision, dop853 at 4e-13", |times| collisions(Dop853, 4e-13, times)),
     ("collision, dop853 at 1e-12", |times| collisions(Dop853, 1e-12, times)),
     ("collision, dop853 at 1e-9", |times| collisions(Dop853, 1e-9, times)),
     ("collision, dopri5 at 1e-12", |times| collisions(Dopri5, 1e-12, times)),
     ("collision, dopri5 at 1e-9", |times| collisions(Dopri5, 1e-9, times)),
     ("collision, exact", exact_collisions),
-    ("free run at κ = 63, ψ = 0.5, with its margins", free_runs),
-    ("prescribed run there, mean over these margins", prescribed_runs),
-    ("boundaries in κ 60–66, ψ 0.45–0.55, traced", traces),
+    ("free run at κ = 63, ψ = 0.5, with its margins", |times| free_runs(&integrated(), times)),
+    ("prescribed run there, mean over these margins", |times| {
+        prescribed_runs(&integrated(), times)
+    }),
+    ("boundaries in κ 60–66, ψ 0.45–0.55, traced", |times| traces(&integrated(), times)),
+    ("the same free run, exact", |times| free_runs(&exact_family(), times)),
+    ("the same prescribed run, exact", |times| prescribed_runs(&exact_family(), times)),
+    ("the same boundaries, exact", |times| traces(&exact_family(), times)),
     ("point located among 4000 cubics", located_points),
     ("its vertical distance to the nearest curve", vertical_distances),
 ];
@@ -120,8 +125,15 @@ fn collision_plane() -> CollisionPlane {
     CollisionPlane::new((60.0, 66.0), (0.45, 0.55), 0.0).expect("a plane")
 }
 
-fn free_runs(times: usize) -> usize {
-    let family = collision_plane().family();
+fn integrated() -> CollisionFamily {
+    collision_plane().integrated()
+}
+
+fn exact_family() -> CollisionFamily {
+    collision_plane().family()
+}
+
+fn free_runs(family: &CollisionFamily, times: usize) -> usize {
     let point = CollisionPlane::point(63.0, 0.5);
     for _ in 0..times {
         black_box(family.free_run(black_box(&point)).expect("a run"));
@@ -129,8 +141,7 @@ fn free_runs(times: usize) -> usize {
     1
 }
 
-fn prescribed_runs(times: usize) -> usize {
-    let family = collision_plane().family();
+fn prescribed_runs(family: &CollisionFamily, times: usize) -> usize {
     let point = CollisionPlane::point(63.0, 0.5);
     let margins = family.free_run(&point).expect("a run").margins;
     for _ in 0..times {
@@ -141,11 +152,10 @@ fn prescribed_runs(times: usize) -> usize {
     margins.len()
 }
 
-fn traces(times: usize) -> usize {
-    let plane = collision_plane();
-    let (family, window) = (plane.family(), plane.window());
+fn traces(family: &CollisionFamily, times: usize) -> usize {
+    let window = collision_plane().window();
     for _ in 0..times {
-        let network = trace(&family, black_box(&window), &TraceOptions::default());
+        let network = trace(family, black_box(&window), &TraceOptions::default());
         black_box(network.expect("boundaries"));
     }
     1

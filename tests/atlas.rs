@@ -9,11 +9,11 @@ mod common;
 use std::sync::LazyLock;
 
 use rayon::prelude::*;
-use stickslip::collisions::CollisionPlane;
+use stickslip::collisions::{CollisionFamily, CollisionPlane};
 use stickslip::model::{Collider, exact};
 use stickslip::solver::{Margin, Place};
 use stickslip::tracer::{
-    Location, Point, Subdivision, TraceOptions, Tracer, VerifyOptions, verify_with,
+    Location, Node, Point, Subdivision, TraceOptions, Tracer, VerifyOptions, verify_with,
 };
 
 type Atlas = Subdivision<Vec<usize>, Margin>;
@@ -36,10 +36,13 @@ fn undamped() -> CollisionPlane {
     CollisionPlane::new(KAPPA, PSI, 0.0).expect("collisions")
 }
 
-/// An atlas in which nothing is unresolved or inconsistent.
 fn atlas(plane: &CollisionPlane, options: &TraceOptions) -> Atlas {
-    let family = plane.family();
-    let mut tracer = Tracer::new(&family, &plane.window(), options).expect("options in range");
+    traced(&plane.family(), plane, options)
+}
+
+/// An atlas in which nothing is unresolved or inconsistent.
+fn traced(family: &CollisionFamily, plane: &CollisionPlane, options: &TraceOptions) -> Atlas {
+    let mut tracer = Tracer::new(family, &plane.window(), options).expect("options in range");
     tracer.explore().expect("an atlas");
     let network = tracer.network();
     assert!(network.unresolved.is_empty(), "{:?}", network.unresolved);
@@ -49,15 +52,15 @@ fn atlas(plane: &CollisionPlane, options: &TraceOptions) -> Atlas {
     atlas
 }
 
-/// The switches of a collision: by the exact engine, which has no part in the atlas, where there is no damping.
+/// The switches of a collision, by integration, and without damping also by the exact solution.
 fn label(plane: &CollisionPlane, point: &Point) -> Result<Vec<usize>, String> {
     let contact = plane.contact(point).expect("in the window");
-    let collision = if contact.damping() > 0.0 {
-        Collider::default().collide(contact).map_err(|error| error.to_string())
-    } else {
-        exact::collide(contact).map_err(|error| error.to_string())
-    };
-    Ok(CollisionPlane::label(&collision?))
+    let integrated = Collider::default().collide(contact).map_err(|error| error.to_string())?;
+    if contact.damping() == 0.0 {
+        let exact = exact::collide(contact).map_err(|error| error.to_string())?;
+        assert_eq!(exact.itinerary(), integrated.itinerary(), "{contact:?}");
+    }
+    Ok(CollisionPlane::label(&integrated))
 }
 
 /// Random points, half of them uniform in κ, half in ln κ, and points beside every boundary: all have the switches of their regions.
@@ -94,9 +97,44 @@ fn assert_right(plane: &CollisionPlane, atlas: &Atlas, kappa: (f64, f64), psi: (
 }
 
 #[test]
-fn the_subdivision_is_that_of_the_exact_engine() {
+fn the_subdivision_is_that_of_collisions() {
     assert_eq!(ATLAS.regions().len(), 33);
     assert_right(&undamped(), &ATLAS, KAPPA, PSI);
+}
+
+/// Margins of the exact solution and of the integrator, which share nothing, lead to the same vertices and curves; these have all
+/// nodes in common to 1e-9.
+#[test]
+fn both_engines_trace_the_same_atlas() {
+    let plane = undamped();
+    let integrated = traced(&plane.integrated(), &plane, &TraceOptions::default());
+    let mut largest = 0.0_f64;
+    for vertex in integrated.vertices() {
+        let distances = ATLAS.vertices().iter().filter(|other| other.kind == vertex.kind);
+        let nearest = distances.map(|other| (other.point - vertex.point).norm());
+        largest = largest.max(nearest.fold(f64::INFINITY, f64::min));
+    }
+    println!("vertices within {largest:.1e}");
+    assert_eq!(integrated.vertices().len(), ATLAS.vertices().len());
+    assert!(largest < 1e-7);
+    let curves = |atlas: &Atlas| {
+        let kind = |place: &Place| *place == Place::End;
+        let curves = atlas.curves().iter().map(|curve| {
+            let mut sides = curve.sides.clone();
+            sides.sort();
+            (curve.margin.exits.len(), kind(&curve.margin.place), sides)
+        });
+        let mut curves: Vec<_> = curves.collect();
+        curves.sort();
+        curves
+    };
+    assert_eq!(curves(&integrated), curves(&ATLAS));
+    // Ends are vertices.
+    let between = integrated.curves().iter().flat_map(|c| &c.nodes[1..c.nodes.len() - 1]);
+    for Node { point, .. } in between {
+        let place = ATLAS.locate(point);
+        assert!(matches!(place, Location::OnBoundary { .. }), "{point:?}: {place:?}");
+    }
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! What holds of every collision, whatever its parameters.
 
+use stickslip::collisions::CollisionPlane;
 use stickslip::model::exact::{self, ExactError};
 use stickslip::model::{
     Collider, Collision, CollisionError, Contact, EnergyLedger, Regime, Side, Switch,
@@ -83,9 +84,27 @@ pub fn agree(integrated: &Collision, closed: &Collision) -> Result<(), String> {
 pub fn exact(contact: Contact) -> Result<Result<Collision, ExactError>, String> {
     let result = exact::collide(contact);
     if let Ok(collision) = &result {
-        sound(collision).map_err(|reason| format!("exact, {contact:?}: {reason}"))?;
+        sound(collision)
+            .and_then(|()| near_misses(collision))
+            .map_err(|reason| format!("exact, {contact:?}: {reason}"))?;
     }
     Ok(result)
+}
+
+/// Holds that an exact collision leaves the margins of the guards that did not fire, if it has few enough switches for them.
+fn near_misses(collision: &Collision) -> Result<(), String> {
+    let contact = &collision.contact;
+    let Ok(margins) = exact::margins(contact) else { return Ok(()) };
+    require(margins.fired == CollisionPlane::label(collision), || format!("{:?}", margins.fired))?;
+    for (which, value) in &margins.near_misses {
+        require(*value >= 0.0, || format!("{which:?} is {value:e}"))?;
+        let again = exact::margin(contact, which).map_err(|error| error.to_string())?;
+        let same = again.is_some_and(|again| {
+            again == *value || (again - value).abs() <= 1e-9 * value.abs().max(1e-3)
+        });
+        require(same, || format!("{which:?} is {value:e} and {again:?}"))?;
+    }
+    Ok(())
 }
 
 /// Holds what is true of every collision.

@@ -4,14 +4,16 @@
 //! slip s·w − v is constant, in stick the spring swings harmonically in time. Only the moments at
 //! which one turns into the other have to be solved for, and each is the one root of a function
 //! in a bracket on which that function is known to be monotone or to cross once: no switch is
-//! looked for by sampling, so none is missed and none invented.
+//! looked for by sampling, so none is missed and none invented. What decides tells how near the collision came to other
+//! switches, too: its [`margins`].
 //!
 //! Source of the law: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008).
 
 mod account;
 mod boundaries;
+mod flank;
+mod margin;
 mod onset;
-
 mod precise;
 mod release;
 pub(crate) mod root;
@@ -23,6 +25,7 @@ use crate::contact::{Collision, Contact, Regime, Side, Switch};
 use crate::domain::{self, OutOfDomain};
 use account::Account;
 pub use boundaries::{small_impact_boundary, top_boundary};
+pub use margin::{Margins, margin, margins, moved};
 use release::Release;
 use slide::{Slide, Sliding};
 use swing::Swing;
@@ -127,16 +130,20 @@ pub fn collide_into(contact: Contact, collision: &mut Collision) -> Result<(), E
     collide_within(contact, collision, MOST_SWITCHES)
 }
 
+fn undamped(contact: &Contact) -> Result<(), ExactError> {
+    if contact.damping() != 0.0 {
+        return Err(ExactError::Damped { damping: contact.damping() });
+    }
+    Ok(domain::exact(contact)?)
+}
+
 fn collide_within(
     contact: Contact,
     collision: &mut Collision,
     limit: usize,
 ) -> Result<(), ExactError> {
     collision.reset(contact);
-    if contact.damping() != 0.0 {
-        return Err(ExactError::Damped { damping: contact.damping() });
-    }
-    domain::exact(&contact)?;
+    undamped(&contact)?;
     let switches = &mut collision.switches;
     let slide = Slide::new(contact.kappa());
     let mut account = Account::default();
@@ -144,12 +151,7 @@ fn collide_within(
     let mut sliding = Sliding::at_impact(contact.psi());
     while let Some(onset) = slide.stick_onset(&sliding) {
         if switches.len() + 2 > limit {
-            return Err(ExactError::TooManySwitches {
-                limit,
-                kappa: contact.kappa(),
-                psi: contact.psi(),
-                time_left: onset.time_left(),
-            });
+            return Err(too_many(&contact, limit, onset));
         }
         let point = Point::at(onset);
         let velocity = sliding.velocity_at(onset, point);
@@ -193,6 +195,11 @@ fn collide_within(
     collision.reversals = account.reversals;
     collision.energy = account.ledger(contact.psi(), final_velocity);
     Ok(())
+}
+
+fn too_many(contact: &Contact, limit: usize, onset: Moment) -> ExactError {
+    let (kappa, psi) = (contact.kappa(), contact.psi());
+    ExactError::TooManySwitches { limit, kappa, psi, time_left: onset.time_left() }
 }
 
 #[cfg(test)]

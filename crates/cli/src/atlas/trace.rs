@@ -5,11 +5,11 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use stickslip::collisions::CollisionFamilyError;
 use stickslip_model::{Contact, InvalidParameter};
 use stickslip_solver::Margin;
 use stickslip_tracer::{
-    Curve, Extremum, FamilyError, Network, Node, Point, Subdivision, TraceError, TraceOptions,
-    Tracer, Vertex,
+    Curve, Extremum, Network, Node, Point, Subdivision, TraceError, TraceOptions, Tracer, Vertex,
 };
 
 use super::boundary::{Kind, itinerary};
@@ -166,11 +166,11 @@ pub fn make(pool: &ThreadPool, frame: Frame, tolerance: f64) -> Result<Made, Fai
     }
 }
 
-fn failure(error: TraceError<FamilyError>) -> Failure {
+fn failure(error: TraceError<CollisionFamilyError>) -> Failure {
     Failure::Trace(match error {
         TraceError::Run { point, source } => {
             let [kappa, psi] = scaled(&point);
-            format!("kappa = {kappa:?}, psi = {psi:?}: {}", source.kind)
+            format!("kappa = {kappa:?}, psi = {psi:?}: {source}")
         }
         error => error.to_string(),
     })

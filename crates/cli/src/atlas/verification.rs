@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use stickslip_model::{Collider, exact};
+use stickslip_model::Collider;
 use stickslip_tracer::{
     Location, Network, Origin, Point, Reason, Unresolved, Verification, VerifyError, VerifyOptions,
     verify_with,
@@ -110,7 +110,7 @@ pub fn verify(
     });
     let report = Report {
         agrees,
-        method: if frame.damping == 0.0 { "exact" } else { "dop853" }.to_owned(),
+        method: "dop853".to_owned(),
         euler: EulerFields {
             vertices: euler.vertices,
             edges: euler.edges,
@@ -153,16 +153,14 @@ impl Report {
     }
 }
 
-/// The switches of the collision at a traced point: without damping by the exact solution, which shares nothing with the tracer.
+/// The switches of the collision at a traced point, by integration: without damping that shares nothing with the margins that were
+/// traced.
 ///
 /// # Errors
 /// Why it cannot be computed.
 pub fn itinerary(frame: &Frame, point: &Point) -> Result<String, String> {
     let contact = frame.plane().and_then(|plane| plane.contact(point));
     let contact = contact.map_err(|error| error.to_string())?;
-    if frame.damping == 0.0 {
-        return exact::collide(contact).map(|c| c.itinerary()).map_err(|e| e.to_string());
-    }
     Collider::default().collide(contact).map(|c| c.itinerary()).map_err(|e| e.to_string())
 }
 

@@ -44,7 +44,7 @@ fn an_atlas_has_the_fields_of_its_schema() {
     assert_eq!(atlas["window"]["damping"], 0.0);
     assert_eq!(atlas["tolerance"], 1e-10 * 3.5);
     assert_eq!(atlas["verification"]["agrees"], true);
-    assert_eq!(atlas["verification"]["method"], "exact");
+    assert_eq!(atlas["verification"]["method"], "dop853");
     assert!(atlas["verification"]["tried"].as_u64().unwrap() > 20_000);
     assert!(atlas["verification"]["share_wrong_bound"].as_f64().unwrap() < 2e-4);
     let (boundaries, vertices) = (list(&atlas, "boundaries"), list(&atlas, "vertices"));

@@ -1,29 +1,13 @@
 //! The end of a stick phase: where the spring reaches its limit again.
 //!
-//! On a half swing, on which q = ±y > 0, the ratio R = q/L rises or falls with the sign of
-//! W = L q̇ − L̇ q, and
-//!
-//! dW/dt = −q (κL + L̈).
-//!
-//! The bracket is positive for κ ≥ 1.568…; otherwise it is negative between the two crests of
-//! [`Slide`](super::slide::Slide) and positive outside. So W is monotone on known pieces and R
-//! between the zeros of W: whether R reaches 1 is decided by its values at the ends of such
-//! pieces, and where it does, the root is the only one in a known bracket.
-//!
-//! The phase starts with R = 1 and W = 0. As long as the bracket is positive R falls from there:
-//! the side the phase comes from cannot be met again on the first half swing.
+//! On each half swing the ratio R of spring and limit rises along one or two [flanks](super::flank) only, and the first of them that
+//! takes it beyond 1 ends the phase.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::precise::refined_exit;
-use super::root::{Jet, bracketed};
-use super::slide::pull;
+use super::flank::{Flanks, exceeds_limit, exit, top};
 use super::swing::{Swing, half_swing_sign};
-use super::trajectory::{Half, LARGEST_U, MIDDLE_ROOT, Moment, Point, speed_at};
-
-/// The ratio of dD/dt to dq/dt below which an exit is improved: at it rounding of the angle √κ·τ,
-/// a few 1e-16, moves the exit by about 1e-14.
-const SLOW: f64 = 0.05;
+use super::trajectory::{Half, LARGEST_U, Moment, Point, speed_at};
 
 /// Where a stick phase ends.
 #[derive(Clone, Copy, Debug)]
@@ -89,7 +73,8 @@ fn fast_release(swing: &Swing) -> (Moment, u32) {
         if high == Moment::END {
             return (exit(swing, k, low, high, None), k);
         }
-        if let Some(top) = top_above_limit(swing, k, low, high) {
+        let top = top(swing, k, low, high);
+        if exceeds_limit(swing, k, top) {
             return (exit(swing, k, low, top, None), k);
         }
         (from, k) = calm.skip(swing, zero, k + 1);
@@ -141,128 +126,8 @@ impl Calm {
 
 /// κ < 1.568…: the contact is shorter than 1.3 half swings, but κL + L̈ changes sign.
 fn slow_release(swing: &Swing, crest: f64) -> (Moment, u32) {
-    let rise = Moment { half: Half::Compression, root: crest };
-    let fall = Moment { half: Half::Decompression, root: crest };
-    let zero = swing.moment_at_angle(0.0);
-    // On the first half swing W falls from 0 until `rise`, rises until `fall`, then falls; R can
-    // come back to 1 only if W has become positive by `fall`.
-    if !rise.is_before(swing.start) && fall.is_before(zero) {
-        let gap = swing.gap(0, fall, Point::at(fall));
-        if gap.turning() > 0.0 {
-            if gap.value < 0.0 {
-                return (first_exit(swing, rise, fall), 0);
-            }
-            if zero == Moment::END {
-                return (exit(swing, 0, fall, zero, None), 0);
-            }
-            if let Some(top) = top_above_limit(swing, 0, fall, zero) {
-                return (exit(swing, 0, fall, top, None), 0);
-            }
-        }
-    }
-    // The second half swing lasts to the end of contact, where W → 0 from above and R → ∞. Only
-    // before `rise` can R have a top.
-    if zero.is_before(rise) && swing.gap(1, rise, Point::at(rise)).turning() < 0.0 {
-        return match top_above_limit(swing, 1, zero, rise) {
-            Some(top) => (exit(swing, 1, zero, top, None), 1),
-            None => (exit(swing, 1, rise, Moment::END, None), 1),
-        };
-    }
-    (exit(swing, 1, zero, Moment::END, None), 1)
-}
-
-/// The top of R between `low`, where W > 0, and `high`, where W < 0, if R > 1 there.
-fn top_above_limit(swing: &Swing, k: u32, low: Moment, high: Moment) -> Option<Moment> {
-    let top = root_between(low, high, None, |moment, point| {
-        let gap = swing.gap(k, moment, point);
-        along_root(moment, gap.turning(), -gap.q * pull(swing.bend, point.u), 0.0)
-    });
-    (swing.gap(k, top, Point::at(top)).value < 0.0).then_some(top)
-}
-
-/// The one zero of D on half swing `k` between `low`, where D > 0, and `high`, where D < 0.
-fn exit(swing: &Swing, k: u32, low: Moment, high: Moment, guess: Option<Moment>) -> Moment {
-    let guess = guess.or_else(|| (high == Moment::END).then(|| guess_before_end(swing)));
-    let moment = root_between(low, high, guess, |moment, point| {
-        let gap = swing.gap(k, moment, point);
-        along_root(moment, gap.value, gap.rate, gap.acceleration)
-    });
-    settled(swing, k, moment)
-}
-
-/// `moment`, a zero of D, improved where rounding in D has moved it: beside a graze, D falls
-/// through 0 slowly.
-fn settled(swing: &Swing, k: u32, moment: Moment) -> Moment {
-    let gap = swing.gap(k, moment, Point::at(moment));
-    if gap.rate.abs() < SLOW * gap.q_rate.abs() {
-        refined_exit(swing, half_swing_sign(k), moment, gap.rate)
-    } else {
-        moment
-    }
-}
-
-/// The zero of D on the first half swing between `rise`, where D ≥ 0, and `fall`, where D < 0.
-///
-/// D has a double zero at the start of the phase, so D/τ², here multiplied by a constant power
-/// of τ, is solved instead.
-fn first_exit(swing: &Swing, rise: Moment, fall: Moment) -> Moment {
-    // D̈ falls through 0 at `rise`: were it straight, the phase would be three times as long.
-    let guess = swing.start.after(3.0 * swing.start.time_until(rise));
-    let moment = root_between(rise, fall, Some(guess), |moment, point| {
-        let gap = swing.gap(0, moment, point);
-        let tau = swing.start.time_until(moment);
-        let scaled = gap.value / tau;
-        let rate = (gap.rate - 2.0 * scaled) / tau;
-        let acceleration = (gap.acceleration - (4.0 * gap.rate - 6.0 * scaled) / tau) / tau;
-        along_root(moment, scaled, rate, acceleration)
-    });
-    if swing.is_onset(0, moment) { moment } else { settled(swing, 0, moment) }
-}
-
-/// The exit if the spring stood still at where it ends and the limit were r³/κ.
-fn guess_before_end(swing: &Swing) -> Moment {
-    let (end, _) = swing.motion(swing.start.time_left());
-    let root = (swing.kappa * end.abs()).cbrt().min(MIDDLE_ROOT);
-    Moment { half: Half::Decompression, root }
-}
-
-/// A function's derivatives in time as derivatives in the root coordinate.
-fn along_root(moment: Moment, value: f64, rate: f64, acceleration: f64) -> Jet {
-    let time_per_root = moment.time_per_root();
-    // d²t/dr² = (dt/dr)/r
-    let bend = if moment.half == Half::Compression { 2.0 } else { -2.0 };
-    Jet {
-        value,
-        slope: rate * time_per_root,
-        curvature: acceleration * time_per_root * time_per_root + rate * bend,
-    }
-}
-
-/// The root between `low`, where f > 0, and `high`, where f < 0, in whichever half it lies.
-fn root_between(
-    mut low: Moment,
-    mut high: Moment,
-    guess: Option<Moment>,
-    f: impl Fn(Moment, Point) -> Jet,
-) -> Moment {
-    if low.half != high.half {
-        let middle = Moment { half: Half::Decompression, root: MIDDLE_ROOT };
-        if f(middle, Point::at(middle)).value < 0.0 {
-            high = Moment { half: Half::Compression, ..middle };
-        } else {
-            low = middle;
-        }
-    }
-    let half = low.half;
-    let guess = match guess {
-        Some(moment) if moment.half == half => moment.root,
-        _ => 0.5 * (low.root + high.root),
-    };
-    let root = bracketed(low.root, high.root, guess, |root| {
-        let moment = Moment { half, root };
-        f(moment, Point::at(moment))
-    });
-    Moment { half, root }
+    let on = |k| Some((Flanks::of(swing, Some(crest), k)?.exit(swing, false)?.0, k));
+    on(0).or_else(|| on(1)).unwrap_or((Moment::END, 1))
 }
 
 /// The whole part of `x`, 0 if negative.

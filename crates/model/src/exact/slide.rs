@@ -33,7 +33,7 @@ pub struct Slide {
     pub crest: Option<Crest>,
 }
 
-/// The largest value of h before the largest compression.
+/// The largest value of h.
 #[derive(Clone, Copy, Debug)]
 pub struct Crest {
     /// Its root coordinate, in either half.
@@ -73,7 +73,7 @@ impl Sliding {
     }
 
     /// s·w carried back to the start of contact.
-    fn at_start(&self) -> f64 {
+    pub fn at_start(&self) -> f64 {
         match self.start.half {
             Half::Compression => self.velocity + self.deficit,
             Half::Decompression => self.at_end() + 2.0,
@@ -81,7 +81,7 @@ impl Sliding {
     }
 
     /// s·w carried on to the end of contact.
-    fn at_end(&self) -> f64 {
+    pub fn at_end(&self) -> f64 {
         match self.start.half {
             Half::Compression => self.at_start() - 2.0,
             Half::Decompression => self.velocity - self.deficit,
@@ -103,28 +103,43 @@ impl Slide {
 
     /// When `sliding` turns into sticking; none if it lasts to the end of contact.
     pub fn stick_onset(&self, sliding: &Sliding) -> Option<Moment> {
-        let (crest, height) =
-            self.crest.map_or((MIDDLE_ROOT, 1.0), |crest| (crest.root, crest.height));
-        let start = sliding.start;
+        self.onset_before_crest(sliding).or_else(|| self.onset_after_crest(sliding))
+    }
+
+    /// When `sliding` turns into sticking before the crest of the compression.
+    pub fn onset_before_crest(&self, sliding: &Sliding) -> Option<Moment> {
+        let Crest { root: crest, height } = self.highest();
         let carried_back = sliding.at_start();
-        if start.is_before(Moment { half: Half::Compression, root: crest }) && carried_back < height
-        {
-            let root = self.inverse(carried_back, start.root, crest);
-            let root = if self.bend * LARGEST_U > FLAT {
-                refined_onset(self, carried_back, root, crest)
-            } else {
-                root
-            };
-            return Some(Moment { half: Half::Compression, root });
+        let meets = sliding.start.is_before(Moment { half: Half::Compression, root: crest })
+            && carried_back < height;
+        if !meets {
+            return None;
         }
+        let root = self.inverse(carried_back, sliding.start.root, crest);
+        let root = if self.bend * LARGEST_U > FLAT {
+            refined_onset(self, carried_back, root, crest)
+        } else {
+            root
+        };
+        Some(Moment { half: Half::Compression, root })
+    }
+
+    /// When `sliding` turns into sticking if it does not before the crest of the compression.
+    pub fn onset_after_crest(&self, sliding: &Sliding) -> Option<Moment> {
+        let Crest { root: crest, .. } = self.highest();
         let carried_on = sliding.at_end();
         (carried_on < 0.0).then(|| {
-            let first = match start.half {
+            let first = match sliding.start.half {
                 Half::Compression => crest,
-                Half::Decompression => start.root.min(crest),
+                Half::Decompression => sliding.start.root.min(crest),
             };
             Moment { half: Half::Decompression, root: self.inverse(-carried_on, 0.0, first) }
         })
+    }
+
+    /// Where h is largest.
+    pub fn highest(&self) -> Crest {
+        self.crest.unwrap_or(Crest { root: MIDDLE_ROOT, height: 1.0 })
     }
 
     /// The root coordinate between `low` and `high`, on the rising piece, at which h is `target`.

@@ -67,7 +67,8 @@ impl<Label, Margin> Subdivision<Label, Margin> {
             .map(|piece| point.y.clamp(piece.first().y, piece.last().y) - point.y);
         let mut distances = [None; 2];
         for rise in beside.chain(upright) {
-            for (distance, away) in distances.iter_mut().zip([-rise, rise]) {
+            // Not −rise, which would be −0 on a curve.
+            for (distance, away) in distances.iter_mut().zip([0.0 - rise, rise]) {
                 if away >= 0.0 {
                     *distance = Some(distance.map_or(away, |nearest: f64| nearest.min(away)));
                 }
