@@ -3,7 +3,7 @@
 
 use stickslip::solver::{
     Direction, Dop853, Dopri5, Guard, HybridSystem, Method, Observer, Options, Outcome, Start,
-    State, SwitchEvent, run,
+    State, StepSize, SwitchEvent, run,
 };
 
 use crate::planted::{Score, step_sizes};
@@ -165,6 +165,25 @@ fn guards_that_vanish_together_fire_once_each() {
         let planted: usize = case.planted.iter().map(|planted| planted.len()).sum();
         assert_eq!(score.planted, planted * step_sizes().len() * 2, "{}", case.name);
         assert_eq!((score.missed, score.invented), (0, 0), "{}: {score:?}", case.name);
+    }
+}
+
+/// A guard that is exactly zero where a step ends has come from the side that it had last, however short it was there.
+#[test]
+fn a_crossing_on_the_end_of_a_step_right_after_another() {
+    let guards = [
+        (&[0.47, 0.5][..], Direction::Rising, 0),
+        (&[0.5, 0.5], Direction::Either, 0),
+        (&[0.5 + 1e-13], Direction::Either, 0),
+    ];
+    let (name, system, tolerance) = ("after another", Products { guards }, 4e-15);
+    let case = Case { name, system, planted: [&[]; 3], tolerance };
+    for h in [0.5, 0.25, 0.125] {
+        let options = Options { step_size: StepSize::Fixed(h), ..Options::default() };
+        for fired in [fired(Dopri5, &case, &options), fired(Dop853, &case, &options)] {
+            assert_eq!(fired.each_ref().map(Vec::len), [1, 0, 1], "{h}: {fired:?}");
+            assert!((fired[0][0] - 0.5).abs() < 2e-13, "{h}: {fired:?}");
+        }
     }
 }
 

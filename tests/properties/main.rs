@@ -84,8 +84,8 @@ fn polynomials_with_common_roots() {
     let factors = prop::sample::select(vec![1.0, -1.0, 0.25, -3.0]);
     let step = prop_oneof![
         Just(StepSize::Adaptive),
-        // None that ends within rounding of a root: see the limits in `docs/numerics.md`.
-        (1..128_u8).prop_map(|part| StepSize::Fixed(f64::from(part) / 128.7)),
+        // Many end on a root.
+        (1..128_u8).prop_map(|part| StepSize::Fixed(f64::from(part) / 128.0)),
     ];
     hold(5000, &(1..64_u8, others(), others(), factors, step), |case| {
         let (common, one, other, factor, step) = case;
@@ -106,6 +106,8 @@ fn common_roots_found_before() {
     let cases = [
         (vec![16_u8, 32], vec![16, 32, 48], StepSize::Fixed(0.25)),
         (vec![32], vec![32], StepSize::Adaptive),
+        (vec![36, 37], vec![20, 36, 37], StepSize::Fixed(1.0 / 128.0)),
+        (vec![36, 37], vec![20, 36, 37], StepSize::Fixed(7.0 / 64.0)),
     ];
     for (one, other, step) in cases {
         hybrid::signs([with_roots(&one, 1.0), with_roots(&other, -2.0)], step).unwrap();

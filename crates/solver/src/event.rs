@@ -1,20 +1,16 @@
 //! One step and its guards: which of them fires first, if any.
 
-use crate::along_step::AlongStep;
 use crate::error::RunError;
 use crate::guard::Direction;
-use crate::hybrid::{Grazing, HybridSystem, Observer, Statistics};
-use crate::isolate::{Bracket, Touch, Verdict, first_crossing};
+use crate::hybrid::{HybridSystem, Observer, Statistics};
+use crate::isolate::Bracket;
 use crate::method::{Method, State, Step, Trial};
+use crate::one_guard::{Crossing, Status};
 use crate::phase::Phase;
-use crate::quick::{self, Quick};
+use crate::quick;
 
 /// Guards closer to a switch than this part of the step fire together with it.
 const TOGETHER: f64 = 1e-12;
-
-/// A guard that is zero throughout a step is looked at on longer ones, each four times as long as the one before, at most
-/// this often: a step of the least length that moves the time becomes one of ordinary length.
-const LONGER: i32 = 26;
 
 /// A guard fires on a step.
 #[derive(Clone, Copy, Debug)]
@@ -62,27 +58,6 @@ pub(crate) enum Found<const G: usize> {
     TooCoarse(usize),
 }
 
-/// What is known of a guard on the step at hand.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Status {
-    Clear,
-    Unclear,
-    Fires(Crossing),
-}
-
-/// A crossing of `sign`·guard from ≥ 0 to < 0.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Crossing {
-    pub(crate) sign: f64,
-    pub(crate) bracket: Bracket,
-}
-
-impl Crossing {
-    const fn at_start(sign: f64) -> Self {
-        Self { sign, bracket: Bracket { low: 0.0, high: 0.0, guess: 0.0 } }
-    }
-}
-
 /// All that the examination of a step needs.
 pub(crate) struct Examination<'a, S: HybridSystem<N, G>, O, const N: usize, const G: usize> {
     pub(crate) system: &'a S,
@@ -114,7 +89,7 @@ where
         }
         let statuses = std::array::from_fn(|guard| self.glance::<M>(guard, &values));
         if statuses.iter().all(|&status| status == Status::Clear) {
-            Ok(Found::Nothing(self.on_their_side(&values)))
+            Ok(Found::Nothing(self.on_their_side::<M>(step, &values)))
         } else {
             self.decide::<M>(step, event, values, statuses)
         }
@@ -142,7 +117,7 @@ where
         mut values: [[f64; G]; 6],
         mut statuses: [Status; G],
     ) -> Result<Found<G>, RunError> {
-        let end_values = self.on_their_side(&values);
+        let end_values = self.on_their_side::<M>(step, &values);
         loop {
             let first = self.earliest(&statuses);
             let Some((guard, crossing)) = first else {
@@ -151,9 +126,15 @@ where
                 for guard in 0..G {
                     if statuses[guard] == Status::Unclear {
                         let column = values.map(|at_node| at_node[guard]);
-                        let Some(status) = self.isolate::<M>(guard, on, &column)? else {
-                            *event = None;
-                            return Ok(Found::TooCoarse(guard));
+                        let at_start = on.h <= TOGETHER * self.trial.h;
+                        let status = match self.isolate::<M>(guard, on, &column)? {
+                            Some(status) => status,
+                            // It fires together with the event, or not: that shows behind it.
+                            None if at_start => Status::Clear,
+                            None => {
+                                *event = None;
+                                return Ok(Found::TooCoarse(guard));
+                            }
                         };
                         found_any |= status != Status::Clear;
                         statuses[guard] = status;
@@ -278,32 +259,9 @@ where
             .fold(0, |bits, other| bits | 1 << other)
     }
 
-    /// Values at a step's end; one that is exactly zero keeps the side from which it came, and so does one that has not yet come
-    /// away from its zero.
-    fn on_their_side(&self, values: &[[f64; G]; 6]) -> [f64; G] {
-        std::array::from_fn(|guard| {
-            let end = values[5][guard];
-            if self.stays(guard, &values.map(|at_node| at_node[guard])) {
-                return f64::MIN_POSITIVE.copysign(self.phase.sides[guard]);
-            }
-            if end != 0.0 {
-                return end;
-            }
-            let mut before = values[..5].iter().rev().map(|at_node| at_node[guard]);
-            let before = before.find(|&value| value != 0.0);
-            before.map_or(end, |value| f64::MIN_POSITIVE.copysign(value))
-        })
-    }
-
-    /// Whether a guard that starts from a known zero, and leaves it to a known side, has not yet come away from it.
-    fn stays(&self, guard: usize, values: &[f64; 6]) -> bool {
-        let hidden = self.phase.hidden[guard];
-        self.phase.sides[guard] != 0.0 && values.iter().all(|value| value.abs() <= hidden)
-    }
-
     /// Guards at [`quick::NODES`] of a step.
     #[inline(always)]
-    fn values_on(&mut self, step: &Step<N>) -> [[f64; G]; 6] {
+    pub(crate) fn values_on(&mut self, step: &Step<N>) -> [[f64; G]; 6] {
         let at = |theta: f64, y: &State<N>| {
             self.system.guard_values(self.phase.mode, step.s + theta * step.h, y)
         };
@@ -316,141 +274,6 @@ where
             at(quick::NODES[4], &step.interior[3]),
             at(1.0, &step.y1),
         ]
-    }
-
-    /// What six values tell about a guard.
-    fn glance<M: Method>(&self, guard: usize, values: &[[f64; G]; 6]) -> Status {
-        let direction = self.phase.guards[guard].direction();
-        if direction == Direction::Off {
-            return Status::Clear;
-        }
-        if self.phase.due[guard] {
-            return Status::Fires(Crossing::at_start(self.phase.sides[guard]));
-        }
-        let sign = if direction == Direction::Rising { -1.0 } else { 1.0 };
-        let (order, side) = (self.phase.zero_orders[guard], sign * self.phase.sides[guard]);
-        let column = values.map(|at_node| sign * at_node[guard]);
-        let falls = |sign: f64, theta: f64| {
-            Status::Fires(Crossing { sign, bracket: Bracket { low: 0.0, high: 1.0, guess: theta } })
-        };
-        let look = |sign: f64| {
-            let look = quick::look(&column.map(|value| sign * value), order, M::QUICK_ERROR);
-            // Against the side to which the guard is known to go rounding stands, or a crossing at once.
-            match look {
-                Quick::Positive | Quick::Falls { .. } if sign * side < 0.0 => Quick::Unclear,
-                Quick::Negative if sign * side > 0.0 => Quick::Unclear,
-                look => look,
-            }
-        };
-        match look(1.0) {
-            Quick::Negative if direction == Direction::Below => {
-                Status::Fires(Crossing::at_start(sign))
-            }
-            Quick::Positive | Quick::Negative => Status::Clear,
-            Quick::Falls { theta } => falls(sign, theta),
-            Quick::Unclear if direction == Direction::Either => match look(-1.0) {
-                Quick::Falls { theta } => falls(-1.0, theta),
-                _ => Status::Unclear,
-            },
-            Quick::Unclear => Status::Unclear,
-        }
-    }
-
-    /// Whether a guard that is zero throughout a step is so only because the step is short, and not throughout the longest step
-    /// that meets the tolerance.
-    fn leaves_zero<M: Method>(&mut self, guard: usize, step: &Step<N>) -> bool {
-        let (system, mode) = (self.system, self.phase.mode);
-        let mut longer = Step::blank();
-        for k in 1..=LONGER {
-            let h = step.h * 4_f64.powi(k);
-            system.step::<M>(mode, &Trial { h, ..*self.trial }, &mut longer);
-            self.statistics.resteps += 1;
-            self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
-            // Written so that NaN ends it.
-            let good = longer.error < 1.0;
-            if !good {
-                return false;
-            }
-            let values = self.values_on(&longer).map(|at_node| at_node[guard]);
-            if values[1..].iter().any(|&value| value != 0.0 && !value.is_nan()) {
-                return true;
-            }
-        }
-        false
-    }
-
-    /// Decides by isolation; `None` if the step is too coarse for that.
-    fn isolate<M: Method>(
-        &mut self,
-        guard: usize,
-        step: &mut Step<N>,
-        values: &[f64; 6],
-    ) -> Result<Option<Status>, RunError> {
-        // At the start it may stand for the side from which the guard came.
-        if values[0].abs() <= f64::MIN_POSITIVE && values[1..].iter().all(|&value| value == 0.0) {
-            if step.h < self.trial.h {
-                // It is asked on a longer step what becomes of it.
-                return Ok(Some(Status::Clear));
-            }
-            let identically = RunError::GuardIdenticallyZero { guard, s: step.s };
-            let leaves = self.leaves_zero::<M>(guard, step);
-            return leaves.then_some(Some(Status::Clear)).ok_or(identically);
-        }
-        self.statistics.isolations += 1;
-        let (system, mode) = (self.system, self.phase.mode);
-        let dense = step.dense::<M>(&mut |s, y| system.field(mode, s, y));
-        self.statistics.field += M::DENSE_STAGES - 1;
-        let order = self.phase.zero_orders[guard];
-        let signs: &[f64] = match self.phase.guards[guard].direction() {
-            Direction::Rising => &[-1.0],
-            Direction::Either => &[1.0, -1.0],
-            _ => &[1.0],
-        };
-        let below = self.phase.guards[guard].direction() == Direction::Below;
-        let end = if self.stays(guard, values) { 0.0 } else { values[5] };
-        let mut found = Status::Clear;
-        for &sign in signs {
-            let mut curve = AlongStep::<'_, S, M, N, G> {
-                system,
-                mode,
-                guard,
-                sign,
-                step,
-                dense: &dense,
-                statistics: &mut *self.statistics,
-                method: std::marker::PhantomData,
-            };
-            let mut touches = [None; 8];
-            let mut count = 0;
-            let verdict = first_crossing(
-                &mut curve,
-                (order, sign * self.phase.sides[guard], self.phase.hidden[guard]),
-                below,
-                (sign * values[0], sign * end),
-                |touch: Touch| {
-                    if let Some(place) = touches.get_mut(count) {
-                        *place = Some(touch);
-                    }
-                    count += 1;
-                },
-            )?;
-            for touch in touches.into_iter().flatten() {
-                self.statistics.grazings += 1;
-                let s = step.s + touch.theta * step.h;
-                self.observer.on_grazing(&Grazing { s, mode, guard, margin: sign * touch.margin });
-            }
-            let crossing = match verdict {
-                Verdict::None => continue,
-                Verdict::TooCoarse => return Ok(None),
-                Verdict::StartsBelow => Crossing::at_start(sign),
-                Verdict::Crossing(bracket) => Crossing { sign, bracket },
-            };
-            found = match found {
-                Status::Fires(other) if other.bracket.low <= crossing.bracket.low => found,
-                _ => Status::Fires(crossing),
-            };
-        }
-        Ok(Some(found))
     }
 }
 

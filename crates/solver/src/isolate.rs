@@ -8,7 +8,8 @@
 
 use std::ops::ControlFlow;
 
-use crate::chebyshev::{COSINES, TERMS, clenshaw, differentiate, dominated, expand, monotone_root};
+use crate::chebyshev::COSINES;
+use crate::panel::{Panel, Points};
 
 /// Panels narrower than 2^−`DEPTH` of the step are not cut further.
 const DEPTH: u32 = 12;
@@ -94,7 +95,7 @@ pub(crate) fn first_crossing<C: Curve>(
     // The last point whose sign is known, and the value there.
     let mut before = Some((0.0, start));
     if zero_order > 0 {
-        let panel = Panel::new(&mut quotient, 0.0, OPENING);
+        let panel = Panel::new(0.0, OPENING, |theta| quotient.at(theta).0);
         let opening = panel.at(-1.0);
         if side == 0.0 {
             if panel.tail() > accuracy.on(&panel, zero_order) {
@@ -166,11 +167,12 @@ pub(crate) fn sides<C: Curve>(
     Ok(walked.map(|_| sides))
 }
 
-/// How far a curve's values scatter where the step ends, if that is more than their own rounding there.
-pub(crate) fn noise_at_end<C: Curve>(curve: &mut C) -> f64 {
-    let start = 1.0 - NARROWEST / 64.0;
-    let largest = curve.dense(start).0.abs().max(curve.dense(1.0).0.abs());
-    let noise = Quotient { curve, order: 0 }.noise(start, 1.0);
+/// How far a curve's values scatter where the step starts or, if `at_end`, ends, if that is more than their own rounding there.
+pub(crate) fn noise<C: Curve>(curve: &mut C, at_end: bool) -> f64 {
+    let width = NARROWEST / 64.0;
+    let (low, high) = if at_end { (1.0 - width, 1.0) } else { (0.0, width) };
+    let largest = curve.dense(low).0.abs().max(curve.dense(high).0.abs());
+    let noise = Quotient { curve, order: 0 }.noise(low, high);
     if noise > BEYOND_NOISE * f64::EPSILON * largest { noise } else { 0.0 }
 }
 
@@ -192,7 +194,7 @@ fn walk<C: Curve, B>(
     while count > 0 {
         count -= 1;
         let (low, high) = pending[count];
-        let panel = Panel::new(quotient, low, high);
+        let panel = Panel::new(low, high, |theta| quotient.at(theta).0);
         let mut error = accuracy.on(&panel, order);
         if panel.tail().is_nan() {
             return Ok(None);
@@ -367,98 +369,5 @@ impl Accuracy {
     /// The part of it that does not diminish with the step.
     fn lasting(&self, panel: &Panel, order: u32) -> f64 {
         (self.state.0 + self.noise) / power(panel.theta(-COSINES[1]), order)
-    }
-}
-
-/// A curve on part of a step, in Chebyshev polynomials of the local variable t ∈ [−1, 1].
-struct Panel {
-    low: f64,
-    high: f64,
-    coefficients: [f64; TERMS],
-}
-
-impl Panel {
-    fn new<C: Curve>(quotient: &mut Quotient<'_, C>, low: f64, high: f64) -> Self {
-        let middle = 0.5 * (low + high);
-        let half = 0.5 * (high - low);
-        Self { low, high, coefficients: expand(|t| quotient.at(middle + half * t).0) }
-    }
-
-    fn theta(&self, local: f64) -> f64 {
-        if local >= 1.0 {
-            self.high
-        } else {
-            self.low + 0.5 * (local + 1.0) * (self.high - self.low)
-        }
-    }
-
-    fn at(&self, local: f64) -> f64 {
-        clenshaw(&self.coefficients, local)
-    }
-
-    /// Size of the last two terms: what degree 8 leaves out is smaller where the function is smooth.
-    fn tail(&self) -> f64 {
-        self.coefficients[TERMS - 1].abs() + self.coefficients[TERMS - 2].abs()
-    }
-
-    /// Collects, from left to right, points of ]low, high[ that cut it into monotone pieces; a stretch
-    /// flat to within `error` gives its middle.
-    fn critical_points(&self, low: f64, high: f64, error: f64, depth: u32, points: &mut Points) {
-        if points.overflowed {
-            return;
-        }
-        let local = |t: f64| 0.5 * (low + high) + 0.5 * (high - low) * t;
-        let derivative = differentiate(&self.coefficients);
-        let slope = expand(|t| clenshaw(&derivative, local(t)));
-        if dominated(&slope) {
-            return;
-        }
-        let curvature = differentiate(&slope);
-        if dominated(&curvature) {
-            if (clenshaw(&slope, -1.0) < 0.0) != (clenshaw(&slope, 1.0) < 0.0) {
-                points.push(local(monotone_root(&slope)));
-            }
-            return;
-        }
-        let values = expand(|t| clenshaw(&self.coefficients, local(t)));
-        let variation: f64 = values[1..].iter().map(|c| c.abs()).sum();
-        if depth == 0 || variation <= 0.125 * error {
-            points.push(0.5 * (low + high));
-            return;
-        }
-        let middle = 0.5 * (low + high);
-        self.critical_points(low, middle, error, depth - 1, points);
-        // An extremum that rounding puts on neither side of the cut is on the cut.
-        points.push(middle);
-        self.critical_points(middle, high, error, depth - 1, points);
-    }
-}
-
-/// Points in order.
-struct Points {
-    items: [f64; 64],
-    count: usize,
-    overflowed: bool,
-}
-
-impl Default for Points {
-    fn default() -> Self {
-        Self { items: [0.0; 64], count: 0, overflowed: false }
-    }
-}
-
-impl Points {
-    fn push(&mut self, point: f64) {
-        match self.items.get_mut(self.count) {
-            Some(item) => {
-                *item = point;
-                self.count += 1;
-            }
-            None => self.overflowed = true,
-        }
-    }
-
-    fn as_slice(&self) -> &[f64] {
-        &self.items[..self.count]
     }
 }

@@ -5,9 +5,10 @@
 
 use crate::along_step::rounding;
 use crate::error::RunError;
-use crate::event::{Crossing, Event, Examination};
+use crate::event::{Event, Examination};
 use crate::hybrid::{HybridSystem, Observer};
 use crate::method::{Method, State, Step};
+use crate::one_guard::Crossing;
 
 /// Part of a step that the end of a re-step may be off the switch; the midpoint rule bridges it with an
 /// error of the cube of this part, which is below rounding.
@@ -74,6 +75,12 @@ where
                 && next <= high
                 && let Some((elapsed, state, residual)) = self.bridge(&near, &trial, end)
             {
+                if elapsed > step.h {
+                    // Other guards have been looked at no further than to the step's end.
+                    trial = self.restep::<M>(step, step.h);
+                    let residual = near.value(step.s + step.h, &trial.y1);
+                    return Ok(event(step.h, trial.y1, residual, end.slope, trial));
+                }
                 if exact && elapsed != trial.h {
                     trial = self.restep::<M>(step, elapsed);
                 }

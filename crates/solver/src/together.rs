@@ -11,7 +11,7 @@ use crate::along_step::{AlongStep, rounding};
 use crate::event::{Event, bit};
 use crate::guard::Direction;
 use crate::hybrid::{HybridSystem, Statistics};
-use crate::isolate::{noise_at_end, sides};
+use crate::isolate::{noise, sides};
 use crate::method::{Dense, Method, State, Step, Trial};
 use crate::options::{Options, StepSize};
 use crate::phase::Phase;
@@ -127,7 +127,10 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
         let rounding = rounding(value_at, here, like);
         let known = if phase.zero_orders[guard] > 0 { phase.hidden[guard] } else { 0.0 };
         let hidden = known.max(rounding);
-        let mut step = self.up_to_here::<M>();
+        // A step as short as rounding shows no scatter.
+        let at_end = self.event.elapsed >= self.ahead;
+        let mut step =
+            if at_end { self.up_to_here::<M>() } else { self.step_ahead::<M>(self.ahead) };
         let nodes = step.interior.iter().zip(&NODES[1..]);
         let nodes = nodes.map(|(y, theta)| value_at(step.s + theta * step.h, y).abs());
         let largest = nodes.fold(phase.values[guard].abs(), f64::max);
@@ -136,8 +139,7 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
             return hidden;
         }
         let dense = self.dense::<M>(&mut step);
-        let noise = noise_at_end(&mut self.curve::<M>(guard, &step, &dense));
-        hidden.max(noise)
+        hidden.max(noise(&mut self.curve::<M>(guard, &step, &dense), at_end))
     }
 
     /// The step that ends at the event.
@@ -148,6 +150,18 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
             &self.event.step.shortened(self.event.elapsed),
             &mut step,
         );
+        self.count::<M>();
+        step
+    }
+
+    /// A step from the event on.
+    fn step_ahead<M: Method>(&mut self, h: f64) -> Step<N> {
+        let (mode, s, y) = (self.phase.mode, self.s, &self.event.state);
+        let slope = &self.system.field(mode, s, y);
+        self.statistics.field += 1;
+        let tolerances = (self.options.rtol, self.options.atol);
+        let mut step = Step::blank();
+        self.system.step::<M>(mode, &Trial { s, y, slope, h, tolerances }, &mut step);
         self.count::<M>();
         step
     }
@@ -182,22 +196,12 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
 
     /// The side to which a guard goes after the event; 0 where it is not known.
     fn side_behind<M: Method>(&mut self, guard: usize, hidden: f64) -> f64 {
-        let (mode, y) = (self.phase.mode, &self.event.state);
-        let slope = self.system.field(mode, self.s, y);
-        self.statistics.field += 1;
         let mut h = self.ahead;
         for _ in 0..CUTS {
             if h <= 0.0 {
                 break;
             }
-            let tolerances = (self.options.rtol, self.options.atol);
-            let mut step = Step::blank();
-            self.system.step::<M>(
-                mode,
-                &Trial { s: self.s, y, slope: &slope, h, tolerances },
-                &mut step,
-            );
-            self.count::<M>();
+            let mut step = self.step_ahead::<M>(h);
             let good = match self.options.step_size {
                 StepSize::Adaptive => step.error < 1.0,
                 StepSize::Fixed(_) => step.y1.sum().is_finite(),

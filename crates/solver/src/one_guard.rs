@@ -1,0 +1,223 @@
+//! What one guard does on a step: by a quick look, and by isolation.
+
+use std::marker::PhantomData;
+
+use crate::along_step::AlongStep;
+use crate::error::RunError;
+use crate::event::Examination;
+use crate::guard::Direction;
+use crate::hybrid::{Grazing, HybridSystem, Observer};
+use crate::isolate::{Bracket, Touch, Verdict, first_crossing, sides};
+use crate::method::{Method, Step, Trial};
+use crate::quick::{self, Quick};
+
+/// A guard that is zero throughout a step is looked at on longer ones, each four times as long as the one before, at most
+/// this often: a step of the least length that moves the time becomes one of ordinary length.
+const LONGER: i32 = 26;
+
+/// What is known of a guard on the step at hand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Status {
+    Clear,
+    Unclear,
+    Fires(Crossing),
+}
+
+/// A crossing of `sign`·guard from ≥ 0 to < 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Crossing {
+    pub(crate) sign: f64,
+    pub(crate) bracket: Bracket,
+}
+
+impl Crossing {
+    pub(crate) const fn at_start(sign: f64) -> Self {
+        Self { sign, bracket: Bracket { low: 0.0, high: 0.0, guess: 0.0 } }
+    }
+}
+
+impl<S, O, const N: usize, const G: usize> Examination<'_, S, O, N, G>
+where
+    S: HybridSystem<N, G>,
+    O: Observer<S::Mode, N>,
+{
+    /// What six values tell about a guard.
+    pub(crate) fn glance<M: Method>(&self, guard: usize, values: &[[f64; G]; 6]) -> Status {
+        let direction = self.phase.guards[guard].direction();
+        if direction == Direction::Off {
+            return Status::Clear;
+        }
+        if self.phase.due[guard] {
+            return Status::Fires(Crossing::at_start(self.phase.sides[guard]));
+        }
+        let sign = if direction == Direction::Rising { -1.0 } else { 1.0 };
+        let (order, side) = (self.phase.zero_orders[guard], sign * self.phase.sides[guard]);
+        let column = values.map(|at_node| sign * at_node[guard]);
+        let falls = |sign: f64, theta: f64| {
+            Status::Fires(Crossing { sign, bracket: Bracket { low: 0.0, high: 1.0, guess: theta } })
+        };
+        let look = |sign: f64| {
+            let look = quick::look(&column.map(|value| sign * value), order, M::QUICK_ERROR);
+            // Against the side to which the guard is known to go rounding stands, or a crossing at once.
+            match look {
+                Quick::Positive | Quick::Falls { .. } if sign * side < 0.0 => Quick::Unclear,
+                Quick::Negative if sign * side > 0.0 => Quick::Unclear,
+                look => look,
+            }
+        };
+        match look(1.0) {
+            Quick::Negative if direction == Direction::Below => {
+                Status::Fires(Crossing::at_start(sign))
+            }
+            Quick::Positive | Quick::Negative => Status::Clear,
+            Quick::Falls { theta } => falls(sign, theta),
+            Quick::Unclear if direction == Direction::Either => match look(-1.0) {
+                Quick::Falls { theta } => falls(-1.0, theta),
+                _ => Status::Unclear,
+            },
+            Quick::Unclear => Status::Unclear,
+        }
+    }
+
+    /// Whether a guard that is zero throughout a step is so only because the step is short, and not throughout the longest step
+    /// that meets the tolerance.
+    fn leaves_zero<M: Method>(&mut self, guard: usize, step: &Step<N>) -> bool {
+        let (system, mode) = (self.system, self.phase.mode);
+        let mut longer = Step::blank();
+        for k in 1..=LONGER {
+            let h = step.h * 4_f64.powi(k);
+            system.step::<M>(mode, &Trial { h, ..*self.trial }, &mut longer);
+            self.statistics.resteps += 1;
+            self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
+            // Written so that NaN ends it.
+            let good = longer.error < 1.0;
+            if !good {
+                return false;
+            }
+            let values = self.values_on(&longer).map(|at_node| at_node[guard]);
+            if values[1..].iter().any(|&value| value != 0.0 && !value.is_nan()) {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Decides by isolation; `None` if the step is too coarse for that.
+    pub(crate) fn isolate<M: Method>(
+        &mut self,
+        guard: usize,
+        step: &mut Step<N>,
+        values: &[f64; 6],
+    ) -> Result<Option<Status>, RunError> {
+        // At the start it may stand for the side from which the guard came.
+        if values[0].abs() <= f64::MIN_POSITIVE && values[1..].iter().all(|&value| value == 0.0) {
+            if step.h < self.trial.h {
+                // It is asked on a longer step what becomes of it.
+                return Ok(Some(Status::Clear));
+            }
+            let identically = RunError::GuardIdenticallyZero { guard, s: step.s };
+            let leaves = self.leaves_zero::<M>(guard, step);
+            return leaves.then_some(Some(Status::Clear)).ok_or(identically);
+        }
+        self.statistics.isolations += 1;
+        let (system, mode) = (self.system, self.phase.mode);
+        let dense = step.dense::<M>(&mut |s, y| system.field(mode, s, y));
+        self.statistics.field += M::DENSE_STAGES - 1;
+        let order = self.phase.zero_orders[guard];
+        let signs: &[f64] = match self.phase.guards[guard].direction() {
+            Direction::Rising => &[-1.0],
+            Direction::Either => &[1.0, -1.0],
+            _ => &[1.0],
+        };
+        let below = self.phase.guards[guard].direction() == Direction::Below;
+        let end = if self.stays(guard, values) { 0.0 } else { values[5] };
+        let mut found = Status::Clear;
+        for &sign in signs {
+            let mut curve = AlongStep::<'_, S, M, N, G> {
+                system,
+                mode,
+                guard,
+                sign,
+                step,
+                dense: &dense,
+                statistics: &mut *self.statistics,
+                method: PhantomData,
+            };
+            let mut touches = [None; 8];
+            let mut count = 0;
+            let verdict = first_crossing(
+                &mut curve,
+                (order, sign * self.phase.sides[guard], self.phase.hidden[guard]),
+                below,
+                (sign * values[0], sign * end),
+                |touch: Touch| {
+                    if let Some(place) = touches.get_mut(count) {
+                        *place = Some(touch);
+                    }
+                    count += 1;
+                },
+            )?;
+            for touch in touches.into_iter().flatten() {
+                self.statistics.grazings += 1;
+                let s = step.s + touch.theta * step.h;
+                self.observer.on_grazing(&Grazing { s, mode, guard, margin: sign * touch.margin });
+            }
+            let crossing = match verdict {
+                Verdict::None => continue,
+                Verdict::TooCoarse => return Ok(None),
+                Verdict::StartsBelow => Crossing::at_start(sign),
+                Verdict::Crossing(bracket) => Crossing { sign, bracket },
+            };
+            found = match found {
+                Status::Fires(other) if other.bracket.low <= crossing.bracket.low => found,
+                _ => Status::Fires(crossing),
+            };
+        }
+        Ok(Some(found))
+    }
+
+    /// Values at a step's end; one that is exactly zero keeps the side from which it came, and so does one that has not yet come
+    /// away from its zero.
+    pub(crate) fn on_their_side<M: Method>(
+        &mut self,
+        step: &mut Step<N>,
+        values: &[[f64; G]; 6],
+    ) -> [f64; G] {
+        let mut ends = values[5];
+        for (guard, end) in ends.iter_mut().enumerate() {
+            let column = values.map(|at_node| at_node[guard]);
+            if self.stays(guard, &column) {
+                *end = f64::MIN_POSITIVE.copysign(self.phase.sides[guard]);
+            } else if *end == 0.0 && self.phase.guards[guard].direction() != Direction::Off {
+                *end = self.last_side::<M>(guard, step, &column);
+            }
+        }
+        ends
+    }
+
+    /// The least value on the side from which a guard comes that is zero where the step ends; 0 if it shows none.
+    fn last_side<M: Method>(&mut self, guard: usize, step: &mut Step<N>, values: &[f64; 6]) -> f64 {
+        let (system, mode) = (self.system, self.phase.mode);
+        let dense = step.dense::<M>(&mut |s, y| system.field(mode, s, y));
+        self.statistics.field += M::DENSE_STAGES - 1;
+        let statistics = &mut *self.statistics;
+        let (sign, method) = (1.0, PhantomData);
+        let mut curve =
+            AlongStep { system, mode, guard, sign, step, dense: &dense, statistics, method };
+        match sides::<AlongStep<'_, S, M, N, G>>(&mut curve, 0.0, 0.0) {
+            Ok(Some([_, last])) if last != 0.0 => f64::MIN_POSITIVE.copysign(last),
+            // As far as a few places tell.
+            _ => values[..5]
+                .iter()
+                .rev()
+                .find(|&&value| value != 0.0)
+                .map_or(0.0, |value| f64::MIN_POSITIVE.copysign(*value)),
+        }
+    }
+
+    /// Whether a guard that starts from a known zero, and leaves it to a known side, has not yet come away from it.
+    fn stays(&self, guard: usize, values: &[f64; 6]) -> bool {
+        let hidden = self.phase.hidden[guard];
+        self.phase.sides[guard] != 0.0 && values.iter().all(|value| value.abs() <= hidden)
+    }
+}
