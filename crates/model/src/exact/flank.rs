@@ -30,9 +30,9 @@ pub struct Flanks {
     half_swing: u32,
     /// Here R starts to rise, below 1 unless that is the start of the phase.
     low: Low,
-    /// Where it turns round; without it, R rises to infinity at the end of contact.
-    top: Option<Moment>,
-    /// After a top it falls, turns round once more between these places, and rises to infinity at the end of contact.
+    /// It turns round between these places, or rises to infinity at the end of contact.
+    turn: Option<[Moment; 2]>,
+    /// After that it falls, turns round once more between these places, and rises to infinity at the end of contact.
     again: Option<[Moment; 2]>,
 }
 
@@ -65,9 +65,9 @@ impl Flanks {
             return None;
         }
         let rises = || swing.gap(half_swing, peak, Point::at(peak)).turning() > 0.0;
-        let (low, high) = if peak == Moment::END || rises() { (peak, zero) } else { (start, peak) };
-        let top = (high != Moment::END).then(|| top(swing, half_swing, low, high));
-        Some(Self { half_swing, low: Low::Zero(start), top, again: None })
+        let turn = if peak == Moment::END || rises() { [peak, zero] } else { [start, peak] };
+        let turn = (turn[1] != Moment::END).then_some(turn);
+        Some(Self { half_swing, low: Low::Zero(start), turn, again: None })
     }
 
     /// κ < 1.568…, first half swing: W falls from 0 up to the first crest, rises up to the second, then falls. R can come back to 1 only
@@ -79,8 +79,8 @@ impl Flanks {
         if !(may_rise && swing.gap(0, fall, Point::at(fall)).turning() > 0.0) {
             return None;
         }
-        let top = (zero != Moment::END).then(|| top(swing, 0, fall, zero));
-        Some(Self { half_swing: 0, low: Low::Between(rise, fall), top, again: None })
+        let turn = (zero != Moment::END).then_some([fall, zero]);
+        Some(Self { half_swing: 0, low: Low::Between(rise, fall), turn, again: None })
     }
 
     /// κ < 1.568…, second half swing, which lasts to the end of contact: there W → 0 from above and R → ∞. Only before the first crest R
@@ -95,14 +95,14 @@ impl Flanks {
         Some(Self {
             half_swing: 1,
             low: Low::Zero(zero),
-            top: turns.then(|| top(swing, 1, zero, rise)),
+            turn: turns.then_some([zero, rise]),
             again: turns.then_some([rise, fall]),
         })
     }
 
     /// Where R turns round.
-    pub fn top(&self) -> Option<Moment> {
-        self.top
+    pub fn top(&self, swing: &Swing) -> Option<Moment> {
+        self.turn.map(|[low, high]| top(swing, self.half_swing, low, high))
     }
 
     /// Where D falls through 0, and whether that is after the top. Where it may be before or after, `after_top` decides.
@@ -116,17 +116,15 @@ impl Flanks {
             Some((exit(swing, k, low, Moment::END, None), true))
         };
         let before = || {
-            let high = self.top.unwrap_or(Moment::END);
-            if self.top.is_some() && !exceeds_limit(swing, k, high) {
-                return None;
-            }
-            let moment = match self.low {
+            let low = match self.low {
                 Low::Between(rise, fall) if exceeds_limit(swing, k, fall) => {
-                    first_exit(swing, rise, fall)
+                    return Some((first_exit(swing, rise, fall), false));
                 }
-                Low::Zero(low) | Low::Between(_, low) => exit(swing, k, low, high, None),
+                Low::Zero(low) | Low::Between(_, low) => low,
             };
-            Some((moment, false))
+            let high = self.top(swing);
+            let reached = high.is_none_or(|top| exceeds_limit(swing, k, top));
+            reached.then(|| (exit(swing, k, low, high.unwrap_or(Moment::END), None), false))
         };
         if after_top { after().or_else(before) } else { before().or_else(after) }
     }

@@ -168,7 +168,7 @@ fn crest_margin(slide: &Slide, sliding: &Sliding) -> Option<f64> {
 /// square of the angle since then, so that it does not become flat where the phase shrinks to nothing.
 fn top_margin(slide: &Slide, swing: &Swing, k: u32) -> Option<f64> {
     let flanks = Flanks::of(swing, slide.crest.map(|crest| crest.root), k)?;
-    let top = flanks.top()?;
+    let top = flanks.top(swing)?;
     let Gap { value, q, .. } = swing.gap(k, top, Point::at(top));
     let excess = value / q * (value / q + 2.0);
     let angle = swing.omega * swing.start.time_until(top);
