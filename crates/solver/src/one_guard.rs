@@ -50,6 +50,9 @@ where
         if self.phase.due[guard] {
             return Status::Fires(Crossing::at_start(self.phase.sides[guard]));
         }
+        if self.stays(guard, &values.map(|at_node| at_node[guard])) {
+            return Status::Clear;
+        }
         let sign = if direction == Direction::Rising { -1.0 } else { 1.0 };
         let (order, side) = (self.phase.zero_orders[guard], sign * self.phase.sides[guard]);
         let column = values.map(|at_node| sign * at_node[guard]);

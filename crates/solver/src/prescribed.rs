@@ -68,6 +68,10 @@ where
         let value = prescribed.value(run.mode.mode, guard, run.s, &run.state);
         seen.end = Some(Extremum { s: run.s, value });
     }
+    let nowhere = seen.minima.iter().chain(&seen.end).find(|extremum| extremum.value.is_nan());
+    if let Some(&Extremum { s, .. }) = nowhere {
+        return Err(RunError::GuardNotANumber { guard, s });
+    }
     Ok(Some(seen))
 }
 

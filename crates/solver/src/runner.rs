@@ -284,13 +284,14 @@ where
     }
 
     fn standing<M: Method>(&mut self, event: &Event<N>) -> Standing<G> {
-        let ahead = self.h.min(self.options.max_step).min(self.clock.until(self.end));
+        let ordinary = self.h.min(self.options.max_step);
         let passage = Passage {
             system: self.system,
             phase: &self.phase,
             event,
             s: self.clock.s,
-            ahead,
+            ahead: ordinary.min(self.clock.until(self.end)),
+            ordinary,
             options: self.options,
             statistics: &mut self.statistics,
         };

@@ -48,6 +48,8 @@ pub(crate) struct Passage<'a, S: HybridSystem<N, G>, const N: usize, const G: us
     pub(crate) s: f64,
     /// The longest step ahead.
     pub(crate) ahead: f64,
+    /// The same, but for the end of the run.
+    pub(crate) ordinary: f64,
     pub(crate) options: &'a Options,
     pub(crate) statistics: &'a mut Statistics,
 }
@@ -128,9 +130,9 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
         let known = if phase.zero_orders[guard] > 0 { phase.hidden[guard] } else { 0.0 };
         let hidden = known.max(rounding);
         // A step as short as rounding shows no scatter.
-        let at_end = self.event.elapsed >= self.ahead;
+        let at_end = self.event.elapsed >= self.ordinary;
         let mut step =
-            if at_end { self.up_to_here::<M>() } else { self.step_ahead::<M>(self.ahead) };
+            if at_end { self.up_to_here::<M>() } else { self.step_ahead::<M>(self.ordinary) };
         let nodes = step.interior.iter().zip(&NODES[1..]);
         let nodes = nodes.map(|(y, theta)| value_at(step.s + theta * step.h, y).abs());
         let largest = nodes.fold(phase.values[guard].abs(), f64::max);
