@@ -1,8 +1,8 @@
 //! What holds of every run of a hybrid system, made from bytes.
 
 use stickslip::solver::{
-    Direction, Dop853, Dopri5, Guard, HybridSystem, Method, Observer, Options, Outcome, Start,
-    State, StepSize, SwitchEvent, margins, run,
+    Direction, Dop853, Dopri5, Guard, HybridSystem, Method, Observer, Options, Outcome, RunError,
+    Start, State, StepSize, SwitchEvent, margins, run,
 };
 
 /// Runs polynomials as guards by both methods, and holds that their signs change where the run says, and nowhere else.
@@ -85,6 +85,15 @@ fn value(coefficients: &[f64; COEFFICIENTS], y: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * y + coefficient)
 }
 
+/// Whether a polynomial is so flat at a root that steps beside it, too short to show the scatter of its values, may leave it
+/// unresolved: see the limits in `docs/numerics.md`.
+fn is_double_root(coefficients: &[f64; COEFFICIENTS], s: f64) -> bool {
+    let size: f64 = coefficients.iter().map(|coefficient| coefficient.abs()).sum();
+    let slope =
+        std::array::from_fn(|i| coefficients.get(i + 1).map_or(0.0, |c| c * (i + 1) as f64));
+    value(coefficients, s).abs() <= 1e-14 * size && value(&slope, s).abs() <= 1e-6 * size
+}
+
 /// Where which guards fired, one bit each.
 struct Fired(Vec<(u32, f64)>);
 
@@ -108,6 +117,11 @@ fn follow_signs<M: Method>(
     let mut fired = Fired(Vec::new());
     let place = |fired: &Fired| format!("{:?} in {step_size:?}: {:?}", system.guards, fired.0);
     let outcome = run(method, system, start, 1.0, &options, &mut fired);
+    if let Err(RunError::GuardUnresolved { guard, s, .. }) = outcome
+        && is_double_root(&system.guards[guard], s)
+    {
+        return Ok(());
+    }
     let outcome = outcome.map_err(|error| format!("{}: {error}", place(&fired)))?.outcome;
     if outcome != Outcome::ReachedEnd {
         return Err(format!("{}: {outcome:?}", place(&fired)));
