@@ -229,6 +229,7 @@ where
     /// Reports the switch and enters the next phase, or ends the run.
     fn switch<M: Method>(&mut self, event: &Event<N>) -> Result<Option<Outcome>, RunError> {
         let (s, from, guard) = (self.clock.s, self.phase.mode, event.guard);
+        check_finite(s, &event.state)?;
         let ends = self.phase.guards[guard].ends_run();
         let (to, after) = if ends {
             (from, event.state)
@@ -300,9 +301,7 @@ where
 
     fn refresh_slope(&mut self) -> Result<(), RunError> {
         let s = self.clock.s;
-        if let Some(component) = self.state.iter().position(|v| !v.is_finite()) {
-            return Err(RunError::State { s, component });
-        }
+        check_finite(s, &self.state)?;
         self.slope = self.system.field(self.phase.mode, s, &self.state);
         self.statistics.field += 1;
         if self.slope.iter().all(|v| v.is_finite()) {
@@ -320,4 +319,9 @@ where
         let tolerances = (self.options.rtol, self.options.atol);
         first_step::<M, N>(&mut field, self.clock.s, &self.state, &self.slope, tolerances, longest)
     }
+}
+
+fn check_finite<const N: usize>(s: f64, y: &State<N>) -> Result<(), RunError> {
+    let component = y.iter().position(|value| !value.is_finite());
+    component.map_or(Ok(()), |component| Err(RunError::State { s, component }))
 }
