@@ -1,6 +1,6 @@
 //! How near a collision comes to switching otherwise, and collisions whose itinerary is prescribed.
 //!
-//! A margin belongs to a phase in which something almost happened (see [`stickslip_solver::margin`]). The exact engine decides
+//! A margin belongs to a phase in which something almost happened (see [`mod@stickslip_solver::margin`]). The exact engine decides
 //! by three numbers, and these are its margins:
 //!
 //! - a slip phase lasts over a crest of h if C − h > 0 there, and to the end of contact if s·w > 0 there;
@@ -108,7 +108,7 @@ pub fn margin(contact: &Contact, which: &Margin) -> Result<Option<f64>, ExactErr
     follow(contact, which, |_| ())
 }
 
-/// `which` with hints that fit the collision of `contact`, as [`stickslip_solver::margin`] returns it; itself where it does not exist.
+/// `which` with hints that fit the collision of `contact`, as [`stickslip_solver::margin()`] returns it; itself where it does not exist.
 ///
 /// # Errors
 /// As [`margin`].
