@@ -74,7 +74,8 @@ pub(crate) enum Verdict {
 /// Finds the first crossing of a curve from ≥ 0 to < 0.
 ///
 /// `zero_order` is the order of a known zero at θ = 0, which is divided out, and `side` the sign with which the curve
-/// leaves it, 0 if that is not known; `start` and `end` are the curve's values at the ends of the step. If the curve bounds a `domain`, a negative start counts.
+/// leaves it, 0 if that is not known; where it is, values up to `hidden` count as zero. `start` and `end` are the curve's values at the ends
+/// of the step. If the curve bounds a `domain`, a negative start counts.
 /// Touches met before the crossing go to `on_touch`.
 pub(crate) fn first_crossing<C: Curve>(
     curve: &mut C,
