@@ -1,7 +1,7 @@
 //! Time a collision: `cargo bench --bench collisions`.
 //!
-//! The mean over the 200 random reference collisions is the figure to compare with other programs; every group runs on one
-//! thread.
+//! The mean over the 200 random reference collisions is the figure to compare with other programs;
+//! every group runs on one thread.
 
 #[path = "inputs/contacts.rs"]
 mod contacts;
@@ -110,7 +110,8 @@ impl<const GUARDED: bool> HybridSystem<{ regularized::STATE }, { regularized::GU
     }
 }
 
-/// What isolation costs: one pass over the contact in slip and in stick, in equal steps, with guards and without.
+/// What isolation costs: one pass over the contact in slip and in stick, in equal steps, with
+/// guards and without.
 fn guards(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("guards");
     let contact = Contact::new(2.0, 3.0, 0.0).expect("valid");

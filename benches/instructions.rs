@@ -1,9 +1,9 @@
-//! Count instructions under callgrind: `RUSTFLAGS="-C target-cpu=x86-64" cargo bench --bench instructions` prints a table of them
-//! in Markdown.
+//! Count instructions under callgrind: `RUSTFLAGS="-C target-cpu=x86-64" cargo bench --bench
+//! instructions` prints a table of them in Markdown.
 //!
-//! The program runs itself under valgrind, with a workload done once and `1 + REPEATS` times; start, input and what only the first
-//! round costs drop out of the difference. Valgrind (3.19) does not know all instructions of x86-64-v3, for which the workspace is
-//! built otherwise.
+//! The program runs itself under valgrind, with a workload done once and `1 + REPEATS` times;
+//! start, input and what only the first round costs drop out of the difference. Valgrind (3.19)
+//! does not know all instructions of x86-64-v3, for which the workspace is built otherwise.
 
 #[path = "inputs/contacts.rs"]
 mod contacts;
@@ -20,7 +20,8 @@ use stickslip::model::{Collider, Collision, exact};
 use stickslip::solver::{Dop853, Dopri5, Method};
 use stickslip::tracer::{Family, TraceOptions, trace};
 
-/// What is counted: its row in the table, and a function that does it some times over and returns how many units one time has.
+/// What is counted: its row in the table, and a function that does it some times over and returns
+/// how many units one time has.
 type Workload = (&'static str, fn(usize) -> usize);
 
 const WORKLOADS: [Workload; 14] = [
@@ -78,7 +79,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Instructions of a run of this program that does a workload some times over, and the units of one time.
+/// Instructions of a run of this program that does a workload some times over, and the units of one
+/// time.
 fn counted(index: usize, times: usize) -> Result<(u64, usize), Box<dyn Error>> {
     let output = Command::new("valgrind")
         .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])

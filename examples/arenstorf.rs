@@ -1,8 +1,10 @@
-//! A satellite on Arenstorf's periodic orbit around earth and moon: a smooth problem, with dense output.
+//! A satellite on Arenstorf's periodic orbit around earth and moon: a smooth problem, with dense
+//! output.
 //!
-//! The restricted three-body problem in the rotating frame, with the initial values and the period of Hairer, Nørsett and
-//! Wanner, *Solving Ordinary Differential Equations I*, section II.0. The orbit closes after its period, is its own mirror image, and
-//! keeps Jacobi's integral x² + y² + 2(1 − μ)/r₁ + 2μ/r₂ − x′² − y′². It passes the moon so closely that errors grow a million times.
+//! The restricted three-body problem in the rotating frame, with the initial values and the period
+//! of Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I*, section II.0. The
+//! orbit closes after its period, is its own mirror image, and keeps Jacobi's integral x² + y² +
+//! 2(1 − μ)/r₁ + 2μ/r₂ − x′² − y′². It passes the moon so closely that errors grow a million times.
 //!
 //! Run with `cargo run --release --example arenstorf`.
 

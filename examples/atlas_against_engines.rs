@@ -1,11 +1,13 @@
-//! Random points of the (κ, ψ) plane against its atlas: does any collision have other switches than its region?
+//! Random points of the (κ, ψ) plane against its atlas: does any collision have other switches than
+//! its region?
 //!
-//! Half of the points are uniform in κ, half uniform in ln κ; as many again lie at distances 1e-8 … 1e-3 from the boundaries, on both
-//! sides. Collisions are integrated, without damping by the exact solution too. Points within 1e-9 of a boundary are undecided.
-//! Fails if a point is wrong or anything speaks against an atlas.
+//! Half of the points are uniform in κ, half uniform in ln κ; as many again lie at distances 1e-8 …
+//! 1e-3 from the boundaries, on both sides. Collisions are integrated, without damping by the exact
+//! solution too. Points within 1e-9 of a boundary are undecided. Fails if a point is wrong or
+//! anything speaks against an atlas.
 //!
-//! Run with `cargo run --release --example atlas_against_engines -- [COUNT] [NEAR]`; a million and a hundred thousand without
-//! arguments.
+//! Run with `cargo run --release --example atlas_against_engines -- [COUNT] [NEAR]`; a million and
+//! a hundred thousand without arguments.
 
 use std::error::Error;
 use std::time::Instant;

@@ -1,8 +1,8 @@
 //! A ball that bounces infinitely often in a finite time.
 //!
-//! Dropped from the height h, a ball keeps the part r of its velocity at every bounce. The first takes √(2h/g), each further flight
-//! r times as long as the one before: the bounces accumulate at √(2h/g)·(1 + r)/(1 − r). The run ends there with
-//! [`Outcome::Zeno`] instead of going on for ever.
+//! Dropped from the height h, a ball keeps the part r of its velocity at every bounce. The first
+//! takes √(2h/g), each further flight r times as long as the one before: the bounces accumulate at
+//! √(2h/g)·(1 + r)/(1 − r). The run ends there with [`Outcome::Zeno`] instead of going on for ever.
 //!
 //! Run with `cargo run --release --example bouncing_ball`.
 

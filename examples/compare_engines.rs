@@ -1,10 +1,12 @@
 //! Random collisions by both engines: do they ever disagree on a switch?
 //!
-//! κ is log-uniform in [0.02, 400], ψ uniform in [0.002, 2.3]. Prints the largest difference of the final velocity and every
-//! collision whose itineraries differ, with its margin: the least relative change of ψ that changes the exact
-//! engine's itinerary. Fails if a collision with a margin of 1e-12 or more differs.
+//! κ is log-uniform in [0.02, 400], ψ uniform in [0.002, 2.3]. Prints the largest difference of the
+//! final velocity and every collision whose itineraries differ, with its margin: the least relative
+//! change of ψ that changes the exact engine's itinerary. Fails if a collision with a margin of
+//! 1e-12 or more differs.
 //!
-//! Run with `cargo run --release --example compare_engines -- [COUNT] [SEED]`; one million without arguments.
+//! Run with `cargo run --release --example compare_engines -- [COUNT] [SEED]`; one million without
+//! arguments.
 
 use std::process::ExitCode;
 

@@ -1,15 +1,16 @@
 //! Stick–slip of a mass on a moving belt: the period of its limit cycle against the closed form.
 //!
-//! A mass on a spring lies on a belt of velocity v, mass and stiffness 1. Friction holds it up to the static force F_s and drags it
-//! with the smaller kinetic force F_k while it slips:
+//! A mass on a spring lies on a belt of velocity v, mass and stiffness 1. Friction holds it up to
+//! the static force F_s and drags it with the smaller kinetic force F_k while it slips:
 //!
 //! ```text
 //! stick:  x′ = v          until x = F_s
 //! slip:   x″ = F_k − x    until x′ = v
 //! ```
 //!
-//! With D = F_s − F_k, slip is x = F_k + D cos t + v sin t, whose velocity comes back to v after 2π − 2 atan(D/v), where
-//! x = F_k − D. The belt then carries the mass over 2D. The period is 2π − 2 atan(D/v) + 2D/v.
+//! With D = F_s − F_k, slip is x = F_k + D cos t + v sin t, whose velocity comes back to v after 2π
+//! − 2 atan(D/v), where x = F_k − D. The belt then carries the mass over 2D. The period is 2π − 2
+//! atan(D/v) + 2D/v.
 //!
 //! Run with `cargo run --release --example friction_belt`.
 

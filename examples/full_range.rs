@@ -1,10 +1,13 @@
-//! Random collisions over the whole range of κ, ψ and damping: is every result one, and how long does the longest take?
+//! Random collisions over the whole range of κ, ψ and damping: is every result one, and how long
+//! does the longest take?
 //!
-//! κ is log-uniform in [1e-12, 1e5], ψ in [1e-12, 1e12]; half of the collisions are without damping, which is log-uniform in
-//! [1e-12, 1e3] in the others. What is held of each collision by each engine is in `tests/checks/collision.rs`. Prints what became
-//! of the collisions of each part of the range, and fails if something does not hold.
+//! κ is log-uniform in [1e-12, 1e5], ψ in [1e-12, 1e12]; half of the collisions are without
+//! damping, which is log-uniform in [1e-12, 1e3] in the others. What is held of each collision by
+//! each engine is in `tests/checks/collision.rs`. Prints what became of the collisions of each part
+//! of the range, and fails if something does not hold.
 //!
-//! Run with `cargo run --release --example full_range -- [COUNT] [SEED]`; 100 000 without arguments.
+//! Run with `cargo run --release --example full_range -- [COUNT] [SEED]`; 100 000 without
+//! arguments.
 
 use std::collections::BTreeMap;
 use std::process::ExitCode;

@@ -1,8 +1,9 @@
 //! An oscillator that grazes a stop: the square root in its map.
 //!
-//! A mass on a spring, x″ = −x, starts at x = 0 with the velocity 1 + δ against a stop at x = 1, from which it comes back with
-//! the part r of its velocity. For δ ≤ 0 it returns to where it was after 2π. For δ > 0 it hits the stop with √(2δ + δ²), however
-//! gently, and after 2π is at x = (1 + r) √(2δ + δ²)/(1 + δ): the map over one turn has an infinite slope at the graze, which makes
+//! A mass on a spring, x″ = −x, starts at x = 0 with the velocity 1 + δ against a stop at x = 1,
+//! from which it comes back with the part r of its velocity. For δ ≤ 0 it returns to where it was
+//! after 2π. For δ > 0 it hits the stop with √(2δ + δ²), however gently, and after 2π is at x = (1
+//! + r) √(2δ + δ²)/(1 + δ): the map over one turn has an infinite slope at the graze, which makes
 //! grazing bifurcations what they are (Nordmark, *J. Sound Vib.* 145, 279, 1991).
 //!
 //! Run with `cargo run --release --example impact_oscillator`.
@@ -65,7 +66,8 @@ pub fn main() -> Result<(), Box<dyn Error>> {
         if let Some((delta_before, moved_before)) = last {
             let exponent = (moved_before / moved).ln() / (delta_before / delta).ln();
             println!("{:>14} exponent {exponent:.7}", "");
-            // (1 + δ/2)/(1 + δ) goes to 1. Measured: within 0.16 δ, then within 4.7e-7; 1.3e-6 where products are rounded.
+            // (1 + δ/2)/(1 + δ) goes to 1. Measured: within 0.16 δ, then within 4.7e-7; 1.3e-6
+            // where products are rounded.
             let rounding = if FUSED_PRODUCTS { 1e-6 } else { 3e-6 };
             assert!((exponent - 0.5).abs() < 0.2 * delta_before + rounding);
         }

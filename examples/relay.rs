@@ -1,7 +1,9 @@
-//! A relay with hysteresis in a feedback loop: the period of its limit cycle against the closed form.
+//! A relay with hysteresis in a feedback loop: the period of its limit cycle against the closed
+//! form.
 //!
-//! A lag of gain K follows a relay, y′ = ±K − y. The relay turns on where y falls below −h, and off where it rises above h < K. In
-//! between y relaxes exponentially, from −h to h in ln((K + h)/(K − h)), half the period.
+//! A lag of gain K follows a relay, y′ = ±K − y. The relay turns on where y falls below −h, and off
+//! where it rises above h < K. In between y relaxes exponentially, from −h to h in ln((K + h)/(K −
+//! h)), half the period.
 //!
 //! Run with `cargo run --release --example relay`.
 

@@ -1,4 +1,5 @@
-//! One collision of the steel spheres of Schwager, Becker and Pöschel (2008), Fig. 2: every switch in seconds.
+//! One collision of the steel spheres of Schwager, Becker and Pöschel (2008), Fig. 2: every switch
+//! in seconds.
 //!
 //! Run with `cargo run --release --example steel_spheres`.
 

@@ -83,8 +83,8 @@ impl CollisionPlane {
         Window { low: corner(&self.low), high: corner(&self.high) }
     }
 
-    /// The collision at a traced point. Tracing asks for places a little outside of the window, where ψ may not be above 0; it is kept
-    /// there.
+    /// The collision at a traced point. Tracing asks for places a little outside of the window,
+    /// where ψ may not be above 0; it is kept there.
     ///
     /// # Errors
     /// κ has left the range of numbers.
@@ -93,8 +93,8 @@ impl CollisionPlane {
         Contact::new(kappa, psi.max(0.5 * self.low.psi()), self.low.damping())
     }
 
-    /// The collisions to trace: without damping by the exact solution, with which a trace takes a tenth of the time, else by
-    /// integration.
+    /// The collisions to trace: without damping by the exact solution, with which a trace takes a
+    /// tenth of the time, else by integration.
     #[must_use]
     pub fn family(self) -> CollisionFamily {
         if self.low.damping() == 0.0 { CollisionFamily::Exact(self) } else { self.integrated() }
@@ -114,7 +114,8 @@ impl CollisionPlane {
         CollisionFamily::Integrated(HybridFamily { problem: self, method, options, end })
     }
 
-    /// The contact at a traced point; where κ is no number there is nothing to find, and any contact will do.
+    /// The contact at a traced point; where κ is no number there is nothing to find, and any
+    /// contact will do.
     fn contact_or_any(&self, point: &Point) -> Contact {
         self.contact(point).unwrap_or(self.low)
     }

@@ -1,7 +1,8 @@
-//! Atlases of the collision: every boundary traced, the plane subdivided, and both held against collisions, references and closed
-//! forms.
+//! Atlases of the collision: every boundary traced, the plane subdivided, and both held against
+//! collisions, references and closed forms.
 //!
-//! `cargo run --release --example atlas_against_engines` does the same with more points, also up to κ = 1000.
+//! `cargo run --release --example atlas_against_engines` does the same with more points, also up to
+//! κ = 1000.
 
 #[expect(dead_code, reason = "shared with other tests")]
 mod common;
@@ -63,7 +64,8 @@ fn label(plane: &CollisionPlane, point: &Point) -> Result<Vec<usize>, String> {
     Ok(CollisionPlane::label(&integrated))
 }
 
-/// Random points, half of them uniform in κ, half in ln κ, and points beside every boundary: all have the switches of their regions.
+/// Random points, half of them uniform in κ, half in ln κ, and points beside every boundary: all
+/// have the switches of their regions.
 fn assert_right(plane: &CollisionPlane, atlas: &Atlas, kappa: (f64, f64), psi: (f64, f64)) {
     const COUNT: usize = 100_000;
     let mut random = fastrand::Rng::with_seed(1);
@@ -102,8 +104,8 @@ fn the_subdivision_is_that_of_collisions() {
     assert_right(&undamped(), &ATLAS, KAPPA, PSI);
 }
 
-/// Margins of the exact solution and of the integrator, which share nothing, lead to the same vertices and curves; these have all
-/// nodes in common to 1e-9.
+/// Margins of the exact solution and of the integrator, which share nothing, lead to the same
+/// vertices and curves; these have all nodes in common to 1e-9.
 #[test]
 fn both_engines_trace_the_same_atlas() {
     let plane = undamped();
@@ -155,7 +157,8 @@ fn with_damping_the_subdivision_is_that_of_free_runs() {
     }
 }
 
-/// Where a stick phase shrinks to nothing at the end of contact, however short it and the slip after it are.
+/// Where a stick phase shrinks to nothing at the end of contact, however short it and the slip
+/// after it are.
 #[test]
 fn with_damping_every_collision_ends_in_slip() {
     let vertex = Point::new(2.1516695600135187, 0.011366168842137161);
@@ -208,8 +211,9 @@ fn reference_boundaries_lie_on_traced_curves() {
 
 #[test]
 fn vertices_are_where_they_must_be() {
-    // The corner of the top boundary, where ψ_g passes 2, and the cusp, where the stationary points of the guard merge: its place
-    // is known to no more than the rounding of a guard that is flat there.
+    // The corner of the top boundary, where ψ_g passes 2, and the cusp, where the stationary points
+    // of the guard merge: its place is known to no more than the rounding of a guard that is
+    // flat there.
     let known = [(0.5701023788418932873, 2.0, 1e-10), (1.568459328886909846, 1.0, 1e-7)];
     for (kappa, psi, accuracy) in known {
         let place = CollisionPlane::point(kappa, psi);

@@ -1,7 +1,8 @@
 //! Observed orders in fixed steps, through all switches of a collision.
 //!
-//! In the regularised coordinates both methods keep their order; in plain time the contact law takes it down, and without located
-//! switches nothing is left of it. [`fit_order`] chooses the steps.
+//! In the regularised coordinates both methods keep their order; in plain time the contact law
+//! takes it down, and without located switches nothing is left of it. [`fit_order`] chooses the
+//! steps.
 
 use stickslip::model::convergence::{Coordinates, Switching, measure, reference};
 use stickslip::model::{Collision, Contact};
@@ -24,7 +25,8 @@ fn at_step_ends(step_size: f64) -> Switching {
     Switching::AtStepEnds { step_size, max_steps: 1_000_000 }
 }
 
-/// The orders of the final velocity and of the switch times over steps from 1/4 down by `octaves` octaves.
+/// The orders of the final velocity and of the switch times over steps from 1/4 down by `octaves`
+/// octaves.
 fn orders<M: Method>(
     method: M,
     damping: f64,
@@ -74,7 +76,8 @@ fn plain_time_loses_it() {
     assert_orders(found, [2.5; 2], 0.1);
 }
 
-/// Contact then starts with a force like √t, and the steps must be shorter than the stick phase with which it starts.
+/// Contact then starts with a force like √t, and the steps must be shorter than the stick phase
+/// with which it starts.
 #[test]
 fn damping_in_plain_time_takes_away_another_order() {
     let reference = [reference(Contact::new(18.0, 0.1, 1.0).expect("valid")).expect("a reference")];

@@ -1,4 +1,5 @@
-//! The closed form against the reference data, closer than `tests/reference.rs` asks of both engines.
+//! The closed form against the reference data, closer than `tests/reference.rs` asks of both
+//! engines.
 
 mod common;
 
@@ -10,7 +11,8 @@ fn exact(contact: Contact) -> Collision {
     exact::collide(contact).expect("an undamped collision")
 }
 
-/// Largest errors of the switches of one collision: time, spring and velocity, and of the time left relative to itself.
+/// Largest errors of the switches of one collision: time, spring and velocity, and of the time left
+/// relative to itself.
 ///
 /// Its itinerary and final velocity must be right.
 fn errors(case: &Case) -> (f64, f64) {

@@ -1,4 +1,5 @@
-//! Guards that are known to their own rounding only: runs and margins go on where their signs are lost in it.
+//! Guards that are known to their own rounding only: runs and margins go on where their signs are
+//! lost in it.
 
 use std::f64::consts::PI;
 
@@ -7,7 +8,8 @@ use stickslip::solver::{
     RunError, Start, State, margins, run,
 };
 
-/// A load on a belt of velocity v that is shaken, in units in which its time scale is `scale`: w′ = v + fΩ sin Ωt − u.
+/// A load on a belt of velocity v that is shaken, in units in which its time scale is `scale`: w′ =
+/// v + fΩ sin Ωt − u.
 struct Belt {
     velocity: f64,
     frequency: f64,
@@ -60,8 +62,8 @@ impl Belt {
     }
 }
 
-/// Where fΩ is a little above v the excess w = vt − f cos Ωt − 1 of the load has extrema at sin Ωt = −v/fΩ, where its rate is
-/// the difference of two terms of size 0.5.
+/// Where fΩ is a little above v the excess w = vt − f cos Ωt − 1 of the load has extrema at sin Ωt
+/// = −v/fΩ, where its rate is the difference of two terms of size 0.5.
 #[test]
 fn a_rate_that_cancels_within_leaves_its_minimum() {
     for own_rates in [true, false] {
@@ -81,7 +83,8 @@ fn a_rate_that_cancels_within_leaves_its_minimum() {
             let found = belt.margins();
             let first = &found.near_misses[0];
             assert!(first.margin.exits.is_empty());
-            // Measured: 1.5e-13, the rounding of 0.5 over the curvature, which is 5e-4, and 1.7e-15.
+            // Measured: 1.5e-13, the rounding of 0.5 over the curvature, which is 5e-4, and
+            // 1.7e-15.
             assert!((first.s - minimum).abs() < 3e-13, "{own_rates} {away}");
             assert!((first.value - value).abs() < 4e-15, "{own_rates} {away}");
             assert_eq!(found.outcome, Outcome::EndedByGuard { guard: 1 });
@@ -89,7 +92,8 @@ fn a_rate_that_cancels_within_leaves_its_minimum() {
     }
 }
 
-/// Without own rates the same margins are found as with them, whether the time scale is a second or a microsecond.
+/// Without own rates the same margins are found as with them, whether the time scale is a second or
+/// a microsecond.
 #[test]
 fn margins_by_differences_are_those_by_rates() {
     let mut random = fastrand::Rng::with_seed(3);
@@ -120,7 +124,8 @@ fn margins_by_differences_are_those_by_rates() {
     assert!(compared > 1000 && largest < 3e-14, "{compared} {largest:e}");
 }
 
-/// y′ = 1 with guard 0.5 + e + 0.5 cos y, which dips below zero at π if e < 0 and whose rounding is that of 0.5.
+/// y′ = 1 with guard 0.5 + e + 0.5 cos y, which dips below zero at π if e < 0 and whose rounding is
+/// that of 0.5.
 struct Dip {
     raised: f64,
     direction: Direction,

@@ -60,8 +60,8 @@ struct Case {
 }
 
 impl Case {
-    /// Unequal spheres, or a sphere and a wall that may move, in any orientation. κ, ψ and a are drawn, so that all
-    /// kinds of collisions occur; of ten impacts one is central.
+    /// Unequal spheres, or a sphere and a wall that may move, in any orientation. κ, ψ and a are
+    /// drawn, so that all kinds of collisions occur; of ten impacts one is central.
     fn random(random: &mut Random) -> Self {
         let elasticity = |random: &mut Random| Elasticity {
             young_modulus_pa: random.logarithmic(1e6, 4e11),
@@ -178,7 +178,8 @@ impl Worst {
     }
 }
 
-/// Difference of the velocity of the surfaces after the contact from ε_n g_n n + ε_t g_t t, relative to their speeds.
+/// Difference of the velocity of the surfaces after the contact from ε_n g_n n + ε_t g_t t,
+/// relative to their speeds.
 fn restitution_error(encounter: &Encounter, outcome: &Outcome) -> f64 {
     let [one, two] = outcome.motions.map(|motion| {
         let lever = encounter.contact_point_m - motion.position_m;
@@ -232,9 +233,11 @@ fn momentum_angular_momentum_and_energy_are_conserved() {
         kinds[2] += usize::from(encounter.tangent.is_none());
     }
     assert!(kinds.iter().all(|&count| count > 9_000), "{kinds:?}");
-    // Measured: 9.3e-13, from the rounding of the point of contact beside a sphere 10⁴ times smaller than its partner.
+    // Measured: 9.3e-13, from the rounding of the point of contact beside a sphere 10⁴ times
+    // smaller than its partner.
     assert!(surfaces.0 < 2e-12, "{}", surfaces.0);
-    // Measured: 1.5e-16, 2.7e-16 and 6.3e-13. Energy shows the errors of the integration, which grow with κ.
+    // Measured: 1.5e-16, 2.7e-16 and 6.3e-13. Energy shows the errors of the integration, which
+    // grow with κ.
     assert!(momentum.0 < 3e-16 && angular.0 < 6e-16, "{} {}", momentum.0, angular.0);
     assert!(energy.0 < 1e-12, "{}", energy.0);
 }

@@ -1,4 +1,5 @@
-//! Margins of prescribed runs vanish on the switch boundaries, at the places known to twenty digits.
+//! Margins of prescribed runs vanish on the switch boundaries, at the places known to twenty
+//! digits.
 
 #[expect(dead_code, reason = "shared with other tests")]
 mod common;
@@ -29,7 +30,8 @@ fn value(kappa: f64, psi: f64, which: &Margin) -> f64 {
     miss.expect("the margin exists near the boundary").value
 }
 
-/// The place nearest to each reference boundary at which the least margin on the side of fewer switches vanishes.
+/// The place nearest to each reference boundary at which the least margin on the side of fewer
+/// switches vanishes.
 fn assert_zeros_at_boundaries(
     accuracy: f64,
     free: impl Fn(f64, f64) -> (usize, Vec<(Margin, f64)>),
@@ -142,7 +144,8 @@ fn both_engines_have_margins_of_one_sign() {
         assert_eq!(integrated.fired, exact.fired, "κ = {kappa}, ψ = {psi}");
         let (kappa, psi) = (kappa * (0.8 + 0.4 * random.f64()), psi * (0.8 + 0.4 * random.f64()));
         for miss in &integrated.near_misses {
-            // Extrema of the gap and of the ratio are counted apart: those of one phase and guard belong together if they are alone.
+            // Extrema of the gap and of the ratio are counted apart: those of one phase and guard
+            // belong together if they are alone.
             let alike = |other: &Margin| {
                 let Margin { exits, guard, place } = &miss.margin;
                 let end = (*place == Place::End) == (other.place == Place::End);

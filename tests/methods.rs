@@ -1,9 +1,9 @@
 //! Order conditions of both pairs by rooted trees, and the orders seen in steps.
 //!
-//! Butcher's theorem: a Runge–Kutta method with weights b has order p exactly if Σ bᵢ Φᵢ(t) = 1/γ(t) for
-//! every rooted tree t of at most p vertices (Hairer, Nørsett and Wanner, *Solving Ordinary Differential
-//! Equations I*, 2nd ed., section II.2). The trees are generated here, and the weights of the dense output are
-//! read off a step whose derivatives are unit vectors.
+//! Butcher's theorem: a Runge–Kutta method with weights b has order p exactly if Σ bᵢ Φᵢ(t) =
+//! 1/γ(t) for every rooted tree t of at most p vertices (Hairer, Nørsett and Wanner, *Solving
+//! Ordinary Differential Equations I*, 2nd ed., section II.2). The trees are generated here, and
+//! the weights of the dense output are read off a step whose derivatives are unit vectors.
 
 use std::cell::Cell;
 
@@ -35,7 +35,8 @@ fn rooted_trees(most: usize) -> Vec<Tree> {
     trees
 }
 
-/// All multisets of trees of `vertices` vertices in total, their indices falling from below `limit`.
+/// All multisets of trees of `vertices` vertices in total, their indices falling from below
+/// `limit`.
 fn collect_forests(
     trees: &[Tree],
     vertices: usize,
@@ -119,7 +120,8 @@ fn row(state: &State<MAX_STAGES>) -> Row {
 #[test]
 fn the_trees_are_all_there() {
     let trees = rooted_trees(9);
-    // Numbers of rooted trees: OEIS A000081. Densities of order 4: Hairer, Nørsett and Wanner, table II.2.1.
+    // Numbers of rooted trees: OEIS A000081. Densities of order 4: Hairer, Nørsett and Wanner,
+    // table II.2.1.
     let counts: Vec<usize> =
         (1..=9).map(|order| trees.iter().filter(|tree| tree.order == order).count()).collect();
     assert_eq!(counts, [1, 1, 2, 4, 9, 20, 48, 115, 286]);
@@ -222,7 +224,8 @@ fn dense_outputs_have_their_order_and_no_more() {
 fn dense_outputs_have_the_derivatives_of_the_ends() {
     fn check<M: Method>() {
         let (_, dense) = weights_of_dense::<M>();
-        // Central differences are exact for quadratics; at this distance the cubic part is below 1e-9.
+        // Central differences are exact for quadratics; at this distance the cubic part is below
+        // 1e-9.
         let d = 1e-5;
         for (theta, stage) in [(0.0, 0), (1.0, M::STAGES)] {
             let slope = (dense.at(theta + d) - dense.at(theta - d)) / (2.0 * d);
@@ -238,8 +241,8 @@ fn dense_outputs_have_the_derivatives_of_the_ends() {
 
 #[test]
 fn the_states_inside_a_step_have_their_orders() {
-    // What the quick look at guards sees: stages of 8(5,3), or the dense output of 5(4). Both are of order 4:
-    // their errors on a step are of fifth order in its size.
+    // What the quick look at guards sees: stages of 8(5,3), or the dense output of 5(4). Both are
+    // of order 4: their errors on a step are of fifth order in its size.
     fn check<M: Method>(order: usize) {
         let trees = rooted_trees(order + 1);
         let stages = stage_weights::<M>(&trees);
@@ -261,7 +264,8 @@ fn the_states_inside_a_step_have_their_orders() {
     check::<Dop853>(4);
 }
 
-/// Of Kepler's ellipse, started at the pericentre; small, so that order 8 is reached well above rounding.
+/// Of Kepler's ellipse, started at the pericentre; small, so that order 8 is reached well above
+/// rounding.
 const ECCENTRICITY: f64 = 0.02;
 
 fn kepler(_s: f64, y: &State<4>) -> State<4> {
@@ -324,7 +328,8 @@ fn observed_orders_in_fixed_steps() {
 
 #[test]
 fn a_single_step_has_one_order_more_than_the_method() {
-    /// Errors of one step from the exact state at 1: at its end, and at four tenths by the dense output.
+    /// Errors of one step from the exact state at 1: at its end, and at four tenths by the dense
+    /// output.
     fn single<M: Method>(h: f64) -> (f64, f64) {
         let y0 = on_ellipse(1.0);
         let mut step = Step::blank();

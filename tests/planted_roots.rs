@@ -1,8 +1,9 @@
-//! Polynomials with planted roots as guards: as many crossings are found as were planted, in any steps.
+//! Polynomials with planted roots as guards: as many crossings are found as were planted, in any
+//! steps.
 //!
-//! The guard is a polynomial of y with y' = 1, so that its roots are known; they are random, clustered and double.
-//! Where the guard is too small on a step to have a sign in double precision (below 64 units in the last place of
-//! its largest value there), nothing is asked.
+//! The guard is a polynomial of y with y' = 1, so that its roots are known; they are random,
+//! clustered and double. Where the guard is too small on a step to have a sign in double precision
+//! (below 64 units in the last place of its largest value there), nothing is asked.
 
 use proptest::prelude::*;
 use stickslip::solver::{
@@ -40,7 +41,8 @@ impl HybridSystem<1, 1> for Planted<'_> {
 }
 
 impl Planted<'_> {
-    /// The crossings in [0, 1] that fire: roots of odd multiplicity, in order, by the side from which they come.
+    /// The crossings in [0, 1] that fire: roots of odd multiplicity, in order, by the side from
+    /// which they come.
     fn expected(&self) -> Vec<f64> {
         let mut roots = self.roots.to_vec();
         roots.sort_by(f64::total_cmp);
@@ -104,8 +106,8 @@ impl Planted<'_> {
     }
 }
 
-/// Bound of the error of a time: the state's rounding over up to 1000 steps. Measured in 200 000 runs: 5e-14 inside
-/// clusters, 7e-15 elsewhere.
+/// Bound of the error of a time: the state's rounding over up to 1000 steps. Measured in 200 000
+/// runs: 5e-14 inside clusters, 7e-15 elsewhere.
 const ROUNDING: f64 = 1e-13;
 
 fn directions() -> impl Strategy<Value = Direction> {

@@ -1,7 +1,7 @@
 //! Every switch of the reference collisions, by the integrator and by the exact engine.
 //!
-//! tests/data/README.md says where the references come from. Bounds are about twice what was measured, except where
-//! the project promises a number.
+//! tests/data/README.md says where the references come from. Bounds are about twice what was
+//! measured, except where the project promises a number.
 
 mod common;
 
@@ -25,8 +25,8 @@ struct Errors {
     unbalanced: f64,
 }
 
-/// Collides a whole set; every count and itinerary must be right. `error_of_velocity` is the error that the engine may make
-/// in w.
+/// Collides a whole set; every count and itinerary must be right. `error_of_velocity` is the error
+/// that the engine may make in w.
 fn errors(name: &str, error_of_velocity: f64, collide: impl Fn(&Case) -> Collision) -> Errors {
     let mut errors = Errors::default();
     for case in cases(name) {
@@ -55,7 +55,8 @@ fn errors(name: &str, error_of_velocity: f64, collide: impl Fn(&Case) -> Collisi
             *of_its_kind = of_its_kind.max(error);
             if let Some(time_left) = expected.get("time_left").map(number) {
                 let relative = (switch.time_left / time_left - 1.0).abs();
-                // Near the end time_left ≈ (2κw/3)²: an error δ of w shows as 2δ/w, whatever the method.
+                // Near the end time_left ≈ (2κw/3)²: an error δ of w shows as 2δ/w, whatever the
+                // method.
                 let of_velocity = 2.0 * error_of_velocity / number(&expected["w"]).abs();
                 let of_its_kind =
                     if grazes { &mut errors.time_left_near_graze } else { &mut errors.time_left };
@@ -103,7 +104,8 @@ fn dopri5_at_1e_10() {
     }
 }
 
-/// The error follows the tolerance down to rounding: less than it, for tolerances from 1e-8 to 1e-14.
+/// The error follows the tolerance down to rounding: less than it, for tolerances from 1e-8 to
+/// 1e-14.
 #[test]
 fn the_error_falls_with_the_tolerance() {
     for exponent in 8..=14 {

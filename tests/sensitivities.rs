@@ -8,7 +8,8 @@ use serde_json::Value;
 use stickslip::model::{Collider, Contact, Derived};
 use stickslip::solver::Dopri5;
 
-/// The largest error of a result and of its derivatives, relative to the largest derivative of its kind in the collision, or to 1.
+/// The largest error of a result and of its derivatives, relative to the largest derivative of its
+/// kind in the collision, or to 1.
 fn error(expected: &[&Value], found: &[Derived]) -> f64 {
     assert_eq!(expected.len(), found.len());
     let part = |derived: &Derived| [derived.value, derived.kappa, derived.psi, derived.damping];

@@ -1,10 +1,11 @@
-//! Smooth problems with known ends: published results of a published code, DETEST, and work counters.
+//! Smooth problems with known ends: published results of a published code, DETEST, and work
+//! counters.
 
 use serde_json::Value;
 use stickslip::solver::{Dop853, Dopri5, Method, Options, Run, State, integrate};
 
-/// The restricted three-body problem on a closed orbit of Arenstorf's: Hairer, Nørsett and Wanner, *Solving
-/// Ordinary Differential Equations I*, 2nd ed., section II.0.
+/// The restricted three-body problem on a closed orbit of Arenstorf's: Hairer, Nørsett and Wanner,
+/// *Solving Ordinary Differential Equations I*, 2nd ed., section II.0.
 fn three_bodies(_s: f64, y: &State<4>) -> State<4> {
     let moon = 0.012277471;
     let earth = 1.0 - moon;
@@ -37,8 +38,9 @@ fn work<const N: usize>(run: &Run<(), N>) -> (usize, usize, usize) {
 
 #[test]
 fn the_orbit_repeats_the_published_run_of_dopri5() {
-    // dopri5.f of Hairer and Wanner, as quoted by cpmech/russell, russell_ode/tests/test_dopri5_arenstorf_debug.rs:
-    // 238 steps, 217 accepted, 21 rejected, 1429 evaluations, and this state.
+    // dopri5.f of Hairer and Wanner, as quoted by cpmech/russell,
+    // russell_ode/tests/test_dopri5_arenstorf_debug.rs: 238 steps, 217 accepted, 21 rejected,
+    // 1429 evaluations, and this state.
     let published = State::from([
         9.940021704030663E-01,
         9.040891036151961E-06,
@@ -47,8 +49,8 @@ fn the_orbit_repeats_the_published_run_of_dopri5() {
     ]);
     let run = orbit(Dopri5, 1e-7, Some(1e-4));
     assert_eq!(work(&run), (217, 21, 1429));
-    // The same steps: only rounding differs, which the orbit amplifies about 1e6 times. Measured: 2.7e-10 and, with
-    // the weights' sums in another order, 5.6e-10.
+    // The same steps: only rounding differs, which the orbit amplifies about 1e6 times. Measured:
+    // 2.7e-10 and, with the weights' sums in another order, 5.6e-10.
     let off = (run.state - published).norm();
     println!("off by {off:.1e}");
     assert!(off < 2e-9, "{off:e}");
@@ -62,9 +64,10 @@ fn van_der_pol(epsilon: f64) -> impl Fn(f64, &State<2>) -> State<2> {
 #[test]
 fn van_der_pol_repeats_the_published_runs_of_dop853() {
     // dop853.f, as quoted by cpmech/russell, russell_ode/tests/test_dopri8_van_der_pol.rs and
-    // test_dopri8_van_der_pol_debug.rs. They report 2 evaluations before the first step where this code needs
-    // 1 if told the first step, and the first run 3 more an accepted step for its dense output. Ends measured off
-    // by 1e-13 and 1.3e-9: the second run amplifies rounding at its loose tolerance.
+    // test_dopri8_van_der_pol_debug.rs. They report 2 evaluations before the first step where this
+    // code needs 1 if told the first step, and the first run 3 more an accepted step for its
+    // dense output. Ends measured off by 1e-13 and 1.3e-9: the second run amplifies rounding at
+    // its loose tolerance.
     let published = [
         (
             1e-3,
@@ -94,8 +97,9 @@ fn van_der_pol_repeats_the_published_runs_of_dop853() {
 
 #[test]
 fn the_orbit_closes() {
-    // Distance of the end from the start over the tolerance. The orbit amplifies errors about 1e6 times near the
-    // moon. Measured: 7e3, 8e3, 4e3, 1e4 for 8(5,3) and 1.5e4, 2e4, 2.9e4, 3e4 for 5(4).
+    // Distance of the end from the start over the tolerance. The orbit amplifies errors about 1e6
+    // times near the moon. Measured: 7e3, 8e3, 4e3, 1e4 for 8(5,3) and 1.5e4, 2e4, 2.9e4, 3e4
+    // for 5(4).
     for tolerance in [1e-7, 1e-9, 1e-11, 1e-13] {
         let off = (orbit(Dop853, tolerance, None).state - orbit_start()).norm();
         println!("dop853 {tolerance:e}: {off:.1e}");
@@ -116,7 +120,8 @@ fn reference(problem: &str) -> Vec<f64> {
     digits.iter().map(|x| x.as_str().expect("digits").parse().expect("a number")).collect()
 }
 
-/// Runs a problem of DETEST to s = 20 at tolerances from 1e-6 to 1e-12: the largest error over the tolerance.
+/// Runs a problem of DETEST to s = 20 at tolerances from 1e-6 to 1e-12: the largest error over the
+/// tolerance.
 fn detest<M: Method, const N: usize>(
     method: M,
     problem: &str,
@@ -174,24 +179,25 @@ fn detest_set<M: Method>(method: M, bounds: [f64; 11]) {
 
 #[test]
 fn detest_problems_with_dopri5() {
-    // Measured: 0.08, 0.38, 8.9, 1.7, 8.5, 18, 19, 880, 750, 617, 19. Kepler's phase drifts over three turns.
+    // Measured: 0.08, 0.38, 8.9, 1.7, 8.5, 18, 19, 880, 750, 617, 19. Kepler's phase drifts over
+    // three turns.
     let bounds = [0.12, 0.6, 13.0, 2.5, 12.0, 27.0, 28.0, 1300.0, 1100.0, 900.0, 28.0];
     detest_set(Dopri5, bounds);
 }
 
 #[test]
 fn detest_problems_with_dop853() {
-    // Measured: 0.01, 0.01, 63, 0.37, 5.9, 26, 3.2, 86, 279, 302, 1.1. The pair's estimate is too low on A3, also
-    // in SciPy's implementation (557 tolerances at 1e-8 in as many steps).
+    // Measured: 0.01, 0.01, 63, 0.37, 5.9, 26, 3.2, 86, 279, 302, 1.1. The pair's estimate is too
+    // low on A3, also in SciPy's implementation (557 tolerances at 1e-8 in as many steps).
     let bounds = [0.02, 0.02, 95.0, 0.6, 9.0, 39.0, 5.0, 130.0, 420.0, 450.0, 1.7];
     detest_set(Dop853, bounds);
 }
 
 #[test]
 fn work_counters_stay_as_they_are() {
-    // A change here changes what every run costs, and must be meant. Each run's first step is estimated, which
-    // costs one evaluation beside the one at the start; a step costs 6 (5(4)), or 11 and one more if it is
-    // accepted (8(5,3)).
+    // A change here changes what every run costs, and must be meant. Each run's first step is
+    // estimated, which costs one evaluation beside the one at the start; a step costs 6 (5(4)),
+    // or 11 and one more if it is accepted (8(5,3)).
     let options = Options::with_tolerance(1e-10);
     let start = State::from(pericentre(0.9));
     let run = integrate(Dopri5, kepler, 0.0, start, 20.0, &options, &mut ()).expect("smooth");

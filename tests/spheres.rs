@@ -67,8 +67,8 @@ fn the_steel_spheres_of_figure_2() {
     close(outcome(&encounter).contact_time_s, 6.6093921523826032723e-5, 1e-12);
 }
 
-/// The footnote prints ζ = 1.109e5 m s²/kg / k_t for μ = 0.5, with Y in MPa where GPa belong and the number 250 where
-/// 31.25 belongs: F_n⁵ = (31.25/243) π³ ρ³ R¹⁰ Y² g⁶/(1 − ν²)².
+/// The footnote prints ζ = 1.109e5 m s²/kg / k_t for μ = 0.5, with Y in MPa where GPa belong and
+/// the number 250 where 31.25 belongs: F_n⁵ = (31.25/243) π³ ρ³ R¹⁰ Y² g⁶/(1 − ν²)².
 #[test]
 fn footnote_2_and_its_correction() {
     let impact = Pair::equal_spheres(0.02, &STEEL, &SURFACE).unwrap().impact(20.0, 4.0).unwrap();
@@ -214,7 +214,8 @@ fn series_and_pade_approximant_of_the_normal_restitution() {
     }
     // Measured: 0.0086, at a = 2.8.
     assert!(worst < 0.009, "{worst}");
-    // The coefficients as Müller and Pöschel (2011) print them: 0.501086, 1.15345, 0.577977, 0.532178.
+    // The coefficients as Müller and Pöschel (2011) print them: 0.501086, 1.15345, 0.577977,
+    // 0.532178.
     let published = |a: f64| {
         let d = a.sqrt();
         let below = 1.0 + 0.501086 * d + 1.15345 * d.powi(2) + 0.577977 * d.powi(3);

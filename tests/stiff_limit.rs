@@ -1,9 +1,10 @@
-//! The limit of stiff springs: full collisions against the inner problem and against 40-digit references.
+//! The limit of stiff springs: full collisions against the inner problem and against 40-digit
+//! references.
 
 use stickslip::model::{Contact, exact, inner, stiff};
 
-/// F, computed with 50 digits in mpmath as the largest final velocity of the map of onsets, its derivative solved for 0 by
-/// secants; the closed form is not used.
+/// F, computed with 50 digits in mpmath as the largest final velocity of the map of onsets, its
+/// derivative solved for 0 by secants; the closed form is not used.
 const CONSTANT: f64 = 4.4848423519475425884;
 
 /// κ^{5/4} times the largest |w_final| at κ.
@@ -44,8 +45,8 @@ fn full_collisions_and_the_inner_problem_have_the_same_constant() {
     }
 }
 
-/// κ, ψ, number of switches, w_final, √κ·(time left) at the last onset; computed with 40 digits from the closed form,
-/// in the angle q of v = −cos q, every root by Newton's method.
+/// κ, ψ, number of switches, w_final, √κ·(time left) at the last onset; computed with 40 digits
+/// from the closed form, in the angle q of v = −cos q, every root by Newton's method.
 const REFERENCES: [(f64, f64, usize, f64, f64); 5] = [
     (1e4, 1.3, 84, 0.000036789826920423817368, 2.3847238648142821695),
     (1e6, 1.3, 852, 1.4168454146507563223e-7, 3.6532480198181226644),
@@ -61,7 +62,8 @@ fn the_exact_engine_is_right_where_springs_are_stiff() {
         let collision = exact::collide(Contact::new(kappa, psi, 0.0).unwrap()).unwrap();
         assert_eq!(collision.switches.len(), count, "{kappa} {psi}");
         let last = kappa.sqrt() * collision.switches[count - 2].time_left;
-        // Rounding of √κ t; measured: up to 1.0e-10 and 1.3e-10 at κ = 1e8, and 1e-14 of w at the top of an oscillation.
+        // Rounding of √κ t; measured: up to 1.0e-10 and 1.3e-10 at κ = 1e8, and 1e-14 of w at the
+        // top of an oscillation.
         let limit = 3e-14 * kappa.sqrt();
         assert!((last / onset - 1.0).abs() < limit, "{kappa} {psi}: {last}");
         let off = (collision.final_velocity / velocity - 1.0).abs();

@@ -1,5 +1,6 @@
-//! Tells the program what it is made from and for; `--version` shows it. The same sources, target and compiler give the same text.
-//! Tells the process tests whether the data that they read are there.
+//! Tells the program what it is made from and for; `--version` shows it. The same sources, target
+//! and compiler give the same text. Tells the process tests whether the data that they read are
+//! there.
 
 use std::env;
 use std::fs;
@@ -47,7 +48,8 @@ fn packaged_commit() -> Option<String> {
     Some(marked(commit, text.contains("\"dirty\": true")))
 }
 
-/// The commit of the repository, if this package is part of one and not unpacked in the midst of another.
+/// The commit of the repository, if this package is part of one and not unpacked in the midst of
+/// another.
 fn repository_commit() -> Option<String> {
     git(&["ls-files", "--error-unmatch", "Cargo.toml"])?;
     let commit = git(&["rev-parse", "HEAD"])?;

@@ -1,7 +1,7 @@
 //! The belt without an integrator: every phase is a sum of sines.
 //!
-//! Roots are found by steps that a bound of the second derivative proves too short to miss one, and the boundary beside a point
-//! by Newton's method. Nothing is shared with the solver or the tracer.
+//! Roots are found by steps that a bound of the second derivative proves too short to miss one, and
+//! the boundary beside a point by Newton's method. Nothing is shared with the solver or the tracer.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -39,8 +39,8 @@ impl Sines {
         self.waves.iter().map(|[a, ..]| a.abs()).sum()
     }
 
-    /// The first zero after `start`, where it is positive or leaves upwards from a zero of this order; `None` if there is none
-    /// while the run is observed.
+    /// The first zero after `start`, where it is positive or leaves upwards from a zero of this
+    /// order; `None` if there is none while the run is observed.
     fn falls(&self, start: f64, order: i32) -> Option<f64> {
         let (rate, second) = (self.rate(), self.rate().rate());
         // Above zero to twice that far, by the last term of Taylor's formula.
@@ -143,7 +143,8 @@ impl Belt {
         })
     }
 
-    /// The guard after so many switches: at the end of the run, or where it touches zero, with the time since the phase began.
+    /// The guard after so many switches: at the end of the run, or where it touches zero, with the
+    /// time since the phase began.
     fn margin(&self, switches: usize, at_end: bool) -> Option<(f64, f64)> {
         let phase = self.phases().nth(switches)?;
         let place = if at_end { OBSERVED } else { phase.touch()? };
@@ -151,8 +152,8 @@ impl Belt {
     }
 }
 
-/// The distance of `point` from a boundary along `normal`, by Newton's method; `None` where the phase that grazes is shorter than
-/// 0.02, so that its sines cancel.
+/// The distance of `point` from a boundary along `normal`, by Newton's method; `None` where the
+/// phase that grazes is shorter than 0.02, so that its sines cancel.
 pub fn distance(point: &Point, normal: &Point, switches: usize, at_end: bool) -> Option<f64> {
     const REACH: f64 = 1e-10;
     let margin = |away: f64| {

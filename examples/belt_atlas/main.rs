@@ -1,19 +1,22 @@
-//! An atlas of a shaken mass on a moving belt: where in the plane of frequency and amplitude its stick–slip changes.
+//! An atlas of a shaken mass on a moving belt: where in the plane of frequency and amplitude its
+//! stick–slip changes.
 //!
-//! A mass on a spring lies on a belt of constant velocity v and is shaken harmonically; mass, stiffness and dry friction are 1:
+//! A mass on a spring lies on a belt of constant velocity v and is shaken harmonically; mass,
+//! stiffness and dry friction are 1:
 //!
 //! ```text
 //! slip:   x″ = 1 − (x − f cos Ωt)   while x′ < v
 //! stick:  x′ = v                    while the load x − f cos Ωt is below 1
 //! ```
 //!
-//! The state is what the guards look at: the slip velocity u = v − x′ and the excess w = x − f cos Ωt − 1 of the load, with
-//! w′ = v − u + fΩ sin Ωt, in slip u′ = w, in stick u = 0. Stick ends where w rises to zero. Slip starts from u = w = 0, a double
-//! zero of u, and ends where u falls back to zero. Three kinds of boundaries part the plane: a slip grazes (u touches zero), a
+//! The state is what the guards look at: the slip velocity u = v − x′ and the excess w = x − f cos
+//! Ωt − 1 of the load, with w′ = v − u + fΩ sin Ωt, in slip u′ = w, in stick u = 0. Stick ends
+//! where w rises to zero. Slip starts from u = w = 0, a double zero of u, and ends where u falls
+//! back to zero. Three kinds of boundaries part the plane: a slip grazes (u touches zero), a
 //! load grazes (w touches zero), and a switch happens just as the observation ends.
 //!
-//! The family is one of transients: v = 0.3, all runs start with the belt at x = 0.5, and end at t = 18. The
-//! mass never overtakes the belt, which would be a third mode: the load stays above −1.
+//! The family is one of transients: v = 0.3, all runs start with the belt at x = 0.5, and end at t
+//! = 18. The mass never overtakes the belt, which would be a third mode: the load stays above −1.
 //!
 //! Every phase has a closed form, with which all is compared: see `closed_form.rs`.
 //!

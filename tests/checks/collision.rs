@@ -9,13 +9,14 @@ use stickslip::solver::{Dopri5, Method};
 
 /// Part of ψ² by which energies may not balance at the default tolerances of Dormand–Prince 8(5,3).
 const BALANCE: f64 = 1e-9;
-/// Largest difference of w between integrator and exact solution, in units of ψ, for springs up to κ = [`SOFT`]; beyond, the number of
-/// steps whose errors add up grows as √κ.
+/// Largest difference of w between integrator and exact solution, in units of ψ, for springs up to
+/// κ = [`SOFT`]; beyond, the number of steps whose errors add up grows as √κ.
 const VELOCITY: f64 = 1e-9;
 const SOFT: f64 = 1e3;
 /// Largest difference of a switch time.
 const TIME: f64 = 1e-8;
-/// Relative change of κ or ψ, times ψ^{2/3} for ψ < 1, that may change which switches the engines find.
+/// Relative change of κ or ψ, times ψ^{2/3} for ψ < 1, that may change which switches the engines
+/// find.
 const UNDECIDED: f64 = 1e-11;
 
 /// Collides `contact` by every engine that takes it, and holds what is true of the results.
@@ -46,14 +47,16 @@ pub fn integrated<M: Method>(
     Ok(result)
 }
 
-/// Holds that two engines found the same, unless a change of ψ in the last digits changes what there is to find.
+/// Holds that two engines found the same, unless a change of ψ in the last digits changes what
+/// there is to find.
 ///
 /// # Errors
 /// What differs.
 pub fn agree(integrated: &Collision, closed: &Collision) -> Result<(), String> {
     let contact = closed.contact;
     if integrated.itinerary() != closed.itinerary() {
-        // A small impact ends its last slip within |w| ≈ 1e-12 ψ^{1/3} of another stick: see `docs/numerics.md`.
+        // A small impact ends its last slip within |w| ≈ 1e-12 ψ^{1/3} of another stick: see
+        // `docs/numerics.md`.
         let undecided = UNDECIDED * contact.psi().min(1.0).powf(-2.0 / 3.0);
         let decided = [-undecided, undecided].into_iter().all(|change| {
             let (kappa, psi) = (contact.kappa(), contact.psi());
@@ -92,7 +95,8 @@ pub fn exact(contact: Contact) -> Result<Result<Collision, ExactError>, String> 
     Ok(result)
 }
 
-/// Holds that an exact collision leaves the margins of the guards that did not fire, if it has few enough switches for them.
+/// Holds that an exact collision leaves the margins of the guards that did not fire, if it has few
+/// enough switches for them.
 fn near_misses(collision: &Collision) -> Result<(), String> {
     let contact = &collision.contact;
     let Ok(margins) = exact::margins(contact) else { return Ok(()) };
@@ -136,7 +140,8 @@ fn sound(collision: &Collision) -> Result<(), String> {
     balanced(&collision.energy, contact.psi())
 }
 
-/// Regimes alternate, slip on the side that its switch says, and the spring is on the side of its limit.
+/// Regimes alternate, slip on the side that its switch says, and the spring is on the side of its
+/// limit.
 fn in_turns(collision: &Collision) -> Result<(), String> {
     let (mut regime, mut side) = (collision.start, Side::Positive);
     for (index, switch) in collision.switches.iter().enumerate() {
@@ -151,7 +156,8 @@ fn in_turns(collision: &Collision) -> Result<(), String> {
     require(regime == Regime::Slip, || format!("ends in {regime}"))
 }
 
-/// Times rise, and times left fall, both within the contact; together they make it up, to the rounding of their sums.
+/// Times rise, and times left fall, both within the contact; together they make it up, to the
+/// rounding of their sums.
 fn in_time(switches: &[Switch], contact_time: f64) -> Result<(), String> {
     let rounding = f64::EPSILON * contact_time * (switches.len() + 4) as f64;
     let (mut time, mut left) = (0.0, contact_time + rounding);

@@ -5,7 +5,8 @@ use stickslip::solver::{
     Start, State, StepSize, SwitchEvent, margins, run,
 };
 
-/// Runs polynomials as guards by both methods, and holds that their signs change where the run says, and nowhere else.
+/// Runs polynomials as guards by both methods, and holds that their signs change where the run
+/// says, and nowhere else.
 ///
 /// # Errors
 /// What does not hold.
@@ -24,8 +25,8 @@ pub fn signs(guards: [[f64; COEFFICIENTS]; 2], step_size: StepSize) -> Result<()
     follow_signs(Dopri5, &Polynomials { guards }, step_size)
 }
 
-/// Runs a system of any expressions by both methods, with its margins, and holds that results are finite, in order and in
-/// the span.
+/// Runs a system of any expressions by both methods, with its margins, and holds that results are
+/// finite, in order and in the span.
 ///
 /// # Errors
 /// What does not hold.
@@ -85,8 +86,8 @@ fn value(coefficients: &[f64; COEFFICIENTS], y: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * y + coefficient)
 }
 
-/// Whether a polynomial is so flat at a root that steps beside it, too short to show the scatter of its values, may leave it
-/// unresolved: see the limits in `docs/numerics.md`.
+/// Whether a polynomial is so flat at a root that steps beside it, too short to show the scatter of
+/// its values, may leave it unresolved: see the limits in `docs/numerics.md`.
 fn is_double_root(coefficients: &[f64; COEFFICIENTS], s: f64) -> bool {
     let size: f64 = coefficients.iter().map(|coefficient| coefficient.abs()).sum();
     let slope =
@@ -151,7 +152,8 @@ fn follow_signs<M: Method>(
 /// Modes of a system of expressions.
 const MODES: usize = 2;
 
-/// A system whose right-hand sides and guards are any expressions; guard 0 leads to the other mode, guard 1 moves the state.
+/// A system whose right-hand sides and guards are any expressions; guard 0 leads to the other mode,
+/// guard 1 moves the state.
 struct Expressions {
     field: [[Expression; 2]; MODES],
     guards: [[Guard; 2]; MODES],

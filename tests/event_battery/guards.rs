@@ -1,4 +1,5 @@
-//! What guards mean: which of several fires, known zeros, the side at the start, and what has no meaning.
+//! What guards mean: which of several fires, known zeros, the side at the start, and what has no
+//! meaning.
 
 use stickslip::solver::{
     Direction, Dop853, Dopri5, Guard, HybridSystem, Method, Observer, Options, Outcome, RunError,
@@ -72,7 +73,8 @@ fn of_two_guards_the_earlier_fires_and_of_equal_ones_the_first() {
             }
         };
         let both = |values: fn(f64) -> [f64; 2], expected| check(values, [guard; 2], expected);
-        // Equal places, in either order of steepness: the guard listed first decides, the other is named.
+        // Equal places, in either order of steepness: the guard listed first decides, the other is
+        // named.
         both(|s| [0.43 - s, 2.0 * (0.43 - s)], (0.43, 0, 0b10));
         both(|s| [(0.43 - s) * (1.0 + s), 0.43 - s], (0.43, 0, 0b10));
         // One that gives way is named, and fires only where it is the earlier one.

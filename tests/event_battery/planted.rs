@@ -242,8 +242,9 @@ fn planted_crossings_are_all_found_and_none_invented() {
 
 #[test]
 fn clusters_below_the_rounding_of_a_step_keep_their_parity() {
-    // Between three roots d apart the guard stays below 0.7 d³. Where that is below 64 units in the last place of
-    // its largest value on the step, the three count as one: its sign before and after is what can be told.
+    // Between three roots d apart the guard stays below 0.7 d³. Where that is below 64 units in the
+    // last place of its largest value on the step, the three count as one: its sign before and
+    // after is what can be told.
     for digits in [5, 7, 9, 11, 13] {
         let case = triple(digits);
         let (mut merged, mut resolved) = (0, 0);
@@ -290,9 +291,9 @@ pub fn dip(width: f64, h: f64) -> Score {
 
 #[test]
 fn a_dip_is_found_unless_it_is_narrow_against_the_step() {
-    // A guard that is no polynomial of the state can hide between the six values of the first look, whatever is
-    // done with them; a longest step excludes that. Found: all at half widths of a tenth of the step and more, three
-    // fifths at a twentieth, none invented.
+    // A guard that is no polynomial of the state can hide between the six values of the first look,
+    // whatever is done with them; a longest step excludes that. Found: all at half widths of a
+    // tenth of the step and more, three fifths at a twentieth, none invented.
     for (width, h) in [(0.3, 1.0), (0.1, 1.0), (0.03, 0.1), (0.01, 0.1), (3e-3, 0.01), (1e-3, 0.01)]
     {
         let score = dip(width, h);

@@ -7,7 +7,8 @@ use stickslip::solver::{
 
 use crate::planted::{Planted, Score, Times, step_sizes};
 
-/// A ball on the floor y = 0 with acceleration −1; the first phase starts at a height, later ones at zero.
+/// A ball on the floor y = 0 with acceleration −1; the first phase starts at a height, later ones
+/// at zero.
 struct Ball {
     restitution: f64,
 }
@@ -210,8 +211,9 @@ pub fn oscillator<M: Method>(method: M, level: f64, tolerance: f64) -> Score {
     score
 }
 
-/// Levels of the sine with how well their crossings can be known at a tolerance of 1e-13: the error of the sine
-/// (2e-14 for 8(5,3), 2e-13 for 5(4)) over its slope there. Measured: 1.7e-12, 2.1e-11, 2.1e-9, 2.1e-8.
+/// Levels of the sine with how well their crossings can be known at a tolerance of 1e-13: the error
+/// of the sine (2e-14 for 8(5,3), 2e-13 for 5(4)) over its slope there. Measured: 1.7e-12, 2.1e-11,
+/// 2.1e-9, 2.1e-8.
 pub const LEVELS: [(f64, f64); 4] =
     [(0.5, 5e-12), (0.99, 6e-11), (1.0 - 1e-6, 6e-9), (1.0 - 1e-8, 6e-8)];
 

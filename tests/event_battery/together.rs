@@ -1,5 +1,5 @@
-//! Guards that vanish together in a mode that goes on unchanged: each crossing counts once, by an event of its own or by one that
-//! names it.
+//! Guards that vanish together in a mode that goes on unchanged: each crossing counts once, by an
+//! event of its own or by one that names it.
 
 use stickslip::solver::{
     Direction, Dop853, Dopri5, Guard, HybridSystem, Method, Observer, Options, Outcome, Start,
@@ -67,7 +67,8 @@ pub fn cases() -> Vec<Case> {
     };
     let simple: &[f64] = &[C];
     let with_another: &[f64] = &[C, 0.9];
-    // A triple root is flat, and of guards closer than 1e-12 of a step the one listed first may decide on the place.
+    // A triple root is flat, and of guards closer than 1e-12 of a step the one listed first may
+    // decide on the place.
     let near = |case| Case { tolerance: 2e-13, ..case };
     vec![
         two("both cross", (simple, Rising, 0), (with_another, Falling, 0), [simple, simple]),
@@ -168,7 +169,8 @@ fn guards_that_vanish_together_fire_once_each() {
     }
 }
 
-/// A guard that is exactly zero where a step ends has come from the side that it had last, however short it was there.
+/// A guard that is exactly zero where a step ends has come from the side that it had last, however
+/// short it was there.
 #[test]
 fn a_crossing_on_the_end_of_a_step_right_after_another() {
     let guards = [
@@ -212,7 +214,8 @@ fn together_at_the_end_of_the_span() {
     }
 }
 
-/// A terminal guard that crosses with one that is listed before it ends the run there, by an event of its own.
+/// A terminal guard that crosses with one that is listed before it ends the run there, by an event
+/// of its own.
 #[test]
 fn a_terminal_guard_that_crosses_with_another_ends_the_run() {
     struct Ends(Direction);

@@ -1,5 +1,6 @@
-//! What must hold whatever the input, for a bounded number of random cases. The fuzz targets (`fuzz/`) hold the same
-//! for as long as they run; `cargo run --release --example full_range -- 1000000` for a million collisions.
+//! What must hold whatever the input, for a bounded number of random cases. The fuzz targets
+//! (`fuzz/`) hold the same for as long as they run; `cargo run --release --example full_range --
+//! 1000000` for a million collisions.
 
 #[path = "../checks/collision.rs"]
 mod collision;
@@ -125,7 +126,8 @@ fn faults_found_before() {
     // A slip that turns round just before the end of contact, beyond what rounding parts.
     let contact = Contact::new(0.45739746090475863, 3.5193950124344e-23, 0.0).unwrap();
     collision::every_engine(contact).unwrap();
-    // Damped: a contact that does not end; the last slip on the wrong side, with a spring of rounding; none at all; a first stick too short for a step.
+    // Damped: a contact that does not end; the last slip on the wrong side, with a spring of
+    // rounding; none at all; a first stick too short for a step.
     let endless = Contact::new(1.9704603153077205, 2853343.992432598, 393262.591084441).unwrap();
     let refused = Collider::new(Dopri5).collide(endless);
     assert!(matches!(refused, Err(CollisionError::Domain(_))), "{refused:?}");
@@ -140,10 +142,12 @@ fn faults_found_before() {
         let held = collision::integrated(&Collider::default(), contact).unwrap();
         assert!(held.is_ok(), "{contact:?}: {held:?}");
     }
-    // A double root at the end of the span, whose guard fires between two steps too short to show its scatter.
+    // A double root at the end of the span, whose guard fires between two steps too short to show
+    // its scatter.
     hybrid::polynomials(&[0x82, 0x02, 0x80, 0x00, 0x00, 0x00, 0xfd, 0x01, 0xff, 0xff, 0x01])
         .unwrap();
-    // A guard that is not a number at its own minimum; a guard that fires where the right-hand side is infinite.
+    // A guard that is not a number at its own minimum; a guard that fires where the right-hand side
+    // is infinite.
     hybrid::expressions(&[
         0x1b, 0xe9, 0xe9, 0xe9, 0xe9, 0xe9, 0xe9, 0xe9, 0xe9, 0xe9, 0xe9, 0xe9, 0xe9, 0xe9, 0xe9,
         0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x31, 0x3d, 0x01, 0x03, 0xb1, 0xb0, 0xb0, 0xb0,

@@ -77,7 +77,8 @@ fn crossings_without_a_vertex_are_found() {
     }
 }
 
-/// Circles that overlap by less than the distance of two nodes, by so little that all labels away from there are right.
+/// Circles that overlap by less than the distance of two nodes, by so little that all labels away
+/// from there are right.
 #[test]
 fn short_overlaps_are_found_and_narrow_gaps_are_not_overlaps() {
     for angle in even(0.0, TAU, 24) {

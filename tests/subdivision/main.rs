@@ -1,4 +1,5 @@
-//! Planes with known answers: how many regions, which areas, which label where; and that what is wrong is found.
+//! Planes with known answers: how many regions, which areas, which label where; and that what is
+//! wrong is found.
 
 mod arrangements;
 mod findings;
@@ -12,7 +13,8 @@ use planes::{
 };
 use stickslip::tracer::{Location, Point, Subdivision, VerifyOptions, verify};
 
-/// Regions with the areas of their labels, to 1e-9; labels at 1e5 random points and beside every curve, up to twice the tolerance.
+/// Regions with the areas of their labels, to 1e-9; labels at 1e5 random points and beside every
+/// curve, up to twice the tolerance.
 fn holds(plane: &Plane, areas: &[(i32, f64)]) -> Subdivision<i32, usize> {
     let made = plane.subdivision().expect("curves with a meaning");
     assert!(made.findings().is_empty(), "{:?}", made.findings());
@@ -75,7 +77,8 @@ fn circles_that_touch() {
     holds(&touching_circles(0.0, false), &[(0, 1.0 - large - small), (1, large), (2, small)]);
 }
 
-/// In all directions, among them those in which both circles have a vertical or horizontal tangent at the touch.
+/// In all directions, among them those in which both circles have a vertical or horizontal tangent
+/// at the touch.
 #[test]
 fn circles_that_touch_in_any_direction() {
     let (large, small) = (PI * 0.0625, PI * 0.01);
@@ -144,8 +147,9 @@ fn a_grid_of_lines() {
     assert!(made.regions().iter().all(|region| region.clearance == 0.125));
 }
 
-/// Nodes off by a fifth of the tolerance: curves that leave a vertex with one tangent cross each other beside it, again and again.
-/// The regions stay, and so does every label that the tolerance does not leave open.
+/// Nodes off by a fifth of the tolerance: curves that leave a vertex with one tangent cross each
+/// other beside it, again and again. The regions stay, and so does every label that the tolerance
+/// does not leave open.
 #[test]
 fn disturbed_curves_keep_their_regions() {
     let planes = [

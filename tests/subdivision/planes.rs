@@ -1,4 +1,5 @@
-//! Planes with known answers: curves from parametrised curves, labels from the signs of explicit functions.
+//! Planes with known answers: curves from parametrised curves, labels from the signs of explicit
+//! functions.
 
 use std::convert::Infallible;
 use std::f64::consts::{PI, TAU};
@@ -28,7 +29,8 @@ impl Plane {
         self
     }
 
-    /// A curve through (x, y), with derivatives (x′, y′), at the `parameters`; `sides` are left and right.
+    /// A curve through (x, y), with derivatives (x′, y′), at the `parameters`; `sides` are left and
+    /// right.
     pub fn curve(
         mut self,
         along: impl Fn(f64) -> [f64; 4],
@@ -108,9 +110,11 @@ pub fn crossing_circles() -> Plane {
         )
 }
 
-/// A circle, and a smaller one that touches it from inside or from outside in the direction `angle`.
+/// A circle, and a smaller one that touches it from inside or from outside in the direction
+/// `angle`.
 ///
-/// The label is not in closed form without the angle: `truth` is for the angle 0 and must be replaced for others.
+/// The label is not in closed form without the angle: `truth` is for the angle 0 and must be
+/// replaced for others.
 pub fn touching_circles(angle: f64, within: bool) -> Plane {
     let (sin, cos) = angle.sin_cos();
     let (touch, middle) = (0.25, if within { 0.15 } else { 0.35 });
@@ -151,7 +155,8 @@ pub fn cusp() -> Plane {
     .curve(branch(-1.0), graded(s, 500), [1, 0], Some([0, 2]))
 }
 
-/// The cusp with both coordinates exchanged: its branches leave upwards, both with a vertical tangent.
+/// The cusp with both coordinates exchanged: its branches leave upwards, both with a vertical
+/// tangent.
 pub fn upright_cusp() -> Plane {
     let mut plane = cusp();
     plane.truth = |p| {
@@ -188,14 +193,16 @@ pub fn figure_of_eight() -> Plane {
     .curve(along, even(PI, TAU, 800), [2, 0], Some([0, 0]))
 }
 
-/// An island of radius 1e-3 and label 2 in one of radius 0.3 and label 1; the first repeats its first node, the second does not.
+/// An island of radius 1e-3 and label 2 in one of radius 0.3 and label 1; the first repeats its
+/// first node, the second does not.
 pub fn islands() -> Plane {
     Plane::new(|p| inside(p, 0.5, 0.5, 0.3) + inside(p, 0.4, 0.6, 1e-3))
         .curve(circle(0.4, 0.6, 1e-3), even(0.3, 0.3 + TAU, 60), [2, 1], None)
         .curve(circle(0.5, 0.5, 0.3), even(0.1, 0.1 + TAU * 199.0 / 200.0, 199), [1, 0], None)
 }
 
-/// Two waves 1e-6 apart, from the left side of the window to the right one. Labels from above: 2, 1, 0.
+/// Two waves 1e-6 apart, from the left side of the window to the right one. Labels from above: 2,
+/// 1, 0.
 pub fn close_curves() -> Plane {
     let wave = |lift: f64| {
         move |x: f64| [x, 0.5 + lift + 0.1 * (6.0 * x).sin(), 1.0, 0.6 * (6.0 * x).cos()]
@@ -213,7 +220,8 @@ pub fn close_curves() -> Plane {
     .curve(wave(1e-6), even(0.0, 1.0, 700), [2, 1], Some([2, 3]))
 }
 
-/// A wave from corner to corner, a circle about a corner, and a circle that touches the window's left side from inside.
+/// A wave from corner to corner, a circle about a corner, and a circle that touches the window's
+/// left side from inside.
 pub fn edges_and_corner() -> Plane {
     let wave = |x: f64| {
         let angle = PI * x;
@@ -233,7 +241,8 @@ pub fn edges_and_corner() -> Plane {
     .curve(circle(0.15, 0.7, 0.15), even(PI, 3.0 * PI, 160), [5, 1], Some([4, 4]))
 }
 
-/// Three upright lines crossed by three level ones: vertices and walls above each other, pieces without extent in x.
+/// Three upright lines crossed by three level ones: vertices and walls above each other, pieces
+/// without extent in x.
 pub fn grid() -> Plane {
     let at = |i: usize| 0.25 * i as f64;
     let mut plane = Plane::new(|p| {
@@ -271,7 +280,8 @@ pub fn grid() -> Plane {
     plane
 }
 
-/// The plane with every node moved by up to `distance` and every tangent turned by up to `angle`, as a trace leaves them.
+/// The plane with every node moved by up to `distance` and every tangent turned by up to `angle`,
+/// as a trace leaves them.
 pub fn disturbed(mut plane: Plane, distance: f64, angle: f64, seed: u64) -> Plane {
     let mut random = fastrand::Rng::with_seed(seed);
     let mut up_to = |size: f64| size * (2.0 * random.f64() - 1.0);

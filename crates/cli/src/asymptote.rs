@@ -1,7 +1,8 @@
 //! A study of the limit of stiff springs: how ε_t tends to 0, and why as κ^{−5/4}.
 //!
-//! Start reading here; then, in this order: `points` (what is measured of full collisions), `profile` (the inner problem
-//! beside them), `fit` (exponent and constant), `findings`, `tables` and `pictures`.
+//! Start reading here; then, in this order: `points` (what is measured of full collisions),
+//! `profile` (the inner problem beside them), `fit` (exponent and constant), `findings`, `tables`
+//! and `pictures`.
 
 mod findings;
 mod fit;

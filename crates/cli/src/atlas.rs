@@ -1,8 +1,10 @@
-//! An atlas: all boundaries of a window on which the switches of a collision change, and the regions between them.
+//! An atlas: all boundaries of a window on which the switches of a collision change, and the
+//! regions between them.
 //!
-//! Start reading here; then, in this order: `frame` (the window and its coordinates), `boundary` (what the tracer's curves mean),
-//! `trace` and `verification` (how an atlas is made), `document` and `file` (how it is stored), `locate` (how it is looked up),
-//! `crossings` (its boundaries at one stiffness), `polyline`, `picture` and `geojson` (how it is drawn, here and elsewhere).
+//! Start reading here; then, in this order: `frame` (the window and its coordinates), `boundary`
+//! (what the tracer's curves mean), `trace` and `verification` (how an atlas is made), `document`
+//! and `file` (how it is stored), `locate` (how it is looked up), `crossings` (its boundaries at
+//! one stiffness), `polyline`, `picture` and `geojson` (how it is drawn, here and elsewhere).
 
 mod boundary;
 mod crossings;

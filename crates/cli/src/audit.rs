@@ -1,10 +1,11 @@
 //! The paper's statements, each tested by a computation of its own.
 //!
-//! Source of the statements: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008). A verdict follows from numbers by a rule,
-//! so that another model of the spring changes it.
+//! Source of the statements: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008). A
+//! verdict follows from numbers by a rule, so that another model of the spring changes it.
 //!
-//! Start reading here; then `statement` (what is said of one), `catalogue` (all of them), `subject` (what computes), and the tests
-//! by topic: `sliding`, `parameters`, `regimes`, `counts` with `line`, `course`, `bounds` with `search`; `report` writes.
+//! Start reading here; then `statement` (what is said of one), `catalogue` (all of them), `subject`
+//! (what computes), and the tests by topic: `sliding`, `parameters`, `regimes`, `counts` with
+//! `line`, `course`, `bounds` with `search`; `report` writes.
 
 mod bounds;
 mod catalogue;
@@ -44,7 +45,8 @@ pub struct Audit {
     pub statements: Vec<Statement>,
 }
 
-/// Tests the statements `numbers`, from 1 to [`COUNT`], on the current threads; `bar` advances by one for each.
+/// Tests the statements `numbers`, from 1 to [`COUNT`], on the current threads; `bar` advances by
+/// one for each.
 ///
 /// # Errors
 /// A collision cannot be computed.

@@ -1,4 +1,5 @@
-//! JSON files of two bodies and their surfaces, with their motion or without: docs/impact.schema.json.
+//! JSON files of two bodies and their surfaces, with their motion or without:
+//! docs/impact.schema.json.
 
 mod field;
 mod file;
@@ -30,7 +31,7 @@ enum Other {
 ///
 /// # Errors
 /// [`Failure::Input`]: the file cannot be read, is not JSON, or does not describe two bodies. It
-/// names the line or the field, and what is accepted there.
+/// names the line or the field, and what is expected there.
 pub fn read_pair(path: &Path) -> Result<Pair, Failure> {
     read(path, |Bodies { sphere: (sphere, _), other, surface }| {
         let other = match other {

@@ -1,7 +1,7 @@
 //! A study of convergence: how errors fall with the step and the tolerance, and what they cost.
 //!
-//! Start reading here; then, in this order: `series` (what is measured), `collisions` (each collision as `collide` computes it),
-//! `findings` (what that says), `tables` and `pictures`.
+//! Start reading here; then, in this order: `series` (what is measured), `collisions` (each
+//! collision as `collide` computes it), `findings` (what that says), `tables` and `pictures`.
 
 mod collisions;
 mod findings;

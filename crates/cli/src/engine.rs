@@ -65,7 +65,8 @@ impl Engine {
         Ok((collision, Some(statistics)))
     }
 
-    /// The course of the collision of `contact`; the exact solution's is that of Dormand–Prince 8(5,3).
+    /// The course of the collision of `contact`; the exact solution's is that of Dormand–Prince
+    /// 8(5,3).
     ///
     /// # Errors
     /// What the integrator reports.
@@ -102,7 +103,7 @@ impl Tolerances {
     /// Reads a relative tolerance.
     ///
     /// # Errors
-    /// What is wrong with it and what is accepted.
+    /// What is wrong with it and what is expected.
     pub fn parse_rtol(text: &str) -> Result<f64, String> {
         parse(text, |rtol| Options { rtol, ..Options::default() })
     }
@@ -110,7 +111,7 @@ impl Tolerances {
     /// Reads an absolute tolerance.
     ///
     /// # Errors
-    /// What is wrong with it and what is accepted.
+    /// What is wrong with it and what is expected.
     pub fn parse_atol(text: &str) -> Result<f64, String> {
         parse(text, |atol| Options { atol, ..Options::default() })
     }
@@ -187,14 +188,14 @@ pub fn all_finite(
 
 /// The number in `text`, if `options` made with it are valid.
 fn parse(text: &str, options: impl Fn(f64) -> Options) -> Result<f64, String> {
-    let accepted = |value: f64| match options(value).validate() {
+    let expected = |value: f64| match options(value).validate() {
         Ok(()) => None,
-        Err(InvalidOption { accepted, .. }) => Some(accepted),
+        Err(InvalidOption { expected, .. }) => Some(expected),
     };
-    let range = accepted(f64::NAN).unwrap_or("a number");
-    let value = number::parse(text).map_err(|problem| format!("{problem}; accepted is {range}"))?;
-    match accepted(value) {
+    let range = expected(f64::NAN).unwrap_or("a number");
+    let value = number::parse(text).map_err(|problem| format!("{problem}; expected {range}"))?;
+    match expected(value) {
         None => Ok(value),
-        Some(range) => Err(format!("out of range; accepted is {range}")),
+        Some(range) => Err(format!("out of range; expected {range}")),
     }
 }

@@ -20,7 +20,7 @@ pub enum Failure {
     Input {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it, and what is accepted.
+        /// What is wrong with it, and what is expected.
         reason: String,
     },
     /// The point cannot be computed.

@@ -1,8 +1,9 @@
 //! Pictures: what all of them have in common.
 //!
-//! A picture is drawn as SVG; a PNG is that SVG rasterised, so that both look the same. Start reading in
-//! [`panel`] (axes and what is drawn against them), [`course`] and [`collision`] (a picture); then [`svg`] and [`text`] (how shapes and
-//! words are written), [`style`] (colours and sizes), [`bitmap`] and [`label`] (maps), [`raster`] (PNG).
+//! A picture is drawn as SVG; a PNG is that SVG rasterised, so that both look the same. Start
+//! reading in [`panel`] (axes and what is drawn against them), [`course`] and [`collision`] (a
+//! picture); then [`svg`] and [`text`] (how shapes and words are written), [`style`] (colours and
+//! sizes), [`bitmap`] and [`label`] (maps), [`raster`] (PNG).
 
 pub mod atlas;
 mod bitmap;
@@ -43,7 +44,7 @@ impl Target {
     /// The picture file `path`, whose name tells its format.
     ///
     /// # Errors
-    /// The name ends otherwise than accepted.
+    /// The name does not end in .svg or .png.
     pub fn new(path: PathBuf) -> Result<Self, String> {
         let is =
             |name: &str| path.extension().is_some_and(|given| given.eq_ignore_ascii_case(name));
@@ -51,9 +52,7 @@ impl Target {
             (true, _) => Format::Svg,
             (_, true) => Format::Png,
             _ => {
-                return Err(
-                    "not a picture; accepted is a name that ends in .svg or .png".to_owned()
-                );
+                return Err("not a picture; expected a name that ends in .svg or .png".to_owned());
             }
         };
         Ok(Self { path, format })

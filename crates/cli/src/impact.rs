@@ -45,7 +45,7 @@ pub fn run(arguments: &ImpactArguments) -> Result<(), Failure> {
     if engine == Engine::Exact && damping_time_s > 0.0 {
         return Err(Failure::Usage(format!(
             "surface.damping_time_s = {damping_time_s:?} cannot be used with --method exact, which \
-             holds without damping; accepted is 0, or --method dop853 or dopri5"
+             holds without damping; expected 0, or --method dop853 or dopri5"
         )));
     }
     let contact = encounter.contact();

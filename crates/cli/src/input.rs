@@ -133,7 +133,7 @@ impl Input {
     fn contact(&self, fields: &ByteRecord) -> Result<Contact, String> {
         if fields.len() != self.header.len() {
             return Err(format!(
-                "{} fields; accepted is one for each column of the header, {}",
+                "{} fields; expected one for each column of the header, {}",
                 fields.len(),
                 self.header.len()
             ));
@@ -187,17 +187,17 @@ impl Read for Window {
 /// The recipe that the columns of `header` make, together with the values given as options.
 fn recipe(header: &ByteRecord, given: &Given, columns: &Columns) -> Result<Recipe, String> {
     if header.is_empty() {
-        return Err("is empty; accepted is a header row, for example kappa,psi".to_owned());
+        return Err("is empty; expected a header row, for example kappa,psi".to_owned());
     }
     let names: Vec<&[u8]> = header.iter().map(<[u8]>::trim_ascii).collect();
     for (index, name) in names.iter().enumerate() {
         let shown = String::from_utf8_lossy(name);
         if names[..index].contains(name) {
-            return Err(format!("two columns are named '{shown}'; accepted are different names"));
+            return Err(format!("two columns are named '{shown}'; expected different names"));
         }
         if columns.results.iter().any(|result| result.as_bytes() == *name) {
             return Err(format!(
-                "column {shown} has the name of a result; accepted are names other than {}",
+                "column {shown} has the name of a result; expected names other than {}",
                 columns.results.join(", ")
             ));
         }
@@ -210,7 +210,7 @@ fn recipe(header: &ByteRecord, given: &Given, columns: &Columns) -> Result<Recip
         let problem = if columns.options {
             explain(error)
         } else {
-            "kappa or psi is missing; accepted are columns kappa and psi".to_owned()
+            "kappa or psi is missing; expected columns kappa and psi".to_owned()
         };
         format!("{problem}; the columns are: {}", String::from_utf8_lossy(&names.join(&b", "[..])))
     })
@@ -219,20 +219,18 @@ fn recipe(header: &ByteRecord, given: &Given, columns: &Columns) -> Result<Recip
 /// What is wrong with the columns.
 fn explain(error: RecipeError) -> String {
     match error {
-        RecipeError::NoKappa => {
-            "kappa is missing; accepted is a column kappa or --kappa".to_owned()
-        }
+        RecipeError::NoKappa => "kappa is missing; expected a column kappa or --kappa".to_owned(),
         RecipeError::NoImpact => {
-            "psi and ratio are missing; accepted is exactly one of them, as a column or an option"
+            "psi and ratio are missing; expected exactly one of them, as a column or an option"
                 .to_owned()
         }
         RecipeError::PsiAndRatio => {
-            "psi and ratio are both given; accepted is exactly one of them, as a column or an \
+            "psi and ratio are both given; expected exactly one of them, as a column or an \
              option"
                 .to_owned()
         }
         RecipeError::GivenTwice { name } => {
-            format!("the column {name} and --{name} are both given; accepted is one of them")
+            format!("the column {name} and --{name} are both given; expected one of them")
         }
         RecipeError::Unused { name } => {
             format!("--{name} has no effect with psi; accepted with ratio only")

@@ -1,11 +1,13 @@
 //! The `stickslip` program: arguments become a plan, the plan is carried out, the outcome becomes
 //! an exit code.
 //!
-//! A library only so that tests and fuzz targets can carry out command lines without starting a process for each.
+//! A library only so that tests and fuzz targets can carry out command lines without starting a
+//! process for each.
 //!
 //! Start reading here; then, in this order: `args` (what may be typed), `plan` (what it means),
-//! `collide`, `batch`, `impact`, `map`, `atlas`, `converge`, `asymptote`, `audit` and `reproduce` (doing it), `completions`,
-//! `man` and `version` (the program about itself), `input`, `bodies` and `json_input` (files read), `table`, `json`, `rows`, `figure` and `output` (results written).
+//! `collide`, `batch`, `impact`, `map`, `atlas`, `converge`, `asymptote`, `audit` and `reproduce`
+//! (doing it), `completions`, `man` and `version` (the program about itself), `input`, `bodies` and
+//! `json_input` (files read), `table`, `json`, `rows`, `figure` and `output` (results written).
 
 mod args;
 mod asymptote;

@@ -47,7 +47,8 @@ fn all_commands(program: &Command) -> io::Result<String> {
 fn page(command: &Command, listed: bool) -> io::Result<String> {
     let manual = Man::new(command.clone());
     let name = command.get_display_name().unwrap_or(command.get_name());
-    // Without a date, which would change from build to build; `Man` would leave out the empty quotes.
+    // Without a date, which would change from build to build; `Man` would leave out the empty
+    // quotes.
     let title = format!(".TH {name} 1 \"\" \"{} {}\"\n", crate::NAME, env!("CARGO_PKG_VERSION"));
     let mut page = title.into_bytes();
     manual.render_name_section(&mut page)?;

@@ -1,8 +1,8 @@
 //! A map of collisions: computed tile by tile, kept tile by tile, and put together at the end.
 //!
-//! Start reading here; then, in this order: `plane` (which collision belongs to which cell), `tile`,
-//! `tiles` and `results` (what is kept, and where), `npz` and `csv` (the finished map), `thumbnail`
-//! and `picture` (some of it, drawn).
+//! Start reading here; then, in this order: `plane` (which collision belongs to which cell),
+//! `tile`, `tiles` and `results` (what is kept, and where), `npz` and `csv` (the finished map),
+//! `thumbnail` and `picture` (some of it, drawn).
 
 mod csv;
 pub mod npz;
@@ -103,7 +103,8 @@ impl MapPlan {
     }
 }
 
-/// Computes successive points. Each depends on itself alone, so that the order of work does not show.
+/// Computes successive points. Each depends on itself alone, so that the order of work does not
+/// show.
 pub fn compute(plane: &Plane, engine: &Engine, points: Range<usize>) -> Tile {
     let mut tile = Tile { eps_t: Vec::new(), switch_count: Vec::new() };
     points
@@ -134,7 +135,8 @@ fn draw<'a>(plan: &MapPlan, tiles: &Tiles, target: &'a Target) -> Result<Unpubli
     target.write(&picture)
 }
 
-/// Says how many points of the map at `path` could not be computed, if there are any, and why the first.
+/// Says how many points of the map at `path` could not be computed, if there are any, and why the
+/// first.
 ///
 /// # Errors
 /// The results cannot be read.

@@ -40,20 +40,20 @@ impl Parameter {
     /// [`Unacceptable`]: not a number, or out of the parameter's range.
     pub fn parse(self, text: &str) -> Result<f64, Unacceptable> {
         let value = number::parse(text)
-            .map_err(|problem| Unacceptable::Number { problem, accepted: self.accepted() })?;
+            .map_err(|problem| Unacceptable::Number { problem, expected: self.expected() })?;
         match self.objection(value) {
             None => Ok(value),
-            Some(accepted) => Err(Unacceptable::Range { accepted }),
+            Some(expected) => Err(Unacceptable::Range { expected }),
         }
     }
 
-    /// What is accepted.
-    fn accepted(self) -> &'static str {
+    /// What is expected.
+    fn expected(self) -> &'static str {
         // No parameter accepts NaN, so that every range answers here.
         self.objection(f64::NAN).unwrap_or("a finite number")
     }
 
-    /// What is accepted, if `value` is not. The model's own ranges come from the model.
+    /// What is expected, if `value` is not. The model's own ranges come from the model.
     fn objection(self, value: f64) -> Option<&'static str> {
         let positive =
             |value: f64| (!(value > 0.0 && value.is_finite())).then_some("a finite number above 0");
@@ -66,26 +66,26 @@ impl Parameter {
             Self::Psi => Contact::new(1.0, value, 0.0),
             Self::Damping => Contact::new(1.0, 1.0, value),
         };
-        contact.err().map(|invalid| invalid.accepted)
+        contact.err().map(|invalid| invalid.expected)
     }
 }
 
-/// Why a text is not accepted as a value.
+/// Why a text is not expected as a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Unacceptable {
     /// Not a number.
-    #[error("{problem}; accepted is {accepted}, written like 18, 1.5e3 or 2/7")]
+    #[error("{problem}; expected {expected}, written like 18, 1.5e3 or 2/7")]
     Number {
         /// What is wrong with it.
         problem: NotANumber,
-        /// What is accepted.
-        accepted: &'static str,
+        /// What is expected.
+        expected: &'static str,
     },
     /// A number out of range.
-    #[error("out of range; accepted is {accepted}")]
+    #[error("out of range; expected {expected}")]
     Range {
-        /// What is accepted.
-        accepted: &'static str,
+        /// What is expected.
+        expected: &'static str,
     },
 }
 

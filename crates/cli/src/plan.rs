@@ -109,10 +109,10 @@ fn explain(error: RecipeError) -> String {
     match error {
         RecipeError::NoKappa => "--kappa is missing".to_owned(),
         RecipeError::NoImpact => {
-            "neither --psi nor --ratio is given; accepted is exactly one of them".to_owned()
+            "neither --psi nor --ratio is given; expected exactly one of them".to_owned()
         }
         RecipeError::PsiAndRatio => {
-            "--psi and --ratio are both given; accepted is exactly one of them".to_owned()
+            "--psi and --ratio are both given; expected exactly one of them".to_owned()
         }
         RecipeError::GivenTwice { name } => format!("--{name} is given twice"),
         RecipeError::Unused { name } => {
@@ -126,7 +126,7 @@ fn require_different(output: (&str, &Path), other: (&str, &Path)) -> Result<(), 
         return Ok(());
     }
     Err(Failure::Usage(format!(
-        "{} {} is the same file as {}; accepted is a file of its own",
+        "{} {} is the same file as {}; expected a file of its own",
         output.0,
         output.1.display(),
         other.0

@@ -15,7 +15,7 @@ impl Range {
     /// Reads `LO:HI`.
     ///
     /// # Errors
-    /// [`NotARange`] says what is wrong and what is accepted.
+    /// [`NotARange`] says what is wrong and what is expected.
     pub fn parse(text: &str) -> Result<Self, NotARange> {
         let (low, high) = text.split_once(':').ok_or(NotARange::Syntax)?;
         let low = number::parse(low).map_err(|problem| NotARange::Low { problem })?;
@@ -53,7 +53,7 @@ pub enum NotARange {
 }
 
 const ACCEPTED_RANGE: &str =
-    "accepted is LO:HI with finite numbers 0 <= LO < HI, written like 0:70 or 2/7:1.5e3";
+    "expected LO:HI with finite numbers 0 <= LO < HI, written like 0:70 or 2/7:1.5e3";
 
 /// Numbers of columns and rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,22 +71,22 @@ impl Size {
     /// Reads `WxH`.
     ///
     /// # Errors
-    /// What is wrong with it and what is accepted.
+    /// What is wrong with it and what is expected.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let accepted = format!(
-            "accepted is WxH, two whole numbers from 1 whose product is at most {}, \
+        let expected = format!(
+            "expected WxH, two whole numbers from 1 whose product is at most {}, \
              written like 1000x800",
             Self::MOST
         );
         let size = text.split_once('x').and_then(|(columns, rows)| {
             Some(Self { columns: columns.trim().parse().ok()?, rows: rows.trim().parse().ok()? })
         });
-        let Some(size) = size else { return Err(format!("not a size; {accepted}")) };
+        let Some(size) = size else { return Err(format!("not a size; {expected}")) };
         let points = size.columns.checked_mul(size.rows);
         if points.is_some_and(|points| (1..=Self::MOST).contains(&points)) {
             Ok(size)
         } else {
-            Err(format!("out of range; {accepted}"))
+            Err(format!("out of range; {expected}"))
         }
     }
 }

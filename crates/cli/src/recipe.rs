@@ -120,7 +120,7 @@ impl Recipe {
         };
         let contact = Contact::new(value(self.kappa)?, psi, value(self.damping)?);
         // Every single value is in its range by now; what is left is ψ made from three of them.
-        contact.map_err(|invalid| ValueError::Psi { psi, accepted: invalid.accepted })
+        contact.map_err(|invalid| ValueError::Psi { psi, expected: invalid.expected })
     }
 }
 
@@ -148,23 +148,23 @@ pub enum RecipeError {
 /// A value from which no contact can be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ValueError {
-    /// A field of a file is not accepted.
+    /// A field of a file is not expected.
     #[error("{name} = {text}: {problem}")]
     Field {
         /// The column.
         name: &'static str,
         /// What it holds.
         text: String,
-        /// Why that is not accepted.
+        /// Why that is not expected.
         problem: Unacceptable,
     },
-    /// Ratio, α and μ are each accepted, but not the ψ that they make.
-    #[error("psi = ratio·alpha/mu = {psi:?} is out of range; accepted is {accepted}")]
+    /// Ratio, α and μ are each expected, but not the ψ that they make.
+    #[error("psi = ratio·alpha/mu = {psi:?} is out of range; expected {expected}")]
     Psi {
         /// The value.
         psi: f64,
-        /// What is accepted.
-        accepted: &'static str,
+        /// What is expected.
+        expected: &'static str,
     },
 }
 

@@ -1,8 +1,9 @@
 //! The figures of the paper computed anew, and a page that shows everything.
 //!
-//! Start reading here; then, in this order: `section` (what a part hands out), `bench` (what parts share), `reading` (the two
-//! meanings of κ), `figure1` to `figure6`, `boundaries` and `studies` (the parts), `points` (where a…o are), `sweep` and `course`
-//! (what several figures need), `page`, `report` and `markup` (what people and programs read).
+//! Start reading here; then, in this order: `section` (what a part hands out), `bench` (what parts
+//! share), `reading` (the two meanings of κ), `figure1` to `figure6`, `boundaries` and `studies`
+//! (the parts), `points` (where a…o are), `sweep` and `course` (what several figures need), `page`,
+//! `report` and `markup` (what people and programs read).
 
 mod bench;
 mod boundaries;
@@ -55,7 +56,8 @@ const PARTS: &[Part] = &[
 /// Computes all parts, writes each when it is done, and the page at the end.
 ///
 /// # Errors
-/// Files cannot be written, a part fails, or something speaks against a result; in the last case the page is complete and says so.
+/// Files cannot be written, a part fails, or something speaks against a result; in the last case
+/// the page is complete and says so.
 pub fn run(plan: &PagePlan) -> Result<(), Failure> {
     study::prepare(&plan.out)?;
     let bench = Bench::new(plan)?;

@@ -1,4 +1,5 @@
-//! The layouts of the JSON that the program writes. A number rises when a field goes or changes its meaning.
+//! The layouts of the JSON that the program writes. A number rises when a field goes or changes its
+//! meaning.
 
 /// A collision.
 pub const COLLISION: &str = "stickslip.collision/1";

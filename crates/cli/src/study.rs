@@ -1,4 +1,5 @@
-//! What a study hands out: numbers for programs, tables for spreadsheets, pictures and sentences for people.
+//! What a study hands out: numbers for programs, tables for spreadsheets, pictures and sentences
+//! for people.
 
 use std::fs;
 use std::io::{self, Write};
@@ -21,7 +22,8 @@ pub struct Study {
     pub title: &'static str,
     /// What was found, a sentence with its numbers each.
     pub findings: Vec<String>,
-    /// All numbers, in an object; its file has the title, the findings and what the other files hold besides.
+    /// All numbers, in an object; its file has the title, the findings and what the other files
+    /// hold besides.
     pub json: Value,
     /// The same as tables.
     pub tables: Vec<Table>,
@@ -148,14 +150,16 @@ impl Table {
         let rows = self.rows.iter().map(|row| row.iter().map(Cell::text).collect());
         let mut writer = csv::Writer::from_writer(Vec::new());
         for row in std::iter::once::<Vec<String>>(header).chain(rows) {
-            // Writing to memory cannot fail, and a row of another length than the header's shows in the file.
+            // Writing to memory cannot fail, and a row of another length than the header's shows in
+            // the file.
             let _ = writer.write_record(&row);
         }
         writer.into_inner().unwrap_or_default()
     }
 }
 
-/// Makes a study on `threads` threads, `None` being one for each core, writes its files into `directory` and prints its findings.
+/// Makes a study on `threads` threads, `None` being one for each core, writes its files into
+/// `directory` and prints its findings.
 ///
 /// # Errors
 /// Files cannot be written, which is tried first, or `make` fails.
@@ -178,7 +182,8 @@ pub fn carry_out(
     Failure::unless_written(study.findings.iter().try_for_each(|line| writeln!(out, "{line}")))
 }
 
-/// Makes sure that files can be written into `directory`, before there is work to lose; creates it where it is missing.
+/// Makes sure that files can be written into `directory`, before there is work to lose; creates it
+/// where it is missing.
 ///
 /// # Errors
 /// It cannot be created or written.
@@ -186,7 +191,7 @@ pub fn prepare(directory: &Path) -> Result<(), Failure> {
     if directory.exists() && !directory.is_dir() {
         let directory = directory.display();
         return Err(Failure::Usage(format!(
-            "--out {directory} is not a directory; accepted is a directory, or a name that is not taken"
+            "--out {directory} is not a directory; expected a directory, or a name that is not taken"
         )));
     }
     let failure = |error| Failure::output(directory, error);

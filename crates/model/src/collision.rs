@@ -12,16 +12,18 @@ use crate::history::History;
 use crate::regularized::{DAMPING, END, Phase, Regularized, STATE, T, U, V};
 use crate::{last_slip, refine, reversals};
 
-/// Above this flatness of a switch, in s, its time would be worth clearly less than the state: the collision is refined.
+/// Above this flatness of a switch, in s, its time would be worth clearly less than the state: the
+/// collision is refined.
 const FLAT: f64 = 30.0;
 
 /// Longest step in s, of which a contact lasts 2.62 without damping.
 ///
-/// Where u is nearly linear, close to both ends of contact, the embedded estimates miss most of the error; there the step is held
-/// to the length on which u bends elsewhere.
+/// Where u is nearly linear, close to both ends of contact, the embedded estimates miss most of the
+/// error; there the step is held to the length on which u bends elsewhere.
 const LONGEST_STEP: f64 = 0.1;
 
-/// Length in s of a damped contact's first stick phase below which the first step has the length of that phase.
+/// Length in s of a damped contact's first stick phase below which the first step has the length of
+/// that phase.
 const BRIEF: f64 = 1e-9;
 
 /// Most steps over √κ; Dormand–Prince 5(4) takes 170 at tolerances of 1e-15.
@@ -71,7 +73,8 @@ impl<M: Method> Collider<M> {
         Self { method, options, refined: true }
     }
 
-    /// A collider with options of one's own that returns just what the method gives, for convergence studies.
+    /// A collider with options of one's own that returns just what the method gives, for
+    /// convergence studies.
     ///
     /// The other ones compute collisions near a graze once more with twice the digits.
     #[must_use]
@@ -91,8 +94,8 @@ impl<M: Method> Collider<M> {
 
     /// The same into a collision whose memory is used again.
     ///
-    /// That saves a copy, and memory for collisions with more than [`FEW_SWITCHES`](crate::FEW_SWITCHES) switches; others allocate
-    /// nothing either way.
+    /// That saves a copy, and memory for collisions with more than
+    /// [`FEW_SWITCHES`](crate::FEW_SWITCHES) switches; others allocate nothing either way.
     ///
     /// # Errors
     /// As [`Self::collide`]; `collision` then holds what was found so far.
@@ -152,7 +155,8 @@ impl<M: Method> Collider<M> {
         self.method
     }
 
-    /// Integrates one collision and keeps its course in time, up to [`History::MOST_STEPS`] steps of it.
+    /// Integrates one collision and keeps its course in time, up to [`History::MOST_STEPS`] steps
+    /// of it.
     ///
     /// # Errors
     /// As [`Self::collide`].
@@ -181,7 +185,8 @@ impl<M: Method> Collider<M> {
             options.max_steps = options.max_steps.min(most);
         }
         let onset = contact.damping() / (contact.kappa() * contact.psi());
-        // A first phase so much shorter than a step is lost in the rounding of the guard that ends it.
+        // A first phase so much shorter than a step is lost in the rounding of the guard that ends
+        // it.
         if contact.damping() > 0.0 && onset < BRIEF {
             options.first_step = options.first_step.map(|h| h.min(4.0 * onset));
         }

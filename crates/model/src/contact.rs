@@ -27,16 +27,17 @@ pub struct Contact {
 
 impl Contact {
     /// A collision with scaled stiffness `kappa` = k_t/(α m β^{4/5} g_n^{2/5}) > 0,
-    /// impact ratio `psi` = (g_t/g_n) α/μ > 0 and scaled damping `damping` = A β^{2/5} g_n^{1/5} ≥ 0.
+    /// impact ratio `psi` = (g_t/g_n) α/μ > 0 and scaled damping `damping` = A β^{2/5} g_n^{1/5} ≥
+    /// 0.
     ///
     /// # Errors
     /// [`InvalidParameter`] names the first parameter that is out of its range.
     pub fn new(kappa: f64, psi: f64, damping: f64) -> Result<Self, InvalidParameter> {
-        let in_range = |name, value: f64, accepted, ok: bool| {
+        let in_range = |name, value: f64, expected, ok: bool| {
             if ok && value.is_finite() {
                 Ok(())
             } else {
-                Err(InvalidParameter { name, value, accepted })
+                Err(InvalidParameter { name, value, expected })
             }
         };
         in_range("kappa", kappa, "a finite number above 0", kappa > 0.0)?;
@@ -66,14 +67,14 @@ impl Contact {
 
 /// A parameter of a collision is out of its range.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("{name} = {value} is out of range; accepted is {accepted}")]
+#[error("{name} = {value} is out of range; expected {expected}")]
 pub struct InvalidParameter {
     /// The parameter's name.
     pub name: &'static str,
     /// The value that was given.
     pub value: f64,
-    /// What is accepted.
-    pub accepted: &'static str,
+    /// What is expected.
+    pub expected: &'static str,
 }
 
 /// Which law the tangential force obeys.

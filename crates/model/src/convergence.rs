@@ -1,8 +1,9 @@
-//! One collision integrated in ways that lose accuracy or keep it: what studies of convergence compare.
+//! One collision integrated in ways that lose accuracy or keep it: what studies of convergence
+//! compare.
 //!
-//! [`integrate`] takes the coordinates and whether switches are located; [`Approximation::error`] compares with a [`reference()`], and
-//! [`measure`] does so for several collisions at once, whose errors together show the order, where that of a single one passes
-//! through zero now and then.
+//! [`integrate`] takes the coordinates and whether switches are located; [`Approximation::error`]
+//! compares with a [`reference()`], and [`measure`] does so for several collisions at once, whose
+//! errors together show the order, where that of a single one passes through zero now and then.
 
 use stickslip_solver::{
     Dop853, HybridSystem, Method, Observer, Options, Outcome, Run, RunError, Start, Statistics,
@@ -32,7 +33,8 @@ pub enum Switching {
         /// Step sizes or tolerances.
         options: Options,
     },
-    /// They take effect where a step happens to end, as in codes without event location: [`run_over_switches`].
+    /// They take effect where a step happens to end, as in codes without event location:
+    /// [`run_over_switches`].
     AtStepEnds {
         /// The size of the steps, in the independent variable of the coordinates.
         step_size: f64,
@@ -57,7 +59,8 @@ pub struct Approximation {
 pub struct Error {
     /// Of the final velocity w; of ε_t, it is this over ψ.
     pub velocity: f64,
-    /// Of the time of each switch; `None` if the switches are others, so that their times have nothing to compare with.
+    /// Of the time of each switch; `None` if the switches are others, so that their times have
+    /// nothing to compare with.
     pub switch_times: Option<Vec<f64>>,
 }
 
@@ -78,7 +81,8 @@ impl Approximation {
     }
 }
 
-/// The collision to compare with: the exact solution without damping; with it, Dormand–Prince 8(5,3) at a tolerance of 1e-15.
+/// The collision to compare with: the exact solution without damping; with it, Dormand–Prince
+/// 8(5,3) at a tolerance of 1e-15.
 ///
 /// # Errors
 /// What the exact solution or the integrator reports.

@@ -1,6 +1,7 @@
 //! Tangential restitution without a spring: the laws to which the collision is compared.
 //!
-//! Source: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008), equations (15), (16) and the end of section 4.
+//! Source: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008), equations (15), (16) and
+//! the end of section 4.
 
 use stickslip_solver::{
     Direction, Dop853, Guard, HybridSystem, Options, Outcome, Start, State, run,
@@ -8,9 +9,11 @@ use stickslip_solver::{
 
 use crate::collision::CollisionError;
 
-/// ε_t of pure Coulomb sliding, max(0, 1 − (1 + ε_n)/ψ), which is max(0, 1 − μ(1 + ε_n)/α · g_n/g_t).
+/// ε_t of pure Coulomb sliding, max(0, 1 − (1 + ε_n)/ψ), which is max(0, 1 − μ(1 + ε_n)/α ·
+/// g_n/g_t).
 ///
-/// It holds for every law of the normal force; sliding that comes to rest stays at rest. [`slide`] integrates it.
+/// It holds for every law of the normal force; sliding that comes to rest stays at rest. [`slide`]
+/// integrates it.
 ///
 /// ```
 /// use stickslip_model::coulomb;
@@ -23,7 +26,8 @@ pub fn restitution(psi: f64, eps_n: f64) -> f64 {
     pragmatic(psi, eps_n, 0.0)
 }
 
-/// ε_t of the pragmatic model max(`floor`, 1 − (1 + ε_n)/ψ), in which a constant stands for all that is not sliding.
+/// ε_t of the pragmatic model max(`floor`, 1 − (1 + ε_n)/ψ), in which a constant stands for all
+/// that is not sliding.
 ///
 /// ```
 /// use stickslip_model::coulomb;
@@ -35,8 +39,8 @@ pub fn pragmatic(psi: f64, eps_n: f64, floor: f64) -> f64 {
     (1.0 - (1.0 + eps_n) / psi).max(floor)
 }
 
-/// A law of the normal force, F = x^{n/2}(x + a ẋ) in scaled units: n = 0 is the linear spring with dashpot, n = 1 viscoelastic
-/// spheres.
+/// A law of the normal force, F = x^{n/2}(x + a ẋ) in scaled units: n = 0 is the linear spring with
+/// dashpot, n = 1 viscoelastic spheres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NormalLaw {
     /// n.

@@ -5,9 +5,7 @@ use crate::exact::MOST_STIFFNESS;
 
 /// A contact is beyond what an engine computes.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "{quantity} = {value:?} is out of the range of {engine}; accepted is {least:e} to {most:e}"
-)]
+#[error("{quantity} = {value:?} is out of the range of {engine}; expected {least:e} to {most:e}")]
 pub struct OutOfDomain {
     /// The engine.
     pub engine: &'static str,
@@ -31,7 +29,8 @@ struct Domain {
     damping: (f64, f64),
 }
 
-/// The exact solution: beyond, energies and the moments of switches near both ends of contact leave the range of doubles.
+/// The exact solution: beyond, energies and the moments of switches near both ends of contact leave
+/// the range of doubles.
 const EXACT: Domain = Domain {
     engine: "the exact solution",
     kappa: (1e-100, MOST_STIFFNESS),
@@ -40,8 +39,8 @@ const EXACT: Domain = Domain {
     damping: (0.0, 0.0),
 };
 
-/// The integrators without damping: a slip that has turned round sticks once more at u = (2/3)κ|w| before it ends at u = 0, which
-/// is told apart only down to |w| ≈ 1e-12 ψ^{1/3}.
+/// The integrators without damping: a slip that has turned round sticks once more at u = (2/3)κ|w|
+/// before it ends at u = 0, which is told apart only down to |w| ≈ 1e-12 ψ^{1/3}.
 const UNDAMPED: Domain = Domain {
     engine: "the integrator",
     kappa: (1e-20, 1e10),
@@ -50,8 +49,9 @@ const UNDAMPED: Domain = Domain {
     damping: (0.0, 0.0),
 };
 
-/// The integrators with damping: the first stick phase is (a/κψ)² long, and the force at the end rounds to 1e-16. A stronger damping
-/// leaves a force of −x/a² at the end, which Dormand–Prince 5(4) does not tell from none, so that the contact goes on.
+/// The integrators with damping: the first stick phase is (a/κψ)² long, and the force at the end
+/// rounds to 1e-16. A stronger damping leaves a force of −x/a² at the end, which Dormand–Prince
+/// 5(4) does not tell from none, so that the contact goes on.
 const DAMPED: Domain = Domain {
     engine: "the integrator",
     kappa: (1e-20, 1e10),

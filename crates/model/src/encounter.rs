@@ -1,6 +1,7 @@
 //! Two bodies about to touch, in three dimensions: start reading here for spheres in SI units.
 //!
-//! Source: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008), equations (4)–(7), (11), (12).
+//! Source: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008), equations (4)–(7), (11),
+//! (12).
 
 use nalgebra::Vector3;
 
@@ -8,7 +9,8 @@ use crate::bodies::{Body, Sphere, Wall};
 use crate::contact::{Contact, InvalidParameter};
 use crate::scaling::{Impact, Pair, Surface};
 
-/// Largest relative difference between the radii and the distance at which bodies count as touching.
+/// Largest relative difference between the radii and the distance at which bodies count as
+/// touching.
 pub const TOUCH: f64 = 1e-6;
 
 /// Where a sphere is and how it moves.
@@ -35,10 +37,11 @@ pub struct Plane {
 
 /// Two bodies that touch and approach each other.
 ///
-/// Positions decide the normal n, from the second body to the first, and the point of contact, which divides the
-/// line between the centres in the ratio of the radii. During contact n and the tangential direction t stay as they are.
-/// The lever arms are the distances of the centres from that point: momentum and angular momentum about any
-/// point are conserved to rounding, although the arms may differ from the radii by [`TOUCH`].
+/// Positions decide the normal n, from the second body to the first, and the point of contact,
+/// which divides the line between the centres in the ratio of the radii. During contact n and the
+/// tangential direction t stay as they are. The lever arms are the distances of the centres from
+/// that point: momentum and angular momentum about any point are conserved to rounding, although
+/// the arms may differ from the radii by [`TOUCH`].
 ///
 /// ```
 /// use stickslip_model::{Collider, Encounter, Material, Motion, Sphere, Surface, Vector3};
@@ -71,14 +74,15 @@ pub struct Encounter {
     pub contact_point_m: Vector3<f64>,
     /// Unit vector n from the second body to the first.
     pub normal: Vector3<f64>,
-    /// Unit vector t along the tangential velocity of the surfaces; `None` in a central impact, which has none.
+    /// Unit vector t along the tangential velocity of the surfaces; `None` in a central impact,
+    /// which has none.
     pub tangent: Option<Vector3<f64>>,
     /// Normal velocity g_n > 0 of approach in m/s.
     pub normal_m_per_s: f64,
     /// Tangential velocity g_t of the surfaces in m/s, 0 in a central impact.
     pub tangential_m_per_s: f64,
-    /// The impact, reduced to what the contact feels. In a central impact, whose tangential motion is nil, its ψ
-    /// stands for another impact with the same normal motion.
+    /// The impact, reduced to what the contact feels. In a central impact, whose tangential motion
+    /// is nil, its ψ stands for another impact with the same normal motion.
     pub impact: Impact,
     pub(crate) parties: [Party; 2],
 }
@@ -149,7 +153,8 @@ impl Encounter {
         Self::new(pair, parties, normal, position_m - normal * height_m)
     }
 
-    /// The scaled collision that decides the outcome; of a central impact, one with the same normal motion.
+    /// The scaled collision that decides the outcome; of a central impact, one with the same normal
+    /// motion.
     #[must_use]
     pub fn contact(&self) -> Contact {
         self.impact.contact
@@ -212,7 +217,7 @@ pub enum EncounterError {
     Invalid(#[from] InvalidParameter),
     /// The bodies are apart, or overlap.
     #[error(
-        "the {name} = {value_m} m: the bodies {}; accepted is {touching_m} m, within {TOUCH:e} of it",
+        "the {name} = {value_m} m: the bodies {}; expected {touching_m} m, within {TOUCH:e} of it",
         if value_m > touching_m { "are apart" } else { "overlap" }
     )]
     NotTouching {
@@ -225,7 +230,7 @@ pub enum EncounterError {
     },
     /// The bodies separate, or keep their distance.
     #[error(
-        "the normal velocity of approach = {normal_m_per_s} m/s: the bodies do not approach; accepted is a finite \
+        "the normal velocity of approach = {normal_m_per_s} m/s: the bodies do not approach; expected a finite \
          number above 0"
     )]
     NotApproaching {
@@ -233,12 +238,10 @@ pub enum EncounterError {
         normal_m_per_s: f64,
     },
     /// The normal of a wall has no direction.
-    #[error(
-        "the wall's normal has no direction; accepted are three finite numbers that are not all 0"
-    )]
+    #[error("the wall's normal has no direction; expected three finite numbers that are not all 0")]
     NoNormal,
     /// The velocity of the surfaces is beyond the range of numbers.
-    #[error("the velocity of the surfaces is not finite; accepted are finite velocities and spins")]
+    #[error("the velocity of the surfaces is not finite; expected finite velocities and spins")]
     NotFinite,
 }
 
@@ -247,8 +250,8 @@ pub(crate) fn tangential(vector: &Vector3<f64>, normal: &Vector3<f64>) -> Vector
     vector - normal * vector.dot(normal)
 }
 
-/// Direction and length of a difference of velocities whose sizes add up to `speed`; `None` if there is nothing
-/// but their rounding.
+/// Direction and length of a difference of velocities whose sizes add up to `speed`; `None` if
+/// there is nothing but their rounding.
 pub(crate) fn direction(difference: &Vector3<f64>, speed: f64) -> Option<(Vector3<f64>, f64)> {
     let length = difference.norm();
     (length > 8.0 * f64::EPSILON * speed).then(|| (difference / length, length))

@@ -4,8 +4,8 @@
 //! slip s·w − v is constant, in stick the spring swings harmonically in time. Only the moments at
 //! which one turns into the other have to be solved for, and each is the one root of a function
 //! in a bracket on which that function is known to be monotone or to cross once: no switch is
-//! looked for by sampling, so none is missed and none invented. What decides tells how near the collision came to other
-//! switches, too: its [`margins`].
+//! looked for by sampling, so none is missed and none invented. What decides tells how near the
+//! collision came to other switches, too: its [`margins`].
 //!
 //! Source of the law: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008).
 
@@ -108,7 +108,8 @@ pub fn collide(contact: Contact) -> Result<Collision, ExactError> {
     Ok(collision)
 }
 
-/// As [`collide`], into a collision whose memory is used again: no number of switches makes a sweep allocate more than once.
+/// As [`collide`], into a collision whose memory is used again: no number of switches makes a sweep
+/// allocate more than once.
 ///
 /// ```
 /// use stickslip_model::{Collision, Contact, exact};

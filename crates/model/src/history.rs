@@ -22,7 +22,8 @@ pub struct Snapshot {
     pub normal_force: f64,
     /// Reduced elongation y of the spring; s F/κ while sliding.
     pub spring: f64,
-    /// Reduced tangential force F_t/μ = −κ y, in the units of the normal force, which bounds it: |F_t|/μ ≤ F.
+    /// Reduced tangential force F_t/μ = −κ y, in the units of the normal force, which bounds it:
+    /// |F_t|/μ ≤ F.
     pub tangential_force: f64,
     /// Reduced tangential velocity w.
     pub velocity: f64,
@@ -30,9 +31,10 @@ pub struct Snapshot {
 
 /// The course of one collision, from [`Collider::history`](crate::Collider::history).
 ///
-/// States are those of the integrator's dense output. At the default tolerances of Dormand–Prince 8(5,3) they are within
-/// 1e-11 of the closed form in x, 4e-12 in v and w, 4e-12/min(κ, √κ) in y, at 1500 times of each of 20 undamped collisions
-/// with κ from 0.02 to 1e4 and ψ from 0.01 to 3. Switches are where the integrator has them: unlike
+/// States are those of the integrator's dense output. At the default tolerances of Dormand–Prince
+/// 8(5,3) they are within 1e-11 of the closed form in x, 4e-12 in v and w, 4e-12/min(κ, √κ) in y,
+/// at 1500 times of each of 20 undamped collisions with κ from 0.02 to 1e4 and ψ from 0.01 to 3.
+/// Switches are where the integrator has them: unlike
 /// [`Collider::collide`](crate::Collider::collide) nothing is computed once more near a graze.
 ///
 /// ```
@@ -113,7 +115,8 @@ impl History {
         self.phases.iter().map(|record| PhaseHistory { history: self, record })
     }
 
-    /// The collision at scaled `time`; at a switch, in the phase that begins. `None` outside the contact.
+    /// The collision at scaled `time`; at a switch, in the phase that begins. `None` outside the
+    /// contact.
     #[must_use]
     pub fn at(&self, time: f64) -> Option<Snapshot> {
         if !(0.0..=self.duration()).contains(&time) {
@@ -192,7 +195,8 @@ impl PhaseHistory<'_> {
         self.history.snapshot(self.record, &self.record.end)
     }
 
-    /// `intervals` + 1 moments from the first to the last, closer to each other near the ends of contact.
+    /// `intervals` + 1 moments from the first to the last, closer to each other near the ends of
+    /// contact.
     ///
     /// They are evenly spaced in s, dt = 2√x ds, in which the motion is smooth.
     pub fn samples(&self, intervals: usize) -> impl Iterator<Item = Snapshot> {

@@ -1,17 +1,19 @@
-//! The last instants of a stiff contact: the inner problem of the limit κ → ∞, which has no parameter.
+//! The last instants of a stiff contact: the inner problem of the limit κ → ∞, which has no
+//! parameter.
 //!
-//! Just before the end of contact |v| = 1, so that x is the time left and L = x^{3/2}/κ. With σ = √κ · (time left),
-//! y = κ^{−7/4} Y and w = κ^{−5/4} W the law becomes
+//! Just before the end of contact |v| = 1, so that x is the time left and L = x^{3/2}/κ. With σ =
+//! √κ · (time left), y = κ^{−7/4} Y and w = κ^{−5/4} W the law becomes
 //!
 //! stick: Ẏ = W, Ẇ = −Y        slip on side s: Y = sσ^{3/2}, Ẇ = −sσ^{3/2}
 //!
-//! with σ falling at the rate 1. A stick phase starts where sY = σ^{3/2} and sW = −(3/2)√σ: its σ decides all that
-//! follows, and the motion is a map of one such *onset* to the next, half a swing later on the other side. Each onset of
-//! an orbit that comes from σ → ∞ has a [`phase`], which falls by 1 from one to the next. The last slip ends with
-//! |W| = F, a function of the phase alone with period 1: it is what is left of a collision, |w_final| = κ^{−5/4} F.
+//! with σ falling at the rate 1. A stick phase starts where sY = σ^{3/2} and sW = −(3/2)√σ: its σ
+//! decides all that follows, and the motion is a map of one such *onset* to the next, half a swing
+//! later on the other side. Each onset of an orbit that comes from σ → ∞ has a [`phase`], which
+//! falls by 1 from one to the next. The last slip ends with |W| = F, a function of the phase alone with period 1: it is what is left of a collision, |w_final| = κ^{−5/4} F.
 //!
-//! [`peak`] has the largest F in closed form; `docs/physics.md` derives it. The stick phases are solved exactly, each
-//! with one root. Onsets and phases are good to 1e-13, F to 4e-13, the closed forms to 2e-15.
+//! [`peak`] has the largest F in closed form; `docs/physics.md` derives it. The stick phases are
+//! solved exactly, each with one root. Onsets and phases are good to 1e-13, F to 4e-13, the closed
+//! forms to 2e-15.
 //!
 //! ```
 //! use stickslip_model::inner;
@@ -29,7 +31,8 @@ pub const FAR: f64 = 100.0;
 
 /// Coefficients b₁, b₂ … of the phase, σ/π + Σ b_k σ^{−k/2}.
 ///
-/// The series that falls by 1 from each onset to the next, computed with 60 digits from that of the map; b₁ = 2√(3/π).
+/// The series that falls by 1 from each onset to the next, computed with 60 digits from that of the
+/// map; b₁ = 2√(3/π).
 pub const PHASE: [f64; 15] = [
     1.954410047611679686345538,
     -0.2387324146378430036533256,
@@ -62,8 +65,9 @@ pub struct HalfSwing {
 impl HalfSwing {
     /// The half swing from an onset at σ = `onset` > 0.
     ///
-    /// The limit falls faster than its rate, L̈ > 0: the spring cannot reach it on the side it comes from, and it
-    /// reaches it on the other before its peak, whose height is at least the limit's at the onset.
+    /// The limit falls faster than its rate, L̈ > 0: the spring cannot reach it on the side it comes
+    /// from, and it reaches it on the other before its peak, whose height is at least the
+    /// limit's at the onset.
     #[must_use]
     pub fn from_onset(onset: f64) -> Self {
         let (spring, velocity) = (onset * onset.sqrt(), -1.5 * onset.sqrt());
@@ -121,14 +125,15 @@ pub fn phase(onset: f64) -> f64 {
     far_phase(onset, PHASE.len()) - passed
 }
 
-/// The last half swing of the orbit whose onsets have `phase` and what differs from it by whole numbers.
+/// The last half swing of the orbit whose onsets have `phase` and what differs from it by whole
+/// numbers.
 #[must_use]
 pub fn last_half_swing(phase: f64) -> HalfSwing {
     last_half_swing_from(phase, FAR, PHASE.len())
 }
 
-/// As [`last_half_swing`], from the first onset at σ > `start` and with the first `terms` coefficients of [`PHASE`]:
-/// to see how fast both converge. `start` is at least 10.
+/// As [`last_half_swing`], from the first onset at σ > `start` and with the first `terms`
+/// coefficients of [`PHASE`]: to see how fast both converge. `start` is at least 10.
 #[must_use]
 pub fn last_half_swing_from(phase: f64, start: f64, terms: usize) -> HalfSwing {
     let phase = phase - phase.floor() + (start / PI).ceil();
@@ -153,13 +158,16 @@ pub struct Peak {
     pub release: f64,
     /// F = |W| at the end of contact.
     pub velocity: f64,
-    /// How F changes with κ^{−5/4}: the largest κ^{5/4}|w_final| is `velocity` + `correction` κ^{−5/4} + O(κ^{−5/2}).
+    /// How F changes with κ^{−5/4}: the largest κ^{5/4}|w_final| is `velocity` + `correction`
+    /// κ^{−5/4} + O(κ^{−5/2}).
     pub correction: f64,
 }
 
-/// The half swing with the largest F, in closed form: its stick phase lasts exactly a quarter of a period.
+/// The half swing with the largest F, in closed form: its stick phase lasts exactly a quarter of a
+/// period.
 ///
-/// With x = `release`, x³ = (9/4)(x + π/2), which has one positive root, and F = (8/27)x^{9/2} − (2/5)x^{5/2} = 4.4848423519475….
+/// With x = `release`, x³ = (9/4)(x + π/2), which has one positive root, and F = (8/27)x^{9/2} −
+/// (2/5)x^{5/2} = 4.4848423519475….
 ///
 /// ```
 /// use stickslip_model::inner::{HalfSwing, peak};
@@ -223,8 +231,9 @@ mod tests {
     #[test]
     fn the_peak_has_its_closed_form() {
         let peak = peak();
-        // All with 40 digits: F as the largest of the map's values, the correction by differentiating the first
-        // order of the map in κ^{−5/4}, the phase by going back to σ = 1500.
+        // All with 40 digits: F as the largest of the map's values, the correction by
+        // differentiating the first order of the map in κ^{−5/4}, the phase by going back
+        // to σ = 1500.
         assert!((peak.release - 2.0035095171077777508).abs() < 1e-15);
         assert!((peak.velocity - 4.4848423519475425884).abs() < 2e-15);
         assert!((peak.correction + 26.873347995682891380).abs() < 2e-14);

@@ -2,13 +2,14 @@
 
 use crate::contact::{Collision, Regime};
 
-/// The largest normal force, (5/4)^{3/5}, in scaled units: κ times the largest elongation of the spring.
+/// The largest normal force, (5/4)^{3/5}, in scaled units: κ times the largest elongation of the
+/// spring.
 pub const FORCE: f64 = 1.1432626298183158660;
 
 /// The largest |y| during `collision`; none with damping, whose largest force has no closed form.
 ///
-/// While sliding the spring is at its limit, which is largest in the middle of the contact; while sticking it is longest where
-/// the velocity vanishes.
+/// While sliding the spring is at its limit, which is largest in the middle of the contact; while
+/// sticking it is longest where the velocity vanishes.
 ///
 /// ```
 /// use stickslip_model::{Contact, exact, largest};

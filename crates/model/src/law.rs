@@ -36,7 +36,8 @@ pub(crate) struct Force<T> {
     pub second: T,
 }
 
-/// A parameter of a contact; stiffness and impact ratio are taken by their logarithms, which suits values of any size.
+/// A parameter of a contact; stiffness and impact ratio are taken by their logarithms, which suits
+/// values of any size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Parameter {
     LnKappa,
@@ -189,7 +190,8 @@ impl<T: Number> Law<T> {
         }
     }
 
-    /// The values of the guards. That of slip is s w − dL/dt, without damping in the form that has no zero of its own where u = 0.
+    /// The values of the guards. That of slip is s w − dL/dt, without damping in the form that has
+    /// no zero of its own where u = 0.
     #[inline(always)]
     pub fn guards<const DAMPED: bool>(&self, phase: Phase, y: &[T; STATE]) -> [T; GUARDS] {
         let (u, v) = (y[U], y[V]);
@@ -210,7 +212,8 @@ impl<T: Number> Law<T> {
                     let force = u * (u * u + self.damping * v);
                     [end, force - pull, force + pull]
                 } else if DAMPED {
-                    // A phase may begin so late that u² + a v is nothing but rounding: the force is what gap and spring say.
+                    // A phase may begin so late that u² + a v is nothing but rounding: the force is
+                    // what gap and spring say.
                     let gap = y[GAP] * self.scale;
                     [gap + pull, gap, gap + pull * 2.0]
                 } else {

@@ -1,15 +1,17 @@
 //! The collision of two frictional viscoelastic spheres, integrated and exact.
 //!
-//! During one contact the tangential force switches several times between Coulomb sliding and a spring
-//! (Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107, 2008). In scaled variables two numbers decide all of
-//! it, the stiffness κ and the impact ratio ψ, and a third one with damping: a [`Contact`]. A [`Collider`]
-//! integrates it, [`exact::collide`] solves it in closed form where there is no damping; both return a
-//! [`Collision`] with every switch.
+//! During one contact the tangential force switches several times between Coulomb sliding and a
+//! spring (Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107, 2008). In scaled variables two
+//! numbers decide all of it, the stiffness κ and the impact ratio ψ, and a third one with damping:
+//! a [`Contact`]. A [`Collider`] integrates it, [`exact::collide`] solves it in closed form where
+//! there is no damping; both return a [`Collision`] with every switch.
 //!
-//! Start reading in [`collision`]; then [`regularized`] (the equations), [`exact`] (the closed form),
-//! [`history`] (its course in time), [`scaling`] (SI units), [`bodies`] and [`encounter`] (spheres in three dimensions),
-//! [`normal`], [`coulomb`] and [`largest`] (formulas to compare with), [`stiff`] and [`inner`] (the limit of stiff springs), [`plain_time`] and
-//! [`convergence`] (the equations as the paper has them, for studies), [`sensitivity`] (derivatives), [`unreset`] (another model of the spring).
+//! Start reading in [`collision`]; then [`regularized`] (the equations), [`exact`] (the closed
+//! form), [`history`] (its course in time), [`scaling`] (SI units), [`bodies`] and [`encounter`]
+//! (spheres in three dimensions), [`normal`], [`coulomb`] and [`largest`] (formulas to compare
+//! with), [`stiff`] and [`inner`] (the limit of stiff springs), [`plain_time`] and [`convergence`]
+//! (the equations as the paper has them, for studies), [`sensitivity`] (derivatives), [`unreset`]
+//! (another model of the spring).
 //!
 //! ```
 //! use stickslip_model::{Collider, Contact, exact};

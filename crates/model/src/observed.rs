@@ -6,32 +6,37 @@ use crate::encounter::{Encounter, Motion, direction, tangential};
 
 /// A collision in the quantities of experiments.
 ///
-/// *Patch* quantities are those of the surfaces where they touch, *centre* quantities those of the relative motion of
-/// the centres, which is what a camera sees of spheres without marks; over a wall, of the motion relative to it.
-/// Angles are measured from the normal, in rad, and are positive on the side to which the motion before the
-/// contact points: a negative angle is a motion thrown back.
+/// *Patch* quantities are those of the surfaces where they touch, *centre* quantities those of the
+/// relative motion of the centres, which is what a camera sees of spheres without marks; over a
+/// wall, of the motion relative to it. Angles are measured from the normal, in rad, and are
+/// positive on the side to which the motion before the contact points: a negative angle is a motion
+/// thrown back.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observed {
-    /// β = −ε_t, the tangential restitution of Walton (1993) and Foerster, Louge, Chang and Allia (Phys. Fluids 6, 1108,
-    /// 1994): 1 is full reversal, −1 no friction.
+    /// β = −ε_t, the tangential restitution of Walton (1993) and Foerster, Louge, Chang and Allia
+    /// (Phys. Fluids 6, 1108, 1994): 1 is full reversal, −1 no friction.
     pub beta: Option<f64>,
-    /// Ψ₁ = g_t/g_n before the contact (Foerster et al. 1994), the tangent of [`Self::patch_impact_angle_rad`].
+    /// Ψ₁ = g_t/g_n before the contact (Foerster et al. 1994), the tangent of
+    /// [`Self::patch_impact_angle_rad`].
     pub patch_psi_1: f64,
-    /// Ψ₂ = ε_t g_t/g_n, tangential velocity after over normal velocity before the contact (same source).
+    /// Ψ₂ = ε_t g_t/g_n, tangential velocity after over normal velocity before the contact (same
+    /// source).
     pub patch_psi_2: f64,
     /// Angle atan(g_t/g_n) of the patch at impact.
     pub patch_impact_angle_rad: f64,
     /// Angle atan(ε_t g_t/(ε_n g_n)) of the patch after the contact.
     pub patch_rebound_angle_rad: f64,
-    /// Tangential velocity of the centre after over that before the contact, e_t of Kharaz, Gorham and Salman (Powder
-    /// Technol. 120, 281, 2001); along the velocity before. `None` if there is none before.
+    /// Tangential velocity of the centre after over that before the contact, e_t of Kharaz, Gorham
+    /// and Salman (Powder Technol. 120, 281, 2001); along the velocity before. `None` if there
+    /// is none before.
     pub centre_e_t: Option<f64>,
     /// Angle of the motion of the centre at impact.
     pub centre_impact_angle_rad: f64,
-    /// Angle of the motion of the centre after the contact, in the plane of the motion before; of a centre that had no
-    /// tangential motion, in the plane of n and t.
+    /// Angle of the motion of the centre after the contact, in the plane of the motion before; of
+    /// a centre that had no tangential motion, in the plane of n and t.
     pub centre_rebound_angle_rad: f64,
-    /// Tangential over normal impulse, never above μ, which it is if sliding goes on in one direction all the time.
+    /// Tangential over normal impulse, never above μ, which it is if sliding goes on in one
+    /// direction all the time.
     pub impulse_ratio: f64,
 }
 

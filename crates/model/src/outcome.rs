@@ -16,7 +16,8 @@ pub struct Outcome {
     pub impulse_n_s: Vector3<f64>,
     /// Coefficient of normal restitution ε_n.
     pub eps_n: f64,
-    /// Coefficient of tangential restitution ε_t = g_t(t_c)/g_t(0), −1 is full reversal; none in a central impact.
+    /// Coefficient of tangential restitution ε_t = g_t(t_c)/g_t(0), −1 is full reversal; none in a
+    /// central impact.
     pub eps_t: Option<f64>,
     /// Duration of the contact in s.
     pub contact_time_s: f64,
@@ -51,7 +52,8 @@ pub struct ForceSwitch {
 
 /// Where the energy of a collision went, in J.
 ///
-/// Kinetic energies are those of the spheres, rotation included, in the frame in which the motions are given.
+/// Kinetic energies are those of the spheres, rotation included, in the frame in which the motions
+/// are given.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EnergyAccount {
     /// Kinetic energy at impact.
@@ -153,7 +155,8 @@ impl Encounter {
 }
 
 impl Party {
-    /// The motion after `impulse` at the point of contact, which turns a sphere with `twist` times its arm.
+    /// The motion after `impulse` at the point of contact, which turns a sphere with `twist` times
+    /// its arm.
     fn after(&self, impulse: Vector3<f64>, twist: Vector3<f64>) -> Motion {
         let Some(sphere) = self.sphere else { return self.motion };
         Motion {

@@ -4,9 +4,10 @@
 //! ẋ = v     v̇ = −F     stick: ẏ = w, ẇ = −κ y     slip: ẇ = −s F, y = s F/κ     F = x^{3/2} + a √x v
 //! ```
 //!
-//! F is not smooth where x = 0. Without damping that is both ends of contact, F ~ t^{3/2}, and a method of order 5 or 8
-//! converges with order about 2.5 here; with damping it is the start alone, as contact ends at F = 0 with x > 0, but F ~ a√t,
-//! and the order is about 1.5. [`crate::regularized`] is the same collision without that defect; nothing but the
+//! F is not smooth where x = 0. Without damping that is both ends of contact, F ~ t^{3/2}, and a
+//! method of order 5 or 8 converges with order about 2.5 here; with damping it is the start alone,
+//! as contact ends at F = 0 with x > 0, but F ~ a√t, and the order is about 1.5.
+//! [`crate::regularized`] is the same collision without that defect; nothing but the
 //! studies ([`crate::convergence`]) should use this one.
 
 use stickslip_solver::{Direction, Guard, HybridSystem, State};

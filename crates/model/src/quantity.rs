@@ -1,4 +1,4 @@
-//! The quantities that describe bodies and surfaces, with the ranges in which they are accepted.
+//! The quantities that describe bodies and surfaces, with the ranges in which they are expected.
 
 use crate::contact::InvalidParameter;
 
@@ -9,7 +9,7 @@ use crate::contact::InvalidParameter;
 ///
 /// assert_eq!(quantity::RADIUS.check(0.02)?, 0.02);
 /// let error = quantity::RADIUS.check(-0.02).unwrap_err().to_string();
-/// assert_eq!(error, "radius_m = -0.02 is out of range; accepted is a finite number above 0, in m");
+/// assert_eq!(error, "radius_m = -0.02 is out of range; expected a finite number above 0, in m");
 /// # Ok::<(), stickslip_model::InvalidParameter>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
@@ -17,7 +17,7 @@ pub struct Quantity {
     /// The name, as fields of structs and files have it.
     pub name: &'static str,
     /// The range and the unit, for people.
-    pub accepted: &'static str,
+    pub expected: &'static str,
     range: Range,
 }
 
@@ -33,7 +33,7 @@ pub const YOUNG_MODULUS: Quantity = positive("young_modulus_pa", "a finite numbe
 /// Poisson's ratio ν.
 pub const POISSON_RATIO: Quantity = Quantity {
     name: "poisson_ratio",
-    accepted: "a number above -1, at most 0.5, without unit",
+    expected: "a number above -1, at most 0.5, without unit",
     range: Range::Poisson,
 };
 /// Density.
@@ -46,7 +46,7 @@ pub const TANGENTIAL_STIFFNESS: Quantity =
 /// Damping time A of the normal force.
 pub const DAMPING_TIME: Quantity = Quantity {
     name: "damping_time_s",
-    accepted: "a finite number, 0 or above, in s",
+    expected: "a finite number, 0 or above, in s",
     range: Range::NotNegative,
 };
 
@@ -71,11 +71,11 @@ impl Quantity {
         if ok && value.is_finite() {
             Ok(value)
         } else {
-            Err(InvalidParameter { name: self.name, value, accepted: self.accepted })
+            Err(InvalidParameter { name: self.name, value, expected: self.expected })
         }
     }
 }
 
-const fn positive(name: &'static str, accepted: &'static str) -> Quantity {
-    Quantity { name, accepted, range: Range::Positive }
+const fn positive(name: &'static str, expected: &'static str) -> Quantity {
+    Quantity { name, expected, range: Range::Positive }
 }

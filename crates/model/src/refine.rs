@@ -1,9 +1,10 @@
 //! Twice the digits for collisions near a graze.
 //!
-//! Where a guard crosses zero at a small slope, an error δ of the state moves the switch by δ over that slope: at a relative
-//! distance d from a graze the switch times are worth 1/√d less than the state. The integrator has by then decided which
-//! switches there are; here the same itinerary is followed once more by a Taylor method in pairs of numbers, whose errors
-//! near 1e-21 leave the times good to rounding.
+//! Where a guard crosses zero at a small slope, an error δ of the state moves the switch by δ over
+//! that slope: at a relative distance d from a graze the switch times are worth 1/√d less than the
+//! state. The integrator has by then decided which switches there are; here the same itinerary is
+//! followed once more by a Taylor method in pairs of numbers, whose errors near 1e-21 leave the
+//! times good to rounding.
 
 use smallvec::SmallVec;
 use stickslip_solver::{Method, Observer, Options, Start, SwitchEvent, run};
@@ -23,9 +24,11 @@ const PHASES: usize = FEW_SWITCHES + 1;
 /// Phases with their lengths in s.
 type Phases = SmallVec<[(Phase, f64); PHASES]>;
 
-/// Replaces times, states, restitution and energies of `collision`, except what damping took, by ones computed with twice the digits.
+/// Replaces times, states, restitution and energies of `collision`, except what damping took, by
+/// ones computed with twice the digits.
 ///
-/// Returns false and changes nothing if Newton's method leaves the neighbourhood of a switch that the integrator found.
+/// Returns false and changes nothing if Newton's method leaves the neighbourhood of a switch that
+/// the integrator found.
 pub(crate) fn refine<M: Method>(method: M, options: &Options, collision: &mut Collision) -> bool {
     let contact = collision.contact;
     let Some(phases) = phases(method, options, contact) else { return false };
@@ -91,7 +94,8 @@ fn phases<M: Method>(method: M, options: &Options, contact: Contact) -> Option<P
     Some(itinerary.0)
 }
 
-/// The contact at one moment: u, v, velocity w, spring y (while sticking) and the time t since the phase began.
+/// The contact at one moment: u, v, velocity w, spring y (while sticking) and the time t since the
+/// phase began.
 #[derive(Clone, Copy, Debug)]
 struct Motion {
     u: Pair,
@@ -224,8 +228,8 @@ impl Series {
         series
     }
 
-    /// The step at which the last terms are below the tolerance; six of them, since at the start of contact only every fifth
-    /// differs from 0.
+    /// The step at which the last terms are below the tolerance; six of them, since at the start of
+    /// contact only every fifth differs from 0.
     fn reach(&self) -> f64 {
         (DEGREE - 5..=DEGREE).fold(1.0, |reach: f64, k| {
             let size = |terms: &[Pair; DEGREE + 1]| terms[k].0.abs();

@@ -1,7 +1,7 @@
 //! The collision in coordinates in which everything is smooth.
 //!
-//! With u = √x and dt = 2u ds the law of Schwager, Becker and Pöschel (Eur. Phys. J. E 27, 107) becomes
-//! polynomial, with the force F = u(u² + a v) and ω = √κ:
+//! With u = √x and dt = 2u ds the law of Schwager, Becker and Pöschel (Eur. Phys. J. E 27, 107)
+//! becomes polynomial, with the force F = u(u² + a v) and ω = √κ:
 //!
 //! ```text
 //! u' = v     v' = −2u²(u² + a v)     t' = 2u
@@ -9,9 +9,9 @@
 //! slip:  w' = −2s u F      y = s F/κ
 //! ```
 //!
-//! A stick phase starts where its limit is reached and left at the same rate: gap = F − s κ y has a double
-//! zero there. In the first step of the phase the gap is therefore integrated by itself, from gap = 0 and
-//! rate = gap' = 0,
+//! A stick phase starts where its limit is reached and left at the same rate: gap = F − s κ y has a
+//! double zero there. In the first step of the phase the gap is therefore integrated by itself,
+//! from gap = 0 and rate = gap' = 0,
 //!
 //! ```text
 //! gap' = rate     rate' = F'' − 2sκ v w + 4u²κ s κ y
@@ -33,8 +33,8 @@ pub const GUARDS: usize = 3;
 pub const U: usize = 0;
 /// v = dx/dt.
 pub const V: usize = 1;
-/// c ω y/σ while sticking, with c = max(1, κ^{1/4}) and σ = min(1, ψ), which makes errors of y and of switch times
-/// comparable to those of w.
+/// c ω y/σ while sticking, with c = max(1, κ^{1/4}) and σ = min(1, ψ), which makes errors of y and
+/// of switch times comparable to those of w.
 pub const SPRING: usize = 2;
 /// w/σ; see [`Regularized::velocity`].
 pub const W: usize = 3;
@@ -77,15 +77,16 @@ pub enum Progress {
 }
 
 impl Phase {
-    /// The first phase: slip without damping, since the limit grows as t^{3/2} and the spring as t; stick
-    /// with it, since the limit then grows as a √t.
+    /// The first phase: slip without damping, since the limit grows as t^{3/2} and the spring as t;
+    /// stick with it, since the limit then grows as a √t.
     #[must_use]
     pub fn first(contact: &Contact) -> Self {
         let regime = if contact.damping() > 0.0 { Regime::Stick } else { Regime::Slip };
         Self { regime, side: Side::Positive, progress: Progress::Touched }
     }
 
-    /// The phase that follows: the other regime, on the other side if the spring has reached its limit there.
+    /// The phase that follows: the other regime, on the other side if the spring has reached its
+    /// limit there.
     #[must_use]
     pub fn after(self, on_other_side: bool) -> Self {
         let regime = match self.regime {
@@ -150,7 +151,8 @@ impl Regularized {
     pub(crate) fn next(&self, phase: Phase, guard: usize, y: &State<STATE>) -> Phase {
         let mut other_side = guard == OTHER_SIDE;
         if phase.regime == Regime::Stick && self.is_damped() && y[SPRING] != 0.0 {
-            // Where the limit falls to 0 with the spring at rounding, only the spring still tells which side it is on.
+            // Where the limit falls to 0 with the spring at rounding, only the spring still tells
+            // which side it is on.
             other_side = (y[SPRING] > 0.0) != (phase.side == Side::Positive);
         }
         phase.after(other_side)
@@ -186,8 +188,8 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
         slope.into()
     }
 
-    /// Each right-hand side has a step compiled for itself, which knows the components that stand still: these cost nothing, and
-    /// quadratures no stage.
+    /// Each right-hand side has a step compiled for itself, which knows the components that stand
+    /// still: these cost nothing, and quadratures no stage.
     fn step<M: Method>(&self, phase: Phase, trial: &Trial<'_, STATE>, step: &mut Step<STATE>) {
         let side = phase.side;
         let settled = phase.progress == Progress::Settled;
@@ -239,7 +241,8 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
         }
     }
 
-    /// Rates in s, which those of stick without damping share with u: divided by it, they do not vanish where the contact ends.
+    /// Rates in s, which those of stick without damping share with u: divided by it, they do not
+    /// vanish where the contact ends.
     fn guard_rates(&self, phase: Phase, _s: f64, y: &State<STATE>) -> [f64; GUARDS] {
         let a = self.contact.damping();
         let (u, v) = (y[U], y[V]);

@@ -1,7 +1,7 @@
 //! Sign changes of the tangential velocity, counted without looking for them.
 
-/// Sign changes of w = w₀ cos ωt − ω y₀ sin ωt (the velocity on a spring with ω² = κ) while t goes from 0
-/// to `duration`, when it ends as `w1`.
+/// Sign changes of w = w₀ cos ωt − ω y₀ sin ωt (the velocity on a spring with ω² = κ) while t goes
+/// from 0 to `duration`, when it ends as `w1`.
 ///
 /// The phase angle swept gives the number; the signs at both ends settle what rounding leaves open.
 pub(crate) fn on_spring(kappa: f64, (y0, w0): (f64, f64), w1: f64, duration: f64) -> usize {

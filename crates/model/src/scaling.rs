@@ -1,6 +1,7 @@
 //! From spheres in SI units to the numbers that decide a collision, and back.
 //!
-//! Source: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008), equations (1), (12), (21)–(24).
+//! Source: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008), equations (1), (12),
+//! (21)–(24).
 
 use crate::bodies::{Body, Material, Sphere};
 use crate::contact::{Contact, InvalidParameter};
@@ -15,7 +16,8 @@ pub struct Surface {
     pub friction: f64,
     /// Stiffness k_t of the tangential spring in kg/s².
     pub tangential_stiffness_kg_per_s2: f64,
-    /// Damping time A in s: F_n = ρ(ξ^{3/2} + A √ξ ξ̇). Many papers write (3/2) A where this one writes A.
+    /// Damping time A in s: F_n = ρ(ξ^{3/2} + A √ξ ξ̇). Many papers write (3/2) A where this one
+    /// writes A.
     pub damping_time_s: f64,
 }
 
@@ -50,10 +52,11 @@ pub struct Pair {
     pub effective_mass_kg: f64,
     /// Effective radius R = R_i R_j/(R_i + R_j) in m.
     pub effective_radius_m: f64,
-    /// Elastic constant ρ = (4/3) E* √R in kg m^{−1/2} s^{−2}; 2Y √R/(3(1 − ν²)) for equal materials.
+    /// Elastic constant ρ = (4/3) E* √R in kg m^{−1/2} s^{−2}; 2Y √R/(3(1 − ν²)) for equal
+    /// materials.
     pub elastic_constant: f64,
-    /// Stiffness ratio 4G*/E* of tangential and normal motion without slip, 1/G* = (2 − ν_i)/G_i + (2 − ν_j)/G_j;
-    /// 2(1 − ν)/(2 − ν) for equal materials.
+    /// Stiffness ratio 4G*/E* of tangential and normal motion without slip, 1/G* = (2 − ν_i)/G_i +
+    /// (2 − ν_j)/G_j; 2(1 − ν)/(2 − ν) for equal materials.
     pub stiffness_ratio: f64,
     /// α = 1/(1 + m R_i²/J_i + m R_j²/J_j); 2/7 for homogeneous spheres.
     pub alpha: f64,
@@ -64,8 +67,9 @@ pub struct Pair {
 impl Pair {
     /// A sphere and what it hits.
     ///
-    /// Two materials act together as in Hertz' contact: 1/E* = (1 − ν_i²)/Y_i + (1 − ν_j²)/Y_j. A wall has infinite
-    /// radius, mass and moment of inertia: R and m are those of the sphere, and α = 1/(1 + m R²/J).
+    /// Two materials act together as in Hertz' contact: 1/E* = (1 − ν_i²)/Y_i + (1 − ν_j²)/Y_j. A
+    /// wall has infinite radius, mass and moment of inertia: R and m are those of the sphere,
+    /// and α = 1/(1 + m R²/J).
     ///
     /// # Errors
     /// [`InvalidParameter`] names the first quantity that is out of its range, or a result that is.
@@ -102,7 +106,7 @@ impl Pair {
             ("alpha", pair.alpha),
         ] {
             if !(value > 0.0 && value.is_finite()) {
-                return Err(InvalidParameter { name, value, accepted: POSITIVE });
+                return Err(InvalidParameter { name, value, expected: POSITIVE });
             }
         }
         Ok(pair)
@@ -122,14 +126,17 @@ impl Pair {
         Self::new(&sphere, &Body::Sphere(sphere), surface)
     }
 
-    /// Scaled stiffness κ = (3/2)(5/4)^{1/5} (4G*/E*)/α of a spring with Mindlin's tangential stiffness.
+    /// Scaled stiffness κ = (3/2)(5/4)^{1/5} (4G*/E*)/α of a spring with Mindlin's tangential
+    /// stiffness.
     ///
-    /// A contact that does not slip has the stiffness k_t = 8G* √(Rξ), 4G*/E* times that of the normal motion,
-    /// dF_n/dξ = 2E* √(Rξ). Both grow with the compression ξ, while the spring of this model has one stiffness: here
-    /// it is taken at the largest compression of a contact without damping. Its κ is then the same for every
-    /// velocity, size and modulus: 4.52 for equal homogeneous spheres with ν = 0.3.
+    /// A contact that does not slip has the stiffness k_t = 8G* √(Rξ), 4G*/E* times that of the
+    /// normal motion, dF_n/dξ = 2E* √(Rξ). Both grow with the compression ξ, while the spring
+    /// of this model has one stiffness: here it is taken at the largest compression of a
+    /// contact without damping. Its κ is then the same for every velocity, size and modulus:
+    /// 4.52 for equal homogeneous spheres with ν = 0.3.
     ///
-    /// Source: R. D. Mindlin, J. Appl. Mech. 16, 259 (1949); K. L. Johnson, Contact Mechanics (1985), section 7.2.
+    /// Source: R. D. Mindlin, J. Appl. Mech. 16, 259 (1949); K. L. Johnson, Contact Mechanics
+    /// (1985), section 7.2.
     #[must_use]
     pub fn mindlin_kappa(&self) -> f64 {
         1.5 * 1.25_f64.powf(0.2) * self.stiffness_ratio / self.alpha
@@ -139,8 +146,8 @@ impl Pair {
     /// `tangential_m_per_s` of the surfaces at the contact.
     ///
     /// # Errors
-    /// [`InvalidParameter`] if a velocity is not positive and finite, or the scaled parameters leave the range
-    /// of numbers.
+    /// [`InvalidParameter`] if a velocity is not positive and finite, or the scaled parameters
+    /// leave the range of numbers.
     pub fn impact(
         &self,
         normal_m_per_s: f64,
@@ -150,7 +157,7 @@ impl Pair {
             [("normal_m_per_s", normal_m_per_s), ("tangential_m_per_s", tangential_m_per_s)]
         {
             if !(value > 0.0 && value.is_finite()) {
-                return Err(InvalidParameter { name, value, accepted: POSITIVE });
+                return Err(InvalidParameter { name, value, expected: POSITIVE });
             }
         }
         let beta = self.elastic_constant / self.effective_mass_kg;
@@ -194,7 +201,8 @@ impl Impact {
         self.pair.effective_mass_kg * self.normal_m_per_s / self.time_unit_s
     }
 
-    /// Largest compression ξ = (5/4)^{2/5} length units in m of a contact without damping; with it, ξ stays below.
+    /// Largest compression ξ = (5/4)^{2/5} length units in m of a contact without damping; with it,
+    /// ξ stays below.
     #[must_use]
     pub fn largest_compression_m(&self) -> f64 {
         1.25_f64.powf(0.4) * self.length_unit_m()
@@ -207,7 +215,8 @@ impl Impact {
     }
 
     /// Mindlin's tangential stiffness k_t = 8G* √(Rξ) in kg/s² of a contact that does not slip, at
-    /// [`Self::largest_compression_m`], where it is largest. [`Pair::mindlin_kappa`] is the κ of it.
+    /// [`Self::largest_compression_m`], where it is largest. [`Pair::mindlin_kappa`] is the κ of
+    /// it.
     #[must_use]
     pub fn mindlin_stiffness_kg_per_s2(&self) -> f64 {
         let Pair { elastic_constant, stiffness_ratio, .. } = self.pair;

@@ -1,10 +1,12 @@
 //! How a collision changes with its parameters.
 //!
-//! The equations of `law` are computed with dual numbers, which carry their derivative along; the solver integrates the derivatives
-//! beside the state and takes them through every switch ([`stickslip_solver::sensitivity`]).
+//! The equations of `law` are computed with dual numbers, which carry their derivative along; the
+//! solver integrates the derivatives beside the state and takes them through every switch
+//! ([`stickslip_solver::sensitivity`]).
 //!
-//! Without damping a contact ends where u = 0, with it where F = u (u² + a v) = 0, earlier by a in time to first order: this is
-//! added to the derivative of the contact time at a = 0, which is that from above.
+//! Without damping a contact ends where u = 0, with it where F = u (u² + a v) = 0, earlier by a in
+//! time to first order: this is added to the derivative of the contact time at a = 0, which is that
+//! from above.
 
 use num_dual::Dual64;
 use stickslip_solver::{
@@ -51,9 +53,10 @@ pub struct Sensitivity {
 impl<M: Method> Collider<M> {
     /// Integrates one collision with the derivatives of its results with respect to κ, ψ and a.
     ///
-    /// The derivatives are those of the collision with its own switches. They are about as accurate as the results, relative to
-    /// their largest value in the course of the collision; at a relative distance d from a graze those of the switch beside it grow
-    /// as 1/√d, and lose as many digits again.
+    /// The derivatives are those of the collision with its own switches. They are about as accurate
+    /// as the results, relative to their largest value in the course of the collision; at a
+    /// relative distance d from a graze those of the switch beside it grow as 1/√d, and lose as
+    /// many digits again.
     ///
     /// ```
     /// use stickslip_model::{Collider, Contact};

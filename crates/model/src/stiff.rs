@@ -1,9 +1,9 @@
 //! The limit of stiff springs, ε_t → 0, from full collisions without damping.
 //!
-//! At fixed κ the final velocity oscillates with ψ, between zeros where a switch falls on the end of contact. The height
-//! of these oscillations is the [`envelope`], which tends to κ^{−5/4} times [`inner::peak`](crate::inner::peak) and does not
-//! depend on which of them is taken. All maxima are found by Brent's method from a bracket, on collisions of the
-//! exact engine.
+//! At fixed κ the final velocity oscillates with ψ, between zeros where a switch falls on the end
+//! of contact. The height of these oscillations is the [`envelope`], which tends to κ^{−5/4} times
+//! [`inner::peak`](crate::inner::peak) and does not depend on which of them is taken. All maxima
+//! are found by Brent's method from a bracket, on collisions of the exact engine.
 
 use std::f64::consts::PI;
 
@@ -13,10 +13,11 @@ use argmin::solver::brent::{BrentOpt, BrentRoot};
 use crate::contact::{Collision, Contact, InvalidParameter};
 use crate::exact::{self, ExactError};
 
-/// (5/4)^{3/5}, the largest value of x^{3/2}: what the bound (27) of Schwager, Becker and Pöschel (2008) lacks.
+/// (5/4)^{3/5}, the largest value of x^{3/2}: what the bound (27) of Schwager, Becker and Pöschel
+/// (2008) lacks.
 ///
-/// The spring's limit reaches (5/4)^{3/5}/κ; with 1/κ instead, as printed in (25), the velocity of a spring let go from
-/// there is 1/√κ, and |ε_t| ≤ 1/(ψ√κ).
+/// The spring's limit reaches (5/4)^{3/5}/κ; with 1/κ instead, as printed in (25), the velocity of
+/// a spring let go from there is 1/√κ, and |ε_t| ≤ 1/(ψ√κ).
 pub const BOUND_FACTOR: f64 = 1.14326262981831586601;
 
 /// The highest of the final velocities beside a point.
@@ -50,10 +51,11 @@ pub enum StiffError {
     Search(String),
 }
 
-/// The largest |w_final| between the two zeros of w_final(ψ) around `psi`, at stiffness `kappa` without damping.
+/// The largest |w_final| between the two zeros of w_final(ψ) around `psi`, at stiffness `kappa`
+/// without damping.
 ///
-/// Only a local maximum is found, the next one uphill from `psi`; from about κ = 2 on there is but one between two zeros.
-/// |w_final| is then good to about 1e-14 of itself, ψ to half as many digits.
+/// Only a local maximum is found, the next one uphill from `psi`; from about κ = 2 on there is but
+/// one between two zeros. |w_final| is then good to about 1e-14 of itself, ψ to half as many digits.
 ///
 /// Cost: about 25 collisions.
 ///
@@ -66,8 +68,8 @@ pub enum StiffError {
 /// ```
 ///
 /// # Errors
-/// [`StiffError::Parameter`] unless κ > 0 and 0 < ψ < 2, above which nothing oscillates; [`StiffError::Exact`] if κ is more
-/// than the exact engine takes.
+/// [`StiffError::Parameter`] unless κ > 0 and 0 < ψ < 2, above which nothing oscillates;
+/// [`StiffError::Exact`] if κ is more than the exact engine takes.
 pub fn envelope(kappa: f64, psi: f64) -> Result<Crest, StiffError> {
     envelope_within(kappa, psi, SMOOTH)
 }
@@ -80,26 +82,30 @@ fn envelope_within(kappa: f64, psi: f64, tolerance: f64) -> Result<Crest, StiffE
     crest(kappa, highest(bracket, tolerance, &height)?)
 }
 
-/// The distance in ψ between two zeros of w_final around `psi` for a stiff spring, π x^{3/2}/√κ at the first switch.
+/// The distance in ψ between two zeros of w_final around `psi` for a stiff spring, π x^{3/2}/√κ at
+/// the first switch.
 ///
-/// The first stick phase starts where v = 1 − ψ, that moves by dψ/x^{3/2} with ψ, and half a swing lasts π/√κ.
+/// The first stick phase starts where v = 1 − ψ, that moves by dψ/x^{3/2} with ψ, and half a swing
+/// lasts π/√κ.
 #[must_use]
 pub fn oscillation(kappa: f64, psi: f64) -> f64 {
     PI * (1.25 * psi * (2.0 - psi)).powf(0.6) / kappa.sqrt()
 }
 
-/// The largest |ε_t| of all ψ from `lowest` to 2 at stiffness `kappa`, from about 2 on, without damping.
+/// The largest |ε_t| of all ψ from `lowest` to 2 at stiffness `kappa`, from about 2 on, without
+/// damping.
 ///
-/// The oscillations of |w_final| are equally high, but for lower ones next to ψ = 0, so that those of |ε_t| = |w_final|/ψ fall with ψ:
-/// maxima are looked for from `lowest` on until none can be higher. Cost: about 30 collisions.
+/// The oscillations of |w_final| are equally high, but for lower ones next to ψ = 0, so that those
+/// of |ε_t| = |w_final|/ψ fall with ψ: maxima are looked for from `lowest` on until none can be
+/// higher. Cost: about 30 collisions.
 ///
 /// # Errors
 /// As [`envelope`].
 pub fn largest_restitution(kappa: f64, lowest: f64) -> Result<Crest, StiffError> {
     let lowest = require_inside(lowest)?;
     let height = |psi: f64| Ok(collide(kappa, psi)?.eps_t().abs());
-    // No oscillation is higher than the uppermost, which lasts to ψ = 2, has two switches and costs next to nothing; its
-    // top is 12.5 κ^{−5/4} from there.
+    // No oscillation is higher than the uppermost, which lasts to ψ = 2, has two switches and costs
+    // next to nothing; its top is 12.5 κ^{−5/4} from there.
     let uppermost = (2.0 - 12.5 * kappa.powf(-1.25)).max(1.0);
     let ceiling = 1.001 * envelope(kappa, uppermost)?.velocity;
     let mut best = (lowest, height(lowest)?);
@@ -131,7 +137,8 @@ pub struct Excess {
 
 /// Where √κ|w_final| exceeds 1, on the oscillation of ψ around 1.
 ///
-/// The maximum lies where the spring touches its limit without sliding (κ = 1.52, ψ = 1.00): w_final(ψ) has a kink there.
+/// The maximum lies where the spring touches its limit without sliding (κ = 1.52, ψ = 1.00):
+/// w_final(ψ) has a kink there.
 ///
 /// # Errors
 /// As [`envelope`].
@@ -150,8 +157,8 @@ fn require_inside(psi: f64) -> Result<f64, StiffError> {
     if psi > 0.0 && psi < 2.0 {
         return Ok(psi);
     }
-    let accepted = "a number above 0 and below 2";
-    Err(InvalidParameter { name: "psi", value: psi, accepted }.into())
+    let expected = "a number above 0 and below 2";
+    Err(InvalidParameter { name: "psi", value: psi, expected }.into())
 }
 
 fn collide(kappa: f64, psi: f64) -> Result<Collision, StiffError> {
@@ -180,7 +187,8 @@ fn eighth(kappa: f64, psi: f64) -> f64 {
     0.125 * oscillation(kappa, psi)
 }
 
-/// An interval with a maximum of `height` inside, reached from `psi` uphill in steps of an eighth of an oscillation.
+/// An interval with a maximum of `height` inside, reached from `psi` uphill in steps of an eighth
+/// of an oscillation.
 fn climb(kappa: f64, psi: f64, height: &Height<'_>) -> Result<(f64, f64), StiffError> {
     let above = |psi: f64| (psi + eighth(kappa, psi)).min(2.0);
     let below = |psi: f64| (psi - eighth(kappa, psi)).max(0.5 * psi);
@@ -204,7 +212,8 @@ fn climb(kappa: f64, psi: f64, height: &Height<'_>) -> Result<(f64, f64), StiffE
 /// What is made large, or zero, as a function of one variable.
 type Height<'a> = dyn Fn(f64) -> Result<f64, StiffError> + 'a;
 
-/// Something to be made small, on an interval that is 0 to 1 to the search, so that its tolerances fit.
+/// Something to be made small, on an interval that is 0 to 1 to the search, so that its tolerances
+/// fit.
 struct Depth<'a> {
     interval: (f64, f64),
     height: &'a Height<'a>,
@@ -330,7 +339,8 @@ mod tests {
     #[test]
     fn the_printed_bound_is_exceeded_and_the_corrected_one_is_not() {
         let found = excess().unwrap();
-        // The place of the kink by bisection of the itinerary at twelve κ, and a polynomial through what is there.
+        // The place of the kink by bisection of the itinerary at twelve κ, and a polynomial through
+        // what is there.
         assert!((found.ratio - 1.11990925531666).abs() < 1e-12, "{found:?}");
         assert!(
             (found.worst.kappa - 1.5204226).abs() < 1e-6

@@ -1,16 +1,18 @@
 //! Another model: a spring that is not reset to the limit while sliding.
 //!
-//! Equations (9) and (10) of Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008), say that the spring follows the motion,
-//! ẏ = w, and that its force is cut off at the limit. The text after (18) adds that the spring is reset to the limit as long as
-//! the limit is active, which is the model of all other modules. Here that sentence is left out:
+//! Equations (9) and (10) of Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008), say that
+//! the spring follows the motion, ẏ = w, and that its force is cut off at the limit. The text after
+//! (18) adds that the spring is reset to the limit as long as the limit is active, which is the
+//! model of all other modules. Here that sentence is left out:
 //!
 //! ```text
 //! stick: ẏ = w, ẇ = −κ y     while κ|y| < F
 //! slip:  ẏ = w, ẇ = −s F     while s κ y > F
 //! ```
 //!
-//! The spring may then grow without limit, and the motion is turned round by a force that should only brake it: at κ = 18
-//! and ψ = 1, ε_t is −1.000 instead of 0.105. The coordinates are those of [`crate::regularized`].
+//! The spring may then grow without limit, and the motion is turned round by a force that should
+//! only brake it: at κ = 18 and ψ = 1, ε_t is −1.000 instead of 0.105. The coordinates are those of
+//! [`crate::regularized`].
 
 use stickslip_solver::{
     Direction, Dop853, Guard, HybridSystem, Observer, Options, Outcome, Start, State, SwitchEvent,
@@ -43,14 +45,15 @@ const TURN: usize = 3;
 /// A collision with a spring that is not reset.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnresetCollision {
-    /// The outcome. Its energy counts what the spring holds beyond the limit as taken by sliding, which may give it back.
+    /// The outcome. Its energy counts what the spring holds beyond the limit as taken by sliding,
+    /// which may give it back.
     pub collision: Collision,
     /// The largest |y|.
     pub largest_spring: f64,
 }
 
-/// Integrates the collision of `contact` with a spring that is not reset, by Dormand–Prince 8(5,3) at the tolerances of
-/// [`Collider`].
+/// Integrates the collision of `contact` with a spring that is not reset, by Dormand–Prince 8(5,3)
+/// at the tolerances of [`Collider`].
 ///
 /// ```
 /// use stickslip_model::{Contact, exact, unreset};
@@ -179,7 +182,8 @@ impl HybridSystem<STATE, GUARDS> for UnresetSpring {
             // It goes on after a reversal.
             (Regime::Slip, Progress::Settled) => [end, leave, Guard::OFF, turn.from_zero(1)],
             (Regime::Stick, Progress::Settled) => [end, leave, leave, turn.from_zero(1)],
-            // Without damping the contact starts at u = 0, where the spring grows as u² and the force as u³.
+            // Without damping the contact starts at u = 0, where the spring grows as u² and the
+            // force as u³.
             (Regime::Slip, Progress::Touched) => {
                 [end.from_zero(1), leave.from_zero(2), Guard::OFF, turn]
             }
@@ -272,7 +276,8 @@ mod tests {
         collide(Contact::new(kappa, psi, damping).unwrap()).unwrap()
     }
 
-    /// Fixed small steps of the classical Runge–Kutta method in plain time through the law as (9) and (10) have it.
+    /// Fixed small steps of the classical Runge–Kutta method in plain time through the law as (9)
+    /// and (10) have it.
     fn in_plain_time(kappa: f64, psi: f64, damping: f64) -> (f64, f64, usize) {
         let force = |x: f64, v: f64| (x.max(0.0).sqrt() * (x.max(0.0) + damping * v)).max(0.0);
         let field = |[x, v, y, w]: [f64; 4]| {

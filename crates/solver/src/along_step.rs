@@ -8,8 +8,8 @@ use crate::method::{Dense, Method, State, Step};
 /// Relative change of state and time by which a guard's sensitivity to them is measured.
 const SLIGHT: f64 = 1e-12;
 
-/// What rounding of time and state to some units in the last place does to a guard's `value` at `y`, if they round like numbers
-/// of the sizes of `s_like` and `y_like`.
+/// What rounding of time and state to some units in the last place does to a guard's `value` at
+/// `y`, if they round like numbers of the sizes of `s_like` and `y_like`.
 ///
 /// Zero where the guard has no value nearby: nothing is known of it beyond its domain.
 pub(crate) fn rounding<const N: usize>(

@@ -3,8 +3,8 @@
 /// Terms of an expansion.
 pub(crate) const TERMS: usize = 9;
 
-/// cos(10° m) for m = 0 … 9: the nodes of degree 8 are at 10°, 30°, … 170°, none of them an end of the
-/// interval, where a quotient may have no value.
+/// cos(10° m) for m = 0 … 9: the nodes of degree 8 are at 10°, 30°, … 170°, none of them an end of
+/// the interval, where a quotient may have no value.
 pub(crate) const COSINES: [f64; 10] = [
     1.0,
     0.984807753012208,

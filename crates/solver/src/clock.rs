@@ -50,8 +50,8 @@ impl Zeno {
         Self { start: s, phase: f64::INFINITY, shrinking: 0 }
     }
 
-    /// Takes note of a switch at `s` that ends a phase of length `phase`; the accumulation point, if there
-    /// is one within `tolerance`.
+    /// Takes note of a switch at `s` that ends a phase of length `phase`; the accumulation point,
+    /// if there is one within `tolerance`.
     pub(crate) fn after_switch(&mut self, s: f64, phase: f64, tolerance: f64) -> Option<f64> {
         // A phase that does not move the time at all has no length.
         let phase = if phase <= f64::EPSILON * (s - self.start) { 0.0 } else { phase };

@@ -63,11 +63,12 @@ fn power(base: f64, exponent: f64) -> f64 {
 
 /// `x^(−1/8)` of a finite x ≥ 0 to 1e-7 of itself; something large for 0.
 ///
-/// The bits of a double are nearly its logarithm, which gives 3 %; the binomial series of (1 − r)^(−1/8), by pairs so that few
-/// operations wait for each other, does the rest.
+/// The bits of a double are nearly its logarithm, which gives 3 %; the binomial series of (1 −
+/// r)^(−1/8), by pairs so that few operations wait for each other, does the rest.
 #[inline]
 fn inverse_eighth_root(x: f64) -> f64 {
-    /// The bits of 1, and the shift that spreads the error of the straight line evenly to both sides.
+    /// The bits of 1, and the shift that spreads the error of the straight line evenly to both
+    /// sides.
     const ONE: u64 = 1.0_f64.to_bits();
     const SHIFT: u64 = (1 << 52) / 1000 * 54;
     const SERIES: [f64; 10] = {

@@ -1,7 +1,7 @@
 //! Dormand–Prince 8(5,3) with its seventh-degree continuous extension.
 //!
-//! Coefficients: the code DOP853 of Hairer and Wanner (Hairer, Nørsett and Wanner, *Solving Ordinary
-//! Differential Equations I*, 2nd ed., section II.10), as printed there in decimals.
+//! Coefficients: the code DOP853 of Hairer and Wanner (Hairer, Nørsett and Wanner, *Solving
+//! Ordinary Differential Equations I*, 2nd ed., section II.10), as printed there in decimals.
 
 use crate::method::{MAX_STAGES, Method, Tableau};
 

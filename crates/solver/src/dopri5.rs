@@ -6,7 +6,8 @@
 
 use crate::method::{MAX_STAGES, Method, Tableau};
 
-/// Dormand–Prince 5(4): order 5, six stages and the derivative at the end, dense output of degree 4.
+/// Dormand–Prince 5(4): order 5, six stages and the derivative at the end, dense output of degree
+/// 4.
 ///
 /// ```
 /// use stickslip_solver::{Dopri5, Method};

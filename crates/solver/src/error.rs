@@ -52,8 +52,8 @@ pub enum RunError {
         /// Where the step started.
         s: f64,
     },
-    /// A guard is zero throughout a step, so that its crossings mean nothing. Where a mode has no use for it, it is
-    /// [`Guard::OFF`](crate::Guard::OFF).
+    /// A guard is zero throughout a step, so that its crossings mean nothing. Where a mode has no
+    /// use for it, it is [`Guard::OFF`](crate::Guard::OFF).
     #[error(
         "guard {guard} is identically zero on a step from s = {s}; a mode that does not use it turns it off"
     )]
@@ -63,8 +63,8 @@ pub enum RunError {
         /// Where the step started.
         s: f64,
     },
-    /// A guard has more structure than any step can resolve: it is not smooth there, or does not start from the zero of which
-    /// [`Guard::from_zero`](crate::Guard::from_zero) tells.
+    /// A guard has more structure than any step can resolve: it is not smooth there, or does not
+    /// start from the zero of which [`Guard::from_zero`](crate::Guard::from_zero) tells.
     #[error(
         "guard {guard} cannot be resolved near s = {s} by a step of {h:e}: it is not smooth, or does not start from the zero that it \
          is said to start from"

@@ -98,7 +98,8 @@ where
     /// Whether all guards stay clearly on the side where they do not fire: true of most steps.
     #[inline(always)]
     fn all_clearly_away(&self, values: &[[f64; G]; 6]) -> bool {
-        // An array of verdicts first, so that the loop is unrolled and the values stay in registers.
+        // An array of verdicts first, so that the loop is unrolled and the values stay in
+        // registers.
         let away: [bool; G] = std::array::from_fn(|guard| {
             let column = values.map(|at_node| at_node[guard]);
             match self.phase.guards[guard].direction() {
@@ -171,7 +172,8 @@ where
             next.simultaneous = self.simultaneous(guard, &at_nodes);
             let on = event.as_mut().map_or(&mut *step, |event| &mut event.step);
             if let Some(preceding) = self.preceding::<M>(&next, on, &values, &statuses)? {
-                // Of guards that fire together the one that precedes decides, wherever rounding puts the others.
+                // Of guards that fire together the one that precedes decides, wherever rounding
+                // puts the others.
                 next = preceding;
                 statuses[next.guard] = Status::Clear;
                 at_nodes = self.values_on(&next.step);
@@ -187,8 +189,8 @@ where
         }
     }
 
-    /// Whether guard `first` decides if it fires together with guard `second`: of both, the one that does not give way, and else
-    /// the one listed first.
+    /// Whether guard `first` decides if it fires together with guard `second`: of both, the one
+    /// that does not give way, and else the one listed first.
     fn precedes(&self, first: usize, second: usize) -> bool {
         let rank = |guard: usize| (self.phase.guards[guard].gives_way(), guard);
         rank(first) < rank(second)
@@ -210,8 +212,8 @@ where
         first
     }
 
-    /// The first of the guards that precede that of `event` and fire with it, where `step` is the one that `event` shortens, with its
-    /// `values` and `statuses`.
+    /// The first of the guards that precede that of `event` and fire with it, where `step` is the
+    /// one that `event` shortens, with its `values` and `statuses`.
     fn preceding<M: Method>(
         &mut self,
         event: &Event<N>,

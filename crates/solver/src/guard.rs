@@ -3,9 +3,9 @@
 /// When a guard fires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
-    /// As soon as it is negative: the guard bounds the domain of its mode. One that is negative when the
-    /// mode is entered fires there and then, so that transitions lead to where it is not; a run whose transitions do not ends as
-    /// [`Outcome::Zeno`](crate::Outcome::Zeno).
+    /// As soon as it is negative: the guard bounds the domain of its mode. One that is negative
+    /// when the mode is entered fires there and then, so that transitions lead to where it is
+    /// not; a run whose transitions do not ends as [`Outcome::Zeno`](crate::Outcome::Zeno).
     Below,
     /// When it falls through zero; one that starts negative waits until it has risen.
     Falling,
@@ -17,7 +17,8 @@ pub enum Direction {
     Off,
 }
 
-/// A guard of a mode: when its value fires a switch, and what is known of it when the mode is entered.
+/// A guard of a mode: when its value fires a switch, and what is known of it when the mode is
+/// entered.
 ///
 /// ```
 /// use stickslip_solver::{Direction, Guard};
@@ -44,14 +45,17 @@ impl Guard {
         Self { direction, zero_order: 0, terminal: false, yields: false }
     }
 
-    /// The guard starts from a zero of this order whenever the mode is entered, also where the run starts.
+    /// The guard starts from a zero of this order whenever the mode is entered, also where the run
+    /// starts.
     ///
-    /// There is no need to say so of a guard that is exactly 0 there and rises. It takes this where rounding may leave
-    /// something else than 0, and where the zero is double: which way the guard leaves it would be anybody's guess.
+    /// There is no need to say so of a guard that is exactly 0 there and rises. It takes this where
+    /// rounding may leave something else than 0, and where the zero is double: which way the
+    /// guard leaves it would be anybody's guess.
     ///
-    /// The zero is divided out before any root is looked for, so the guard can neither fire at the start
-    /// nor need a nudge away from it. What the state's rounding leaves at the start is taken as zero. Of a double zero least is left
-    /// where guard and slope are components of the state that start from exactly 0.
+    /// The zero is divided out before any root is looked for, so the guard can neither fire at the
+    /// start nor need a nudge away from it. What the state's rounding leaves at the start is
+    /// taken as zero. Of a double zero least is left where guard and slope are components of
+    /// the state that start from exactly 0.
     #[must_use]
     pub const fn from_zero(self, order: u32) -> Self {
         Self { zero_order: order, ..self }

@@ -1,7 +1,7 @@
 //! Hybrid systems and what comes of them: start reading here.
 //!
-//! [`HybridSystem`] is what a user writes, [`run`](crate::run) what it is for, [`Observer`] how results come out while
-//! the run goes on.
+//! [`HybridSystem`] is what a user writes, [`run`](crate::run) what it is for, [`Observer`] how
+//! results come out while the run goes on.
 
 use std::fmt;
 
@@ -10,8 +10,8 @@ use crate::method::{Dense, Method, State, Step, Trial};
 
 /// A piecewise-smooth ODE of `N` components with at most `G` guards in a mode.
 ///
-/// The right-hand side and the guards of a mode must be smooth also a little beyond the guards' zeros, since
-/// a trial step may end there.
+/// The right-hand side and the guards of a mode must be smooth also a little beyond the guards'
+/// zeros, since a trial step may end there.
 pub trait HybridSystem<const N: usize, const G: usize> {
     /// A smooth regime, with all that its right-hand side and guards depend on beside the state.
     type Mode: Copy + PartialEq + fmt::Debug;
@@ -25,20 +25,23 @@ pub trait HybridSystem<const N: usize, const G: usize> {
     /// The values of the guards of `mode`; those of unused places are ignored.
     fn guard_values(&self, mode: Self::Mode, s: f64, y: &State<N>) -> [f64; G];
 
-    /// The rates at which the guards of `mode` change along the solution through `y`, whose zeros are the guards' extrema; each may
-    /// be multiplied by anything positive. NaN where they are not known, as in the provided version.
+    /// The rates at which the guards of `mode` change along the solution through `y`, whose zeros
+    /// are the guards' extrema; each may be multiplied by anything positive. NaN where they are
+    /// not known, as in the provided version.
     ///
-    /// Only margins use them. Rates that are not known are replaced by differences of the guards along the field, of fourth order,
-    /// over a small part of the longest step so far ([`mod@crate::margin`]): five times the guards, and some 1e-13 of rounding. A
-    /// guard that changes on a much shorter scale than the solution needs its own rate, or a `max_step` on that scale.
+    /// Only margins use them. Rates that are not known are replaced by differences of the guards
+    /// along the field, of fourth order, over a small part of the longest step so far
+    /// ([`mod@crate::margin`]): five times the guards, and some 1e-13 of rounding. A guard that
+    /// changes on a much shorter scale than the solution needs its own rate, or a `max_step` on
+    /// that scale.
     fn guard_rates(&self, _mode: Self::Mode, _s: f64, _y: &State<N>) -> [f64; G] {
         [f64::NAN; G]
     }
 
     /// The mode in which a phase goes on once its first step is done.
     ///
-    /// A mode that starts from a known zero may need more state for its first step than later, or another
-    /// form of its guards; it then gives way here to one that has the same solutions.
+    /// A mode that starts from a known zero may need more state for its first step than later, or
+    /// another form of its guards; it then gives way here to one that has the same solutions.
     #[inline]
     fn settle(&self, mode: Self::Mode) -> Self::Mode {
         mode
@@ -46,8 +49,9 @@ pub trait HybridSystem<const N: usize, const G: usize> {
 
     /// Takes the step `trial` in `mode`.
     ///
-    /// The provided one serves every system. A system whose modes have right-hand sides of different cost
-    /// may give each mode a step of its own, compiled for that right-hand side alone.
+    /// The provided one serves every system. A system whose modes have right-hand sides of
+    /// different cost may give each mode a step of its own, compiled for that right-hand side
+    /// alone.
     #[inline]
     fn step<M: Method>(&self, mode: Self::Mode, trial: &Trial<'_, N>, step: &mut Step<N>) {
         step.take::<M>(&mut |s, y| self.field(mode, s, y), trial);
@@ -55,7 +59,8 @@ pub trait HybridSystem<const N: usize, const G: usize> {
 
     /// The mode and state that follow when `guard` of `mode` fires at `y`.
     ///
-    /// The provided one changes nothing. It serves guards that end the run, and those that take note of a crossing and go on.
+    /// The provided one changes nothing. It serves guards that end the run, and those that take
+    /// note of a crossing and go on.
     fn transition(
         &self,
         mode: Self::Mode,
@@ -85,16 +90,20 @@ pub struct SwitchEvent<Mode, const N: usize> {
     pub s: f64,
     /// The guard that fired.
     pub guard: usize,
-    /// Further guards of the mode that vanish at the same place, one bit each. Of guards that fire together
-    /// the one listed first decides the transition, unless it gives way ([`Guard::yielding`]).
+    /// Further guards of the mode that vanish at the same place, one bit each. Of guards that fire
+    /// together the one listed first decides the transition, unless it gives way
+    /// ([`Guard::yielding`]).
     ///
-    /// Where mode and state go on unchanged these are the guards that cross here in their direction, as far as rounding tells: they
-    /// have fired with this event and do not fire again. One that only touches is not among them, nor one whose zero can be told
-    /// apart, which fires by itself. A terminal guard and one of [`Direction::Below`](crate::Direction::Below) are not either: they
-    /// fire next, by an event of their own at the same place.
+    /// Where mode and state go on unchanged these are the guards that cross here in their
+    /// direction, as far as rounding tells: they have fired with this event and do not fire
+    /// again. One that only touches is not among them, nor one whose zero can be told
+    /// apart, which fires by itself. A terminal guard and one of
+    /// [`Direction::Below`](crate::Direction::Below) are not either: they fire next, by an
+    /// event of their own at the same place.
     pub simultaneous: u32,
-    /// The guard's largest value in the phase over its slope here, in units of s: an error of the guard relative to that value
-    /// moves the switch by the error times this. Large near a graze.
+    /// The guard's largest value in the phase over its slope here, in units of s: an error of the
+    /// guard relative to that value moves the switch by the error times this. Large near a
+    /// graze.
     pub flatness: f64,
     /// The mode that ended.
     pub from: Mode,
@@ -106,8 +115,8 @@ pub struct SwitchEvent<Mode, const N: usize> {
     pub after: State<N>,
 }
 
-/// A guard came so close to zero without firing, or fired so briefly, that the dense output could not tell;
-/// a step of the method to the extremum did.
+/// A guard came so close to zero without firing, or fired so briefly, that the dense output could
+/// not tell; a step of the method to the extremum did.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grazing<Mode> {
     /// Where.

@@ -2,9 +2,9 @@
 //!
 //! Along the dense output a guard is an analytic function q of the step fraction θ. It is expanded
 //! in Chebyshev polynomials on panels narrow enough for degree 8, its critical points are isolated
-//! by coefficient bounds and subdivision, and they cut the step into pieces on which q is monotone. On a
-//! monotone piece the signs at the ends decide. Where a sign lies within the error of the dense
-//! output, the method itself is asked, by a step to that point.
+//! by coefficient bounds and subdivision, and they cut the step into pieces on which q is monotone.
+//! On a monotone piece the signs at the ends decide. Where a sign lies within the error of the
+//! dense output, the method itself is asked, by a step to that point.
 
 use std::ops::ControlFlow;
 
@@ -14,21 +14,23 @@ use crate::panel::{Panel, Points};
 /// Panels narrower than 2^−`DEPTH` of the step are not cut further.
 const DEPTH: u32 = 12;
 const NARROWEST: f64 = 1.0 / (1_u32 << DEPTH) as f64;
-/// Panels are halved at most this often between critical points; stretches that are flat to within the error
-/// end the search earlier.
+/// Panels are halved at most this often between critical points; stretches that are flat to within
+/// the error end the search earlier.
 const CRITICAL_DEPTH: u32 = 45;
 
-/// By how much the dense output's error may exceed its last term. A value that is too large costs steps of the method; one
-/// too small would cost decisions.
+/// By how much the dense output's error may exceed its last term. A value that is too large costs
+/// steps of the method; one too small would cost decisions.
 const SAFETY: f64 = 4.0;
 /// The part of the step whose expansion gives the value at the start of a quotient.
 const OPENING: f64 = 0.25;
 /// A value counts as beyond its noise at this multiple of the noise's standard deviation.
 const BEYOND_NOISE: f64 = 32.0;
-/// Points in a row from which the noise is measured, and the order of the differences that are taken of them.
+/// Points in a row from which the noise is measured, and the order of the differences that are
+/// taken of them.
 const ROW: usize = 9;
 const DIFFERENCES: usize = 6;
-/// By how much such a difference is larger than the noise: the square root of the sum of its squared weights, C(12, 6).
+/// By how much such a difference is larger than the noise: the square root of the sum of its
+/// squared weights, C(12, 6).
 const DIFFERENCED: f64 = 30.397_368_307_141_3;
 
 /// A guard's value along a step.
@@ -37,7 +39,8 @@ pub(crate) trait Curve {
     type Error;
     /// By the dense output, and by the dense output without its last term.
     fn dense(&mut self, theta: f64) -> (f64, f64);
-    /// What the rounding of state and time may do to a value: at the start of the step, and at most.
+    /// What the rounding of state and time may do to a value: at the start of the step, and at
+    /// most.
     fn rounding(&mut self) -> (f64, f64);
     /// By a step of the method to `theta`.
     fn truth(&mut self, theta: f64) -> Result<f64, Self::Error>;
@@ -73,10 +76,10 @@ pub(crate) enum Verdict {
 
 /// Finds the first crossing of a curve from ≥ 0 to < 0.
 ///
-/// `zero_order` is the order of a known zero at θ = 0, which is divided out, and `side` the sign with which the curve
-/// leaves it, 0 if that is not known; where it is, values up to `hidden` count as zero. `start` and `end` are the curve's values at the ends
-/// of the step. If the curve bounds a `domain`, a negative start counts.
-/// Touches met before the crossing go to `on_touch`.
+/// `zero_order` is the order of a known zero at θ = 0, which is divided out, and `side` the sign
+/// with which the curve leaves it, 0 if that is not known; where it is, values up to `hidden` count
+/// as zero. `start` and `end` are the curve's values at the ends of the step. If the curve bounds a
+/// `domain`, a negative start counts. Touches met before the crossing go to `on_touch`.
 pub(crate) fn first_crossing<C: Curve>(
     curve: &mut C,
     (zero_order, side, hidden): (u32, f64, f64),
@@ -104,7 +107,8 @@ pub(crate) fn first_crossing<C: Curve>(
             }
             let error = accuracy.on(&panel, zero_order);
             before = Some((0.0, opening)).filter(|_| opening.abs() > error);
-            // A shorter step brings the opening nearer to zero, but not what noise and rounding do at the start.
+            // A shorter step brings the opening nearer to zero, but not what noise and rounding do
+            // at the start.
             if before.is_none() && 2.0 * accuracy.lasting(&panel, zero_order) < error {
                 return Ok(Verdict::TooCoarse);
             }
@@ -137,8 +141,9 @@ pub(crate) fn first_crossing<C: Curve>(
     })
 }
 
-/// The signs of a curve where its first and its last side shows on a step; at the ends of it what is within `hidden` of zero is on
-/// neither. 0 where none shows; `None` if a shorter step is needed.
+/// The signs of a curve where its first and its last side shows on a step; at the ends of it what
+/// is within `hidden` of zero is on neither. 0 where none shows; `None` if a shorter step is
+/// needed.
 pub(crate) fn sides<C: Curve>(
     curve: &mut C,
     hidden: f64,
@@ -168,7 +173,8 @@ pub(crate) fn sides<C: Curve>(
     Ok(walked.map(|_| sides))
 }
 
-/// How far a curve's values scatter where the step starts or, if `at_end`, ends, if that is more than their own rounding there.
+/// How far a curve's values scatter where the step starts or, if `at_end`, ends, if that is more
+/// than their own rounding there.
 pub(crate) fn noise<C: Curve>(curve: &mut C, at_end: bool) -> f64 {
     let width = NARROWEST / 64.0;
     let (low, high) = if at_end { (1.0 - width, 1.0) } else { (0.0, width) };
@@ -177,9 +183,10 @@ pub(crate) fn noise<C: Curve>(curve: &mut C, at_end: bool) -> f64 {
     if noise > BEYOND_NOISE * f64::EPSILON * largest { noise } else { 0.0 }
 }
 
-/// Visits, from left to right, points between which a quotient is monotone, each with the value there; leaves out those whose
-/// value the noise and `hidden`, in the guard, leave on neither side. The value at the end is given, with what leaves that on
-/// neither side: the middle of the last piece then stands for it. `None` if the step is too coarse.
+/// Visits, from left to right, points between which a quotient is monotone, each with the value
+/// there; leaves out those whose value the noise and `hidden`, in the guard, leave on neither side.
+/// The value at the end is given, with what leaves that on neither side: the middle of the last
+/// piece then stands for it. `None` if the step is too coarse.
 fn walk<C: Curve, B>(
     quotient: &mut Quotient<'_, C>,
     accuracy: &mut Accuracy,
@@ -202,7 +209,8 @@ fn walk<C: Curve, B>(
         }
         let narrow = high - low < 1.5 * NARROWEST;
         if panel.tail() > error && narrow {
-            // What no panel is narrow enough for may be noise, which a shorter step would not diminish.
+            // What no panel is narrow enough for may be noise, which a shorter step would not
+            // diminish.
             accuracy.noise = accuracy.noise.max(quotient.noise(low, high));
             error = accuracy.on(&panel, order);
         }
@@ -308,8 +316,9 @@ impl<C: Curve> Quotient<'_, C> {
             let theta = f64::from(j) / 16.0;
             let divisor = power(theta, self.order);
             let (fine, coarse) = self.curve.dense(theta);
-            // The error vanishes as θ²(1−θ)² at the ends of the step, but its ratio to a double zero at the start does
-            // not, where the last term's does: 16 is the inverse of the maximum of θ²(1−θ)².
+            // The error vanishes as θ²(1−θ)² at the ends of the step, but its ratio to a double
+            // zero at the start does not, where the last term's does: 16 is the inverse
+            // of the maximum of θ²(1−θ)².
             let weight = if self.order > 1 { (1.0 / divisor).max(16.0) } else { 1.0 / divisor };
             let error = SAFETY * weight * (fine - coarse).abs();
             if error.is_nan() {
@@ -321,11 +330,13 @@ impl<C: Curve> Quotient<'_, C> {
         accuracy
     }
 
-    /// How far the curve's values scatter between two step fractions, beyond which they mean something.
+    /// How far the curve's values scatter between two step fractions, beyond which they mean
+    /// something.
     ///
-    /// High differences of successive values are left by noise alone, which is estimated from them (Moré and Wild, SIAM J. Sci.
-    /// Comput. 33 (2011) 1292). What a function does diminishes when the values move together, and a jump is in one place; noise
-    /// is neither: of two spacings the smaller estimate counts, of three places the middle one.
+    /// High differences of successive values are left by noise alone, which is estimated from them
+    /// (Moré and Wild, SIAM J. Sci. Comput. 33 (2011) 1292). What a function does diminishes
+    /// when the values move together, and a jump is in one place; noise is neither: of two
+    /// spacings the smaller estimate counts, of three places the middle one.
     fn noise(&mut self, low: f64, high: f64) -> f64 {
         let mut at = [0.0, 1.0 / 3.0, 2.0 / 3.0].map(|place| {
             let start = low + place * (high - low);

@@ -1,15 +1,16 @@
 //! Adaptive integration of piecewise-smooth ODEs that finds every switch.
 //!
 //! A hybrid system has modes, a smooth right-hand side in each, guards whose zeros end a mode, and
-//! transitions. [`run`] integrates it with a Dormand–Prince pair. On every step it is *decided*, not
-//! sampled, whether a guard crosses zero: the dense output makes the guard an analytic function of
-//! the step fraction, whose monotone pieces are isolated. Switch times come from steps of the method to
-//! the switch, not from the dense output.
+//! transitions. [`run`] integrates it with a Dormand–Prince pair. On every step it is *decided*,
+//! not sampled, whether a guard crosses zero: the dense output makes the guard an analytic function
+//! of the step fraction, whose monotone pieces are isolated. Switch times come from steps of the
+//! method to the switch, not from the dense output.
 //!
-//! Start reading in [`hybrid`]; then, in this order: `runner` (from switch to switch), `phase` and `event` (one step and its guards),
-//! `quick`, `isolate` and `chebyshev` (the decision), `locate` (the refinement), [`method`], [`Dopri5`] and [`Dop853`], `control`, `clock`, [`smooth`],
-//! [`trajectory`], [`mod@margin`] and `prescribed`, [`sensitivity`], `unlocated` and `order` (what is lost without all this, and how
-//! orders are measured).
+//! Start reading in [`hybrid`]; then, in this order: `runner` (from switch to switch), `phase` and
+//! `event` (one step and its guards), `quick`, `isolate` and `chebyshev` (the decision), `locate`
+//! (the refinement), [`method`], [`Dopri5`] and [`Dop853`], `control`, `clock`, [`smooth`],
+//! [`trajectory`], [`mod@margin`] and `prescribed`, [`sensitivity`], `unlocated` and `order` (what
+//! is lost without all this, and how orders are measured).
 //!
 //! ```
 //! use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State, run};
@@ -57,9 +58,10 @@
 //! | no guards at all | [`integrate`] with a closure |
 //! | how far a run is from another sequence of switches | [`fn@margins`], and the crate `stickslip-tracer` |
 //!
-//! The repository's `examples`, each held to a closed form or an independent value in less than 80 lines: `bouncing_ball` (switches that
-//! accumulate), `friction_belt` (stick–slip), `relay` (feedback with hysteresis), `impact_oscillator` (near grazing), `arenstorf`
-//! (smooth, with dense output).
+//! The repository's `examples`, each held to a closed form or an independent value in less than 80
+//! lines: `bouncing_ball` (switches that accumulate), `friction_belt` (stick–slip), `relay`
+//! (feedback with hysteresis), `impact_oscillator` (near grazing), `arenstorf` (smooth, with dense
+//! output).
 
 mod along_step;
 mod chebyshev;

@@ -1,7 +1,7 @@
 //! The place of a switch, by steps of the method itself.
 //!
-//! The dense output only says where to start: each iterate is a step from the same start to a trial place,
-//! so a switch is as accurate as any other point of the run.
+//! The dense output only says where to start: each iterate is a step from the same start to a trial
+//! place, so a switch is as accurate as any other point of the run.
 
 use crate::along_step::rounding;
 use crate::error::RunError;
@@ -10,13 +10,13 @@ use crate::hybrid::{HybridSystem, Observer};
 use crate::method::{Method, State, Step};
 use crate::one_guard::Crossing;
 
-/// Part of a step that the end of a re-step may be off the switch; the midpoint rule bridges it with an
-/// error of the cube of this part, which is below rounding.
+/// Part of a step that the end of a re-step may be off the switch; the midpoint rule bridges it
+/// with an error of the cube of this part, which is below rounding.
 const BRIDGE: f64 = 1e-5;
 /// Part of the time below which a switch is at the start of its step.
 const NOWHERE: f64 = 1e-20;
-/// Part of a step over which a guard's slope is differenced: the step's own scale, on which the guard is known
-/// to change, so that cancellation cannot spoil the slope however short the step.
+/// Part of a step over which a guard's slope is differenced: the step's own scale, on which the
+/// guard is known to change, so that cancellation cannot spoil the slope however short the step.
 const REACH: f64 = 1e-3;
 
 impl<S, O, const N: usize, const G: usize> Examination<'_, S, O, N, G>
@@ -24,8 +24,8 @@ where
     S: HybridSystem<N, G>,
     O: Observer<S::Mode, N>,
 {
-    /// Ends `step` where `guard` crosses zero inside the bracket; if `exact`, the event's step ends exactly
-    /// there, otherwise within a small part of itself.
+    /// Ends `step` where `guard` crosses zero inside the bracket; if `exact`, the event's step ends
+    /// exactly there, otherwise within a small part of itself.
     pub(crate) fn locate<M: Method>(
         &mut self,
         step: &Step<N>,
@@ -98,7 +98,8 @@ where
                 }
                 return Ok(event(trial.h, trial.y1, end.value, end.slope, trial));
             }
-            // Newton's method where it makes progress, bisection where the guard is too flat for it.
+            // Newton's method where it makes progress, bisection where the guard is too flat for
+            // it.
             let progress = end.value.abs() <= 0.1 * last_value;
             last_value = end.value.abs();
             theta = if progress && next > low && next < high { next } else { 0.5 * (low + high) };
@@ -114,8 +115,9 @@ where
         shorter
     }
 
-    /// Moves from the end of `trial` onto the guard: how far from the start that is, the state there, and what
-    /// is left of the guard's value. `None` where Newton's method does not converge as from a simple zero.
+    /// Moves from the end of `trial` onto the guard: how far from the start that is, the state
+    /// there, and what is left of the guard's value. `None` where Newton's method does not
+    /// converge as from a simple zero.
     fn bridge(
         &mut self,
         near: &Near<'_, S, N, G>,

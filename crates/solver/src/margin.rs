@@ -1,12 +1,14 @@
 //! How near a run came to switching otherwise, and runs whose itinerary is prescribed.
 //!
-//! A guard that does not fire still tells how far it was from firing: by its value at each local minimum and at the end of
-//! the run. These are the *margins* of the run. Where one of them passes through zero as the parameters of a system change, the
-//! itinerary changes. To follow a margin through zero, and beyond, the itinerary that leads to it is prescribed: in every phase
-//! only the guard that is to end it is looked at, so that the margin is a smooth function of the parameters on both sides.
+//! A guard that does not fire still tells how far it was from firing: by its value at each local
+//! minimum and at the end of the run. These are the *margins* of the run. Where one of them passes
+//! through zero as the parameters of a system change, the itinerary changes. To follow a margin
+//! through zero, and beyond, the itinerary that leads to it is prescribed: in every phase
+//! only the guard that is to end it is looked at, so that the margin is a smooth function of the
+//! parameters on both sides.
 //!
-//! A minimum of a guard is a zero of its rate. It is found as any other switch is: decided on every step, and refined by steps of
-//! the method itself.
+//! A minimum of a guard is a zero of its rate. It is found as any other switch is: decided on every
+//! step, and refined by steps of the method itself.
 
 use std::cmp::Ordering;
 use std::hash::{Hash, Hasher};
@@ -19,7 +21,8 @@ use crate::options::Options;
 use crate::prescribed::{Extremum, watch};
 use crate::runner::run;
 
-/// A place in a phase, which moves with the parameters: two that differ in nothing else are the same.
+/// A place in a phase, which moves with the parameters: two that differ in nothing else are the
+/// same.
 #[derive(Clone, Copy, Debug)]
 pub struct Hint(pub f64);
 
@@ -52,7 +55,8 @@ impl Hash for Hint {
 pub struct Exit {
     /// The guard that fires.
     pub guard: usize,
-    /// Where the guard is looked at from: beyond its local minima, which it passes wherever they lie.
+    /// Where the guard is looked at from: beyond its local minima, which it passes wherever they
+    /// lie.
     pub after: Hint,
     /// The part of the phase which that is; 0 if the guard has no minima before.
     pub part: Hint,
@@ -74,8 +78,8 @@ pub enum Place {
 
 /// Names a margin: in the phase that follows `exits`, the value of `guard` at `place`.
 ///
-/// Hints say which of several minima is meant. As the parameters move away, [`margin`] returns the margin with hints
-/// that have moved along.
+/// Hints say which of several minima is meant. As the parameters move away, [`margin`] returns the
+/// margin with hints that have moved along.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Margin {
     /// The phases before.
@@ -93,7 +97,8 @@ pub struct NearMiss {
     pub margin: Margin,
     /// Where it was taken.
     pub s: f64,
-    /// The guard's value there, with its sign turned if it fires while rising: positive where it does not fire.
+    /// The guard's value there, with its sign turned if it fires while rising: positive where it
+    /// does not fire.
     pub value: f64,
 }
 
@@ -108,14 +113,16 @@ pub struct Margins {
     pub outcome: Outcome,
 }
 
-/// Part of the run below which its last phase may be about to vanish: boundaries get their names from runs 1e-9 beside them, where
-/// a phase that vanishes there is shorter. One taken for vanishing without need only costs a longer run.
+/// Part of the run below which its last phase may be about to vanish: boundaries get their names
+/// from runs 1e-9 beside them, where a phase that vanishes there is shorter. One taken for
+/// vanishing without need only costs a longer run.
 const SHORT: f64 = 1e-6;
 
 /// Runs `system` freely and returns every margin that the run leaves.
 ///
-/// Guards that fire in either direction leave none, and terminal guards none. A minimum takes about one step more than the run
-/// itself; the margins of a phase take a run over that phase for each of its guards.
+/// Guards that fire in either direction leave none, and terminal guards none. A minimum takes about
+/// one step more than the run itself; the margins of a phase take a run over that phase for each of
+/// its guards.
 ///
 /// # Errors
 /// Those of [`run`].

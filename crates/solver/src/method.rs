@@ -10,11 +10,12 @@ pub const MAX_STAGES: usize = 16;
 
 /// Step fractions, beside 0 and 1, at which a step knows the state without further work.
 ///
-/// They are nodes of Dormand–Prince 8(5,3) whose stages are of order 4: their errors are of fifth order in h.
+/// They are nodes of Dormand–Prince 8(5,3) whose stages are of order 4: their errors are of fifth
+/// order in h.
 pub const INTERIOR_NODES: [f64; 4] = [1.0 / 4.0, 1.0 / 3.0, 3.0 / 5.0, 6.0 / 7.0];
 
-/// Whether steps of this build round a product and the sum it goes into once, together: where the processor that it is built for
-/// has the instruction. The last digits of results depend on it.
+/// Whether steps of this build round a product and the sum it goes into once, together: where the
+/// processor that it is built for has the instruction. The last digits of results depend on it.
 pub const FUSED_PRODUCTS: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
 
 /// Coefficients of an embedded explicit Runge–Kutta pair with a continuous extension.
@@ -31,7 +32,8 @@ pub struct Tableau {
     pub b: [f64; MAX_STAGES],
     /// Weights of the error estimate that controls the step.
     pub error: [f64; MAX_STAGES],
-    /// Weights of a second, coarser estimate that steadies the first; all zero where there is none.
+    /// Weights of a second, coarser estimate that steadies the first; all zero where there is
+    /// none.
     pub coarse_error: [f64; MAX_STAGES],
     /// Rows of the dense output beyond its cubic Hermite part, in units of h.
     pub dense: [[f64; MAX_STAGES]; 4],
@@ -95,8 +97,8 @@ pub struct Step<const N: usize> {
     pub y1: State<N>,
     /// States at [`INTERIOR_NODES`].
     pub interior: [State<N>; 4],
-    /// Estimated error of `y1` relative to `atol + rtol·max(|y0|, |y1|)`, as a root mean square over the
-    /// components; the step is good if this is below 1, which NaN is not.
+    /// Estimated error of `y1` relative to `atol + rtol·max(|y0|, |y1|)`, as a root mean square
+    /// over the components; the step is good if this is below 1, which NaN is not.
     pub error: f64,
     /// Derivative of the state at its end, once it is known.
     slope1: Option<State<N>>,
@@ -144,8 +146,8 @@ impl<const N: usize> Step<N> {
         let coarse = combine(&M::TABLEAU.coarse_error, &k, used);
         let (mut fine_sum, mut coarse_sum) = (0.0, 0.0);
         for i in 0..N {
-            // A component without an error counts as one without a weight: compiled for a mode in which it is constant, it
-            // costs nothing.
+            // A component without an error counts as one without a weight: compiled for a mode in
+            // which it is constant, it costs nothing.
             if fine[i] == 0.0 && coarse[i] == 0.0 {
                 continue;
             }
@@ -189,7 +191,8 @@ impl<const N: usize> Step<N> {
 
     /// The continuous extension over the step.
     ///
-    /// Takes the step's stages again, which few steps need and none keeps, and then the extension's own.
+    /// Takes the step's stages again, which few steps need and none keeps, and then the extension's
+    /// own.
     pub fn dense<M: Method>(
         &mut self,
         field: &mut impl FnMut(f64, &State<N>) -> State<N>,
@@ -223,10 +226,11 @@ impl<const N: usize> Step<N> {
     }
 }
 
-/// The derivatives at the stages of the step `trial`; states that sit at [`INTERIOR_NODES`] go to `interior`.
+/// The derivatives at the stages of the step `trial`; states that sit at [`INTERIOR_NODES`] go to
+/// `interior`.
 ///
-/// A local array throughout, so that the compiler can keep it in registers and drop what the right-hand side does
-/// not use.
+/// A local array throughout, so that the compiler can keep it in registers and drop what the
+/// right-hand side does not use.
 #[inline(always)]
 fn stages<M: Method, const N: usize>(
     field: &mut impl FnMut(f64, &State<N>) -> State<N>,
@@ -274,7 +278,8 @@ fn combine<const N: usize>(
     sum
 }
 
-/// sum + factor·k, rounded once where the processor does that in one instruction: half the arithmetic of a step.
+/// sum + factor·k, rounded once where the processor does that in one instruction: half the
+/// arithmetic of a step.
 #[inline(always)]
 fn add_multiple<const N: usize>(sum: &State<N>, k: &State<N>, factor: f64) -> State<N> {
     if FUSED_PRODUCTS {

@@ -11,8 +11,9 @@ use crate::isolate::{Bracket, Touch, Verdict, first_crossing, sides};
 use crate::method::{Method, Step, Trial};
 use crate::quick::{self, Quick};
 
-/// A guard that is zero throughout a step is looked at on longer ones, each four times as long as the one before, at most
-/// this often: a step of the least length that moves the time becomes one of ordinary length.
+/// A guard that is zero throughout a step is looked at on longer ones, each four times as long as
+/// the one before, at most this often: a step of the least length that moves the time becomes one
+/// of ordinary length.
 const LONGER: i32 = 26;
 
 /// What is known of a guard on the step at hand.
@@ -61,7 +62,8 @@ where
         };
         let look = |sign: f64| {
             let look = quick::look(&column.map(|value| sign * value), order, M::QUICK_ERROR);
-            // Against the side to which the guard is known to go rounding stands, or a crossing at once.
+            // Against the side to which the guard is known to go rounding stands, or a crossing at
+            // once.
             match look {
                 Quick::Positive | Quick::Falls { .. } if sign * side < 0.0 => Quick::Unclear,
                 Quick::Negative if sign * side > 0.0 => Quick::Unclear,
@@ -82,8 +84,8 @@ where
         }
     }
 
-    /// Whether a guard that is zero throughout a step is so only because the step is short, and not throughout the longest step
-    /// that meets the tolerance.
+    /// Whether a guard that is zero throughout a step is so only because the step is short, and not
+    /// throughout the longest step that meets the tolerance.
     fn leaves_zero<M: Method>(&mut self, guard: usize, step: &Step<N>) -> bool {
         let (system, mode) = (self.system, self.phase.mode);
         let mut longer = Step::blank();
@@ -179,8 +181,8 @@ where
         Ok(Some(found))
     }
 
-    /// Values at a step's end; one that is exactly zero keeps the side from which it came, and so does one that has not yet come
-    /// away from its zero.
+    /// Values at a step's end; one that is exactly zero keeps the side from which it came, and so
+    /// does one that has not yet come away from its zero.
     pub(crate) fn on_their_side<M: Method>(
         &mut self,
         step: &mut Step<N>,
@@ -198,7 +200,8 @@ where
         ends
     }
 
-    /// The least value on the side from which a guard comes that is zero where the step ends; 0 if it shows none.
+    /// The least value on the side from which a guard comes that is zero where the step ends; 0 if
+    /// it shows none.
     fn last_side<M: Method>(&mut self, guard: usize, step: &mut Step<N>, values: &[f64; 6]) -> f64 {
         let (system, mode) = (self.system, self.phase.mode);
         let dense = step.dense::<M>(&mut |s, y| system.field(mode, s, y));
@@ -218,7 +221,8 @@ where
         }
     }
 
-    /// Whether a guard that starts from a known zero, and leaves it to a known side, has not yet come away from it.
+    /// Whether a guard that starts from a known zero, and leaves it to a known side, has not yet
+    /// come away from it.
     fn stays(&self, guard: usize, values: &[f64; 6]) -> bool {
         let hidden = self.phase.hidden[guard];
         self.phase.sides[guard] != 0.0 && values.iter().all(|value| value.abs() <= hidden)

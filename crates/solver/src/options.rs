@@ -5,7 +5,8 @@
 pub enum StepSize {
     /// By the embedded error estimate, so that each step's error is below `atol + rtol·|y|`.
     Adaptive,
-    /// The same size throughout, shortened only at switches and at the end: for convergence studies.
+    /// The same size throughout, shortened only at switches and at the end: for convergence
+    /// studies.
     Fixed(f64),
 }
 
@@ -66,8 +67,8 @@ impl Options {
     /// # Errors
     /// The first field that is out of its range, with its value and the range.
     pub fn validate(&self) -> Result<(), InvalidOption> {
-        let check = |name, value: f64, accepted, ok: bool| {
-            if ok { Ok(()) } else { Err(InvalidOption { name, value, accepted }) }
+        let check = |name, value: f64, expected, ok: bool| {
+            if ok { Ok(()) } else { Err(InvalidOption { name, value, expected }) }
         };
         let positive = |value: f64| value > 0.0 && value.is_finite();
         check("rtol", self.rtol, "1e-15 to 0.1", (1e-15..=0.1).contains(&self.rtol))?;
@@ -86,12 +87,12 @@ impl Options {
 
 /// An option is out of its range.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("{name} = {value} is out of range; accepted is {accepted}")]
+#[error("{name} = {value} is out of range; expected {expected}")]
 pub struct InvalidOption {
     /// The option's name.
     pub name: &'static str,
     /// The value that was given.
     pub value: f64,
-    /// What is accepted.
-    pub accepted: &'static str,
+    /// What is expected.
+    pub expected: &'static str,
 }

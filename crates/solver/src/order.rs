@@ -4,8 +4,9 @@
 const ROUNDING: f64 = 1e-12;
 /// How far above the errors of the finest steps rounding still shows.
 const SHOWS: f64 = 10.0;
-/// The largest difference of the slopes of two halves, in standard errors of the whole slope: twice its own standard error, which is four
-/// times that of the whole slope, as each half has an eighth of the whole's sum of squares.
+/// The largest difference of the slopes of two halves, in standard errors of the whole slope: twice
+/// its own standard error, which is four times that of the whole slope, as each half has an eighth
+/// of the whole's sum of squares.
 const STRAIGHT: f64 = 8.0;
 /// The fewest points of a fit, and the number of finest steps that tell the level of rounding.
 const FEW: usize = 5;
@@ -17,8 +18,8 @@ pub struct Order {
     pub order: f64,
     /// The standard error of the slope, from the scatter about the line.
     pub standard_error: f64,
-    /// By how much the slope over the finer half of the points exceeds that over the coarser half: what is left of the way to the
-    /// limit of small steps, which the scatter does not show.
+    /// By how much the slope over the finer half of the points exceeds that over the coarser half:
+    /// what is left of the way to the limit of small steps, which the scatter does not show.
     pub drift: f64,
     /// The coarsest step of the fit.
     pub coarsest: f64,
@@ -28,18 +29,21 @@ pub struct Order {
     pub points: usize,
 }
 
-/// The order with which `errors`, pairs of a step (or a tolerance) and an error in order of falling steps, fall, by least squares on
-/// those steps that are neither at rounding nor before the asymptotic range; `None` if these do not span a factor of `span`.
+/// The order with which `errors`, pairs of a step (or a tolerance) and an error in order of falling
+/// steps, fall, by least squares on those steps that are neither at rounding nor before the
+/// asymptotic range; `None` if these do not span a factor of `span`.
 ///
 /// Which steps these are is decided by three rules:
 ///
-/// 1. *Rounding.* The root mean square of the last five errors is the level at which errors may have stopped falling. The first error that
-///    is below ten times this level, and below 1e-12, is left out with all finer ones. Errors are those of quantities of size 1.
-/// 2. *No error.* NaN stands for an approximation that cannot be compared, for example because it has other switches. It is left out
-///    with all coarser steps.
-/// 3. *Asymptotic range.* It begins at the finest step that is left, spans at least a factor of `span` and has at least five points. The
-///    shortest such range, and all those over whose two halves the slopes differ by no more than twice the standard error of that
-///    difference, compete; the one with the smallest standard error of its slope is taken.
+/// 1. *Rounding.* The root mean square of the last five errors is the level at which errors may
+///    have stopped falling. The first error that is below ten times this level, and below 1e-12, is
+///    left out with all finer ones. Errors are those of quantities of size 1.
+/// 2. *No error.* NaN stands for an approximation that cannot be compared, for example because it
+///    has other switches. It is left out with all coarser steps.
+/// 3. *Asymptotic range.* It begins at the finest step that is left, spans at least a factor of
+///    `span` and has at least five points. The shortest such range, and all those over whose two
+///    halves the slopes differ by no more than twice the standard error of that difference,
+///    compete; the one with the smallest standard error of its slope is taken.
 ///
 /// ```
 /// use stickslip_solver::fit_order;
@@ -119,7 +123,8 @@ mod tests {
 
     #[test]
     fn the_standard_error_is_that_of_the_textbook() {
-        // y = (0, 1, 3, 4, 5) at x = 0 … 4: slope 1.3, residuals −0.0, −0.3, 0.4, 0.1, −0.2, s² = 0.3/3, Σ(x − x̄)² = 10.
+        // y = (0, 1, 3, 4, 5) at x = 0 … 4: slope 1.3, residuals −0.0, −0.3, 0.4, 0.1, −0.2, s² =
+        // 0.3/3, Σ(x − x̄)² = 10.
         let points: Vec<_> = (0_u8..).map(f64::from).zip([0.0, 1.0, 3.0, 4.0, 5.0]).collect();
         let (slope, error) = line(&points);
         assert!((slope - 1.3).abs() < 1e-14 && (error - 0.1).abs() < 1e-14);

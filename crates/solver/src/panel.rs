@@ -29,13 +29,14 @@ impl Panel {
         clenshaw(&self.coefficients, local)
     }
 
-    /// Size of the last two terms: what degree 8 leaves out is smaller where the function is smooth.
+    /// Size of the last two terms: what degree 8 leaves out is smaller where the function is
+    /// smooth.
     pub(crate) fn tail(&self) -> f64 {
         self.coefficients[TERMS - 1].abs() + self.coefficients[TERMS - 2].abs()
     }
 
-    /// Collects, from left to right, points of ]low, high[ that cut it into monotone pieces; a stretch
-    /// flat to within `error` gives its middle.
+    /// Collects, from left to right, points of ]low, high[ that cut it into monotone pieces; a
+    /// stretch flat to within `error` gives its middle.
     pub(crate) fn critical_points(
         &self,
         low: f64,

@@ -22,7 +22,8 @@ pub(crate) struct Phase<Mode, const G: usize> {
     pub(crate) sides: [f64; G],
     /// Values that are as good as zero where such a sign is known.
     pub(crate) hidden: [f64; G],
-    /// Guards that have crossed already, from the other side, and fire at the start of the next step.
+    /// Guards that have crossed already, from the other side, and fire at the start of the next
+    /// step.
     pub(crate) due: [bool; G],
     /// Largest absolute values of the guards at the ends of the phase's steps.
     pub(crate) largest: [f64; G],
@@ -55,7 +56,8 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
         })
     }
 
-    /// The mode goes on after `event`, in another state: if the guard's value still stands at that zero, it starts from a known one.
+    /// The mode goes on after `event`, in another state: if the guard's value still stands at that
+    /// zero, it starts from a known one.
     pub(crate) fn resume<const N: usize>(&mut self, event: &Event<N>) {
         let guard = event.guard;
         if self.values[guard].abs() <= event.residual {

@@ -1,8 +1,9 @@
 //! Runs whose itinerary is prescribed, and that watch a guard at the end of it.
 //!
-//! Where a system does not know its rates they are differences. Their reach follows the run: error control knows on which scale
-//! the solution changes, so the reach is a small part of the longest step so far, whatever the unit of time. The rounding that
-//! they bring is measured where a decision would fail for it.
+//! Where a system does not know its rates they are differences. Their reach follows the run: error
+//! control knows on which scale the solution changes, so the reach is a small part of the longest
+//! step so far, whatever the unit of time. The rounding that they bring is measured where a
+//! decision would fail for it.
 
 use std::cell::Cell;
 
@@ -15,7 +16,8 @@ use crate::method::{Method, State, Step, Trial};
 use crate::options::{Options, StepSize};
 use crate::runner::run;
 
-/// Part of a step over which differences reach: their fourth power leaves 1e-11 of a rate, their rounding some 1e-13.
+/// Part of a step over which differences reach: their fourth power leaves 1e-11 of a rate, their
+/// rounding some 1e-13.
 const REACH: f64 = 1.0 / 256.0;
 
 /// A guard at a local minimum, or at the end of the run.
@@ -33,8 +35,8 @@ pub(crate) struct Watched {
     pub end: Option<Extremum>,
 }
 
-/// Follows `exits` and then watches `guard` to its first minimum after `enough`, or to the end of the run; `None` if that ends
-/// before.
+/// Follows `exits` and then watches `guard` to its first minimum after `enough`, or to the end of
+/// the run; `None` if that ends before.
 pub(crate) fn watch<M, S, const N: usize, const G: usize>(
     method: M,
     system: &S,
@@ -75,8 +77,8 @@ where
     Ok(Some(seen))
 }
 
-/// A system whose guards fire only as prescribed. In the place of the guard that counts stands what is waited for: the place from
-/// which it is looked at, the guard itself, or its rate.
+/// A system whose guards fire only as prescribed. In the place of the guard that counts stands what
+/// is waited for: the place from which it is looked at, the guard itself, or its rate.
 struct Prescribed<'a, S> {
     system: &'a S,
     exits: &'a [Exit],

@@ -1,7 +1,7 @@
 //! The first look at a guard on a step: a quintic through six values that the step already holds.
 //!
-//! Most steps are far from any switch, and most crossings are steep. Both are recognised here at the
-//! price of four guard evaluations; everything else is left to [`crate::isolate`].
+//! Most steps are far from any switch, and most crossings are steep. Both are recognised here at
+//! the price of four guard evaluations; everything else is left to [`crate::isolate`].
 
 use crate::method::INTERIOR_NODES;
 
@@ -22,7 +22,8 @@ pub(crate) enum Quick {
     Negative,
     /// Falls through zero once, steeply.
     Falls {
-        /// The step fraction, to about a thousandth of itself: where the search by steps of the method begins.
+        /// The step fraction, to about a thousandth of itself: where the search by steps of the
+        /// method begins.
         theta: f64,
     },
     /// Anything else.
@@ -48,8 +49,8 @@ pub(crate) fn look(values: &[f64; COUNT], zero_order: u32, trust: f64) -> Quick 
     classify(&multiply(&QUARTIC, &quotient), error)
 }
 
-/// A first test that settles most guards: of one sign throughout, because far from zero compared with the values' distance
-/// from their chord. NaN spreads and settles nothing.
+/// A first test that settles most guards: of one sign throughout, because far from zero compared
+/// with the values' distance from their chord. NaN spreads and settles nothing.
 #[inline(always)]
 pub(crate) fn clearly_away(values: [f64; COUNT]) -> bool {
     let [start, .., end] = values;
@@ -157,8 +158,8 @@ const QUARTIC_TERM: [f64; 6] = last_term_weights(&NODES, Some(2), 3);
 const LATE_QUARTIC_TERM: [f64; 5] = last_term_weights(&LATE_NODES, None, 1);
 const LATE_CUBIC_TERM: [f64; 5] = last_term_weights(&LATE_NODES, Some(1), 2);
 
-/// By how much the quintic and its error may move at most, anywhere on the step, for each unit by which the value at a node
-/// differs from the chord through the ends.
+/// By how much the quintic and its error may move at most, anywhere on the step, for each unit by
+/// which the value at a node differs from the chord through the ends.
 const BEND: [f64; 6] = {
     let mut bend = [0.0; 6];
     let mut i = 0;
@@ -169,7 +170,8 @@ const BEND: [f64; 6] = {
     bend
 };
 
-/// The greatest absolute value on [0, 1] of the polynomial that is 1 at node `i` and 0 at the others, rounded up.
+/// The greatest absolute value on [0, 1] of the polynomial that is 1 at node `i` and 0 at the
+/// others, rounded up.
 const fn greatest_lagrange<const K: usize>(nodes: &[f64; K], i: usize) -> f64 {
     let mut greatest = 0.0;
     let mut sample = 0;
@@ -191,8 +193,8 @@ const fn greatest_lagrange<const K: usize>(nodes: &[f64; K], i: usize) -> f64 {
     1.01 * greatest
 }
 
-/// Newton's form through all nodes but `skip`, with node `last` added last: the weights of its highest
-/// coefficient times the greatest value of that coefficient's polynomial on [0, 1].
+/// Newton's form through all nodes but `skip`, with node `last` added last: the weights of its
+/// highest coefficient times the greatest value of that coefficient's polynomial on [0, 1].
 const fn last_term_weights<const K: usize>(
     nodes: &[f64; K],
     skip: Option<usize>,

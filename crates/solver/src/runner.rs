@@ -74,7 +74,8 @@ struct Runner<'a, S: HybridSystem<N, G>, O, const N: usize, const G: usize> {
     slope: State<N>,
     /// Size of the next step.
     h: f64,
-    /// The same for the phase after this one, as the phase before this one left it: modes mostly alternate.
+    /// The same for the phase after this one, as the phase before this one left it: modes mostly
+    /// alternate.
     other_h: Option<f64>,
     controller: Controller,
     zeno: Zeno,
@@ -108,9 +109,11 @@ where
         }
     }
 
-    /// Takes one step that is good enough; if it meets a switch, it ends there. Takes none beyond the limit of steps.
+    /// Takes one step that is good enough; if it meets a switch, it ends there. Takes none beyond
+    /// the limit of steps.
     ///
-    /// Events hold a step: they are written where they stay, since to return them would copy one on every step.
+    /// Events hold a step: they are written where they stay, since to return them would copy one on
+    /// every step.
     fn advance<M: Method>(
         &mut self,
         step: &mut Step<N>,
@@ -271,7 +274,8 @@ where
             self.controller.begin();
         }
         if let Some(standing) = standing {
-            // A step that does not move the time gets nowhere, and would find every guard where it stands.
+            // A step that does not move the time gets nowhere, and would find every guard where it
+            // stands.
             if self.clock.until(self.end) <= f64::EPSILON * s.abs().max(s - self.zeno.start) {
                 self.clock.arrive(self.end);
                 return Ok(Some(Outcome::ReachedEnd));

@@ -1,9 +1,12 @@
-//! How a run changes with parameters: derivatives of switches and of the state, through every switch.
+//! How a run changes with parameters: derivatives of switches and of the state, through every
+//! switch.
 //!
-//! Between switches a small change δy of the state, made by a change of a parameter, obeys the variational equations. At a switch
-//! it also moves the switch: by δs = −δg/g', with δg the change of the guard at its place and g' its slope along the solution.
-//! The change that goes on beyond is that of the transition at the place that has moved, less what the new right-hand side does in
-//! δs (the saltation matrix; Leine and Nijmeijer, *Dynamics and Bifurcations of Non-Smooth Mechanical Systems*, 2004, section 7.3).
+//! Between switches a small change δy of the state, made by a change of a parameter, obeys the
+//! variational equations. At a switch it also moves the switch: by δs = −δg/g', with δg the change
+//! of the guard at its place and g' its slope along the solution. The change that goes on beyond is
+//! that of the transition at the place that has moved, less what the new right-hand side does in δs
+//! (the saltation matrix; Leine and Nijmeijer, *Dynamics and Bifurcations of Non-Smooth Mechanical
+//! Systems*, 2004, section 7.3).
 
 use crate::error::RunError;
 use crate::guard::Guard;
@@ -25,14 +28,16 @@ pub struct Change<const N: usize> {
 
 /// A hybrid system with `P` parameters that knows its derivatives.
 ///
-/// Each function returns how one of [`HybridSystem`] changes, to first order, under a [`Change`] of what it depends on.
+/// Each function returns how one of [`HybridSystem`] changes, to first order, under a [`Change`] of
+/// what it depends on.
 pub trait Differentiable<const N: usize, const G: usize, const P: usize>:
     HybridSystem<N, G>
 {
     /// The change of the right-hand side.
     fn field_change(&self, mode: Self::Mode, s: f64, y: &State<N>, change: &Change<N>) -> State<N>;
 
-    /// The changes of the guards' values; all guards may be multiplied by the same positive function, since their zeros stay.
+    /// The changes of the guards' values; all guards may be multiplied by the same positive
+    /// function, since their zeros stay.
     fn guard_changes(&self, mode: Self::Mode, s: f64, y: &State<N>, change: &Change<N>)
     -> [f64; G];
 
@@ -77,12 +82,12 @@ pub struct Sensitivities<Mode, const N: usize, const P: usize> {
     pub statistics: Statistics,
 }
 
-/// Integrates `system` as [`run`] does, together with the derivatives of its state with respect to `P` parameters, which are
-/// `start_derivatives` at the start.
+/// Integrates `system` as [`run`] does, together with the derivatives of its state with respect to
+/// `P` parameters, which are `start_derivatives` at the start.
 ///
-/// State and derivatives together are `A` = N (1 + P) numbers, which the caller has to name; error control covers all of them, so
-/// derivatives are about as accurate as the state. They are those of the run as it is: the itinerary stays the same. Towards a
-/// graze they grow without bound.
+/// State and derivatives together are `A` = N (1 + P) numbers, which the caller has to name; error
+/// control covers all of them, so derivatives are about as accurate as the state. They are those of
+/// the run as it is: the itinerary stays the same. Towards a graze they grow without bound.
 ///
 /// ```
 /// use stickslip_solver::{
@@ -138,7 +143,8 @@ pub struct Sensitivities<Mode, const N: usize, const P: usize> {
 /// ```
 ///
 /// # Errors
-/// Those of [`run`]; [`RunError::State`] also where a switch is a graze, at which derivatives do not exist.
+/// Those of [`run`]; [`RunError::State`] also where a switch is a graze, at which derivatives do
+/// not exist.
 pub fn sensitivities<M, S, const N: usize, const G: usize, const P: usize, const A: usize>(
     method: M,
     system: &S,
@@ -178,7 +184,8 @@ struct Varied<'a, S, const N: usize, const P: usize> {
 }
 
 impl<S, const N: usize, const P: usize> Varied<'_, S, N, P> {
-    /// Where `guard` fires at the state `y`: the derivatives of the place, and of the state at the place that moves.
+    /// Where `guard` fires at the state `y`: the derivatives of the place, and of the state at the
+    /// place that moves.
     fn moved<const G: usize, const A: usize>(
         &self,
         mode: S::Mode,

@@ -1,9 +1,11 @@
 //! Guards that vanish where another one fires, in a run that goes on unchanged.
 //!
-//! The mode and the state are the same before and after such a switch, so that every guard goes on as it came. One that is zero there
-//! to within rounding has no sign at that place: the step that ends there tells from which side it comes, and a step ahead, which is
-//! not taken, to which it goes. It crosses if the two differ, and fires together with the guard that fired if that is its direction.
-//! Either way it starts the next step from a known zero, which it leaves to a known side.
+//! The mode and the state are the same before and after such a switch, so that every guard goes on
+//! as it came. One that is zero there to within rounding has no sign at that place: the step that
+//! ends there tells from which side it comes, and a step ahead, which is not taken, to which it
+//! goes. It crosses if the two differ, and fires together with the guard that fired if that is its
+//! direction. Either way it starts the next step from a known zero, which it leaves to a known
+//! side.
 
 use std::marker::PhantomData;
 
@@ -103,7 +105,8 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
                 Direction::Either => from * to < 0.0,
                 _ => from > 0.0 && to < 0.0,
             };
-            // A bound of the domain fires as long as it is negative; the run ends with an event of its own.
+            // A bound of the domain fires as long as it is negative; the run ends with an event of
+            // its own.
             let by_itself =
                 phase.guards[guard].ends_run() || direction == Direction::Below || bit(guard) == 0;
             if fires && !by_itself {
@@ -119,7 +122,8 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
         Standing { fired, due, ..standing }
     }
 
-    /// What rounding leaves of a guard at its zero, on the scales of the step that ends there; less if its `value` is far from that.
+    /// What rounding leaves of a guard at its zero, on the scales of the step that ends there; less
+    /// if its `value` is far from that.
     fn hidden<M: Method>(&mut self, guard: usize, value: f64) -> f64 {
         let (system, phase, event) = (self.system, self.phase, self.event);
         let value_at = |s: f64, y: &State<N>| system.guard_values(phase.mode, s, y)[guard];

@@ -49,7 +49,8 @@ impl<Mode: Copy, const N: usize> Observer<Mode, N> for Vec<SwitchEvent<Mode, N>>
     }
 }
 
-/// Records switches, touches and the trajectory, which takes twice the stages; a `Vec` records switches alone.
+/// Records switches, touches and the trajectory, which takes twice the stages; a `Vec` records
+/// switches alone.
 ///
 /// ```
 /// use stickslip_solver::{Dopri5, Options, Recorder, State, integrate};

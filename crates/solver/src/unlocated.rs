@@ -7,12 +7,14 @@ use crate::hybrid::{HybridSystem, Observer, Outcome, Run, Start, Statistics, Swi
 use crate::method::{Method, Step, Trial};
 use crate::options::{Options, StepSize};
 
-/// Integrates `system` from `start` to `end` in steps of `step_size` that know nothing of switches: the guards are looked at where a
-/// step ends, and the first in the list that has fired by then switches there. At most `max_steps` are taken.
+/// Integrates `system` from `start` to `end` in steps of `step_size` that know nothing of switches:
+/// the guards are looked at where a step ends, and the first in the list that has fired by then
+/// switches there. At most `max_steps` are taken.
 ///
-/// What fires and ceases to within a step is missed, and switches are late by up to a step, so that the order of the method is
-/// lost. [`run`](crate::run) is the same without these errors. A mode is entered as
-/// [`settled`](HybridSystem::settle), since the state at a late switch is not the one that the start of a phase is made for.
+/// What fires and ceases to within a step is missed, and switches are late by up to a step, so that
+/// the order of the method is lost. [`run`](crate::run) is the same without these errors. A mode is
+/// entered as [`settled`](HybridSystem::settle), since the state at a late switch is not the one
+/// that the start of a phase is made for.
 ///
 /// ```
 /// use stickslip_solver::{

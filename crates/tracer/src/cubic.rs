@@ -17,8 +17,9 @@ pub struct Cubic {
 impl Cubic {
     /// The cubic that leaves `from` and reaches `to` with their tangents.
     ///
-    /// Both handles have the length (2/3)·|chord|/(1 + cos(θ/2)), θ the angle between the tangents. On a circle of radius R
-    /// that is the optimal (4/3) R tan(θ/4), with an error of 4 R (θ/4)⁶/27; elsewhere the error is of fourth order in the chord.
+    /// Both handles have the length (2/3)·|chord|/(1 + cos(θ/2)), θ the angle between the tangents.
+    /// On a circle of radius R that is the optimal (4/3) R tan(θ/4), with an error of 4 R
+    /// (θ/4)⁶/27; elsewhere the error is of fourth order in the chord.
     ///
     /// ```
     /// use stickslip_tracer::{Cubic, Node, Point};
@@ -87,8 +88,8 @@ impl Cubic {
         Self { points: [d, c, b, a] }
     }
 
-    /// ½∫(x dy − y dx) along the curve, coordinates counted from `origin`: over a closed counterclockwise path the sum is the
-    /// area. Exact but for rounding.
+    /// ½∫(x dy − y dx) along the curve, coordinates counted from `origin`: over a closed
+    /// counterclockwise path the sum is the area. Exact but for rounding.
     #[must_use]
     pub fn area(&self, origin: &Point) -> f64 {
         let [a, b, c, d] = self.points.map(|point| point - origin);
@@ -98,7 +99,8 @@ impl Cubic {
         sum / 20.0
     }
 
-    /// The parameters in (0, 1) that part it into pieces along which x, y and the direction are monotone, in ascending order.
+    /// The parameters in (0, 1) that part it into pieces along which x, y and the direction are
+    /// monotone, in ascending order.
     #[must_use]
     pub fn monotone_cuts(&self) -> Vec<f64> {
         // Nearer to an end, the two sides of an extremum differ by less than rounding.
@@ -119,7 +121,8 @@ impl Cubic {
         cuts
     }
 
-    /// The distance of `point` from the curve: the least over the ends and all roots of (c(t) − point)·c′(t).
+    /// The distance of `point` from the curve: the least over the ends and all roots of (c(t) −
+    /// point)·c′(t).
     #[must_use]
     pub fn distance(&self, point: &Point) -> f64 {
         let p = self.points.map(|own| own - point);

@@ -13,8 +13,8 @@ pub struct Node {
 
 /// A piece of a boundary between two vertices, or closed.
 ///
-/// Between two nodes the curve is the cubic that has their points and tangents; tracing keeps its distance from the boundary
-/// below the tolerance of interpolation.
+/// Between two nodes the curve is the cubic that has their points and tangents; tracing keeps its
+/// distance from the boundary below the tolerance of interpolation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve<Label, Margin> {
     /// The margin that vanishes on it.
@@ -23,7 +23,8 @@ pub struct Curve<Label, Margin> {
     pub sides: [Label; 2],
     /// Nodes in order, at least two.
     pub nodes: Vec<Node>,
-    /// Index of the vertex at which it starts and of the one at which it ends; `None` for both if it is closed.
+    /// Index of the vertex at which it starts and of the one at which it ends; `None` for both if
+    /// it is closed.
     pub ends: Option<[usize; 2]>,
 }
 
@@ -38,7 +39,8 @@ pub struct Vertex<Margin> {
     pub margins: Vec<Margin>,
 }
 
-/// What a vertex is. A trace tells the first four apart, [`Network::name_vertices`](crate::Network::name_vertices) all of them.
+/// What a vertex is. A trace tells the first four apart,
+/// [`Network::name_vertices`](crate::Network::name_vertices) all of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VertexKind {
     /// A boundary leaves the window.
@@ -47,10 +49,13 @@ pub enum VertexKind {
     WindowCorner,
     /// Two or more margins vanish together.
     Crossing,
-    /// The margin that vanishes stops to exist: its extremum merges with another one or with the end of its phase.
+    /// The margin that vanishes stops to exist: its extremum merges with another one or with the
+    /// end of its phase.
     Degenerate,
-    /// The minimum of a guard that vanishes reaches the end of the run: the guard's value there takes over.
+    /// The minimum of a guard that vanishes reaches the end of the run: the guard's value there
+    /// takes over.
     GrazeAtEnd,
-    /// Values at the end of the run vanish together, of one phase and of others that begin as it ends.
+    /// Values at the end of the run vanish together, of one phase and of others that begin as it
+    /// ends.
     VanishingPhase,
 }

@@ -12,9 +12,10 @@ pub type Point = Vector2<f64>;
 
 /// Runs that depend on two parameters.
 ///
-/// A free run has a *label*, the itinerary of its switches. Where the label changes, a *margin* vanishes: the value of a guard
-/// where it comes closest to firing. A margin belongs to the itinerary that leads to that place and is followed through zero
-/// with the itinerary held fixed, so that it is a smooth function of the parameters.
+/// A free run has a *label*, the itinerary of its switches. Where the label changes, a *margin*
+/// vanishes: the value of a guard where it comes closest to firing. A margin belongs to the
+/// itinerary that leads to that place and is followed through zero with the itinerary held fixed,
+/// so that it is a smooth function of the parameters.
 pub trait Family {
     /// What a free run does; two points of one region have the same.
     type Label: Clone + Debug + Eq + Ord + Hash;
@@ -29,16 +30,18 @@ pub trait Family {
     /// The run failed.
     fn label(&self, point: &Point) -> Result<Self::Label, Self::Error>;
 
-    /// The margin `margin` at `point`: positive where its guard does not fire, negative beyond, smooth through zero.
+    /// The margin `margin` at `point`: positive where its guard does not fire, negative beyond,
+    /// smooth through zero.
     ///
-    /// `None` where there is no such extremum, or the itinerary that leads to it cannot be followed.
+    /// `None` where there is no such extremum, or the itinerary that leads to it cannot be
+    /// followed.
     ///
     /// # Errors
     /// The run failed.
     fn margin(&self, point: &Point, margin: &Self::Margin) -> Result<Option<f64>, Self::Error>;
 
-    /// `margin` as it is to be named at `point`, which lies on its boundary: a family that tells the minima of a guard apart by
-    /// where they are moves such hints along.
+    /// `margin` as it is to be named at `point`, which lies on its boundary: a family that tells
+    /// the minima of a guard apart by where they are moves such hints along.
     ///
     /// # Errors
     /// The run failed.
@@ -46,12 +49,13 @@ pub trait Family {
         Ok(margin.clone())
     }
 
-    /// The free run at `point` with all its margins: a boundary through a place close by is the zero of one of them, or of one
-    /// of those at the places on the boundary's other side.
+    /// The free run at `point` with all its margins: a boundary through a place close by is the
+    /// zero of one of them, or of one of those at the places on the boundary's other side.
     ///
-    /// Each listed margin is also watched along boundaries and on the grid: two boundaries that touch or cross twice between two
-    /// nodes, and islands smaller than the grid's cells, are found if a free run beside them lists the margin. A margin may be
-    /// listed with a negative value, for a guard that has fired.
+    /// Each listed margin is also watched along boundaries and on the grid: two boundaries that
+    /// touch or cross twice between two nodes, and islands smaller than the grid's cells, are
+    /// found if a free run beside them lists the margin. A margin may be listed with a negative
+    /// value, for a guard that has fired.
     ///
     /// # Errors
     /// The run failed.

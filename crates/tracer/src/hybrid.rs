@@ -7,7 +7,8 @@ use stickslip_solver::{
 
 use crate::family::{Family, FreeRun, Point};
 
-/// A hybrid system at every point of a parameter plane: a function from points to systems and starts of their runs is one.
+/// A hybrid system at every point of a parameter plane: a function from points to systems and
+/// starts of their runs is one.
 pub trait Problem<const N: usize, const G: usize> {
     /// The system.
     type System: HybridSystem<N, G>;
@@ -32,7 +33,8 @@ where
 pub type ModeOf<P, const N: usize, const G: usize> =
     <<P as Problem<N, G>>::System as HybridSystem<N, G>>::Mode;
 
-/// The runs of a problem: labels are the guards that fired, in order; margins are those of the solver.
+/// The runs of a problem: labels are the guards that fired, in order; margins are those of the
+/// solver.
 #[derive(Clone, Copy, Debug)]
 pub struct HybridFamily<P, M, const N: usize, const G: usize> {
     /// The problem.
@@ -41,8 +43,9 @@ pub struct HybridFamily<P, M, const N: usize, const G: usize> {
     pub method: M,
     /// Options of every run. Margins are as accurate as these make the runs.
     pub options: Options,
-    /// Where every run ends, if no terminal guard ends it before. Runs that stop before for another reason, as at an accumulation of
-    /// switches, are errors: the window or the end has to be such that there are none.
+    /// Where every run ends, if no terminal guard ends it before. Runs that stop before for
+    /// another reason, as at an accumulation of switches, are errors: the window or the end
+    /// has to be such that there are none.
     pub end: f64,
 }
 

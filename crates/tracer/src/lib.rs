@@ -1,12 +1,14 @@
-//! Curves in a parameter plane on which the switching of a piecewise-smooth ODE changes, and the subdivision of the plane
-//! that they make.
+//! Curves in a parameter plane on which the switching of a piecewise-smooth ODE changes, and the
+//! subdivision of the plane that they make.
 //!
-//! What is traced is a [`Family`]: at each point of the plane a run has a label, its itinerary, and leaves margins, one of which vanishes where the
-//! label changes. A [`HybridFamily`] makes one of a hybrid system of `stickslip_solver` that depends on two parameters. [`trace`] finds
-//! the boundaries in a [`Window`] and follows them between their vertices; a [`Subdivision`] answers what lies between them, and
-//! [`verify`] asks runs at random places whether it is true.
+//! What is traced is a [`Family`]: at each point of the plane a run has a label, its itinerary, and
+//! leaves margins, one of which vanishes where the label changes. A [`HybridFamily`] makes one of a
+//! hybrid system of `stickslip_solver` that depends on two parameters. [`trace`] finds
+//! the boundaries in a [`Window`] and follows them between their vertices; a [`Subdivision`]
+//! answers what lies between them, and [`verify`] asks runs at random places whether it is true.
 //!
-//! A system of the solver, given as a function of two parameters, is traced; regions are labelled by the guards that fire in them:
+//! A system of the solver, given as a function of two parameters, is traced; regions are labelled
+//! by the guards that fire in them:
 //!
 //! ```
 //! use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
@@ -60,11 +62,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Anything else whose runs have labels and margins implements [`Family`]. The repository's `examples/belt_atlas` traces stick–slip of a
-//! shaken mass, with all kinds of boundaries, and holds them to closed forms.
+//! Anything else whose runs have labels and margins implements [`Family`]. The repository's
+//! `examples/belt_atlas` traces stick–slip of a shaken mass, with all kinds of boundaries, and
+//! holds them to closed forms.
 //!
-//! In reading order: `family` (what is traced), `hybrid` (hybrid systems as families), `curve` (what comes out), `cubic` (curves
-//! between nodes), `options`; then `tracing` (how boundaries are found and followed) and `regions` (what they make of the window).
+//! In reading order: `family` (what is traced), `hybrid` (hybrid systems as families), `curve`
+//! (what comes out), `cubic` (curves between nodes), `options`; then `tracing` (how boundaries are
+//! found and followed) and `regions` (what they make of the window).
 
 mod cubic;
 mod curve;

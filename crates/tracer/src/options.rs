@@ -11,8 +11,8 @@ pub struct TraceOptions {
     pub tolerance: f64,
     /// Distance of the cubics between nodes from their boundary, at least ten times `tolerance`.
     pub interpolation: f64,
-    /// How far apart the two points are at which both sides of a boundary are asked for their labels, half of it; above
-    /// `tolerance`.
+    /// How far apart the two points are at which both sides of a boundary are asked for their
+    /// labels, half of it; above `tolerance`.
     pub offset: f64,
     /// The error of a margin: below it, no margin says anything.
     pub noise: f64,
@@ -20,7 +20,8 @@ pub struct TraceOptions {
     pub max_step: f64,
     /// The largest angle between the tangents of consecutive nodes, in radians, up to 0.5.
     pub max_angle: f64,
-    /// Cells of the grid of seeds along each axis, at least 2; each side of the window is looked at in twice as many places.
+    /// Cells of the grid of seeds along each axis, at least 2; each side of the window is looked
+    /// at in twice as many places.
     pub cells: usize,
     /// A branch stops after this many nodes.
     pub max_nodes: usize,
@@ -50,8 +51,8 @@ impl TraceOptions {
     /// # Errors
     /// The first field that is out of its range, with its value and the range.
     pub fn validate(&self) -> Result<(), InvalidTraceOption> {
-        let check = |name, value: f64, accepted, ok: bool| {
-            if ok { Ok(()) } else { Err(InvalidTraceOption { name, value, accepted }) }
+        let check = |name, value: f64, expected, ok: bool| {
+            if ok { Ok(()) } else { Err(InvalidTraceOption { name, value, expected }) }
         };
         let within = |value: f64, low: f64, high: f64| value > low && value <= high;
         check("tolerance", self.tolerance, "above 0 to 1e-6", within(self.tolerance, 0.0, 1e-6))?;
@@ -78,14 +79,14 @@ impl TraceOptions {
 
 /// An option is out of its range.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("{name} is {value}, accepted is {accepted}")]
+#[error("{name} is {value}, expected {expected}")]
 pub struct InvalidTraceOption {
     /// The field.
     pub name: &'static str,
     /// Its value.
     pub value: f64,
     /// What it may be.
-    pub accepted: &'static str,
+    pub expected: &'static str,
 }
 
 /// A trace failed.

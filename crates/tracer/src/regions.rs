@@ -1,8 +1,9 @@
 //! What curves make of a window.
 //!
-//! In reading order: `subdivision` (curves in, regions out), `piece` and `slabs` (monotone pieces, in order), `faces` and `union` (what
-//! is connected), `crossing`, `finding` and `outline` (what can be wrong), `interior` (a place well inside), `locate` (where a point
-//! lies), `verify` (runs against the subdivision).
+//! In reading order: `subdivision` (curves in, regions out), `piece` and `slabs` (monotone pieces,
+//! in order), `faces` and `union` (what is connected), `crossing`, `finding` and `outline` (what
+//! can be wrong), `interior` (a place well inside), `locate` (where a point lies), `verify` (runs
+//! against the subdivision).
 
 mod crossing;
 mod faces;

@@ -1,8 +1,10 @@
 //! Boundaries, followed one by one.
 //!
-//! In reading order: `trace` (how all are found), `scan` (on one segment), `branch` (how one is followed), `step` (a step), `special`, `touch` and `ahead`
-//! (where it ends), `seed` and `island` (where it starts), `corrector` (onto a boundary), `runs` (the family, with its runs counted),
-//! `network` (what is collected), `naming` (what vertices are), `extrema` (of boundaries in a parameter).
+//! In reading order: `trace` (how all are found), `scan` (on one segment), `branch` (how one is
+//! followed), `step` (a step), `special`, `touch` and `ahead` (where it ends), `seed` and `island`
+//! (where it starts), `corrector` (onto a boundary), `runs` (the family, with its runs counted),
+//! `network` (what is collected), `naming` (what vertices are), `extrema` (of boundaries in a
+//! parameter).
 
 mod ahead;
 pub mod branch;

@@ -8,8 +8,9 @@ use stickslip_tracer::{
     trace,
 };
 
-/// One guard a function, asked in order: it fires where the function is negative. A margin's itinerary is what the guards before it
-/// did; the free run leaves the margins of those that did not fire.
+/// One guard a function, asked in order: it fires where the function is negative. A margin's
+/// itinerary is what the guards before it did; the free run leaves the margins of those that did
+/// not fire.
 struct Guards(Vec<fn(&Point) -> f64>);
 
 type Label = Vec<bool>;
@@ -74,7 +75,8 @@ fn cubic<M>(curve: &Curve<Label, M>, piece: usize, theta: f64) -> Point {
         + d.point * theta.powi(3)
 }
 
-/// Asserts that nodes are within 1e-12 and the cubics between them within 2e-10 of the curve with this signed distance.
+/// Asserts that nodes are within 1e-12 and the cubics between them within 2e-10 of the curve with
+/// this signed distance.
 fn assert_on<M>(curve: &Curve<Label, M>, distance: impl Fn(&Point) -> f64) {
     let (mut nodes, mut pieces) = (0.0_f64, 0.0_f64);
     for node in &curve.nodes {
@@ -125,7 +127,8 @@ fn a_closed_circle() {
     assert!(runs < 2500, "{runs}");
 }
 
-/// The places where the curves of `functions` are extremal, by coordinate, in the order of the other coordinate.
+/// The places where the curves of `functions` are extremal, by coordinate, in the order of the
+/// other coordinate.
 fn extrema(functions: Vec<fn(&Point) -> f64>) -> [Vec<Point>; 2] {
     let family = Guards(functions);
     let mut tracer = Tracer::new(&family, &SQUARE, &exact()).unwrap();
@@ -248,8 +251,8 @@ fn a_figure_of_eight() {
     assert_eq!((network.curves.len(), network.vertices.len()), (2, 1));
     has_vertex(&network, VertexKind::Degenerate, 0.05, -0.03);
     for curve in &network.curves {
-        // The value over the length of the gradient is the distance to first order. Where the gradient is below 1e-4, rounding of
-        // 1e-16 allows no better than 1e-12.
+        // The value over the length of the gradient is the distance to first order. Where the
+        // gradient is below 1e-4, rounding of 1e-16 allows no better than 1e-12.
         let distance = |p: &Point| {
             let (x, y) = (p.x - 0.05, p.y + 0.03);
             let square = x * x + y * y;
@@ -274,7 +277,8 @@ fn a_small_island() {
     assert!((length(&network.curves[0]) - TAU * 1e-3).abs() < 1e-8);
 }
 
-/// Two circles of radius 0.5 overlap in a lens 1e-7 thick and 4e-4 long, which lies between nodes of either.
+/// Two circles of radius 0.5 overlap in a lens 1e-7 thick and 4e-4 long, which lies between nodes
+/// of either.
 #[test]
 fn a_thin_lens() {
     let network = traced(
@@ -311,8 +315,9 @@ fn a_line_through_a_corner() {
     assert!((length(&network.curves[0]) - 5.0_f64.sqrt()).abs() < 1e-10);
 }
 
-/// A guard h(θ) = a + (b − θ)² on a phase 0 ≤ θ ≤ 1 that fires where it falls through zero, and then fires back where it rises
-/// again, with a = y + x/5 and b = 1 + x/2: its minimum leaves the phase through the end at x = 0.
+/// A guard h(θ) = a + (b − θ)² on a phase 0 ≤ θ ≤ 1 that fires where it falls through zero, and
+/// then fires back where it rises again, with a = y + x/5 and b = 1 + x/2: its minimum leaves the
+/// phase through the end at x = 0.
 struct Dip;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -424,7 +429,8 @@ impl Circles {
     }
 }
 
-/// Euler's formula for random circles: the curves between crossings and the crossings are those that geometry tells.
+/// Euler's formula for random circles: the curves between crossings and the crossings are those
+/// that geometry tells.
 #[test]
 fn random_circles() {
     let mut state = 7_u64;
@@ -466,7 +472,7 @@ fn bad_input_is_named() {
     let family = Guards(vec![|p| p.x]);
     let options = TraceOptions { max_step: 0.5, ..exact() };
     let error = trace(&family, &SQUARE, &options).unwrap_err();
-    assert_eq!(error.to_string(), "max_step is 0.5, accepted is above 0 to 0.25");
+    assert_eq!(error.to_string(), "max_step is 0.5, expected above 0 to 0.25");
     let empty = Window { low: Point::new(0.0, 0.0), high: Point::new(1.0, 0.0) };
     let error = trace(&family, &empty, &exact()).unwrap_err();
     assert_eq!(error, TraceError::Window { window: empty });
@@ -475,7 +481,8 @@ fn bad_input_is_named() {
     assert!(matches!(error, TraceError::NotANumber { point } if point.x > 0.5));
 }
 
-/// The work of a trace is part of what it promises: 9.3 runs a node, the search for seeds included, where nothing special happens.
+/// The work of a trace is part of what it promises: 9.3 runs a node, the search for seeds included,
+/// where nothing special happens.
 #[test]
 fn runs_of_a_trace() {
     let plain = |cells| {

@@ -1,5 +1,5 @@
-//! Vertices of known kinds: guards that are cubics in u, for u from −1/2 to 1/2, which fire when they fall through zero and, once they
-//! have fired, when they rise again.
+//! Vertices of known kinds: guards that are cubics in u, for u from −1/2 to 1/2, which fire when
+//! they fall through zero and, once they have fired, when they rise again.
 
 use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
 use stickslip_tracer::{HybridFamily, Point, Problem, TraceOptions, VertexKind, Window, trace};
@@ -79,19 +79,22 @@ fn a_minimum_that_leaves_through_the_end_is_a_graze_at_the_end() {
     assert_single(vertices(parabola), VertexKind::GrazeAtEnd, 3);
 }
 
-/// y (1/2 + u)² + (1/2 − u)(x + 6 (u + 0.1)²): its minimum vanishes with x where y does, which is its value at the end.
+/// y (1/2 + u)² + (1/2 − u)(x + 6 (u + 0.1)²): its minimum vanishes with x where y does, which is
+/// its value at the end.
 #[test]
 fn a_minimum_and_an_end_of_one_phase_cross() {
     let cubic = |p: &Point| [0.25 * p.y + 0.5 * p.x + 0.03, p.y - p.x + 0.54, p.y + 1.8, -6.0];
     assert_single(vertices(cubic), VertexKind::Crossing, 4);
 }
 
-/// y − x u − 4u³: its minimum and its maximum, which there are for x < 0, merge at x = 0, and vanish there for y = 0.
+/// y − x u − 4u³: its minimum and its maximum, which there are for x < 0, merge at x = 0, and
+/// vanish there for y = 0.
 #[test]
 fn a_minimum_that_merges_with_a_maximum_is_degenerate() {
     let (vertices, curves) = vertices(|p| [p.y, -p.x, 0.0, -4.0]);
     assert_eq!(curves, 2);
-    // Each branch may have an end of its own there: margins are cubic in the distance, and 6e-8 was measured.
+    // Each branch may have an end of its own there: margins are cubic in the distance, and 6e-8 was
+    // measured.
     for (kind, point) in vertices {
         assert_eq!(kind, VertexKind::Degenerate);
         assert!(point.norm() < 1.2e-7, "{point:?}");

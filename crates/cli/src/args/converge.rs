@@ -31,7 +31,8 @@ pub struct ConvergeArguments {
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub out: PathBuf,
 
-    /// Threads; 1 to 1024 [default: one for each core]; results other than times do not depend on it
+    /// Threads; 1 to 1024 [default: one for each core]; results other than times do not depend on
+    /// it
     #[arg(long, value_name = "N", help_heading = "Output", allow_hyphen_values = true)]
     #[arg(value_parser = shared::threads())]
     pub threads: Option<u16>,

@@ -61,7 +61,7 @@ impl MethodArguments {
         match damping {
             Some(damping) if damping != 0.0 => Err(Failure::Usage(format!(
                 "--damping {damping:?} cannot be used with --method exact, which holds without \
-                 damping; accepted is 0, or --method dop853 or dopri5"
+                 damping; expected 0, or --method dop853 or dopri5"
             ))),
             _ => Ok(Engine::Exact),
         }

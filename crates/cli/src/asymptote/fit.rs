@@ -93,8 +93,8 @@ impl Fits {
 /// A function of κ that a fit has a coefficient for.
 type Term = fn(f64) -> f64;
 
-/// Coefficient `index` of the least squares. Its uncertainty is its standard error, or its change when only the stiffer
-/// half is fitted, if that is larger.
+/// Coefficient `index` of the least squares. Its uncertainty is its standard error, or its change
+/// when only the stiffer half is fitted, if that is larger.
 fn estimate(
     tops: &[(f64, f64)],
     value: impl Fn((f64, f64)) -> f64,

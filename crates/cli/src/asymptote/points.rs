@@ -5,7 +5,8 @@ use stickslip_model::{Collider, Contact, exact};
 
 use crate::error::Failure;
 
-/// Up to this stiffness the integrator, whose work grows with √κ, repeats what the exact engine found.
+/// Up to this stiffness the integrator, whose work grows with √κ, repeats what the exact engine
+/// found.
 const MOST_INTEGRATED: f64 = 1e8;
 
 /// One stiffness and one ψ.
@@ -21,7 +22,8 @@ pub struct Point {
     pub switch_count: usize,
     /// That number over √κ t_c/π.
     pub count_ratio: f64,
-    /// The same if all half swings lasted π/√κ, and none had switches while the spring cannot reach its limit.
+    /// The same if all half swings lasted π/√κ, and none had switches while the spring cannot
+    /// reach its limit.
     pub count_expected: f64,
 }
 

@@ -8,7 +8,8 @@ use stickslip_model::{Contact, exact, inner};
 use crate::error::Failure;
 use crate::plan::AsymptotePlan;
 
-/// Stiffnesses at which collisions are compared, those of them that are within the study's interval.
+/// Stiffnesses at which collisions are compared, those of them that are within the study's
+/// interval.
 const COMPARED: [f64; 3] = [1e4, 1e6, 1e8];
 /// Collisions over one oscillation.
 const COLLISIONS: u32 = 48;
@@ -53,7 +54,8 @@ pub struct Compared {
     pub velocity: f64,
     /// F at the same phase.
     pub inner: f64,
-    /// By how much the phase is ahead of √κ/π · (time left at the first switch), to the nearest whole number.
+    /// By how much the phase is ahead of √κ/π · (time left at the first switch), to the nearest
+    /// whole number.
     pub ahead: f64,
 }
 

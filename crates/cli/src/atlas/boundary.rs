@@ -51,8 +51,8 @@ fn phases(contact: &Contact, guards: impl Iterator<Item = usize>) -> impl Iterat
 
 /// What lies below and above a curve, at its middle node.
 ///
-/// Smaller ψ is below; where a curve runs straight up, smaller κ. The rule is its own inverse: below and above become left and
-/// right again.
+/// Smaller ψ is below; where a curve runs straight up, smaller κ. The rule is its own inverse:
+/// below and above become left and right again.
 pub fn in_order<T>(nodes: &[Node], [left, right]: [T; 2]) -> [T; 2] {
     let tangent = nodes[nodes.len() / 2].tangent;
     let left_is_above = tangent.x > 0.0 || tangent.x == 0.0 && tangent.y < 0.0;

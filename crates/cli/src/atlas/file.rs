@@ -26,7 +26,7 @@ impl Atlas {
         let schema: Schema = json_input::parse(&text).map_err(unusable)?;
         if schema.schema != ATLAS {
             return Err(unusable(format!(
-                "schema is {:?}; accepted is {ATLAS:?}, which stickslip trace writes",
+                "schema is {:?}; expected {ATLAS:?}, which stickslip trace writes",
                 schema.schema
             )));
         }
@@ -39,12 +39,12 @@ impl Atlas {
             document;
         if let Some(objection) = verification.objection() {
             return Err(format!(
-                "verification: {objection}; accepted is an atlas against which nothing speaks"
+                "verification: {objection}; expected an atlas against which nothing speaks"
             ));
         }
         let frame = frame(&window)?;
         if !(tolerance > 0.0 && tolerance <= 1e-6) {
-            return Err(format!("tolerance = {tolerance:?}: accepted is above 0 to 1e-6"));
+            return Err(format!("tolerance = {tolerance:?}: expected above 0 to 1e-6"));
         }
         frame.require_wide().map_err(|reason| format!("window: {reason}"))?;
         let curves = boundaries
@@ -66,7 +66,7 @@ impl Atlas {
         }
         if regions.len() != map.regions().len() {
             return Err(format!(
-                "regions has {} entries, and the boundaries make {} regions; accepted is one for each",
+                "regions has {} entries, and the boundaries make {} regions; expected one for each",
                 regions.len(),
                 map.regions().len()
             ));
@@ -101,10 +101,10 @@ fn frame(window: &WindowFields) -> Result<Frame, String> {
         if low > 0.0 && low < high {
             return Ok(Range { low, high });
         }
-        Err(format!("window.{name} = [{low:?}, {high:?}]: accepted is [LO, HI] with 0 < LO < HI"))
+        Err(format!("window.{name} = [{low:?}, {high:?}]: expected [LO, HI] with 0 < LO < HI"))
     };
     if window.damping < 0.0 {
-        return Err(format!("window.damping = {:?}: accepted is 0 or above", window.damping));
+        return Err(format!("window.damping = {:?}: expected 0 or above", window.damping));
     }
     let (kappa, psi) = (range("kappa", window.kappa)?, range("psi", window.psi)?);
     Ok(Frame { kappa, psi, ratio: None, damping: window.damping })
@@ -115,7 +115,7 @@ fn curve(index: usize, boundary: &BoundaryFields) -> Result<Curve<String, Kind>,
     let (points, tangents) = (&boundary.points, &boundary.tangents);
     if points.len() < 2 || points.len() != tangents.len() {
         return Err(format!(
-            "boundaries[{index}] has {} points and {} tangents; accepted are at least two, and as \
+            "boundaries[{index}] has {} points and {} tangents; expected at least two, and as \
              many of both",
             points.len(),
             tangents.len()
@@ -142,7 +142,7 @@ fn checked(switching: Switching, place: impl Fn() -> String) -> Result<String, S
         return Ok(itinerary);
     }
     Err(format!(
-        "{}: switch_count {count} and itinerary {itinerary:?} do not fit; accepted are o in turns \
+        "{}: switch_count {count} and itinerary {itinerary:?} do not fit; expected o in turns \
          with + or -, one for each phase, one more than there are switches",
         place()
     ))
@@ -153,12 +153,12 @@ fn positive([kappa, psi]: [f64; 2], place: impl Fn() -> String) -> Result<Point,
     if kappa > 0.0 && psi > 0.0 {
         return Ok(traced([kappa, psi]));
     }
-    Err(format!("{}: kappa = {kappa:?}, psi = {psi:?}; accepted are numbers above 0", place()))
+    Err(format!("{}: kappa = {kappa:?}, psi = {psi:?}; expected numbers above 0", place()))
 }
 
 fn require_id(list: &str, index: usize, id: usize) -> Result<(), String> {
     if id == index {
         return Ok(());
     }
-    Err(format!("{list}[{index}].id = {id}; accepted is {index}, its place in the list"))
+    Err(format!("{list}[{index}].id = {id}; expected {index}, its place in the list"))
 }

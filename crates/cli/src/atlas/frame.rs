@@ -49,18 +49,20 @@ impl Frame {
         }
     }
 
-    /// Distance from its boundary, in traced coordinates, of a curve that is accurate to `tolerance` in ψ.
+    /// Distance from its boundary, in traced coordinates, of a curve that is accurate to
+    /// `tolerance` in ψ.
     pub fn interpolation(&self, tolerance: f64) -> f64 {
         tolerance / (1.0 + self.psi.high)
     }
 
-    /// Distance within which the side of a curve is left open: ten times its error, and where vertices are known less well.
+    /// Distance within which the side of a curve is left open: ten times its error, and where
+    /// vertices are known less well.
     pub fn resolution(&self, tolerance: f64) -> f64 {
         (10.0 * self.interpolation(tolerance)).max(1e-9)
     }
 
-    /// The finest, the usual and the coarsest accuracy in ψ. The tracer tells curves apart by 1e-8 of the window's shorter side,
-    /// and has margins to some 1e-13.
+    /// The finest, the usual and the coarsest accuracy in ψ. The tracer tells curves apart by 1e-8
+    /// of the window's shorter side, and has margins to some 1e-13.
     pub fn tolerances(&self) -> [f64; 3] {
         let shorter = self.window().extent().min().min(1.0);
         [1e-11, (1e-10 * shorter).max(1e-11), 1e-9 * shorter]
@@ -70,7 +72,7 @@ impl Frame {
     /// Refuses a window that is too narrow for the accuracy of its boundaries.
     ///
     /// # Errors
-    /// What is wrong and what is accepted.
+    /// What is wrong and what is expected.
     pub fn require_wide(&self) -> Result<(), String> {
         const NARROWEST: f64 = 0.01;
         let extent = self.window().extent();
@@ -78,7 +80,7 @@ impl Frame {
             return Ok(());
         }
         Err(format!(
-            "the window is too narrow: {:e} in ln(kappa) by {:e} in ln(1 + psi); accepted is from \
+            "the window is too narrow: {:e} in ln(kappa) by {:e} in ln(1 + psi); expected from \
              {NARROWEST} each",
             extent.x, extent.y
         ))

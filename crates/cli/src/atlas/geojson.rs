@@ -13,7 +13,8 @@ use super::polyline::polyline;
 
 type Ring = Vec<[f64; 2]>;
 
-/// The regions, boundaries and vertices of a map as a file, in this order, with coordinates (κ, ψ); `document` is that of the map.
+/// The regions, boundaries and vertices of a map as a file, in this order, with coordinates (κ, ψ);
+/// `document` is that of the map.
 ///
 /// # Errors
 /// It does not fit into memory.

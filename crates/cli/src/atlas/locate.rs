@@ -15,8 +15,8 @@ use crate::rows::{LOCATED, number, write_fields};
 /// Locates every point of the input.
 ///
 /// # Errors
-/// The atlas or the input cannot be used, the output cannot be written, or some points have no place; in the last case the output
-/// is complete.
+/// The atlas or the input cannot be used, the output cannot be written, or some points have no
+/// place; in the last case the output is complete.
 pub fn run(plan: &LocatePlan) -> Result<(), Failure> {
     let atlas = Atlas::read(&plan.atlas)?;
     let mut input = Input::open(&plan.input, &Given::default(), &Columns::POINTS)?;

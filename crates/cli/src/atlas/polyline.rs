@@ -9,7 +9,8 @@ const MOST_LINES: f64 = 16.0;
 /// Straight lines for a piece as long as the window is high.
 const LINES: f64 = 60.0;
 
-/// Points (κ, ψ) of a curve, close enough for straight lines between them in a window of this extent.
+/// Points (κ, ψ) of a curve, close enough for straight lines between them in a window of this
+/// extent.
 pub fn polyline<Label, Margin>(curve: &Curve<Label, Margin>, extent: &Point) -> Vec<[f64; 2]> {
     let mut points = vec![scaled(&curve.nodes[0].point)];
     for nodes in curve.nodes.windows(2) {

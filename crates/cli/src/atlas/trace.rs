@@ -25,7 +25,8 @@ use crate::plan::TracePlan;
 /// Traces the boundaries of the window and writes its atlas.
 ///
 /// # Errors
-/// A run fails, files cannot be written, or something speaks against the atlas; in the last case it is complete and says so.
+/// A run fails, files cannot be written, or something speaks against the atlas; in the last case it
+/// is complete and says so.
 pub fn run(plan: &TracePlan) -> Result<(), Failure> {
     if let Some(target) = &plan.plot {
         target.check()?;
@@ -133,8 +134,8 @@ impl<'a> Output<'a> {
 /// How often a verification may send the tracer back.
 const ROUNDS: u64 = 8;
 
-/// Traces the boundaries in `frame`, accurate to `tolerance` in ψ, and verifies the regions. As long as this comes upon other
-/// switches than the atlas has, the tracer looks again there.
+/// Traces the boundaries in `frame`, accurate to `tolerance` in ψ, and verifies the regions. As
+/// long as this comes upon other switches than the atlas has, the tracer looks again there.
 ///
 /// # Errors
 /// A run fails, or the curves make no regions.
@@ -195,8 +196,8 @@ fn atlas(
     Ok(Atlas { frame, tolerance, map, unbounded })
 }
 
-/// The regions that the traced curves make. Points go through (κ, ψ), as they are written, so that a file makes the same regions
-/// bit for bit.
+/// The regions that the traced curves make. Points go through (κ, ψ), as they are written, so that
+/// a file makes the same regions bit for bit.
 fn map(
     frame: &Frame,
     tolerance: f64,

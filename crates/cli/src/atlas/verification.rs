@@ -62,8 +62,8 @@ pub struct MismatchFields {
     near_boundary: bool,
 }
 
-/// Tries the regions of `atlas`, in parallel, at the points of a round; `unresolved` is what is known to be open. Also returns pairs
-/// of places between which a boundary is missing.
+/// Tries the regions of `atlas`, in parallel, at the points of a round; `unresolved` is what is
+/// known to be open. Also returns pairs of places between which a boundary is missing.
 ///
 /// # Errors
 /// The distances from boundaries are not in order, which is a defect.
@@ -153,8 +153,8 @@ impl Report {
     }
 }
 
-/// The switches of the collision at a traced point, by integration: without damping that shares nothing with the margins that were
-/// traced.
+/// The switches of the collision at a traced point, by integration: without damping that shares
+/// nothing with the margins that were traced.
 ///
 /// # Errors
 /// Why it cannot be computed.

@@ -78,7 +78,8 @@ pub fn stiff(subject: &Subject) -> Result<Finding, Stop> {
     let mut evidence = Evidence::default();
     let mut largest = Vec::new();
     for kappa in DECADES {
-        // A turn of the spring's phase √κ t_c, at ψ between the two ends of the range in which there are switches.
+        // A turn of the spring's phase √κ t_c, at ψ between the two ends of the range in which
+        // there are switches.
         let turn = 2.0 * PI / exact::CONTACT_TIME;
         let tried: Vec<_> = (0..EACH * EACH)
             .map(|i| {

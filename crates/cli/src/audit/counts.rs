@@ -140,7 +140,8 @@ impl Rises {
     }
 }
 
-/// 21: at b, c, d all switches are in the decompression, at e the first one just before the largest compression.
+/// 21: at b, c, d all switches are in the decompression, at e the first one just before the largest
+/// compression.
 pub fn decompression(subject: &Subject) -> Result<Finding, Stop> {
     let [_, read] = subject.lines()?;
     let kappa = read.kappa;

@@ -50,7 +50,8 @@ pub fn figure_6(subject: &Subject) -> Result<Finding, Stop> {
     })
 }
 
-/// The first moment at which the tangential force turns from braking to driving: y falls through 0, which it can while sticking only.
+/// The first moment at which the tangential force turns from braking to driving: y falls through 0,
+/// which it can while sticking only.
 fn first_minimum(collision: &Collision) -> Option<f64> {
     let omega = collision.contact.kappa().sqrt();
     collision.switches.windows(2).find_map(|pair| {

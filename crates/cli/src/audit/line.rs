@@ -1,7 +1,7 @@
 //! The switches over ψ at one stiffness, with every boundary located.
 //!
-//! The boundaries are traced in a narrow window around the stiffness, and solved for at it; those of another model are bisected
-//! between samples.
+//! The boundaries are traced in a narrow window around the stiffness, and solved for at it; those
+//! of another model are bisected between samples.
 
 use stickslip::collisions::CollisionPlane;
 use stickslip_tracer::{Family, Point, TraceOptions, trace};
@@ -79,8 +79,8 @@ impl Line {
 /// The line at `kappa`.
 ///
 /// # Errors
-/// Why the boundaries are in doubt: what the tracer could not explain, or a collision that does not have the switches of its
-/// stretch.
+/// Why the boundaries are in doubt: what the tracer could not explain, or a collision that does not
+/// have the switches of its stretch.
 pub fn line(subject: &Subject, kappa: f64) -> Result<Line, String> {
     let (method, boundaries) = match subject.model {
         Model::Reset => ("traced and solved for", traced(kappa)?),
@@ -97,8 +97,8 @@ pub fn line(subject: &Subject, kappa: f64) -> Result<Line, String> {
 
 /// The stretch between two neighbouring boundaries, which samples must confirm.
 ///
-/// Without a boundary, the number of reversals changes only where the velocity at the end passes 0. With a reset spring that is a
-/// boundary itself; with another one it is bisected between samples.
+/// Without a boundary, the number of reversals changes only where the velocity at the end passes 0.
+/// With a reset spring that is a boundary itself; with another one it is bisected between samples.
 fn stretch(subject: &Subject, kappa: f64, low: f64, high: f64) -> Result<Stretch, String> {
     let collide = |psi| subject.collide(kappa, psi, 0.0).map_err(|error| error.to_string());
     let first = if low == 0.0 { SMALL_PSI } else { low + (high - low) * 1e-3 };
@@ -156,7 +156,8 @@ fn traced(kappa: f64) -> Result<Vec<f64>, String> {
     Ok(found)
 }
 
-/// The same from samples, for another model than the tracer's: what lies between two of them is missed.
+/// The same from samples, for another model than the tracer's: what lies between two of them is
+/// missed.
 fn bisected(subject: &Subject, kappa: f64) -> Result<Vec<f64>, String> {
     let itinerary = |psi| subject.collide(kappa, psi, 0.0).map(|collision| collision.itinerary());
     let psis: Vec<f64> = geometric(PSI.0, PSI.1, 4000).collect();
@@ -198,7 +199,8 @@ fn secant(value: impl Fn(f64) -> Option<f64>, guess: f64) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// Both ways to the boundaries: sampling finds all at this stiffness, and bisecting the exact solution is good to rounding.
+    /// Both ways to the boundaries: sampling finds all at this stiffness, and bisecting the exact
+    /// solution is good to rounding.
     #[test]
     fn traced_boundaries_are_those_between_samples() {
         let subject = Subject::new(Model::Reset);

@@ -82,7 +82,8 @@ fn scaled_back(draw: &mut Rng, kappa: f64, psi: f64) -> Result<(f64, f64), Failu
     Ok((impact.contact.kappa(), impact.contact.psi()))
 }
 
-/// The undamped contact in the scaled units of (23, 24), with friction f = μ/α kept: |F_t| ≤ f x^{3/2}.
+/// The undamped contact in the scaled units of (23, 24), with friction f = μ/α kept: |F_t| ≤ f
+/// x^{3/2}.
 struct ThreeParameters {
     model: Model,
     kappa: f64,

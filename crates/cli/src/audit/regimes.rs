@@ -44,7 +44,8 @@ pub fn start(subject: &Subject) -> Result<Finding, Stop> {
     })
 }
 
-/// Whether the spring, if it followed the motion from the first touch, would be above its limit at once.
+/// Whether the spring, if it followed the motion from the first touch, would be above its limit at
+/// once.
 fn slides_first([kappa, psi, damping]: &[f64; 3]) -> bool {
     let share = |t: f64| kappa * psi * t / (t.sqrt() * (t + damping));
     share(1e-24) > share(1e-20)

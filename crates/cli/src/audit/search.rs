@@ -17,7 +17,8 @@ pub struct Extremum<T> {
     pub value: f64,
 }
 
-/// The maximum of `value`: the best of `places`, which are in order, improved by golden section between its neighbours.
+/// The maximum of `value`: the best of `places`, which are in order, improved by golden section
+/// between its neighbours.
 pub fn maximum(
     places: &[f64],
     value: impl Fn(f64) -> Result<f64, Failure> + Send + Sync,
@@ -52,7 +53,8 @@ fn between(
     Ok(Extremum { at, value })
 }
 
-/// The maximum of `value` near `start`, by the simplex method of Nelder and Mead from a triangle of size `step`.
+/// The maximum of `value` near `start`, by the simplex method of Nelder and Mead from a triangle of
+/// size `step`.
 pub fn maximum_near(
     start: [f64; 2],
     step: [f64; 2],
@@ -71,7 +73,8 @@ pub fn maximum_near(
 /// What argmin returns.
 type Solved<O, S, P> = Result<OptimizationResult<O, S, IterState<P, (), (), (), (), f64>>, Error>;
 
-/// A function whose maximum is looked for, and its first failure: argmin panics where a cost fails at the start.
+/// A function whose maximum is looked for, and its first failure: argmin panics where a cost fails
+/// at the start.
 struct Cost<P, F> {
     value: F,
     failed: RefCell<Option<Failure>>,
@@ -110,7 +113,8 @@ impl<P, F: Fn(&P) -> Result<f64, Failure>> CostFunction for &Cost<P, F> {
     }
 }
 
-/// The place between `from` and `to` where `holds`, true at `from` and false at `to`, changes; to rounding.
+/// The place between `from` and `to` where `holds`, true at `from` and false at `to`, changes; to
+/// rounding.
 pub fn change(
     mut from: f64,
     mut to: f64,

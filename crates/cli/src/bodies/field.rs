@@ -38,7 +38,7 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for ObjectVisitor<T> {
 /// # Errors
 /// It is missing.
 pub fn required<T>(place: &str, object: Option<T>) -> Result<T, String> {
-    object.ok_or_else(|| format!("{place} is missing; accepted is an object"))
+    object.ok_or_else(|| format!("{place} is missing; expected an object"))
 }
 
 /// The number in the field of `quantity` in the object at `place`.
@@ -46,12 +46,12 @@ pub fn required<T>(place: &str, object: Option<T>) -> Result<T, String> {
 /// # Errors
 /// It is missing, no number, or out of range.
 pub fn number(place: &str, quantity: &Quantity, value: Option<&Value>) -> Result<f64, String> {
-    let Quantity { name, accepted, .. } = quantity;
+    let Quantity { name, expected, .. } = quantity;
     let number = match value {
-        None => return Err(format!("{place}.{name} is missing; accepted is {accepted}")),
+        None => return Err(format!("{place}.{name} is missing; expected {expected}")),
         Some(value) => value
             .as_f64()
-            .ok_or_else(|| format!("{place}.{name} is {}; accepted is {accepted}", kind(value)))?,
+            .ok_or_else(|| format!("{place}.{name} is {}; expected {expected}", kind(value)))?,
     };
     quantity.check(number).map_err(|invalid| format!("{place}.{invalid}"))
 }
@@ -76,7 +76,7 @@ pub fn vector(
         }
         Some(value) => kind(value).to_owned(),
     };
-    Err(format!("{place}.{name} is {found}; accepted are three finite numbers, {unit}"))
+    Err(format!("{place}.{name} is {found}; expected three finite numbers, {unit}"))
 }
 
 fn kind(value: &Value) -> &'static str {

@@ -13,7 +13,7 @@ impl Bodies {
     /// The bodies that `text` describes.
     ///
     /// # Errors
-    /// What is wrong and where, and what is accepted.
+    /// What is wrong and where, and what is expected.
     pub fn parse(text: &[u8]) -> Result<Self, String> {
         let Object(file): Object<File> = json_input::parse(text)?;
         file.resolve()
@@ -110,7 +110,7 @@ impl File {
             (&[first], Some((wall, plane))) => (first, Other::Wall(wall, plane)),
             (_, wall) => {
                 return Err(format!(
-                    "spheres has {} entries, and there is {} wall; accepted are two spheres, or one \
+                    "spheres has {} entries, and there is {} wall; expected two spheres, or one \
                      sphere and a wall",
                     spheres.len(),
                     if wall.is_some() { "a" } else { "no" }
@@ -136,7 +136,7 @@ impl SphereFields {
             }
             (mass, _) => {
                 return Err(format!(
-                    "{place}.mass_kg and {material_place}.density_kg_per_m3 are {}; accepted is \
+                    "{place}.mass_kg and {material_place}.density_kg_per_m3 are {}; expected \
                      exactly one of them, a finite number above 0",
                     if mass.is_some() { "both given" } else { "both missing" }
                 ));
@@ -175,7 +175,7 @@ impl WallFields {
             }
             (material, _) => {
                 return Err(format!(
-                    "wall.material and wall.rigid = true are {}; accepted is exactly one of them",
+                    "wall.material and wall.rigid = true are {}; expected exactly one of them",
                     if material.is_some() { "both given" } else { "both missing" }
                 ));
             }

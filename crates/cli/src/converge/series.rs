@@ -11,12 +11,14 @@ use stickslip_solver::{Dop853, Dopri5, Options, Order, StepSize, fit_order};
 const PER_OCTAVE: i32 = 4;
 /// Tolerances in a decade.
 const PER_DECADE: i32 = 4;
-/// The coarsest step for collisions up to a stiffness of 64, in whose swings the same number of steps fits beyond.
+/// The coarsest step for collisions up to a stiffness of 64, in whose swings the same number of
+/// steps fits beyond.
 const COARSEST: f64 = 0.25;
-/// A contact lasts 3.22 in scaled time and 2.62 in s without damping, and less with it. One that has not ended by this time,
-/// because steps are too coarse, has failed.
+/// A contact lasts 3.22 in scaled time and 2.62 in s without damping, and less with it. One that
+/// has not ended by this time, because steps are too coarse, has failed.
 const LONGEST: f64 = 16.0;
-/// Steps after which a contact in adaptive steps has failed, for collisions up to a stiffness of 64; they take up to 2500.
+/// Steps after which a contact in adaptive steps has failed, for collisions up to a stiffness of
+/// 64; they take up to 2500.
 const MOST_STEPS: f64 = 20_000.0;
 /// Quick measurements are repeated for this long, at most three times, and the shortest counts.
 const QUICK: Duration = Duration::from_millis(5);

@@ -91,7 +91,8 @@ impl<'a> Course<'a> {
     }
 }
 
-/// Enough moments of a phase for a smooth line, its ends among them: one a pixel, and 25 to each swing of the spring.
+/// Enough moments of a phase for a smooth line, its ends among them: one a pixel, and 25 to each
+/// swing of the spring.
 fn samples(
     collision: &Collision,
     history: &History,
@@ -115,7 +116,8 @@ fn padded((low, high): (f64, f64)) -> (f64, f64) {
     (low - pad, high + pad)
 }
 
-/// What colours and lines mean, beside each other from a place on; `tangential` is what the tangential lines are.
+/// What colours and lines mean, beside each other from a place on; `tangential` is what the
+/// tangential lines are.
 pub fn legend(svg: &mut Svg, (mut left, y): (f64, f64), tangential: &str) {
     let mut entry = |svg: &mut Svg, text: &str, width: f64, key: &dyn Fn(&mut Svg, Rectangle)| {
         key(svg, Rectangle { left, top: y - 6.0, width: 24.0, height: 12.0 });

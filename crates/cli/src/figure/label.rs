@@ -22,10 +22,11 @@ pub struct Label {
 
 /// One label for each connected region of equal values that has room for it.
 ///
-/// `half_size` is half the width and height that the label of a value needs, in cells. A label lies within its region,
-/// at the place that leaves most room around it, in units of its own size. Cells connect through edges, not through
-/// corners, and not through a neck narrower than a quarter of a label: where two boundaries cross, cells join what meets
-/// in a point only. Labels on both sides of a neck come as close as to overlap by a quarter at most.
+/// `half_size` is half the width and height that the label of a value needs, in cells. A label lies
+/// within its region, at the place that leaves most room around it, in units of its own size. Cells
+/// connect through edges, not through corners, and not through a neck narrower than a quarter of a
+/// label: where two boundaries cross, cells join what meets in a point only. Labels on both sides
+/// of a neck come as close as to overlap by a quarter at most.
 pub fn place(cells: Cells<'_>, half_size: impl Fn(i32) -> (f64, f64)) -> Vec<Label> {
     /// Half the width of the narrowest neck, in half sizes of a label.
     const NECK: f64 = 0.25;
@@ -77,8 +78,8 @@ pub fn place(cells: Cells<'_>, half_size: impl Fn(i32) -> (f64, f64)) -> Vec<Lab
     best.into_iter().filter_map(|(_, place)| place.map(label)).collect()
 }
 
-/// Distance from the middle of every cell to the nearer end of its run of equal values, along lines of `length` cells
-/// that begin at `starts`.
+/// Distance from the middle of every cell to the nearer end of its run of equal values, along lines
+/// of `length` cells that begin at `starts`.
 fn clearance(
     values: &[i32],
     starts: impl Iterator<Item = usize>,

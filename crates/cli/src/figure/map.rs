@@ -26,7 +26,8 @@ pub struct Map<'a> {
     pub values: Values<'a>,
     /// Lines over it.
     pub lines: Vec<(Stroke, Vec<(f64, f64)>)>,
-    /// Points over it with their names, in ascending order on a vertical line; the names stand to the right of the panel.
+    /// Points over it with their names, in ascending order on a vertical line; the names stand to
+    /// the right of the panel.
     pub points: Vec<(&'a str, (f64, f64))>,
 }
 
@@ -35,7 +36,8 @@ pub struct Map<'a> {
 pub enum Values<'a> {
     /// Tangential restitution; NaN where there is none.
     Restitution(&'a [f64]),
-    /// Number of switches, with labels in the regions that have room for one; negative where there is none.
+    /// Number of switches, with labels in the regions that have room for one; negative where there
+    /// is none.
     Switches(&'a [i32]),
 }
 

@@ -104,7 +104,8 @@ impl Panel {
         svg.outline(self.frame, FRAME);
     }
 
-    /// Ticks with their values along an edge, in units of [`Self::power`]; without `labels` the ticks alone.
+    /// Ticks with their values along an edge, in units of [`Self::power`]; without `labels` the
+    /// ticks alone.
     pub fn ticks(&self, svg: &mut Svg, edge: Edge, labels: bool) {
         let frame = &self.frame;
         let (length, apart, closest) = match edge {
@@ -142,8 +143,8 @@ impl Panel {
         }
     }
 
-    /// The power of ten in units of which the ticks of an edge are labelled, to follow the name of what they show; empty
-    /// where numbers need none.
+    /// The power of ten in units of which the ticks of an edge are labelled, to follow the name of
+    /// what they show; empty where numbers need none.
     pub fn power(&self, edge: Edge) -> String {
         match (self.scale(edge), exponent(self.range(edge))) {
             (Scale::Logarithmic, _) | (_, 0) => String::new(),
@@ -179,7 +180,8 @@ impl Panel {
     }
 }
 
-/// About `count` round values between `low` and `high`, with their labels in units of 10^[`exponent`].
+/// About `count` round values between `low` and `high`, with their labels in units of
+/// 10^[`exponent`].
 fn ticks((low, high): (f64, f64), count: f64) -> Vec<(f64, String)> {
     let unit = 10_f64.powi(exponent((low, high)));
     let (low, high) = (low / unit, high / unit);
@@ -198,7 +200,8 @@ fn ticks((low, high): (f64, f64), count: f64) -> Vec<(f64, String)> {
     values.map(|value| (value * unit, label(value))).collect()
 }
 
-/// At most about `count` values 1, 2, 5 or 1 times powers of ten between `low` and `high`, above 0, with their labels.
+/// At most about `count` values 1, 2, 5 or 1 times powers of ten between `low` and `high`, above 0,
+/// with their labels.
 fn decade_ticks((low, high): (f64, f64), count: f64) -> Vec<(f64, String)> {
     #[allow(clippy::cast_possible_truncation)]
     let [first, last] = [low, high].map(|end| end.log10().floor() as i32);

@@ -1,7 +1,8 @@
 //! Colours and sizes of all pictures.
 //!
-//! Colours of lines are those of M. Okabe and K. Ito, *Color universal design* (2008), which readers with any common colour
-//! blindness can tell apart. Shades of phases also differ in lightness, so that they survive grey print.
+//! Colours of lines are those of M. Okabe and K. Ito, *Color universal design* (2008), which
+//! readers with any common colour blindness can tell apart. Shades of phases also differ in
+//! lightness, so that they survive grey print.
 
 use colorous::Color;
 

@@ -5,7 +5,8 @@ use std::fmt::{self, Display};
 use super::style::{FONT, INK};
 use super::text;
 
-/// A picture under construction; what is added later lies on top. Lengths are in pixels, y points down.
+/// A picture under construction; what is added later lies on top. Lengths are in pixels, y points
+/// down.
 #[derive(Debug)]
 pub struct Svg {
     width: f64,
@@ -81,7 +82,8 @@ pub enum Anchor {
 /// Words at a place.
 #[derive(Clone, Copy, Debug)]
 pub struct Words<'a> {
-    /// The words, with `_` and `^` before what is lowered and raised: a character, or several in braces.
+    /// The words, with `_` and `^` before what is lowered and raised: a character, or several in
+    /// braces.
     pub text: &'a str,
     /// Font size.
     pub size: f64,
@@ -125,7 +127,8 @@ impl Svg {
     /// The whole document.
     pub fn document(&self) -> String {
         let Self { width, height, title, body } = self;
-        // Some viewers drop blanks at the ends of lowered and raised words unless told to preserve them.
+        // Some viewers drop blanks at the ends of lowered and raised words unless told to preserve
+        // them.
         format!(
             r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" font-family="{FONT}" xml:space="preserve">
 <title>{title}</title>

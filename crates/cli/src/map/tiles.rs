@@ -223,7 +223,7 @@ fn require_same(directory: &Path, kept: &[u8], description: &str) -> Result<(), 
         directory,
         format!(
             "holds the tiles of another map, with '{theirs}' where this one has '{ours}'; \
-             accepted is the command that began it, another --out, or no such directory"
+             expected the command that began it, another --out, or no such directory"
         ),
     ))
 }

@@ -6,7 +6,8 @@ use crate::args::AsymptoteArguments;
 use crate::error::Failure;
 use crate::range::Range;
 
-/// The stiffnesses of a study: from about 2 on all oscillations are alike, and at 10¹⁰ a collision has 100 000 switches.
+/// The stiffnesses of a study: from about 2 on all oscillations are alike, and at 10¹⁰ a collision
+/// has 100 000 switches.
 const STIFFNESS: Range = Range { low: 3.0, high: 1e10 };
 
 /// Most impact ratios: lines of a picture that can be told apart.
@@ -40,26 +41,26 @@ impl AsymptotePlan {
         let AsymptoteArguments { kappa, psi, out, threads } = arguments;
         if kappa.low < STIFFNESS.low || kappa.high > STIFFNESS.high {
             return Err(Failure::Usage(format!(
-                "--kappa {:?}:{:?} is out of range; accepted is LO:HI with {:?} <= LO < HI <= {:?}",
+                "--kappa {:?}:{:?} is out of range; expected LO:HI with {:?} <= LO < HI <= {:?}",
                 kappa.low, kappa.high, STIFFNESS.low, STIFFNESS.high
             )));
         }
         if psi.len() > MOST_PSI {
             return Err(Failure::Usage(format!(
-                "--psi has {} values; accepted are at most {MOST_PSI}",
+                "--psi has {} values; expected at most {MOST_PSI}",
                 psi.len()
             )));
         }
         if let Some(psi) = psi.iter().find(|psi| **psi >= 2.0) {
             return Err(Failure::Usage(format!(
-                "--psi {psi:?} is out of range; accepted are numbers above 0 and below 2, from where \
+                "--psi {psi:?} is out of range; expected numbers above 0 and below 2, from where \
                  on there is no switch"
             )));
         }
         if let Some((_, psi)) = psi.iter().enumerate().find(|(i, value)| psi[..*i].contains(value))
         {
             return Err(Failure::Usage(format!(
-                "--psi has {psi:?} twice; accepted is each value once"
+                "--psi has {psi:?} twice; expected each value once"
             )));
         }
         Ok(Self {

@@ -48,7 +48,7 @@ impl ConvergePlan {
         };
         if let Some(stiff) = contacts.iter().find(|contact| contact.kappa() > MOST_STIFFNESS) {
             return Err(Failure::Usage(format!(
-                "--kappa {:?} is out of range; accepted is a number above 0, at most {MOST_STIFFNESS:?}",
+                "--kappa {:?} is out of range; expected a number above 0, at most {MOST_STIFFNESS:?}",
                 stiff.kappa()
             )));
         }

@@ -85,7 +85,7 @@ fn velocities(
     bodies: &Path,
 ) -> Result<(Range, Range, Coordinates), Failure> {
     let (Some(normal), Some(tangential)) = (arguments.normal, arguments.tangential) else {
-        let message = "--normal or --tangential is missing; accepted is --bodies with both";
+        let message = "--normal or --tangential is missing; expected --bodies with both";
         return Err(Failure::Usage(message.to_owned()));
     };
     let pair = read_pair(bodies)?;
@@ -95,7 +95,7 @@ fn velocities(
             bodies,
             format!(
                 "surface.damping_time_s is {damping_time_s:?}, and --method exact holds without \
-                 damping; accepted is 0, or --method dop853 or dopri5"
+                 damping; expected 0, or --method dop853 or dopri5"
             ),
         ));
     }
@@ -107,7 +107,7 @@ fn format(out: &Path) -> Result<MapFormat, Failure> {
         Some("npz") => Ok(MapFormat::Npz),
         Some("csv") => Ok(MapFormat::Csv),
         _ => Err(Failure::Usage(format!(
-            "--out {}: the name does not tell the format; accepted are FILE.npz and FILE.csv",
+            "--out {}: the name does not tell the format; expected FILE.npz and FILE.csv",
             out.display()
         ))),
     }

@@ -40,13 +40,13 @@ impl TracePlan {
         let tolerance = arguments.tolerance.unwrap_or(usual);
         if !(finest..=coarsest).contains(&tolerance) {
             return Err(Failure::Usage(format!(
-                "--tolerance {tolerance:?} is out of range; accepted is {finest:e} to {coarsest:e} \
+                "--tolerance {tolerance:?} is out of range; expected {finest:e} to {coarsest:e} \
                  in this window"
             )));
         }
         if arguments.geojson.as_ref() == Some(&arguments.out) {
             return Err(Failure::Usage(format!(
-                "--geojson {} is --out as well; accepted are two files",
+                "--geojson {} is --out as well; expected two files",
                 arguments.out.display()
             )));
         }
@@ -73,7 +73,7 @@ fn frame(arguments: &TraceArguments) -> Result<Frame, Failure> {
             let [low, high] = [low, high].map(|ratio| ratio * alpha / mu);
             if !(low > 0.0 && low < high && high.is_finite()) {
                 return Err(Failure::Usage(format!(
-                    "psi = ratio·alpha/mu from {low:?} to {high:?} is out of range; accepted are \
+                    "psi = ratio·alpha/mu from {low:?} to {high:?} is out of range; expected \
                      finite numbers 0 < LO < HI"
                 )));
             }
@@ -90,7 +90,7 @@ fn positive(option: &str, range: Range) -> Result<Range, Failure> {
     }
     Err(Failure::Usage(format!(
         "{option} {:?}:{:?}: there is no collision at 0, and the boundaries near it have no end; \
-         accepted is LO:HI with LO > 0",
+         expected LO:HI with LO > 0",
         range.low, range.high
     )))
 }

@@ -55,7 +55,8 @@ impl Bench {
         if let Some(made) = self.boundaries.get() {
             return Ok(made);
         }
-        // The lower ends: boundaries never end at κ = 0 or ψ = 0. Below this ψ no boundary crosses the line of the points.
+        // The lower ends: boundaries never end at κ = 0 or ψ = 0. Below this ψ no boundary crosses
+        // the line of the points.
         let kappa = Range { low: 0.05, high: Reading::Axis.kappa(MOST_STIFFNESS) };
         let psi = Range { low: 0.002, high: MOST_RATIO * ALPHA / MU };
         let frame = Frame { kappa, psi, ratio: None, damping: 0.0 };

@@ -78,7 +78,8 @@ pub fn run(bench: &Bench) -> Result<Section, Failure> {
     })
 }
 
-/// The largest distance in ψ between the points of the traced uppermost boundary and its closed form.
+/// The largest distance in ψ between the points of the traced uppermost boundary and its closed
+/// form.
 fn distance_from_closed_form(atlas: &atlas::Atlas) -> f64 {
     let curves = atlas.map.curves().iter();
     // Its upper side has one phase.

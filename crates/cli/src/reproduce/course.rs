@@ -18,7 +18,8 @@ pub fn collide(kappa: f64, psi: f64) -> Result<Collision, Failure> {
     collided.map(|(collision, _)| collision).map_err(|source| failure(&contact, source))
 }
 
-/// The same where the axis of stiffness shows `value`, at an impact ratio, with its course by Dormand–Prince 8(5,3).
+/// The same where the axis of stiffness shows `value`, at an impact ratio, with its course by
+/// Dormand–Prince 8(5,3).
 ///
 /// # Errors
 /// It cannot be computed.

@@ -87,7 +87,8 @@ pub fn run(bench: &Bench) -> Result<Section, Failure> {
     }))
 }
 
-/// The line up to which sliding comes to rest, g_t/g_n = 2μ/α, in a plane of velocities up to `most`.
+/// The line up to which sliding comes to rest, g_t/g_n = 2μ/α, in a plane of velocities up to
+/// `most`.
 pub fn limit_line(most: f64) -> Vec<(f64, f64)> {
     vec![(0.0, 0.0), (most, ratio(2.0) * most)]
 }

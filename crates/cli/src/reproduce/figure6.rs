@@ -98,7 +98,8 @@ pub fn run(_: &Bench) -> Result<Section, Failure> {
     Ok(Section { shown: vec!["figure6"], ..study.into() })
 }
 
-/// When the force on the motion first turns from braking to driving forward: there the velocity is least.
+/// When the force on the motion first turns from braking to driving forward: there the velocity is
+/// least.
 fn first_minimum(collision: &Collision, history: &History) -> Option<f64> {
     let course = Course::new(collision, history, PANEL_WIDTH);
     let turn = course

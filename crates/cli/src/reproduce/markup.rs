@@ -1,7 +1,7 @@
 //! Captions and findings as HTML.
 
-/// `text` with `<`, `>`, `&` and `"` escaped, what follows `_` and `^` lowered and raised, and what stands between back quotes set as
-/// code.
+/// `text` with `<`, `>`, `&` and `"` escaped, what follows `_` and `^` lowered and raised, and what
+/// stands between back quotes set as code.
 ///
 /// Lowered and raised is a word, or what stands in braces or parentheses.
 pub fn html(text: &str) -> String {

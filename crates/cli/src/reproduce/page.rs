@@ -20,7 +20,8 @@ pub const INTRODUCTION: [&str; 2] = [
 ];
 
 const STYLE: &str = include_str!("page.css");
-/// Pictures are not shown smaller than that, in parts of their size: letters would become too small.
+/// Pictures are not shown smaller than that, in parts of their size: letters would become too
+/// small.
 const LEAST_SCALE: f64 = 0.7;
 
 /// The page.

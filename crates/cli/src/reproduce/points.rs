@@ -10,7 +10,8 @@ use crate::error::Failure;
 /// Where the points are on the axis of stiffness.
 pub const STIFFNESS: f64 = 18.0;
 
-/// Names of the intervals on the line of the points, from large to small ratios; n' is one that has no letter in the paper.
+/// Names of the intervals on the line of the points, from large to small ratios; n' is one that has
+/// no letter in the paper.
 const NAMES: [&str; 16] =
     ["a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l", "m", "n", "n'", "o"];
 

@@ -93,7 +93,8 @@ fn reference_boundaries_are_among_the_traced() {
     assert!(cases.len() >= 6, "{}", cases.len());
     let workspace = Workspace::new();
     workspace.write("a.json", &atlas().0);
-    // Just below and just above: the regions differ as they should, and the boundary is as far away as it should be.
+    // Just below and just above: the regions differ as they should, and the boundary is as far away
+    // as it should be.
     let apart = 1e-7;
     let mut points = "kappa,psi\n".to_owned();
     for case in &cases {
@@ -212,7 +213,8 @@ fn special_points_have_names() {
     assert!((cusp["psi"].as_f64().unwrap() - 1.0).abs() < 1e-6, "{cusp}");
     assert_eq!(list(&atlas, "extrema").len(), 0);
 
-    // The spring is at zero at the end of contact: a boundary that runs straight up to where a graze takes over.
+    // The spring is at zero at the end of contact: a boundary that runs straight up to where a
+    // graze takes over.
     let ran = workspace.run("trace --kappa 0.8:1.2 --psi 0.2:0.5 --damping 0.1 --out a.json");
     assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
     let atlas: Value = serde_json::from_str(&workspace.read("a.json")).unwrap();
@@ -234,7 +236,8 @@ fn boundaries_that_turn_back_have_extrema() {
     let boundary =
         &atlas["boundaries"][usize::try_from(extremum["boundary"].as_u64().unwrap()).unwrap()];
     let points: Vec<_> = list(boundary, "points").iter().map(pair).collect();
-    // No point of the boundary is beyond it, the nearest ones are a little on one side, and it lies among them.
+    // No point of the boundary is beyond it, the nearest ones are a little on one side, and it lies
+    // among them.
     assert!(points.iter().all(|point| point[0] > place[0]), "{place:?} {points:?}");
     assert!(points.iter().any(|point| point[1] > place[1]));
     assert!(points.iter().any(|point| point[1] < place[1]));
@@ -271,7 +274,8 @@ fn geojson_holds_what_the_atlas_has() {
         assert_eq!(feature["properties"]["below_itinerary"], boundary["below"]["itinerary"]);
         assert!(list(&feature["geometry"], "coordinates").len() >= list(boundary, "points").len());
     }
-    // In the plane of ln κ and ln(1 + ψ) every polygon has its region's share of the window, and so all have its area.
+    // In the plane of ln κ and ln(1 + ψ) every polygon has its region's share of the window, and so
+    // all have its area.
     let window = 4.0_f64.ln() * (3.5_f64 / 1.2).ln();
     for (feature, region) in regions.iter().zip(list(&atlas, "regions")) {
         assert_eq!(feature["properties"]["itinerary"], region["itinerary"]);
@@ -362,7 +366,7 @@ fn bad_windows_are_refused() {
         ("--kappa 5:20 --psi 0.2:2 --mu 0.4", ["--mu", "--ratio"]),
         ("--kappa 5:20 --psi 0.2:2 --tolerance 1e-3", ["--tolerance", "e-11 to 2.7"]),
         ("--kappa 5:20 --psi 0.2:2 --tolerance 1e-12", ["--tolerance", "3e-11"]),
-        ("--kappa 5:20 --psi 0.2:0.2000001", ["too narrow", "accepted"]),
+        ("--kappa 5:20 --psi 0.2:0.2000001", ["too narrow", "expected"]),
     ] {
         let ran = workspace.run(&format!("trace {options} --out a.json"));
         assert_eq!(ran.code, 2, "{options}: {}", ran.stderr);
@@ -442,7 +446,7 @@ fn bad_points_are_refused() {
     workspace.write("a.json", &atlas().0);
     for (points, part) in [
         ("", "is empty"),
-        ("kappa,ratio\n", "accepted are columns kappa and psi"),
+        ("kappa,ratio\n", "expected columns kappa and psi"),
         ("kappa,psi,region\n", "column region has the name of a result"),
     ] {
         workspace.write("p.csv", points);

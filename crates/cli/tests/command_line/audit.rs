@@ -73,7 +73,8 @@ fn sliding() {
     close(1, "largest difference of ε_t from the formula", 0.0, 1e-14);
     close(9, "κ below which there are switches at g_t/g_n = 3", 0.527_517_696_980, 1e-12);
     count(9, "of them with switches", 0);
-    // At κ = 63 a change of the last digit of ψ moves the pair of switches by less than time resolves.
+    // At κ = 63 a change of the last digit of ψ moves the pair of switches by less than time
+    // resolves.
     close(10, "ψ of pure sliding at κ = 63", 2.0, 1e-14);
     close(10, "the same traced, κ = 63", 2.0, 2e-14);
     close(10, "ψ of pure sliding at κ = 0.3", 3.6107667429891, 1e-12);
@@ -119,7 +120,8 @@ fn counts() {
     count(24, "changes bisected", 12);
 }
 
-/// All boundaries of the reference data at κ = 18 and 63 are among those of statement 6: the largest difference is 7e-15.
+/// All boundaries of the reference data at κ = 18 and 63 are among those of statement 6: the
+/// largest difference is 7e-15.
 #[test]
 fn boundaries_are_those_of_the_reference() {
     let entries = RESET[5]["evidence"].as_array().expect("evidence");
@@ -143,7 +145,8 @@ fn boundaries_are_those_of_the_reference() {
 #[test]
 fn bounds_and_courses() {
     close(12, "largest elongation over μ/(ακ)", 1.25_f64.powf(0.6), 1e-12);
-    // The exact map of κ from 1.4 to 1.7 and ψ from 0.9 to 1.1 with 1000 x 1000 cells has 1.119908 at κ = 1.521, ψ = 0.9997.
+    // The exact map of κ from 1.4 to 1.7 and ψ from 0.9 to 1.1 with 1000 x 1000 cells has 1.119908
+    // at κ = 1.521, ψ = 0.9997.
     close(12, "largest |ε_t| over the bound (27) after a reversal", 1.119_909, 1e-6);
     close(13, "exponent between the last two", -1.25, 2e-3);
     close(13, "the same times κ^(5/4), 1e4", 4.4846, 2e-3);
@@ -155,8 +158,9 @@ fn bounds_and_courses() {
     close(22, "ψ of the largest elongation at κ = 18", 1.0, 1e-6);
 }
 
-/// With a spring that is not reset, what concerns friction alone, the number of parameters, the first and the last regime and the
-/// energy stays; the switches, the limit of pure sliding and the size of ε_t do not.
+/// With a spring that is not reset, what concerns friction alone, the number of parameters, the
+/// first and the last regime and the energy stays; the switches, the limit of pure sliding and the
+/// size of ε_t do not.
 #[test]
 fn another_model_has_other_verdicts() {
     let changed: Vec<_> = RESET

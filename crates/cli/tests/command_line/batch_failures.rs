@@ -92,25 +92,25 @@ fn a_row_that_cannot_be_computed_does_not_stop_the_others() {
         (
             "b",
             format!(
-                "line 3: psi = 'abc': not a number; accepted is a finite number above 0, {written}"
+                "line 3: psi = 'abc': not a number; expected a finite number above 0, {written}"
             ),
         ),
-        ("c", format!("line 4: kappa = '': empty; accepted is a finite number above 0, {written}")),
-        ("d", "line 6: psi = '-1': out of range; accepted is a finite number above 0".to_owned()),
+        ("c", format!("line 4: kappa = '': empty; expected a finite number above 0, {written}")),
+        ("d", "line 6: psi = '-1': out of range; expected a finite number above 0".to_owned()),
         (
             "e\ne",
             format!(
                 "line 7: damping = 'nan': not a number; \
-                 accepted is a finite number, 0 or above, {written}"
+                 expected a finite number, 0 or above, {written}"
             ),
         ),
-        ("f", "line 9: 2 fields; accepted is one for each column of the header, 4".to_owned()),
-        ("g", "line 10: 6 fields; accepted is one for each column of the header, 4".to_owned()),
+        ("f", "line 9: 2 fields; expected one for each column of the header, 4".to_owned()),
+        ("g", "line 10: 6 fields; expected one for each column of the header, 4".to_owned()),
         (
             "h",
             format!(
                 "line 11: psi = '1/0': division by 0; \
-                 accepted is a finite number above 0, {written}"
+                 expected a finite number above 0, {written}"
             ),
         ),
         ("i", "ok".to_owned()),

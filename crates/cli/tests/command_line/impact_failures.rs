@@ -1,5 +1,6 @@
-//! Files that `impact` refuses: exit code 2, nothing on standard output, and a message with the field or the line, and with
-//! what is accepted. The schema refuses the same files, except where positions and velocities matter.
+//! Files that `impact` refuses: exit code 2, nothing on standard output, and a message with the
+//! field or the line, and with what is expected. The schema refuses the same files, except where
+//! positions and velocities matter.
 
 use jsonschema::Validator;
 use serde_json::{Value, json};
@@ -7,7 +8,7 @@ use serde_json::{Value, json};
 use crate::impact::{example, example_value};
 use crate::{Ran, Workspace};
 
-const POSITIVE: &str = "accepted is a finite number above 0";
+const POSITIVE: &str = "expected a finite number above 0";
 
 fn schema() -> Validator {
     let schema = example("../docs/impact.schema.json");
@@ -114,12 +115,12 @@ fn numbers_out_of_range_missing_or_of_another_type() {
             } else {
                 range(name)
             };
-            refused(bad_file.to_string(), &[name, "accepted is ", range]);
+            refused(bad_file.to_string(), &[name, "expected ", range]);
             assert!(!schema.is_valid(&bad_file), "{name} = {bad}");
         }
         if name != inertia.1 {
             let missing = with(&file, path, None);
-            refused(missing.to_string(), &[name, "missing", "accepted is "]);
+            refused(missing.to_string(), &[name, "missing", "expected "]);
             assert!(!schema.is_valid(&missing), "{name}");
         }
     }
@@ -176,7 +177,7 @@ fn vectors_that_are_not_three_numbers() {
             Some(json!({"x": 0, "y": 0, "z": 1})),
         ] {
             let bad = with(file, &path, bad);
-            refused(bad.to_string(), &[name, "accepted are three finite numbers", unit]);
+            refused(bad.to_string(), &[name, "expected three finite numbers", unit]);
             assert!(!schema.is_valid(&bad), "{name}");
         }
     }
@@ -209,7 +210,7 @@ fn unknown_missing_and_contradicting_parts() {
         (&wall, "/wall/normal", Some(json!([0, 0, 1])), &["wall.normal", "unknown"]),
         (&wall, "/wall/motion/position_m", Some(json!([0, 0, 1])), &["wall.motion.position_m"]),
         (&pair, "/comment", Some(json!(3)), &["comment", "string"]),
-        (&pair, "/surface", None, &["surface is missing", "accepted is an object"]),
+        (&pair, "/surface", None, &["surface is missing", "expected an object"]),
         (&pair, "/surface", Some(json!([0.4, 1e12, 0])), &["surface", "expected an object"]),
         (&pair, "/spheres/0/material", None, &["spheres[0].material is missing"]),
         (&pair, "/spheres/0/material", Some(json!("steel")), &["spheres[0].material", "an object"]),
@@ -300,7 +301,7 @@ fn numbers_beyond_all_measure() {
     // κ is beyond the range of numbers.
     let stiff = with(&pair, "/surface/tangential_stiffness_kg_per_s2", Some(json!(1e308)));
     let light = with(&stiff, "/spheres/0/material/density_kg_per_m3", Some(json!(1e-300)));
-    refused(light.to_string(), &["accepted is a finite number above 0"]);
+    refused(light.to_string(), &["expected a finite number above 0"]);
     // Accepted, but its energy is infinite.
     let fast = with(&pair, "/spheres/0/motion/velocity_m_per_s", Some(json!([1e200, 0, -1e200])));
     let workspace = Workspace::new();

@@ -1,6 +1,7 @@
 //! The program as its users meet it: run as a process, judged by its output and exit code.
 //!
-//! The tests read data, examples and notebooks of the repository; in the published package they are empty.
+//! The tests read data, examples and notebooks of the repository; in the published package they are
+//! empty.
 
 #![cfg(in_repository)]
 

@@ -17,7 +17,7 @@ fn refused(line: &str, parts: &[&str]) {
 
 #[test]
 fn windows_that_are_none() {
-    let accepted = "accepted is LO:HI with finite numbers 0 <= LO < HI";
+    let expected = "expected LO:HI with finite numbers 0 <= LO < HI";
     for (range, problem) in [
         ("5", "not a range"),
         ("5:5", "out of range"),
@@ -32,14 +32,14 @@ fn windows_that_are_none() {
             [("--kappa", "--psi 0:1"), ("--psi", "--kappa 0:1"), ("--ratio", "--kappa 0:1")]
         {
             let line = format!("{option} {range} {others} --size 3x3 --out m.npz");
-            refused(&line, &[option, &format!("'{range}'"), problem, accepted]);
+            refused(&line, &[option, &format!("'{range}'"), problem, expected]);
         }
     }
 }
 
 #[test]
 fn sizes_that_are_none() {
-    let accepted = "accepted is WxH, two whole numbers from 1 whose product is at most 10000000000";
+    let expected = "expected WxH, two whole numbers from 1 whose product is at most 10000000000";
     for (size, problem) in [
         ("10x", "not a size"),
         ("10", "not a size"),
@@ -53,7 +53,7 @@ fn sizes_that_are_none() {
         ("18446744073709551616x1", "not a size"),
     ] {
         let line = format!("{WINDOW} --size {size} --out m.npz");
-        refused(&line, &["--size", &format!("'{size}'"), problem, accepted]);
+        refused(&line, &["--size", &format!("'{size}'"), problem, expected]);
     }
 }
 
@@ -99,7 +99,7 @@ fn damped_bodies_with_the_exact_solution() {
     let line = "map --bodies b.json --normal 0:1 --tangential 0:1 --size 3x3 --out m.npz";
     let ran = workspace.run(&format!("{line} --method exact"));
     assert_eq!(ran.code, 2);
-    for part in ["b.json", "surface.damping_time_s is 1e-7", "accepted is 0, or --method dop853"] {
+    for part in ["b.json", "surface.damping_time_s is 1e-7", "expected 0, or --method dop853"] {
         assert!(ran.stderr.contains(part), "{}", ran.stderr);
     }
     assert_eq!(workspace.names(), ["b.json"]);
@@ -107,7 +107,8 @@ fn damped_bodies_with_the_exact_solution() {
 
 #[test]
 fn points_that_cannot_be_computed() {
-    // ψ below the exact solution in the first row, κ beyond the exact solution in the second column.
+    // ψ below the exact solution in the first row, κ beyond the exact solution in the second
+    // column.
     let workspace = Workspace::new();
     let line = "map --kappa 0:2e16 --psi 0:3e-100 --size 2x3 --method exact";
     for name in ["m.csv", "m.npz"] {

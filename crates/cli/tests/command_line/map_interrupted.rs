@@ -162,7 +162,7 @@ fn the_tiles_of_another_map_are_left_alone() {
     ] {
         let ran = workspace.run(&LINE.replace(from, to));
         assert_eq!(ran.code, 2, "{}", ran.stderr);
-        for part in [DIRECTORY, "another map", theirs, ours, "accepted is"] {
+        for part in [DIRECTORY, "another map", theirs, ours, "expected"] {
             assert!(ran.stderr.contains(part), "no {part:?} in {}", ran.stderr);
         }
         assert_eq!(tiles(&workspace), kept);

@@ -1,5 +1,5 @@
-//! The data for notebooks: the commands of their README files make them, every column is described, and the notebooks
-//! find what they read.
+//! The data for notebooks: the commands of their README files make them, every column is described,
+//! and the notebooks find what they read.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -7,12 +7,12 @@ use std::path::{Path, PathBuf};
 
 use crate::{Array, Workspace, npz, rows};
 
-/// On the machine that made the data all bits are the same, whatever the optimisation; other machines have other
-/// mathematical libraries.
+/// On the machine that made the data all bits are the same, whatever the optimisation; other
+/// machines have other mathematical libraries.
 const RELATIVE: f64 = 1e-9;
 
-/// Errors that are left beside the relative one where a number is a difference of larger ones, by the beginning of the
-/// file's name.
+/// Errors that are left beside the relative one where a number is a difference of larger ones, by
+/// the beginning of the file's name.
 const ABSOLUTE: [(&str, f64); 12] = [
     ("asymptote_collisions", 1e-9),
     ("asymptote_convergence", 1e-10),
@@ -55,8 +55,8 @@ struct Made {
 }
 
 impl Made {
-    /// Runs what the folder's README says. What `out` has of the figures has 40 cells along an axis, so that the
-    /// table of Figure 1 is that of every fifth velocity.
+    /// Runs what the folder's README says. What `out` has of the figures has 40 cells along an
+    /// axis, so that the table of Figure 1 is that of every fifth velocity.
     fn new(name: &str) -> Self {
         let folder = repository().join("notebooks-data").join(name);
         let workspace = Workspace::new();
@@ -145,7 +145,8 @@ fn close(one: f64, other: f64, absolute: f64) -> bool {
     (one - other).abs() <= absolute + RELATIVE * one.abs().max(other.abs())
 }
 
-/// Compares texts: numbers with a point or an exponent within the tolerance, everything else exactly.
+/// Compares texts: numbers with a point or an exponent within the tolerance, everything else
+/// exactly.
 fn compare(one: &str, other: &str, absolute: f64) -> Result<(), String> {
     if one.lines().count() != other.lines().count() {
         return Err(format!("{} and {} lines", one.lines().count(), other.lines().count()));

@@ -279,7 +279,8 @@ fn a_full_disk_leaves_nothing() {
         // The table would have room, but neither file is there without the other.
         (map, &["m.csv.tiles"]),
     ] {
-        // In units of 1024 or 512 bytes, less than any picture; the signal that would kill the process is ignored.
+        // In units of 1024 or 512 bytes, less than any picture; the signal that would kill the
+        // process is ignored.
         let script = format!("trap '' XFSZ; ulimit -f 4; exec \"$0\" {line}");
         let output = Command::new("sh")
             .current_dir(workspace.path("."))

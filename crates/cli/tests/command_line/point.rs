@@ -203,7 +203,7 @@ fn what_cannot_be_computed_fails_with_its_numbers() {
     assert_eq!((ran.code, ran.stdout.as_str()), (1, ""));
     assert!(
         ran.stderr.contains(
-            "psi = 1e200 is out of the range of the exact solution; accepted is 1e-100 to 1e100"
+            "psi = 1e200 is out of the range of the exact solution; expected 1e-100 to 1e100"
         ),
         "{}",
         ran.stderr

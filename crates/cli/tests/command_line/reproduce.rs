@@ -315,7 +315,8 @@ fn what_was_made_before_a_failure_stays() {
     assert_eq!(ran.code, 1);
     let expected = "error: out/figure3.svg: cannot be written: is a directory\n";
     assert!(ran.stderr.ends_with(expected), "{}", ran.stderr);
-    // All of Figures 1 and 2, what of Figure 3 came before the picture, no page and nothing half written.
+    // All of Figures 1 and 2, what of Figure 3 came before the picture, no page and nothing half
+    // written.
     let mut names = expected_names();
     names.retain(|name| {
         ["figure1", "figure2"].iter().any(|figure| name.starts_with(figure))
@@ -332,7 +333,7 @@ fn bad_directories_are_refused_before_any_work() {
         (
             "reproduce --out in.csv",
             2,
-            "error: --out in.csv is not a directory; accepted is a directory, or a name that is not taken\n",
+            "error: --out in.csv is not a directory; expected a directory, or a name that is not taken\n",
         ),
         ("reproduce --out in.csv/out", 1, "error: in.csv/out: cannot be written: "),
         ("reproduce --out out --threads 0", 2, "0 is not in 1..=1024"),

@@ -1,4 +1,4 @@
-//! Bad usage: exit code 2, nothing on standard output, a message that says what is accepted.
+//! Bad usage: exit code 2, nothing on standard output, a message that says what is expected.
 
 use crate::stickslip;
 
@@ -15,7 +15,7 @@ fn refused(line: &str, parts: &[&str]) {
 #[test]
 fn every_parameter_out_of_range() {
     let positive = "a finite number above 0";
-    for (option, others, accepted, bad) in [
+    for (option, others, expected, bad) in [
         ("--kappa", "--psi 1", positive, &["0", "-1", "-0", "inf", "-inf", "nan", "1e400"][..]),
         ("--psi", "--kappa 1", positive, &["0", "-2/7", "inf", "nan", "2/0", "abc", "1e-400"]),
         ("--ratio", "--kappa 1", positive, &["0", "-1", "inf", "nan", "1/2/3", "0x1"]),
@@ -38,7 +38,7 @@ fn every_parameter_out_of_range() {
     ] {
         for value in bad {
             let line = format!("{others} {option} {value}");
-            refused(&line, &[option, &format!("'{value}'"), accepted]);
+            refused(&line, &[option, &format!("'{value}'"), expected]);
         }
     }
 }

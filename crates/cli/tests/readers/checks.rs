@@ -41,8 +41,8 @@ pub fn atlas(json: &[u8]) -> Result<(), String> {
     })
 }
 
-/// Writes `bytes` to a file, carries out the command line that `line` makes for it, and holds that there is an output that is
-/// complete, or that the file is refused.
+/// Writes `bytes` to a file, carries out the command line that `line` makes for it, and holds that
+/// there is an output that is complete, or that the file is refused.
 fn read(bytes: &[u8], line: impl Fn(&str) -> String) -> Result<(), String> {
     let (_folder, path) = stored(bytes)?;
     let line = line(&path);

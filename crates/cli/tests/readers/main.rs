@@ -1,5 +1,5 @@
-//! Files that are broken in a bounded number of random ways: each is read or refused, and nothing else happens. The fuzz targets
-//! (`fuzz/`) hold the same for as long as they run.
+//! Files that are broken in a bounded number of random ways: each is read or refused, and nothing
+//! else happens. The fuzz targets (`fuzz/`) hold the same for as long as they run.
 
 #![cfg(in_repository)]
 

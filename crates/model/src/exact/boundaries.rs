@@ -3,12 +3,13 @@
 use super::slide::Slide;
 use super::trajectory::CONTACT_TIME;
 
-/// The largest ψ with a switch at stiffness `kappa` > 0, without damping: from there on all contact is sliding, and ε_t = 1 − 2/ψ.
+/// The largest ψ with a switch at stiffness `kappa` > 0, without damping: from there on all contact
+/// is sliding, and ε_t = 1 − 2/ψ.
 ///
-/// It is max(2, ψ_g): at ψ = 2 the sliding ends with w = 0 at the end of contact; at ψ_g = 1 − v(1 − B (1 − v²)^{1/5}), with
-/// B = (3/(2κ))(5/4)^{1/5} and v where that is stationary, the spring all but sticks in the compression. It is exactly 2,
-/// g_t/g_n = 2μ/α, for κ ≥ 0.57010237884189, and grows as (3/2)(5/14)^{1/5}(5/7)^{1/2}/κ = 1.03180026469/κ for κ → 0.
-/// Relative error below 3e-14.
+/// It is max(2, ψ_g): at ψ = 2 the sliding ends with w = 0 at the end of contact; at ψ_g = 1 − v(1
+/// − B (1 − v²)^{1/5}), with B = (3/(2κ))(5/4)^{1/5} and v where that is stationary, the spring all
+/// but sticks in the compression. It is exactly 2, g_t/g_n = 2μ/α, for κ ≥ 0.57010237884189, and
+/// grows as (3/2)(5/14)^{1/5}(5/7)^{1/2}/κ = 1.03180026469/κ for κ → 0. Relative error below 3e-14.
 ///
 /// ```
 /// use stickslip_model::{Contact, exact};
@@ -26,9 +27,9 @@ pub fn top_boundary(kappa: f64) -> f64 {
 
 /// κ_n = (nπ/(2 t_c))², where the `n`-th boundary ends as ψ → 0, without damping.
 ///
-/// Almost all of such a contact is stick, and the spring swings through n quarters of its period. For odd n a switch falls on the
-/// end of contact; for even n the spring touches its limit. As ψ → 0 there are two switches below κ₁ and between κ_{2m} and
-/// κ_{2m+1}, and four elsewhere.
+/// Almost all of such a contact is stick, and the spring swings through n quarters of its period.
+/// For odd n a switch falls on the end of contact; for even n the spring touches its limit. As ψ →
+/// 0 there are two switches below κ₁ and between κ_{2m} and κ_{2m+1}, and four elsewhere.
 ///
 /// ```
 /// use stickslip_model::exact;

@@ -1,4 +1,5 @@
-//! The pieces of a half swing on which the spring gains on its limit: only there a stick phase can end.
+//! The pieces of a half swing on which the spring gains on its limit: only there a stick phase can
+//! end.
 //!
 //! On a half swing, on which q = ±y > 0, the ratio R = q/L rises or falls with the sign of
 //! W = L q̇ − L̇ q, and
@@ -32,7 +33,8 @@ pub struct Flanks {
     low: Low,
     /// It turns round between these places, or rises to infinity at the end of contact.
     turn: Option<[Moment; 2]>,
-    /// After that it falls, turns round once more between these places, and rises to infinity at the end of contact.
+    /// After that it falls, turns round once more between these places, and rises to infinity at
+    /// the end of contact.
     again: Option<[Moment; 2]>,
 }
 
@@ -45,7 +47,8 @@ enum Low {
 }
 
 impl Flanks {
-    /// Those of half swing `k`, if there are any; `crest` is the root coordinate of the two zeros of κL + L̈, if there are any.
+    /// Those of half swing `k`, if there are any; `crest` is the root coordinate of the two zeros
+    /// of κL + L̈, if there are any.
     pub fn of(swing: &Swing, crest: Option<f64>, k: u32) -> Option<Self> {
         match (crest, k) {
             (None, 0) => None,
@@ -70,8 +73,8 @@ impl Flanks {
         Some(Self { half_swing, low: Low::Zero(start), turn, again: None })
     }
 
-    /// κ < 1.568…, first half swing: W falls from 0 up to the first crest, rises up to the second, then falls. R can come back to 1 only
-    /// if W has become positive by the second.
+    /// κ < 1.568…, first half swing: W falls from 0 up to the first crest, rises up to the second,
+    /// then falls. R can come back to 1 only if W has become positive by the second.
     fn first(swing: &Swing, crest: f64) -> Option<Self> {
         let [rise, fall] = crests(crest);
         let zero = swing.moment_at_angle(0.0);
@@ -83,8 +86,8 @@ impl Flanks {
         Some(Self { half_swing: 0, low: Low::Between(rise, fall), turn, again: None })
     }
 
-    /// κ < 1.568…, second half swing, which lasts to the end of contact: there W → 0 from above and R → ∞. Only before the first crest R
-    /// can have a top.
+    /// κ < 1.568…, second half swing, which lasts to the end of contact: there W → 0 from above and
+    /// R → ∞. Only before the first crest R can have a top.
     fn second(swing: &Swing, crest: f64) -> Option<Self> {
         let [rise, fall] = crests(crest);
         let zero = swing.moment_at_angle(0.0);
@@ -105,7 +108,8 @@ impl Flanks {
         self.turn.map(|[low, high]| top(swing, self.half_swing, low, high))
     }
 
-    /// Where D falls through 0, and whether that is after the top. Where it may be before or after, `after_top` decides.
+    /// Where D falls through 0, and whether that is after the top. Where it may be before or after,
+    /// `after_top` decides.
     pub fn exit(&self, swing: &Swing, after_top: bool) -> Option<(Moment, bool)> {
         let k = self.half_swing;
         let after = || {

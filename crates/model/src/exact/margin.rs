@@ -1,14 +1,16 @@
 //! How near a collision comes to switching otherwise, and collisions whose itinerary is prescribed.
 //!
-//! A margin belongs to a phase in which something almost happened (see [`mod@stickslip_solver::margin`]). The exact engine decides
-//! by three numbers, and these are its margins:
+//! A margin belongs to a phase in which something almost happened (see
+//! [`mod@stickslip_solver::margin`]). The exact engine decides by three numbers, and these are its
+//! margins:
 //!
-//! - a slip phase lasts over a crest of h if C − h > 0 there, and to the end of contact if s·w > 0 there;
-//! - a stick phase lasts over a half swing if (L/|y|)² − 1 > 0 where |y|/L is largest. Near the end of contact this is linear in the time at
-//!   which y vanishes, where the gap L − |y| is not.
+//! - a slip phase lasts over a crest of h if C − h > 0 there, and to the end of contact if s·w > 0
+//!   there;
+//! - a stick phase lasts over a half swing if (L/|y|)² − 1 > 0 where |y|/L is largest. Near the end
+//!   of contact this is linear in the time at which y vanishes, where the gap L − |y| is not.
 //!
-//! Each is smooth through 0 as long as the switches before it are prescribed: those of slip before or after the crest, those of stick
-//! by the number of the half swing.
+//! Each is smooth through 0 as long as the switches before it are prescribed: those of slip before
+//! or after the crest, those of stick by the number of the half swing.
 
 use stickslip_solver::{Exit, Hint, Margin, Place};
 
@@ -21,7 +23,8 @@ use super::{ExactError, too_many, undamped};
 use crate::contact::Contact;
 use crate::regularized::{OTHER_SIDE, SAME_SIDE};
 
-/// Each margin names the switches before it, so that a list of margins grows as the square of their number.
+/// Each margin names the switches before it, so that a list of margins grows as the square of their
+/// number.
 const MOST_SWITCHES: usize = 1000;
 
 /// The guards that fire in a collision, in order, with its margins.
@@ -35,8 +38,8 @@ pub struct Margins {
 
 /// All margins of the collision of `contact`, which must be without damping.
 ///
-/// Those of slip are in units of the reduced velocity w, those of stick (L/|y|)² − 1. Their zeros are within 1e-15 of the boundaries in
-/// ψ, up to κ = 400.
+/// Those of slip are in units of the reduced velocity w, those of stick (L/|y|)² − 1. Their zeros
+/// are within 1e-15 of the boundaries in ψ, up to κ = 400.
 ///
 /// ```
 /// use stickslip_model::{Contact, exact};
@@ -88,8 +91,9 @@ pub fn margins(contact: &Contact) -> Result<Margins, ExactError> {
     }
 }
 
-/// The margin `which`, one of [`margins`] of some contact, of the collision of `contact` whose switches up to there are prescribed;
-/// none if they cannot be followed, or there is no such half swing or crest.
+/// The margin `which`, one of [`margins`] of some contact, of the collision of `contact` whose
+/// switches up to there are prescribed; none if they cannot be followed, or there is no such half
+/// swing or crest.
 ///
 /// ```
 /// use stickslip_model::{Contact, exact};
@@ -108,7 +112,8 @@ pub fn margin(contact: &Contact, which: &Margin) -> Result<Option<f64>, ExactErr
     follow(contact, which, |_| ())
 }
 
-/// `which` with hints that fit the collision of `contact`, as [`stickslip_solver::margin()`] returns it; itself where it does not exist.
+/// `which` with hints that fit the collision of `contact`, as [`stickslip_solver::margin()`]
+/// returns it; itself where it does not exist.
 ///
 /// # Errors
 /// As [`margin`].
@@ -164,8 +169,9 @@ fn crest_margin(slide: &Slide, sliding: &Sliding) -> Option<f64> {
     passes.then(|| sliding.at_start() - height)
 }
 
-/// 1/R² − 1 at the top of R on half swing `k`; on the first, where this has a double zero at the start of the phase, divided by the
-/// square of the angle since then, so that it does not become flat where the phase shrinks to nothing.
+/// 1/R² − 1 at the top of R on half swing `k`; on the first, where this has a double zero at the
+/// start of the phase, divided by the square of the angle since then, so that it does not become
+/// flat where the phase shrinks to nothing.
 fn top_margin(slide: &Slide, swing: &Swing, k: u32) -> Option<f64> {
     let flanks = Flanks::of(swing, slide.crest.map(|crest| crest.root), k)?;
     let top = flanks.top(swing)?;
@@ -202,7 +208,8 @@ fn prescribed_onset(slide: &Slide, sliding: &Sliding, exit: &Exit) -> Option<Mom
     if within { slide.onset_after_crest(sliding) } else { None }
 }
 
-/// How a stick phase ends: its hint is the number of the half swing, and a half more after the top of R.
+/// How a stick phase ends: its hint is the number of the half swing, and a half more after the top
+/// of R.
 fn stick_exit(k: u32, after_top: bool) -> Exit {
     let after = f64::from(k) + if after_top { 0.5 } else { 0.0 };
     Exit { guard: guard(k), after: Hint(after), part: Hint(0.0) }

@@ -1,7 +1,7 @@
 //! The end of a stick phase: where the spring reaches its limit again.
 //!
-//! On each half swing the ratio R of spring and limit rises along one or two [flanks](super::flank) only, and the first of them that
-//! takes it beyond 1 ends the phase.
+//! On each half swing the ratio R of spring and limit rises along one or two [flanks](super::flank)
+//! only, and the first of them that takes it beyond 1 ends the phase.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 

@@ -1,4 +1,5 @@
-//! Laws that every collision has to keep. `tests/exact.rs` of the workspace compares with the reference data.
+//! Laws that every collision has to keep. `tests/exact.rs` of the workspace compares with the
+//! reference data.
 
 use std::f64::consts::PI;
 

@@ -2,9 +2,9 @@
 
 /// Calls `found` with every root in (0, 1) of Σ `coefficients[i]` Bᵢ(t), in ascending order.
 ///
-/// The number of sign changes in the coefficients bounds the number of roots; the interval is halved until it is 0 or 1
-/// (Farouki and Rajan 1987). Roots closer together than 2⁻⁴⁰ are reported as one place, once for every part in which they
-/// cannot be told apart.
+/// The number of sign changes in the coefficients bounds the number of roots; the interval is
+/// halved until it is 0 or 1 (Farouki and Rajan 1987). Roots closer together than 2⁻⁴⁰ are reported
+/// as one place, once for every part in which they cannot be told apart.
 pub(crate) fn each_root<const N: usize>(coefficients: &[f64; N], found: &mut impl FnMut(f64)) {
     isolate(coefficients, 0.0, 1.0, found);
 }

@@ -19,7 +19,8 @@ impl Cubic {
         [a.inf(&b).inf(&c).inf(&d), a.sup(&b).sup(&c).sup(&d)]
     }
 
-    /// The place θ in [0, 1] that is closest to `point`, and its distance; for pieces that turn by less than a right angle.
+    /// The place θ in [0, 1] that is closest to `point`, and its distance; for pieces that turn by
+    /// less than a right angle.
     pub(crate) fn closest(&self, point: &Point) -> (f64, f64) {
         let chord = self.points[3] - self.points[0];
         let mut theta =
@@ -37,8 +38,8 @@ impl Cubic {
         (theta, (point - self.at(theta)).norm())
     }
 
-    /// The places θ in [0, 1) where it crosses the segment from `a` to `b`, for pieces that turn by less than a right angle, each
-    /// with the place on the segment, from 0 to 1.
+    /// The places θ in [0, 1) where it crosses the segment from `a` to `b`, for pieces that turn by
+    /// less than a right angle, each with the place on the segment, from 0 to 1.
     pub(crate) fn crossings(&self, a: &Point, b: &Point) -> Vec<[f64; 2]> {
         let along = b - a;
         let heights = self.points.map(|point| along.perp(&(point - a)));

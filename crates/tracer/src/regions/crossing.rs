@@ -30,9 +30,10 @@ pub(crate) struct Crossings<'a> {
 impl Crossings<'_> {
     /// Pairs of edges with the place at which they cross, from left to right.
     ///
-    /// Decided, not sampled: pieces of a slab cross if they change order between its middle and its walls, if the order differs
-    /// on both sides of a wall, or if they dip below each other and come back; that the last happens, deeper than the tolerance,
-    /// is excluded by bounds from the slopes, which are monotone along a piece.
+    /// Decided, not sampled: pieces of a slab cross if they change order between its middle and its
+    /// walls, if the order differs on both sides of a wall, or if they dip below each other and
+    /// come back; that the last happens, deeper than the tolerance, is excluded by bounds from
+    /// the slopes, which are monotone along a piece.
     pub(crate) fn find(&self) -> Vec<([usize; 2], Point)> {
         let mut found = Vec::new();
         let mut place = vec![usize::MAX; self.slabs.pieces.len()];
@@ -107,7 +108,8 @@ impl Crossings<'_> {
         self.slabs.pieces[upper].y_at(x) - self.slabs.pieces[lower].y_at(x)
     }
 
-    /// Where `upper` falls below `lower` between `from`, where it does not, and `to` on either side.
+    /// Where `upper` falls below `lower` between `from`, where it does not, and `to` on either
+    /// side.
     fn dip(&self, lower: usize, upper: usize, from: f64, to: f64) -> Option<f64> {
         let [p, q] = [lower, upper].map(|piece| &self.slabs.pieces[piece]);
         let ((p0, ps0), (p1, ps1)) = (p.y_and_slope_at(from), p.y_and_slope_at(to));
@@ -169,9 +171,10 @@ impl Crossings<'_> {
         }
     }
 
-    /// Whether the crossing is not certain: between a vertex that the edges share and the crossing, they enclose an area whose
-    /// mean width is below the tolerance; or an edge that crosses itself encloses less than the tolerance squared, as it does
-    /// where both sides of a fold are rounded.
+    /// Whether the crossing is not certain: between a vertex that the edges share and the crossing,
+    /// they enclose an area whose mean width is below the tolerance; or an edge that crosses
+    /// itself encloses less than the tolerance squared, as it does where both sides of a fold
+    /// are rounded.
     fn within_interpolation(&self, pieces: [usize; 2], point: &Point) -> bool {
         let [a, b] = pieces.map(|piece| &self.edges[self.slabs.pieces[piece].edge]);
         if std::ptr::eq(a, b) {
@@ -210,7 +213,8 @@ impl Crossings<'_> {
         if (which == 0) == piece.forward { piece.first() } else { piece.last() }
     }
 
-    /// The area between an edge, from its end `which` up to `place` on `piece`, and the rays from `origin`.
+    /// The area between an edge, from its end `which` up to `place` on `piece`, and the rays from
+    /// `origin`.
     fn area(&self, edge: &Edge, which: usize, piece: usize, place: &Point, origin: &Point) -> f64 {
         // `away`: the edge's direction leads away from that end.
         let away = which == 0;

@@ -13,16 +13,19 @@ use crate::regions::union::DisjointSets;
 pub(crate) struct Faces {
     pub(crate) of_edges: Vec<[Option<usize>; 2]>,
     pub(crate) count: usize,
-    /// The face above every piece in every slab, in the slabs' order; `None` also where it could not be told.
+    /// The face above every piece in every slab, in the slabs' order; `None` also where it could
+    /// not be told.
     of_gaps: Vec<Option<usize>>,
 }
 
 impl Faces {
-    /// Joins the gaps between pieces of a slab with the sides that look into them, and with the gaps beyond the slab's walls.
+    /// Joins the gaps between pieces of a slab with the sides that look into them, and with the
+    /// gaps beyond the slab's walls.
     ///
-    /// Edges that leave a vertex with one tangent are closer together than `reach` beside it, and interpolation leaves open which
-    /// one is above. So a gap counts only where it is wider, and speaks for a piece only if the gap on the piece's other side is
-    /// wider as well. `outline` are the edges of the window, which have the outside on their right.
+    /// Edges that leave a vertex with one tangent are closer together than `reach` beside it, and
+    /// interpolation leaves open which one is above. So a gap counts only where it is wider,
+    /// and speaks for a piece only if the gap on the piece's other side is wider as well.
+    /// `outline` are the edges of the window, which have the outside on their right.
     pub(crate) fn new(slabs: &Slabs, edges: &[Edge], outline: Range<usize>, reach: f64) -> Self {
         let outside = 2 * edges.len();
         let gap_above = |slab: usize, place: usize| outside + 1 + slabs.start(slab) + place;
@@ -72,7 +75,8 @@ impl Faces {
                 }
             }
         }
-        // What no slab has shown: sides of edges that are vertical or nearly so are looked at from beside.
+        // What no slab has shown: sides of edges that are vertical or nearly so are looked at from
+        // beside.
         for side in (0..outside).filter(|&side| !seen[side]) {
             let edge = &edges[side / 2];
             let gap = slabs.pieces[edge.pieces.clone()].iter().find_map(|piece| {
@@ -118,7 +122,8 @@ impl Faces {
         Self { of_edges, count, of_gaps }
     }
 
-    /// The face between the pieces at `gap` and `gap` + 1 of a slab; between pieces too close to tell, that above the lower one.
+    /// The face between the pieces at `gap` and `gap` + 1 of a slab; between pieces too close to
+    /// tell, that above the lower one.
     #[inline]
     pub(crate) fn of_gap(&self, slabs: &Slabs, slab: usize, gap: usize) -> Option<usize> {
         self.of_gaps[slabs.start(slab) + gap].or_else(|| {

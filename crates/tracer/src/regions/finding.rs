@@ -75,7 +75,8 @@ pub enum Finding<Label> {
 
 /// The counts of Euler's formula for plane graphs, V − E + F = 1 + C.
 ///
-/// Vertices, edges and components are counted in the graph, faces in the plane, so that the formula is a check.
+/// Vertices, edges and components are counted in the graph, faces in the plane, so that the formula
+/// is a check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Euler {
     /// Vertices with an edge, corners of the window among them; one for every closed curve.

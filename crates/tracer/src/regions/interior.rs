@@ -8,8 +8,8 @@ use crate::regions::subdivision::Region;
 
 /// Sets `sample` and `clearance` of every region.
 ///
-/// The best of some places halfway between two boundaries, moved as long as that leads farther from all of them: a local maximum of
-/// the distance to a thirtieth, not always the greatest.
+/// The best of some places halfway between two boundaries, moved as long as that leads farther from
+/// all of them: a local maximum of the distance to a thirtieth, not always the greatest.
 pub(crate) fn place_samples<Label>(
     regions: &mut [Region<Label>],
     slabs: &Slabs,

@@ -34,15 +34,16 @@ impl<Label, Margin> Subdivision<Label, Margin> {
         self.region_at(point).map_or(Location::Outside, Location::Region)
     }
 
-    /// The distance of `point` from the nearest curve in the direction of the second coordinate, up or down; `None` if no curve
-    /// has a point with its first coordinate, or if it is outside the window.
+    /// The distance of `point` from the nearest curve in the direction of the second coordinate, up
+    /// or down; `None` if no curve has a point with its first coordinate, or if it is outside
+    /// the window.
     #[must_use]
     pub fn vertical_distance(&self, point: &Point) -> Option<f64> {
         self.vertical_distances(point).into_iter().flatten().reduce(f64::min)
     }
 
-    /// The distances of `point` from the nearest curves below and above it; 0 for both on a curve, `None` where there is none,
-    /// and outside the window.
+    /// The distances of `point` from the nearest curves below and above it; 0 for both on a curve,
+    /// `None` where there is none, and outside the window.
     #[must_use]
     pub fn vertical_distances(&self, point: &Point) -> [Option<f64>; 2] {
         if !self.window.contains(point) {
@@ -77,7 +78,8 @@ impl<Label, Margin> Subdivision<Label, Margin> {
         distances
     }
 
-    /// A place on a curve, `share` in [0, 1) of the way through its pieces, and the unit normal to its left.
+    /// A place on a curve, `share` in [0, 1) of the way through its pieces, and the unit normal to
+    /// its left.
     pub(crate) fn place_on(&self, curve: usize, share: f64) -> (Point, Point) {
         let range = &self.edges[curve].pieces;
         let way = share * range.len() as f64;

@@ -1,4 +1,5 @@
-//! The window's boundary, cut at its corners and at the vertices on it, and the outlines of regions.
+//! The window's boundary, cut at its corners and at the vertices on it, and the outlines of
+//! regions.
 
 use crate::family::{Point, Window};
 use crate::regions::subdivision::{Side, Subdivision};
@@ -18,7 +19,8 @@ impl Window {
         size.x * size.y
     }
 
-    /// `point` moved onto the sides of the window that are within `tolerance` of it; `None` if there are none.
+    /// `point` moved onto the sides of the window that are within `tolerance` of it; `None` if
+    /// there are none.
     pub(crate) fn onto_boundary(&self, point: &Point, tolerance: f64) -> Option<Point> {
         let snap = |value: f64, low: f64, high: f64| {
             [low, high].into_iter().find(|side| (value - side).abs() <= tolerance)
@@ -49,16 +51,19 @@ impl Window {
 /// A part of the outline of a region.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stretch {
-    /// A whole curve, by its index, with the side of it on which the region lies: backwards if that is the right.
+    /// A whole curve, by its index, with the side of it on which the region lies: backwards if that
+    /// is the right.
     Curve(usize, Side),
     /// A straight part of the window's boundary.
     Window([Point; 2]),
 }
 
 impl<Label, Margin> Subdivision<Label, Margin> {
-    /// The rings around a region, which lies on their left: one around all of it counterclockwise and one clockwise around each
-    /// island. Where the region touches itself at a vertex, rings end there, so that none comes to a vertex twice; it may then have
-    /// several counterclockwise ones. With [findings](Self::findings), rings that do not close are left out.
+    /// The rings around a region, which lies on their left: one around all of it counterclockwise
+    /// and one clockwise around each island. Where the region touches itself at a vertex, rings
+    /// end there, so that none comes to a vertex twice; it may then have
+    /// several counterclockwise ones. With [findings](Self::findings), rings that do not close are
+    /// left out.
     #[must_use]
     pub fn outlines(&self, region: usize) -> Vec<Vec<Stretch>> {
         let mut rings = Vec::new();

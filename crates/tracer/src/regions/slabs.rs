@@ -1,4 +1,5 @@
-//! The plane cut into vertical slabs in which no piece begins or ends, so that the pieces of a slab have an order.
+//! The plane cut into vertical slabs in which no piece begins or ends, so that the pieces of a slab
+//! have an order.
 
 use crate::family::Point;
 use crate::regions::piece::Piece;
@@ -67,8 +68,8 @@ impl Slabs {
         self.starts[slab]
     }
 
-    /// Whether the middle between the pieces at `gap` and `gap` + 1 of a slab is farther than `reach` from every piece that
-    /// is not vertical; also if there are no such two pieces.
+    /// Whether the middle between the pieces at `gap` and `gap` + 1 of a slab is farther than
+    /// `reach` from every piece that is not vertical; also if there are no such two pieces.
     pub(crate) fn is_wide(&self, slab: usize, gap: usize, reach: f64) -> bool {
         let pieces = self.of(slab);
         gap + 1 >= pieces.len() || {
@@ -91,7 +92,8 @@ impl Slabs {
         right.saturating_sub(1).min(self.count().saturating_sub(1))
     }
 
-    /// How many pieces of the slab are below `point`, whose x may also be that of a wall of the slab.
+    /// How many pieces of the slab are below `point`, whose x may also be that of a wall of the
+    /// slab.
     #[inline]
     pub(crate) fn below(&self, slab: usize, point: &Point) -> usize {
         self.of(slab).partition_point(|&piece| self.pieces[piece].y_at(point.x) < point.y)
@@ -113,10 +115,11 @@ impl Slabs {
         &self.verticals[start..end.max(start)]
     }
 
-    /// The nearest piece within `reach` of `point` among those that `accept` takes, with its distance.
+    /// The nearest piece within `reach` of `point` among those that `accept` takes, with its
+    /// distance.
     ///
-    /// In each slab within reach the pieces directly above and below the place nearest to `point` suffice: the straight way to
-    /// another piece leads through one of them.
+    /// In each slab within reach the pieces directly above and below the place nearest to `point`
+    /// suffice: the straight way to another piece leads through one of them.
     #[inline]
     pub(crate) fn nearest(
         &self,

@@ -52,8 +52,8 @@ pub struct Subdivision<Label, Margin> {
 /// A region: a connected part of the window that no curve enters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Region<Label> {
-    /// The label that the curves around it have on this side, the most frequent one if they do not agree; `None` if no curve
-    /// bounds it.
+    /// The label that the curves around it have on this side, the most frequent one if they do not
+    /// agree; `None` if no curve bounds it.
     pub label: Option<Label>,
     /// Its area, without that of islands; exact for the interpolated curves.
     pub area: f64,
@@ -77,13 +77,15 @@ pub enum Side {
 impl<Label: Clone + Ord, Margin> Subdivision<Label, Margin> {
     /// The regions that `curves` make of `window`.
     ///
-    /// `tolerance` is the distance within which curves, which are interpolated, and vertices are known; vertices within it of the
-    /// window's boundary lie on the boundary. A closed curve may repeat its first node as its last. What is inconsistent becomes
-    /// a [`Finding`]; without findings the regions are those of the curves. Time and memory grow as the number of cubic pieces
-    /// times the number of curves over one abscissa.
+    /// `tolerance` is the distance within which curves, which are interpolated, and vertices are
+    /// known; vertices within it of the window's boundary lie on the boundary. A closed curve
+    /// may repeat its first node as its last. What is inconsistent becomes a [`Finding`];
+    /// without findings the regions are those of the curves. Time and memory grow as the number of
+    /// cubic pieces times the number of curves over one abscissa.
     ///
     /// # Errors
-    /// Input that has no meaning: numbers that are not finite, indices out of range, a window without area.
+    /// Input that has no meaning: numbers that are not finite, indices out of range, a window
+    /// without area.
     pub fn new(
         window: Window,
         curves: Vec<Curve<Label, Margin>>,
@@ -206,7 +208,8 @@ impl<Label, Margin> Subdivision<Label, Margin> {
         &self.regions
     }
 
-    /// The regions on the left and on the right of a curve; `None` is the outside, which only a curve with findings has.
+    /// The regions on the left and on the right of a curve; `None` is the outside, which only a
+    /// curve with findings has.
     #[must_use]
     pub fn regions_beside(&self, curve: usize) -> [Option<usize>; 2] {
         self.faces.of_edges[curve]
@@ -231,7 +234,8 @@ impl<Label, Margin> Subdivision<Label, Margin> {
     }
 }
 
-/// The vertices around the window, counterclockwise; `points` gets them moved onto it, and the corners that were no vertices.
+/// The vertices around the window, counterclockwise; `points` gets them moved onto it, and the
+/// corners that were no vertices.
 fn outline<Label, Margin>(
     window: &Window,
     vertices: &[Vertex<Margin>],
@@ -254,7 +258,8 @@ fn outline<Label, Margin>(
         if !around.iter().any(|&vertex| points[vertex] == corner) {
             around.push(points.len());
         }
-        // Also where it is a vertex already, so that the number of points is fixed; such a one has no edges.
+        // Also where it is a vertex already, so that the number of points is fixed; such a one has
+        // no edges.
         points.push(corner);
     }
     around.sort_by(|&i, &j| {
@@ -333,7 +338,8 @@ fn most_frequent<'a, Label: Clone + Ord + 'a>(
     counts.into_iter().find(|&(_, count)| count == most).map(|(label, _)| label.clone())
 }
 
-/// Every curve that does not have the region's label on this side, beside one that has it, a neighbour at a vertex if there is one.
+/// Every curve that does not have the region's label on this side, beside one that has it, a
+/// neighbour at a vertex if there is one.
 fn find_disagreements<Label: Clone + Ord, Margin>(
     index: usize,
     region: &Region<Label>,

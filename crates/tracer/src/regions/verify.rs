@@ -10,7 +10,8 @@ use crate::regions::subdivision::{Side, Subdivision};
 pub struct VerifyOptions {
     /// Points spread evenly at random over the window.
     pub random_points: usize,
-    /// Points on each side of every curve, at distances between `nearest` and `farthest` whose logarithms are spread evenly.
+    /// Points on each side of every curve, at distances between `nearest` and `farthest` whose
+    /// logarithms are spread evenly.
     pub near_points: usize,
     /// Least distance from the curve.
     pub nearest: f64,
@@ -64,8 +65,9 @@ pub struct Mismatch<Label> {
     pub expected: Label,
     /// The label of the run.
     pub found: Label,
-    /// The nearest place of the same region at which the label was as expected. A boundary that is missing, or one that is
-    /// misplaced, leads between both points: a bracket to start tracing from.
+    /// The nearest place of the same region at which the label was as expected. A boundary that is
+    /// missing, or one that is misplaced, leads between both points: a bracket to start
+    /// tracing from.
     pub agreeing: Option<Point>,
 }
 
@@ -109,14 +111,15 @@ pub struct Verification<Label, Error> {
     pub untried_curves: Vec<usize>,
     /// Share of the window's area in regions that were tried without a mismatch.
     pub tried_area: f64,
-    /// With 95 % confidence, the share of the window's area that has another label is below this: the upper limit of Clopper and
-    /// Pearson (1934), from the random points.
+    /// With 95 % confidence, the share of the window's area that has another label is below this:
+    /// the upper limit of Clopper and Pearson (1934), from the random points.
     pub wrong_area_bound: f64,
 }
 
 impl<Label, Error> Verification<Label, Error> {
-    /// Pairs of places in one region by location, of which one has the label of the region and the other has not: between them
-    /// lies a boundary for [`Tracer::look_between`](crate::Tracer::look_between) to find.
+    /// Pairs of places in one region by location, of which one has the label of the region and the
+    /// other has not: between them lies a boundary for
+    /// [`Tracer::look_between`](crate::Tracer::look_between) to find.
     #[must_use]
     pub fn brackets(&self) -> Vec<[Point; 2]> {
         let bracket = |mismatch: &Mismatch<Label>| {
@@ -170,7 +173,8 @@ pub fn verify<F: Family>(
     verify_with(plane, options, |points| points.iter().map(|point| family.label(point)).collect())
 }
 
-/// As [`verify`], with all labels asked for at once, so that runs can be parallel: `labels` returns them in the order of the points.
+/// As [`verify`], with all labels asked for at once, so that runs can be parallel: `labels` returns
+/// them in the order of the points.
 ///
 /// # Errors
 /// Distances that are not in order, or another number of labels than of points.
@@ -188,7 +192,8 @@ pub fn verify_with<Label: Clone + Ord, Margin, Error>(
     for checkpoint in checkpoints(plane, options) {
         match plane.locate(&checkpoint.point) {
             Location::Region(region) => places.push((checkpoint, region)),
-            // A place beside a curve at the window's boundary may be outside: there is nothing to try.
+            // A place beside a curve at the window's boundary may be outside: there is nothing to
+            // try.
             Location::Outside if !plane.window().contains(&checkpoint.point) => {}
             location => {
                 unverified.push(Unverified { checkpoint, reason: Reason::Location(location) });

@@ -1,4 +1,5 @@
-//! What lies ahead of a branch: vertices that are known, its own start, and the stretch before it ends.
+//! What lies ahead of a branch: vertices that are known, its own start, and the stretch before it
+//! ends.
 
 use crate::cubic::Cubic;
 use crate::curve::Node;
@@ -23,7 +24,8 @@ impl<F: Family> Branch<'_, '_, F> {
         thetas.min_by(|one, two| one.0.total_cmp(&two.0)).map(|(_, index)| index)
     }
 
-    /// The known vertex ahead, within a step that failed, that the branch runs into without another special point before.
+    /// The known vertex ahead, within a step that failed, that the branch runs into without another
+    /// special point before.
     pub(crate) fn aim(&self, from: &FootholdOf<F>, h: f64) -> Traced<Option<usize>, F> {
         let runs = self.runs;
         for (index, stop) in self.stops.iter().enumerate() {
@@ -56,10 +58,11 @@ impl<F: Family> Branch<'_, '_, F> {
         Ok(None)
     }
 
-    /// Whether the branch has its labels on a piece that ends at a vertex: at three places, and close to the vertex.
+    /// Whether the branch has its labels on a piece that ends at a vertex: at three places, and
+    /// close to the vertex.
     pub(crate) fn is_clear(&self, from: &FootholdOf<F>, arc: &Cubic) -> Traced<bool, F> {
-        /// From the vertex, in parts of the window's shorter extent: the thin region between curves that touch there with a
-        /// curvature of 1 is still wider than margins are exact.
+        /// From the vertex, in parts of the window's shorter extent: the thin region between curves
+        /// that touch there with a curvature of 1 is still wider than margins are exact.
         const CLOSE: f64 = 3e-5;
         let chord = arc.chord();
         for theta in [0.5, 0.9, 0.99] {
@@ -71,8 +74,8 @@ impl<F: Family> Branch<'_, '_, F> {
         Ok(close > 0.5 || self.holds_closely(from, &arc.at(1.0 - close), 0.3 * chord)?)
     }
 
-    /// Whether the branch passes close to `guess` with its labels as near to it as can be told, so that not even a thin region
-    /// lies between.
+    /// Whether the branch passes close to `guess` with its labels as near to it as can be told, so
+    /// that not even a thin region lies between.
     pub(crate) fn holds_closely(
         &self,
         from: &FootholdOf<F>,
@@ -124,7 +127,8 @@ impl<F: Family> Branch<'_, '_, F> {
         Ok(Node { point: *point, tangent })
     }
 
-    /// The tangent at an end: across the gradient where there is one, else that of the circle through the last node.
+    /// The tangent at an end: across the gradient where there is one, else that of the circle
+    /// through the last node.
     pub(crate) fn end_tangent(&self, last: &Node, point: &Point) -> Traced<Point, F> {
         let chord = point - last.point;
         let mirrored = mirrored(&last.tangent, &chord);

@@ -88,9 +88,10 @@ pub(crate) type FootholdOf<F> = Foothold<<F as Family>::Label, <F as Family>::Ma
 
 /// A boundary followed in one direction: an iterator over its nodes, the start not among them.
 ///
-/// A step predicts along the last cubic, corrects along the normal, and is accepted if the tangent turns little, the cubic is as
-/// close to the boundary as asked, and free runs on both sides have the labels of the branch. The iterator is one node behind,
-/// because a special point between the last two steps may take the last node back.
+/// A step predicts along the last cubic, corrects along the normal, and is accepted if the tangent
+/// turns little, the cubic is as close to the boundary as asked, and free runs on both sides have
+/// the labels of the branch. The iterator is one node behind, because a special point between the
+/// last two steps may take the last node back.
 ///
 /// ```
 /// use stickslip_tracer::{Branch, End, Family, FreeRun, Point, Runs, Seed, TraceOptions, Window};
@@ -145,8 +146,9 @@ pub struct Branch<'a, 'f, F: Family> {
 }
 
 impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
-    /// The branch that leaves `seed` with the positive side on its left (`forward`), or the other way, and ends at the `stops` it
-    /// comes to; `None` if the seed is not on a boundary between its labels.
+    /// The branch that leaves `seed` with the positive side on its left (`forward`), or the other
+    /// way, and ends at the `stops` it comes to; `None` if the seed is not on a boundary
+    /// between its labels.
     ///
     /// # Errors
     /// A run fails, or a margin is not a number.

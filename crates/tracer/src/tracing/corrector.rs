@@ -11,10 +11,12 @@ pub(crate) struct Corrected {
     pub evaluations: usize,
 }
 
-/// The zero of a margin on the line through `guess` along `gradient`, at most `reach` away, by the secant method.
+/// The zero of a margin on the line through `guess` along `gradient`, at most `reach` away, by the
+/// secant method.
 ///
-/// `gradient` is that of a place nearby; its length is the slope to start with. The last update is not evaluated again: it leaves
-/// an error of the update times the relative error of the slope, which is that of the update before or, of a secant, less.
+/// `gradient` is that of a place nearby; its length is the slope to start with. The last update is
+/// not evaluated again: it leaves an error of the update times the relative error of the slope,
+/// which is that of the update before or, of a secant, less.
 pub(crate) fn correct<F: Family>(
     runs: &Runs<'_, F>,
     margin: &F::Margin,
@@ -58,10 +60,11 @@ pub(crate) fn correct<F: Family>(
     Ok(None)
 }
 
-/// The place near `guess` where two margins vanish together, by Newton's method, and how far off it may be, which is much where
-/// they all but touch; `direction` is that of differences.
+/// The place near `guess` where two margins vanish together, by Newton's method, and how far off it
+/// may be, which is much where they all but touch; `direction` is that of differences.
 ///
-/// Where a margin stops to exist at the other's boundary, the place is approached from the side on which both do.
+/// Where a margin stops to exist at the other's boundary, the place is approached from the side on
+/// which both do.
 pub(crate) fn crossing<F: Family>(
     runs: &Runs<'_, F>,
     margins: [&F::Margin; 2],
@@ -70,8 +73,8 @@ pub(crate) fn crossing<F: Family>(
     radius: f64,
     reach: f64,
 ) -> Traced<Option<(Point, f64)>, F> {
-    /// An update that leads where a margin does not exist is trusted if it is less than this part of the window: what it leaves is
-    /// of second order.
+    /// An update that leads where a margin does not exist is trusted if it is less than this part
+    /// of the window: what it leaves is of second order.
     const LAST: f64 = 1e-7;
     /// The least sine of the angle between two boundaries with which it is.
     const TRANSVERSAL: f64 = 0.03;
@@ -129,8 +132,9 @@ pub(crate) fn crossing<F: Family>(
     Ok(None)
 }
 
-/// The place near `guess` where the gradient of a margin vanishes, by Newton's method with differences whose step follows the
-/// updates, so that a singular second derivative only makes it slow: at a cusp each round halves the distance.
+/// The place near `guess` where the gradient of a margin vanishes, by Newton's method with
+/// differences whose step follows the updates, so that a singular second derivative only makes it
+/// slow: at a cusp each round halves the distance.
 pub(crate) fn stationary<F: Family>(
     runs: &Runs<'_, F>,
     margin: &F::Margin,

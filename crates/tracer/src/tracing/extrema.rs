@@ -18,7 +18,8 @@ pub struct Extremum {
     pub point: Point,
 }
 
-/// Components of unit tangents up to this are none: those of a boundary that is straight along the other axis are rounding.
+/// Components of unit tangents up to this are none: those of a boundary that is straight along the
+/// other axis are rounding.
 const STRAIGHT: f64 = 1e-6;
 
 /// The extrema of `curves`, in their order and from start to end.
@@ -45,8 +46,8 @@ pub(crate) fn extrema<F: Family>(
     Ok(found)
 }
 
-/// Those of the successive extrema of a curve that are higher or lower than their neighbours, or the curve's ends, by more than
-/// `known`.
+/// Those of the successive extrema of a curve that are higher or lower than their neighbours, or
+/// the curve's ends, by more than `known`.
 fn pronounced<Label, Margin>(
     curve: &Curve<Label, Margin>,
     axis: usize,
@@ -110,9 +111,10 @@ impl Bracket {
     }
 }
 
-/// The extremum in a bracket, with its place along the curve counted in pieces: where the component of the tangent vanishes on the
-/// boundary itself, by the method of Illinois (Dowell and Jarratt, 1971). `None` if the component does not vanish but jumps, as at
-/// the end of a curve whose tangent there is not known, or if the boundary cannot be followed.
+/// The extremum in a bracket, with its place along the curve counted in pieces: where the component
+/// of the tangent vanishes on the boundary itself, by the method of Illinois (Dowell and Jarratt,
+/// 1971). `None` if the component does not vanish but jumps, as at the end of a curve whose tangent
+/// there is not known, or if the boundary cannot be followed.
 fn solve<F: Family>(
     runs: &Runs<'_, F>,
     curve: &Curve<F::Label, F::Margin>,
@@ -154,7 +156,8 @@ fn solve<F: Family>(
     Ok(None)
 }
 
-/// The curve's margin as it is called in the middle of a bracket, by the free runs beside it, or as far as it moves along.
+/// The curve's margin as it is called in the middle of a bracket, by the free runs beside it, or as
+/// far as it moves along.
 fn margin<F: Family>(
     runs: &Runs<'_, F>,
     curve: &Curve<F::Label, F::Margin>,

@@ -7,8 +7,8 @@ use crate::tracing::corrector::derivatives;
 use crate::tracing::runs::{Runs, Traced};
 use crate::tracing::seed::GridPlace;
 
-/// Places near those of the grid where a margin has another sign than around: one for each least value among neighbours whose
-/// minimum lies on the other side of zero.
+/// Places near those of the grid where a margin has another sign than around: one for each least
+/// value among neighbours whose minimum lies on the other side of zero.
 ///
 /// `grid` holds columns of `rows` places each, `cell` apart.
 pub(crate) fn islands<F: Family>(
@@ -28,8 +28,8 @@ pub(crate) fn islands<F: Family>(
     Ok(found)
 }
 
-/// Whether no neighbour on the grid has the same margin closer to zero; one that has it on zero's other side has a boundary
-/// between, which needs no search.
+/// Whether no neighbour on the grid has the same margin closer to zero; one that has it on zero's
+/// other side has a boundary between, which needs no search.
 fn is_least<L, M: PartialEq>(
     grid: &[(Point, crate::family::FreeRun<L, M>)],
     rows: usize,
@@ -57,7 +57,8 @@ fn is_least<L, M: PartialEq>(
     neighbours > 0
 }
 
-/// Goes down from a place of the grid by quadratic models, until the margin has changed its sign or cannot.
+/// Goes down from a place of the grid by quadratic models, until the margin has changed its sign or
+/// cannot.
 fn dive<F: Family>(
     runs: &Runs<'_, F>,
     start: &Point,

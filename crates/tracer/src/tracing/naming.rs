@@ -8,9 +8,10 @@ use crate::tracing::network::Network;
 impl<Label> Network<Label, Margin> {
     /// Names the vertices inside the window by the margins of the curves that end there.
     ///
-    /// The tracer tells how it found a vertex, and other curves may have come to end there since. A boundary that crosses another
-    /// one goes on beyond it, so that four curves or more end at a [`VertexKind::Crossing`], whatever vanishes there: the graze and
-    /// the end of one phase may do so independently of each other. Where fewer end, a boundary turns into another:
+    /// The tracer tells how it found a vertex, and other curves may have come to end there since. A
+    /// boundary that crosses another one goes on beyond it, so that four curves or more end at
+    /// a [`VertexKind::Crossing`], whatever vanishes there: the graze and the end of one phase
+    /// may do so independently of each other. Where fewer end, a boundary turns into another:
     ///
     /// - a minimum and the end of the same phase: [`VertexKind::GrazeAtEnd`];
     /// - ends of the run only: [`VertexKind::VanishingPhase`];

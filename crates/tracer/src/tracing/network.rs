@@ -102,8 +102,8 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         Self { network, stops: Vec::new(), suspects: Vec::new(), scale, cells }
     }
 
-    /// Adds a vertex, or finds it among those there are; curves that pass through it are parted, and their parts are
-    /// [suspects](Self::suspects).
+    /// Adds a vertex, or finds it among those there are; curves that pass through it are parted,
+    /// and their parts are [suspects](Self::suspects).
     pub fn add_vertex(&mut self, special: &Special<Margin>) -> usize {
         let near = special.uncertainty + SHORTEST * self.scale;
         let known = self
@@ -194,7 +194,8 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         Some(index)
     }
 
-    /// Whether a place on a boundary with these labels on its sides lies on a curve that is there, whatever its margin is called.
+    /// Whether a place on a boundary with these labels on its sides lies on a curve that is there,
+    /// whatever its margin is called.
     pub fn covers(&self, point: &Point, labels: &[Label; 2]) -> bool {
         let near = 1e-8 * self.scale;
         self.near(&[*point, *point]).into_iter().any(|(curve, piece)| {

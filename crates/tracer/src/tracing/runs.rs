@@ -81,11 +81,12 @@ impl<'a, F: Family> Runs<'a, F> {
 
     /// The gradient of a margin by differences along `direction`, a unit vector, and across it.
     ///
-    /// With margins in error by ε and a scale L on which they vary, the error ε/h + h²/(6L²) of a central difference is least for
-    /// h = (3εL²)^⅓: 3e-5 of L for ε = 1e-14 and L = 1, which leaves 5e-10. `radius` is the radius of curvature of the boundary,
-    /// the scale that is known. Where the margin exists on one side only, the difference is one-sided of second order; where it
-    /// exists on neither, the step shrinks. Boundaries end in wedges that are thin across and long along them, which is why the
-    /// direction matters.
+    /// With margins in error by ε and a scale L on which they vary, the error ε/h + h²/(6L²) of a
+    /// central difference is least for h = (3εL²)^⅓: 3e-5 of L for ε = 1e-14 and L = 1, which
+    /// leaves 5e-10. `radius` is the radius of curvature of the boundary, the scale that is
+    /// known. Where the margin exists on one side only, the difference is one-sided of second
+    /// order; where it exists on neither, the step shrinks. Boundaries end in wedges that are
+    /// thin across and long along them, which is why the direction matters.
     pub(crate) fn gradient(
         &self,
         point: &Point,

@@ -11,10 +11,12 @@ use crate::tracing::seed::{Change, bisect, holds, identify};
 use crate::tracing::trace::Tracer;
 
 impl<F: Family> Tracer<'_, F> {
-    /// Traces every curve that changes the label along a segment, if it is not among the known curves.
+    /// Traces every curve that changes the label along a segment, if it is not among the known
+    /// curves.
     ///
-    /// The curves that cross the segment explain how the label changes along it; only where their sides do not fit together, or
-    /// with the labels at the ends, is the boundary looked for by bisection.
+    /// The curves that cross the segment explain how the label changes along it; only where their
+    /// sides do not fit together, or with the labels at the ends, is the boundary looked for by
+    /// bisection.
     pub(crate) fn scan(&mut self, segment: [Point; 2], labels: [F::Label; 2]) -> Traced<(), F> {
         /// Changes on one segment; more are left to the grid's other edges.
         const CHANGES: usize = 64;
@@ -65,7 +67,8 @@ impl<F: Family> Tracer<'_, F> {
             let places = change.places.map(|place| a.lerp(&b, place));
             match identify(&self.runs, &places, &change.labels)? {
                 Some(seed) => self.seed(&seed)?,
-                // Where curves are closer together than can be parted, the labels next to one are not its own.
+                // Where curves are closer together than can be parted, the labels next to one are
+                // not its own.
                 None if doubtful => {}
                 None => {
                     let labels = change.labels.clone();
@@ -102,7 +105,8 @@ impl<F: Family> Tracer<'_, F> {
                 let mut nodes: Vec<Node> = backward.iter().rev().map(turned).collect();
                 nodes.push(origin);
                 nodes.extend(forward);
-                // A branch that closes one way and ends the other way met the vertex just at its origin.
+                // A branch that closes one way and ends the other way met the vertex just at its
+                // origin.
                 (nodes, Some([start.unwrap_or(end), end]))
             }
         };
@@ -111,8 +115,8 @@ impl<F: Family> Tracer<'_, F> {
         Ok(())
     }
 
-    /// Takes out the parts of curves whose labels are wrong: two vertices lay between two nodes, and only one of them was found
-    /// later. The circles around it find the right curves.
+    /// Takes out the parts of curves whose labels are wrong: two vertices lay between two nodes,
+    /// and only one of them was found later. The circles around it find the right curves.
     fn look_at_suspects(&mut self) -> Traced<(), F> {
         let mut wrong = Vec::new();
         for index in std::mem::take(&mut self.builder.suspects) {
@@ -146,7 +150,8 @@ impl<F: Family> Tracer<'_, F> {
         Ok(())
     }
 
-    /// Origin, nodes, and the vertex at the end, `None` if it closes; `None` in place of all if no branch starts there.
+    /// Origin, nodes, and the vertex at the end, `None` if it closes; `None` in place of all if no
+    /// branch starts there.
     #[expect(clippy::type_complexity)]
     fn follow(
         &mut self,

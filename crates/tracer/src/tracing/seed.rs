@@ -6,8 +6,8 @@ use crate::tracing::corrector::correct;
 use crate::tracing::runs::{Runs, Traced};
 
 impl<Label: Clone + Eq, Margin> Seed<Label, Margin> {
-    /// A place between two others at which the label of the first one ends; `None` if their labels are the same, or no margin that
-    /// vanishes there parts them.
+    /// A place between two others at which the label of the first one ends; `None` if their labels
+    /// are the same, or no margin that vanishes there parts them.
     ///
     /// # Errors
     /// A run fails, or a margin is not a number.
@@ -33,9 +33,11 @@ pub(crate) struct Change<Label> {
     pub labels: [Label; 2],
 }
 
-/// Bisects a change of label between two places of the segment from `a` to `b` to 1e-9 of the window.
+/// Bisects a change of label between two places of the segment from `a` to `b` to 1e-9 of the
+/// window.
 ///
-/// What it finds is a place where the label at the start ends; between it and the segment's end the label may change again.
+/// What it finds is a place where the label at the start ends; between it and the segment's end the
+/// label may change again.
 pub(crate) fn bisect<F: Family>(
     runs: &Runs<'_, F>,
     [a, b]: &[Point; 2],
@@ -60,8 +62,8 @@ pub(crate) fn bisect<F: Family>(
     Ok(Change { places: [low, high], labels: [first, second] })
 }
 
-/// The boundary between two places that are close together: a margin of their free runs that vanishes there and parts their
-/// labels.
+/// The boundary between two places that are close together: a margin of their free runs that
+/// vanishes there and parts their labels.
 pub(crate) fn identify<F: Family>(
     runs: &Runs<'_, F>,
     places: &[Point; 2],
@@ -76,8 +78,8 @@ pub(crate) fn identify<F: Family>(
         margins.extend(runs.free(place)?.margins);
     }
     margins.sort_by(|(one, x), (two, y)| x.abs().total_cmp(&y.abs()).then_with(|| one.cmp(two)));
-    // Of several that vanish together the one that comes first is the simplest: others may belong to phases that are about to
-    // vanish, and end at the boundary.
+    // Of several that vanish together the one that comes first is the simplest: others may belong
+    // to phases that are about to vanish, and end at the boundary.
     let width = (places[1] - places[0]).norm();
     let together = margins.partition_point(|(_, value)| value.abs() <= STEEPEST * width);
     margins[..together].sort_by(|(one, _), (two, _)| one.cmp(two));

@@ -9,12 +9,12 @@ use crate::tracing::runs::{Runs, Traced};
 use crate::tracing::seed::{bisect, identify};
 use crate::tracing::touch::{graze, narrow};
 
-/// Crossings that are not known better, in parts of the window's shorter extent, are looked at as touches: values tell the place
-/// of those to half the digits only.
+/// Crossings that are not known better, in parts of the window's shorter extent, are looked at as
+/// touches: values tell the place of those to half the digits only.
 const TANGENTIAL: f64 = 1e-9;
 
-/// The special point of a branch after `from` within a step `h` that failed; `beyond` is the place reached if its labels are
-/// wrong. `None` if it is not found from so far away.
+/// The special point of a branch after `from` within a step `h` that failed; `beyond` is the place
+/// reached if its labels are wrong. `None` if it is not found from so far away.
 pub(crate) fn locate<F: Family>(
     branch: &Branch<'_, '_, F>,
     from: &FootholdOf<F>,
@@ -69,8 +69,8 @@ pub(crate) fn locate<F: Family>(
     Ok(None)
 }
 
-/// The end of a branch that no step is short enough for: where its margin stops to exist, within a thousandth of the window, or,
-/// unsolved, the place itself.
+/// The end of a branch that no step is short enough for: where its margin stops to exist, within a
+/// thousandth of the window, or, unsolved, the place itself.
 pub(crate) fn give_up<F: Family>(
     branch: &Branch<'_, '_, F>,
     from: &FootholdOf<F>,
@@ -157,7 +157,8 @@ pub(crate) fn rivals<F: Family>(
     margins
 }
 
-/// Where the boundary meets that of `margin` between `from` and the end of the step: they cross, or touch.
+/// Where the boundary meets that of `margin` between `from` and the end of the step: they cross, or
+/// touch.
 fn meet<F: Family>(
     branch: &Branch<'_, '_, F>,
     from: &FootholdOf<F>,
@@ -214,7 +215,8 @@ fn is_last<F: Family>(
     Ok(!branch.holds_closely(from, &after, 0.3 * length + 1e-6 * runs.scale)?)
 }
 
-/// The margins that part a thin region beside a place from the label that the branch has on that side.
+/// The margins that part a thin region beside a place from the label that the branch has on that
+/// side.
 fn wedge<F: Family>(
     branch: &Branch<'_, '_, F>,
     place: &FootholdOf<F>,

@@ -31,9 +31,11 @@ impl<F: Family> Branch<'_, '_, F> {
         Point::new(gradient.y, -gradient.x) * (self.orientation / gradient.norm())
     }
 
-    /// The place on the boundary with the free runs on both sides; `Err` if their labels are not those of the branch.
+    /// The place on the boundary with the free runs on both sides; `Err` if their labels are not
+    /// those of the branch.
     ///
-    /// Where another boundary is closer than the offset, a smaller offset is tried, as far as the place itself is known.
+    /// Where another boundary is closer than the offset, a smaller offset is tried, as far as the
+    /// place itself is known.
     pub(crate) fn foothold(
         &self,
         point: &Point,
@@ -105,7 +107,8 @@ impl<F: Family> Branch<'_, '_, F> {
         }
         let node = Node { point: corrected.point, tangent };
         let arc = Cubic::between(&from.node, &node);
-        // Off the middle, where the errors of fourth and of fifth order both show; the first has 0.7 of its maximum there.
+        // Off the middle, where the errors of fourth and of fifth order both show; the first has
+        // 0.7 of its maximum there.
         let Some(value) = runs.margin(&arc.at(0.3), &self.margin)? else {
             return Ok(Attempt::Lost);
         };

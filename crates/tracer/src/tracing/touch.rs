@@ -1,4 +1,5 @@
-//! Boundaries that touch: special points that show neither in labels nor as a crossing of two margins.
+//! Boundaries that touch: special points that show neither in labels nor as a crossing of two
+//! margins.
 
 use crate::cubic::Cubic;
 use crate::curve::{Node, VertexKind};
@@ -11,8 +12,8 @@ use crate::tracing::special::rivals;
 /// A special point, and whether it lies before the last foothold.
 type Touch<Margin> = (Special<Margin>, bool);
 
-/// A special point that the labels do not show: between the last two footholds and `next` another margin comes down to zero and
-/// goes up again.
+/// A special point that the labels do not show: between the last two footholds and `next` another
+/// margin comes down to zero and goes up again.
 pub(crate) fn touch<F: Family>(
     branch: &Branch<'_, '_, F>,
     next: &FootholdOf<F>,
@@ -58,10 +59,11 @@ fn value_beside<L, M: PartialEq>(foothold: &Foothold<L, M>, margin: &M) -> Optio
         .map(|(_, value)| *value)
 }
 
-/// Where a margin that dips along the boundary touches zero, or first crosses it. `guess` is the length from the middle place.
+/// Where a margin that dips along the boundary touches zero, or first crosses it. `guess` is the
+/// length from the middle place.
 ///
-/// The lowest place is where the gradients of the two margins are parallel, which is solved by the secant method: values near a
-/// minimum tell it to half the digits only.
+/// The lowest place is where the gradients of the two margins are parallel, which is solved by the
+/// secant method: values near a minimum tell it to half the digits only.
 fn dip<F: Family>(
     branch: &Branch<'_, '_, F>,
     places: [&FootholdOf<F>; 3],
@@ -128,9 +130,10 @@ struct Probe {
     slope: f64,
 }
 
-/// Where, along a branch, the gradients of its own and of another margin are parallel, by the secant method: the length there, and
-/// what is found. Where the other margin stops to exist before that place, as an extremum does that leaves through the end of its
-/// phase, the place is approached from the side on which it exists.
+/// Where, along a branch, the gradients of its own and of another margin are parallel, by the
+/// secant method: the length there, and what is found. Where the other margin stops to exist before
+/// that place, as an extremum does that leaves through the end of its phase, the place is
+/// approached from the side on which it exists.
 fn parallel<F: Family>(
     branch: &Branch<'_, '_, F>,
     place: impl Fn(f64) -> Point,
@@ -183,7 +186,8 @@ fn parallel<F: Family>(
     Ok(None)
 }
 
-/// Whether another margin is so close to zero beside the step that its boundary may touch the branch there.
+/// Whether another margin is so close to zero beside the step that its boundary may touch the
+/// branch there.
 pub(crate) fn narrow<F: Family>(
     from: &FootholdOf<F>,
     beyond: Option<&FootholdOf<F>>,
@@ -227,7 +231,8 @@ pub(crate) fn graze<F: Family>(
     Ok(None)
 }
 
-/// Whether another margin vanishes all along the branch, as the two do that a boundary has from its two sides.
+/// Whether another margin vanishes all along the branch, as the two do that a boundary has from its
+/// two sides.
 fn is_twin<F: Family>(branch: &Branch<'_, '_, F>, margin: &F::Margin) -> Traced<bool, F> {
     let Some(back) = branch.trail().front() else { return Ok(false) };
     let value = branch.runs.margin(&back.node.point, margin)?;

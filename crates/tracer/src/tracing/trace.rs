@@ -14,7 +14,8 @@ use crate::tracing::seed::GridPlace;
 /// Traces every boundary of a family in a window: what a new [`Tracer`] finds.
 ///
 /// # Errors
-/// Options out of range, a window that is not a rectangle, a run that fails, a margin that is not a number.
+/// Options out of range, a window that is not a rectangle, a run that fails, a margin that is not a
+/// number.
 pub fn trace<F: Family>(
     family: &F,
     window: &Window,
@@ -25,15 +26,18 @@ pub fn trace<F: Family>(
     Ok(tracer.network())
 }
 
-/// Looks for boundaries in a window, and keeps what it has found, so that it can be told to look again.
+/// Looks for boundaries in a window, and keeps what it has found, so that it can be told to look
+/// again.
 ///
-/// Seeds come from the window's edges, from circles around every vertex, from a grid, and from the minima of margins between its
-/// places. What can be missed are closed curves, or pieces between two vertices, that pass between all of those: strips and
-/// islands with no place of the grid inside whose margin has no minimum that the grid sees. A verification may come upon them, and
+/// Seeds come from the window's edges, from circles around every vertex, from a grid, and from the
+/// minima of margins between its places. What can be missed are closed curves, or pieces between
+/// two vertices, that pass between all of those: strips and islands with no place of the grid
+/// inside whose margin has no minimum that the grid sees. A verification may come upon them, and
 /// [`Self::look_between`] then finds them.
 ///
-/// The family is evaluated up to a thousandth of the window's extent outside of it. Nodes are on their boundary to
-/// `options.tolerance`, or as far as the noise of margins allows, the cubics between them to `options.interpolation`.
+/// The family is evaluated up to a thousandth of the window's extent outside of it. Nodes are on
+/// their boundary to `options.tolerance`, or as far as the noise of margins allows, the cubics
+/// between them to `options.interpolation`.
 pub struct Tracer<'f, F: Family> {
     pub(crate) runs: Runs<'f, F>,
     pub(crate) builder: Builder<F::Label, F::Margin>,
@@ -41,7 +45,8 @@ pub struct Tracer<'f, F: Family> {
     probed: usize,
 }
 
-/// Radii of the circles around a vertex on which seeds are looked for, in parts of the window's shorter extent.
+/// Radii of the circles around a vertex on which seeds are looked for, in parts of the window's
+/// shorter extent.
 const CIRCLES: [f64; 2] = [1e-3, 1e-5];
 
 impl<'f, F: Family> Tracer<'f, F> {
@@ -90,11 +95,12 @@ impl<'f, F: Family> Tracer<'f, F> {
         network
     }
 
-    /// Where the curves found so far are extremal in a coordinate, solved for on the boundaries, to about 1e-9 of their radius of
-    /// curvature along them.
+    /// Where the curves found so far are extremal in a coordinate, solved for on the boundaries, to
+    /// about 1e-9 of their radius of curvature along them.
     ///
-    /// A curve that runs along an axis to 1e-6 in its direction has none, and an extremum counts only if the curve departs from it in
-    /// its coordinate by more than ten times `options.interpolation` on both sides, before the next one or the end. Ends of curves
+    /// A curve that runs along an axis to 1e-6 in its direction has none, and an extremum counts
+    /// only if the curve departs from it in its coordinate by more than ten times
+    /// `options.interpolation` on both sides, before the next one or the end. Ends of curves
     /// are none.
     ///
     /// # Errors
@@ -121,7 +127,8 @@ impl<'f, F: Family> Tracer<'f, F> {
         Ok(())
     }
 
-    /// Scans a segment, in halves where its middle has another label or other margins than its ends let expect.
+    /// Scans a segment, in halves where its middle has another label or other margins than its ends
+    /// let expect.
     fn divide(&mut self, a: &GridPlace<F>, b: &GridPlace<F>, depth: u32) -> Traced<(), F> {
         if depth == 0 {
             return self.scan([a.0, b.0], [a.1.label.clone(), b.1.label.clone()]);
@@ -135,7 +142,8 @@ impl<'f, F: Family> Tracer<'f, F> {
         self.divide(&middle, b, depth - 1)
     }
 
-    /// Seeds from two circles around every vertex that has come up and does not lie on the window's edge.
+    /// Seeds from two circles around every vertex that has come up and does not lie on the window's
+    /// edge.
     fn vertices(&mut self) -> Traced<(), F> {
         while let Some(vertex) = self.builder.network.vertices.get(self.probed) {
             let (point, kind) = (vertex.point, vertex.kind);
@@ -150,8 +158,8 @@ impl<'f, F: Family> Tracer<'f, F> {
         Ok(())
     }
 
-    /// Seeds from a circle around every vertex that has others inside its circles: between them, where curves from one to the
-    /// other pass.
+    /// Seeds from a circle around every vertex that has others inside its circles: between them,
+    /// where curves from one to the other pass.
     fn close_vertices(&mut self) -> Traced<(), F> {
         let mut done = 0;
         while done < self.builder.stops.len() {
@@ -168,8 +176,8 @@ impl<'f, F: Family> Tracer<'f, F> {
         Ok(())
     }
 
-    /// Solves again for vertices that are not known well, with the margins of all curves that end there: two of them may meet at a
-    /// large angle.
+    /// Solves again for vertices that are not known well, with the margins of all curves that end
+    /// there: two of them may meet at a large angle.
     fn polish(&mut self) -> Traced<(), F> {
         for index in 0..self.builder.stops.len() {
             let stop = self.builder.stops[index];
@@ -216,7 +224,8 @@ impl<'f, F: Family> Tracer<'f, F> {
         const CORNERS: u32 = 16;
         let places: Vec<Point> = (0..=CORNERS)
             .map(|i| {
-                // Turned, so that no corner lies on a line through the vertex along an axis or a diagonal.
+                // Turned, so that no corner lies on a line through the vertex along an axis or a
+                // diagonal.
                 let turns = (f64::from(i % CORNERS) + 0.3) / f64::from(CORNERS);
                 let (sine, cosine) = (std::f64::consts::TAU * turns).sin_cos();
                 centre + Point::new(cosine, sine) * radius
@@ -275,7 +284,8 @@ impl<'f, F: Family> Tracer<'f, F> {
 /// Halvings of a segment on the window's edge.
 const DIVISIONS: u32 = 4;
 
-/// Whether a run between two others is what these let expect: the same label, and margins near the mean of theirs.
+/// Whether a run between two others is what these let expect: the same label, and margins near the
+/// mean of theirs.
 fn is_expected<L: Eq, M: PartialEq>(
     a: &FreeRun<L, M>,
     middle: &FreeRun<L, M>,
