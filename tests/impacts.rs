@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Rotation3, Unit};
 use stickslip::model::{
-    Collider, Elasticity, Encounter, EncounterError, Motion, Outcome, Plane, Sphere, Surface,
+    Collider, Elasticity, Encounter, EncounterError, Motion, Outcome, WallMotion, Sphere, Surface,
     Vector3, Wall, encounter::TOUCH,
 };
 
@@ -48,7 +48,7 @@ impl Random {
 #[derive(Clone, Copy)]
 enum Other {
     Sphere(Sphere, Motion),
-    Wall(Wall, Plane),
+    Wall(Wall, WallMotion),
 }
 
 #[derive(Clone, Copy)]
@@ -96,7 +96,7 @@ impl Case {
             let elasticity = random.chance(0.7).then(|| elasticity(random));
             let across = random.direction().cross(&normal) * first.radius_m;
             let point_m = touch + across;
-            let plane = Plane { point_m, normal: normal * 3.0, velocity_m_per_s: drift };
+            let plane = WallMotion { point_m, normal: normal * 3.0, velocity_m_per_s: drift };
             Other::Wall(Wall { elasticity }, plane)
         } else {
             let second = sphere(random);
@@ -152,7 +152,7 @@ impl Case {
             Other::Wall(wall, plane) => {
                 let point_m = turn * plane.point_m;
                 let velocity_m_per_s = turn * plane.velocity_m_per_s + boost;
-                Other::Wall(*wall, Plane { point_m, normal: turn * plane.normal, velocity_m_per_s })
+                Other::Wall(*wall, WallMotion { point_m, normal: turn * plane.normal, velocity_m_per_s })
             }
         };
         Self { motion: motion(&self.motion), other, ..*self }

@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_4;
 
 use stickslip::model::{
     Body, Collider, Contact, Elasticity, Encounter, EncounterError, Material, Motion, Outcome,
-    Pair, Plane, Sphere, Surface, Vector3, Wall, coulomb, normal,
+    Pair, WallMotion, Sphere, Surface, Vector3, Wall, coulomb, normal,
 };
 
 const STEEL: Material =
@@ -35,9 +35,9 @@ fn steel(velocity: [f64; 3], spin: [f64; 3]) -> (Sphere, Motion) {
     (Sphere::homogeneous(0.02, &STEEL), motion)
 }
 
-const FLOOR: (Wall, Plane) = (
+const FLOOR: (Wall, WallMotion) = (
     Wall { elasticity: None },
-    Plane {
+    WallMotion {
         point_m: Vector3::new(1.0, 2.0, 0.0),
         normal: Vector3::new(0.0, 0.0, 1.0),
         velocity_m_per_s: Vector3::new(0.0, 0.0, 0.0),
@@ -122,7 +122,7 @@ fn unequal_spheres() {
 fn a_wall_is_a_sphere_without_end() {
     let moving = steel([3.0, 1.0, -2.0], [10.0, -40.0, 70.0]);
     let surface = Surface { tangential_stiffness_kg_per_s2: 1e9, damping_time_s: 1e-6, ..SURFACE };
-    let plane = Plane { velocity_m_per_s: Vector3::new(0.5, 0.0, 0.25), ..FLOOR.1 };
+    let plane = WallMotion { velocity_m_per_s: Vector3::new(0.5, 0.0, 0.25), ..FLOOR.1 };
     let wall = Wall { elasticity: Some(STEEL.elasticity()) };
     let limit = Encounter::with_wall((&moving.0, &moving.1), (&wall, &plane), &surface).unwrap();
     let errors = [1e3, 1e5].map(|radius_m| {
@@ -308,11 +308,11 @@ fn bodies_that_do_not_collide() {
     let velocity_m_per_s = Vector3::new(f64::INFINITY, 0.0, 0.0);
     assert!(message(meet(Motion { velocity_m_per_s, ..at(-0.02) })).contains("finite"));
 
-    let hit = |plane: Plane| Encounter::with_wall((&sphere, &motion), (&FLOOR.0, &plane), &SURFACE);
+    let hit = |plane: WallMotion| Encounter::with_wall((&sphere, &motion), (&FLOOR.0, &plane), &SURFACE);
     let plane = FLOOR.1;
     assert!(hit(plane).is_ok());
-    assert!(message(hit(Plane { normal: -plane.normal, ..plane })).contains("above the wall"));
-    assert!(message(hit(Plane { normal: Vector3::zeros(), ..plane })).contains("normal"));
+    assert!(message(hit(WallMotion { normal: -plane.normal, ..plane })).contains("above the wall"));
+    assert!(message(hit(WallMotion { normal: Vector3::zeros(), ..plane })).contains("normal"));
 
     let bad =
         Sphere { elasticity: Elasticity { poisson_ratio: 0.6, ..sphere.elasticity }, ..sphere };

@@ -8,7 +8,7 @@ use std::fs;
 use std::io::{self, Read};
 use std::path::Path;
 
-use stickslip_model::{Body, Encounter, Motion, Pair, Plane, Sphere, Surface, Wall};
+use stickslip_model::{Body, Encounter, Motion, Pair, WallMotion, Sphere, Surface, Wall};
 
 use crate::error::Failure;
 
@@ -22,7 +22,7 @@ pub struct Bodies {
 /// What the first sphere hits.
 enum Other {
     Sphere(Sphere, Option<Motion>),
-    Wall(Wall, Option<Plane>),
+    Wall(Wall, Option<WallMotion>),
 }
 
 /// The two bodies in the file at `path`, `-` for standard input, as their contact feels them.

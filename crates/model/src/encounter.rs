@@ -26,7 +26,7 @@ pub struct Motion {
 
 /// Where a wall is and how it moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plane {
+pub struct WallMotion {
     /// A point of the wall's surface in m.
     pub point_m: Vector3<f64>,
     /// Direction out of the wall, of any length.
@@ -130,10 +130,10 @@ impl Encounter {
     /// the wall's normal points, or they do not approach.
     pub fn with_wall(
         sphere: (&Sphere, &Motion),
-        wall: (&Wall, &Plane),
+        wall: (&Wall, &WallMotion),
         surface: &Surface,
     ) -> Result<Self, EncounterError> {
-        let (Plane { point_m, normal, velocity_m_per_s }, position_m) =
+        let (WallMotion { point_m, normal, velocity_m_per_s }, position_m) =
             (*wall.1, sphere.1.position_m);
         let pair = Pair::new(sphere.0, &Body::Wall(*wall.0), surface)?;
         // Scaled first, so that no length is too large or too small for its square.

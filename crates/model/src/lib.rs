@@ -6,12 +6,10 @@
 //! a [`Contact`]. A [`Collider`] integrates it, [`exact::collide`] solves it in closed form where
 //! there is no damping; both return a [`Collision`] with every switch.
 //!
-//! Start reading in [`collision`]; then [`regularized`] (the equations), [`exact`] (the closed
-//! form), [`history`] (its course in time), [`scaling`] (SI units), [`bodies`] and [`encounter`]
-//! (spheres in three dimensions), [`normal`], [`coulomb`] and [`largest`] (formulas to compare
-//! with), [`stiff`] and [`inner`] (the limit of stiff springs), [`plain_time`] and [`convergence`]
-//! (the equations as the paper has them, for studies), [`sensitivity`] (derivatives), [`unreset`]
-//! (another model of the spring).
+//! Start reading in [`collision`]; then [`regularized`] (the equations), [`exact`] (the closed form),
+//! [`Engine`] (either of them), [`history`] (its course in time), [`scaling`] (SI units), [`bodies`] and
+//! [`encounter`] (spheres in three dimensions), [`normal`], [`coulomb`], [`largest`] and [`inner`] (closed
+//! forms to compare with), [`sensitivity`] (derivatives).
 //!
 //! ```
 //! use stickslip_model::{Collider, Contact, exact};
@@ -27,11 +25,11 @@
 pub mod bodies;
 pub mod collision;
 mod contact;
-pub mod convergence;
 pub mod coulomb;
 mod domain;
 pub mod encounter;
 mod energy;
+mod engine;
 pub mod exact;
 pub mod history;
 pub mod inner;
@@ -41,16 +39,14 @@ mod law;
 pub mod normal;
 mod observed;
 mod outcome;
-mod pair;
-pub mod plain_time;
+mod double_double;
 pub mod quantity;
+mod reduction;
 mod refine;
 pub mod regularized;
 mod reversals;
 pub mod scaling;
 pub mod sensitivity;
-pub mod stiff;
-pub mod unreset;
 
 pub use bodies::{Body, Elasticity, Material, Sphere, Wall};
 pub use collision::{Collider, CollisionError};
@@ -58,12 +54,14 @@ pub use contact::{
     Collision, Contact, FEW_SWITCHES, InvalidParameter, Regime, Side, Switch, Switches,
 };
 pub use domain::OutOfDomain;
-pub use encounter::{Encounter, EncounterError, Motion, Plane};
+pub use encounter::{Encounter, EncounterError, Motion, WallMotion};
 pub use energy::EnergyLedger;
+pub use engine::{Engine, EngineError, NotFinite, Tolerances};
 pub use history::{History, PhaseHistory, Snapshot};
 pub use nalgebra::Vector3;
 pub use observed::Observed;
 pub use outcome::{EnergyAccount, ForceSwitch, Outcome};
+pub use reduction::Reduction;
 pub use scaling::{Impact, Pair, Surface};
 pub use sensitivity::{Derived, Sensitivity};
 

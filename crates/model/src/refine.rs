@@ -11,7 +11,7 @@ use stickslip_solver::{Method, Observer, Options, Start, SwitchEvent, run};
 
 use crate::contact::{Collision, Contact, FEW_SWITCHES, Regime, Side};
 use crate::energy::EnergyLedger;
-use crate::pair::Pair;
+use crate::double_double::DoubleDouble;
 use crate::regularized::{Phase, Regularized, STATE};
 
 /// Degree of the Taylor series.
@@ -48,7 +48,7 @@ pub(crate) fn refine<M: Method>(method: M, options: &Options, collision: &mut Co
         return false;
     };
     let spring = last.spring(contact, *phase).nearest();
-    let mut time = Pair(0.0, 0.0);
+    let mut time = DoubleDouble(0.0, 0.0);
     for (switch, end) in collision.switches.iter_mut().zip(&ends) {
         time = time.plus(end.t);
         switch.time = time.nearest();
@@ -98,41 +98,41 @@ fn phases<M: Method>(method: M, options: &Options, contact: Contact) -> Option<P
 /// phase began.
 #[derive(Clone, Copy, Debug)]
 struct Motion {
-    u: Pair,
-    v: Pair,
-    w: Pair,
-    y: Pair,
-    t: Pair,
+    u: DoubleDouble,
+    v: DoubleDouble,
+    w: DoubleDouble,
+    y: DoubleDouble,
+    t: DoubleDouble,
 }
 
-const ZERO: Pair = Pair(0.0, 0.0);
+const ZERO: DoubleDouble = DoubleDouble(0.0, 0.0);
 
 impl Motion {
     fn start(contact: Contact) -> Self {
-        Self { u: ZERO, v: Pair(1.0, 0.0), w: Pair(contact.psi(), 0.0), y: ZERO, t: ZERO }
+        Self { u: ZERO, v: DoubleDouble(1.0, 0.0), w: DoubleDouble(contact.psi(), 0.0), y: ZERO, t: ZERO }
     }
 
     /// F = u(u² + a v).
-    fn force(&self, contact: Contact) -> Pair {
+    fn force(&self, contact: Contact) -> DoubleDouble {
         self.u.times(self.end_guard(contact))
     }
 
     /// u² + a v.
-    fn end_guard(&self, contact: Contact) -> Pair {
+    fn end_guard(&self, contact: Contact) -> DoubleDouble {
         self.u.times(self.u).plus(self.v.scaled(contact.damping()))
     }
 
     /// dF/ds = u(2u v + a v') + v(u² + a v).
-    fn force_slope(&self, contact: Contact) -> Pair {
+    fn force_slope(&self, contact: Contact) -> DoubleDouble {
         let deceleration = self.u.times(self.force(contact)).scaled(-2.0);
         let inner = self.u.times(self.v).scaled(2.0).plus(deceleration.scaled(contact.damping()));
         self.u.times(inner).plus(self.v.times(self.end_guard(contact)))
     }
 
-    fn spring(&self, contact: Contact, phase: Phase) -> Pair {
+    fn spring(&self, contact: Contact, phase: Phase) -> DoubleDouble {
         match phase.regime {
             Regime::Slip => {
-                let limit = self.force(contact).over(Pair(contact.kappa(), 0.0));
+                let limit = self.force(contact).over(DoubleDouble(contact.kappa(), 0.0));
                 limit.scaled(phase.side.sign())
             }
             Regime::Stick => self.y,
@@ -140,16 +140,16 @@ impl Motion {
     }
 
     /// Energy taken by sliding on `side` from here to `end`: ∫ F (s w − dL/dt) dt with F dt = −dv.
-    fn slid(&self, end: &Self, contact: Contact, side: Side) -> Pair {
+    fn slid(&self, end: &Self, contact: Contact, side: Side) -> DoubleDouble {
         let slowed = self.v.minus(end.v);
         let mean = self.w.scaled(side.sign()).minus(slowed.scaled(0.5));
         let [force, end_force] = [self, end].map(|moment| moment.force(contact));
         let stored = end_force.times(end_force).minus(force.times(force)).scaled(0.5);
-        slowed.times(mean).minus(stored.over(Pair(contact.kappa(), 0.0)))
+        slowed.times(mean).minus(stored.over(DoubleDouble(contact.kappa(), 0.0)))
     }
 
     /// The function that vanishes where `phase` gives way to `exit`, or the contact ends.
-    fn guard(&self, contact: Contact, phase: Phase, exit: Option<Phase>) -> Pair {
+    fn guard(&self, contact: Contact, phase: Phase, exit: Option<Phase>) -> DoubleDouble {
         let kappa = contact.kappa();
         match exit {
             None if contact.damping() > 0.0 => self.end_guard(contact),
@@ -199,10 +199,10 @@ impl Motion {
 struct Series {
     side: Option<Side>,
     start: Motion,
-    u: [Pair; DEGREE + 1],
-    v: [Pair; DEGREE + 1],
-    w: [Pair; DEGREE + 1],
-    y: [Pair; DEGREE + 1],
+    u: [DoubleDouble; DEGREE + 1],
+    v: [DoubleDouble; DEGREE + 1],
+    w: [DoubleDouble; DEGREE + 1],
+    y: [DoubleDouble; DEGREE + 1],
 }
 
 impl Series {
@@ -216,7 +216,7 @@ impl Series {
         for k in 0..DEGREE {
             uu[k] = product(&series.u, &series.u, k);
             f[k] = uu[k].plus(series.v[k].scaled(contact.damping()));
-            let next = Pair((k + 1) as f64, 0.0);
+            let next = DoubleDouble((k + 1) as f64, 0.0);
             series.u[k + 1] = series.v[k].over(next);
             series.v[k + 1] = product(&uu, &f, k).scaled(-2.0).over(next);
             if side.is_none() {
@@ -232,7 +232,7 @@ impl Series {
     /// contact only every fifth differs from 0.
     fn reach(&self) -> f64 {
         (DEGREE - 5..=DEGREE).fold(1.0, |reach: f64, k| {
-            let size = |terms: &[Pair; DEGREE + 1]| terms[k].0.abs();
+            let size = |terms: &[DoubleDouble; DEGREE + 1]| terms[k].0.abs();
             let largest = size(&self.u).max(size(&self.v)).max(size(&self.w)).max(size(&self.y));
             reach.min((TOLERANCE / largest.max(f64::MIN_POSITIVE)).powf(1.0 / k as f64))
         })
@@ -249,7 +249,7 @@ impl Series {
         // t' = 2u, integrated term by term.
         let t = (0..DEGREE)
             .rev()
-            .fold(ZERO, |sum, k| sum.scaled(h).plus(self.u[k].over(Pair((k + 1) as f64, 0.0))))
+            .fold(ZERO, |sum, k| sum.scaled(h).plus(self.u[k].over(DoubleDouble((k + 1) as f64, 0.0))))
             .scaled(2.0)
             .scaled(h);
         Motion { u, v, w, y, t: self.start.t.plus(t) }
@@ -283,7 +283,7 @@ impl Series {
 }
 
 /// The k-th coefficient of a product of two series; four sums that do not wait for each other.
-fn product(a: &[Pair; DEGREE + 1], b: &[Pair; DEGREE + 1], k: usize) -> Pair {
+fn product(a: &[DoubleDouble; DEGREE + 1], b: &[DoubleDouble; DEGREE + 1], k: usize) -> DoubleDouble {
     let mut sums = [ZERO; 4];
     for j in 0..=k {
         sums[j % 4] = sums[j % 4].plus(a[j].times(b[k - j]));
@@ -291,6 +291,6 @@ fn product(a: &[Pair; DEGREE + 1], b: &[Pair; DEGREE + 1], k: usize) -> Pair {
     sums[0].plus(sums[1]).plus(sums[2].plus(sums[3]))
 }
 
-fn value(terms: &[Pair; DEGREE + 1], h: f64) -> Pair {
+fn value(terms: &[DoubleDouble; DEGREE + 1], h: f64) -> DoubleDouble {
     terms.iter().rev().fold(ZERO, |sum, &term| sum.scaled(h).plus(term))
 }

@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use serde_json::Value;
 use stickslip_model::quantity;
-use stickslip_model::{Elasticity, Motion, Plane, Sphere, Surface, Wall};
+use stickslip_model::{Elasticity, Motion, WallMotion, Sphere, Surface, Wall};
 
 use super::field::{Object, number, required, vector};
 use super::{Bodies, Other};
@@ -160,7 +160,7 @@ impl SphereFields {
 }
 
 impl WallFields {
-    fn resolve(&self) -> Result<(Wall, Option<Plane>), String> {
+    fn resolve(&self) -> Result<(Wall, Option<WallMotion>), String> {
         let elasticity = match (&self.material, self.rigid.unwrap_or(false)) {
             (None, true) => None,
             (Some(Object(material)), false) if material.density_kg_per_m3.is_none() => {
@@ -207,9 +207,9 @@ impl MotionFields {
 }
 
 impl PlaneFields {
-    fn resolve(&self, place: &str) -> Result<Plane, String> {
+    fn resolve(&self, place: &str) -> Result<WallMotion, String> {
         let (point, normal) = (("point_m", POSITION), ("normal", "not all 0, without unit"));
-        Ok(Plane {
+        Ok(WallMotion {
             point_m: vector(place, point, self.point_m.as_ref())?,
             normal: vector(place, normal, self.normal.as_ref())?,
             velocity_m_per_s: vector(place, VELOCITY, self.velocity_m_per_s.as_ref())?,

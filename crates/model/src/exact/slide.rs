@@ -16,7 +16,7 @@
 use super::precise::refined_onset;
 use super::root::{Jet, bracketed};
 use super::trajectory::{Half, LARGEST_U, MIDDLE_ROOT, Moment, Point, speed_at};
-use crate::pair::Pair;
+use crate::double_double::DoubleDouble;
 
 /// The value of b u at the largest compression above which h is nearly flat somewhere: dg/dt is
 /// −u³(1 − b u) at the largest compression and no smaller before it.
@@ -65,10 +65,10 @@ impl Sliding {
     }
 
     /// s·w at a later moment of the phase.
-    pub fn velocity_at(&self, moment: Moment, point: Point) -> Pair {
+    pub fn velocity_at(&self, moment: Moment, point: Point) -> DoubleDouble {
         match moment.half {
-            Half::Compression => Pair::sum(self.at_start(), -point.deficit),
-            Half::Decompression => Pair::sum(self.at_end(), point.deficit),
+            Half::Compression => DoubleDouble::sum(self.at_start(), -point.deficit),
+            Half::Decompression => DoubleDouble::sum(self.at_end(), point.deficit),
         }
     }
 

@@ -3,7 +3,7 @@
 use super::onset::Onset;
 use super::slide::{Slide, pull};
 use super::trajectory::{CONTACT_TIME, Moment, Point};
-use crate::pair::Pair;
+use crate::double_double::DoubleDouble;
 
 /// One stick phase, in the orientation in which it starts on side +1:
 /// y = A cos θ, with θ rising at the rate ω = √κ.
@@ -20,7 +20,7 @@ pub struct Swing {
     /// y at the start, equal to the limit L there.
     pub elongation: f64,
     /// w at the start, with what rounding left out of it.
-    pub velocity: Pair,
+    pub velocity: DoubleDouble,
     /// A, the largest |y| of the swing.
     pub amplitude: f64,
     /// The angle from the start to the first y = 0, between 0 and π.
@@ -55,7 +55,7 @@ impl Gap {
 impl Swing {
     /// The phase that starts at `start`, where the normal motion is at `point` and w is
     /// `velocity`.
-    pub fn new(slide: &Slide, start: Moment, point: Point, velocity: Pair) -> Self {
+    pub fn new(slide: &Slide, start: Moment, point: Point, velocity: DoubleDouble) -> Self {
         let kappa = slide.kappa;
         let omega = kappa.sqrt();
         let elongation = point.u * point.u * point.u / kappa;

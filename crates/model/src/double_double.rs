@@ -5,9 +5,9 @@
 
 /// An unevaluated sum, the second number below the rounding of the first.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Pair(pub f64, pub f64);
+pub(crate) struct DoubleDouble(pub f64, pub f64);
 
-impl Pair {
+impl DoubleDouble {
     /// a + b, exactly.
     pub fn sum(a: f64, b: f64) -> Self {
         let high = a + b;
@@ -64,14 +64,14 @@ mod tests {
     #[test]
     fn pairs_keep_what_rounding_drops() {
         let tiny = 2.0_f64.powi(-70);
-        let sum = Pair::sum(1.0, tiny);
+        let sum = DoubleDouble::sum(1.0, tiny);
         assert_eq!((sum.0, sum.1), (1.0, tiny));
         // (1 + ε)² = 1 + 2ε + ε²
-        let square = sum.times(sum).minus(Pair(1.0, 0.0)).minus(Pair(2.0 * tiny, 0.0));
+        let square = sum.times(sum).minus(DoubleDouble(1.0, 0.0)).minus(DoubleDouble(2.0 * tiny, 0.0));
         assert!(square.nearest().abs() < 1e-30);
-        let third = Pair(1.0, 0.0).over(Pair(3.0, 0.0));
-        let back = third.times(Pair(3.0, 0.0)).minus(Pair(1.0, 0.0));
+        let third = DoubleDouble(1.0, 0.0).over(DoubleDouble(3.0, 0.0));
+        let back = third.times(DoubleDouble(3.0, 0.0)).minus(DoubleDouble(1.0, 0.0));
         assert!(back.nearest().abs() < 1e-31);
-        assert_eq!(Pair::product(0.1, 10.0).nearest(), 1.0);
+        assert_eq!(DoubleDouble::product(0.1, 10.0).nearest(), 1.0);
     }
 }
