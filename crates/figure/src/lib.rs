@@ -1,1 +1,37 @@
-//! Under construction.
+//! Pictures of collisions, maps and atlases, as SVG and PNG.
+//!
+//! A picture is drawn as [`Svg`]; [`png`] rasterises it, so that both look the same. [`pictures`] draws
+//! whole pictures from data: a [collision](pictures::collision), a [gallery](pictures::gallery) of
+//! several, a [map](pictures::map), an [atlas](pictures::atlas), a [chart](pictures::chart) of series.
+//! They are made of what [`canvas`] offers.
+//!
+//! Start reading in [`canvas::panel`] (axes and what is drawn against them), then
+//! [`pictures::course`] and [`pictures::collision`] (a picture); then [`canvas::svg`],
+//! [`canvas::markup`] and [`canvas::style`].
+//!
+//! ```
+//! use stickslip_figure::{pictures, png};
+//! use stickslip_model::{Collider, Contact};
+//!
+//! let contact = Contact::new(63.0, 0.5, 0.0)?;
+//! let collision = Collider::default().collide(contact)?;
+//! let history = Collider::default().history(contact)?;
+//! let svg = pictures::collision::draw(&collision, &history);
+//! assert!(svg.document().starts_with("<svg"));
+//! assert!(png(&svg)?.starts_with(b"\x89PNG"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod canvas;
+mod error;
+pub mod pictures;
+
+pub use canvas::markup;
+pub use canvas::number::number;
+pub use canvas::raster::png;
+pub use canvas::svg::Svg;
+pub use error::FigureError;
+
+#[doc = include_str!("../README.md")]
+#[cfg(doctest)]
+pub struct Readme;

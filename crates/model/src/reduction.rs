@@ -20,6 +20,9 @@ pub struct Reduction {
 }
 
 impl Reduction {
+    /// μ = 0.4 and α = 2/7, homogeneous spheres: the values of all figures of the paper.
+    pub const HOMOGENEOUS: Self = Self { mu: 0.4, alpha: 2.0 / 7.0 };
+
     /// ψ at the impact ratio g_t/g_n.
     #[must_use]
     pub fn psi(&self, ratio: f64) -> f64 {
@@ -34,8 +37,8 @@ impl Reduction {
 }
 
 impl Default for Reduction {
-    /// μ = 0.4 and α = 2/7, homogeneous spheres: the values of all figures of the paper.
+    /// [`Self::HOMOGENEOUS`].
     fn default() -> Self {
-        Self { mu: 0.4, alpha: 2.0 / 7.0 }
+        Self::HOMOGENEOUS
     }
 }

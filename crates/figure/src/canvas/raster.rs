@@ -1,0 +1,33 @@
+//! SVG to PNG.
+
+use std::sync::Arc;
+
+use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::usvg::fontdb::Database;
+use resvg::usvg::{Options, Tree};
+
+use super::svg::Svg;
+use crate::error::FigureError;
+
+/// Pixels of the PNG for one of the SVG.
+const SCALE: f32 = 2.0;
+
+/// DejaVu Sans, so that no machine needs a font; see `assets/README.md`.
+const FONT_FILE: &[u8] = include_bytes!("../../assets/DejaVuSans-subset.ttf");
+
+/// The picture as a PNG file.
+///
+/// # Errors
+/// [`FigureError`]: the picture is too large for memory.
+pub fn png(svg: &Svg) -> Result<Vec<u8>, FigureError> {
+    let mut fonts = Database::new();
+    fonts.load_font_data(FONT_FILE.to_vec());
+    let options = Options { fontdb: Arc::new(fonts), ..Options::default() };
+    let tree = Tree::from_str(&svg.document(), &options)?;
+    let size = tree.size().to_int_size().scale_by(SCALE);
+    let mut pixels = size
+        .and_then(|size| Pixmap::new(size.width(), size.height()))
+        .ok_or(FigureError::Memory)?;
+    resvg::render(&tree, Transform::from_scale(SCALE, SCALE), &mut pixels.as_mut());
+    Ok(pixels.encode_png()?)
+}

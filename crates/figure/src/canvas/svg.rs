@@ -1,0 +1,211 @@
+//! Shapes and words as SVG.
+
+use std::fmt::{self, Display};
+
+use super::markup;
+use super::shape::{Px, Rectangle, Stroke};
+use super::style::{FONT, INK};
+
+/// A picture under construction; what is added later lies on top. Lengths are in pixels, y points
+/// down.
+#[derive(Debug)]
+pub struct Svg {
+    width: f64,
+    height: f64,
+    title: String,
+    body: String,
+}
+
+/// Which point of a text its position means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Anchor {
+    /// Where it starts.
+    Start,
+    /// Its middle.
+    Middle,
+    /// Where it ends.
+    End,
+}
+
+/// Words at a place.
+#[derive(Clone, Copy, Debug)]
+pub struct Words<'a> {
+    /// The words, with `_` and `^` before what is lowered and raised: a character, or several in
+    /// braces.
+    pub text: &'a str,
+    /// Font size.
+    pub size: f64,
+    /// What the position means.
+    pub anchor: Anchor,
+    /// Their colour.
+    pub colour: &'a str,
+    /// Whether they run upwards.
+    pub upwards: bool,
+}
+
+impl<'a> Words<'a> {
+    /// Words of the usual colour and direction.
+    pub fn new(text: &'a str, size: f64, anchor: Anchor) -> Self {
+        Self { text, size, anchor, colour: INK, upwards: false }
+    }
+}
+
+impl Svg {
+    /// An empty picture, with the title that assistive programs and browsers show.
+    pub fn new(width: f64, height: f64, title: &str) -> Self {
+        Self { width, height, title: markup::escaped(&markup::plain(title)), body: String::new() }
+    }
+
+    /// Its width.
+    pub fn width(&self) -> f64 {
+        self.width
+    }
+
+    /// The whole document.
+    pub fn document(&self) -> String {
+        let Self { width, height, title, body } = self;
+        // Some viewers drop blanks at the ends of lowered and raised words unless told to preserve
+        // them.
+        format!(
+            r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}" font-family="{FONT}" xml:space="preserve">
+<title>{title}</title>
+<rect width="{width}" height="{height}" fill="white"/>
+{body}</svg>
+"#
+        )
+    }
+
+    /// What follows belongs to the group `class`, until [`Self::end_group`].
+    pub fn begin_group(&mut self, class: &str) {
+        self.element(format_args!(r#"<g class="{class}">"#));
+    }
+
+    /// Ends the group begun last.
+    pub fn end_group(&mut self) {
+        self.element(format_args!("</g>"));
+    }
+
+    /// Of what follows only the part inside of a rectangle is shown, until [`Self::end_inside`].
+    pub fn begin_inside(&mut self, at: Rectangle) {
+        let [x, y, width, height] = [at.left, at.top, at.width, at.height].map(Px);
+        // Unlike a clip path it needs no name, which would have to be unique on a page of pictures.
+        self.element(format_args!(
+            r#"<svg {} viewBox="{x} {y} {width} {height}" overflow="hidden">"#,
+            Place(at)
+        ));
+    }
+
+    /// Ends what [`Self::begin_inside`] began.
+    pub fn end_inside(&mut self) {
+        self.element(format_args!("</svg>"));
+    }
+
+    /// A filled rectangle.
+    pub fn fill(&mut self, at: Rectangle, colour: &str) {
+        self.element(format_args!(r#"<rect {} fill="{colour}"/>"#, Place(at)));
+    }
+
+    /// The edge of a rectangle.
+    pub fn outline(&mut self, at: Rectangle, stroke: Stroke) {
+        self.element(format_args!(r#"<rect {} fill="none" {stroke}/>"#, Place(at)));
+    }
+
+    /// A filled circle.
+    pub fn disc(&mut self, centre: (f64, f64), radius: f64, colour: &str) {
+        let [x, y, r] = [centre.0, centre.1, radius].map(Px);
+        self.element(format_args!(r#"<circle cx="{x}" cy="{y}" r="{r}" fill="{colour}"/>"#));
+    }
+
+    /// A circle.
+    pub fn ring(&mut self, centre: (f64, f64), radius: f64, stroke: Stroke) {
+        let [x, y, r] = [centre.0, centre.1, radius].map(Px);
+        self.element(format_args!(r#"<circle cx="{x}" cy="{y}" r="{r}" fill="white" {stroke}/>"#));
+    }
+
+    /// A straight line.
+    pub fn line(&mut self, (x1, y1): (f64, f64), (x2, y2): (f64, f64), stroke: Stroke) {
+        let [x1, y1, x2, y2] = [x1, y1, x2, y2].map(Px);
+        self.element(format_args!(r#"<line x1="{x1}" y1="{y1}" x2="{x2}" y2="{y2}" {stroke}/>"#));
+    }
+
+    /// A line through points; points that cannot be told apart are left out.
+    pub fn polyline(&mut self, points: impl IntoIterator<Item = (f64, f64)>, stroke: Stroke) {
+        /// No eye and no usual magnification tells points apart that are closer.
+        const APART: f64 = 0.1;
+        let mut list = String::new();
+        let mut write =
+            |(x, y): (f64, f64)| markup::append(&mut list, format_args!("{},{} ", Px(x), Px(y)));
+        let (mut written, mut skipped) = (None::<(f64, f64)>, None);
+        for point in points {
+            let near =
+                |(x, y): (f64, f64)| (x - point.0).abs() < APART && (y - point.1).abs() < APART;
+            if written.is_some_and(near) {
+                skipped = Some(point);
+            } else {
+                // The last point before a jump belongs to the line.
+                skipped.take().into_iter().chain([point]).for_each(&mut write);
+                written = Some(point);
+            }
+        }
+        skipped.into_iter().for_each(write);
+        let list = list.trim_end();
+        self.element(format_args!(
+            r#"<polyline points="{list}" fill="none" stroke-linejoin="round" {stroke}/>"#
+        ));
+    }
+
+    /// A filled polygon.
+    pub fn area(&mut self, corners: impl IntoIterator<Item = (f64, f64)>, colour: &str) {
+        let corners: Vec<String> =
+            corners.into_iter().map(|(x, y)| format!("{},{}", Px(x), Px(y))).collect();
+        let list = corners.join(" ");
+        self.element(format_args!(r#"<polygon points="{list}" fill="{colour}"/>"#));
+    }
+
+    /// An image of which every pixel becomes a sharp rectangle; `png` is its file in base 64.
+    pub fn image(&mut self, at: Rectangle, png: &str) {
+        // The attribute is for viewers that do not know the newer word in the style.
+        self.element(format_args!(
+            r#"<image {} preserveAspectRatio="none" image-rendering="optimizeSpeed" style="image-rendering:pixelated" href="data:image/png;base64,{png}"/>"#,
+            Place(at)
+        ));
+    }
+
+    /// Words on a line, at the middle of their height.
+    pub fn words(&mut self, (x, y): (f64, f64), words: Words<'_>) {
+        let Words { text, size, anchor, colour, upwards } = words;
+        let anchor = match anchor {
+            Anchor::Start => "start",
+            Anchor::Middle => "middle",
+            Anchor::End => "end",
+        };
+        // Half the height of a figure.
+        let lowered = 0.365 * size;
+        let turn = if upwards {
+            format!(r#" transform="rotate(-90 {} {})""#, Px(x), Px(y))
+        } else {
+            String::new()
+        };
+        let spans = markup::spans(text, size);
+        self.element(format_args!(
+            r#"<text x="{}" y="{}" font-size="{size}" text-anchor="{anchor}" fill="{colour}"{turn}>{spans}</text>"#,
+            Px(x),
+            Px(y + lowered),
+        ));
+    }
+
+    fn element(&mut self, element: fmt::Arguments<'_>) {
+        markup::append(&mut self.body, element);
+        self.body.push('\n');
+    }
+}
+
+/// A rectangle as attributes.
+struct Place(Rectangle);
+
+impl Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, width, height] = [self.0.left, self.0.top, self.0.width, self.0.height].map(Px);
+        f.write_fmt(format_args!(r#"x="{x}" y="{y}" width="{width}" height="{height}""#))
+    }
+}

@@ -1,0 +1,57 @@
+//! The picture of one collision: forces above, velocity below, against time.
+
+use stickslip_model::{Collision, History};
+
+use super::course::{self, Course};
+use crate::canvas::number::number;
+use crate::canvas::panel::Edge;
+use crate::canvas::shape::Rectangle;
+use crate::canvas::style::TITLE;
+use crate::canvas::svg::{Anchor, Svg, Words};
+
+/// Pixels from the start of contact to its end, about.
+pub const PANEL_WIDTH: f64 = 664.0;
+
+const WIDTH: f64 = 760.0;
+const HEIGHT: f64 = 560.0;
+const FORCES: Rectangle = Rectangle { left: 80.0, top: 70.0, width: PANEL_WIDTH, height: 270.0 };
+const VELOCITY: Rectangle = Rectangle { top: 352.0, height: 156.0, ..FORCES };
+/// Where the title and the legend are.
+const TITLE_AT: (f64, f64) = (80.0, 22.0);
+const LEGEND_AT: (f64, f64) = (80.0, 50.0);
+
+/// The name of the axis of forces.
+pub const FORCE: &str = "force in units of m β^{2/5} g_n^{6/5}";
+/// The name of the axis of time.
+pub const TIME: &str = "time t in units of β^{−2/5} g_n^{−1/5}";
+
+/// Draws `collision`, whose course is `history`.
+pub fn draw(collision: &Collision, history: &History) -> Svg {
+    let title = title(collision);
+    let mut svg = Svg::new(WIDTH, HEIGHT, &title);
+    svg.words(TITLE_AT, Words::new(&title, TITLE, Anchor::Start));
+    course::legend(&mut svg, LEGEND_AT, "F_t/μ, w");
+
+    let course = Course::new(collision, history, FORCES.width);
+    let forces = course.forces(&mut svg, FORCES, course.largest_force());
+    forces.ticks(&mut svg, Edge::Left, true);
+    forces.ticks(&mut svg, Edge::Bottom, false);
+    forces.name(&mut svg, Edge::Left, 58.0, FORCE);
+
+    let velocity = course.velocity(&mut svg, VELOCITY);
+    velocity.ticks(&mut svg, Edge::Left, true);
+    velocity.ticks(&mut svg, Edge::Bottom, true);
+    velocity.name(&mut svg, Edge::Left, 58.0, "velocity w = (α/μ) g_t/g_n");
+    velocity.name(&mut svg, Edge::Bottom, 36.0, TIME);
+    svg
+}
+
+fn title(collision: &Collision) -> String {
+    let contact = &collision.contact;
+    let [kappa, psi, damping] =
+        [contact.kappa(), contact.psi(), contact.damping()].map(|parameter| number(parameter, 6));
+    let eps_t = number(collision.eps_t(), 4);
+    let count = collision.switches.len();
+    let plural = if count == 1 { "" } else { "es" };
+    format!("κ = {kappa}, ψ = {psi}, a = {damping}:  ε_t = {eps_t}, {count} switch{plural}")
+}

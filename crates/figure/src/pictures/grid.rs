@@ -1,0 +1,82 @@
+//! The picture of a map on a grid: ε_t and the number of switches.
+
+use stickslip_model::Reduction;
+use stickslip_plane::{Coordinates, Grid, GridAxis, Quantity, Tile};
+
+use super::map::{self, MapAxis, MapPanel, Values};
+use crate::canvas::number::number;
+use crate::canvas::svg::Svg;
+use crate::error::FigureError;
+
+/// Draws the map of `grid`, of which `results` shows (columns, rows) pixels, row by row from the
+/// lower edge; all cells, or fewer of a large map.
+///
+/// # Errors
+/// [`FigureError`]: there are no pixels, or too many.
+pub fn draw(grid: &Grid, size: (usize, usize), results: &Tile) -> Result<Svg, FigureError> {
+    let cells = format!("{} × {} collisions", grid.columns.cells, grid.rows.cells);
+    let title = std::iter::once(cells)
+        .chain(parameters(grid).into_iter().map(|(name, value)| {
+            let (symbol, unit) = name.split_once(' ').unwrap_or((name, ""));
+            format!("{symbol} = {} {unit}", number(value, 6)).trim_end().to_owned()
+        }))
+        .collect::<Vec<_>>()
+        .join(", ");
+    let panel = |heading, values| panel(grid, heading, size, values);
+    map::draw(
+        &title,
+        &[
+            panel("tangential restitution ε_t", Values::Restitution(&results.eps_t)),
+            panel("number of switches", Values::Switches(&results.switch_count)),
+        ],
+    )
+}
+
+/// `values`, given in so many columns and rows of the grid, as a panel of a picture.
+pub fn panel<'a>(
+    grid: &Grid,
+    heading: &'a str,
+    (columns, rows): (usize, usize),
+    values: Values<'a>,
+) -> MapPanel<'a> {
+    let [horizontal, vertical] = grid.axes().map(name);
+    let axis = |name, axis: GridAxis| MapAxis { name, range: (axis.range.low, axis.range.high) };
+    MapPanel {
+        heading,
+        horizontal: axis(horizontal, grid.columns),
+        vertical: axis(vertical, grid.rows),
+        columns,
+        rows,
+        values,
+        lines: Vec::new(),
+        points: Vec::new(),
+    }
+}
+
+/// What all collisions have in common, with symbols and units.
+fn parameters(grid: &Grid) -> Vec<(&'static str, f64)> {
+    match grid.coordinates {
+        Coordinates::Psi { damping } => vec![("a", damping)],
+        Coordinates::Ratio { reduction: Reduction { mu, alpha }, damping } => {
+            vec![("μ", mu), ("α", alpha), ("a", damping)]
+        }
+        Coordinates::Velocities { pair } => vec![
+            ("μ", pair.surface.friction),
+            ("α", pair.alpha),
+            ("k_t kg/s^2", pair.surface.tangential_stiffness_kg_per_s2),
+            ("A s", pair.surface.damping_time_s),
+        ],
+    }
+}
+
+/// The name of an axis.
+fn name(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Kappa => "scaled stiffness κ",
+        Quantity::Psi => "ψ = (α/μ) g_t/g_n",
+        Quantity::Ratio => "g_t/g_n",
+        Quantity::Normal => "normal velocity g_n in m/s",
+        Quantity::Tangential => "tangential velocity g_t in m/s",
+        Quantity::Damping => "scaled damping a",
+    }
+}

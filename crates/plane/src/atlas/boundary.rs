@@ -1,0 +1,50 @@
+//! What the tracer's guards and margins mean for a collision.
+
+use stickslip_model::regularized::{OTHER_SIDE, Phase};
+use stickslip_model::{Contact, Regime, Side};
+use stickslip_solver::{Margin, Place};
+
+/// What happens on a boundary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
+pub enum Kind {
+    /// A switch falls on the end of contact.
+    EndOfContact,
+    /// While sticking, the force touches its limit.
+    StickGraze,
+    /// While sliding, the spring all but sticks.
+    SlipGraze,
+}
+
+impl Kind {
+    /// The kind of a boundary on which `margin` vanishes.
+    #[must_use]
+    pub fn of(contact: &Contact, margin: &Margin) -> Self {
+        let guards = margin.exits.iter().map(|exit| exit.guard);
+        match (margin.place, phases(contact, guards).last().map(|phase| phase.regime)) {
+            (Place::End, _) => Self::EndOfContact,
+            (Place::Minimum { .. }, Some(Regime::Slip)) => Self::SlipGraze,
+            (Place::Minimum { .. }, _) => Self::StickGraze,
+        }
+    }
+}
+
+/// One character a phase, for the guards that fired.
+pub fn itinerary(contact: &Contact, guards: &[usize]) -> String {
+    let character = |phase: Phase| match (phase.regime, phase.side) {
+        (Regime::Stick, _) => 'o',
+        (Regime::Slip, Side::Positive) => '+',
+        (Regime::Slip, Side::Negative) => '-',
+    };
+    phases(contact, guards.iter().copied()).map(character).collect()
+}
+
+fn phases(contact: &Contact, guards: impl Iterator<Item = usize>) -> impl Iterator<Item = Phase> {
+    let first = Phase::first(contact);
+    let later = guards.scan(first, |phase, guard| {
+        *phase = phase.after(guard == OTHER_SIDE);
+        Some(*phase)
+    });
+    std::iter::once(first).chain(later)
+}

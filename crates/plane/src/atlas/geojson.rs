@@ -1,0 +1,113 @@
+//! An atlas as GeoJSON, for programs that draw maps.
+
+use geojson::{Feature, FeatureCollection, Geometry, JsonObject};
+use serde_json::json;
+use stickslip_tracer::{Side, Stretch};
+
+use super::document::Document;
+use super::frame::scaled;
+use super::polyline::polyline;
+use super::regions::Regions;
+use super::traced::VerifiedAtlas;
+
+type Ring = Vec<[f64; 2]>;
+
+/// The regions, boundaries and vertices of an atlas, in this order, with coordinates (κ, ψ).
+#[must_use]
+pub fn geojson(verified: &VerifiedAtlas) -> FeatureCollection {
+    let (map, document) = (&verified.atlas.regions, Document::new(verified));
+    let extent = map.window().extent();
+    let lines: Vec<Ring> = map.curves().iter().map(|curve| polyline(curve, &extent)).collect();
+    let regions = document.regions.iter().map(|region| {
+        let properties = json!({
+            "feature": "region",
+            "id": region.id,
+            "switch_count": region.switching.switch_count,
+            "itinerary": region.switching.itinerary,
+            "area_share": region.area_share,
+        });
+        feature(polygons(map, &lines, region.id), properties)
+    });
+    let boundaries = document.boundaries.iter().zip(&lines).map(|(boundary, line)| {
+        let properties = json!({
+            "feature": "boundary",
+            "id": boundary.id,
+            "kind": boundary.kind,
+            "below_switch_count": boundary.below.switch_count,
+            "below_itinerary": boundary.below.itinerary,
+            "above_switch_count": boundary.above.switch_count,
+            "above_itinerary": boundary.above.itinerary,
+        });
+        feature(Geometry::new_line_string(line.iter().copied()), properties)
+    });
+    let vertices = document.vertices.iter().map(|vertex| {
+        let properties = json!({ "feature": "vertex", "id": vertex.id, "kind": vertex.kind });
+        feature(Geometry::new_point([vertex.kappa, vertex.psi]), properties)
+    });
+    FeatureCollection::new(regions.chain(boundaries).chain(vertices))
+}
+
+fn feature(geometry: Geometry, properties: serde_json::Value) -> Feature {
+    let properties = match properties {
+        serde_json::Value::Object(properties) => properties,
+        _ => JsonObject::new(),
+    };
+    Feature { geometry: Some(geometry), properties: Some(properties), ..Feature::default() }
+}
+
+/// A region as one polygon with holes, or as several that touch at vertices.
+fn polygons(map: &Regions, lines: &[Ring], region: usize) -> Geometry {
+    let rings = map.outlines(region).into_iter().map(|outline| ring(lines, &outline));
+    let (around, holes): (Vec<Ring>, Vec<Ring>) = rings.partition(|ring| area(ring) > 0.0);
+    let single = around.len() == 1;
+    let mut polygons: Vec<Vec<Ring>> = around.into_iter().map(|ring| vec![ring]).collect();
+    for hole in holes {
+        let [a, b] = [hole[0], hole[1]];
+        let inside = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+        if let Some(own) = polygons.iter_mut().find(|own| single || contains(&own[0], inside)) {
+            own.push(hole);
+        }
+    }
+    if single {
+        Geometry::new_polygon(polygons.swap_remove(0))
+    } else {
+        Geometry::new_multi_polygon(polygons)
+    }
+}
+
+/// The closed line along an outline.
+fn ring(lines: &[Ring], outline: &[Stretch]) -> Ring {
+    let mut points = Ring::new();
+    for stretch in outline {
+        // Each begins where the one before ended.
+        points.pop();
+        match *stretch {
+            Stretch::Curve(curve, Side::Left) => points.extend(&lines[curve]),
+            Stretch::Curve(curve, Side::Right) => points.extend(lines[curve].iter().rev()),
+            Stretch::Window(ends) => points.extend(ends.iter().map(scaled)),
+        }
+    }
+    points.pop();
+    points.extend(points.first().copied());
+    points
+}
+
+/// The area, positive if the ring runs counterclockwise.
+fn area(ring: &[[f64; 2]]) -> f64 {
+    let origin = ring[0];
+    let from_origin = |point: [f64; 2]| [point[0] - origin[0], point[1] - origin[1]];
+    let triangle = |pair: &[[f64; 2]]| {
+        let [[a, b], [c, d]] = [from_origin(pair[0]), from_origin(pair[1])];
+        0.5 * (a * d - b * c)
+    };
+    ring.windows(2).map(triangle).sum()
+}
+
+/// Whether a ray to the right crosses the ring an odd number of times.
+fn contains(ring: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
+    let crosses = |pair: &&[[f64; 2]]| {
+        let [[a, b], [c, d]] = [pair[0], pair[1]];
+        (b > y) != (d > y) && x < a + (y - b) / (d - b) * (c - a)
+    };
+    ring.windows(2).filter(crosses).count() % 2 == 1
+}

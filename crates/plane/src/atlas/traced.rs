@@ -1,0 +1,183 @@
+//! An atlas made: boundaries traced, regions verified.
+
+use std::collections::BTreeMap;
+
+use stickslip_model::{Contact, InvalidParameter};
+use stickslip_solver::Margin;
+use stickslip_tracer::{
+    Curve, Extremum, Network, Node, Point, Subdivision, SubdivisionError, TraceError, TraceOptions,
+    Tracer, VerifyError, Vertex,
+};
+
+use super::boundary::{Kind, itinerary};
+use super::frame::{Frame, TooNarrow, scaled, traced};
+use super::regions::{Atlas, Regions};
+use super::verification::{self, LabelError, VerificationReport};
+use crate::family::CollisionFamilyError;
+use crate::progress::{Progress, Report};
+
+/// An atlas, and what its verification found.
+#[derive(Clone, Debug)]
+pub struct VerifiedAtlas {
+    /// The atlas.
+    pub atlas: Atlas,
+    /// Where boundaries turn back in κ or ψ.
+    pub extrema: Vec<Extremum>,
+    /// What the verification found.
+    pub report: VerificationReport,
+}
+
+/// Why there is no atlas.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum AtlasError {
+    /// No collision has the parameters of the window.
+    #[error(transparent)]
+    Parameter(#[from] InvalidParameter),
+    /// The window is too narrow.
+    #[error(transparent)]
+    Narrow(#[from] TooNarrow),
+    /// The accuracy is not possible in the window.
+    #[error(
+        "the tolerance {tolerance:?} is out of range; expected {finest:e} to {coarsest:e} in this window"
+    )]
+    Tolerance {
+        /// The accuracy that was asked for.
+        tolerance: f64,
+        /// The finest possible.
+        finest: f64,
+        /// The coarsest possible.
+        coarsest: f64,
+    },
+    /// A run of the tracer failed.
+    #[error("kappa = {kappa:?}, psi = {psi:?}: {source}")]
+    Run {
+        /// κ of the run.
+        kappa: f64,
+        /// ψ of the run.
+        psi: f64,
+        /// What happened.
+        source: CollisionFamilyError,
+    },
+    /// The tracer failed otherwise.
+    #[error(transparent)]
+    Trace(TraceError<CollisionFamilyError>),
+    /// The curves do not make regions.
+    #[error(transparent)]
+    Subdivision(#[from] SubdivisionError),
+    /// The verification failed.
+    #[error(transparent)]
+    Verify(#[from] VerifyError),
+    /// A collision cannot be computed.
+    #[error(transparent)]
+    Label(#[from] LabelError),
+}
+
+/// How often a verification may send the tracer back.
+const ROUNDS: u64 = 8;
+
+/// Traces the boundaries in `frame`, accurate to `tolerance` in ψ, and verifies the regions on the
+/// threads of the current pool. As long as this finds other switches than the atlas has, the tracer
+/// looks again there.
+///
+/// `progress` hears of each round of tracing and verification; there are up to eight.
+///
+/// # Errors
+/// [`AtlasError`]: the window or the tolerance is not possible, a run fails, or the curves do not
+/// make regions. What speaks against an atlas is not an error but part of its report.
+pub fn trace(
+    frame: Frame,
+    tolerance: f64,
+    progress: Report<'_>,
+) -> Result<VerifiedAtlas, AtlasError> {
+    frame.require_wide()?;
+    let possible = frame.tolerances();
+    if !(possible.finest..=possible.coarsest).contains(&tolerance) {
+        let (finest, coarsest) = (possible.finest, possible.coarsest);
+        return Err(AtlasError::Tolerance { tolerance, finest, coarsest });
+    }
+    let plane = frame.plane()?;
+    let window = plane.window();
+    let any = plane.contact(&window.low)?;
+    let family = plane.family();
+    let options =
+        TraceOptions { interpolation: frame.interpolation(tolerance), ..TraceOptions::default() };
+    let mut tracer = Tracer::new(&family, &window, &options)?;
+    progress(Progress::Begin { steps: 1 });
+    tracer.explore()?;
+    let mut round = 1;
+    loop {
+        let mut network = tracer.network();
+        network.name_vertices();
+        let unresolved = verification::unresolved(&network);
+        let atlas = atlas(frame, tolerance, network, &any)?;
+        let (report, brackets) = verification::verify(&atlas, unresolved, round)?;
+        progress(Progress::Advance { steps: 1 });
+        let again = round < ROUNDS && tracer.look_between(&brackets)?;
+        if !again {
+            let extrema = tracer.extrema()?;
+            return Ok(VerifiedAtlas { atlas, extrema, report });
+        }
+        progress(Progress::Begin { steps: 1 });
+        round += 1;
+    }
+}
+
+impl From<TraceError<CollisionFamilyError>> for AtlasError {
+    fn from(error: TraceError<CollisionFamilyError>) -> Self {
+        match error {
+            TraceError::Run { point, source } => {
+                let [kappa, psi] = scaled(&point);
+                Self::Run { kappa, psi, source }
+            }
+            error => Self::Trace(error),
+        }
+    }
+}
+
+/// The atlas of a network.
+fn atlas(
+    frame: Frame,
+    tolerance: f64,
+    network: Network<Vec<usize>, Margin>,
+    any: &Contact,
+) -> Result<Atlas, AtlasError> {
+    let regions = regions(&frame, tolerance, network, any)?;
+    let unbounded = regions
+        .regions()
+        .iter()
+        .enumerate()
+        .filter(|(_, region)| region.label.is_none())
+        .map(|(index, region)| Ok((index, verification::itinerary(&frame, &region.sample)?)))
+        .collect::<Result<BTreeMap<_, _>, LabelError>>()?;
+    Ok(Atlas { frame, tolerance, regions, unbounded })
+}
+
+/// The regions that the traced curves make. Points go through (κ, ψ), as they are written, so that
+/// a file makes the same regions bit for bit.
+fn regions(
+    frame: &Frame,
+    tolerance: f64,
+    network: Network<Vec<usize>, Margin>,
+    any: &Contact,
+) -> Result<Regions, AtlasError> {
+    let written = |point: &Point| traced(frame.snapped(scaled(point)));
+    let curves = network.curves.into_iter().map(|curve| Curve {
+        margin: Kind::of(any, &curve.margin),
+        sides: curve.sides.map(|guards| itinerary(any, &guards)),
+        nodes: curve
+            .nodes
+            .iter()
+            .map(|node| Node { point: written(&node.point), tangent: node.tangent })
+            .collect(),
+        ends: curve.ends,
+    });
+    let curves: Vec<_> = curves.collect();
+    let vertices = network.vertices.into_iter().map(|vertex| Vertex {
+        point: written(&vertex.point),
+        kind: vertex.kind,
+        margins: Vec::new(),
+    });
+    let vertices: Vec<_> = vertices.collect();
+    let resolution = frame.resolution(tolerance);
+    Ok(Subdivision::new(frame.window(), curves, vertices, resolution)?)
+}

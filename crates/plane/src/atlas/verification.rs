@@ -1,0 +1,213 @@
+//! Collisions against an atlas, and what is said of it.
+
+use rayon::prelude::*;
+use stickslip_model::{Collider, CollisionError, InvalidParameter};
+use stickslip_tracer::{
+    Location, Network, Origin, Point, Reason, Unresolved, Verification, VerifyError, VerifyOptions,
+    verify_with,
+};
+
+use super::frame::{Frame, scaled};
+use super::regions::Atlas;
+
+/// What the verification of an atlas found, as it is written.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct VerificationReport {
+    /// Whether nothing speaks against the atlas and nothing is unresolved.
+    pub agrees: bool,
+    /// What computed the collisions.
+    pub method: String,
+    /// The counts of Euler's formula.
+    pub euler: EulerFields,
+    /// Random points of the window.
+    pub random_points: usize,
+    /// Points on each side of each boundary.
+    pub near_points: usize,
+    /// How many points were tried in all, a sample of each region among them.
+    pub tried: usize,
+    /// Points within the error of a boundary, which may lie on either side.
+    pub undecided: usize,
+    /// Collisions that have other switches than their region.
+    pub mismatches: Vec<MismatchFields>,
+    /// What the tracer saw and could not explain, and collisions that failed.
+    pub unresolved: Vec<String>,
+    /// What is inconsistent in the boundaries.
+    pub findings: Vec<String>,
+    /// Boundaries beside which no point could be tried on one side at least.
+    pub untried_boundaries: Vec<usize>,
+    /// Part of the window's area in regions that were tried without a mismatch.
+    pub share_tried: f64,
+    /// With 95 % confidence the part of the window that is wrong is below this.
+    pub share_wrong_bound: f64,
+}
+
+/// The counts of V − E + F = 1 + C.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct EulerFields {
+    /// Number of vertices.
+    pub vertices: usize,
+    /// Number of edges.
+    pub edges: usize,
+    /// Number of faces, the outside of the window not among them.
+    pub faces: usize,
+    /// Number of connected components.
+    pub components: usize,
+    /// Whether the formula holds.
+    pub holds: bool,
+}
+
+/// A collision that has other switches than its region.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct MismatchFields {
+    /// Its κ.
+    pub kappa: f64,
+    /// Its ψ.
+    pub psi: f64,
+    /// The region that it lies in.
+    pub region: usize,
+    /// The itinerary of that region.
+    pub expected: String,
+    /// The itinerary of the collision.
+    pub found: String,
+    /// Whether the point was put beside a boundary, and not at random.
+    pub near_boundary: bool,
+}
+
+/// Tries the regions of `atlas`, in parallel, at the points of a round; `unresolved` is what is
+/// known to be open. Also returns pairs of places between which a boundary is missing.
+///
+/// # Errors
+/// The distances from boundaries are not in order, which is a defect.
+pub fn verify(
+    atlas: &Atlas,
+    mut unresolved: Vec<String>,
+    round: u64,
+) -> Result<(VerificationReport, Vec<[Point; 2]>), VerifyError> {
+    let Atlas { frame, tolerance, regions, .. } = atlas;
+    let nearest = 10.0 * frame.resolution(*tolerance);
+    let farthest = nearest.max(1e-3 * regions.window().extent().min());
+    let options =
+        VerifyOptions { random_points: 20_000, near_points: 20, nearest, farthest, seed: round };
+    let verification = verify_with(regions, &options, |points| {
+        points.par_iter().map(|point| itinerary(frame, point)).collect()
+    })?;
+    let mut undecided = 0;
+    for open in &verification.unverified {
+        let [kappa, psi] = scaled(&open.checkpoint.point);
+        let what = match &open.reason {
+            Reason::Location(Location::OnBoundary { .. }) => {
+                undecided += 1;
+                continue;
+            }
+            Reason::Location(_) => "it lies in no region".to_owned(),
+            Reason::NoLabel { region } => format!("region {region} has no known switches"),
+            Reason::Run(error) => error.to_string(),
+        };
+        unresolved.push(format!("kappa = {kappa:?}, psi = {psi:?}: {what}"));
+    }
+    let brackets = verification.brackets();
+    let agrees = verification.agrees() && unresolved.is_empty();
+    let Verification { euler, mismatches, tried, untried_curves, .. } = verification;
+    let mismatches = mismatches.into_iter().map(|mismatch| {
+        let [kappa, psi] = scaled(&mismatch.checkpoint.point);
+        MismatchFields {
+            kappa,
+            psi,
+            region: mismatch.region,
+            expected: mismatch.expected,
+            found: mismatch.found,
+            near_boundary: matches!(mismatch.checkpoint.origin, Origin::Near { .. }),
+        }
+    });
+    let report = VerificationReport {
+        agrees,
+        method: "dop853".to_owned(),
+        euler: EulerFields {
+            vertices: euler.vertices,
+            edges: euler.edges,
+            faces: euler.faces,
+            components: euler.components,
+            holds: euler.holds(),
+        },
+        random_points: options.random_points,
+        near_points: options.near_points,
+        tried: tried.iter().sum(),
+        undecided,
+        mismatches: mismatches.collect(),
+        unresolved,
+        findings: regions.findings().iter().map(ToString::to_string).collect(),
+        untried_boundaries: untried_curves,
+        share_tried: verification.tried_area,
+        share_wrong_bound: verification.wrong_area_bound,
+    };
+    Ok((report, brackets))
+}
+
+impl VerificationReport {
+    /// What speaks against the atlas, in a line.
+    #[must_use]
+    pub fn objection(&self) -> Option<String> {
+        if self.agrees {
+            return None;
+        }
+        let mismatch = self.mismatches.first().map(|mismatch| {
+            let MismatchFields { kappa, psi, region, expected, found, .. } = mismatch;
+            format!("kappa = {kappa:?}, psi = {psi:?} has {found}, region {region} {expected}")
+        });
+        let first = mismatch.iter().chain(&self.unresolved).chain(&self.findings).next();
+        Some(format!(
+            "{} mismatches, {} unresolved, {} findings; the first: {}",
+            self.mismatches.len(),
+            self.unresolved.len(),
+            self.findings.len(),
+            first.map_or("Euler's formula does not hold", String::as_str)
+        ))
+    }
+}
+
+/// The collision at a place of the window cannot be computed.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum LabelError {
+    /// No collision has these parameters.
+    #[error(transparent)]
+    Parameter(#[from] InvalidParameter),
+    /// The integration failed.
+    #[error(transparent)]
+    Collision(#[from] CollisionError),
+}
+
+/// The switches of the collision at a traced point, by integration: without damping, integration
+/// shares nothing with the margins by which boundaries are traced.
+///
+/// # Errors
+/// [`LabelError`] says why it cannot be computed.
+pub fn itinerary(frame: &Frame, point: &Point) -> Result<String, LabelError> {
+    let contact = frame.plane()?.contact(point)?;
+    Ok(Collider::default().collide(contact)?.itinerary())
+}
+
+/// What `network` says that it could not explain.
+pub fn unresolved<Label, Margin>(network: &Network<Label, Margin>) -> Vec<String> {
+    let at = |point: &Point| {
+        let [kappa, psi] = scaled(point);
+        format!("kappa = {kappa:?}, psi = {psi:?}")
+    };
+    let describe = |open: &Unresolved<Label>| match open {
+        Unresolved::Change { between: [one, two], .. } => {
+            format!("the switches change between {} and {} without a boundary", at(one), at(two))
+        }
+        Unresolved::Stalled { vertex } => {
+            format!("a boundary ends without a known cause at vertex {vertex}")
+        }
+        Unresolved::TooManyNodes { point } => {
+            format!("a boundary has too many points and was left at {}", at(point))
+        }
+        Unresolved::TooManyCurves { point } => {
+            format!("too many boundaries; the next one starts at {}", at(point))
+        }
+    };
+    network.unresolved.iter().map(describe).collect()
+}

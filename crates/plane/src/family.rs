@@ -1,0 +1,185 @@
+//! Collisions in the (κ, ψ) plane as what the tracer follows.
+
+use stickslip_model::exact::{self, ExactError};
+use stickslip_model::regularized::{GUARDS, OTHER_SIDE, Phase, Regularized, SAME_SIDE, STATE};
+use stickslip_model::{Collision, Contact, Engine, InvalidParameter, Side};
+use stickslip_solver::{Dop853, Margin, Options, Start};
+use stickslip_tracer::{Family, FamilyError, FreeRun, HybridFamily, Point, Problem, Window};
+
+/// Collisions with κ and ψ in a window and one scaled damping.
+///
+/// They are traced in x = ln κ and y = ln(1 + ψ), in which their boundaries bend evenly.
+///
+/// ```
+/// use stickslip_plane::CollisionPlane;
+/// use stickslip_tracer::{Location, Subdivision, TraceOptions, trace};
+///
+/// let plane = CollisionPlane::new((5.0, 8.0), (0.8, 1.2), 0.0)?;
+/// let network = trace(&plane.family(), &plane.window(), &TraceOptions::default())?;
+/// let regions = Subdivision::new(plane.window(), network.curves, network.vertices, 1e-9)?;
+///
+/// let place = CollisionPlane::point(7.5, 1.1);
+/// let Location::Region(region) = regions.locate(&place) else { panic!("on a boundary") };
+/// // As many guards fire as the collision has switches.
+/// let switches = regions.regions()[region].label.as_ref().map(Vec::len);
+/// let collision = stickslip_model::exact::collide(plane.contact(&place)?)?;
+/// assert_eq!(switches, Some(collision.switches.len()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct CollisionPlane {
+    low: Contact,
+    high: Contact,
+}
+
+/// Collisions as a family of runs: labels are the guards that fired.
+#[derive(Clone, Copy, Debug)]
+pub enum CollisionFamily {
+    /// By the exact solution, without damping.
+    Exact(CollisionPlane),
+    /// By integration.
+    Integrated(HybridFamily<CollisionPlane, Dop853, STATE, GUARDS>),
+}
+
+/// A collision of a family cannot be computed.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum CollisionFamilyError {
+    /// By the exact solution.
+    #[error(transparent)]
+    Exact(#[from] ExactError),
+    /// By integration.
+    #[error("{}", .0.kind)]
+    Integrated(#[from] FamilyError),
+}
+
+impl CollisionPlane {
+    /// Collisions with κ and ψ between two values each.
+    ///
+    /// # Errors
+    /// A value that no collision can have.
+    pub fn new(kappa: (f64, f64), psi: (f64, f64), damping: f64) -> Result<Self, InvalidParameter> {
+        Ok(Self {
+            low: Contact::new(kappa.0, psi.0, damping)?,
+            high: Contact::new(kappa.1, psi.1, damping)?,
+        })
+    }
+
+    /// The traced point of κ and ψ.
+    #[must_use]
+    pub fn point(kappa: f64, psi: f64) -> Point {
+        Point::new(kappa.ln(), psi.ln_1p())
+    }
+
+    /// κ and ψ of a traced point.
+    #[must_use]
+    pub fn parameters(point: &Point) -> [f64; 2] {
+        [point.x.exp(), point.y.exp_m1()]
+    }
+
+    /// The window in traced coordinates.
+    #[must_use]
+    pub fn window(&self) -> Window {
+        let corner = |contact: &Contact| Self::point(contact.kappa(), contact.psi());
+        Window { low: corner(&self.low), high: corner(&self.high) }
+    }
+
+    /// The collision at a traced point. Tracing asks for places a little outside of the window,
+    /// where ψ may not be above 0; it is kept there.
+    ///
+    /// # Errors
+    /// κ has left the range of numbers.
+    pub fn contact(&self, point: &Point) -> Result<Contact, InvalidParameter> {
+        let [kappa, psi] = Self::parameters(point);
+        Contact::new(kappa, psi.max(0.5 * self.low.psi()), self.low.damping())
+    }
+
+    /// The collisions to trace: without damping by the exact solution, with which a trace takes a
+    /// tenth of the time, else by integration.
+    #[must_use]
+    pub fn family(self) -> CollisionFamily {
+        match Engine::Auto.resolved(&self.low) {
+            Engine::Exact => CollisionFamily::Exact(self),
+            _ => self.integrated(),
+        }
+    }
+
+    /// The same by integration throughout, with margins to about 1e-14.
+    #[must_use]
+    pub fn integrated(self) -> CollisionFamily {
+        let options = Options {
+            rtol: 1e-14,
+            atol: 1e-14,
+            first_step: Some(0.1),
+            max_step: 0.1,
+            ..Options::default()
+        };
+        let (method, end) = (Dop853, f64::INFINITY);
+        CollisionFamily::Integrated(HybridFamily { problem: self, method, options, end })
+    }
+
+    /// The contact at a traced point; where κ is no number there is nothing to find, and any
+    /// contact will do.
+    fn contact_or_any(&self, point: &Point) -> Contact {
+        self.contact(point).unwrap_or(self.low)
+    }
+
+    /// The label of a collision, by whatever engine.
+    #[must_use]
+    pub fn label(collision: &Collision) -> Vec<usize> {
+        let mut side = Side::Positive;
+        let guard = |switch: &stickslip_model::Switch| {
+            let same = std::mem::replace(&mut side, switch.side) == switch.side;
+            if same { SAME_SIDE } else { OTHER_SIDE }
+        };
+        collision.switches.iter().map(guard).collect()
+    }
+}
+
+impl Problem<STATE, GUARDS> for CollisionPlane {
+    type System = Regularized;
+
+    fn at(&self, point: &Point) -> (Regularized, Start<Phase, STATE>) {
+        let contact = self.contact_or_any(point);
+        let system = Regularized::new(contact);
+        (system, Start { mode: Phase::first(&contact), s: 0.0, state: system.start() })
+    }
+}
+
+impl Family for CollisionFamily {
+    type Label = Vec<usize>;
+    type Margin = Margin;
+    type Error = CollisionFamilyError;
+
+    fn label(&self, point: &Point) -> Result<Vec<usize>, CollisionFamilyError> {
+        Ok(match self {
+            Self::Exact(plane) => {
+                CollisionPlane::label(&exact::collide(plane.contact_or_any(point))?)
+            }
+            Self::Integrated(family) => family.label(point)?,
+        })
+    }
+
+    fn margin(&self, point: &Point, margin: &Margin) -> Result<Option<f64>, CollisionFamilyError> {
+        Ok(match self {
+            Self::Exact(plane) => exact::margin(&plane.contact_or_any(point), margin)?,
+            Self::Integrated(family) => family.margin(point, margin)?,
+        })
+    }
+
+    fn moved(&self, point: &Point, margin: &Margin) -> Result<Margin, CollisionFamilyError> {
+        Ok(match self {
+            Self::Exact(plane) => exact::moved(&plane.contact_or_any(point), margin)?,
+            Self::Integrated(family) => family.moved(point, margin)?,
+        })
+    }
+
+    fn free_run(&self, point: &Point) -> Result<FreeRun<Vec<usize>, Margin>, CollisionFamilyError> {
+        Ok(match self {
+            Self::Exact(plane) => {
+                let found = exact::margins(&plane.contact_or_any(point))?;
+                FreeRun { label: found.fired, margins: found.near_misses }
+            }
+            Self::Integrated(family) => family.free_run(point)?,
+        })
+    }
+}

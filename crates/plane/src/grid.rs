@@ -1,0 +1,209 @@
+//! A window divided into cells: which collision belongs to which cell, and what its coordinates are
+//! called.
+
+use std::fmt;
+
+use stickslip_model::{Contact, InvalidParameter, Pair, Reduction};
+
+use crate::range::Range;
+
+/// An interval divided into cells of equal width.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GridAxis {
+    /// The interval.
+    pub range: Range,
+    /// Number of cells.
+    pub cells: usize,
+}
+
+impl GridAxis {
+    /// Centre of cell `index`: LO + (HI − LO)·((index + ½)/cells).
+    ///
+    /// Centres let an interval begin at 0, where there is no collision.
+    pub fn centre(&self, index: usize) -> f64 {
+        let Range { low, high } = self.range;
+        low + (high - low) * ((index as f64 + 0.5) / self.cells as f64)
+    }
+}
+
+/// A window divided into cells, and what its axes mean.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    /// The axis along a row.
+    pub columns: GridAxis,
+    /// The axis along a column.
+    pub rows: GridAxis,
+    /// What both mean.
+    pub coordinates: Coordinates,
+}
+
+/// What the axes of a plane mean.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Coordinates {
+    /// κ and ψ.
+    Psi {
+        /// Scaled damping of all collisions.
+        damping: f64,
+    },
+    /// κ and g_t/g_n.
+    Ratio {
+        /// Friction and inertia, which reduce the ratio to ψ.
+        reduction: Reduction,
+        /// Scaled damping of all collisions.
+        damping: f64,
+    },
+    /// Normal and tangential velocity of the surfaces at the contact.
+    Velocities {
+        /// The bodies.
+        pair: Pair,
+    },
+}
+
+/// A coordinate or parameter that is stored with the results.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// Scaled stiffness κ.
+    Kappa,
+    /// Reduced impact ratio ψ.
+    Psi,
+    /// Impact ratio g_t/g_n.
+    Ratio,
+    /// Normal velocity g_n.
+    Normal,
+    /// Tangential velocity g_t.
+    Tangential,
+    /// Scaled damping a.
+    Damping,
+}
+
+/// On what a quantity depends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// On the column alone.
+    Columns,
+    /// On the row alone.
+    Rows,
+    /// On both.
+    Points,
+}
+
+impl Grid {
+    /// Number of points.
+    pub fn points(&self) -> usize {
+        self.columns.cells * self.rows.cells
+    }
+
+    /// Column and row of a point; points are counted row by row.
+    pub fn cell(&self, point: usize) -> (usize, usize) {
+        (point % self.columns.cells, point / self.columns.cells)
+    }
+
+    /// The point of a cell: the inverse of [`Self::cell`].
+    pub fn point(&self, column: usize, row: usize) -> usize {
+        row * self.columns.cells + column
+    }
+
+    /// The collision at the centre of a cell.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`]: the centre has left the range of numbers.
+    pub fn contact(&self, column: usize, row: usize) -> Result<Contact, InvalidParameter> {
+        let [kappa, psi, damping] = self.parameters(column, row)?;
+        Contact::new(kappa, psi, damping)
+    }
+
+    /// What the axes mean: along a row, along a column.
+    pub fn axes(&self) -> [Quantity; 2] {
+        match self.coordinates {
+            Coordinates::Psi { .. } => [Quantity::Kappa, Quantity::Psi],
+            Coordinates::Ratio { .. } => [Quantity::Kappa, Quantity::Ratio],
+            Coordinates::Velocities { .. } => [Quantity::Normal, Quantity::Tangential],
+        }
+    }
+
+    /// What is stored with the results, in this order.
+    pub fn quantities(&self) -> &'static [Quantity] {
+        use Quantity::{Damping, Kappa, Normal, Psi, Ratio, Tangential};
+        match self.coordinates {
+            Coordinates::Psi { .. } => &[Kappa, Psi],
+            Coordinates::Ratio { .. } => &[Kappa, Psi, Ratio],
+            Coordinates::Velocities { .. } => &[Normal, Tangential, Kappa, Psi, Damping],
+        }
+    }
+
+    /// The value of `quantity` at the centre of a cell; NaN where there is no collision.
+    pub fn value(&self, quantity: Quantity, column: usize, row: usize) -> f64 {
+        let parameter = |index: usize| self.parameters(column, row).map_or(f64::NAN, |p| p[index]);
+        match quantity {
+            Quantity::Kappa => parameter(0),
+            Quantity::Psi => parameter(1),
+            Quantity::Damping => parameter(2),
+            Quantity::Normal => self.columns.centre(column),
+            Quantity::Ratio | Quantity::Tangential => self.rows.centre(row),
+        }
+    }
+
+    /// On what `quantity` depends.
+    pub fn extent(&self, quantity: Quantity) -> Extent {
+        match (quantity, self.coordinates) {
+            (Quantity::Psi, Coordinates::Velocities { .. }) => Extent::Points,
+            (Quantity::Kappa | Quantity::Damping | Quantity::Normal, _) => Extent::Columns,
+            (Quantity::Psi | Quantity::Ratio | Quantity::Tangential, _) => Extent::Rows,
+        }
+    }
+
+    /// κ where it is largest, as far as it can be computed.
+    pub fn largest_stiffness(&self) -> f64 {
+        let corners = [(0, 0), (self.columns.cells - 1, self.rows.cells - 1)];
+        corners
+            .into_iter()
+            .map(|(column, row)| self.value(Quantity::Kappa, column, row))
+            .fold(0.0, f64::max)
+    }
+
+    /// κ, ψ and the damping at the centre of a cell.
+    fn parameters(&self, column: usize, row: usize) -> Result<[f64; 3], InvalidParameter> {
+        let (x, y) = (self.columns.centre(column), self.rows.centre(row));
+        match self.coordinates {
+            Coordinates::Psi { damping } => Ok([x, y, damping]),
+            Coordinates::Ratio { reduction, damping } => Ok([x, reduction.psi(y), damping]),
+            Coordinates::Velocities { pair } => {
+                let contact = pair.impact(x, y)?.contact;
+                Ok([contact.kappa(), contact.psi(), contact.damping()])
+            }
+        }
+    }
+}
+
+/// One fact a line, with all digits: planes that differ read differently.
+impl fmt::Display for Grid {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y] = self.axes().map(Quantity::name);
+        for (name, quantity, GridAxis { range: Range { low, high }, cells }) in
+            [("columns", x, self.columns), ("rows", y, self.rows)]
+        {
+            writeln!(f, "{name}: {cells}, {quantity} from {low:?} to {high:?}")?;
+        }
+        match self.coordinates {
+            Coordinates::Psi { damping } => writeln!(f, "damping: {damping:?}"),
+            Coordinates::Ratio { reduction: Reduction { mu, alpha }, damping } => {
+                writeln!(f, "damping: {damping:?}\nmu: {mu:?}\nalpha: {alpha:?}")
+            }
+            Coordinates::Velocities { pair } => writeln!(f, "bodies: {pair:?}"),
+        }
+    }
+}
+
+impl Quantity {
+    /// Name of the array or column.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Kappa => "kappa",
+            Self::Psi => "psi",
+            Self::Ratio => "ratio",
+            Self::Normal => "normal_m_per_s",
+            Self::Tangential => "tangential_m_per_s",
+            Self::Damping => "damping",
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! Intervals of parameters.
+
+/// An interval of a positive quantity, given by its ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    /// Lower end, 0 or above.
+    pub low: f64,
+    /// Upper end, above the lower one.
+    pub high: f64,
+}

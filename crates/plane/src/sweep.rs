@@ -1,0 +1,94 @@
+//! The collisions of a grid, computed.
+
+use std::ops;
+
+use rayon::prelude::*;
+use stickslip_model::{Engine, EngineError, InvalidParameter};
+
+use crate::grid::{Grid, Quantity};
+use crate::tile::{NO_COUNT, NO_EPS_T, Tile};
+
+/// Why a point of a grid has no result.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum PointError {
+    /// No collision has these parameters.
+    #[error(transparent)]
+    Parameter(#[from] InvalidParameter),
+    /// The collision cannot be computed.
+    #[error(transparent)]
+    Engine(#[from] EngineError),
+    /// The number of switches does not fit into the map.
+    #[error("{count} switches; a map holds up to 2147483647")]
+    Count {
+        /// The number of switches.
+        count: usize,
+    },
+}
+
+/// Points of a map without a result.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("kappa = {kappa:?}, psi = {psi:?}: {error}")]
+pub struct Failed {
+    /// How many points have no result.
+    pub points: usize,
+    /// κ at the first of them.
+    pub kappa: f64,
+    /// ψ at the first of them.
+    pub psi: f64,
+    /// Why the first has no result.
+    pub error: PointError,
+}
+
+/// Computes successive points of `grid` on the threads of the current pool.
+///
+/// Points that cannot be computed are [`NO_EPS_T`] and [`NO_COUNT`].
+#[must_use]
+pub fn compute(grid: &Grid, engine: Engine, points: ops::Range<usize>) -> Tile {
+    let mut tile = Tile { eps_t: Vec::new(), switch_count: Vec::new() };
+    points
+        .into_par_iter()
+        .map(|index| point(grid, engine, index).unwrap_or((NO_EPS_T, NO_COUNT)))
+        .unzip_into_vecs(&mut tile.eps_t, &mut tile.switch_count);
+    tile
+}
+
+/// The tangential restitution and the number of switches at a point.
+///
+/// # Errors
+/// [`PointError`] says why there are none.
+pub fn point(grid: &Grid, engine: Engine, index: usize) -> Result<(f64, i32), PointError> {
+    let (column, row) = grid.cell(index);
+    let (collision, _) = engine.collide(grid.contact(column, row)?)?;
+    let count = collision.switches.len();
+    let switch_count = i32::try_from(count).map_err(|_| PointError::Count { count })?;
+    Ok((collision.eps_t(), switch_count))
+}
+
+/// Counts the points without a result, of which results keep no reason.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct FailureCount {
+    points: usize,
+    first: Option<usize>,
+}
+
+impl FailureCount {
+    /// Looks at the results of successive points, the first of which is `start`.
+    pub fn add(&mut self, start: usize, tile: &Tile) {
+        for (point, count) in (start..).zip(&tile.switch_count) {
+            if *count == NO_COUNT {
+                self.points += 1;
+                self.first.get_or_insert(point);
+            }
+        }
+    }
+
+    /// What was found; the first point without a result is computed once more for its reason.
+    #[must_use]
+    pub fn failed(&self, grid: &Grid, engine: Engine) -> Option<Failed> {
+        let first = self.first?;
+        let (column, row) = grid.cell(first);
+        let [kappa, psi] = [Quantity::Kappa, Quantity::Psi].map(|q| grid.value(q, column, row));
+        let error = point(grid, engine, first).err()?;
+        Some(Failed { points: self.points, kappa, psi, error })
+    }
+}

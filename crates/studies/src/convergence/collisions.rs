@@ -1,0 +1,89 @@
+//! Each collision as `collide` computes it, with its errors.
+
+use super::measure::Approximation;
+use serde_json::{Value, json};
+use stickslip_model::{Collision, Engine, EngineError, Tolerances};
+
+use super::series::MethodPair;
+use crate::error::CollisionFailure;
+
+/// The errors of both pairs at their usual tolerances.
+#[derive(Clone, Debug)]
+pub struct Accuracy {
+    /// The collision as it should be.
+    pub reference: Collision,
+    /// In the order of [`MethodPair::BOTH`].
+    pub pairs: [PairAccuracy; 2],
+}
+
+/// The errors of one pair.
+#[derive(Clone, Copy, Debug)]
+pub struct PairAccuracy {
+    /// Of the final velocity.
+    pub velocity: f64,
+    /// The largest of a switch time; `None` if the switches are others.
+    pub switch_time: Option<f64>,
+    /// Evaluations of the right-hand side.
+    pub right_hand_sides: usize,
+}
+
+impl Accuracy {
+    /// # Errors
+    /// An integration fails.
+    pub fn new(reference: &Collision) -> Result<Self, CollisionFailure> {
+        let accuracy = |pair| {
+            PairAccuracy::new(pair, reference)
+                .map_err(|source| CollisionFailure::new(&reference.contact, source))
+        };
+        let [dopri5, dop853] = MethodPair::BOTH.map(accuracy);
+        Ok(Self { reference: reference.clone(), pairs: [dopri5?, dop853?] })
+    }
+
+    pub fn json(&self) -> Value {
+        let Self { reference, pairs } = self;
+        let contact = &reference.contact;
+        let pair = |accuracy: &PairAccuracy| {
+            json!({
+                "eps_t_error": accuracy.velocity / contact.psi(),
+                "velocity_error": accuracy.velocity,
+                "switch_time_error": accuracy.switch_time,
+                "right_hand_sides": accuracy.right_hand_sides,
+            })
+        };
+        json!({
+            "kappa": contact.kappa(),
+            "psi": contact.psi(),
+            "damping": contact.damping(),
+            "eps_t": reference.eps_t(),
+            "switch_count": reference.switches.len(),
+            "itinerary": reference.itinerary(),
+            (MethodPair::BOTH[0].name()): pair(&pairs[0]),
+            (MethodPair::BOTH[1].name()): pair(&pairs[1]),
+        })
+    }
+}
+
+/// The engine that `--method` means.
+pub fn engine(pair: MethodPair) -> Engine {
+    match pair {
+        MethodPair::Dopri5 => Engine::Dopri5(Tolerances::DOPRI5),
+        MethodPair::Dop853 => Engine::Dop853(Tolerances::DOP853),
+    }
+}
+
+impl PairAccuracy {
+    fn new(pair: MethodPair, reference: &Collision) -> Result<Self, EngineError> {
+        let (collision, statistics) = engine(pair).collide(reference.contact)?;
+        let statistics = statistics.unwrap_or_default();
+        let switches = collision.switches.iter().map(|s| (s.time, s.to, s.side)).collect();
+        let final_velocity = collision.final_velocity;
+        let error = Approximation { final_velocity, switches, statistics }.error(reference);
+        Ok(Self {
+            velocity: error.velocity,
+            switch_time: error
+                .switch_times
+                .map(|times| times.into_iter().fold(0.0, |most: f64, time| most.max(time))),
+            right_hand_sides: statistics.field,
+        })
+    }
+}

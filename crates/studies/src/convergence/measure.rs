@@ -1,0 +1,344 @@
+//! One collision integrated in ways that lose accuracy or keep it: what studies of convergence
+//! compare.
+//!
+//! [`integrate`] takes the coordinates and whether switches are located; [`Approximation::error`]
+//! compares with a [`reference()`], and [`measure`] does so for several collisions at once, whose
+//! errors together show the order, where that of a single one passes through zero now and then.
+
+use stickslip_solver::{
+    Dop853, HybridSystem, Method, Observer, Options, Outcome, Run, RunError, Start, Statistics,
+    SwitchEvent, run, run_over_switches,
+};
+
+use super::plain_time::{self, PlainTime};
+use stickslip_model::exact::{self, ExactError};
+use stickslip_model::regularized::{self, Phase, Regularized};
+use stickslip_model::{Collider, CollisionError};
+use stickslip_model::{Collision, Contact, Regime, Side};
+
+/// Variables in which a collision is integrated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coordinates {
+    /// Those of [`stickslip_model::regularized`], in which everything is smooth.
+    Regularized,
+    /// Those of [`super::plain_time`], in which the ends of contact are not.
+    PlainTime,
+}
+
+/// How switches are dealt with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Switching {
+    /// Each ends a step: [`run`].
+    Located {
+        /// Step sizes or tolerances.
+        options: Options,
+    },
+    /// They take effect where a step happens to end, as in codes without event location:
+    /// [`run_over_switches`].
+    AtStepEnds {
+        /// The size of the steps, in the independent variable of the coordinates.
+        step_size: f64,
+        /// The most steps taken.
+        max_steps: usize,
+    },
+}
+
+/// A collision as one way of integrating it gives it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Approximation {
+    /// Reduced tangential velocity w at the end of contact.
+    pub final_velocity: f64,
+    /// Every switch: its time, and the regime and side that follow as in [`stickslip_model::Switch`].
+    pub switches: Vec<(f64, Regime, Side)>,
+    /// The work.
+    pub statistics: Statistics,
+}
+
+/// How far an [`Approximation`] is off.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Error {
+    /// Of the final velocity w; of ε_t, it is this over ψ.
+    pub velocity: f64,
+    /// Of the time of each switch; `None` if the switches are others, so that their times have
+    /// nothing to compare with.
+    pub switch_times: Option<Vec<f64>>,
+}
+
+impl Approximation {
+    /// Its absolute errors, with `reference` for the truth.
+    #[must_use]
+    pub fn error(&self, reference: &Collision) -> Error {
+        let velocity = (self.final_velocity - reference.final_velocity).abs();
+        let same = self.switches.len() == reference.switches.len()
+            && self
+                .switches
+                .iter()
+                .zip(&reference.switches)
+                .all(|(found, expected)| (found.1, found.2) == (expected.to, expected.side));
+        let pairs = self.switches.iter().zip(&reference.switches);
+        let times = pairs.map(|(found, expected)| (found.0 - expected.time).abs());
+        Error { velocity, switch_times: same.then(|| times.collect()) }
+    }
+}
+
+/// The collision to compare with: the exact solution without damping; with it, Dormand–Prince
+/// 8(5,3) at a tolerance of 1e-15.
+///
+/// # Errors
+/// What the exact solution or the integrator reports.
+pub fn reference(contact: Contact) -> Result<Collision, ReferenceError> {
+    if contact.damping() > 0.0 {
+        Ok(Collider::with_tolerances(Dop853, 1e-15, 1e-15).collide(contact)?)
+    } else {
+        Ok(exact::collide(contact)?)
+    }
+}
+
+/// There is no [`reference()`].
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum ReferenceError {
+    /// The exact solution does not take the contact.
+    #[error(transparent)]
+    Exact(#[from] ExactError),
+    /// The integration failed.
+    #[error(transparent)]
+    Collision(#[from] CollisionError),
+}
+
+/// Integrates the collision of `contact`.
+///
+/// ```
+/// use stickslip_model::Contact;
+/// use stickslip_studies::convergence::{Coordinates, Switching, integrate, reference};
+/// use stickslip_solver::Dop853;
+///
+/// let contact = Contact::new(63.0, 0.5, 0.0)?;
+/// let coarse = Switching::AtStepEnds { step_size: 1e-3, max_steps: 10_000 };
+/// let found = integrate(Dop853, contact, Coordinates::PlainTime, &coarse)?;
+/// let error = found.error(&reference(contact)?);
+/// // A switch is late by up to a step, of whatever order the method is.
+/// assert!(error.switch_times.is_some_and(|times| times.iter().any(|time| *time > 3e-4)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`CollisionError`]: invalid options, or a contact that does not end within the limits.
+pub fn integrate<M: Method>(
+    method: M,
+    contact: Contact,
+    coordinates: Coordinates,
+    switching: &Switching,
+) -> Result<Approximation, CollisionError> {
+    let phase = Phase::first(&contact);
+    let mut switches = Switches { found: Vec::new(), clock: coordinates, elapsed: 0.0 };
+    let (outcome, final_velocity, statistics) = match coordinates {
+        Coordinates::Regularized => {
+            let system = Regularized::new(contact);
+            let start = Start { mode: phase, s: 0.0, state: system.start() };
+            let run = follow(method, &system, start, switching, &mut switches)?;
+            (run.outcome, system.velocity(&run.state), run.statistics)
+        }
+        Coordinates::PlainTime => {
+            let system = PlainTime::new(contact);
+            let start = Start { mode: phase, s: 0.0, state: system.start() };
+            let run = follow(method, &system, start, switching, &mut switches)?;
+            (run.outcome, run.state[plain_time::W], run.statistics)
+        }
+    };
+    // The guard of the end is the first in both coordinates.
+    if outcome != (Outcome::EndedByGuard { guard: regularized::END }) {
+        return Err(CollisionError::Unfinished { outcome, time: switches.elapsed });
+    }
+    Ok(Approximation { final_velocity, switches: switches.found, statistics })
+}
+
+/// A root mean square and the largest of the absolute values; NaN of none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spread {
+    /// The root mean square.
+    pub root_mean_square: f64,
+    /// The largest.
+    pub largest: f64,
+}
+
+/// Errors over several collisions, and the work.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Errors {
+    /// Collisions that could not be integrated, and are in nothing else.
+    pub failed: usize,
+    /// Collisions with other switches than the truth.
+    pub other_switches: usize,
+    /// Of the final velocities w.
+    pub velocity: Spread,
+    /// Of all switch times of the collisions that have the right switches.
+    pub switch_time: Spread,
+    /// Evaluations of the right-hand side, all collisions together.
+    pub right_hand_sides: usize,
+}
+
+impl Errors {
+    /// Whether all collisions have the right switches.
+    #[must_use]
+    pub fn comparable(&self) -> bool {
+        self.failed == 0 && self.other_switches == 0
+    }
+}
+
+/// The errors of a way of integrating over the collisions of `references`.
+///
+/// ```
+/// use stickslip_model::Contact;
+/// use stickslip_studies::convergence::{Coordinates, Switching, measure, reference};
+/// use stickslip_solver::{Dop853, Options, StepSize};
+///
+/// let contacts = [Contact::new(18.0, 0.4, 0.0)?, Contact::new(63.0, 0.5, 0.0)?];
+/// let references = contacts.map(reference).into_iter().collect::<Result<Vec<_>, _>>()?;
+/// let [coarse, fine] = [0.04, 0.02].map(|h| {
+///     let options = Options { step_size: StepSize::Fixed(h), ..Options::default() };
+///     let located = Switching::Located { options };
+///     measure(Dop853, &references, Coordinates::Regularized, &located)
+/// });
+/// assert!(coarse.comparable() && fine.comparable());
+/// let ratio = coarse.velocity.root_mean_square / fine.velocity.root_mean_square;
+/// assert!((ratio.log2() - 8.0).abs() < 0.5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn measure<M: Method>(
+    method: M,
+    references: &[Collision],
+    coordinates: Coordinates,
+    switching: &Switching,
+) -> Errors {
+    let (mut failed, mut other_switches, mut right_hand_sides) = (0, 0, 0);
+    let (mut velocities, mut times) = (Vec::new(), Vec::new());
+    for reference in references {
+        let Ok(found) = integrate(method, reference.contact, coordinates, switching) else {
+            failed += 1;
+            continue;
+        };
+        let error = found.error(reference);
+        right_hand_sides += found.statistics.field;
+        velocities.push(error.velocity);
+        other_switches += usize::from(error.switch_times.is_none());
+        times.extend(error.switch_times.into_iter().flatten());
+    }
+    let (velocity, switch_time) = (Spread::of(&velocities), Spread::of(&times));
+    Errors { failed, other_switches, velocity, switch_time, right_hand_sides }
+}
+
+impl Spread {
+    fn of(values: &[f64]) -> Self {
+        let square = values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64;
+        let largest = values.iter().fold(f64::NAN, |largest, value| largest.max(value.abs()));
+        Self { root_mean_square: square.sqrt(), largest }
+    }
+}
+
+fn follow<M, S, const N: usize, const G: usize>(
+    method: M,
+    system: &S,
+    start: Start<Phase, N>,
+    switching: &Switching,
+    switches: &mut Switches,
+) -> Result<Run<Phase, N>, RunError>
+where
+    M: Method,
+    S: HybridSystem<N, G, Mode = Phase>,
+    Switches: Observer<Phase, N>,
+{
+    match *switching {
+        Switching::Located { options } => {
+            run(method, system, start, f64::INFINITY, &options, switches)
+        }
+        Switching::AtStepEnds { step_size, max_steps } => {
+            run_over_switches(method, system, start, f64::INFINITY, step_size, max_steps, switches)
+        }
+    }
+}
+
+/// Takes down switches with their times.
+struct Switches {
+    found: Vec<(f64, Regime, Side)>,
+    clock: Coordinates,
+    /// Time of the last switch.
+    elapsed: f64,
+}
+
+impl<const N: usize> Observer<Phase, N> for Switches {
+    fn on_switch(&mut self, event: &SwitchEvent<Phase, N>) {
+        match self.clock {
+            // Time runs from 0 in every phase.
+            Coordinates::Regularized => self.elapsed += event.before[regularized::T],
+            Coordinates::PlainTime => self.elapsed = event.s,
+        }
+        if event.guard != regularized::END {
+            self.found.push((self.elapsed, event.to.regime, event.to.side));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use stickslip_solver::{Dopri5, StepSize};
+
+    use super::*;
+
+    const FIXED: Options = Options {
+        rtol: 1e-10,
+        atol: 1e-10,
+        step_size: StepSize::Fixed(0.01),
+        first_step: None,
+        max_step: f64::INFINITY,
+        max_steps: 100_000,
+        max_switches: 100,
+        zeno: 0.0,
+    };
+
+    fn contacts() -> impl Iterator<Item = Contact> {
+        let all = [(18.0, 0.4, 0.0), (63.0, 0.5, 0.0), (63.0, 0.5, 0.1), (18.0, 1.0, 0.3)];
+        all.into_iter().map(|(kappa, psi, damping)| Contact::new(kappa, psi, damping).unwrap())
+    }
+
+    #[test]
+    fn regularised_and_located_is_what_the_collider_does() {
+        for contact in contacts() {
+            let located = Switching::Located { options: FIXED };
+            let found = integrate(Dopri5, contact, Coordinates::Regularized, &located).unwrap();
+            let expected = Collider::unrefined(Dopri5, FIXED).collide(contact).unwrap();
+            let error = found.error(&expected);
+            assert_eq!((error.velocity, error.switch_times.unwrap().iter().sum()), (0.0, 0.0));
+        }
+    }
+
+    #[test]
+    fn both_coordinates_and_both_ways_to_switch_tell_the_same_story() {
+        let located = Switching::Located { options: FIXED };
+        let coarse = Switching::AtStepEnds { step_size: 5e-4, max_steps: 100_000 };
+        for contact in contacts() {
+            let truth = reference(contact).unwrap();
+            for (coordinates, switching, velocity, time) in [
+                (Coordinates::PlainTime, &located, 1e-7, 1e-6),
+                (Coordinates::PlainTime, &coarse, 2e-6, 5e-4),
+                (Coordinates::Regularized, &coarse, 5e-6, 1.1e-3),
+            ] {
+                let found = integrate(Dop853, contact, coordinates, switching).unwrap();
+                let error = found.error(&truth);
+                assert!(error.velocity < velocity, "{contact:?} {coordinates:?} {error:?}");
+                let times = error.switch_times.unwrap();
+                assert!(times.iter().all(|t| *t < time), "{contact:?} {coordinates:?} {times:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn other_switches_and_failures_are_counted() {
+        let references: Vec<_> = contacts().map(|contact| reference(contact).unwrap()).collect();
+        let coarse = Switching::AtStepEnds { step_size: 0.2, max_steps: 100 };
+        let errors = measure(Dopri5, &references, Coordinates::PlainTime, &coarse);
+        assert!(errors.failed == 0 && errors.other_switches > 0 && !errors.comparable());
+        assert!(errors.velocity.largest >= errors.velocity.root_mean_square);
+        let short = Switching::AtStepEnds { step_size: 0.2, max_steps: 3 };
+        let errors = measure(Dopri5, &references, Coordinates::PlainTime, &short);
+        assert!(errors.failed == 4 && errors.velocity.largest.is_nan() && !errors.comparable());
+    }
+}

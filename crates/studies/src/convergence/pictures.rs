@@ -1,0 +1,171 @@
+//! The study as pictures.
+
+use super::measure::{Coordinates, Errors, Spread};
+use stickslip_solver::Order;
+
+use super::Measurement;
+use super::series::{Control, MethodPair, Row, Scheme, Series, Switches};
+use crate::study::Picture;
+use stickslip_figure::Svg;
+use stickslip_figure::canvas::panel::Scale;
+use stickslip_figure::canvas::shape::Stroke;
+use stickslip_figure::pictures::chart::{self, Chart, ChartAxis, Mark, Shape};
+
+/// An error that is drawn.
+struct Quantity {
+    name: &'static str,
+    error: fn(&Errors) -> Spread,
+    /// Whether there is one in all collisions.
+    complete: fn(&Errors) -> bool,
+    order: fn(&Series) -> Option<Order>,
+}
+
+const VELOCITY: Quantity = Quantity {
+    name: "error of the final velocity w, root mean square",
+    error: |errors| errors.velocity,
+    complete: |errors| errors.failed == 0,
+    order: |series| series.velocity,
+};
+
+const SWITCH_TIME: Quantity = Quantity {
+    name: "error of switch times, root mean square",
+    error: |errors| errors.switch_time,
+    complete: Errors::comparable,
+    order: |series| series.switch_time,
+};
+
+impl Measurement {
+    pub fn pictures(&self) -> Vec<Picture> {
+        let steps = |quantity: &Quantity| {
+            let axis = "step, in s (regularised) or scaled time (plain time)";
+            self.picture("Errors in fixed steps, and fitted orders", axis, Control::Step, quantity)
+        };
+        let tolerances = |quantity: &Quantity| {
+            let axis = "tolerance, relative and absolute";
+            self.picture(
+                "Errors at tolerances, and fitted exponents",
+                axis,
+                Control::Tolerance,
+                quantity,
+            )
+        };
+        let fitted = "Thick where the order in the legend was fitted.";
+        let same = "With steps over switches, both methods have the same errors.";
+        vec![
+            Picture {
+                name: "convergence_steps_velocity",
+                caption: format!("Error of the final velocity against the step. {fitted} {same}"),
+                svg: steps(&VELOCITY),
+            },
+            Picture {
+                name: "convergence_steps_switches",
+                caption: format!("Error of switch times against the step. {fitted} {same}"),
+                svg: steps(&SWITCH_TIME),
+            },
+            Picture {
+                name: "convergence_tolerances_velocity",
+                caption: format!("Error of the final velocity against the tolerance. {fitted}"),
+                svg: tolerances(&VELOCITY),
+            },
+            Picture {
+                name: "convergence_tolerances_switches",
+                caption: format!("Error of switch times against the tolerance. {fitted}"),
+                svg: tolerances(&SWITCH_TIME),
+            },
+            Picture {
+                name: "convergence_work",
+                caption: "Error of the final velocity against evaluations of the right-hand side: \
+                          adaptive steps with switches located, and fixed steps over switches."
+                    .to_owned(),
+                svg: self.work_picture(),
+            },
+        ]
+    }
+
+    fn picture(&self, title: &str, axis: &str, control: Control, quantity: &Quantity) -> Svg {
+        let mut lines = Vec::new();
+        for series in self.series.iter().filter(|series| series.scheme.control == control) {
+            let points = points(series, |row| row.value, quantity);
+            let order = (quantity.order)(series);
+            if let Some(Order { coarsest, finest, .. }) = order {
+                let range = finest * (1.0 - 1e-9)..=coarsest * (1.0 + 1e-9);
+                let fitted = points.iter().copied().filter(|(value, _)| range.contains(value));
+                let line = Some(Stroke { width: 3.6, ..stroke(series.scheme) });
+                let points = fitted.collect();
+                lines.push(chart::Series { name: String::new(), points, line, mark: None });
+            }
+            let order = order.map_or("no fit".to_owned(), |order| {
+                format!("{:.3} ± {:.3}", order.order, order.standard_error)
+            });
+            lines.push(drawn(series.scheme, &order, points));
+        }
+        draw(title, axis, quantity, lines)
+    }
+
+    fn work_picture(&self) -> Svg {
+        let shown = |scheme: &Scheme| {
+            scheme.control == Control::Tolerance
+                || (scheme.switches, scheme.coordinates)
+                    == (Switches::AtStepEnds, Coordinates::PlainTime)
+        };
+        let lines = self.series.iter().filter(|series| shown(&series.scheme)).map(|series| {
+            let points = points(series, |row| self.work(&row.errors), &VELOCITY);
+            let control = match series.scheme.control {
+                Control::Step => "fixed steps",
+                Control::Tolerance => "adaptive",
+            };
+            drawn(series.scheme, control, points)
+        });
+        let axis = "evaluations of the right-hand side a collision";
+        draw("Work and precision", axis, &VELOCITY, lines.collect())
+    }
+}
+
+/// The points of a series at which all collisions have an error.
+fn points(series: &Series, x: impl Fn(&Row) -> f64, quantity: &Quantity) -> Vec<(f64, f64)> {
+    let rows = series.rows.iter().filter(|row| (quantity.complete)(&row.errors));
+    rows.map(|row| (x(row), (quantity.error)(&row.errors).root_mean_square))
+        .filter(|(_, error)| *error > 0.0)
+        .collect()
+}
+
+/// A line with marks, by name.
+fn drawn(scheme: Scheme, remark: &str, points: Vec<(f64, f64)>) -> chart::Series {
+    let stroke = stroke(scheme);
+    let shape = match (scheme.switches, scheme.coordinates) {
+        (Switches::Located, Coordinates::Regularized) => Shape::Disc,
+        (Switches::Located, Coordinates::PlainTime) => Shape::Ring,
+        (Switches::AtStepEnds, Coordinates::Regularized) => Shape::Square,
+        (Switches::AtStepEnds, Coordinates::PlainTime) => Shape::Cross,
+    };
+    let [pair, variables, switches] = scheme.names();
+    let name = format!("{pair}, {variables}, {switches}: {remark}");
+    let mark = Some(Mark { shape, colour: stroke.colour });
+    chart::Series { name, points, line: Some(stroke), mark }
+}
+
+/// Dashes let the other pair's line show where both coincide.
+fn stroke(scheme: Scheme) -> Stroke {
+    match scheme.pair {
+        MethodPair::Dopri5 => Stroke::full("#0072B2", 1.4),
+        MethodPair::Dop853 => Stroke { colour: "#D55E00", width: 1.4, dashes: "6 4" },
+    }
+}
+
+fn draw(title: &str, axis: &str, quantity: &Quantity, series: Vec<chart::Series>) -> Svg {
+    let points = || series.iter().flat_map(|series| &series.points);
+    let range = |of: fn(&(f64, f64)) -> f64| {
+        let values = points().map(of);
+        values.fold((f64::INFINITY, 0.0), |(low, high), value| {
+            (f64::min(low, value), f64::max(high, value))
+        })
+    };
+    let (x, y) = (range(|point| point.0), range(|point| point.1));
+    let axes = |name, (low, high): (f64, f64)| {
+        // Marks at the edge are whole; where there is nothing to draw, any range does.
+        let room = (high / low).powf(0.02);
+        let range = if low < high { (low / room, high * room) } else { (0.1, 1.0) };
+        ChartAxis { name, range, scale: Scale::Logarithmic }
+    };
+    chart::draw(&Chart { title, x: axes(axis, x), y: axes(quantity.name, y), series })
+}

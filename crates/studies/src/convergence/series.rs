@@ -1,0 +1,254 @@
+//! Errors of a way to integrate, over steps or tolerances.
+
+use std::time::{Duration, Instant};
+
+use super::measure::{Coordinates, Errors, Spread, Switching, measure};
+use serde_json::{Value, json};
+use stickslip_model::Collision;
+use stickslip_solver::{Dop853, Dopri5, Options, Order, StepSize, fit_order};
+
+/// Steps in an octave.
+const PER_OCTAVE: i32 = 4;
+/// Tolerances in a decade.
+const PER_DECADE: i32 = 4;
+/// The coarsest step for collisions up to a stiffness of 64, in whose swings the same number of
+/// steps fits beyond.
+const COARSEST: f64 = 0.25;
+/// A contact lasts 3.22 in scaled time and 2.62 in s without damping, and less with it. One that
+/// has not ended by this time, because steps are too coarse, has failed.
+const LONGEST: f64 = 16.0;
+/// Steps after which a contact in adaptive steps has failed, for collisions up to a stiffness of
+/// 64; they take up to 2500.
+const MOST_STEPS: f64 = 20_000.0;
+/// Quick measurements are repeated for this long, at most three times, and the shortest counts.
+const QUICK: Duration = Duration::from_millis(5);
+
+/// A Dormand–Prince pair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MethodPair {
+    Dopri5,
+    Dop853,
+}
+
+/// Whether switches end steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Switches {
+    Located,
+    AtStepEnds,
+}
+
+/// What decides how fine the steps are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Control {
+    Step,
+    Tolerance,
+}
+
+/// A way to integrate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Scheme {
+    pub pair: MethodPair,
+    pub coordinates: Coordinates,
+    pub switches: Switches,
+    pub control: Control,
+}
+
+/// The errors of a scheme at one step or tolerance.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    /// The step, in s or t, or the tolerance, relative and absolute.
+    pub value: f64,
+    /// The errors over all collisions.
+    pub errors: Errors,
+    /// Measured time a collision.
+    pub microseconds: f64,
+}
+
+/// The errors of a scheme from coarse to fine.
+#[derive(Clone, Debug)]
+pub struct Series {
+    pub scheme: Scheme,
+    pub rows: Vec<Row>,
+    /// The order of the final velocity, where there is a range to fit.
+    pub velocity: Option<Order>,
+    /// The order of the switch times.
+    pub switch_time: Option<Order>,
+}
+
+impl MethodPair {
+    pub const BOTH: [Self; 2] = [Self::Dopri5, Self::Dop853];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Dopri5 => "dopri5",
+            Self::Dop853 => "dop853",
+        }
+    }
+}
+
+impl Control {
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Step => "step",
+            Self::Tolerance => "tolerance",
+        }
+    }
+}
+
+impl Scheme {
+    /// All that are compared. Without located switches there is no error estimate to go by.
+    pub fn all() -> Vec<Self> {
+        let ways = [
+            (Control::Step, Switches::Located),
+            (Control::Step, Switches::AtStepEnds),
+            (Control::Tolerance, Switches::Located),
+        ];
+        let mut schemes = Vec::new();
+        for (control, switches) in ways {
+            for coordinates in [Coordinates::Regularized, Coordinates::PlainTime] {
+                let pairs = MethodPair::BOTH;
+                schemes.extend(pairs.map(|pair| Self { pair, coordinates, switches, control }));
+            }
+        }
+        schemes
+    }
+
+    /// The names of its method, its coordinates and what it does with switches.
+    pub fn names(self) -> [&'static str; 3] {
+        let coordinates = match self.coordinates {
+            Coordinates::Regularized => "regularised",
+            Coordinates::PlainTime => "plain time",
+        };
+        let switches = match self.switches {
+            Switches::Located => "located",
+            Switches::AtStepEnds => "at step ends",
+        };
+        [self.pair.name(), coordinates, switches]
+    }
+
+    /// Its steps or tolerances, from coarse to fine.
+    pub fn values(self, references: &[Collision]) -> Vec<f64> {
+        if self.control == Control::Tolerance {
+            let powers = PER_DECADE..=15 * PER_DECADE;
+            return powers.map(|i| 0.1_f64.powf(f64::from(i) / f64::from(PER_DECADE))).collect();
+        }
+        let coarsest = coarsest(references);
+        let at_rounding_early = (MethodPair::Dop853, Coordinates::Regularized, Switches::Located);
+        let early = (self.pair, self.coordinates, self.switches) == at_rounding_early;
+        let octaves = if early { 6 } else { 10 };
+        (0..=octaves * PER_OCTAVE)
+            .map(|i| coarsest * 0.5_f64.powf(f64::from(i) / f64::from(PER_OCTAVE)))
+            .collect()
+    }
+
+    fn switching(self, value: f64, coarsest: f64) -> Switching {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let max_steps = match self.control {
+            Control::Step => LONGEST / value,
+            Control::Tolerance => MOST_STEPS * COARSEST / coarsest,
+        } as usize;
+        let options = Options { max_steps, ..Options::default() };
+        match (self.switches, self.control) {
+            (Switches::AtStepEnds, _) => Switching::AtStepEnds { step_size: value, max_steps },
+            (Switches::Located, Control::Step) => Switching::Located {
+                options: Options { step_size: StepSize::Fixed(value), ..options },
+            },
+            (Switches::Located, Control::Tolerance) => Switching::Located {
+                options: Options { rtol: value, atol: value, first_step: Some(0.1), ..options },
+            },
+        }
+    }
+
+    /// The least factor that steps or tolerances of a fit span.
+    fn span(self) -> f64 {
+        match self.control {
+            Control::Step => 4.0,
+            Control::Tolerance => 1e3,
+        }
+    }
+}
+
+/// The coarsest step of a study of the collisions of `references`.
+fn coarsest(references: &[Collision]) -> f64 {
+    let stiffest = references.iter().fold(0.0, |most: f64, c| most.max(c.contact.kappa()));
+    let mut coarsest = COARSEST;
+    while coarsest * stiffest.sqrt() > 8.0 * COARSEST {
+        coarsest *= 0.5;
+    }
+    coarsest
+}
+
+impl Row {
+    pub fn measure(scheme: Scheme, value: f64, references: &[Collision]) -> Self {
+        let switching = scheme.switching(value, coarsest(references));
+        let once = || match scheme.pair {
+            MethodPair::Dopri5 => measure(Dopri5, references, scheme.coordinates, &switching),
+            MethodPair::Dop853 => measure(Dop853, references, scheme.coordinates, &switching),
+        };
+        let start = Instant::now();
+        let errors = once();
+        let mut shortest = start.elapsed();
+        for _ in 1..3 {
+            if start.elapsed() < QUICK {
+                let again = Instant::now();
+                once();
+                shortest = shortest.min(again.elapsed());
+            }
+        }
+        let microseconds = 1e6 * shortest.as_secs_f64() / references.len() as f64;
+        Self { value, errors, microseconds }
+    }
+
+    fn json(&self, control: Control) -> Value {
+        let Self { value, errors, .. } = self;
+        let spread = |spread: &Spread| json!({ "root_mean_square": spread.root_mean_square, "largest": spread.largest });
+        json!({
+            (control.name()): value,
+            "failed": errors.failed,
+            "other_switches": errors.other_switches,
+            "velocity_error": spread(&errors.velocity),
+            "switch_time_error": spread(&errors.switch_time),
+            "right_hand_sides": errors.right_hand_sides,
+        })
+    }
+}
+
+impl Series {
+    pub fn new(scheme: Scheme, rows: Vec<Row>) -> Self {
+        let fit = |error: fn(&Errors) -> Spread| {
+            let errors = rows.iter().map(|Row { value, errors, .. }| {
+                let error = error(errors).root_mean_square;
+                (*value, if errors.comparable() { error } else { f64::NAN })
+            });
+            fit_order(&errors.collect::<Vec<_>>(), scheme.span())
+        };
+        let (velocity, switch_time) = (fit(|e| e.velocity), fit(|e| e.switch_time));
+        Self { scheme, rows, velocity, switch_time }
+    }
+
+    pub fn json(&self) -> Value {
+        let order = |order: &Option<Order>| {
+            order.map(|order| {
+                json!({
+                    "order": order.order,
+                    "standard_error": order.standard_error,
+                    "drift": order.drift,
+                    "coarsest": order.coarsest,
+                    "finest": order.finest,
+                    "points": order.points,
+                })
+            })
+        };
+        let control = self.scheme.control;
+        let [method, coordinates, switches] = self.scheme.names();
+        json!({
+            "method": method,
+            "coordinates": coordinates,
+            "switches": switches,
+            "control": control.name(),
+            "velocity_order": order(&self.velocity),
+            "switch_time_order": order(&self.switch_time),
+            "rows": self.rows.iter().map(|row| row.json(control)).collect::<Vec<_>>(),
+        })
+    }
+}

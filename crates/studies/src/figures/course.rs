@@ -1,0 +1,62 @@
+//! Single collisions and their course in time.
+
+use stickslip_figure::pictures::course::Course;
+use stickslip_model::{Collision, Engine, History};
+
+use crate::error::{CollisionFailure, StudyError};
+use crate::paper::{Reading, psi};
+use crate::statements::Spring;
+use crate::study::{Cell, Column};
+
+/// The undamped collision at κ and ψ, by the exact solution.
+///
+/// # Errors
+/// [`StudyError`]: it cannot be computed.
+pub fn collide(kappa: f64, psi: f64) -> Result<Collision, StudyError> {
+    Spring::Reset.collide(kappa, psi, 0.0)
+}
+
+/// The same where the axis of stiffness shows `value`, at an impact ratio, with its course by
+/// Dormand–Prince 8(5,3).
+///
+/// # Errors
+/// [`StudyError`]: it cannot be computed.
+pub fn followed(
+    reading: Reading,
+    value: f64,
+    ratio: f64,
+) -> Result<(Collision, History), StudyError> {
+    let collision = collide(reading.kappa(value), psi(ratio))?;
+    let contact = collision.contact;
+    let failed = |source| CollisionFailure::new(&contact, source);
+    let history = Engine::Exact.history(contact).map_err(failed)?;
+    Ok((collision, history))
+}
+
+/// Times of the first and the last switch; NaN if there is none.
+pub fn first_and_last(collision: &Collision) -> [f64; 2] {
+    let switches = &collision.switches;
+    [switches.first(), switches.last()].map(|switch| switch.map_or(f64::NAN, |switch| switch.time))
+}
+
+/// The time of the largest compression; without damping the contact is symmetric.
+pub fn largest_compression(collision: &Collision) -> f64 {
+    0.5 * collision.contact_time
+}
+
+/// Columns of [`rows`].
+pub const COLUMNS: [Column; 4] = [
+    Column { name: "time", meaning: "scaled time" },
+    Column { name: "normal_force", meaning: "F_n in units of m β^{2/5} g_n^{6/5}" },
+    Column { name: "tangential_force", meaning: "F_t/μ in the same units" },
+    Column { name: "velocity", meaning: "w = (α/μ) g_t/g_n" },
+];
+
+/// A course as it is drawn in a panel `width` pixels wide; at a switch there are two rows.
+pub fn rows(collision: &Collision, history: &History, width: f64) -> Vec<Vec<Cell>> {
+    let course = Course::new(collision, history, width);
+    let row = |s: &stickslip_model::Snapshot| {
+        [s.time, s.normal_force, s.tangential_force, s.velocity].map(Cell::Number).to_vec()
+    };
+    course.samples().iter().map(row).collect()
+}

@@ -1,0 +1,35 @@
+//! Studies of their own, as parts of the reproduction.
+
+use stickslip_plane::progress::SILENT;
+
+use super::reproduction::Reproduction;
+use super::section::Section;
+use crate::error::StudyError;
+use crate::{convergence, statements, stiff_springs};
+
+/// Title of [`convergence`](fn@convergence).
+pub const CONVERGENCE: &str = "Convergence of the integrators";
+/// Title of [`stiff`].
+pub const STIFF: &str = "The limit of stiff springs";
+/// Title of [`statements`](fn@statements).
+pub const STATEMENTS: &str = "Statements of the paper";
+
+/// The study of convergence, without what differs from run to run.
+pub fn convergence(_: &Reproduction) -> Result<Section, StudyError> {
+    let mut study = convergence::run(&convergence::Settings::usual(0.0)?, SILENT)?;
+    study.tables.retain(|table| table.name != convergence::TIMES);
+    Ok(Section { shown: vec![convergence::ORDERS], ..study.into() })
+}
+
+/// The study of stiff springs.
+pub fn stiff(_: &Reproduction) -> Result<Section, StudyError> {
+    Ok(stiff_springs::run(&stiff_springs::Settings::default(), SILENT)?.into())
+}
+
+/// The statements of the paper, each with its verdict.
+pub fn statements(reproduction: &Reproduction) -> Result<Section, StudyError> {
+    let numbers: Vec<u8> = (1..=statements::COUNT).collect();
+    let study = statements::run(reproduction.spring, &numbers, SILENT)?.study();
+    let shown = study.tables.iter().map(|table| table.name).collect();
+    Ok(Section { shown, ..study.into() })
+}

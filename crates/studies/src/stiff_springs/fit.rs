@@ -1,0 +1,142 @@
+//! Exponent and constant of the decay, from full collisions alone.
+
+use nalgebra::{DMatrix, DVector};
+use serde_json::{Value, json};
+
+use super::points::Measured;
+
+/// From here on the terms left out, of order κ^{−15/4}, are below 1e-7.
+const STIFF: f64 = 1e3;
+
+/// Fewest stiffnesses for a fit.
+const FEWEST: usize = 7;
+
+/// What is fitted.
+#[derive(Clone, Debug)]
+pub struct Fits {
+    /// p of |w_final| = C κ^{−p}.
+    pub plain_exponent: Estimate,
+    /// p of |w_final| = C κ^{−p} exp(b κ^{−5/4} + c κ^{−5/2}).
+    pub exponent: Estimate,
+    /// C of κ^{5/4}|w_final| = C + b κ^{−5/4} + c κ^{−5/2}.
+    pub constant: Estimate,
+    /// b of the same.
+    pub correction: Estimate,
+    /// q of κ^{5/4}|w_final| = C + b κ^{−q}, from three stiffnesses at a time.
+    pub power: Estimate,
+    /// The largest relative difference of |w_final| between values of ψ.
+    pub spread: f64,
+    /// How many stiffnesses were fitted.
+    pub count: usize,
+}
+
+/// A value with its uncertainty.
+#[derive(Clone, Copy, Debug)]
+pub struct Estimate {
+    pub value: f64,
+    pub uncertainty: f64,
+}
+
+impl Fits {
+    /// The fits to the highest of the tops at each stiffness; `points` are by ψ, then by κ.
+    pub fn new(points: &[Vec<Measured>]) -> Option<Self> {
+        let mut tops: Vec<(f64, f64)> = Vec::new();
+        let mut spread = 0.0_f64;
+        for (index, point) in points.first()?.iter().enumerate() {
+            let velocities = points.iter().map(|by_kappa| by_kappa[index].crest.velocity);
+            let (low, high) = velocities
+                .fold((f64::INFINITY, 0.0), |(low, high), v| (f64::min(low, v), f64::max(high, v)));
+            if point.kappa >= STIFF {
+                tops.push((point.kappa, high));
+                spread = spread.max(high / low - 1.0);
+            }
+        }
+        if tops.len() < FEWEST {
+            return None;
+        }
+        let scaled = |(kappa, velocity): (f64, f64)| velocity * kappa.powf(1.25);
+        let logarithm = |(_, velocity): (f64, f64)| velocity.ln();
+        let [one, log, first, second]: [Term; 4] =
+            [|_| 1.0, |kappa| -kappa.ln(), |kappa| kappa.powf(-1.25), |kappa| kappa.powf(-2.5)];
+        let powers: Vec<f64> = tops
+            .windows(3)
+            .map(|three| {
+                let [a, b, c] = [0, 1, 2].map(|i| scaled(three[i]));
+                ((b - a) / (c - b)).ln() / (three[2].0 / three[1].0).ln()
+            })
+            .collect();
+        Some(Self {
+            plain_exponent: estimate(&tops, logarithm, &[one, log], 1)?,
+            exponent: estimate(&tops, logarithm, &[one, log, first, second], 1)?,
+            constant: estimate(&tops, scaled, &[one, first, second], 0)?,
+            correction: estimate(&tops, scaled, &[one, first, second], 1)?,
+            power: middle(powers)?,
+            spread,
+            count: tops.len(),
+        })
+    }
+
+    pub fn json(&self) -> Value {
+        let pair = |Estimate { value, uncertainty }: Estimate| json!({ "value": value, "uncertainty": uncertainty });
+        json!({
+            "stiffnesses": self.count,
+            "exponent_plain": pair(self.plain_exponent),
+            "exponent": pair(self.exponent),
+            "constant": pair(self.constant),
+            "correction": pair(self.correction),
+            "power_of_correction": pair(self.power),
+            "relative_spread_over_psi": self.spread,
+        })
+    }
+}
+
+/// A function of κ that a fit has a coefficient for.
+type Term = fn(f64) -> f64;
+
+/// Coefficient `index` of the least squares. Its uncertainty is its standard error, or its change
+/// when only the stiffer half is fitted, if that is larger.
+fn estimate(
+    tops: &[(f64, f64)],
+    value: impl Fn((f64, f64)) -> f64,
+    terms: &[Term],
+    index: usize,
+) -> Option<Estimate> {
+    let all = least_squares(tops, &value, terms, index)?;
+    let stiffer = least_squares(&tops[tops.len() / 2..], &value, terms, index);
+    let change = stiffer.map_or(0.0, |stiffer| (stiffer.value - all.value).abs());
+    Some(Estimate { uncertainty: all.uncertainty.max(change), ..all })
+}
+
+/// Coefficient `index` with its standard error; none without more points than terms.
+fn least_squares(
+    tops: &[(f64, f64)],
+    value: impl Fn((f64, f64)) -> f64,
+    terms: &[Term],
+    index: usize,
+) -> Option<Estimate> {
+    let freedom = tops.len().checked_sub(terms.len()).filter(|freedom| *freedom > 0)?;
+    let matrix = DMatrix::from_fn(tops.len(), terms.len(), |i, j| terms[j](tops[i].0));
+    // Columns of very different size are brought to one.
+    let sizes: Vec<f64> = matrix.column_iter().map(|column| column.norm()).collect();
+    let matrix = DMatrix::from_fn(tops.len(), terms.len(), |i, j| matrix[(i, j)] / sizes[j]);
+    let values = DVector::from_iterator(tops.len(), tops.iter().map(|top| value(*top)));
+    let factors = matrix.clone().svd(true, true);
+    let solution = factors.solve(&values, 0.0).ok()?;
+    let variance = (&matrix * &solution - &values).norm_squared() / freedom as f64;
+    let rows = factors.v_t?;
+    let parts = (0..terms.len()).map(|i| rows[(i, index)] / factors.singular_values[i]);
+    let spread: f64 = parts.map(|part| part * part).sum();
+    Some(Estimate {
+        value: solution[index] / sizes[index],
+        uncertainty: (variance * spread).sqrt() / sizes[index],
+    })
+}
+
+/// The median, and the distance from it to the end of the middle half that is farther.
+fn middle(mut values: Vec<f64>) -> Option<Estimate> {
+    values.retain(|value| value.is_finite());
+    values.sort_by(f64::total_cmp);
+    let value = *values.get(values.len() / 2)?;
+    let [low, high] = [values.len() / 4, values.len() * 3 / 4].map(|i| values[i]);
+    Some(Estimate { value, uncertainty: (value - low).max(high - value) })
+}
