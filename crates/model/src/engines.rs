@@ -2,11 +2,17 @@
 
 use stickslip_solver::{Dop853, Dopri5, Statistics};
 
-use crate::collision::{Collider, CollisionError};
-use crate::contact::{Collision, Contact};
-use crate::energy::EnergyLedger;
-use crate::exact::{self, ExactError};
-use crate::history::History;
+pub(crate) mod domain;
+pub mod exact;
+pub mod history;
+pub mod integrator;
+pub mod sensitivity;
+
+use crate::contact::Contact;
+use crate::result::{Collision, NotFinite};
+use exact::ExactError;
+use history::History;
+use integrator::{Collider, CollisionError};
 
 /// A way to compute collisions.
 ///
@@ -56,14 +62,6 @@ pub enum EngineError {
     NotFinite(#[from] NotFinite),
 }
 
-/// A result is beyond the range of doubles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{name} is not a finite number")]
-pub struct NotFinite {
-    /// The name of the result.
-    pub name: &'static str,
-}
-
 impl Tolerances {
     /// Defaults of Dormand–Prince 8(5,3), at which w is good to 1e-12.
     pub const DOP853: Self =
@@ -108,7 +106,7 @@ impl Engine {
     /// # Errors
     /// [`EngineError`]: the contact is out of the engine's range, the integration fails, or a
     /// result is beyond the range of doubles; the energies may still be
-    /// ([`EnergyLedger::require_finite`]).
+    /// ([`EnergyLedger::require_finite`](crate::EnergyLedger::require_finite)).
     pub fn collide(
         &self,
         contact: Contact,
@@ -148,61 +146,5 @@ impl Engine {
             Self::Exact | Self::Auto => Collider::default().history(contact),
         };
         Ok(history?)
-    }
-}
-
-impl NotFinite {
-    /// Refuses results, given with their names, of which one is not a finite number.
-    ///
-    /// # Errors
-    /// [`NotFinite`] names the first.
-    pub fn among(values: impl IntoIterator<Item = (&'static str, f64)>) -> Result<(), Self> {
-        match values.into_iter().find(|(_, value)| !value.is_finite()) {
-            Some((name, _)) => Err(Self { name }),
-            None => Ok(()),
-        }
-    }
-}
-
-impl Collision {
-    /// Refuses a collision with a result that is not a finite number; energies do not count.
-    ///
-    /// # Errors
-    /// [`NotFinite`] names the first.
-    pub fn require_finite(&self) -> Result<(), NotFinite> {
-        let results = [
-            ("eps_n", self.eps_n),
-            ("eps_t", self.eps_t()),
-            ("w_final", self.final_velocity),
-            ("contact_time", self.contact_time),
-        ];
-        let switches = self.switches.iter().flat_map(|switch| {
-            [
-                ("the time of a switch", switch.time),
-                ("the time left at a switch", switch.time_left),
-                ("the spring at a switch", switch.spring),
-                ("the velocity at a switch", switch.velocity),
-            ]
-        });
-        NotFinite::among(results.into_iter().chain(switches))
-    }
-}
-
-impl EnergyLedger {
-    /// Refuses a ledger with an entry that is not a finite number.
-    ///
-    /// # Errors
-    /// [`NotFinite`] names the first.
-    pub fn require_finite(&self) -> Result<(), NotFinite> {
-        NotFinite::among([
-            ("tangential_initial", self.tangential_initial),
-            ("tangential_final", self.tangential_final),
-            ("sliding", self.sliding),
-            ("spring_left", self.spring_left),
-            ("normal_initial", self.normal_initial),
-            ("normal_final", self.normal_final),
-            ("damping", self.damping),
-            ("compression_left", self.compression_left),
-        ])
     }
 }

@@ -1,7 +1,6 @@
 //! The parameters for which collisions are computed, and what is said of others.
 
 use crate::contact::Contact;
-use crate::exact::MOST_STIFFNESS;
 
 /// A contact is beyond what an engine computes.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -18,6 +17,12 @@ pub struct OutOfDomain {
     /// The largest.
     pub most: f64,
 }
+
+/// Largest scaled stiffness κ that [`collide`](crate::exact::collide) accepts.
+///
+/// The phase of the spring reaches √κ t_c, of which rounding takes 1e-16: at this stiffness
+/// 4e-8 of a radian.
+pub const MOST_STIFFNESS: f64 = 1e16;
 
 /// The ranges of one engine.
 struct Domain {

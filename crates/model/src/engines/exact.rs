@@ -11,66 +11,37 @@
 
 mod account;
 mod boundaries;
+mod error;
 mod flank;
+mod limit;
 mod margin;
 mod onset;
-mod precise;
+mod refined_exit;
+mod refined_onset;
 mod release;
-pub(crate) mod root;
 mod slide;
 mod swing;
 mod trajectory;
 
-use crate::contact::{Collision, Contact, Regime, Side, Switch};
-use crate::domain::{self, OutOfDomain};
+pub use super::domain::MOST_STIFFNESS;
+use crate::contact::Contact;
+use crate::laws::phase::{Regime, Side};
+use crate::result::{Collision, Switch};
 use account::Account;
 pub use boundaries::{small_impact_boundary, top_boundary};
+pub use error::ExactError;
+use error::{too_many, undamped};
 pub use margin::{Margins, margin, margins, moved};
 use release::Release;
-use slide::{Slide, Sliding};
+use slide::{Slide, SlipPhase};
 use swing::Swing;
 pub use trajectory::CONTACT_TIME;
-use trajectory::{Moment, Point};
+use trajectory::{Moment, NormalMotion};
 
 /// Most switches of a collision that [`collide`] lists, about 190 MB of them.
 ///
 /// The count grows as √κ t_c/π; κ = 1e13 has 3.3 million.
 pub const MOST_SWITCHES: usize = 4_000_000;
-
-/// Largest scaled stiffness κ that [`collide`] accepts.
-///
-/// The phase of the spring reaches √κ t_c, of which rounding takes 1e-16: at this stiffness
-/// 4e-8 of a radian.
-pub const MOST_STIFFNESS: f64 = 1e16;
-
-/// A collision that the exact engine does not take.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum ExactError {
-    /// The closed form holds without damping only.
-    #[error("the exact solution holds without damping; the scaled damping is {damping}")]
-    Damped {
-        /// The contact's scaled damping.
-        damping: f64,
-    },
-    /// The contact is out of range.
-    #[error(transparent)]
-    Domain(#[from] OutOfDomain),
-    /// The spring is too stiff for a list of its switches.
-    #[error(
-        "more than {limit} switches at kappa = {kappa}, psi = {psi}: \
-         the limit is reached a scaled time {time_left} before the end of contact"
-    )]
-    TooManySwitches {
-        /// The most switches accepted.
-        limit: usize,
-        /// The contact's scaled stiffness.
-        kappa: f64,
-        /// The contact's reduced impact ratio.
-        psi: f64,
-        /// Scaled time left at the first switch beyond the limit.
-        time_left: f64,
-    },
-}
 
 /// The collision of `contact`, which must be without damping, from the exact solution.
 ///
@@ -131,13 +102,6 @@ pub fn collide_into(contact: Contact, collision: &mut Collision) -> Result<(), E
     collide_within(contact, collision, MOST_SWITCHES)
 }
 
-fn undamped(contact: &Contact) -> Result<(), ExactError> {
-    if contact.damping() != 0.0 {
-        return Err(ExactError::Damped { damping: contact.damping() });
-    }
-    Ok(domain::exact(contact)?)
-}
-
 fn collide_within(
     contact: Contact,
     collision: &mut Collision,
@@ -149,12 +113,12 @@ fn collide_within(
     let slide = Slide::new(contact.kappa());
     let mut account = Account::default();
     let mut side = Side::Positive;
-    let mut sliding = Sliding::at_impact(contact.psi());
+    let mut sliding = SlipPhase::at_impact(contact.psi());
     while let Some(onset) = slide.stick_onset(&sliding) {
         if switches.len() + 2 > limit {
             return Err(too_many(&contact, limit, onset));
         }
-        let point = Point::at(onset);
+        let point = NormalMotion::at(onset);
         let velocity = sliding.velocity_at(onset, point);
         account.slip(&sliding, onset, point, velocity.0);
         let swing = Swing::new(&slide, onset, point, velocity);
@@ -184,9 +148,9 @@ fn collide_within(
             spring: side.sign() * released,
             velocity,
         });
-        sliding = Sliding::new(release.moment, release.point, side.sign() * velocity);
+        sliding = SlipPhase::new(release.moment, release.point, side.sign() * velocity);
     }
-    let end = Point::at(Moment::END);
+    let end = NormalMotion::at(Moment::END);
     let velocity = sliding.velocity_at(Moment::END, end).0;
     account.slip(&sliding, Moment::END, end, velocity);
     let final_velocity = side.sign() * velocity;
@@ -196,11 +160,6 @@ fn collide_within(
     collision.reversals = account.reversals;
     collision.energy = account.ledger(contact.psi(), final_velocity);
     Ok(())
-}
-
-fn too_many(contact: &Contact, limit: usize, onset: Moment) -> ExactError {
-    let (kappa, psi) = (contact.kappa(), contact.psi());
-    ExactError::TooManySwitches { limit, kappa, psi, time_left: onset.time_left() }
 }
 
 #[cfg(test)]

@@ -6,8 +6,10 @@ use stickslip_solver::{
     Dense, Method, Observer, Options, Outcome, RunError, Start, State, SwitchEvent, run,
 };
 
-use crate::contact::{Contact, Regime, Side};
-use crate::regularized::{END, Phase, Regularized, STATE, T, U, V};
+use crate::contact::Contact;
+use crate::laws::phase::{END, Phase, Regime, Side};
+use crate::laws::regularized::Regularized;
+use crate::laws::regularized::components::{STATE, T, U, V};
 
 /// A collision at one moment, in scaled and reduced variables.
 #[derive(Clone, Copy, Debug, PartialEq)]

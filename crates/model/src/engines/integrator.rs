@@ -5,12 +5,17 @@ use stickslip_solver::{
     run,
 };
 
-use crate::contact::{Collision, Contact, Regime, Switch, Switches};
-use crate::domain::{self, OutOfDomain};
-use crate::energy::EnergyLedger;
-use crate::history::History;
-use crate::regularized::{DAMPING, END, Phase, Regularized, STATE, T, U, V};
-use crate::{last_slip, refine, reversals};
+use super::domain::{self, OutOfDomain};
+use super::history::History;
+use crate::contact::Contact;
+use crate::laws::phase::{END, Phase, Regime};
+use crate::laws::regularized::Regularized;
+use crate::laws::regularized::components::{DAMPING, STATE, T, U, V};
+use crate::result::{Collision, EnergyLedger, Switch};
+
+mod last_slip;
+mod refine;
+mod reversals;
 
 /// Above this flatness of a switch, in s, its time would be worth clearly less than the state: the
 /// collision is refined.
@@ -191,33 +196,6 @@ impl<M: Method> Collider<M> {
             options.first_step = options.first_step.map(|h| h.min(4.0 * onset));
         }
         Ok(options)
-    }
-}
-
-impl Collision {
-    /// A collision of which nothing is known yet.
-    #[must_use]
-    pub fn before(contact: Contact) -> Self {
-        Self {
-            contact,
-            eps_n: f64::NAN,
-            final_velocity: f64::NAN,
-            contact_time: f64::NAN,
-            start: Phase::first(&contact).regime,
-            switches: Switches::new(),
-            reversals: 0,
-            energy: EnergyLedger::default(),
-        }
-    }
-
-    /// Forgets everything but its memory, which stays where it is.
-    pub(crate) fn reset(&mut self, contact: Contact) {
-        self.contact = contact;
-        (self.eps_n, self.final_velocity, self.contact_time) = (f64::NAN, f64::NAN, f64::NAN);
-        self.start = Phase::first(&contact).regime;
-        self.switches.clear();
-        self.reversals = 0;
-        self.energy = EnergyLedger::default();
     }
 }
 

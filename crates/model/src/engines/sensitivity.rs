@@ -1,6 +1,6 @@
 //! How a collision changes with its parameters.
 //!
-//! The equations of `law` are computed with dual numbers, which carry their derivative along; the
+//! The equations of the law are computed with dual numbers, which carry their derivative along; the
 //! solver integrates the derivatives beside the state and takes them through every switch
 //! ([`stickslip_solver::sensitivity`]).
 //!
@@ -13,12 +13,12 @@ use stickslip_solver::{
     Change, Differentiable, Method, Outcome, Start, State, SwitchSensitivity, sensitivities,
 };
 
-use crate::collision::{Collider, CollisionError};
-use crate::contact::{Contact, Regime};
-use crate::law::{Law, Parameter};
-use crate::regularized::{
-    END, GUARDS, OTHER_SIDE, Phase, Regularized, SAME_SIDE, STATE, T, U, V, W, array,
-};
+use super::integrator::{Collider, CollisionError};
+use crate::contact::Contact;
+use crate::laws::phase::{END, GUARDS, OTHER_SIDE, Phase, Regime, SAME_SIDE};
+use crate::laws::regularized::Regularized;
+use crate::laws::regularized::components::{STATE, T, U, V, W, array};
+use crate::laws::regularized::equations::{Equations, Parameter};
 
 const PARAMETERS: usize = Parameter::ALL.len();
 
@@ -79,7 +79,7 @@ impl<M: Method> Collider<M> {
         const TOGETHER: usize = STATE * (1 + PARAMETERS);
         let system = Regularized::new(contact);
         let start = Start { mode: Phase::first(&contact), s: 0.0, state: system.start() };
-        let by = Parameter::ALL.map(|p| State::from(system.law.start_by(contact.psi(), p)));
+        let by = Parameter::ALL.map(|p| State::from(system.equations.start_by(contact.psi(), p)));
         let found = sensitivities::<_, _, STATE, GUARDS, PARAMETERS, TOGETHER>(
             self.method(),
             &system,
@@ -109,7 +109,8 @@ impl<M: Method> Collider<M> {
             }
         };
         let end = &found.end;
-        let final_velocity = derived(component(end, W).map(|part| system.law.velocity_unit * part));
+        let final_velocity =
+            derived(component(end, W).map(|part| system.equations.velocity_unit * part));
         let earlier = if contact.damping() > 0.0 { 0.0 } else { 1.0 };
         let contact_time = derived(time);
         // A contact that sticks to its end, to rounding, has its last switch there.
@@ -154,9 +155,13 @@ fn add<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
 
 impl Regularized {
     /// The equations and a state with their derivatives under a change.
-    fn along(&self, y: &State<STATE>, change: &Change<STATE>) -> (Law<Dual64>, [Dual64; STATE]) {
-        let law = self.law.by(change.parameter.map(|index| Parameter::ALL[index]));
-        (law, std::array::from_fn(|i| Dual64::new(array(y)[i], change.y[i])))
+    fn along(
+        &self,
+        y: &State<STATE>,
+        change: &Change<STATE>,
+    ) -> (Equations<Dual64>, [Dual64; STATE]) {
+        let equations = self.equations.by(change.parameter.map(|index| Parameter::ALL[index]));
+        (equations, std::array::from_fn(|i| Dual64::new(array(y)[i], change.y[i])))
     }
 }
 
@@ -169,8 +174,8 @@ impl Differentiable<STATE, GUARDS, PARAMETERS> for Regularized {
         y: &State<STATE>,
         change: &Change<STATE>,
     ) -> State<STATE> {
-        let (law, y) = self.along(y, change);
-        law.field::<true>(phase, &y).map(|part| part.eps).into()
+        let (equations, y) = self.along(y, change);
+        equations.field::<true>(phase, &y).map(|part| part.eps).into()
     }
 
     fn guard_changes(
@@ -180,8 +185,8 @@ impl Differentiable<STATE, GUARDS, PARAMETERS> for Regularized {
         y: &State<STATE>,
         change: &Change<STATE>,
     ) -> [f64; GUARDS] {
-        let (law, y) = self.along(y, change);
-        let guards = law.guards::<true>(phase, &y).map(|guard| guard.eps);
+        let (equations, y) = self.along(y, change);
+        let guards = equations.guards::<true>(phase, &y).map(|guard| guard.eps);
         // u² + a v has a double zero at the end of contact without damping.
         let damped = self.contact().damping() > 0.0;
         [if damped { guards[END] } else { y[U].eps }, guards[SAME_SIDE], guards[OTHER_SIDE]]
@@ -196,7 +201,7 @@ impl Differentiable<STATE, GUARDS, PARAMETERS> for Regularized {
         change: &Change<STATE>,
     ) -> State<STATE> {
         let next = self.next(phase, guard, y);
-        let (law, y) = self.along(y, change);
-        law.enter::<true>(next, &y).map(|part| part.eps).into()
+        let (equations, y) = self.along(y, change);
+        equations.enter::<true>(next, &y).map(|part| part.eps).into()
     }
 }

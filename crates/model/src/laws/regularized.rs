@@ -21,95 +21,28 @@
 
 use stickslip_solver::{Direction, Guard, HybridSystem, Method, State, Step, Trial};
 
-use crate::contact::{Contact, Regime, Side};
-use crate::law::{Force, Law};
+pub(crate) mod components;
+pub(crate) mod equations;
 
-/// Components of the state.
-pub const STATE: usize = 8;
-/// Guards of a phase.
-pub const GUARDS: usize = 3;
-
-/// u = √x.
-pub const U: usize = 0;
-/// v = dx/dt.
-pub const V: usize = 1;
-/// c ω y/σ while sticking, with c = max(1, κ^{1/4}) and σ = min(1, ψ), which makes errors of y and
-/// of switch times comparable to those of w.
-pub const SPRING: usize = 2;
-/// w/σ; see [`Regularized::velocity`].
-pub const W: usize = 3;
-/// Time since the phase began.
-pub const T: usize = 4;
-/// Normal energy taken by damping.
-pub const DAMPING: usize = 5;
-/// gap/c, in the first step of a stick phase.
-pub const GAP: usize = 6;
-/// rate/c², in the first step of a stick phase.
-pub const RATE: usize = 7;
-
-/// Guard of the end of contact.
-pub const END: usize = 0;
-/// Guard of the switch on the side at hand.
-pub const SAME_SIDE: usize = 1;
-/// Guard of the switch to slip on the other side.
-pub const OTHER_SIDE: usize = 2;
-
-/// A phase of the contact.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Phase {
-    /// Its law.
-    pub regime: Regime,
-    /// The side of sliding; in stick, the side from which the spring comes.
-    pub side: Side,
-    /// How far it is from its start.
-    pub progress: Progress,
-}
-
-/// How far a phase is from its start.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Progress {
-    /// The contact has just begun.
-    Touched,
-    /// A switch has just happened.
-    Switched,
-    /// The first step of the phase is done.
-    Settled,
-}
-
-impl Phase {
-    /// The first phase: slip without damping, since the limit grows as t^{3/2} and the spring as t;
-    /// stick with it, since the limit then grows as a √t.
-    #[must_use]
-    pub fn first(contact: &Contact) -> Self {
-        let regime = if contact.damping() > 0.0 { Regime::Stick } else { Regime::Slip };
-        Self { regime, side: Side::Positive, progress: Progress::Touched }
-    }
-
-    /// The phase that follows: the other regime, on the other side if the spring has reached its
-    /// limit there.
-    #[must_use]
-    pub fn after(self, on_other_side: bool) -> Self {
-        let regime = match self.regime {
-            Regime::Slip => Regime::Stick,
-            Regime::Stick => Regime::Slip,
-        };
-        let side = if on_other_side { self.side.opposite() } else { self.side };
-        Self { regime, side, progress: Progress::Switched }
-    }
-}
+pub use super::phase::{END, GUARDS, OTHER_SIDE, Phase, Progress, SAME_SIDE};
+use super::phase::{Regime, Side};
+use crate::contact::Contact;
+use components::array;
+pub use components::{DAMPING, GAP, RATE, SPRING, STATE, T, U, V, W};
+use equations::{Equations, Force};
 
 /// The contact as a hybrid system.
 #[derive(Clone, Copy, Debug)]
 pub struct Regularized {
     contact: Contact,
-    pub(crate) law: Law<f64>,
+    pub(crate) equations: Equations<f64>,
 }
 
 impl Regularized {
     /// The system of one contact.
     #[must_use]
     pub fn new(contact: Contact) -> Self {
-        Self { contact, law: Law::new(&contact) }
+        Self { contact, equations: Equations::new(&contact) }
     }
 
     /// The contact.
@@ -121,14 +54,14 @@ impl Regularized {
     /// The state at the start of contact.
     #[must_use]
     pub fn start(&self) -> State<STATE> {
-        self.law.start(self.contact.psi()).into()
+        self.equations.start(self.contact.psi()).into()
     }
 
     /// Reduced tangential velocity w.
     #[inline(always)]
     #[must_use]
     pub fn velocity(&self, y: &State<STATE>) -> f64 {
-        self.law.velocity(array(y))
+        self.equations.velocity(array(y))
     }
 
     /// Scaled normal force F = x^{3/2} + a √x v.
@@ -142,7 +75,7 @@ impl Regularized {
     pub fn spring(&self, phase: Phase, y: &State<STATE>) -> f64 {
         let force = match phase.regime {
             Regime::Slip => phase.side.sign() * self.normal_force(y),
-            Regime::Stick => self.law.spring_force * y[SPRING],
+            Regime::Stick => self.equations.spring_force * y[SPRING],
         };
         force / self.contact.kappa()
     }
@@ -165,14 +98,12 @@ impl Regularized {
 
     #[inline(always)]
     fn force(&self, u: f64, v: f64) -> Force<f64> {
-        if self.is_damped() { self.law.force::<true>(u, v) } else { self.law.force::<false>(u, v) }
+        if self.is_damped() {
+            self.equations.force::<true>(u, v)
+        } else {
+            self.equations.force::<false>(u, v)
+        }
     }
-}
-
-/// The components of a state.
-#[inline(always)]
-pub(crate) fn array(y: &State<STATE>) -> &[f64; STATE] {
-    &y.data.0[0]
 }
 
 impl HybridSystem<STATE, GUARDS> for Regularized {
@@ -181,9 +112,9 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
     #[inline(always)]
     fn field(&self, phase: Phase, _s: f64, y: &State<STATE>) -> State<STATE> {
         let slope = if self.is_damped() {
-            self.law.field::<true>(phase, array(y))
+            self.equations.field::<true>(phase, array(y))
         } else {
-            self.law.field::<false>(phase, array(y))
+            self.equations.field::<false>(phase, array(y))
         };
         slope.into()
     }
@@ -194,12 +125,12 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
         let side = phase.side;
         let settled = phase.progress == Progress::Settled;
         macro_rules! take {
-            ($law:ident $damped:literal ($($side:ident)?); $($still:ident)*) => {{
+            ($part:ident $damped:literal ($($side:ident)?); $($still:ident)*) => {{
                 let slope = &mut trial.slope.clone_owned();
                 $(slope[$still] = 0.0;)*
                 let trial = &Trial { slope, ..*trial };
                 let mut field = |_, y: &State<STATE>| {
-                    self.law.$law::<$damped>($($side,)? array(y)).into()
+                    self.equations.$part::<$damped>($($side,)? array(y)).into()
                 };
                 step.take::<M>(&mut field, trial);
             }};
@@ -235,9 +166,9 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
     #[inline(always)]
     fn guard_values(&self, phase: Phase, _s: f64, y: &State<STATE>) -> [f64; GUARDS] {
         if self.is_damped() {
-            self.law.guards::<true>(phase, array(y))
+            self.equations.guards::<true>(phase, array(y))
         } else {
-            self.law.guards::<false>(phase, array(y))
+            self.equations.guards::<false>(phase, array(y))
         }
     }
 
@@ -246,13 +177,13 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
     fn guard_rates(&self, phase: Phase, _s: f64, y: &State<STATE>) -> [f64; GUARDS] {
         let a = self.contact.damping();
         let (u, v) = (y[U], y[V]);
-        let dv = self.law.deceleration::<true>(u, v);
+        let dv = self.equations.deceleration::<true>(u, v);
         let end = if a > 0.0 { 2.0 * u * v + a * dv } else { v };
         let force = self.force(u, v);
         match phase.regime {
             Regime::Slip => {
                 // s κ w' = κ dv, with w' = −2s u F = s dv.
-                let pull = self.law.stretching(phase.side, array(y));
+                let pull = self.equations.stretching(phase.side, array(y));
                 let pull_rate = self.contact.kappa() * dv;
                 let leave = if a > 0.0 {
                     2.0 * (v * pull + u * pull_rate) - force.second
@@ -263,7 +194,7 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
             }
             Regime::Stick => {
                 let shared = if a > 0.0 { 1.0 } else { u };
-                let Law { spring_force, spring_rate, scale, .. } = self.law;
+                let Equations { spring_force, spring_rate, scale, .. } = self.equations;
                 let stretch = phase.side.sign() * spring_force * spring_rate * y[W];
                 let (force, pull) =
                     if a > 0.0 { (force.first, u * stretch) } else { (3.0 * u * v, stretch) };
@@ -294,9 +225,9 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
     ) -> (Phase, State<STATE>) {
         let next = self.next(phase, guard, y);
         let y = if self.is_damped() {
-            self.law.enter::<true>(next, array(y))
+            self.equations.enter::<true>(next, array(y))
         } else {
-            self.law.enter::<false>(next, array(y))
+            self.equations.enter::<false>(next, array(y))
         };
         (next, y.into())
     }

@@ -7,7 +7,7 @@ use stickslip_solver::{
     Direction, Dop853, Guard, HybridSystem, Options, Outcome, Start, State, run,
 };
 
-use crate::collision::CollisionError;
+use crate::engines::integrator::CollisionError;
 
 /// ε_t of pure Coulomb sliding, max(0, 1 − (1 + ε_n)/ψ), which is max(0, 1 − μ(1 + ε_n)/α ·
 /// g_n/g_t).
@@ -77,7 +77,7 @@ pub struct Sliding {
 pub fn slide(law: NormalLaw, psi: f64) -> Result<Sliding, CollisionError> {
     let options = Options { rtol: 1e-14, atol: 1e-14, max_steps: 100_000, ..Options::default() };
     let start = Start { mode: Friction::Sliding, s: 0.0, state: State::from([0.0, 1.0, psi]) };
-    let end = run(Dop853, &Contact(law), start, f64::INFINITY, &options, &mut ())?;
+    let end = run(Dop853, &SlidingContact(law), start, f64::INFINITY, &options, &mut ())?;
     if !matches!(end.outcome, Outcome::EndedByGuard { .. }) {
         return Err(CollisionError::Unfinished { outcome: end.outcome, time: end.s });
     }
@@ -96,10 +96,10 @@ enum Friction {
 }
 
 /// A contact with pure Coulomb friction.
-struct Contact(NormalLaw);
+struct SlidingContact(NormalLaw);
 
 /// The state is u = √x, v = ẋ, w, and dt = 2u ds, in which all is polynomial.
-impl HybridSystem<3, 2> for Contact {
+impl HybridSystem<3, 2> for SlidingContact {
     type Mode = Friction;
 
     fn field(&self, mode: Friction, _s: f64, y: &State<3>) -> State<3> {

@@ -24,7 +24,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::exact::root::{Jet, bracketed};
+use crate::numerics::root::{Jet, bracketed};
 
 /// Onsets from here on have their phase from its series, which lacks 1e-15 there.
 pub const FAR: f64 = 100.0;

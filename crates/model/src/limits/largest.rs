@@ -1,6 +1,7 @@
 //! Largest values during a contact without damping, in closed form.
 
-use crate::contact::{Collision, Regime};
+use crate::laws::phase::Regime;
+use crate::result::Collision;
 
 /// The largest normal force, (5/4)^{3/5}, in scaled units: κ times the largest elongation of the
 /// spring.

@@ -67,7 +67,8 @@ mod tests {
         let sum = DoubleDouble::sum(1.0, tiny);
         assert_eq!((sum.0, sum.1), (1.0, tiny));
         // (1 + ε)² = 1 + 2ε + ε²
-        let square = sum.times(sum).minus(DoubleDouble(1.0, 0.0)).minus(DoubleDouble(2.0 * tiny, 0.0));
+        let square =
+            sum.times(sum).minus(DoubleDouble(1.0, 0.0)).minus(DoubleDouble(2.0 * tiny, 0.0));
         assert!(square.nearest().abs() < 1e-30);
         let third = DoubleDouble(1.0, 0.0).over(DoubleDouble(3.0, 0.0));
         let back = third.times(DoubleDouble(3.0, 0.0)).minus(DoubleDouble(1.0, 0.0));

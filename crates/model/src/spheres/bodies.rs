@@ -1,7 +1,7 @@
 //! Spheres and walls, and what they are made of.
 
+use super::quantity;
 use crate::contact::InvalidParameter;
-use crate::quantity;
 
 /// A homogeneous elastic material.
 #[derive(Clone, Copy, Debug, PartialEq)]

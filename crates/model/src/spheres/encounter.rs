@@ -5,9 +5,9 @@
 
 use nalgebra::Vector3;
 
-use crate::bodies::{Body, Sphere, Wall};
+use super::bodies::{Body, Sphere, Wall};
+use super::scaling::{Impact, Pair, Surface};
 use crate::contact::{Contact, InvalidParameter};
-use crate::scaling::{Impact, Pair, Surface};
 
 /// Largest relative difference between the radii and the distance at which bodies count as
 /// touching.

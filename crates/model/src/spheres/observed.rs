@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::encounter::{Encounter, Motion, direction, tangential};
+use super::encounter::{Encounter, Motion, direction, tangential};
 
 /// A collision in the quantities of experiments.
 ///

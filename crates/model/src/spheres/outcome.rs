@@ -3,9 +3,10 @@
 use nalgebra::Vector3;
 use smallvec::SmallVec;
 
-use crate::contact::{Collision, FEW_SWITCHES, Regime, Side};
-use crate::encounter::{Encounter, Motion, Party};
-use crate::observed::Observed;
+use super::encounter::{Encounter, Motion, Party};
+use super::observed::Observed;
+use crate::laws::phase::{Regime, Side};
+use crate::result::{Collision, FEW_SWITCHES, Switch};
 
 /// Two bodies after their collision.
 #[derive(Clone, Debug, PartialEq)]
@@ -136,7 +137,7 @@ impl Encounter {
     fn switches(&self, collision: &Collision) -> SmallVec<[ForceSwitch; FEW_SWITCHES]> {
         let impact = &self.impact;
         let surface = &impact.pair.surface;
-        let in_si = |switch: &crate::Switch| {
+        let in_si = |switch: &Switch| {
             let spring_m = impact.spring_m(switch.spring);
             let pull_n = surface.tangential_stiffness_kg_per_s2 * spring_m;
             ForceSwitch {

@@ -3,9 +3,9 @@
 //! Source: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008), equations (1), (12),
 //! (21)–(24).
 
-use crate::bodies::{Body, Material, Sphere};
+use super::bodies::{Body, Material, Sphere};
+use super::quantity;
 use crate::contact::{Contact, InvalidParameter};
-use crate::quantity;
 
 const POSITIVE: &str = "a finite number above 0";
 

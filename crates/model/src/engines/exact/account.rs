@@ -1,8 +1,8 @@
 //! What a collision adds up: the work of sliding, and the reversals of the motion.
 
-use super::slide::Sliding;
-use super::trajectory::{Half, Moment, Point};
-use crate::energy::EnergyLedger;
+use super::slide::SlipPhase;
+use super::trajectory::{Half, Moment, NormalMotion};
+use crate::result::EnergyLedger;
 
 /// The running account of a collision.
 #[derive(Debug, Default)]
@@ -18,7 +18,7 @@ impl Account {
     /// `velocity`.
     ///
     /// With F dt = −dv and s·w linear in v, ∫ F s·w dt is the impulse times the mean of s·w.
-    pub fn slip(&mut self, sliding: &Sliding, end: Moment, point: Point, velocity: f64) {
+    pub fn slip(&mut self, sliding: &SlipPhase, end: Moment, point: NormalMotion, velocity: f64) {
         let impulse = match (sliding.start.half, end.half) {
             (Half::Compression, Half::Compression) => point.deficit - sliding.deficit,
             (Half::Decompression, _) => sliding.deficit - point.deficit,

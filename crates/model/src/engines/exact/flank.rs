@@ -16,11 +16,11 @@
 
 use std::f64::consts::PI;
 
-use super::precise::refined_exit;
-use super::root::{Jet, bracketed};
-use super::slide::pull;
+use super::limit::pull;
+use super::refined_exit::refined_exit;
 use super::swing::{Swing, half_swing_sign};
-use super::trajectory::{Half, MIDDLE_ROOT, Moment, Point};
+use super::trajectory::{Half, MIDDLE_ROOT, Moment, NormalMotion};
+use crate::numerics::root::{Jet, bracketed};
 
 /// The ratio of dD/dt to dq/dt below which an exit is improved: at it rounding of the angle √κ·τ,
 /// a few 1e-16, moves the exit by about 1e-14.
@@ -67,7 +67,7 @@ impl Flanks {
         if start == Moment::END {
             return None;
         }
-        let rises = || swing.gap(half_swing, peak, Point::at(peak)).turning() > 0.0;
+        let rises = || swing.gap(half_swing, peak, NormalMotion::at(peak)).turning() > 0.0;
         let turn = if peak == Moment::END || rises() { [peak, zero] } else { [start, peak] };
         let turn = (turn[1] != Moment::END).then_some(turn);
         Some(Self { half_swing, low: Low::Zero(start), turn, again: None })
@@ -79,7 +79,7 @@ impl Flanks {
         let [rise, fall] = crests(crest);
         let zero = swing.moment_at_angle(0.0);
         let may_rise = !rise.is_before(swing.start) && fall.is_before(zero);
-        if !(may_rise && swing.gap(0, fall, Point::at(fall)).turning() > 0.0) {
+        if !(may_rise && swing.gap(0, fall, NormalMotion::at(fall)).turning() > 0.0) {
             return None;
         }
         let turn = (zero != Moment::END).then_some([fall, zero]);
@@ -94,7 +94,8 @@ impl Flanks {
         if zero == Moment::END {
             return None;
         }
-        let turns = zero.is_before(rise) && swing.gap(1, rise, Point::at(rise)).turning() < 0.0;
+        let turns =
+            zero.is_before(rise) && swing.gap(1, rise, NormalMotion::at(rise)).turning() < 0.0;
         Some(Self {
             half_swing: 1,
             low: Low::Zero(zero),
@@ -153,14 +154,14 @@ fn bottom(swing: &Swing, k: u32, low: Moment, high: Moment) -> Moment {
 }
 
 /// W along the root coordinate.
-fn turning(swing: &Swing, k: u32, moment: Moment, point: Point) -> Jet {
+fn turning(swing: &Swing, k: u32, moment: Moment, point: NormalMotion) -> Jet {
     let gap = swing.gap(k, moment, point);
     along_root(moment, gap.turning(), -gap.q * pull(swing.bend, point.u), 0.0)
 }
 
 /// Whether R > 1 at `moment`.
 pub fn exceeds_limit(swing: &Swing, k: u32, moment: Moment) -> bool {
-    swing.gap(k, moment, Point::at(moment)).value < 0.0
+    swing.gap(k, moment, NormalMotion::at(moment)).value < 0.0
 }
 
 /// The one zero of D on half swing `k` between `low`, where D > 0, and `high`, where D < 0.
@@ -176,7 +177,7 @@ pub fn exit(swing: &Swing, k: u32, low: Moment, high: Moment, guess: Option<Mome
 /// `moment`, a zero of D, improved where rounding in D has moved it: beside a graze, D falls
 /// through 0 slowly.
 fn settled(swing: &Swing, k: u32, moment: Moment) -> Moment {
-    let gap = swing.gap(k, moment, Point::at(moment));
+    let gap = swing.gap(k, moment, NormalMotion::at(moment));
     if gap.rate.abs() < SLOW * gap.q_rate.abs() {
         refined_exit(swing, half_swing_sign(k), moment, gap.rate)
     } else {
@@ -226,11 +227,11 @@ fn root_between(
     mut low: Moment,
     mut high: Moment,
     guess: Option<Moment>,
-    f: impl Fn(Moment, Point) -> Jet,
+    f: impl Fn(Moment, NormalMotion) -> Jet,
 ) -> Moment {
     if low.half != high.half {
         let middle = Moment { half: Half::Decompression, root: MIDDLE_ROOT };
-        if f(middle, Point::at(middle)).value < 0.0 {
+        if f(middle, NormalMotion::at(middle)).value < 0.0 {
             high = Moment { half: Half::Compression, ..middle };
         } else {
             low = middle;
@@ -243,7 +244,7 @@ fn root_between(
     };
     let root = bracketed(low.root, high.root, guess, |root| {
         let moment = Moment { half, root };
-        f(moment, Point::at(moment))
+        f(moment, NormalMotion::at(moment))
     });
     Moment { half, root }
 }

@@ -14,14 +14,15 @@
 
 use stickslip_solver::{Exit, Hint, Margin, Place};
 
+use super::error::{ExactError, too_many, undamped};
 use super::flank::Flanks;
+use super::limit::Crest;
 use super::release::Release;
-use super::slide::{Crest, Slide, Sliding};
+use super::slide::{Slide, SlipPhase};
 use super::swing::{Gap, Swing, half_swing_sign};
-use super::trajectory::{Half, Moment, Point};
-use super::{ExactError, too_many, undamped};
+use super::trajectory::{Half, Moment, NormalMotion};
 use crate::contact::Contact;
-use crate::regularized::{OTHER_SIDE, SAME_SIDE};
+use crate::laws::phase::{OTHER_SIDE, SAME_SIDE};
 
 /// Each margin names the switches before it, so that a list of margins grows as the square of their
 /// number.
@@ -61,7 +62,7 @@ pub fn margins(contact: &Contact) -> Result<Margins, ExactError> {
     let slide = Slide::new(contact.kappa());
     let mut found = Margins { fired: Vec::new(), near_misses: Vec::new() };
     let mut exits = Vec::new();
-    let mut sliding = Sliding::at_impact(contact.psi());
+    let mut sliding = SlipPhase::at_impact(contact.psi());
     loop {
         let onset = slide.stick_onset(&sliding);
         let passed = crest_margin(&slide, &sliding).filter(|&value| value >= 0.0);
@@ -134,7 +135,7 @@ fn follow(
 
 fn follow_exits(contact: &Contact, which: &Margin, on_exit: &mut impl FnMut(Exit)) -> Option<f64> {
     let slide = Slide::new(contact.kappa());
-    let mut sliding = Sliding::at_impact(contact.psi());
+    let mut sliding = SlipPhase::at_impact(contact.psi());
     let mut exits = which.exits.iter();
     while let Some(onset) = exits.next() {
         let onset = prescribed_onset(&slide, &sliding, onset)?;
@@ -163,7 +164,7 @@ fn follow_exits(contact: &Contact, which: &Margin, on_exit: &mut impl FnMut(Exit
 const CREST: Place = Place::Minimum { near: Hint(0.0), number: 0 };
 
 /// C − h at the crest, if the phase passes it before the largest compression.
-fn crest_margin(slide: &Slide, sliding: &Sliding) -> Option<f64> {
+fn crest_margin(slide: &Slide, sliding: &SlipPhase) -> Option<f64> {
     let Crest { root, height } = slide.crest?;
     let passes = sliding.start.is_before(Moment { half: Half::Compression, root });
     passes.then(|| sliding.at_start() - height)
@@ -175,7 +176,7 @@ fn crest_margin(slide: &Slide, sliding: &Sliding) -> Option<f64> {
 fn top_margin(slide: &Slide, swing: &Swing, k: u32) -> Option<f64> {
     let flanks = Flanks::of(swing, slide.crest.map(|crest| crest.root), k)?;
     let top = flanks.top(swing)?;
-    let Gap { value, q, .. } = swing.gap(k, top, Point::at(top));
+    let Gap { value, q, .. } = swing.gap(k, top, NormalMotion::at(top));
     let excess = value / q * (value / q + 2.0);
     let angle = swing.omega * swing.start.time_until(top);
     Some(if k == 0 { excess / (angle * angle) } else { excess })
@@ -197,7 +198,7 @@ fn slip_exit(onset: Moment) -> Exit {
     Exit { guard: SAME_SIDE, after: Hint(after), part: Hint(0.0) }
 }
 
-fn prescribed_onset(slide: &Slide, sliding: &Sliding, exit: &Exit) -> Option<Moment> {
+fn prescribed_onset(slide: &Slide, sliding: &SlipPhase, exit: &Exit) -> Option<Moment> {
     if slide.crest.is_none() {
         return slide.stick_onset(sliding);
     }
@@ -221,13 +222,13 @@ fn flank_of(exit: &Exit) -> (u32, bool) {
     (k, exit.after.0 - f64::from(k) > 0.25)
 }
 
-fn swing(slide: &Slide, sliding: &Sliding, onset: Moment) -> Swing {
-    let point = Point::at(onset);
+fn swing(slide: &Slide, sliding: &SlipPhase, onset: Moment) -> Swing {
+    let point = NormalMotion::at(onset);
     Swing::new(slide, onset, point, sliding.velocity_at(onset, point))
 }
 
 /// The slip phase that starts where `swing` ends on half swing `k`.
-fn released(swing: &Swing, k: u32, moment: Moment) -> Sliding {
+fn released(swing: &Swing, k: u32, moment: Moment) -> SlipPhase {
     let (_, velocity) = swing.motion(swing.start.time_until(moment));
-    Sliding::new(moment, Point::at(moment), half_swing_sign(k) * velocity)
+    SlipPhase::new(moment, NormalMotion::at(moment), half_swing_sign(k) * velocity)
 }

@@ -4,8 +4,8 @@
 //! L and s·y agree to all digits throughout. The Taylor series of D from its second term keeps
 //! the digits.
 
-use super::slide::pull;
-use super::trajectory::{Half, Moment, Point};
+use super::limit::pull;
+use super::trajectory::{Half, Moment, NormalMotion};
 
 /// Number of Taylor coefficients, for a phase shorter than a sixteenth of its starting time: the
 /// series converges up to that time, so the remainder is below 16⁻¹⁴ of the whole.
@@ -23,7 +23,13 @@ pub struct Onset {
 impl Onset {
     /// The series for a phase that starts at `start`, if it may be short: it is three times as
     /// long as the time to the crest with root coordinate `crest`.
-    pub fn new(kappa: f64, start: Moment, point: Point, velocity: f64, crest: f64) -> Option<Self> {
+    pub fn new(
+        kappa: f64,
+        start: Moment,
+        point: NormalMotion,
+        velocity: f64,
+        crest: f64,
+    ) -> Option<Self> {
         let age = start.time();
         let crest = Moment { half: Half::Compression, root: crest };
         let short = start.half == Half::Compression && start.time_until(crest) < age / 64.0;
@@ -47,10 +53,10 @@ impl Onset {
 }
 
 /// Coefficients of τ² and up of L − s·y, from ẋ = v, v̇ = −F, xḞ = (3/2) F v and ÿ = −κ y.
-fn series(kappa: f64, point: Point, velocity: f64) -> [f64; TERMS] {
+fn series(kappa: f64, point: NormalMotion, velocity: f64) -> [f64; TERMS] {
     const ORDER: usize = TERMS + 2;
     let numbered = || (0_u8..).map(f64::from).enumerate();
-    let Point { u, v: speed, .. } = point;
+    let NormalMotion { u, v: speed, .. } = point;
     let [mut x, mut v, mut f, mut y] = [[0.0; ORDER]; 4];
     x[0] = u * u;
     v[0] = speed;
@@ -86,14 +92,14 @@ mod tests {
     fn series_is_the_difference_of_limit_and_spring() {
         let kappa: f64 = 1.0;
         let start = Moment { half: Half::Compression, root: 0.95 };
-        let point = Point::at(start);
+        let point = NormalMotion::at(start);
         let velocity = 1.5 / kappa * point.u * point.v;
         let elongation = point.u * point.u * point.u / kappa;
         let onset = Onset::new(kappa, start, point, velocity, 0.955).unwrap();
         for part in [0.25, 0.5, 1.0] {
             let tau = part * onset.reach;
             let (value, ..) = onset.gap(tau).unwrap();
-            let u = Point::at(start.after(tau)).u;
+            let u = NormalMotion::at(start.after(tau)).u;
             let (sin, cos) = (kappa.sqrt() * tau).sin_cos();
             let direct = u * u * u / kappa - elongation * cos - velocity / kappa.sqrt() * sin;
             assert!((value - direct).abs() < 4e-16, "{value} {direct}");
@@ -105,7 +111,7 @@ mod tests {
     #[test]
     fn derivatives_belong_to_the_value() {
         let start = Moment { half: Half::Compression, root: 0.95 };
-        let point = Point::at(start);
+        let point = NormalMotion::at(start);
         let onset = Onset::new(1.0, start, point, 1.5 * point.u * point.v, 0.955).unwrap();
         let (tau, step) = (0.5 * onset.reach, 1e-5);
         let at = |tau| onset.gap(tau).unwrap();

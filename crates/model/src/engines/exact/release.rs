@@ -7,7 +7,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::flank::{Flanks, exceeds_limit, exit, top};
 use super::swing::{Swing, half_swing_sign};
-use super::trajectory::{Half, LARGEST_U, Moment, Point, speed_at};
+use super::trajectory::{Half, LARGEST_U, Moment, NormalMotion, speed_at};
 
 /// Where a stick phase ends.
 #[derive(Clone, Copy, Debug)]
@@ -18,7 +18,7 @@ pub struct Release {
     /// which the phase started.
     pub half_swing: u32,
     /// The normal motion there.
-    pub point: Point,
+    pub point: NormalMotion,
     /// Velocity w, in the orientation of the phase.
     pub velocity: f64,
     /// Sign changes of the velocity during the phase.
@@ -43,7 +43,7 @@ impl Release {
         Self {
             moment,
             half_swing,
-            point: Point::at(moment),
+            point: NormalMotion::at(moment),
             velocity,
             reversals: peaks.saturating_sub(before_start),
         }
@@ -60,7 +60,7 @@ fn fast_release(swing: &Swing) -> (Moment, u32) {
             // q > 0 = L at the end of contact: R rises to infinity.
             return (exit(swing, k, from, Moment::END, None), k);
         }
-        let gap = swing.gap(k, peak, Point::at(peak));
+        let gap = swing.gap(k, peak, NormalMotion::at(peak));
         if gap.value < 0.0 {
             // The zero of D's Taylor polynomial back from the peak.
             let (excess, slope) = (-gap.value, gap.rate.abs());

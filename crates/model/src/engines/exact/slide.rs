@@ -13,10 +13,11 @@
 //! it starts before the crest and C is below h there, else in the decompression if C < 2, else
 //! not before the contact does.
 
-use super::precise::refined_onset;
-use super::root::{Jet, bracketed};
-use super::trajectory::{Half, LARGEST_U, MIDDLE_ROOT, Moment, Point, speed_at};
-use crate::double_double::DoubleDouble;
+use super::limit::{Crest, pull};
+use super::refined_onset::refined_onset;
+use super::trajectory::{Half, LARGEST_U, MIDDLE_ROOT, Moment, NormalMotion};
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::root::{Jet, bracketed};
 
 /// The value of b u at the largest compression above which h is nearly flat somewhere: dg/dt is
 /// −u³(1 − b u) at the largest compression and no smaller before it.
@@ -33,18 +34,9 @@ pub struct Slide {
     pub crest: Option<Crest>,
 }
 
-/// The largest value of h.
-#[derive(Clone, Copy, Debug)]
-pub struct Crest {
-    /// Its root coordinate, in either half.
-    pub root: f64,
-    /// h there.
-    pub height: f64,
-}
-
 /// The start of a slip phase, in the orientation of its side.
 #[derive(Clone, Copy, Debug)]
-pub struct Sliding {
+pub struct SlipPhase {
     /// When.
     pub start: Moment,
     /// 1 − |v| there.
@@ -53,19 +45,19 @@ pub struct Sliding {
     pub velocity: f64,
 }
 
-impl Sliding {
+impl SlipPhase {
     /// The phase with which the contact starts.
     pub fn at_impact(psi: f64) -> Self {
         Self { start: Moment::START, deficit: 0.0, velocity: psi }
     }
 
     /// The phase that starts at `start`, where s·w is `velocity`.
-    pub fn new(start: Moment, point: Point, velocity: f64) -> Self {
+    pub fn new(start: Moment, point: NormalMotion, velocity: f64) -> Self {
         Self { start, deficit: point.deficit, velocity }
     }
 
     /// s·w at a later moment of the phase.
-    pub fn velocity_at(&self, moment: Moment, point: Point) -> DoubleDouble {
+    pub fn velocity_at(&self, moment: Moment, point: NormalMotion) -> DoubleDouble {
         match moment.half {
             Half::Compression => DoubleDouble::sum(self.at_start(), -point.deficit),
             Half::Decompression => DoubleDouble::sum(self.at_end(), point.deficit),
@@ -97,17 +89,17 @@ impl Slide {
     }
 
     /// The spring's limit L = u³/κ.
-    pub fn limit(&self, point: Point) -> f64 {
+    pub fn limit(&self, point: NormalMotion) -> f64 {
         point.u * point.u * point.u / self.kappa
     }
 
     /// When `sliding` turns into sticking; none if it lasts to the end of contact.
-    pub fn stick_onset(&self, sliding: &Sliding) -> Option<Moment> {
+    pub fn stick_onset(&self, sliding: &SlipPhase) -> Option<Moment> {
         self.onset_before_crest(sliding).or_else(|| self.onset_after_crest(sliding))
     }
 
     /// When `sliding` turns into sticking before the crest of the compression.
-    pub fn onset_before_crest(&self, sliding: &Sliding) -> Option<Moment> {
+    pub fn onset_before_crest(&self, sliding: &SlipPhase) -> Option<Moment> {
         let Crest { root: crest, height } = self.highest();
         let carried_back = sliding.at_start();
         let meets = sliding.start.is_before(Moment { half: Half::Compression, root: crest })
@@ -117,7 +109,7 @@ impl Slide {
         }
         let root = self.inverse(carried_back, sliding.start.root, crest);
         let root = if self.bend * LARGEST_U > FLAT {
-            refined_onset(self, carried_back, root, crest)
+            refined_onset(self.kappa, self.bend, carried_back, root, crest)
         } else {
             root
         };
@@ -125,7 +117,7 @@ impl Slide {
     }
 
     /// When `sliding` turns into sticking if it does not before the crest of the compression.
-    pub fn onset_after_crest(&self, sliding: &Sliding) -> Option<Moment> {
+    pub fn onset_after_crest(&self, sliding: &SlipPhase) -> Option<Moment> {
         let Crest { root: crest, .. } = self.highest();
         let carried_on = sliding.at_end();
         (carried_on < 0.0).then(|| {
@@ -154,7 +146,8 @@ impl Slide {
         };
         let guess = u * (1.0 + 0.0571 * u * (u * u) * (u * u));
         bracketed(high, low, guess, |root| {
-            let Point { u, v, deficit } = Point::at(Moment { half: Half::Compression, root });
+            let NormalMotion { u, v, deficit } =
+                NormalMotion::at(Moment { half: Half::Compression, root });
             let pull = pull(self.bend, u);
             let pull_per_u = 3.0 * u * u - self.bend * (0.5 / (u * u) + 5.6 * u * u * u);
             Jet {
@@ -164,36 +157,4 @@ impl Slide {
             }
         })
     }
-}
-
-impl Crest {
-    /// Solves dh/dt = 0, that is u⁴/b + 1/2 = (7/5) u⁵, for b u > 1 at the largest compression.
-    fn new(kappa: f64, bend: f64) -> Self {
-        let scale = kappa / 1.5;
-        // From the zero to the largest u the function is concave and falls, so Newton's steps
-        // from the right approach the zero from one side.
-        let mut u = LARGEST_U;
-        for _ in 0..60 {
-            let u3 = u * u * u;
-            let step =
-                (scale * u3 * u + 0.5 - 1.4 * u3 * u * u) / (4.0 * scale * u3 - 7.0 * u3 * u);
-            u -= step;
-            if step.abs() < 1e-15 {
-                break;
-            }
-        }
-        let mut moment = Moment::near_compression(Half::Compression, u);
-        // One Newton step in time, by dv/dt = −u³.
-        let error = Point::at(moment).v - speed_at(u);
-        moment.root = (moment.root + error / (2.0 * moment.root * u * u * u)).min(MIDDLE_ROOT);
-        let Point { u, v, deficit } = Point::at(moment);
-        Self { root: moment.root, height: deficit + bend * u * v }
-    }
-}
-
-/// κL + d²L/dt² = u³ + b (1/(2u) − (7/5) u⁴), what drives the spring and its limit apart.
-///
-/// In slip it is −dg/dt; in stick D = L ∓ y obeys D̈ + κD = this.
-pub fn pull(bend: f64, u: f64) -> f64 {
-    u * u * u + bend * (0.5 / u - 1.4 * (u * u) * (u * u))
 }

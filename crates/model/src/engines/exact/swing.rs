@@ -1,9 +1,10 @@
 //! The motion of the spring in a stick phase, beside its limit.
 
+use super::limit::pull;
 use super::onset::Onset;
-use super::slide::{Slide, pull};
-use super::trajectory::{CONTACT_TIME, Moment, Point};
-use crate::double_double::DoubleDouble;
+use super::slide::Slide;
+use super::trajectory::{CONTACT_TIME, Moment, NormalMotion};
+use crate::numerics::double_double::DoubleDouble;
 
 /// One stick phase, in the orientation in which it starts on side +1:
 /// y = A cos θ, with θ rising at the rate ω = √κ.
@@ -55,7 +56,7 @@ impl Gap {
 impl Swing {
     /// The phase that starts at `start`, where the normal motion is at `point` and w is
     /// `velocity`.
-    pub fn new(slide: &Slide, start: Moment, point: Point, velocity: DoubleDouble) -> Self {
+    pub fn new(slide: &Slide, start: Moment, point: NormalMotion, velocity: DoubleDouble) -> Self {
         let kappa = slide.kappa;
         let omega = kappa.sqrt();
         let elongation = point.u * point.u * point.u / kappa;
@@ -85,7 +86,7 @@ impl Swing {
     }
 
     /// The gap on half swing `k` at `moment`, where the normal motion is at `point`.
-    pub fn gap(&self, k: u32, moment: Moment, point: Point) -> Gap {
+    pub fn gap(&self, k: u32, moment: Moment, point: NormalMotion) -> Gap {
         let tau = self.start.time_until(moment);
         let sign = half_swing_sign(k);
         let (y, w) = self.motion(tau);
@@ -95,7 +96,7 @@ impl Swing {
         {
             return Gap { value, rate, acceleration, q, q_rate };
         }
-        let Point { u, v, .. } = point;
+        let NormalMotion { u, v, .. } = point;
         let value = u * u * u / self.kappa - q;
         Gap {
             value,

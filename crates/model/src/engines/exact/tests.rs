@@ -127,18 +127,18 @@ fn audit(collision: &Collision) -> usize {
     let slide = Slide::new(contact.kappa());
     let tolerance = 2e-13 * contact.psi().max(1.0);
     let mut velocities = vec![contact.psi()];
-    let mut sliding = Sliding::at_impact(contact.psi());
+    let mut sliding = SlipPhase::at_impact(contact.psi());
     let mut side = 1.0;
     for pair in collision.switches.chunks(2) {
         let (onset, release) = (moment(&pair[0]), moment(&pair[1]));
         for at in moments(sliding.start, onset, 200) {
-            let point = Point::at(at);
+            let point = NormalMotion::at(at);
             let velocity = sliding.velocity_at(at, point).0;
             velocities.push(side * velocity);
             let guard = velocity - slide.bend * point.u * point.v;
             assert!(guard > -tolerance, "{contact:?}: missed stick, {guard} at {at:?}");
         }
-        let point = Point::at(onset);
+        let point = NormalMotion::at(onset);
         let velocity = sliding.velocity_at(onset, point);
         let guard = velocity.0 - slide.bend * point.u * point.v;
         assert!(guard.abs() < tolerance, "{contact:?}: invented stick, {guard} at {onset:?}");
@@ -148,26 +148,26 @@ fn audit(collision: &Collision) -> usize {
         let angle = swing.omega * onset.time_until(release);
         let tolerance = 1e-15 * swing.amplitude * (4.0 + angle);
         for at in moments(onset, release, 100 + 50 * (angle / PI) as u32) {
-            let gap = swing.gap(0, at, Point::at(at));
+            let gap = swing.gap(0, at, NormalMotion::at(at));
             velocities.push(side * gap.q_rate);
-            let other = slide.limit(Point::at(at)) + gap.q;
+            let other = slide.limit(NormalMotion::at(at)) + gap.q;
             assert!(gap.value > -tolerance, "{contact:?}: missed slip, {gap:?} at {at:?}");
             assert!(other > -tolerance, "{contact:?}: missed slip, {other} at {at:?}");
         }
-        let gap = swing.gap(0, release, Point::at(release));
+        let gap = swing.gap(0, release, NormalMotion::at(release));
         let exit = pair[1].side.sign();
-        let limit = slide.limit(Point::at(release));
+        let limit = slide.limit(NormalMotion::at(release));
         let off = (exit * side * gap.q - limit).abs();
         assert!(off < tolerance, "{contact:?}: invented slip, {off} at {release:?}");
-        let outward =
-            exit * side * gap.q_rate - slide.bend * Point::at(release).u * Point::at(release).v;
+        let outward = exit * side * gap.q_rate
+            - slide.bend * NormalMotion::at(release).u * NormalMotion::at(release).v;
         assert!(outward > -2e-13 * contact.psi().max(1.0), "{contact:?}: {outward} at {release:?}");
         velocities.push(side * gap.q_rate);
         side = exit;
-        sliding = Sliding::new(release, Point::at(release), exit * pair[1].velocity);
+        sliding = SlipPhase::new(release, NormalMotion::at(release), exit * pair[1].velocity);
     }
     for at in moments(sliding.start, Moment::END, 200) {
-        let point = Point::at(at);
+        let point = NormalMotion::at(at);
         let velocity = sliding.velocity_at(at, point).0;
         let guard = velocity - slide.bend * point.u * point.v;
         assert!(guard > -tolerance, "{contact:?}: missed stick, {guard} at {at:?}");
@@ -278,7 +278,7 @@ fn short_phases_beside_slip_grazes_keep_their_digits() {
 
 /// The closed form at `moment`: compression, its rate, spring and tangential velocity.
 fn closed_form(collision: &Collision, moment: Moment) -> [f64; 4] {
-    let Point { u, v, .. } = Point::at(moment);
+    let NormalMotion { u, v, .. } = NormalMotion::at(moment);
     let kappa = collision.contact.kappa();
     let passed = collision.switches.partition_point(|switch| switch.time <= moment.time());
     let (side, w, start, to) = match passed.checked_sub(1).map(|last| collision.switches[last]) {
@@ -286,7 +286,7 @@ fn closed_form(collision: &Collision, moment: Moment) -> [f64; 4] {
         None => (1.0, collision.contact.psi(), 0.0, Regime::Slip),
     };
     if to == Regime::Slip {
-        let v0 = Point::at(Moment::START.after(start)).v;
+        let v0 = NormalMotion::at(Moment::START.after(start)).v;
         return [u * u, v, side * u * u * u / kappa, w + side * (v - v0)];
     }
     let (omega, y) = (kappa.sqrt(), collision.switches[passed - 1].spring);

@@ -183,7 +183,7 @@ impl Moment {
 
 /// The normal motion at a moment.
 #[derive(Clone, Copy, Debug)]
-pub struct Point {
+pub struct NormalMotion {
     /// √x, the root of the compression.
     pub u: f64,
     /// v = dx/dt, 1 at the start and −1 at the end of contact.
@@ -192,7 +192,7 @@ pub struct Point {
     pub deficit: f64,
 }
 
-impl Point {
+impl NormalMotion {
     /// u − r at root coordinate `r`, so small beside r that both as a pair are u beyond rounding.
     pub fn excess(r: f64) -> f64 {
         let z = r * r * (r * r) * r;
@@ -241,7 +241,7 @@ mod tests {
     #[test]
     fn energy_is_conserved() {
         for moment in moments() {
-            let Point { u, v, deficit } = Point::at(moment);
+            let NormalMotion { u, v, deficit } = NormalMotion::at(moment);
             // v² + (4/5)u⁵ = 1, relative to 1 − v
             let potential = 0.8 * u * (u * u) * (u * u);
             assert!((deficit * (1.0 + v) - potential).abs() <= 1.5e-15 * potential, "{moment:?}");
@@ -258,11 +258,11 @@ mod tests {
             let middle = f64::from(2 * piece + 1) * half_piece;
             for (node, weight) in nodes {
                 let root = middle + node * half_piece;
-                let u = Point::at(Moment { half: Half::Compression, root }).u;
+                let u = NormalMotion::at(Moment { half: Half::Compression, root }).u;
                 sum += weight * half_piece * 2.0 * root * u * u * u;
             }
             let root = middle + half_piece;
-            let deficit = Point::at(Moment { half: Half::Compression, root }).deficit;
+            let deficit = NormalMotion::at(Moment { half: Half::Compression, root }).deficit;
             assert!((sum - deficit).abs() < 2e-14, "{root}: {sum} {deficit}");
         }
     }
@@ -270,7 +270,7 @@ mod tests {
     #[test]
     fn largest_compression_is_the_closed_form() {
         for half in [Half::Compression, Half::Decompression] {
-            let point = Point::at(Moment { half, root: MIDDLE_ROOT });
+            let point = NormalMotion::at(Moment { half, root: MIDDLE_ROOT });
             assert!((point.u - LARGEST_U).abs() < 3e-16);
             assert!((point.u * point.u - 1.09336207394327805637).abs() < 5e-16);
             assert!(point.v.abs() < 1e-15);
@@ -291,7 +291,7 @@ mod tests {
                     assert!((later.before(duration).time() - moment.time()).abs() < 2e-15);
                 }
             }
-            let near = Moment::near_compression(moment.half, Point::at(moment).u);
+            let near = Moment::near_compression(moment.half, NormalMotion::at(moment).u);
             assert!((near.root - moment.root).abs() <= 1e-8 * moment.root, "{moment:?}");
         }
     }

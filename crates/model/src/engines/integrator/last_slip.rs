@@ -7,8 +7,9 @@
 
 use stickslip_solver::State;
 
-use crate::contact::{Regime, Side};
-use crate::regularized::{Phase, Regularized, STATE, U, V};
+use crate::laws::phase::{Phase, Regime, Side};
+use crate::laws::regularized::Regularized;
+use crate::laws::regularized::components::{STATE, U, V};
 
 /// Part of the time scale at the end of contact below which τ comes from the spring: what the
 /// leading term leaves out, and what rounding of the state leaves of an integrated τ, are both

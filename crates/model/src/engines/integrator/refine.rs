@@ -9,10 +9,11 @@
 use smallvec::SmallVec;
 use stickslip_solver::{Method, Observer, Options, Start, SwitchEvent, run};
 
-use crate::contact::{Collision, Contact, FEW_SWITCHES, Regime, Side};
-use crate::energy::EnergyLedger;
-use crate::double_double::DoubleDouble;
-use crate::regularized::{Phase, Regularized, STATE};
+use crate::contact::Contact;
+use crate::laws::phase::{Phase, Regime, Side};
+use crate::laws::regularized::{Regularized, STATE};
+use crate::numerics::double_double::DoubleDouble;
+use crate::result::{Collision, EnergyLedger, FEW_SWITCHES};
 
 /// Degree of the Taylor series.
 const DEGREE: usize = 24;
@@ -109,7 +110,13 @@ const ZERO: DoubleDouble = DoubleDouble(0.0, 0.0);
 
 impl Motion {
     fn start(contact: Contact) -> Self {
-        Self { u: ZERO, v: DoubleDouble(1.0, 0.0), w: DoubleDouble(contact.psi(), 0.0), y: ZERO, t: ZERO }
+        Self {
+            u: ZERO,
+            v: DoubleDouble(1.0, 0.0),
+            w: DoubleDouble(contact.psi(), 0.0),
+            y: ZERO,
+            t: ZERO,
+        }
     }
 
     /// F = u(u² + a v).
@@ -249,7 +256,9 @@ impl Series {
         // t' = 2u, integrated term by term.
         let t = (0..DEGREE)
             .rev()
-            .fold(ZERO, |sum, k| sum.scaled(h).plus(self.u[k].over(DoubleDouble((k + 1) as f64, 0.0))))
+            .fold(ZERO, |sum, k| {
+                sum.scaled(h).plus(self.u[k].over(DoubleDouble((k + 1) as f64, 0.0)))
+            })
             .scaled(2.0)
             .scaled(h);
         Motion { u, v, w, y, t: self.start.t.plus(t) }
@@ -283,7 +292,11 @@ impl Series {
 }
 
 /// The k-th coefficient of a product of two series; four sums that do not wait for each other.
-fn product(a: &[DoubleDouble; DEGREE + 1], b: &[DoubleDouble; DEGREE + 1], k: usize) -> DoubleDouble {
+fn product(
+    a: &[DoubleDouble; DEGREE + 1],
+    b: &[DoubleDouble; DEGREE + 1],
+    k: usize,
+) -> DoubleDouble {
     let mut sums = [ZERO; 4];
     for j in 0..=k {
         sums[j % 4] = sums[j % 4].plus(a[j].times(b[k - j]));

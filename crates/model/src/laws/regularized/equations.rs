@@ -2,8 +2,9 @@
 
 use num_dual::{Dual64, DualNum};
 
-use crate::contact::{Contact, Regime, Side};
-use crate::regularized::{GAP, GUARDS, Phase, Progress, RATE, SPRING, STATE, T as TIME, U, V, W};
+use super::components::{GAP, RATE, SPRING, STATE, T as TIME, U, V, W};
+use crate::contact::Contact;
+use crate::laws::phase::{GUARDS, Phase, Progress, Regime, Side};
 
 /// What the equations are computed with.
 pub(crate) trait Number: DualNum<Primitive = f64> + Copy {}
@@ -12,7 +13,7 @@ impl<T: DualNum<Primitive = f64> + Copy> Number for T {}
 
 /// The equations with the parameters of one contact.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Law<T> {
+pub(crate) struct Equations<T> {
     kappa: T,
     damping: T,
     /// c.
@@ -49,7 +50,7 @@ impl Parameter {
     pub const ALL: [Self; 3] = [Self::LnKappa, Self::LnPsi, Self::Damping];
 }
 
-impl Law<f64> {
+impl Equations<f64> {
     pub fn new(contact: &Contact) -> Self {
         let omega = contact.kappa().sqrt();
         let scale = omega.sqrt().max(1.0);
@@ -67,12 +68,12 @@ impl Law<f64> {
     }
 
     /// The same with the derivative by a parameter. The units c and σ stay what they are.
-    pub fn by(&self, parameter: Option<Parameter>) -> Law<Dual64> {
+    pub fn by(&self, parameter: Option<Parameter>) -> Equations<Dual64> {
         let by_kappa = f64::from(parameter == Some(Parameter::LnKappa));
         let by_damping = f64::from(parameter == Some(Parameter::Damping));
         // These three are proportional to ω = √κ.
         let like_root = |value: f64| Dual64::new(value, 0.5 * by_kappa * value);
-        Law {
+        Equations {
             kappa: Dual64::new(self.kappa, by_kappa * self.kappa),
             damping: Dual64::new(self.damping, by_damping),
             scale: self.scale,
@@ -105,7 +106,7 @@ impl Law<f64> {
     }
 }
 
-impl<T: Number> Law<T> {
+impl<T: Number> Equations<T> {
     /// Reduced tangential velocity w.
     #[inline(always)]
     pub fn velocity(&self, y: &[T; STATE]) -> T {
