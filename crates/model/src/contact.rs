@@ -13,6 +13,7 @@
 /// # Ok::<(), stickslip_model::InvalidParameter>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Contact {
     kappa: f64,
     psi: f64,

@@ -28,6 +28,8 @@ mod laws;
 mod limits;
 mod numerics;
 mod result;
+#[cfg(feature = "serde")]
+mod serialize;
 mod spheres;
 
 pub use contact::{Contact, InvalidParameter};
@@ -49,6 +51,7 @@ pub use spheres::encounter::{Encounter, EncounterError, Motion, WallMotion};
 pub use spheres::observed::Observed;
 pub use spheres::outcome::{EnergyAccount, ForceSwitch, Outcome};
 pub use spheres::reduction::Reduction;
+pub use spheres::report::{Comparison, ImpactReport};
 pub use spheres::scaling::{Impact, Pair, Surface};
 pub use spheres::{bodies, encounter, quantity, scaling};
 

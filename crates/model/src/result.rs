@@ -12,6 +12,7 @@ pub use finite::NotFinite;
 
 /// A switch between Coulomb sliding and the spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Switch {
     /// Scaled time since the start of contact.
     pub time: f64,

@@ -6,4 +6,5 @@ pub(crate) mod observed;
 pub(crate) mod outcome;
 pub mod quantity;
 pub(crate) mod reduction;
+pub(crate) mod report;
 pub mod scaling;

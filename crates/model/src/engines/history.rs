@@ -13,6 +13,7 @@ use crate::laws::regularized::components::{STATE, T, U, V};
 
 /// A collision at one moment, in scaled and reduced variables.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Snapshot {
     /// Scaled time t since the start of contact.
     pub time: f64,

@@ -24,6 +24,7 @@ const PARAMETERS: usize = Parameter::ALL.len();
 
 /// A result of a collision with its derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Derived {
     /// The result.
     pub value: f64,
@@ -37,6 +38,7 @@ pub struct Derived {
 
 /// The results of a collision with their derivatives.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Sensitivity {
     /// Coefficient of normal restitution.
     pub eps_n: Derived,

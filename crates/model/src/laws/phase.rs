@@ -16,6 +16,7 @@ pub const OTHER_SIDE: usize = 2;
 
 /// Which law the tangential force obeys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 pub enum Regime {
     /// Coulomb sliding: the force is at its limit μ F_n.
     Slip,

@@ -6,6 +6,7 @@
 /// Units: normal energies in m g_n² (½ at impact), tangential energies in α m g_n² (μ/α)²
 /// (ψ²/2 at impact).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct EnergyLedger {
     /// Tangential energy at impact, ψ²/2.
     pub tangential_initial: f64,

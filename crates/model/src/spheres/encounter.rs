@@ -160,6 +160,12 @@ impl Encounter {
         self.impact.contact
     }
 
+    /// Whether the surfaces meet without a tangential velocity.
+    #[must_use]
+    pub fn is_central(&self) -> bool {
+        self.tangent.is_none()
+    }
+
     /// The spheres: two, or one before a wall.
     pub fn spheres(&self) -> impl Iterator<Item = &Sphere> {
         self.parties.iter().filter_map(|party| party.sphere.as_ref())

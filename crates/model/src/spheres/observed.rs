@@ -12,6 +12,7 @@ use super::encounter::{Encounter, Motion, direction, tangential};
 /// positive on the side to which the motion before the contact points: a negative angle is a motion
 /// thrown back.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Observed {
     /// β = −ε_t, the tangential restitution of Walton (1993) and Foerster, Louge, Chang and Allia
     /// (Phys. Fluids 6, 1108, 1994): 1 is full reversal, −1 no friction.

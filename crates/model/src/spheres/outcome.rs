@@ -32,6 +32,7 @@ pub struct Outcome {
 
 /// A switch between Coulomb sliding and the spring, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ForceSwitch {
     /// Time since the start of contact in s.
     pub time_s: f64,
