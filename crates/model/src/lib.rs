@@ -22,48 +22,38 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-pub mod bodies;
-pub mod collision;
 mod contact;
-pub mod coulomb;
-mod domain;
-pub mod encounter;
-mod energy;
-mod engine;
-pub mod exact;
-pub mod history;
-pub mod inner;
-pub mod largest;
-mod last_slip;
-mod law;
-pub mod normal;
-mod observed;
-mod outcome;
-mod double_double;
-pub mod quantity;
-mod reduction;
-mod refine;
-pub mod regularized;
-mod reversals;
-pub mod scaling;
-pub mod sensitivity;
+mod engines;
+mod laws;
+mod limits;
+mod numerics;
+mod result;
+#[cfg(feature = "serde")]
+mod serialize;
+mod spheres;
 
-pub use bodies::{Body, Elasticity, Material, Sphere, Wall};
-pub use collision::{Collider, CollisionError};
-pub use contact::{
-    Collision, Contact, FEW_SWITCHES, InvalidParameter, Regime, Side, Switch, Switches,
-};
-pub use domain::OutOfDomain;
-pub use encounter::{Encounter, EncounterError, Motion, WallMotion};
-pub use energy::EnergyLedger;
-pub use engine::{Engine, EngineError, NotFinite, Tolerances};
-pub use history::{History, PhaseHistory, Snapshot};
+pub use contact::{Contact, InvalidParameter};
+pub use engines::domain::OutOfDomain;
+pub use engines::history::{History, PhaseHistory, Snapshot};
+/// The [`integrator`] under a second name.
+pub use engines::integrator as collision;
+pub use engines::integrator::{Collider, CollisionError};
+pub use engines::sensitivity::{Derived, Sensitivity};
+pub use engines::{Engine, EngineError, Tolerances};
+pub use engines::{exact, history, integrator, sensitivity};
+pub use laws::phase::{Regime, Side};
+pub use laws::regularized;
+pub use limits::{coulomb, inner, largest, normal};
 pub use nalgebra::Vector3;
-pub use observed::Observed;
-pub use outcome::{EnergyAccount, ForceSwitch, Outcome};
-pub use reduction::Reduction;
-pub use scaling::{Impact, Pair, Surface};
-pub use sensitivity::{Derived, Sensitivity};
+pub use result::{Collision, EnergyLedger, FEW_SWITCHES, NotFinite, Switch, Switches};
+pub use spheres::bodies::{Body, Elasticity, Material, Sphere, Wall};
+pub use spheres::encounter::{Encounter, EncounterError, Motion, WallMotion};
+pub use spheres::observed::Observed;
+pub use spheres::outcome::{EnergyAccount, ForceSwitch, Outcome};
+pub use spheres::reduction::Reduction;
+pub use spheres::report::{Comparison, ImpactReport};
+pub use spheres::scaling::{Impact, Pair, Surface};
+pub use spheres::{bodies, encounter, quantity, scaling};
 
 #[doc = include_str!("../README.md")]
 #[cfg(doctest)]

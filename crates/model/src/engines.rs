@@ -1,0 +1,150 @@
+//! What computes a collision: an integrator with its tolerances, or the exact solution.
+
+use stickslip_solver::{Dop853, Dopri5, Statistics};
+
+pub(crate) mod domain;
+pub mod exact;
+pub mod history;
+pub mod integrator;
+pub mod sensitivity;
+
+use crate::contact::Contact;
+use crate::result::{Collision, NotFinite};
+use exact::ExactError;
+use history::History;
+use integrator::{Collider, CollisionError};
+
+/// A way to compute collisions.
+///
+/// ```
+/// use stickslip_model::{Contact, Engine};
+///
+/// let contact = Contact::new(63.0, 0.5, 0.0)?;
+/// let (collision, statistics) = Engine::Auto.collide(contact)?;
+/// // Without damping there is an exact solution, which takes no steps.
+/// assert_eq!(Engine::Auto.resolved(&contact), Engine::Exact);
+/// assert_eq!(collision.itinerary(), "+o-o+o-");
+/// assert!(statistics.is_none());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Engine {
+    /// Dormand–Prince 8(5,3).
+    Dop853(Tolerances),
+    /// Dormand–Prince 5(4).
+    Dopri5(Tolerances),
+    /// The exact solution, for contacts without damping only.
+    Exact,
+    /// The exact solution where there is one, else Dormand–Prince 8(5,3) at its default tolerances.
+    Auto,
+}
+
+/// Tolerances of a step: its error stays below `atol + rtol·|y|`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerances {
+    /// Relative tolerance, 1e-15 to 0.1.
+    pub rtol: f64,
+    /// Absolute tolerance, above 0.
+    pub atol: f64,
+}
+
+/// Why an engine has no result.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum EngineError {
+    /// The integration failed.
+    #[error(transparent)]
+    Collision(#[from] CollisionError),
+    /// The exact solution does not apply to the contact.
+    #[error(transparent)]
+    Exact(#[from] ExactError),
+    /// A result is beyond the range of doubles.
+    #[error(transparent)]
+    NotFinite(#[from] NotFinite),
+}
+
+impl Tolerances {
+    /// Defaults of Dormand–Prince 8(5,3), at which w is good to 1e-12.
+    pub const DOP853: Self =
+        Self { rtol: Collider::<Dop853>::RTOL, atol: Collider::<Dop853>::ATOL };
+    /// Defaults of Dormand–Prince 5(4), which would need very many steps for the same accuracy.
+    pub const DOPRI5: Self = Self { rtol: 1e-10, atol: 1e-10 };
+}
+
+impl Engine {
+    /// The name of the method: `dop853`, `dopri5`, `exact` or `auto`.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Dop853(_) => "dop853",
+            Self::Dopri5(_) => "dopri5",
+            Self::Exact => "exact",
+            Self::Auto => "auto",
+        }
+    }
+
+    /// The integrator's tolerances; none where [`Self::resolved`] is not an integrator of its own.
+    #[must_use]
+    pub fn tolerances(&self) -> Option<Tolerances> {
+        match *self {
+            Self::Dop853(tolerances) | Self::Dopri5(tolerances) => Some(tolerances),
+            Self::Exact | Self::Auto => None,
+        }
+    }
+
+    /// The engine that computes the collision of `contact`: for [`Self::Auto`] the one it chooses.
+    #[must_use]
+    pub fn resolved(self, contact: &Contact) -> Self {
+        match self {
+            Self::Auto if contact.damping() == 0.0 => Self::Exact,
+            Self::Auto => Self::Dop853(Tolerances::DOP853),
+            chosen => chosen,
+        }
+    }
+
+    /// Computes the collision of `contact`, with the integrator's work if there is an integrator.
+    ///
+    /// # Errors
+    /// [`EngineError`]: the contact is out of the engine's range, the integration fails, or a
+    /// result is beyond the range of doubles; the energies may still be
+    /// ([`EnergyLedger::require_finite`](crate::EnergyLedger::require_finite)).
+    pub fn collide(
+        &self,
+        contact: Contact,
+    ) -> Result<(Collision, Option<Statistics>), EngineError> {
+        let mut collision = Collision::before(contact);
+        let statistics = match self.resolved(&contact) {
+            Self::Dop853(Tolerances { rtol, atol }) => {
+                let collider = Collider::with_tolerances(Dop853, rtol, atol);
+                Some(collider.collide_into(contact, &mut collision)?)
+            }
+            Self::Dopri5(Tolerances { rtol, atol }) => {
+                let collider = Collider::with_tolerances(Dopri5, rtol, atol);
+                Some(collider.collide_into(contact, &mut collision)?)
+            }
+            Self::Exact | Self::Auto => {
+                exact::collide_into(contact, &mut collision)?;
+                None
+            }
+        };
+        collision.require_finite()?;
+        Ok((collision, statistics))
+    }
+
+    /// The course of the collision of `contact`; without an integrator of the engine's own, by
+    /// Dormand–Prince 8(5,3) at its default tolerances.
+    ///
+    /// # Errors
+    /// [`EngineError::Collision`]: the integration fails.
+    pub fn history(&self, contact: Contact) -> Result<History, EngineError> {
+        let history = match *self {
+            Self::Dop853(Tolerances { rtol, atol }) => {
+                Collider::with_tolerances(Dop853, rtol, atol).history(contact)
+            }
+            Self::Dopri5(Tolerances { rtol, atol }) => {
+                Collider::with_tolerances(Dopri5, rtol, atol).history(contact)
+            }
+            Self::Exact | Self::Auto => Collider::default().history(contact),
+        };
+        Ok(history?)
+    }
+}

@@ -1,0 +1,126 @@
+//! The motion of the spring in a stick phase, beside its limit.
+
+use super::limit::pull;
+use super::onset::Onset;
+use super::slide::Slide;
+use super::trajectory::{CONTACT_TIME, Moment, NormalMotion};
+use crate::numerics::double_double::DoubleDouble;
+
+/// One stick phase, in the orientation in which it starts on side +1:
+/// y = A cos θ, with θ rising at the rate ω = √κ.
+#[derive(Clone, Copy, Debug)]
+pub struct Swing {
+    /// Scaled stiffness κ.
+    pub kappa: f64,
+    /// ω = √κ.
+    pub omega: f64,
+    /// b = 3/(2κ).
+    pub bend: f64,
+    /// When the phase starts.
+    pub start: Moment,
+    /// y at the start, equal to the limit L there.
+    pub elongation: f64,
+    /// w at the start, with what rounding left out of it.
+    pub velocity: DoubleDouble,
+    /// A, the largest |y| of the swing.
+    pub amplitude: f64,
+    /// The angle from the start to the first y = 0, between 0 and π.
+    pub first_zero: f64,
+    /// D just after the start, for a phase that may be very short.
+    onset: Option<Onset>,
+}
+
+/// The spring and its limit at one moment of a half swing: q = ±y is positive on it.
+#[derive(Clone, Copy, Debug)]
+pub struct Gap {
+    /// D = L − q.
+    pub value: f64,
+    /// dD/dt.
+    pub rate: f64,
+    /// d²D/dt².
+    pub acceleration: f64,
+    /// q.
+    pub q: f64,
+    /// dq/dt.
+    pub q_rate: f64,
+}
+
+impl Gap {
+    /// W = L q̇ − L̇ q, which has the sign of the rate of q/L; written in D, which may be known
+    /// far better than L and q apart.
+    pub fn turning(&self) -> f64 {
+        self.q_rate * self.value - self.q * self.rate
+    }
+}
+
+impl Swing {
+    /// The phase that starts at `start`, where the normal motion is at `point` and w is
+    /// `velocity`.
+    pub fn new(slide: &Slide, start: Moment, point: NormalMotion, velocity: DoubleDouble) -> Self {
+        let kappa = slide.kappa;
+        let omega = kappa.sqrt();
+        let elongation = point.u * point.u * point.u / kappa;
+        let across = velocity.0 / omega;
+        Self {
+            kappa,
+            omega,
+            bend: slide.bend,
+            start,
+            elongation,
+            velocity,
+            amplitude: elongation.hypot(across),
+            first_zero: elongation.atan2(-across),
+            onset: slide
+                .crest
+                .and_then(|crest| Onset::new(kappa, start, point, velocity.0, crest.root)),
+        }
+    }
+
+    /// (y, w) a time `tau` after the start.
+    pub fn motion(&self, tau: f64) -> (f64, f64) {
+        let (sin, cos) = (self.omega * tau).sin_cos();
+        (
+            self.elongation * cos + self.velocity.0 / self.omega * sin,
+            self.velocity.0 * cos - self.elongation * self.omega * sin,
+        )
+    }
+
+    /// The gap on half swing `k` at `moment`, where the normal motion is at `point`.
+    pub fn gap(&self, k: u32, moment: Moment, point: NormalMotion) -> Gap {
+        let tau = self.start.time_until(moment);
+        let sign = half_swing_sign(k);
+        let (y, w) = self.motion(tau);
+        let (q, q_rate) = (sign * y, sign * w);
+        if k == 0
+            && let Some((value, rate, acceleration)) = self.onset.and_then(|onset| onset.gap(tau))
+        {
+            return Gap { value, rate, acceleration, q, q_rate };
+        }
+        let NormalMotion { u, v, .. } = point;
+        let value = u * u * u / self.kappa - q;
+        Gap {
+            value,
+            rate: self.bend * u * v - q_rate,
+            acceleration: pull(self.bend, u) - self.kappa * value,
+            q,
+            q_rate,
+        }
+    }
+
+    /// Whether [`Swing::gap`] is free of cancellation at `moment`, being a series there.
+    pub fn is_onset(&self, k: u32, moment: Moment) -> bool {
+        k == 0 && self.onset.is_some_and(|onset| self.start.time_until(moment) <= onset.reach)
+    }
+
+    /// The moment an angle `past_zero` after the first y = 0; [`Moment::END`] if that is not
+    /// before the end of contact.
+    pub fn moment_at_angle(&self, past_zero: f64) -> Moment {
+        let duration = (self.first_zero + past_zero) / self.omega;
+        if duration < CONTACT_TIME { self.start.after(duration) } else { Moment::END }
+    }
+}
+
+/// (−1)^k: the side of half swing `k`, seen from the side on which the phase starts.
+pub fn half_swing_sign(k: u32) -> f64 {
+    if k.is_multiple_of(2) { 1.0 } else { -1.0 }
+}

@@ -1,0 +1,320 @@
+//! Laws that every collision has to keep. `tests/exact.rs` of the workspace compares with the
+//! reference data.
+
+use std::f64::consts::PI;
+
+use super::trajectory::{Half, MIDDLE_ROOT};
+use super::*;
+
+fn exact(kappa: f64, psi: f64) -> Collision {
+    collide(Contact::new(kappa, psi, 0.0).unwrap()).unwrap()
+}
+
+#[test]
+fn pure_sliding_starts_where_the_closed_form_says() {
+    let tops =
+        [(0.1, 10.4779732741472), (0.3, 3.6107667429891), (0.6, 2.0), (18.0, 2.0), (1e6, 2.0)];
+    for (kappa, top) in tops {
+        assert!(exact(kappa, top * (1.0 - 1e-13)).switches.len() >= 2, "{kappa}");
+        let sliding = exact(kappa, top * (1.0 + 1e-13));
+        assert!(sliding.switches.is_empty(), "{kappa}");
+        assert!((sliding.eps_t() - (1.0 - 2.0 / sliding.contact.psi())).abs() < 1e-15);
+    }
+    assert_eq!(exact(18.0, 2.0).switches.len(), 0);
+}
+
+#[test]
+fn stiff_springs_leave_a_velocity_of_order_kappa_to_minus_five_quarters() {
+    let largest = |kappa: f64| {
+        (0..400)
+            .map(|i| exact(kappa * (1.0 + 1e-4 * f64::from(i)), 1.0))
+            .map(|collision| collision.final_velocity.abs() * collision.contact.kappa().powf(1.25))
+            .fold(0.0, f64::max)
+    };
+    assert!((largest(1e5) - 4.4841).abs() < 2e-3, "{}", largest(1e5));
+    assert!((largest(1e7) - 4.484).abs() < 4e-3, "{}", largest(1e7));
+}
+
+/// Numbers between 0 and 1 (xorshift64), the same on every machine.
+fn randoms() -> impl FnMut() -> f64 {
+    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+    move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        f64::from((state >> 32) as u32) / f64::from(u32::MAX)
+    }
+}
+
+/// `count` contacts with log₁₀ κ and log₁₀ ψ in the ranges given.
+fn contacts(count: usize, kappa: (f64, f64), psi: (f64, f64)) -> impl Iterator<Item = Contact> {
+    let mut random = randoms();
+    let mut draw = move |(low, high): (f64, f64)| 10_f64.powf(low + (high - low) * random());
+    std::iter::repeat_with(move || {
+        let kappa = draw(kappa);
+        Contact::new(kappa, draw(psi), 0.0).unwrap()
+    })
+    .take(count)
+}
+
+#[test]
+fn every_collision_is_finite_ordered_even_and_balanced() {
+    let sets = [
+        (40_000, (-12.0, 5.0), (-12.0, 12.0), 1e-11),
+        (40_000, (-2.0, 4.0), (-3.0, 0.4), 1e-13),
+        (40_000, (0.0, 0.4), (-1.0, 0.4), 1e-14),
+        (400, (5.0, 8.0), (-12.0, 1.0), 1e-10),
+        (4, (8.0, 12.0), (-6.0, 0.4), 1e-12),
+    ];
+    for (count, kappa, psi, balance) in sets {
+        for contact in contacts(count, kappa, psi) {
+            let collision = collide(contact).unwrap();
+            let switches = &collision.switches;
+            assert!(switches.len().is_multiple_of(2), "{contact:?}");
+            assert!(collision.final_velocity.is_finite(), "{contact:?}");
+            for (index, switch) in switches.iter().enumerate() {
+                let to = if index.is_multiple_of(2) { Regime::Stick } else { Regime::Slip };
+                assert_eq!(switch.to, to, "{contact:?}");
+                let numbers = [switch.time, switch.time_left, switch.spring, switch.velocity];
+                assert!(numbers.iter().all(|number| number.is_finite()), "{contact:?}");
+                assert!(switch.time > 0.0 && switch.time_left > 0.0, "{contact:?}");
+            }
+            for pair in switches.windows(2) {
+                assert!(pair[0].time <= pair[1].time, "{contact:?}");
+                assert!(pair[0].time_left >= pair[1].time_left, "{contact:?}");
+            }
+            let ledger = collision.energy;
+            let lost = ledger.tangential_unbalanced().abs() / ledger.tangential_initial;
+            assert!(lost < balance, "{contact:?}: {lost}");
+            assert_eq!(ledger.normal_unbalanced(), 0.0);
+            let reversed = collision.final_velocity < 0.0;
+            assert_eq!(collision.reversals % 2 == 1, reversed, "{contact:?}");
+        }
+    }
+}
+
+/// The moment of a switch, from the times it reports.
+fn moment(switch: &Switch) -> Moment {
+    if switch.time < switch.time_left {
+        Moment { half: Half::Compression, root: switch.time.sqrt() }
+    } else {
+        Moment { half: Half::Decompression, root: switch.time_left.sqrt() }
+    }
+}
+
+/// `count` moments from `from` to `to`, evenly spaced in the root coordinate.
+fn moments(from: Moment, to: Moment, count: u32) -> impl Iterator<Item = Moment> {
+    let place = |moment: Moment| match moment.half {
+        Half::Compression => moment.root,
+        Half::Decompression => 2.0 * MIDDLE_ROOT - moment.root,
+    };
+    let (low, high) = (place(from), place(to));
+    (1..count).map(move |i| {
+        let at = low + (high - low) * f64::from(i) / f64::from(count);
+        if at < MIDDLE_ROOT {
+            Moment { half: Half::Compression, root: at }
+        } else {
+            Moment { half: Half::Decompression, root: 2.0 * MIDDLE_ROOT - at }
+        }
+    })
+}
+
+/// Walks through a collision as reported and checks the law of each phase inside it and at its
+/// end; returns the sign changes of w that it meets.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small and positive")]
+fn audit(collision: &Collision) -> usize {
+    let contact = collision.contact;
+    let slide = Slide::new(contact.kappa());
+    let tolerance = 2e-13 * contact.psi().max(1.0);
+    let mut velocities = vec![contact.psi()];
+    let mut sliding = SlipPhase::at_impact(contact.psi());
+    let mut side = 1.0;
+    for pair in collision.switches.chunks(2) {
+        let (onset, release) = (moment(&pair[0]), moment(&pair[1]));
+        for at in moments(sliding.start, onset, 200) {
+            let point = NormalMotion::at(at);
+            let velocity = sliding.velocity_at(at, point).0;
+            velocities.push(side * velocity);
+            let guard = velocity - slide.bend * point.u * point.v;
+            assert!(guard > -tolerance, "{contact:?}: missed stick, {guard} at {at:?}");
+        }
+        let point = NormalMotion::at(onset);
+        let velocity = sliding.velocity_at(onset, point);
+        let guard = velocity.0 - slide.bend * point.u * point.v;
+        assert!(guard.abs() < tolerance, "{contact:?}: invented stick, {guard} at {onset:?}");
+        velocities.push(side * velocity.0);
+
+        let swing = Swing::new(&slide, onset, point, velocity);
+        let angle = swing.omega * onset.time_until(release);
+        let tolerance = 1e-15 * swing.amplitude * (4.0 + angle);
+        for at in moments(onset, release, 100 + 50 * (angle / PI) as u32) {
+            let gap = swing.gap(0, at, NormalMotion::at(at));
+            velocities.push(side * gap.q_rate);
+            let other = slide.limit(NormalMotion::at(at)) + gap.q;
+            assert!(gap.value > -tolerance, "{contact:?}: missed slip, {gap:?} at {at:?}");
+            assert!(other > -tolerance, "{contact:?}: missed slip, {other} at {at:?}");
+        }
+        let gap = swing.gap(0, release, NormalMotion::at(release));
+        let exit = pair[1].side.sign();
+        let limit = slide.limit(NormalMotion::at(release));
+        let off = (exit * side * gap.q - limit).abs();
+        assert!(off < tolerance, "{contact:?}: invented slip, {off} at {release:?}");
+        let outward = exit * side * gap.q_rate
+            - slide.bend * NormalMotion::at(release).u * NormalMotion::at(release).v;
+        assert!(outward > -2e-13 * contact.psi().max(1.0), "{contact:?}: {outward} at {release:?}");
+        velocities.push(side * gap.q_rate);
+        side = exit;
+        sliding = SlipPhase::new(release, NormalMotion::at(release), exit * pair[1].velocity);
+    }
+    for at in moments(sliding.start, Moment::END, 200) {
+        let point = NormalMotion::at(at);
+        let velocity = sliding.velocity_at(at, point).0;
+        let guard = velocity - slide.bend * point.u * point.v;
+        assert!(guard > -tolerance, "{contact:?}: missed stick, {guard} at {at:?}");
+        velocities.push(side * velocity);
+    }
+    velocities.push(collision.final_velocity);
+    velocities.windows(2).filter(|pair| (pair[0] > 0.0) != (pair[1] > 0.0)).count()
+}
+
+#[test]
+fn each_phase_keeps_its_law_from_switch_to_switch() {
+    let sets = [
+        (1500, (-6.0, 4.0), (-4.0, 1.0)),
+        (1500, (-1.0, 3.0), (-2.0, 0.35)),
+        (1500, (-0.7, 0.3), (-0.3, 0.8)),
+        (500, (0.19, 0.2), (-0.3, 0.35)),
+    ];
+    for (count, kappa, psi) in sets {
+        for contact in contacts(count, kappa, psi) {
+            let collision = collide(contact).unwrap();
+            assert_eq!(audit(&collision), collision.reversals, "{contact:?}");
+        }
+    }
+}
+
+#[test]
+fn the_ends_of_the_number_range_are_survived() {
+    let smallest = f64::MIN_POSITIVE * f64::EPSILON;
+    for kappa in [smallest, 1e-308, 1e-200, 1e-20, 1.568_459_328_886_909_8, 1e13, 1e300] {
+        for psi in [smallest, 1e-300, 1e-100, 1e-12, 2.0, 1e100, 1e300] {
+            match collide(Contact::new(kappa, psi, 0.0).unwrap()) {
+                Ok(collision) => assert!(collision.eps_t().abs() <= 1.0, "{kappa} {psi}"),
+                Err(error) => {
+                    let inside = |x: f64, most: f64| (1e-100..=most).contains(&x);
+                    assert!(!inside(kappa, 1e16) || !inside(psi, 1e100), "{kappa} {psi}: {error}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn results_do_not_depend_on_the_thread() {
+    let sweep = || contacts(300, (-2.0, 3.0), (-3.0, 0.4)).map(collide).collect::<Vec<_>>();
+    let here = sweep();
+    let threads = [(); 2].map(|()| std::thread::spawn(sweep));
+    for thread in threads {
+        assert_eq!(thread.join().unwrap(), here);
+    }
+}
+
+#[test]
+fn refusals_carry_their_numbers() {
+    let damped = Contact::new(18.0, 1.0, 0.25).unwrap();
+    assert_eq!(collide(damped), Err(ExactError::Damped { damping: 0.25 }));
+    let stiff = Contact::new(2e16, 1.0, 0.0).unwrap();
+    let Err(ExactError::Domain(beyond)) = collide(stiff) else { panic!("κ = 2e16 was accepted") };
+    assert_eq!((beyond.quantity, beyond.value, beyond.most), ("kappa", 2e16, 1e16));
+    let contact = Contact::new(63.0, 1.0, 0.0).unwrap();
+    let count = exact(63.0, 1.0).switches.len();
+    let mut collision = Collision::before(contact);
+    assert!(collide_within(contact, &mut collision, count).is_ok());
+    let refused = collide_within(contact, &mut collision, count - 1).unwrap_err();
+    let ExactError::TooManySwitches { limit, kappa, psi, time_left } = refused else {
+        panic!("{refused}")
+    };
+    assert_eq!((limit, kappa, psi), (count - 1, 63.0, 1.0));
+    assert_eq!(time_left, exact(63.0, 1.0).switches[count - 2].time_left);
+}
+
+#[test]
+#[should_panic(expected = "missed stick")]
+fn the_audit_sees_a_missing_pair() {
+    let mut collision = exact(63.0, 1.0);
+    collision.switches.truncate(collision.switches.len() - 2);
+    audit(&collision);
+}
+
+#[test]
+#[should_panic(expected = "missed slip")]
+fn the_audit_sees_a_late_switch() {
+    let mut collision = exact(63.0, 1.0);
+    let first = &mut collision.switches[1];
+    first.time += 0.05;
+    first.time_left -= 0.05;
+    audit(&collision);
+}
+
+/// κ, ψ a relative distance 1e-6, 1e-9 or 1e-10 below a slip graze, and the times of the first
+/// two switches, computed with 40 digits from the closed form.
+const SLIP_GRAZES: [(f64, f64, f64, f64); 6] = [
+    (0.2, 5.324485084798437, 0.73301009509621493916, 0.73303659202271994763),
+    (0.7, 1.6748688531396472, 0.86482996032894687174, 0.86492858482875625191),
+    (0.7, 1.6748688546470292, 0.86485243915692781413, 0.86488362694773545709),
+    (1.3, 1.0696020112277536, 1.1593437527291455836, 1.1593884002547941003),
+    (1.5, 1.008088025882126, 1.3732511095767852613, 1.379704609014040322),
+    (1.5, 1.0080890338703512, 1.3753762935733874188, 1.3754407836991174155),
+];
+
+#[test]
+fn short_phases_beside_slip_grazes_keep_their_digits() {
+    for (kappa, psi, stick, slip) in SLIP_GRAZES {
+        let switches = exact(kappa, psi).switches;
+        assert!((switches[0].time - stick).abs() < 1e-15, "{kappa} {psi}");
+        assert!((switches[1].time - slip).abs() < 4e-15, "{kappa} {psi}");
+    }
+}
+
+/// The closed form at `moment`: compression, its rate, spring and tangential velocity.
+fn closed_form(collision: &Collision, moment: Moment) -> [f64; 4] {
+    let NormalMotion { u, v, .. } = NormalMotion::at(moment);
+    let kappa = collision.contact.kappa();
+    let passed = collision.switches.partition_point(|switch| switch.time <= moment.time());
+    let (side, w, start, to) = match passed.checked_sub(1).map(|last| collision.switches[last]) {
+        Some(switch) => (switch.side.sign(), switch.velocity, switch.time, switch.to),
+        None => (1.0, collision.contact.psi(), 0.0, Regime::Slip),
+    };
+    if to == Regime::Slip {
+        let v0 = NormalMotion::at(Moment::START.after(start)).v;
+        return [u * u, v, side * u * u * u / kappa, w + side * (v - v0)];
+    }
+    let (omega, y) = (kappa.sqrt(), collision.switches[passed - 1].spring);
+    let (sin, cos) = (omega * (moment.time() - start)).sin_cos();
+    [u * u, v, y * cos + w / omega * sin, w * cos - y * omega * sin]
+}
+
+#[test]
+fn integrated_histories_follow_the_closed_form() {
+    let mut largest = [0.0_f64; 4];
+    for kappa in [0.02, 0.3, 18.0, 63.0, 1e4] {
+        for psi in [0.01, 0.4, 1.3, 3.0] {
+            let contact = Contact::new(kappa, psi, 0.0).unwrap();
+            let collision = collide(contact).unwrap();
+            let history = crate::Collider::default().history(contact).unwrap();
+            let scales = [1.0, 1.0, kappa.min(kappa.sqrt()), 1.0];
+            for i in 0..1500 {
+                let moment = Moment::START.after(f64::from(i) / 1500.0 * CONTACT_TIME);
+                let at = history.at(moment.time()).unwrap();
+                let integrated = [at.compression, at.normal_velocity, at.spring, at.velocity];
+                let closed = closed_form(&collision, moment);
+                for j in 0..4 {
+                    largest[j] = largest[j].max((integrated[j] - closed[j]).abs() * scales[j]);
+                }
+            }
+        }
+    }
+    // Measured: 5.6e-12, 2.4e-12, 2.6e-12, 1.8e-12.
+    let limits = [1e-11, 4e-12, 4e-12, 4e-12];
+    assert!(largest.iter().zip(limits).all(|(&error, limit)| error < limit), "{largest:?}");
+}

@@ -1,0 +1,299 @@
+//! A collision integrated from first touch to separation: start reading here.
+
+use stickslip_solver::{
+    Dop853, Method, Observer, Options, Outcome, RunError, Start, State, Statistics, SwitchEvent,
+    run,
+};
+
+use super::domain::{self, OutOfDomain};
+use super::history::History;
+use crate::contact::Contact;
+use crate::laws::phase::{END, Phase, Regime};
+use crate::laws::regularized::Regularized;
+use crate::laws::regularized::components::{DAMPING, STATE, T, U, V};
+use crate::result::{Collision, EnergyLedger, Switch};
+
+mod last_slip;
+mod refine;
+mod reversals;
+
+/// Above this flatness of a switch, in s, its time would be worth clearly less than the state: the
+/// collision is refined.
+const FLAT: f64 = 30.0;
+
+/// Longest step in s, of which a contact lasts 2.62 without damping.
+///
+/// Where u is nearly linear, close to both ends of contact, the embedded estimates miss most of the
+/// error; there the step is held to the length on which u bends elsewhere.
+const LONGEST_STEP: f64 = 0.1;
+
+/// Length in s of a damped contact's first stick phase below which the first step has the length of
+/// that phase.
+const BRIEF: f64 = 1e-9;
+
+/// Most steps over √κ; Dormand–Prince 5(4) takes 170 at tolerances of 1e-15.
+const MOST_STEPS_PER_OSCILLATION: f64 = 400.0;
+
+/// Integrates collisions with one method and one set of options.
+///
+/// ```
+/// use stickslip_model::{Collider, Contact};
+///
+/// let collision = Collider::default().collide(Contact::new(63.0, 0.5, 0.0)?)?;
+/// assert_eq!(collision.itinerary(), "+o-o+o-");
+/// assert_eq!(collision.switches.len(), 6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Collider<M> {
+    method: M,
+    options: Options,
+    refined: bool,
+}
+
+impl Default for Collider<Dop853> {
+    fn default() -> Self {
+        Self::new(Dop853)
+    }
+}
+
+impl<M: Method> Collider<M> {
+    /// Relative tolerance at which Dormand–Prince 8(5,3) gives w to 1e-12.
+    pub const RTOL: f64 = 4e-13;
+    /// Absolute tolerance that goes with it.
+    pub const ATOL: f64 = 4e-13;
+
+    /// A collider with the default tolerances.
+    #[must_use]
+    pub fn new(method: M) -> Self {
+        Self::with_tolerances(method, Self::RTOL, Self::ATOL)
+    }
+
+    /// A collider with tolerances of one's own, checked when it is used.
+    #[must_use]
+    pub fn with_tolerances(method: M, rtol: f64, atol: f64) -> Self {
+        let first_step = Some(LONGEST_STEP);
+        let max_step = LONGEST_STEP;
+        let options = Options { rtol, atol, first_step, max_step, ..Options::default() };
+        Self { method, options, refined: true }
+    }
+
+    /// A collider with options of one's own that returns just what the method gives, for
+    /// convergence studies.
+    ///
+    /// The other ones compute collisions near a graze once more with twice the digits.
+    #[must_use]
+    pub fn unrefined(method: M, options: Options) -> Self {
+        Self { method, options, refined: false }
+    }
+
+    /// Integrates one collision.
+    ///
+    /// # Errors
+    /// [`CollisionError`]: invalid options, or a contact that does not end within the limits.
+    pub fn collide(&self, contact: Contact) -> Result<Collision, CollisionError> {
+        let mut collision = Collision::before(contact);
+        self.collide_into(contact, &mut collision)?;
+        Ok(collision)
+    }
+
+    /// The same into a collision whose memory is used again.
+    ///
+    /// That saves a copy, and memory for collisions with more than
+    /// [`FEW_SWITCHES`](crate::FEW_SWITCHES) switches; others allocate nothing either way.
+    ///
+    /// # Errors
+    /// As [`Self::collide`]; `collision` then holds what was found so far.
+    pub fn collide_into(
+        &self,
+        contact: Contact,
+        collision: &mut Collision,
+    ) -> Result<Statistics, CollisionError> {
+        let options = self.options_for(&contact)?;
+        let system = Regularized::new(contact);
+        collision.reset(contact);
+        let phase = Phase::first(&contact);
+        let start = Start { mode: phase, s: 0.0, state: system.start() };
+        let mut account = Account {
+            system,
+            collision,
+            entered: start.state,
+            spring: 0.0,
+            elapsed: 0.0,
+            sliding: 0.0,
+            flatness: 0.0,
+        };
+        let run = run(self.method, &system, start, f64::INFINITY, &options, &mut account)?;
+        if run.outcome != (Outcome::EndedByGuard { guard: END }) {
+            let time = account.elapsed + run.state[T];
+            return Err(CollisionError::Unfinished { outcome: run.outcome, time });
+        }
+        let last_slip = account.finish(run.mode, &run.state);
+        let (sliding, flatness) = (account.sliding, account.flatness);
+        collision.contact_time = collision.switches.last().map_or(0.0, |s| s.time) + last_slip;
+        let mut left = last_slip;
+        for switch in collision.switches.iter_mut().rev() {
+            // `time_left` holds the duration of the phase that the switch ended.
+            left += std::mem::replace(&mut switch.time_left, left);
+        }
+        // Without damping the contact ends at u = 0, which rounding may put on either side.
+        let compression = run.state[U].max(0.0).powi(5);
+        collision.eps_n = -run.state[V];
+        collision.final_velocity = system.velocity(&run.state);
+        collision.energy = EnergyLedger {
+            tangential_initial: 0.5 * contact.psi() * contact.psi(),
+            tangential_final: 0.5 * collision.final_velocity * collision.final_velocity,
+            sliding,
+            spring_left: 0.0,
+            normal_initial: 0.5,
+            normal_final: 0.5 * run.state[V] * run.state[V],
+            damping: run.state[DAMPING],
+            compression_left: 0.4 * compression,
+        };
+        if self.refined && flatness > FLAT && run.mode.regime == Regime::Slip {
+            refine::refine(self.method, &options, collision);
+        }
+        Ok(run.statistics)
+    }
+
+    pub(crate) fn method(&self) -> M {
+        self.method
+    }
+
+    /// Integrates one collision and keeps its course in time, up to [`History::MOST_STEPS`] steps
+    /// of it.
+    ///
+    /// # Errors
+    /// As [`Self::collide`].
+    pub fn history(&self, contact: Contact) -> Result<History, CollisionError> {
+        let max_steps = self.options.max_steps.min(History::MOST_STEPS);
+        let options = Options { max_steps, ..self.options_for(&contact)? };
+        let (history, outcome) = History::record(self.method, &options, contact)?;
+        if outcome == (Outcome::EndedByGuard { guard: END }) {
+            return Ok(history);
+        }
+        Err(CollisionError::Unfinished { outcome, time: history.duration() })
+    }
+
+    /// The options for `contact`, if it is one that can be integrated.
+    pub(crate) fn options_for(&self, contact: &Contact) -> Result<Options, OutOfDomain> {
+        domain::integrated(contact)?;
+        let mut options = self.options;
+        if self.refined {
+            // Where rounding keeps a contact from ending, it would take hours to the general limit.
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "κ is within 0 and 1e10"
+            )]
+            let most = 50_000 + (MOST_STEPS_PER_OSCILLATION * contact.kappa().sqrt()) as usize;
+            options.max_steps = options.max_steps.min(most);
+        }
+        let onset = contact.damping() / (contact.kappa() * contact.psi());
+        // A first phase so much shorter than a step is lost in the rounding of the guard that ends
+        // it.
+        if contact.damping() > 0.0 && onset < BRIEF {
+            options.first_step = options.first_step.map(|h| h.min(4.0 * onset));
+        }
+        Ok(options)
+    }
+}
+
+/// Why a collision could not be integrated.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum CollisionError {
+    /// The contact is out of the integrator's range.
+    #[error(transparent)]
+    Domain(#[from] OutOfDomain),
+    /// The integration failed.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// The contact did not end.
+    #[error("the contact has not ended at scaled time {time}: {outcome:?}")]
+    Unfinished {
+        /// Why the run stopped.
+        outcome: Outcome,
+        /// Scaled time reached.
+        time: f64,
+    },
+}
+
+/// Keeps account of a run while it goes on.
+struct Account<'a> {
+    system: Regularized,
+    collision: &'a mut Collision,
+    /// State when the phase began.
+    entered: State<STATE>,
+    /// Spring when it began.
+    spring: f64,
+    /// Time at which it began.
+    elapsed: f64,
+    /// Energy taken by sliding before that.
+    sliding: f64,
+    /// The largest flatness of a switch.
+    flatness: f64,
+}
+
+impl Account<'_> {
+    /// Closes a phase that ends in state `y`, where the spring's elongation is `spring`.
+    fn leave(&mut self, phase: Phase, y: &State<STATE>, spring: f64) {
+        let kappa = self.collision.contact.kappa();
+        let (v0, w0) = (self.entered[V], self.system.velocity(&self.entered));
+        let w1 = self.system.velocity(y);
+        self.collision.reversals += match phase.regime {
+            Regime::Slip => usize::from(reversals::changed(w0, w1)),
+            Regime::Stick => reversals::on_spring(kappa, (self.spring, w0), w1, y[T]),
+        };
+        if phase.regime == Regime::Slip {
+            // s w = s w₀ + v − v₀ and F dt = −dv turn ∫ F (s w − dL/dt) dt into differences.
+            let work = (v0 - y[V]) * (phase.side.sign() * w0 + 0.5 * (y[V] - v0));
+            self.sliding += work - 0.5 * kappa * (spring * spring - self.spring * self.spring);
+        }
+        self.spring = spring;
+        self.entered = *y;
+    }
+
+    /// Closes the phase in whose state `y` the contact ends; the duration of the last slip.
+    fn finish(&mut self, phase: Phase, y: &State<STATE>) -> f64 {
+        let (slip, length) = match phase.regime {
+            Regime::Slip => (phase, y[T]),
+            Regime::Stick => {
+                let slip = last_slip::after(phase, self.system.spring(phase, y));
+                self.switch(phase, slip, y);
+                (slip, 0.0)
+            }
+        };
+        let short = match self.collision.switches.last() {
+            Some(switch) => last_slip::time_left(&self.system, y, switch.spring),
+            None => None,
+        };
+        // The limit, on which the spring is, is 0 at the end.
+        self.leave(slip, y, 0.0);
+        short.unwrap_or(length)
+    }
+
+    /// Takes down the switch from phase `from` to phase `to` in state `y`.
+    fn switch(&mut self, from: Phase, to: Phase, y: &State<STATE>) {
+        // A spring that sticks is known better than its limit, where that is small.
+        self.leave(from, y, self.system.spring(from, y));
+        self.elapsed += y[T];
+        self.collision.switches.push(Switch {
+            time: self.elapsed,
+            time_left: y[T],
+            to: to.regime,
+            side: to.side,
+            spring: self.spring,
+            velocity: self.system.velocity(y),
+        });
+    }
+}
+
+impl Observer<Phase, STATE> for Account<'_> {
+    fn on_switch(&mut self, event: &SwitchEvent<Phase, STATE>) {
+        if event.guard == END {
+            return;
+        }
+        self.flatness = self.flatness.max(event.flatness);
+        self.switch(event.from, event.to, &event.before);
+    }
+}

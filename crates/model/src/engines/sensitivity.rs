@@ -1,0 +1,209 @@
+//! How a collision changes with its parameters.
+//!
+//! The equations of the law are computed with dual numbers, which carry their derivative along; the
+//! solver integrates the derivatives beside the state and takes them through every switch
+//! ([`stickslip_solver::sensitivity`]).
+//!
+//! Without damping a contact ends where u = 0, with it where F = u (u² + a v) = 0, earlier by a in
+//! time to first order: this is added to the derivative of the contact time at a = 0, which is that
+//! from above.
+
+use num_dual::Dual64;
+use stickslip_solver::{
+    Change, Differentiable, Method, Outcome, Start, State, SwitchSensitivity, sensitivities,
+};
+
+use super::integrator::{Collider, CollisionError};
+use crate::contact::Contact;
+use crate::laws::phase::{END, GUARDS, OTHER_SIDE, Phase, Regime, SAME_SIDE};
+use crate::laws::regularized::Regularized;
+use crate::laws::regularized::components::{STATE, T, U, V, W, array};
+use crate::laws::regularized::equations::{Equations, Parameter};
+
+const PARAMETERS: usize = Parameter::ALL.len();
+
+/// A result of a collision with its derivatives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Derived {
+    /// The result.
+    pub value: f64,
+    /// Its derivative with respect to the scaled stiffness κ.
+    pub kappa: f64,
+    /// Its derivative with respect to the impact ratio ψ.
+    pub psi: f64,
+    /// Its derivative with respect to the scaled damping a; at a = 0 the one from above.
+    pub damping: f64,
+}
+
+/// The results of a collision with their derivatives.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Sensitivity {
+    /// Coefficient of normal restitution.
+    pub eps_n: Derived,
+    /// Coefficient of tangential restitution ε_t.
+    pub eps_t: Derived,
+    /// Reduced tangential velocity w at the end.
+    pub final_velocity: Derived,
+    /// Scaled duration of the contact.
+    pub contact_time: Derived,
+    /// Scaled times of the switches since the start of contact, in order.
+    pub switch_times: Vec<Derived>,
+}
+
+impl<M: Method> Collider<M> {
+    /// Integrates one collision with the derivatives of its results with respect to κ, ψ and a.
+    ///
+    /// The derivatives are those of the collision with its own switches. They are about as accurate
+    /// as the results, relative to their largest value in the course of the collision; at a
+    /// relative distance d from a graze those of the switch beside it grow as 1/√d, and lose as
+    /// many digits again.
+    ///
+    /// ```
+    /// use stickslip_model::{Collider, Contact};
+    ///
+    /// let collider = Collider::default();
+    /// let sensitivity = collider.sensitivity(Contact::new(63.0, 0.5, 0.0)?)?;
+    ///
+    /// let h = 1e-5;
+    /// let [more, less] = [63.0 + h, 63.0 - h]
+    ///     .map(|kappa| collider.collide(Contact::new(kappa, 0.5, 0.0).unwrap()).unwrap());
+    /// let difference = (more.eps_t() - less.eps_t()) / (2.0 * h);
+    /// assert!((sensitivity.eps_t.kappa - difference).abs() < 1e-7);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Self::collide`]; a switch that is a graze has no derivatives and is a
+    /// [`RunError::State`](stickslip_solver::RunError::State).
+    pub fn sensitivity(&self, contact: Contact) -> Result<Sensitivity, CollisionError> {
+        const TOGETHER: usize = STATE * (1 + PARAMETERS);
+        let system = Regularized::new(contact);
+        let start = Start { mode: Phase::first(&contact), s: 0.0, state: system.start() };
+        let by = Parameter::ALL.map(|p| State::from(system.equations.start_by(contact.psi(), p)));
+        let found = sensitivities::<_, _, STATE, GUARDS, PARAMETERS, TOGETHER>(
+            self.method(),
+            &system,
+            start,
+            by,
+            f64::INFINITY,
+            &self.options_for(&contact)?,
+        )?;
+        let phases = found.switches.iter().chain([&found.end]);
+        let mut time = [0.0; 1 + PARAMETERS];
+        let times: Vec<_> = phases
+            .map(|end| {
+                time = add(time, component(end, T));
+                time
+            })
+            .collect();
+        if found.outcome != (Outcome::EndedByGuard { guard: END }) {
+            return Err(CollisionError::Unfinished { outcome: found.outcome, time: time[0] });
+        }
+        let derived = |values: [f64; 1 + PARAMETERS]| {
+            let [value, ln_kappa, ln_psi, damping] = values;
+            Derived {
+                value,
+                kappa: ln_kappa / contact.kappa(),
+                psi: ln_psi / contact.psi(),
+                damping,
+            }
+        };
+        let end = &found.end;
+        let final_velocity =
+            derived(component(end, W).map(|part| system.equations.velocity_unit * part));
+        let earlier = if contact.damping() > 0.0 { 0.0 } else { 1.0 };
+        let contact_time = derived(time);
+        // A contact that sticks to its end, to rounding, has its last switch there.
+        let sticks = end.mode.regime == Regime::Stick;
+        let switches = found.switches.len() + usize::from(sticks);
+        Ok(Sensitivity {
+            eps_n: derived(component(end, V).map(|part| -part)),
+            eps_t: final_velocity.over_psi(contact.psi()),
+            final_velocity,
+            contact_time: Derived { damping: contact_time.damping - earlier, ..contact_time },
+            switch_times: times[..switches].iter().copied().map(derived).collect(),
+        })
+    }
+}
+
+impl Derived {
+    /// The quotient by the parameter ψ.
+    fn over_psi(self, psi: f64) -> Self {
+        let Self { value, kappa, psi: slope, damping } = self;
+        let quotient = value / psi;
+        Self {
+            value: quotient,
+            kappa: kappa / psi,
+            psi: (slope - quotient) / psi,
+            damping: damping / psi,
+        }
+    }
+}
+
+/// A component of the state where a phase ends, and its derivatives.
+fn component(
+    end: &SwitchSensitivity<Phase, STATE, PARAMETERS>,
+    index: usize,
+) -> [f64; 1 + PARAMETERS] {
+    let [a, b, c] = end.state_derivatives.map(|derivative| derivative[index]);
+    [end.state[index], a, b, c]
+}
+
+fn add<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
+    std::array::from_fn(|i| a[i] + b[i])
+}
+
+impl Regularized {
+    /// The equations and a state with their derivatives under a change.
+    fn along(
+        &self,
+        y: &State<STATE>,
+        change: &Change<STATE>,
+    ) -> (Equations<Dual64>, [Dual64; STATE]) {
+        let equations = self.equations.by(change.parameter.map(|index| Parameter::ALL[index]));
+        (equations, std::array::from_fn(|i| Dual64::new(array(y)[i], change.y[i])))
+    }
+}
+
+/// The terms of damping are always there, so that they have a derivative at a = 0.
+impl Differentiable<STATE, GUARDS, PARAMETERS> for Regularized {
+    fn field_change(
+        &self,
+        phase: Phase,
+        _s: f64,
+        y: &State<STATE>,
+        change: &Change<STATE>,
+    ) -> State<STATE> {
+        let (equations, y) = self.along(y, change);
+        equations.field::<true>(phase, &y).map(|part| part.eps).into()
+    }
+
+    fn guard_changes(
+        &self,
+        phase: Phase,
+        _s: f64,
+        y: &State<STATE>,
+        change: &Change<STATE>,
+    ) -> [f64; GUARDS] {
+        let (equations, y) = self.along(y, change);
+        let guards = equations.guards::<true>(phase, &y).map(|guard| guard.eps);
+        // u² + a v has a double zero at the end of contact without damping.
+        let damped = self.contact().damping() > 0.0;
+        [if damped { guards[END] } else { y[U].eps }, guards[SAME_SIDE], guards[OTHER_SIDE]]
+    }
+
+    fn transition_change(
+        &self,
+        phase: Phase,
+        guard: usize,
+        _s: f64,
+        y: &State<STATE>,
+        change: &Change<STATE>,
+    ) -> State<STATE> {
+        let next = self.next(phase, guard, y);
+        let (equations, y) = self.along(y, change);
+        equations.enter::<true>(next, &y).map(|part| part.eps).into()
+    }
+}

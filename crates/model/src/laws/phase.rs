@@ -1,0 +1,107 @@
+//! The phases of a contact, which all laws share, and the guards that end them.
+
+use std::fmt;
+
+use crate::contact::Contact;
+
+/// Guards of a phase.
+pub const GUARDS: usize = 3;
+
+/// Guard of the end of contact.
+pub const END: usize = 0;
+/// Guard of the switch on the side at hand.
+pub const SAME_SIDE: usize = 1;
+/// Guard of the switch to slip on the other side.
+pub const OTHER_SIDE: usize = 2;
+
+/// Which law the tangential force obeys.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
+pub enum Regime {
+    /// Coulomb sliding: the force is at its limit μ F_n.
+    Slip,
+    /// The tangential spring, below the limit.
+    Stick,
+}
+
+impl fmt::Display for Regime {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Slip => "slip",
+            Self::Stick => "stick",
+        })
+    }
+}
+
+/// The side of the spring's limit: the sign s of the elongation y = s L while sliding.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Side {
+    /// s = +1, the side of the initial motion.
+    Positive,
+    /// s = −1.
+    Negative,
+}
+
+impl Side {
+    /// The sign s = ±1.
+    #[must_use]
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Positive => 1.0,
+            Self::Negative => -1.0,
+        }
+    }
+
+    /// The other side.
+    #[must_use]
+    pub fn opposite(self) -> Self {
+        match self {
+            Self::Positive => Self::Negative,
+            Self::Negative => Self::Positive,
+        }
+    }
+}
+
+/// A phase of the contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Phase {
+    /// Its law.
+    pub regime: Regime,
+    /// The side of sliding; in stick, the side from which the spring comes.
+    pub side: Side,
+    /// How far it is from its start.
+    pub progress: Progress,
+}
+
+/// How far a phase is from its start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Progress {
+    /// The contact has just begun.
+    Touched,
+    /// A switch has just happened.
+    Switched,
+    /// The first step of the phase is done.
+    Settled,
+}
+
+impl Phase {
+    /// The first phase: slip without damping, since the limit grows as t^{3/2} and the spring as t;
+    /// stick with it, since the limit then grows as a √t.
+    #[must_use]
+    pub fn first(contact: &Contact) -> Self {
+        let regime = if contact.damping() > 0.0 { Regime::Stick } else { Regime::Slip };
+        Self { regime, side: Side::Positive, progress: Progress::Touched }
+    }
+
+    /// The phase that follows: the other regime, on the other side if the spring has reached its
+    /// limit there.
+    #[must_use]
+    pub fn after(self, on_other_side: bool) -> Self {
+        let regime = match self.regime {
+            Regime::Slip => Regime::Stick,
+            Regime::Stick => Regime::Slip,
+        };
+        let side = if on_other_side { self.side.opposite() } else { self.side };
+        Self { regime, side, progress: Progress::Switched }
+    }
+}

@@ -1,0 +1,30 @@
+//! The components of the state in regularized coordinates.
+
+use stickslip_solver::State;
+
+/// Components of the state.
+pub const STATE: usize = 8;
+
+/// u = √x.
+pub const U: usize = 0;
+/// v = dx/dt.
+pub const V: usize = 1;
+/// c ω y/σ while sticking, with c = max(1, κ^{1/4}) and σ = min(1, ψ), which makes errors of y and
+/// of switch times comparable to those of w.
+pub const SPRING: usize = 2;
+/// w/σ; see [`Regularized::velocity`](super::Regularized::velocity).
+pub const W: usize = 3;
+/// Time since the phase began.
+pub const T: usize = 4;
+/// Normal energy taken by damping.
+pub const DAMPING: usize = 5;
+/// gap/c, in the first step of a stick phase.
+pub const GAP: usize = 6;
+/// rate/c², in the first step of a stick phase.
+pub const RATE: usize = 7;
+
+/// The components of a state.
+#[inline(always)]
+pub(crate) fn array(y: &State<STATE>) -> &[f64; STATE] {
+    &y.data.0[0]
+}

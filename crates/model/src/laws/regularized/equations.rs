@@ -1,0 +1,241 @@
+//! The equations of the contact, for plain numbers and for numbers that carry a derivative.
+
+use num_dual::{Dual64, DualNum};
+
+use super::components::{GAP, RATE, SPRING, STATE, T as TIME, U, V, W};
+use crate::contact::Contact;
+use crate::laws::phase::{GUARDS, Phase, Progress, Regime, Side};
+
+/// What the equations are computed with.
+pub(crate) trait Number: DualNum<Primitive = f64> + Copy {}
+
+impl<T: DualNum<Primitive = f64> + Copy> Number for T {}
+
+/// The equations with the parameters of one contact.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Equations<T> {
+    kappa: T,
+    damping: T,
+    /// c.
+    pub scale: f64,
+    /// 1/c².
+    rate_scale: f64,
+    /// 2ωc and 2ω/c: rates of the spring and of the velocity.
+    pub spring_rate: T,
+    velocity_rate: T,
+    /// κ y over the component [`SPRING`].
+    pub spring_force: T,
+    /// σ = min(1, ψ), the size of the velocity.
+    pub velocity_unit: f64,
+}
+
+/// The force F and its first two derivatives with respect to s.
+#[derive(Clone, Copy)]
+pub(crate) struct Force<T> {
+    pub value: T,
+    pub first: T,
+    pub second: T,
+}
+
+/// A parameter of a contact; stiffness and impact ratio are taken by their logarithms, which suits
+/// values of any size.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Parameter {
+    LnKappa,
+    LnPsi,
+    Damping,
+}
+
+impl Parameter {
+    pub const ALL: [Self; 3] = [Self::LnKappa, Self::LnPsi, Self::Damping];
+}
+
+impl Equations<f64> {
+    pub fn new(contact: &Contact) -> Self {
+        let omega = contact.kappa().sqrt();
+        let scale = omega.sqrt().max(1.0);
+        let velocity_unit = contact.psi().min(1.0);
+        Self {
+            kappa: contact.kappa(),
+            damping: contact.damping(),
+            scale,
+            rate_scale: 1.0 / (scale * scale),
+            spring_rate: 2.0 * omega * scale,
+            velocity_rate: 2.0 * omega / scale,
+            spring_force: omega / scale * velocity_unit,
+            velocity_unit,
+        }
+    }
+
+    /// The same with the derivative by a parameter. The units c and σ stay what they are.
+    pub fn by(&self, parameter: Option<Parameter>) -> Equations<Dual64> {
+        let by_kappa = f64::from(parameter == Some(Parameter::LnKappa));
+        let by_damping = f64::from(parameter == Some(Parameter::Damping));
+        // These three are proportional to ω = √κ.
+        let like_root = |value: f64| Dual64::new(value, 0.5 * by_kappa * value);
+        Equations {
+            kappa: Dual64::new(self.kappa, by_kappa * self.kappa),
+            damping: Dual64::new(self.damping, by_damping),
+            scale: self.scale,
+            rate_scale: self.rate_scale,
+            spring_rate: like_root(self.spring_rate),
+            velocity_rate: like_root(self.velocity_rate),
+            spring_force: like_root(self.spring_force),
+            velocity_unit: self.velocity_unit,
+        }
+    }
+
+    /// The state at the start of contact.
+    pub fn start(&self, psi: f64) -> [f64; STATE] {
+        let mut y = [0.0; STATE];
+        y[V] = 1.0;
+        y[W] = psi / self.velocity_unit;
+        y[RATE] = self.rate_scale * self.damping;
+        y
+    }
+
+    /// Its derivative.
+    pub fn start_by(&self, psi: f64, parameter: Parameter) -> [f64; STATE] {
+        let mut y = [0.0; STATE];
+        match parameter {
+            Parameter::LnKappa => {}
+            Parameter::LnPsi => y[W] = psi / self.velocity_unit,
+            Parameter::Damping => y[RATE] = self.rate_scale,
+        }
+        y
+    }
+}
+
+impl<T: Number> Equations<T> {
+    /// Reduced tangential velocity w.
+    #[inline(always)]
+    pub fn velocity(&self, y: &[T; STATE]) -> T {
+        y[W] * self.velocity_unit
+    }
+
+    #[inline(always)]
+    pub fn force<const DAMPED: bool>(&self, u: T, v: T) -> Force<T> {
+        let uu = u * u;
+        if DAMPED {
+            let a = self.damping;
+            let f1 = uu + a * v;
+            let dv = uu * -2.0 * f1;
+            let df1 = u * 2.0 * v + a * dv;
+            let ddv = u * -2.0 * (v * 2.0 * f1 + u * df1);
+            let ddf1 = (v * v + u * dv) * 2.0 + a * ddv;
+            Force {
+                value: u * f1,
+                first: v * f1 + u * df1,
+                second: dv * f1 + v * 2.0 * df1 + u * ddf1,
+            }
+        } else {
+            let dv = uu * -2.0 * uu;
+            Force { value: uu * u, first: uu * 3.0 * v, second: u * 3.0 * (v * 2.0 * v + u * dv) }
+        }
+    }
+
+    #[inline(always)]
+    pub fn slip<const DAMPED: bool>(&self, side: Side, y: &[T; STATE]) -> [T; STATE] {
+        let (u, v, zero) = (y[U], y[V], T::from(0.0));
+        let dv = self.deceleration::<DAMPED>(u, v);
+        let pull = dv * (side.sign() / self.velocity_unit);
+        [v, dv, zero, pull, u * 2.0, self.loss::<DAMPED>(u, v), zero, zero]
+    }
+
+    #[inline(always)]
+    pub fn stick<const DAMPED: bool>(&self, y: &[T; STATE]) -> [T; STATE] {
+        let (u, v, zero) = (y[U], y[V], T::from(0.0));
+        let dv = self.deceleration::<DAMPED>(u, v);
+        let stretch = self.spring_rate * u * y[W];
+        let pull = -(self.velocity_rate * u) * y[SPRING];
+        [v, dv, stretch, pull, u * 2.0, self.loss::<DAMPED>(u, v), zero, zero]
+    }
+
+    /// Stick with its gap.
+    #[inline(always)]
+    pub fn first_stick<const DAMPED: bool>(&self, side: Side, y: &[T; STATE]) -> [T; STATE] {
+        let (u, v, w) = (y[U], y[V], self.velocity(y));
+        let pull = self.spring_force * y[SPRING];
+        let rate = self.force::<DAMPED>(u, v).second
+            + self.kappa * (2.0 * side.sign()) * (u * 2.0 * u * pull - v * w);
+        let mut slope = self.stick::<DAMPED>(y);
+        slope[GAP] = y[RATE] * self.scale;
+        slope[RATE] = rate * self.rate_scale;
+        slope
+    }
+
+    #[inline(always)]
+    pub fn deceleration<const DAMPED: bool>(&self, u: T, v: T) -> T {
+        let uu = u * u;
+        if DAMPED { uu * -2.0 * (uu + self.damping * v) } else { uu * uu * -2.0 }
+    }
+
+    #[inline(always)]
+    fn loss<const DAMPED: bool>(&self, u: T, v: T) -> T {
+        if DAMPED { self.damping * 2.0 * (u * v) * (u * v) } else { T::from(0.0) }
+    }
+
+    /// s κ w, of which the slip on side s has its guard.
+    #[inline(always)]
+    pub fn stretching(&self, side: Side, y: &[T; STATE]) -> T {
+        self.kappa * side.sign() * self.velocity(y)
+    }
+
+    /// The right-hand side of a phase.
+    #[inline(always)]
+    pub fn field<const DAMPED: bool>(&self, phase: Phase, y: &[T; STATE]) -> [T; STATE] {
+        match (phase.regime, phase.progress) {
+            (Regime::Slip, _) => self.slip::<DAMPED>(phase.side, y),
+            (Regime::Stick, Progress::Settled) => self.stick::<DAMPED>(y),
+            (Regime::Stick, _) => self.first_stick::<DAMPED>(phase.side, y),
+        }
+    }
+
+    /// The values of the guards. That of slip is s w − dL/dt, without damping in the form that has
+    /// no zero of its own where u = 0.
+    #[inline(always)]
+    pub fn guards<const DAMPED: bool>(&self, phase: Phase, y: &[T; STATE]) -> [T; GUARDS] {
+        let (u, v) = (y[U], y[V]);
+        let end = if DAMPED { u * u + self.damping * v } else { u };
+        match phase.regime {
+            Regime::Slip => {
+                let pull = self.stretching(phase.side, y);
+                let leave = if DAMPED {
+                    u * 2.0 * pull - self.force::<true>(u, v).first
+                } else {
+                    pull - u * 1.5 * v
+                };
+                [end, leave, T::from(1.0)]
+            }
+            Regime::Stick => {
+                let pull = (self.spring_force * y[SPRING]) * phase.side.sign();
+                if phase.progress == Progress::Settled {
+                    let force = u * (u * u + self.damping * v);
+                    [end, force - pull, force + pull]
+                } else if DAMPED {
+                    // A phase may begin so late that u² + a v is nothing but rounding: the force is
+                    // what gap and spring say.
+                    let gap = y[GAP] * self.scale;
+                    [gap + pull, gap, gap + pull * 2.0]
+                } else {
+                    [end, y[GAP], u * u * u + pull]
+                }
+            }
+        }
+    }
+
+    /// The state in which the phase `next` begins.
+    #[inline(always)]
+    pub fn enter<const DAMPED: bool>(&self, next: Phase, y: &[T; STATE]) -> [T; STATE] {
+        let zero = T::from(0.0);
+        let spring = match next.regime {
+            Regime::Stick => {
+                self.force::<DAMPED>(y[U], y[V]).value * next.side.sign() / self.spring_force
+            }
+            Regime::Slip => zero,
+        };
+        let mut y = *y;
+        (y[TIME], y[GAP], y[RATE], y[SPRING]) = (zero, zero, zero, spring);
+        y
+    }
+}

@@ -1,0 +1,120 @@
+//! What a collision returns, the same for every engine.
+
+use smallvec::SmallVec;
+
+mod energy;
+mod finite;
+
+use crate::contact::Contact;
+use crate::laws::phase::{OTHER_SIDE, Phase, Regime, SAME_SIDE, Side};
+pub use energy::EnergyLedger;
+pub use finite::NotFinite;
+
+/// A switch between Coulomb sliding and the spring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Switch {
+    /// Scaled time since the start of contact.
+    pub time: f64,
+    /// Scaled time until the end of contact, accurate relative to itself however small it is.
+    pub time_left: f64,
+    /// The regime that begins.
+    pub to: Regime,
+    /// The side of the sliding that begins, or for a switch to stick, of the sliding that ends.
+    pub side: Side,
+    /// Reduced elongation y of the spring.
+    pub spring: f64,
+    /// Reduced tangential velocity w.
+    pub velocity: f64,
+}
+
+/// Switches of which a collision allocates nothing: as many as it may have below κ = 240.
+pub const FEW_SWITCHES: usize = 16;
+
+/// The switches of a collision: a slice whose first [`FEW_SWITCHES`] lie in the collision itself.
+pub type Switches = SmallVec<[Switch; FEW_SWITCHES]>;
+
+/// The outcome of one collision in reduced variables.
+///
+/// The same type comes from the integrator and from the exact engine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Collision {
+    /// The collision's parameters.
+    pub contact: Contact,
+    /// Coefficient of normal restitution ε_n = −ẋ(t_c)/ẋ(0).
+    pub eps_n: f64,
+    /// Reduced tangential velocity w at the end of contact; ε_t = w/ψ.
+    pub final_velocity: f64,
+    /// Scaled duration t_c of the contact.
+    pub contact_time: f64,
+    /// The regime in which the contact starts: slip without damping, stick with it.
+    pub start: Regime,
+    /// Every switch, in order of time.
+    pub switches: Switches,
+    /// Number of sign changes of the tangential velocity during contact.
+    pub reversals: usize,
+    /// Where the energy went.
+    pub energy: EnergyLedger,
+}
+
+impl Collision {
+    /// A collision of which nothing is known yet.
+    #[must_use]
+    pub fn before(contact: Contact) -> Self {
+        Self {
+            contact,
+            eps_n: f64::NAN,
+            final_velocity: f64::NAN,
+            contact_time: f64::NAN,
+            start: Phase::first(&contact).regime,
+            switches: Switches::new(),
+            reversals: 0,
+            energy: EnergyLedger::default(),
+        }
+    }
+
+    /// Forgets everything but its memory, which stays where it is.
+    pub(crate) fn reset(&mut self, contact: Contact) {
+        self.contact = contact;
+        (self.eps_n, self.final_velocity, self.contact_time) = (f64::NAN, f64::NAN, f64::NAN);
+        self.start = Phase::first(&contact).regime;
+        self.switches.clear();
+        self.reversals = 0;
+        self.energy = EnergyLedger::default();
+    }
+
+    /// Coefficient of tangential restitution ε_t = g_t(t_c)/g_t(0); −1 is full reversal.
+    #[must_use]
+    pub fn eps_t(&self) -> f64 {
+        self.final_velocity / self.contact.psi()
+    }
+
+    /// One character a phase: `+` and `-` for slip on side ±1, `o` for stick.
+    #[must_use]
+    pub fn itinerary(&self) -> String {
+        let start = match self.start {
+            Regime::Slip => '+',
+            Regime::Stick => 'o',
+        };
+        let entered = self.switches.iter().map(|switch| match (switch.to, switch.side) {
+            (Regime::Stick, _) => 'o',
+            (Regime::Slip, Side::Positive) => '+',
+            (Regime::Slip, Side::Negative) => '-',
+        });
+        std::iter::once(start).chain(entered).collect()
+    }
+
+    /// The guards that fired: [`SAME_SIDE`] or [`OTHER_SIDE`] for each switch.
+    ///
+    /// It is the name of the itinerary that margins use, see
+    /// [`exact::Margins::fired`](crate::exact::Margins::fired).
+    #[must_use]
+    pub fn fired(&self) -> Vec<usize> {
+        let mut side = Side::Positive;
+        let guard = |switch: &Switch| {
+            let same = std::mem::replace(&mut side, switch.side) == switch.side;
+            if same { SAME_SIDE } else { OTHER_SIDE }
+        };
+        self.switches.iter().map(guard).collect()
+    }
+}

@@ -1,0 +1,41 @@
+//! The energy ledger of a collision.
+
+/// Where the energy of a collision went, in reduced variables.
+///
+/// The normal motion and the tangential motion exchange no energy; each has its own account.
+/// Units: normal energies in m g_n² (½ at impact), tangential energies in α m g_n² (μ/α)²
+/// (ψ²/2 at impact).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct EnergyLedger {
+    /// Tangential energy at impact, ψ²/2.
+    pub tangential_initial: f64,
+    /// Tangential kinetic energy at the end, w²/2.
+    pub tangential_final: f64,
+    /// Tangential energy taken by Coulomb sliding, ∫ F (s w − dL/dt) dt over all slip phases.
+    pub sliding: f64,
+    /// Tangential energy left in the spring at the end, κ y²/2.
+    pub spring_left: f64,
+    /// Normal energy at impact, ½.
+    pub normal_initial: f64,
+    /// Normal kinetic energy at the end, ε_n²/2.
+    pub normal_final: f64,
+    /// Normal energy taken by damping, ∫ a √x ẋ² dt.
+    pub damping: f64,
+    /// Normal energy left in the compression at the end, (2/5) x^{5/2}; 0 without damping.
+    pub compression_left: f64,
+}
+
+impl EnergyLedger {
+    /// Tangential energy that the account does not explain.
+    #[must_use]
+    pub fn tangential_unbalanced(&self) -> f64 {
+        self.tangential_initial - self.tangential_final - self.sliding - self.spring_left
+    }
+
+    /// Normal energy that the account does not explain.
+    #[must_use]
+    pub fn normal_unbalanced(&self) -> f64 {
+        self.normal_initial - self.normal_final - self.damping - self.compression_left
+    }
+}

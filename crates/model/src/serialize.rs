@@ -1,0 +1,160 @@
+//! Results as JSON objects, with the names and the order in which programs print them.
+//!
+//! Here are the types whose object differs from their fields; the others derive it. Numbers in SI
+//! units have the unit in their name.
+
+use serde::ser::{Serialize, SerializeStruct, Serializer};
+
+use crate::Vector3;
+use crate::contact::Contact;
+use crate::engines::Engine;
+use crate::laws::phase::Side;
+use crate::result::Collision;
+use crate::spheres::encounter::{Encounter, Motion};
+use crate::spheres::outcome::EnergyAccount;
+use crate::spheres::report::ImpactReport;
+
+/// `name`, and for an integrator `rtol` and `atol`.
+impl Serialize for Engine {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let tolerances = self.tolerances();
+        let fields = if tolerances.is_some() { 3 } else { 1 };
+        let mut object = serializer.serialize_struct("Engine", fields)?;
+        object.serialize_field("name", self.name())?;
+        if let Some(tolerances) = tolerances {
+            object.serialize_field("rtol", &tolerances.rtol)?;
+            object.serialize_field("atol", &tolerances.atol)?;
+        }
+        object.end()
+    }
+}
+
+/// 1 or −1.
+impl Serialize for Side {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_i8(match self {
+            Self::Positive => 1,
+            Self::Negative => -1,
+        })
+    }
+}
+
+/// The contact as `parameters`, and the results, computed ones included.
+impl Serialize for Collision {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut object = serializer.serialize_struct("Collision", 10)?;
+        object.serialize_field("parameters", &self.contact)?;
+        object.serialize_field("eps_n", &self.eps_n)?;
+        object.serialize_field("eps_t", &self.eps_t())?;
+        object.serialize_field("w_final", &self.final_velocity)?;
+        object.serialize_field("contact_time", &self.contact_time)?;
+        object.serialize_field("switch_count", &self.switches.len())?;
+        object.serialize_field("reversals", &self.reversals)?;
+        object.serialize_field("itinerary", &self.itinerary())?;
+        object.serialize_field("switches", &self.switches[..])?;
+        object.serialize_field("energy", &self.energy)?;
+        object.end()
+    }
+}
+
+/// The geometry of the contact and its velocities.
+impl Serialize for Encounter {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut object = serializer.serialize_struct("Encounter", 5)?;
+        object.serialize_field("point_m", &components(&self.contact_point_m))?;
+        object.serialize_field("normal", &components(&self.normal))?;
+        object.serialize_field("tangent", &self.tangent.as_ref().map(components))?;
+        object.serialize_field("normal_m_per_s", &self.normal_m_per_s)?;
+        object.serialize_field("tangential_m_per_s", &self.tangential_m_per_s)?;
+        object.end()
+    }
+}
+
+/// Position, velocity and spin, as arrays.
+impl Serialize for Motion {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut object = serializer.serialize_struct("Motion", 3)?;
+        object.serialize_field("position_m", &components(&self.position_m))?;
+        object.serialize_field("velocity_m_per_s", &components(&self.velocity_m_per_s))?;
+        object.serialize_field("spin_rad_per_s", &components(&self.spin_rad_per_s))?;
+        object.end()
+    }
+}
+
+/// The entries in J without the unit in their names, and what they leave unexplained.
+impl Serialize for EnergyAccount {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut object = serializer.serialize_struct("EnergyAccount", 8)?;
+        object.serialize_field("kinetic_before", &self.kinetic_before_j)?;
+        object.serialize_field("kinetic_after", &self.kinetic_after_j)?;
+        object.serialize_field("work_of_wall", &self.work_of_wall_j)?;
+        object.serialize_field("sliding", &self.sliding_j)?;
+        object.serialize_field("damping", &self.damping_j)?;
+        object.serialize_field("spring_left", &self.spring_left_j)?;
+        object.serialize_field("compression_left", &self.compression_left_j)?;
+        object.serialize_field("unbalanced", &self.unbalanced_j())?;
+        object.end()
+    }
+}
+
+/// Schema "stickslip.impact/1" without `schema`, `method` and `statistics`.
+impl Serialize for ImpactReport {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let outcome = &self.outcome;
+        let spheres: Vec<_> = self.spheres().iter().map(MotionAfter).collect();
+        let mut object = serializer.serialize_struct("ImpactReport", 14)?;
+        object.serialize_field("parameters", &ScaledParameters(self))?;
+        object.serialize_field("contact", &self.encounter)?;
+        object.serialize_field("eps_n", &outcome.eps_n)?;
+        object.serialize_field("eps_t", &outcome.eps_t)?;
+        object.serialize_field("contact_time_s", &outcome.contact_time_s)?;
+        object.serialize_field("switch_count", &outcome.switches.len())?;
+        object.serialize_field("reversals", &self.reversals())?;
+        object.serialize_field("itinerary", &self.itinerary())?;
+        object.serialize_field("spheres", &spheres)?;
+        object.serialize_field("impulse_n_s", &components(&outcome.impulse_n_s))?;
+        object.serialize_field("switches", &outcome.switches[..])?;
+        object.serialize_field("energy_j", &outcome.energy)?;
+        object.serialize_field("observed", &outcome.observed)?;
+        object.serialize_field("comparison", &self.comparison)?;
+        object.end()
+    }
+}
+
+/// The scaled parameters of an impact, and the units that lead back to SI.
+struct ScaledParameters<'a>(&'a ImpactReport);
+
+impl Serialize for ScaledParameters<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let impact = &self.0.encounter.impact;
+        let (pair, contact): (_, &Contact) = (&impact.pair, &impact.contact);
+        let mut object = serializer.serialize_struct("ScaledParameters", 10)?;
+        object.serialize_field("kappa", &contact.kappa())?;
+        object.serialize_field("psi", &self.0.psi())?;
+        object.serialize_field("damping", &contact.damping())?;
+        object.serialize_field("alpha", &pair.alpha)?;
+        object.serialize_field("effective_mass_kg", &pair.effective_mass_kg)?;
+        object.serialize_field("effective_radius_m", &pair.effective_radius_m)?;
+        object.serialize_field("elastic_constant_n_per_m1_5", &pair.elastic_constant)?;
+        object.serialize_field("time_unit_s", &impact.time_unit_s)?;
+        object.serialize_field("length_unit_m", &impact.length_unit_m())?;
+        object.serialize_field("force_unit_n", &impact.force_unit_n())?;
+        object.end()
+    }
+}
+
+/// The motion of a sphere after the contact. Its position is that at impact and is left out.
+struct MotionAfter<'a>(&'a Motion);
+
+impl Serialize for MotionAfter<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut object = serializer.serialize_struct("MotionAfter", 2)?;
+        object.serialize_field("velocity_m_per_s", &components(&self.0.velocity_m_per_s))?;
+        object.serialize_field("spin_rad_per_s", &components(&self.0.spin_rad_per_s))?;
+        object.end()
+    }
+}
+
+fn components(vector: &Vector3<f64>) -> [f64; 3] {
+    (*vector).into()
+}

@@ -1,0 +1,133 @@
+//! Spheres and walls, and what they are made of.
+
+use super::quantity;
+use crate::contact::InvalidParameter;
+
+/// A homogeneous elastic material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material {
+    /// Young's modulus Y in Pa.
+    pub young_modulus_pa: f64,
+    /// Poisson's ratio ν.
+    pub poisson_ratio: f64,
+    /// Density in kg/m³.
+    pub density_kg_per_m3: f64,
+}
+
+impl Material {
+    /// What the material is to a contact.
+    #[must_use]
+    pub fn elasticity(&self) -> Elasticity {
+        Elasticity { young_modulus_pa: self.young_modulus_pa, poisson_ratio: self.poisson_ratio }
+    }
+}
+
+/// The elastic constants of a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Elasticity {
+    /// Young's modulus Y in Pa.
+    pub young_modulus_pa: f64,
+    /// Poisson's ratio ν.
+    pub poisson_ratio: f64,
+}
+
+impl Elasticity {
+    /// Checks both constants.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`] names the first that is out of its range.
+    pub fn validate(&self) -> Result<(), InvalidParameter> {
+        quantity::YOUNG_MODULUS.check(self.young_modulus_pa)?;
+        quantity::POISSON_RATIO.check(self.poisson_ratio)?;
+        Ok(())
+    }
+
+    /// (1 − ν²)/Y in 1/Pa, the body's part of 1/E*.
+    pub(crate) fn normal_compliance(&self) -> f64 {
+        (1.0 - self.poisson_ratio * self.poisson_ratio) / self.young_modulus_pa
+    }
+
+    /// (2 − ν)/G in 1/Pa with G = Y/(2(1 + ν)), the body's part of 1/G*.
+    pub(crate) fn tangential_compliance(&self) -> f64 {
+        (2.0 - self.poisson_ratio) * 2.0 * (1.0 + self.poisson_ratio) / self.young_modulus_pa
+    }
+}
+
+/// A sphere whose mass lies around its centre, evenly in all directions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere {
+    /// Radius R in m.
+    pub radius_m: f64,
+    /// Mass in kg.
+    pub mass_kg: f64,
+    /// Moment of inertia J about any axis through the centre, in kg m².
+    pub moment_of_inertia_kg_m2: f64,
+    /// What it is made of.
+    pub elasticity: Elasticity,
+}
+
+impl Sphere {
+    /// A homogeneous sphere.
+    #[must_use]
+    pub fn homogeneous(radius_m: f64, material: &Material) -> Self {
+        let mass_kg = Self::homogeneous_mass(radius_m, material.density_kg_per_m3);
+        Self {
+            radius_m,
+            mass_kg,
+            moment_of_inertia_kg_m2: Self::homogeneous_moment(radius_m, mass_kg),
+            elasticity: material.elasticity(),
+        }
+    }
+
+    /// Mass (4/3)πR³ density in kg of a homogeneous sphere.
+    #[must_use]
+    pub fn homogeneous_mass(radius_m: f64, density_kg_per_m3: f64) -> f64 {
+        4.0 / 3.0 * std::f64::consts::PI * radius_m.powi(3) * density_kg_per_m3
+    }
+
+    /// Moment of inertia (2/5) m R² in kg m² of a homogeneous sphere.
+    #[must_use]
+    pub fn homogeneous_moment(radius_m: f64, mass_kg: f64) -> f64 {
+        0.4 * mass_kg * radius_m * radius_m
+    }
+
+    /// Checks all quantities.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`] names the first that is out of its range.
+    pub fn validate(&self) -> Result<(), InvalidParameter> {
+        quantity::RADIUS.check(self.radius_m)?;
+        quantity::MASS.check(self.mass_kg)?;
+        quantity::MOMENT_OF_INERTIA.check(self.moment_of_inertia_kg_m2)?;
+        self.elasticity.validate()
+    }
+}
+
+/// A plane wall: a sphere in the limit of infinite radius, mass and moment of inertia.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wall {
+    /// What it is made of; `None` is a rigid wall.
+    pub elasticity: Option<Elasticity>,
+}
+
+/// What a sphere hits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Body {
+    /// Another sphere.
+    Sphere(Sphere),
+    /// A wall.
+    Wall(Wall),
+}
+
+impl Body {
+    /// Checks all quantities.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`] names the first that is out of its range.
+    pub fn validate(&self) -> Result<(), InvalidParameter> {
+        match self {
+            Self::Sphere(sphere) => sphere.validate(),
+            Self::Wall(Wall { elasticity }) => elasticity.map_or(Ok(()), |e| e.validate()),
+        }
+    }
+}

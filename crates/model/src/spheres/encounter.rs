@@ -1,0 +1,271 @@
+//! Two bodies about to touch, in three dimensions: start reading here for spheres in SI units.
+//!
+//! Source: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008), equations (4)–(7), (11),
+//! (12).
+
+use nalgebra::Vector3;
+
+use super::bodies::{Body, Sphere, Wall};
+use super::scaling::{Impact, Pair, Surface};
+use crate::contact::{Contact, InvalidParameter};
+
+/// Largest relative difference between the radii and the distance at which bodies count as
+/// touching.
+pub const TOUCH: f64 = 1e-6;
+
+/// Where a sphere is and how it moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion {
+    /// Position of the centre in m.
+    pub position_m: Vector3<f64>,
+    /// Velocity of the centre in m/s.
+    pub velocity_m_per_s: Vector3<f64>,
+    /// Angular velocity Ω in rad/s.
+    pub spin_rad_per_s: Vector3<f64>,
+}
+
+/// Where a wall is and how it moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WallMotion {
+    /// A point of the wall's surface in m.
+    pub point_m: Vector3<f64>,
+    /// Direction out of the wall, of any length.
+    pub normal: Vector3<f64>,
+    /// Velocity in m/s of the wall where it is touched.
+    pub velocity_m_per_s: Vector3<f64>,
+}
+
+/// Two bodies that touch and approach each other.
+///
+/// Positions decide the normal n, from the second body to the first, and the point of contact,
+/// which divides the line between the centres in the ratio of the radii. During contact n and the
+/// tangential direction t stay as they are. The lever arms are the distances of the centres from
+/// that point: momentum and angular momentum about any point are conserved to rounding, although
+/// the arms may differ from the radii by [`TOUCH`].
+///
+/// ```
+/// use stickslip_model::{Collider, Encounter, Material, Motion, Sphere, Surface, Vector3};
+///
+/// let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
+/// let surface = Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e9, damping_time_s: 0.0 };
+/// let sphere = Sphere::homogeneous(0.02, &steel);
+/// let rest = Motion {
+///     position_m: Vector3::zeros(),
+///     velocity_m_per_s: Vector3::zeros(),
+///     spin_rad_per_s: Vector3::zeros(),
+/// };
+/// let falling = Motion {
+///     position_m: Vector3::new(0.0, 0.0, 0.04),
+///     velocity_m_per_s: Vector3::new(4.0, 0.0, -20.0),
+///     ..rest
+/// };
+/// let encounter = Encounter::of_spheres((&sphere, &falling), (&sphere, &rest), &surface)?;
+/// let collision = Collider::default().collide(encounter.contact())?;
+/// let outcome = encounter.outcome(&collision);
+/// let [first, second] = outcome.motions;
+/// assert!((first.velocity_m_per_s.z - 0.0).abs() < 1e-9 && (second.velocity_m_per_s.z + 20.0).abs() < 1e-9);
+/// let momentum = first.velocity_m_per_s + second.velocity_m_per_s - falling.velocity_m_per_s;
+/// assert!(momentum.norm() < 1e-14);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Encounter {
+    /// Point of contact in m.
+    pub contact_point_m: Vector3<f64>,
+    /// Unit vector n from the second body to the first.
+    pub normal: Vector3<f64>,
+    /// Unit vector t along the tangential velocity of the surfaces; `None` in a central impact,
+    /// which has none.
+    pub tangent: Option<Vector3<f64>>,
+    /// Normal velocity g_n > 0 of approach in m/s.
+    pub normal_m_per_s: f64,
+    /// Tangential velocity g_t of the surfaces in m/s, 0 in a central impact.
+    pub tangential_m_per_s: f64,
+    /// The impact, reduced to what the contact feels. In a central impact, whose tangential motion
+    /// is nil, its ψ stands for another impact with the same normal motion.
+    pub impact: Impact,
+    pub(crate) parties: [Party; 2],
+}
+
+/// One of the two bodies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Party {
+    /// `None` is a wall, which nothing moves.
+    pub sphere: Option<Sphere>,
+    /// Distance of the centre from the point of contact; 0 for a wall.
+    pub arm_m: f64,
+    pub motion: Motion,
+}
+
+impl Encounter {
+    /// Two spheres.
+    ///
+    /// # Errors
+    /// [`EncounterError`]: a quantity is out of its range, the spheres do not touch, or they do not approach.
+    pub fn of_spheres(
+        first: (&Sphere, &Motion),
+        second: (&Sphere, &Motion),
+        surface: &Surface,
+    ) -> Result<Self, EncounterError> {
+        let pair = Pair::new(first.0, &Body::Sphere(*second.0), surface)?;
+        let separation = first.1.position_m - second.1.position_m;
+        let distance_m = separation.norm();
+        let touching_m = first.0.radius_m + second.0.radius_m;
+        require_touch("distance of the centres", distance_m, touching_m)?;
+        let normal = separation / distance_m;
+        let party = |(sphere, motion): (&Sphere, &Motion)| Party {
+            sphere: Some(*sphere),
+            arm_m: sphere.radius_m * (distance_m / touching_m),
+            motion: *motion,
+        };
+        let parties = [party(first), party(second)];
+        let contact_point_m = second.1.position_m + normal * parties[1].arm_m;
+        Self::new(pair, parties, normal, contact_point_m)
+    }
+
+    /// A sphere, the first body, and a wall, the second.
+    ///
+    /// # Errors
+    /// [`EncounterError`]: a quantity is out of its range, the sphere does not touch the wall on the side to which
+    /// the wall's normal points, or they do not approach.
+    pub fn with_wall(
+        sphere: (&Sphere, &Motion),
+        wall: (&Wall, &WallMotion),
+        surface: &Surface,
+    ) -> Result<Self, EncounterError> {
+        let (WallMotion { point_m, normal, velocity_m_per_s }, position_m) =
+            (*wall.1, sphere.1.position_m);
+        let pair = Pair::new(sphere.0, &Body::Wall(*wall.0), surface)?;
+        // Scaled first, so that no length is too large or too small for its square.
+        let normal = normal / normal.amax();
+        let normal = normal / normal.norm();
+        if !normal.iter().all(|component| component.is_finite()) {
+            return Err(EncounterError::NoNormal);
+        }
+        let height_m = (position_m - point_m).dot(&normal);
+        require_touch("height of the centre above the wall", height_m, sphere.0.radius_m)?;
+        let still =
+            Motion { position_m: point_m, velocity_m_per_s, spin_rad_per_s: Vector3::zeros() };
+        let parties = [
+            Party { sphere: Some(*sphere.0), arm_m: height_m, motion: *sphere.1 },
+            Party { sphere: None, arm_m: 0.0, motion: still },
+        ];
+        Self::new(pair, parties, normal, position_m - normal * height_m)
+    }
+
+    /// The scaled collision that decides the outcome; of a central impact, one with the same normal
+    /// motion.
+    #[must_use]
+    pub fn contact(&self) -> Contact {
+        self.impact.contact
+    }
+
+    /// Whether the surfaces meet without a tangential velocity.
+    #[must_use]
+    pub fn is_central(&self) -> bool {
+        self.tangent.is_none()
+    }
+
+    /// The spheres: two, or one before a wall.
+    pub fn spheres(&self) -> impl Iterator<Item = &Sphere> {
+        self.parties.iter().filter_map(|party| party.sphere.as_ref())
+    }
+
+    fn new(
+        pair: Pair,
+        parties: [Party; 2],
+        normal: Vector3<f64>,
+        contact_point_m: Vector3<f64>,
+    ) -> Result<Self, EncounterError> {
+        let [one, two] = parties.map(|party| party.motion);
+        let turning = parties.iter().filter_map(|party| {
+            party.sphere.map(|sphere| party.arm_m * party.arm_m / sphere.moment_of_inertia_kg_m2)
+        });
+        let alpha = 1.0 / (1.0 + pair.effective_mass_kg * turning.sum::<f64>());
+        let pair = Pair { alpha, ..pair };
+
+        let approach = one.velocity_m_per_s - two.velocity_m_per_s;
+        let turn = one.spin_rad_per_s * parties[0].arm_m + two.spin_rad_per_s * parties[1].arm_m;
+        let normal_m_per_s = -approach.dot(&normal);
+        if !normal_m_per_s.is_finite() || !turn.iter().all(|component| component.is_finite()) {
+            return Err(EncounterError::NotFinite);
+        }
+        if normal_m_per_s <= 0.0 {
+            return Err(EncounterError::NotApproaching { normal_m_per_s });
+        }
+        let sliding = tangential(&(approach - turn.cross(&normal)), &normal);
+        let speeds = parties.map(|party| {
+            let Motion { velocity_m_per_s, spin_rad_per_s, .. } = party.motion;
+            velocity_m_per_s.norm() + party.arm_m * spin_rad_per_s.norm()
+        });
+        let (tangent, tangential_m_per_s) = direction(&sliding, speeds[0] + speeds[1])
+            .map_or((None, 0.0), |(tangent, speed)| (Some(tangent), speed));
+        // The normal motion does not depend on the tangential one; a central impact borrows any.
+        let borrowed = if tangent.is_some() { tangential_m_per_s } else { normal_m_per_s };
+        let impact = pair.impact(normal_m_per_s, borrowed)?;
+        Ok(Self {
+            contact_point_m,
+            normal,
+            tangent,
+            normal_m_per_s,
+            tangential_m_per_s,
+            impact,
+            parties,
+        })
+    }
+}
+
+/// Why two bodies do not collide.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum EncounterError {
+    /// A quantity is out of its range.
+    #[error(transparent)]
+    Invalid(#[from] InvalidParameter),
+    /// The bodies are apart, or overlap.
+    #[error(
+        "the {name} = {value_m} m: the bodies {}; expected {touching_m} m, within {TOUCH:e} of it",
+        if value_m > touching_m { "are apart" } else { "overlap" }
+    )]
+    NotTouching {
+        /// Which distance.
+        name: &'static str,
+        /// Its value in m.
+        value_m: f64,
+        /// Its value in m when the bodies touch.
+        touching_m: f64,
+    },
+    /// The bodies separate, or keep their distance.
+    #[error(
+        "the normal velocity of approach = {normal_m_per_s} m/s: the bodies do not approach; expected a finite \
+         number above 0"
+    )]
+    NotApproaching {
+        /// Velocity of approach in m/s.
+        normal_m_per_s: f64,
+    },
+    /// The normal of a wall has no direction.
+    #[error("the wall's normal has no direction; expected three finite numbers that are not all 0")]
+    NoNormal,
+    /// The velocity of the surfaces is beyond the range of numbers.
+    #[error("the velocity of the surfaces is not finite; expected finite velocities and spins")]
+    NotFinite,
+}
+
+/// The part of `vector` across `normal`.
+pub(crate) fn tangential(vector: &Vector3<f64>, normal: &Vector3<f64>) -> Vector3<f64> {
+    vector - normal * vector.dot(normal)
+}
+
+/// Direction and length of a difference of velocities whose sizes add up to `speed`; `None` if
+/// there is nothing but their rounding.
+pub(crate) fn direction(difference: &Vector3<f64>, speed: f64) -> Option<(Vector3<f64>, f64)> {
+    let length = difference.norm();
+    (length > 8.0 * f64::EPSILON * speed).then(|| (difference / length, length))
+}
+
+fn require_touch(name: &'static str, value_m: f64, touching_m: f64) -> Result<(), EncounterError> {
+    if (value_m - touching_m).abs() <= TOUCH * touching_m {
+        return Ok(());
+    }
+    Err(EncounterError::NotTouching { name, value_m, touching_m })
+}

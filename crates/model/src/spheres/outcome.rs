@@ -1,0 +1,179 @@
+//! What an encounter leaves: motions, switches and energy in SI units.
+
+use nalgebra::Vector3;
+use smallvec::SmallVec;
+
+use super::encounter::{Encounter, Motion, Party};
+use super::observed::Observed;
+use crate::laws::phase::{Regime, Side};
+use crate::result::{Collision, FEW_SWITCHES, Switch};
+
+/// Two bodies after their collision.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// Motions after the contact; positions are those at impact. A wall keeps its motion.
+    pub motions: [Motion; 2],
+    /// Impulse on the first body in N s; the second one receives the opposite.
+    pub impulse_n_s: Vector3<f64>,
+    /// Coefficient of normal restitution ε_n.
+    pub eps_n: f64,
+    /// Coefficient of tangential restitution ε_t = g_t(t_c)/g_t(0), −1 is full reversal; none in a
+    /// central impact.
+    pub eps_t: Option<f64>,
+    /// Duration of the contact in s.
+    pub contact_time_s: f64,
+    /// Every switch between slip and stick, in order of time; none in a central impact.
+    pub switches: SmallVec<[ForceSwitch; FEW_SWITCHES]>,
+    /// Where the energy went.
+    pub energy: EnergyAccount,
+    /// What experiments report.
+    pub observed: Observed,
+}
+
+/// A switch between Coulomb sliding and the spring, in SI units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct ForceSwitch {
+    /// Time since the start of contact in s.
+    pub time_s: f64,
+    /// Time until the end of contact in s.
+    pub time_left_s: f64,
+    /// The regime that begins.
+    pub to: Regime,
+    /// The side of the sliding that begins, or for a switch to stick, of the sliding that ends.
+    pub side: Side,
+    /// Elongation ζ of the tangential spring in m.
+    pub spring_m: f64,
+    /// Tangential velocity of the surfaces along t in m/s.
+    pub velocity_m_per_s: f64,
+    /// Normal force F_n in N.
+    pub normal_force_n: f64,
+    /// Tangential force F_t = −k_t ζ in N on the first body along t; at a switch |F_t| = μ F_n.
+    pub tangential_force_n: f64,
+}
+
+/// Where the energy of a collision went, in J.
+///
+/// Kinetic energies are those of the spheres, rotation included, in the frame in which the motions
+/// are given.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct EnergyAccount {
+    /// Kinetic energy at impact.
+    pub kinetic_before_j: f64,
+    /// Kinetic energy after the contact.
+    pub kinetic_after_j: f64,
+    /// Work of a moving wall on the sphere, impulse · velocity of the wall.
+    pub work_of_wall_j: f64,
+    /// Taken by Coulomb sliding.
+    pub sliding_j: f64,
+    /// Taken by the damping of the normal force.
+    pub damping_j: f64,
+    /// Left in the tangential spring when the contact ends.
+    pub spring_left_j: f64,
+    /// Left in the compression when the contact ends; 0 without damping.
+    pub compression_left_j: f64,
+}
+
+impl EnergyAccount {
+    /// What the account does not explain, in J: it measures the errors of the calculation.
+    #[must_use]
+    pub fn unbalanced_j(&self) -> f64 {
+        self.kinetic_before_j + self.work_of_wall_j
+            - self.kinetic_after_j
+            - self.sliding_j
+            - self.damping_j
+            - self.spring_left_j
+            - self.compression_left_j
+    }
+}
+
+impl Encounter {
+    /// The outcome, given the `collision` of [`Self::contact`] from any engine.
+    #[must_use]
+    pub fn outcome(&self, collision: &Collision) -> Outcome {
+        let impact = &self.impact;
+        let pair = &impact.pair;
+        let [m, alpha] = [pair.effective_mass_kg, pair.alpha];
+        let eps_t = self.tangent.map(|_| collision.eps_t());
+        let along_normal = m * (1.0 + collision.eps_n) * self.normal_m_per_s;
+        let along_tangent =
+            eps_t.map_or(0.0, |eps_t| alpha * m * (eps_t - 1.0) * self.tangential_m_per_s);
+        let tangent = self.tangent.unwrap_or_default();
+        let impulse = self.normal * along_normal + tangent * along_tangent;
+        // The force of the second body is the opposite one, and so is its lever arm.
+        let twist = self.normal.cross(&tangent) * -along_tangent;
+        let [one, two] = &self.parties;
+        let motions = [one.after(impulse, twist), two.after(-impulse, twist)];
+
+        let wall = self.parties.iter().find(|party| party.sphere.is_none());
+        let kinetic = |motions: [&Motion; 2]| one.energy(motions[0]) + two.energy(motions[1]);
+        let normal_unit_j = m * self.normal_m_per_s * self.normal_m_per_s;
+        let slope = pair.surface.friction / alpha;
+        let tangential_unit_j =
+            if self.tangent.is_some() { alpha * slope * slope * normal_unit_j } else { 0.0 };
+        let ledger = &collision.energy;
+        let energy = EnergyAccount {
+            kinetic_before_j: kinetic([&one.motion, &two.motion]),
+            kinetic_after_j: kinetic([&motions[0], &motions[1]]),
+            work_of_wall_j: wall.map_or(0.0, |wall| impulse.dot(&wall.motion.velocity_m_per_s)),
+            sliding_j: ledger.sliding * tangential_unit_j,
+            damping_j: ledger.damping * normal_unit_j,
+            spring_left_j: ledger.spring_left * tangential_unit_j,
+            compression_left_j: ledger.compression_left * normal_unit_j,
+        };
+        let switches =
+            if self.tangent.is_some() { self.switches(collision) } else { SmallVec::new() };
+        Outcome {
+            motions,
+            impulse_n_s: impulse,
+            eps_n: collision.eps_n,
+            eps_t,
+            contact_time_s: collision.contact_time * impact.time_unit_s,
+            switches,
+            energy,
+            observed: Observed::new(self, collision.eps_n, eps_t, &motions),
+        }
+    }
+
+    fn switches(&self, collision: &Collision) -> SmallVec<[ForceSwitch; FEW_SWITCHES]> {
+        let impact = &self.impact;
+        let surface = &impact.pair.surface;
+        let in_si = |switch: &Switch| {
+            let spring_m = impact.spring_m(switch.spring);
+            let pull_n = surface.tangential_stiffness_kg_per_s2 * spring_m;
+            ForceSwitch {
+                time_s: switch.time * impact.time_unit_s,
+                time_left_s: switch.time_left * impact.time_unit_s,
+                to: switch.to,
+                side: switch.side,
+                spring_m,
+                velocity_m_per_s: impact.velocity_m_per_s(switch.velocity),
+                normal_force_n: pull_n.abs() / surface.friction,
+                tangential_force_n: -pull_n,
+            }
+        };
+        collision.switches.iter().map(in_si).collect()
+    }
+}
+
+impl Party {
+    /// The motion after `impulse` at the point of contact, which turns a sphere with `twist` times
+    /// its arm.
+    fn after(&self, impulse: Vector3<f64>, twist: Vector3<f64>) -> Motion {
+        let Some(sphere) = self.sphere else { return self.motion };
+        Motion {
+            velocity_m_per_s: self.motion.velocity_m_per_s + impulse / sphere.mass_kg,
+            spin_rad_per_s: self.motion.spin_rad_per_s
+                + twist * (self.arm_m / sphere.moment_of_inertia_kg_m2),
+            ..self.motion
+        }
+    }
+
+    /// Kinetic energy in J with `motion`; a wall has none.
+    fn energy(&self, motion: &Motion) -> f64 {
+        self.sphere.map_or(0.0, |sphere| {
+            0.5 * sphere.mass_kg * motion.velocity_m_per_s.norm_squared()
+                + 0.5 * sphere.moment_of_inertia_kg_m2 * motion.spin_rad_per_s.norm_squared()
+        })
+    }
+}

@@ -1,0 +1,262 @@
+//! From spheres in SI units to the numbers that decide a collision, and back.
+//!
+//! Source: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008), equations (1), (12),
+//! (21)–(24).
+
+use super::bodies::{Body, Material, Sphere};
+use super::quantity;
+use crate::contact::{Contact, InvalidParameter};
+
+const POSITIVE: &str = "a finite number above 0";
+
+/// How the two surfaces act on each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surface {
+    /// Coulomb's coefficient of friction μ.
+    pub friction: f64,
+    /// Stiffness k_t of the tangential spring in kg/s².
+    pub tangential_stiffness_kg_per_s2: f64,
+    /// Damping time A in s: F_n = ρ(ξ^{3/2} + A √ξ ξ̇). Many papers write (3/2) A where this one
+    /// writes A.
+    pub damping_time_s: f64,
+}
+
+impl Surface {
+    /// Checks all quantities.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`] names the first that is out of its range.
+    pub fn validate(&self) -> Result<(), InvalidParameter> {
+        quantity::FRICTION.check(self.friction)?;
+        quantity::TANGENTIAL_STIFFNESS.check(self.tangential_stiffness_kg_per_s2)?;
+        quantity::DAMPING_TIME.check(self.damping_time_s)?;
+        Ok(())
+    }
+}
+
+/// Two colliding bodies reduced to what their contact feels.
+///
+/// ```
+/// use stickslip_model::{Material, Pair, Surface};
+///
+/// let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
+/// let surface = Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e12, damping_time_s: 0.0 };
+/// let pair = Pair::equal_spheres(0.02, &steel, &surface)?;
+/// let impact = pair.impact(20.0, 4.0)?;
+/// assert!((impact.largest_normal_force_n() / 146.4e3 - 1.0).abs() < 1e-3);
+/// # Ok::<(), stickslip_model::InvalidParameter>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pair {
+    /// Effective mass m = m_i m_j/(m_i + m_j) in kg.
+    pub effective_mass_kg: f64,
+    /// Effective radius R = R_i R_j/(R_i + R_j) in m.
+    pub effective_radius_m: f64,
+    /// Elastic constant ρ = (4/3) E* √R in kg m^{−1/2} s^{−2}; 2Y √R/(3(1 − ν²)) for equal
+    /// materials.
+    pub elastic_constant: f64,
+    /// Stiffness ratio 4G*/E* of tangential and normal motion without slip, 1/G* = (2 − ν_i)/G_i +
+    /// (2 − ν_j)/G_j; 2(1 − ν)/(2 − ν) for equal materials.
+    pub stiffness_ratio: f64,
+    /// α = 1/(1 + m R_i²/J_i + m R_j²/J_j); 2/7 for homogeneous spheres.
+    pub alpha: f64,
+    /// The surfaces.
+    pub surface: Surface,
+}
+
+impl Pair {
+    /// A sphere and what it hits.
+    ///
+    /// Two materials act together as in Hertz' contact: 1/E* = (1 − ν_i²)/Y_i + (1 − ν_j²)/Y_j. A
+    /// wall has infinite radius, mass and moment of inertia: R and m are those of the sphere,
+    /// and α = 1/(1 + m R²/J).
+    ///
+    /// # Errors
+    /// [`InvalidParameter`] names the first quantity that is out of its range, or a result that is.
+    pub fn new(sphere: &Sphere, other: &Body, surface: &Surface) -> Result<Self, InvalidParameter> {
+        sphere.validate()?;
+        other.validate()?;
+        surface.validate()?;
+        let one = Reciprocals::of_sphere(sphere);
+        let two = match other {
+            Body::Sphere(other) => Reciprocals::of_sphere(other),
+            Body::Wall(wall) => Reciprocals {
+                normal_compliance: wall.elasticity.map_or(0.0, |e| e.normal_compliance()),
+                tangential_compliance: wall.elasticity.map_or(0.0, |e| e.tangential_compliance()),
+                ..Reciprocals::default()
+            },
+        };
+        let effective_mass_kg = 1.0 / (one.mass + two.mass);
+        let effective_radius_m = 1.0 / (one.radius + two.radius);
+        let modulus = 1.0 / (one.normal_compliance + two.normal_compliance);
+        let shear_modulus = 1.0 / (one.tangential_compliance + two.tangential_compliance);
+        let pair = Self {
+            effective_mass_kg,
+            effective_radius_m,
+            elastic_constant: 4.0 / 3.0 * modulus * effective_radius_m.sqrt(),
+            stiffness_ratio: 4.0 * shear_modulus / modulus,
+            alpha: 1.0 / (1.0 + effective_mass_kg * (one.turning + two.turning)),
+            surface: *surface,
+        };
+        for (name, value) in [
+            ("effective_mass_kg", pair.effective_mass_kg),
+            ("effective_radius_m", pair.effective_radius_m),
+            ("elastic_constant", pair.elastic_constant),
+            ("stiffness_ratio", pair.stiffness_ratio),
+            ("alpha", pair.alpha),
+        ] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(InvalidParameter { name, value, expected: POSITIVE });
+            }
+        }
+        Ok(pair)
+    }
+
+    /// Two equal homogeneous spheres of `radius_m`.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`] names the first quantity that is out of its range.
+    pub fn equal_spheres(
+        radius_m: f64,
+        material: &Material,
+        surface: &Surface,
+    ) -> Result<Self, InvalidParameter> {
+        quantity::DENSITY.check(material.density_kg_per_m3)?;
+        let sphere = Sphere::homogeneous(radius_m, material);
+        Self::new(&sphere, &Body::Sphere(sphere), surface)
+    }
+
+    /// Scaled stiffness κ = (3/2)(5/4)^{1/5} (4G*/E*)/α of a spring with Mindlin's tangential
+    /// stiffness.
+    ///
+    /// A contact that does not slip has the stiffness k_t = 8G* √(Rξ), 4G*/E* times that of the
+    /// normal motion, dF_n/dξ = 2E* √(Rξ). Both grow with the compression ξ, while the spring
+    /// of this model has one stiffness: here it is taken at the largest compression of a
+    /// contact without damping. Its κ is then the same for every velocity, size and modulus:
+    /// 4.52 for equal homogeneous spheres with ν = 0.3.
+    ///
+    /// Source: R. D. Mindlin, J. Appl. Mech. 16, 259 (1949); K. L. Johnson, Contact Mechanics
+    /// (1985), section 7.2.
+    #[must_use]
+    pub fn mindlin_kappa(&self) -> f64 {
+        1.5 * 1.25_f64.powf(0.2) * self.stiffness_ratio / self.alpha
+    }
+
+    /// The impact of this pair with normal velocity `normal_m_per_s` and tangential velocity
+    /// `tangential_m_per_s` of the surfaces at the contact.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`] if a velocity is not positive and finite, or the scaled parameters
+    /// leave the range of numbers.
+    pub fn impact(
+        &self,
+        normal_m_per_s: f64,
+        tangential_m_per_s: f64,
+    ) -> Result<Impact, InvalidParameter> {
+        for (name, value) in
+            [("normal_m_per_s", normal_m_per_s), ("tangential_m_per_s", tangential_m_per_s)]
+        {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(InvalidParameter { name, value, expected: POSITIVE });
+            }
+        }
+        let beta = self.elastic_constant / self.effective_mass_kg;
+        let time = 1.0 / (beta.powf(0.4) * normal_m_per_s.powf(0.2));
+        let Surface { friction, tangential_stiffness_kg_per_s2, damping_time_s } = self.surface;
+        let kappa =
+            tangential_stiffness_kg_per_s2 * time * time / (self.alpha * self.effective_mass_kg);
+        let psi = tangential_m_per_s / normal_m_per_s * self.alpha / friction;
+        Ok(Impact {
+            contact: Contact::new(kappa, psi, damping_time_s / time)?,
+            pair: *self,
+            normal_m_per_s,
+            time_unit_s: time,
+        })
+    }
+}
+
+/// One impact of a pair: its scaled parameters and the units that lead back to SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Impact {
+    /// The scaled collision.
+    pub contact: Contact,
+    /// The bodies.
+    pub pair: Pair,
+    /// Normal impact velocity g_n in m/s, the unit of velocity.
+    pub normal_m_per_s: f64,
+    /// β^{−2/5} g_n^{−1/5} in s, the unit of time.
+    pub time_unit_s: f64,
+}
+
+impl Impact {
+    /// Unit of length g_n^{4/5} β^{−2/5} in m.
+    #[must_use]
+    pub fn length_unit_m(&self) -> f64 {
+        self.normal_m_per_s * self.time_unit_s
+    }
+
+    /// Unit of force m g_n/time in N.
+    #[must_use]
+    pub fn force_unit_n(&self) -> f64 {
+        self.pair.effective_mass_kg * self.normal_m_per_s / self.time_unit_s
+    }
+
+    /// Largest compression ξ = (5/4)^{2/5} length units in m of a contact without damping; with it,
+    /// ξ stays below.
+    #[must_use]
+    pub fn largest_compression_m(&self) -> f64 {
+        1.25_f64.powf(0.4) * self.length_unit_m()
+    }
+
+    /// Largest normal force F_n = (5/4)^{3/5} force units in N of a contact without damping.
+    #[must_use]
+    pub fn largest_normal_force_n(&self) -> f64 {
+        1.25_f64.powf(0.6) * self.force_unit_n()
+    }
+
+    /// Mindlin's tangential stiffness k_t = 8G* √(Rξ) in kg/s² of a contact that does not slip, at
+    /// [`Self::largest_compression_m`], where it is largest. [`Pair::mindlin_kappa`] is the κ of
+    /// it.
+    #[must_use]
+    pub fn mindlin_stiffness_kg_per_s2(&self) -> f64 {
+        let Pair { elastic_constant, stiffness_ratio, .. } = self.pair;
+        stiffness_ratio * 1.5 * elastic_constant * self.largest_compression_m().sqrt()
+    }
+
+    /// Elongation ζ in m of a spring with reduced elongation y: ζ = (μ/α) y length units.
+    #[must_use]
+    pub fn spring_m(&self, spring: f64) -> f64 {
+        self.pair.surface.friction / self.pair.alpha * spring * self.length_unit_m()
+    }
+
+    /// Tangential velocity in m/s for the reduced velocity w: (μ/α) w g_n.
+    #[must_use]
+    pub fn velocity_m_per_s(&self, velocity: f64) -> f64 {
+        self.pair.surface.friction / self.pair.alpha * velocity * self.normal_m_per_s
+    }
+}
+
+/// What two bodies add up in their contact; all are 0 for a rigid wall.
+#[derive(Clone, Copy, Default)]
+struct Reciprocals {
+    /// 1/mass.
+    mass: f64,
+    /// 1/R.
+    radius: f64,
+    /// R²/J.
+    turning: f64,
+    normal_compliance: f64,
+    tangential_compliance: f64,
+}
+
+impl Reciprocals {
+    fn of_sphere(sphere: &Sphere) -> Self {
+        Self {
+            mass: 1.0 / sphere.mass_kg,
+            radius: 1.0 / sphere.radius_m,
+            turning: sphere.radius_m * sphere.radius_m / sphere.moment_of_inertia_kg_m2,
+            normal_compliance: sphere.elasticity.normal_compliance(),
+            tangential_compliance: sphere.elasticity.tangential_compliance(),
+        }
+    }
+}
