@@ -9,4 +9,13 @@ pub use stickslip_model as model;
 /// Curves in a parameter plane on which the switching changes.
 pub use stickslip_tracer as tracer;
 
-pub mod collisions;
+/// What collisions do over a plane of parameters: families, maps, atlases.
+pub use stickslip_plane as plane;
+
+/// Pictures as SVG and PNG.
+#[cfg(feature = "figure")]
+pub use stickslip_figure as figure;
+
+/// The paper checked: its statements, figures and limits.
+#[cfg(feature = "studies")]
+pub use stickslip_studies as studies;

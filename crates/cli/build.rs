@@ -8,10 +8,14 @@ use std::path::Path;
 use std::process::Command;
 
 /// What decides the program, relative to this package in the repository.
-const SOURCES: [&str; 7] = [
+const SOURCES: [&str; 11] = [
     "src",
     "build.rs",
+    "templates",
+    "../figure/src",
     "../model/src",
+    "../plane/src",
+    "../studies/src",
     "../solver/src",
     "../tracer/src",
     "../../src",

@@ -16,8 +16,8 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand, ValueEnum};
 
-use crate::figure::Target;
-use crate::parameter::Parameter;
+use crate::input::parameter::Parameter;
+use crate::output::picture::PictureFile;
 use crate::version;
 
 pub use asymptote::AsymptoteArguments;
@@ -111,7 +111,7 @@ pub struct CollideArguments {
     /// Picture of the forces and the velocity of one collision, beside what is printed
     #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output", conflicts_with = "batch")]
     #[arg(value_parser = shared::picture())]
-    pub plot: Option<Target>,
+    pub plot: Option<PictureFile>,
 
     /// CSV file with a header row and one collision a row
     #[arg(long, value_name = "IN.csv", help_heading = "Batch", requires = "out")]

@@ -4,10 +4,12 @@ use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use stickslip_model::Contact;
-use stickslip_model::stiff::StiffError;
-
-use crate::engine::EngineError;
+use stickslip_figure::FigureError;
+use stickslip_model::{Contact, EngineError};
+use stickslip_plane::atlas::AtlasError;
+use stickslip_plane::sweep::Failed;
+use stickslip_studies::StudyError;
+use stickslip_studies::figures::Objection;
 
 /// Why the program did not do what it was asked.
 #[derive(Debug, thiserror::Error)]
@@ -32,7 +34,7 @@ pub enum Failure {
         psi: f64,
         /// Its scaled damping.
         damping: f64,
-        /// Why.
+        /// What the engine reports.
         source: EngineError,
     },
     /// Some rows of a batch have no result.
@@ -50,28 +52,26 @@ pub enum Failure {
     },
     /// Some points of a map have no result.
     #[error(
-        "{failed} of {points} points could not be computed and are NaN and -1 in {}; \
-         the first, {first}", path.display()
+        "{} of {points} points could not be computed and are NaN and -1 in {}; the first, {failed}",
+        failed.points, path.display()
     )]
     Points {
-        /// Points without a result.
-        failed: usize,
+        /// The points without a result.
+        failed: Failed,
         /// All points.
         points: usize,
         /// The output file.
         path: PathBuf,
-        /// The first of them, and why it could not be computed.
-        first: String,
     },
-    /// The limit of stiff springs cannot be studied.
-    #[error("the limit of stiff springs cannot be studied: {0}")]
-    Stiff(#[from] StiffError),
     /// Boundaries cannot be traced.
     #[error("the boundaries cannot be traced: {0}")]
-    Trace(String),
-    /// A statement cannot be tested.
-    #[error("the statements cannot be tested: {0}")]
-    Audit(String),
+    Trace(AtlasError),
+    /// A study has no result.
+    #[error(transparent)]
+    Study(#[from] StudyError),
+    /// Something speaks against a result of `reproduce`.
+    #[error(transparent)]
+    Objection(#[from] Objection),
     /// Something speaks against an atlas.
     #[error("{}: the atlas is complete, but may be wrong: {reason}", path.display())]
     Doubtful {
@@ -103,8 +103,16 @@ pub enum Failure {
     Output {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// What the system reports.
         source: io::Error,
+    },
+    /// A picture cannot be drawn.
+    #[error("{}: {source}", path.display())]
+    Picture {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        source: FigureError,
     },
     /// Standard output cannot be written.
     #[error("standard output: cannot be written: {0}")]
@@ -120,6 +128,16 @@ impl Failure {
     pub fn computation(contact: &Contact, source: EngineError) -> Self {
         let (kappa, psi, damping) = (contact.kappa(), contact.psi(), contact.damping());
         Self::Computation { kappa, psi, damping, source }
+    }
+
+    /// The failure of a study whose settings come from options.
+    #[must_use]
+    pub fn of_settings(error: StudyError) -> Self {
+        match error {
+            StudyError::Convergence(invalid) => Self::Usage(format!("--{invalid}")),
+            StudyError::StiffSprings(invalid) => Self::Usage(format!("--{invalid}")),
+            error => Self::Study(error),
+        }
     }
 
     /// An unusable input file.
@@ -168,6 +186,17 @@ impl Failure {
         let _ = writeln!(io::stderr(), "error: {self}");
         if let Self::Usage(_) = self {
             let _ = writeln!(io::stderr(), "\nFor more information, try '--help'.");
+        }
+    }
+}
+
+impl From<AtlasError> for Failure {
+    /// The failure of an atlas whose window comes from options.
+    fn from(error: AtlasError) -> Self {
+        match error {
+            AtlasError::Parameter(_) | AtlasError::Narrow(_) => Self::Usage(error.to_string()),
+            AtlasError::Tolerance { .. } => Self::Usage(format!("--tolerance: {error}")),
+            error => Self::Trace(error),
         }
     }
 }

@@ -5,51 +5,28 @@
 //! process for each.
 //!
 //! Start reading here; then, in this order: `args` (what may be typed), `plan` (what it means),
-//! `collide`, `batch`, `impact`, `map`, `atlas`, `converge`, `asymptote`, `audit` and `reproduce`
-//! (doing it), `completions`, `man` and `version` (the program about itself), `input`, `bodies` and
-//! `json_input` (files read), `table`, `json`, `rows`, `figure` and `output` (results written).
+//! `commands` (doing it), `input` (what is read), `output` (what is written), `page` (the page of
+//! `reproduce`), `schema` and `version` (the program about itself), `error` (exit codes).
 
 mod args;
-mod asymptote;
-mod atlas;
-mod audit;
-mod batch;
-mod bodies;
-mod collide;
-mod completions;
-mod converge;
-mod engine;
+mod commands;
 mod error;
-mod figure;
-mod impact;
 mod input;
-mod json;
-mod json_input;
-mod man;
-mod map;
-mod number;
 mod output;
-mod parameter;
+mod page;
 mod plan;
-mod range;
-mod recipe;
-mod reproduce;
-mod rows;
 mod schema;
-mod study;
-mod table;
 mod version;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::Parser;
+use stickslip_studies::{convergence, stiff_springs};
 
 use args::{Arguments, Command};
 pub use error::Failure;
-use plan::{
-    AsymptotePlan, CollidePlan, ConvergePlan, LocatePlan, MapPlan, ReproducePlan, TracePlan,
-};
+use plan::{CollidePlan, LocatePlan, MapPlan, ReproducePlan, TracePlan};
 
 /// The program's name.
 const NAME: &str = "stickslip";
@@ -89,26 +66,30 @@ pub fn run(
 fn carry_out(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.command {
         Command::Collide(arguments) => match CollidePlan::new(arguments)? {
-            CollidePlan::Point(point) => collide::run(&point),
-            CollidePlan::Batch(batch) => batch::run(&batch),
+            CollidePlan::Single(collision) => commands::collide::run(&collision),
+            CollidePlan::Batch(batch) => commands::batch::run(&batch),
         },
-        Command::Impact(arguments) => impact::run(arguments),
-        Command::Map(arguments) => map::run(&MapPlan::new(arguments)?),
-        Command::Trace(arguments) => atlas::trace::run(&TracePlan::new(arguments)?),
-        Command::Locate(arguments) => atlas::locate::run(&LocatePlan::new(arguments)?),
+        Command::Impact(arguments) => commands::impact::run(arguments),
+        Command::Map(arguments) => commands::map::run(&MapPlan::new(arguments)?),
+        Command::Trace(arguments) => commands::trace::run(&TracePlan::new(arguments)?),
+        Command::Locate(arguments) => commands::locate::run(&LocatePlan::new(arguments)?),
         Command::Converge(arguments) => {
-            let plan = ConvergePlan::new(arguments)?;
-            study::carry_out(&plan.out, plan.threads, |progress| converge::run(&plan, progress))
+            let settings = plan::convergence(arguments)?;
+            commands::studies::run(&arguments.out, arguments.threads, |progress| {
+                convergence::run(&settings, progress)
+            })
         }
         Command::Asymptote(arguments) => {
-            let plan = AsymptotePlan::new(arguments)?;
-            study::carry_out(&plan.out, plan.threads, |progress| asymptote::run(&plan, progress))
+            let settings = plan::stiff_springs(arguments);
+            commands::studies::run(&arguments.out, arguments.threads, |progress| {
+                stiff_springs::run(&settings, progress)
+            })
         }
         Command::Reproduce(arguments) => match ReproducePlan::new(arguments) {
-            ReproducePlan::Page(plan) => reproduce::run(&plan),
-            ReproducePlan::Statements(plan) => audit::print(&plan),
+            ReproducePlan::Page(plan) => commands::reproduce::run(&plan),
+            ReproducePlan::Statements(plan) => commands::statements::run(&plan),
         },
-        Command::Completions(arguments) => completions::run(*arguments),
-        Command::Man(arguments) => man::run(arguments),
+        Command::Completions(arguments) => commands::completions::run(*arguments),
+        Command::Man(arguments) => commands::man::run(arguments),
     }
 }

@@ -1,11 +1,10 @@
 //! What the options mean together: raw arguments become a plan that can be carried out.
 
-mod asymptote;
-mod converge;
 mod locate;
 mod map;
 mod reproduce;
 mod rows;
+mod studies;
 mod trace;
 
 use std::fs;
@@ -14,30 +13,29 @@ use std::path::{Path, PathBuf};
 use stickslip_model::Contact;
 
 use crate::args::{CollideArguments, CollisionArguments, Format};
-use crate::engine::Engine;
 use crate::error::Failure;
-use crate::figure::Target;
-use crate::recipe::{Given, Recipe, RecipeError};
+use crate::input::recipe::{Given, Recipe, RecipeError};
+use crate::output::picture::PictureFile;
+use stickslip_model::Engine;
 
-pub use asymptote::AsymptotePlan;
-pub use converge::ConvergePlan;
 pub use locate::LocatePlan;
 pub use map::{MapFormat, MapPlan};
 pub use reproduce::{PagePlan, ReproducePlan, StatementsPlan};
+pub use studies::{convergence, stiff_springs};
 pub use trace::TracePlan;
 
 /// What `collide` is to do.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CollidePlan {
     /// One collision to standard output.
-    Point(Point),
+    Single(SingleCollision),
     /// A file of collisions.
     Batch(Batch),
 }
 
 /// One collision.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Point {
+pub struct SingleCollision {
     /// Its parameters.
     pub contact: Contact,
     /// What computes it.
@@ -45,7 +43,7 @@ pub struct Point {
     /// How it is printed.
     pub format: Format,
     /// Where it is drawn, if it is.
-    pub plot: Option<Target>,
+    pub plot: Option<PictureFile>,
 }
 
 /// A file of collisions.
@@ -62,7 +60,7 @@ pub struct Batch {
     /// What computes them.
     pub engine: Engine,
     /// Number of threads; `None` is one for each core.
-    pub threads: Option<usize>,
+    pub threads: Option<u16>,
 }
 
 impl CollidePlan {
@@ -85,7 +83,7 @@ impl CollidePlan {
             let recipe = Recipe::new(&given, |_| None).map_err(|e| Failure::Usage(explain(e)))?;
             let contact = recipe.contact(|_| &[]).map_err(|e| Failure::Usage(e.to_string()))?;
             let (format, plot) = (arguments.format, arguments.plot.clone());
-            return Ok(Self::Point(Point { contact, engine, format, plot }));
+            return Ok(Self::Single(SingleCollision { contact, engine, format, plot }));
         };
         let events = arguments.events.as_ref();
         require_different(("--out", out), ("--batch", input))?;
@@ -99,7 +97,7 @@ impl CollidePlan {
             events: events.cloned(),
             given,
             engine,
-            threads: arguments.threads.map(usize::from),
+            threads: arguments.threads,
         }))
     }
 }

@@ -13,6 +13,11 @@ pub fn build() -> String {
     format!("{}, {products} products", env!("STICKSLIP_TARGET"))
 }
 
+/// The program with what its results depend on, in a line.
+pub fn program() -> String {
+    format!("{} {}, {}", crate::NAME, env!("CARGO_PKG_VERSION"), build())
+}
+
 /// What `--version` says.
 pub fn long() -> &'static str {
     static TEXT: LazyLock<String> = LazyLock::new(text);

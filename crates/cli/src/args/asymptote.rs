@@ -2,16 +2,18 @@
 
 use std::path::PathBuf;
 
+use stickslip_plane::Range;
+
 use super::shared;
-use crate::parameter::Parameter;
-use crate::range::Range;
+use crate::input::parameter::Parameter;
+use crate::input::range;
 
 /// Options of `asymptote`.
 #[derive(Debug, clap::Args)]
 pub struct AsymptoteArguments {
     /// Interval of the scaled stiffness κ = k_t/(α m β^⅘ g_n^⅖), from 3 to 10¹⁰
     #[arg(long, value_name = "LO:HI", help_heading = "Collisions", allow_hyphen_values = true)]
-    #[arg(value_parser = Range::parse, default_value = "10:1e8")]
+    #[arg(value_parser = range::parse, default_value = "10:1e8")]
     pub kappa: Range,
 
     /// Reduced impact ratios ψ = (g_t/g_n)·α/μ, with commas between them; above 0 and below 2

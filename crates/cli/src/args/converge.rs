@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::shared::{self, CollisionArguments};
-use crate::parameter::Parameter;
+use crate::input::parameter::Parameter;
 
 /// Options of `converge`.
 #[derive(Debug, clap::Args)]

@@ -2,26 +2,28 @@
 
 use std::path::PathBuf;
 
+use stickslip_plane::Range;
+
 use crate::args::{CollisionArguments, MethodArguments, shared};
-use crate::figure::Target;
-use crate::range::{Range, Size};
+use crate::input::range::{self, Size};
+use crate::output::picture::PictureFile;
 
 /// Options of `map`.
 #[derive(Debug, clap::Args)]
 pub struct MapArguments {
     /// Columns: interval of the scaled stiffness κ = k_t/(α m β^⅘ g_n^⅖), 0 or above
     #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
-    #[arg(value_parser = Range::parse)]
+    #[arg(value_parser = range::parse)]
     pub kappa: Option<Range>,
 
     /// Rows: interval of the reduced impact ratio ψ = (g_t/g_n)·α/μ, 0 or above
     #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
-    #[arg(value_parser = Range::parse)]
+    #[arg(value_parser = range::parse)]
     pub psi: Option<Range>,
 
     /// Rows, instead of --psi: interval of the impact ratio g_t/g_n, 0 or above
     #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
-    #[arg(value_parser = Range::parse)]
+    #[arg(value_parser = range::parse)]
     pub ratio: Option<Range>,
 
     /// JSON file of two bodies, as for impact; --normal and --tangential are the axes then
@@ -31,12 +33,12 @@ pub struct MapArguments {
 
     /// Columns: interval of the normal velocity g_n of the surfaces in m/s, 0 or above
     #[arg(long, value_name = "LO:HI", help_heading = "Window in SI units")]
-    #[arg(value_parser = Range::parse, requires = "bodies", allow_hyphen_values = true)]
+    #[arg(value_parser = range::parse, requires = "bodies", allow_hyphen_values = true)]
     pub normal: Option<Range>,
 
     /// Rows: interval of the tangential velocity g_t of the surfaces in m/s, 0 or above
     #[arg(long, value_name = "LO:HI", help_heading = "Window in SI units")]
-    #[arg(value_parser = Range::parse, requires = "bodies", allow_hyphen_values = true)]
+    #[arg(value_parser = range::parse, requires = "bodies", allow_hyphen_values = true)]
     pub tangential: Option<Range>,
 
     /// Number of columns and rows, at most 10000000000 points
@@ -59,7 +61,7 @@ pub struct MapArguments {
     /// Picture of both: ε_t in colours, and the regions of equal numbers of switches
     #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
     #[arg(value_parser = shared::picture())]
-    pub plot: Option<Target>,
+    pub plot: Option<PictureFile>,
 
     /// Threads; 1 to 1024 [default: one for each core]; results do not depend on it
     #[arg(long, value_name = "N", help_heading = "Output", allow_hyphen_values = true)]

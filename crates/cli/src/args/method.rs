@@ -1,9 +1,11 @@
 //! The options that say what computes a collision, the same for every command.
 
 use clap::ValueEnum;
+use stickslip_model::{Engine, Tolerances};
+use stickslip_solver::{InvalidOption, Options};
 
-use crate::engine::{Engine, Tolerances};
 use crate::error::Failure;
+use crate::input::number;
 
 /// What computes a collision, and with which tolerances.
 #[derive(Clone, Debug, clap::Args)]
@@ -15,13 +17,13 @@ pub struct MethodArguments {
     /// Relative tolerance of a step; 1e-15 to 0.1
     #[arg(long, help = tolerance_help("Relative", "1e-15 to 0.1", |tolerances| tolerances.rtol))]
     #[arg(value_name = "R", help_heading = "Method", allow_hyphen_values = true)]
-    #[arg(value_parser = Tolerances::parse_rtol)]
+    #[arg(value_parser = rtol)]
     pub rtol: Option<f64>,
 
     /// Absolute tolerance of a step; above 0
     #[arg(long, help = tolerance_help("Absolute", "above 0", |tolerances| tolerances.atol))]
     #[arg(value_name = "T", help_heading = "Method", allow_hyphen_values = true)]
-    #[arg(value_parser = Tolerances::parse_atol)]
+    #[arg(value_parser = atol)]
     pub atol: Option<f64>,
 }
 
@@ -73,4 +75,28 @@ fn tolerance_help(name: &str, range: &str, tolerance: fn(&Tolerances) -> f64) ->
     format!(
         "{name} tolerance of a step; {range} [default: {dop853:?} with dop853, {dopri5:?} with dopri5]"
     )
+}
+
+/// Reads a relative tolerance.
+fn rtol(text: &str) -> Result<f64, String> {
+    parse(text, |rtol| Options { rtol, ..Options::default() })
+}
+
+/// Reads an absolute tolerance.
+fn atol(text: &str) -> Result<f64, String> {
+    parse(text, |atol| Options { atol, ..Options::default() })
+}
+
+/// The number in `text`, if `options` made with it are valid.
+fn parse(text: &str, options: impl Fn(f64) -> Options) -> Result<f64, String> {
+    let expected = |value: f64| match options(value).validate() {
+        Ok(()) => None,
+        Err(InvalidOption { expected, .. }) => Some(expected),
+    };
+    let range = expected(f64::NAN).unwrap_or("a number");
+    let value = number::parse(text).map_err(|problem| format!("{problem}; expected {range}"))?;
+    match expected(value) {
+        None => Ok(value),
+        Some(range) => Err(format!("out of range; expected {range}")),
+    }
 }

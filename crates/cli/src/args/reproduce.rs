@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
+use stickslip_studies::statements::{COUNT, Spring};
+
 use super::shared;
-use crate::audit::{COUNT, Model};
 
 /// Options of `reproduce`.
 #[derive(Debug, clap::Args)]
@@ -25,8 +26,8 @@ pub struct ReproduceArguments {
     pub format: AuditFormat,
 
     /// The model of the spring
-    #[arg(long, value_enum, default_value_t = Model::Reset, hide = true)]
-    pub model: Model,
+    #[arg(long, value_enum, default_value_t = SpringModel::Reset, hide = true)]
+    pub model: SpringModel,
 
     /// Threads; 1 to 1024 [default: one for each core]; results do not depend on it
     #[arg(long, value_name = "N", help_heading = "Output", allow_hyphen_values = true)]
@@ -37,6 +38,25 @@ pub struct ReproduceArguments {
     #[arg(long, value_name = "N", hide = true, default_value_t = 400)]
     #[arg(value_parser = clap::value_parser!(u16).range(2..=2000))]
     pub cells: u16,
+}
+
+/// The model of the spring of which statements are tested.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum SpringModel {
+    /// The paper's: reset to the limit as long as that is active
+    Reset,
+    /// Never reset
+    UnresetSpring,
+}
+
+impl SpringModel {
+    /// The model that the option names.
+    pub fn spring(self) -> Spring {
+        match self {
+            Self::Reset => Spring::Reset,
+            Self::UnresetSpring => Spring::Unreset,
+        }
+    }
 }
 
 /// How statements are printed.

@@ -2,8 +2,8 @@
 
 use clap::builder::{PathBufValueParser, RangedI64ValueParser, TypedValueParser};
 
-use crate::figure::Target;
-use crate::parameter::Parameter;
+use crate::input::parameter::Parameter;
+use crate::output::picture::PictureFile;
 
 /// What collisions have in common beside κ and ψ. Commands place it under a heading of their own.
 #[derive(Clone, Copy, Debug, clap::Args)]
@@ -25,8 +25,8 @@ pub struct CollisionArguments {
 }
 
 /// A picture's file, by which its format is known.
-pub fn picture() -> impl TypedValueParser<Value = Target> {
-    PathBufValueParser::new().try_map(Target::new)
+pub fn picture() -> impl TypedValueParser<Value = PictureFile> {
+    PathBufValueParser::new().try_map(PictureFile::new)
 }
 
 /// A number of threads.

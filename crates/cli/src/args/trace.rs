@@ -2,27 +2,29 @@
 
 use std::path::PathBuf;
 
+use stickslip_plane::Range;
+
 use crate::args::{CollisionArguments, shared};
-use crate::figure::Target;
-use crate::number;
-use crate::range::Range;
+use crate::input::number;
+use crate::input::range;
+use crate::output::picture::PictureFile;
 
 /// Options of `trace`.
 #[derive(Debug, clap::Args)]
 pub struct TraceArguments {
     /// Interval of the scaled stiffness κ = k_t/(α m β^⅘ g_n^⅖), above 0
     #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
-    #[arg(value_parser = Range::parse)]
+    #[arg(value_parser = range::parse)]
     pub kappa: Option<Range>,
 
     /// Interval of the reduced impact ratio ψ = (g_t/g_n)·α/μ, above 0
     #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
-    #[arg(value_parser = Range::parse)]
+    #[arg(value_parser = range::parse)]
     pub psi: Option<Range>,
 
     /// Interval of the impact ratio g_t/g_n, instead of --psi; above 0
     #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
-    #[arg(value_parser = Range::parse)]
+    #[arg(value_parser = range::parse)]
     pub ratio: Option<Range>,
 
     /// What the collisions have beside κ and ψ.
@@ -42,7 +44,7 @@ pub struct TraceArguments {
     /// Picture of the boundaries, with the number of switches in each region
     #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
     #[arg(value_parser = shared::picture())]
-    pub plot: Option<Target>,
+    pub plot: Option<PictureFile>,
 
     /// GeoJSON file of regions, boundaries and vertices; coordinates are κ and ψ, not degrees
     #[arg(long, value_name = "FILE", help_heading = "Output")]

@@ -1,59 +1,76 @@
-// WIP
-    /// For a terminal.
-    pub fn text(&self) -> String {
-        self.statements.iter().map(Statement::text).collect::<Vec<_>>().join("\n")
-    }
+//! Statements of the paper, tested and printed.
 
-    /// A table of verdicts, and all statements below it.
-    pub fn markdown(&self) -> String {
-        let row = |statement: &Statement| {
-            let Statement { number, paraphrase, place, .. } = statement;
-            format!(
-                "| {number} | {} | {place} | {} |\n",
-                cell(paraphrase),
-                cell(&statement.verdict())
-            )
-        };
-        let rows: String = self.statements.iter().map(row).collect();
-        let sections: String = self.statements.iter().map(Statement::markdown).collect();
-        format!("| # | statement | in the paper | verdict |\n|---|---|---|---|\n{rows}{sections}")
-    }
+use std::io::{self, Write};
 
+use stickslip_plane::progress::SILENT;
+use stickslip_studies::Cell;
+use stickslip_studies::statements::{Statement, run as test};
 
-//----
-    fn text(&self) -> String {
-        let Self { number, paraphrase, place, finding } = self;
-        let width = finding.evidence.iter().map(|(name, _)| name.chars().count()).max();
-        let evidence = finding.evidence.iter().map(|(name, value)| {
-            format!("  {name:width$}  {}\n", value.text(), width = width.unwrap_or(0))
-        });
-        format!(
-            "Statement {number}, {place}: {paraphrase}\nVerdict: {}\n\n{}{}{}Alone: {}\n",
-            self.verdict(),
-            evidence.collect::<String>(),
-            width.map_or("", |_| "\n"),
-            wrapped(&finding.explanation),
-            self.command(),
-        )
-    }
+use crate::args::AuditFormat;
+use crate::error::Failure;
+use crate::output::progress::threads;
+use crate::plan::StatementsPlan;
 
-    fn markdown(&self) -> String {
-        let Self { number, paraphrase, place, finding } = self;
-        let row =
-            |(name, value): &(String, Cell)| format!("| {} | {} |\n", cell(name), value.text());
-        let rows: String = finding.evidence.iter().map(row).collect();
-        let table = if rows.is_empty() {
-            String::new()
-        } else {
-            format!("| evidence | value |\n|---|---|\n{rows}\n")
-        };
-        format!(
-            "\n## {number}. {paraphrase}\n\n{place}. **{}.** {}\n\n{table}`{}`\n",
-            self.verdict(),
-            finding.explanation,
-            self.command(),
-        )
-    }
+/// Tests statements and prints them.
+///
+/// # Errors
+/// A collision cannot be computed, or standard output cannot be written.
+pub fn run(plan: &StatementsPlan) -> Result<(), Failure> {
+    let audit = threads(plan.threads)?.install(|| test(plan.spring, &plan.statements, SILENT))?;
+    let text = match plan.format {
+        AuditFormat::Text => {
+            audit.statements.iter().map(statement_in_text).collect::<Vec<_>>().join("\n")
+        }
+        AuditFormat::Json => format!("{:#}\n", audit.study().json),
+        AuditFormat::Markdown => markdown(&audit.statements),
+    };
+    Failure::unless_written(io::stdout().lock().write_all(text.as_bytes()))
+}
+
+/// A table of verdicts, and all statements below it.
+fn markdown(statements: &[Statement]) -> String {
+    let row = |statement: &Statement| {
+        let Statement { number, paraphrase, place, .. } = statement;
+        format!("| {number} | {} | {place} | {} |\n", cell(paraphrase), cell(&statement.verdict()))
+    };
+    let rows: String = statements.iter().map(row).collect();
+    let sections: String = statements.iter().map(statement_in_markdown).collect();
+    format!("| # | statement | in the paper | verdict |\n|---|---|---|---|\n{rows}{sections}")
+}
+
+/// A statement for a terminal.
+fn statement_in_text(statement: &Statement) -> String {
+    let Statement { number, paraphrase, place, finding } = statement;
+    let width = finding.evidence.iter().map(|(name, _)| name.chars().count()).max();
+    let evidence = finding.evidence.iter().map(|(name, value)| {
+        format!("  {name:width$}  {}\n", value.text(), width = width.unwrap_or(0))
+    });
+    format!(
+        "Statement {number}, {place}: {paraphrase}\nVerdict: {}\n\n{}{}{}Alone: {}\n",
+        statement.verdict(),
+        evidence.collect::<String>(),
+        width.map_or("", |_| "\n"),
+        wrapped(&finding.explanation),
+        statement.command(),
+    )
+}
+
+/// A statement with its evidence as a table.
+fn statement_in_markdown(statement: &Statement) -> String {
+    let Statement { number, paraphrase, place, finding } = statement;
+    let row = |(name, value): &(String, Cell)| format!("| {} | {} |\n", cell(name), value.text());
+    let rows: String = finding.evidence.iter().map(row).collect();
+    let table = if rows.is_empty() {
+        String::new()
+    } else {
+        format!("| evidence | value |\n|---|---|\n{rows}\n")
+    };
+    format!(
+        "\n## {number}. {paraphrase}\n\n{place}. **{}.** {}\n\n{table}`{}`\n",
+        statement.verdict(),
+        finding.explanation,
+        statement.command(),
+    )
 }
 
 /// `text` in a cell of a Markdown table.

@@ -2,23 +2,23 @@
 
 use std::path::{Path, PathBuf};
 
+use stickslip_model::Engine;
+use stickslip_plane::atlas::RatioRange;
+use stickslip_plane::{Coordinates, Grid, GridAxis, Range};
+
 use crate::args::{MapArguments, Method};
-use crate::atlas::Ratio;
-use crate::bodies::read_pair;
-use crate::engine::Engine;
 use crate::error::Failure;
-use crate::figure::Target;
-use crate::map::{Axis, Coordinates, Plane};
+use crate::input::bodies::read_pair;
+use crate::input::recipe::RecipeError;
+use crate::output::picture::PictureFile;
 use crate::plan::explain;
 use crate::plan::rows::Rows;
-use crate::range::Range;
-use crate::recipe::RecipeError;
 
 /// A map to be computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MapPlan {
     /// Its window and cells.
-    pub plane: Plane,
+    pub grid: Grid,
     /// What computes the collisions.
     pub engine: Engine,
     /// Where it goes.
@@ -26,9 +26,9 @@ pub struct MapPlan {
     /// How it is written.
     pub format: MapFormat,
     /// Where it is drawn, if it is.
-    pub plot: Option<Target>,
+    pub plot: Option<PictureFile>,
     /// Number of threads; `None` is one for each core.
-    pub threads: Option<usize>,
+    pub threads: Option<u16>,
 }
 
 /// How a map is written.
@@ -52,16 +52,16 @@ impl MapPlan {
             None => scaled(arguments)?,
         };
         Ok(Self {
-            plane: Plane {
-                columns: Axis { range: columns, cells: size.columns },
-                rows: Axis { range: rows, cells: size.rows },
+            grid: Grid {
+                columns: GridAxis { range: columns, cells: size.columns },
+                rows: GridAxis { range: rows, cells: size.rows },
                 coordinates,
             },
             engine: arguments.method.engine(arguments.collisions.damping)?,
             out: arguments.out.clone(),
             format: format(&arguments.out)?,
             plot: arguments.plot.clone(),
-            threads: arguments.threads.map(usize::from),
+            threads: arguments.threads,
         })
     }
 }
@@ -73,8 +73,8 @@ fn scaled(arguments: &MapArguments) -> Result<(Range, Range, Coordinates), Failu
     let damping = collisions.damping.unwrap_or(0.0);
     Ok(match Rows::new(psi, ratio, collisions)? {
         Rows::Psi(psi) => (kappa, psi, Coordinates::Psi { damping }),
-        Rows::Ratio(Ratio { range, mu, alpha }) => {
-            (kappa, range, Coordinates::Ratio { mu, alpha, damping })
+        Rows::Ratio(RatioRange { range, reduction }) => {
+            (kappa, range, Coordinates::Ratio { reduction, damping })
         }
     })
 }

@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
+use stickslip_studies::statements::Spring;
+
 use crate::args::{AuditFormat, ReproduceArguments};
-use crate::audit::Model;
 
 /// Everything, or statements alone.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -20,9 +21,9 @@ pub struct PagePlan {
     /// The directory of the files.
     pub out: PathBuf,
     /// The model of the spring of which the statements are tested.
-    pub model: Model,
+    pub spring: Spring,
     /// Number of threads; `None` is one for each core.
-    pub threads: Option<usize>,
+    pub threads: Option<u16>,
     /// Columns and rows of a map.
     pub cells: usize,
 }
@@ -35,27 +36,27 @@ pub struct StatementsPlan {
     /// How they are printed.
     pub format: AuditFormat,
     /// The model of the spring.
-    pub model: Model,
+    pub spring: Spring,
     /// Number of threads; `None` is one for each core.
-    pub threads: Option<usize>,
+    pub threads: Option<u16>,
 }
 
 impl ReproducePlan {
     /// The plan that `arguments` make.
     pub fn new(arguments: &ReproduceArguments) -> Self {
         let ReproduceArguments { out, statement, format, model, threads, cells } = arguments;
-        let (model, threads) = (*model, threads.map(usize::from));
+        let (spring, threads) = (model.spring(), *threads);
         match out {
             Some(out) => Self::Page(PagePlan {
                 out: out.clone(),
-                model,
+                spring,
                 threads,
                 cells: usize::from(*cells),
             }),
             None => Self::Statements(StatementsPlan {
                 statements: statement.clone(),
                 format: *format,
-                model,
+                spring,
                 threads,
             }),
         }

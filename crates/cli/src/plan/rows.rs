@@ -1,18 +1,20 @@
 //! The rows of a plane, ψ or the impact ratio, as the options give them.
 
+use stickslip_model::Reduction;
+use stickslip_plane::Range;
+use stickslip_plane::atlas::RatioRange;
+
 use crate::args::CollisionArguments;
-use crate::atlas::Ratio;
 use crate::error::Failure;
+use crate::input::recipe::RecipeError;
 use crate::plan::explain;
-use crate::range::Range;
-use crate::recipe::{DEFAULT_ALPHA, DEFAULT_MU, RecipeError};
 
 /// What the rows of a plane are.
 pub enum Rows {
     /// The reduced impact ratio ψ.
     Psi(Range),
     /// The impact ratio g_t/g_n, with μ and α.
-    Ratio(Ratio),
+    Ratio(RatioRange),
 }
 
 impl Rows {
@@ -36,11 +38,12 @@ impl Rows {
                     None => Ok(Self::Psi(psi)),
                 }
             }
-            (None, Some(range)) => Ok(Self::Ratio(Ratio {
-                range,
-                mu: mu.unwrap_or(DEFAULT_MU),
-                alpha: alpha.unwrap_or(DEFAULT_ALPHA),
-            })),
+            (None, Some(range)) => {
+                let usual = Reduction::default();
+                let reduction =
+                    Reduction { mu: mu.unwrap_or(usual.mu), alpha: alpha.unwrap_or(usual.alpha) };
+                Ok(Self::Ratio(RatioRange { range, reduction }))
+            }
         }
     }
 }

@@ -2,14 +2,15 @@
 
 use std::path::PathBuf;
 
+use stickslip_plane::Range;
+use stickslip_plane::atlas::{Frame, RatioRange};
+
 use crate::args::TraceArguments;
-use crate::atlas::{Frame, Ratio};
 use crate::error::Failure;
-use crate::figure::Target;
+use crate::input::recipe::RecipeError;
+use crate::output::picture::PictureFile;
 use crate::plan::explain;
 use crate::plan::rows::Rows;
-use crate::range::Range;
-use crate::recipe::RecipeError;
 
 /// An atlas to be traced.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,11 +22,11 @@ pub struct TracePlan {
     /// Where it goes.
     pub out: PathBuf,
     /// Where it is drawn, if it is.
-    pub plot: Option<Target>,
+    pub plot: Option<PictureFile>,
     /// Where it goes as GeoJSON, if it does.
     pub geojson: Option<PathBuf>,
     /// Number of threads; `None` is one for each core.
-    pub threads: Option<usize>,
+    pub threads: Option<u16>,
 }
 
 impl TracePlan {
@@ -35,15 +36,7 @@ impl TracePlan {
     /// [`Failure::Usage`] says which options do not go together.
     pub fn new(arguments: &TraceArguments) -> Result<Self, Failure> {
         let frame = frame(arguments)?;
-        frame.require_wide().map_err(Failure::Usage)?;
-        let [finest, usual, coarsest] = frame.tolerances();
-        let tolerance = arguments.tolerance.unwrap_or(usual);
-        if !(finest..=coarsest).contains(&tolerance) {
-            return Err(Failure::Usage(format!(
-                "--tolerance {tolerance:?} is out of range; expected {finest:e} to {coarsest:e} \
-                 in this window"
-            )));
-        }
+        let tolerance = arguments.tolerance.unwrap_or_else(|| frame.tolerances().usual);
         if arguments.geojson.as_ref() == Some(&arguments.out) {
             return Err(Failure::Usage(format!(
                 "--geojson {} is --out as well; expected two files",
@@ -56,7 +49,7 @@ impl TracePlan {
             out: arguments.out.clone(),
             plot: arguments.plot.clone(),
             geojson: arguments.geojson.clone(),
-            threads: arguments.threads.map(usize::from),
+            threads: arguments.threads,
         })
     }
 }
@@ -68,9 +61,9 @@ fn frame(arguments: &TraceArguments) -> Result<Frame, Failure> {
     let (psi, ratio) = match Rows::new(psi, ratio, collisions)? {
         Rows::Psi(psi) => (positive("--psi", psi)?, None),
         Rows::Ratio(ratio) => {
-            let Ratio { range, mu, alpha } = ratio;
+            let RatioRange { range, reduction } = ratio;
             let Range { low, high } = positive("--ratio", range)?;
-            let [low, high] = [low, high].map(|ratio| ratio * alpha / mu);
+            let [low, high] = [low, high].map(|ratio| reduction.psi(ratio));
             if !(low > 0.0 && low < high && high.is_finite()) {
                 return Err(Failure::Usage(format!(
                     "psi = ratio·alpha/mu from {low:?} to {high:?} is out of range; expected \

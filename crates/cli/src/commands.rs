@@ -1,0 +1,13 @@
+//! What each command does.
+
+pub mod batch;
+pub mod collide;
+pub mod completions;
+pub mod impact;
+pub mod locate;
+pub mod man;
+pub mod map;
+pub mod reproduce;
+pub mod statements;
+pub mod studies;
+pub mod trace;

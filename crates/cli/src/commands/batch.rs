@@ -1,0 +1,76 @@
+//! A file of collisions: read in portions, computed in parallel, written in the order of the input.
+
+use rayon::prelude::*;
+use stickslip_model::Switch;
+
+use crate::error::Failure;
+use crate::plan::Batch;
+use crate::input::rows::{Columns, Input, Row};
+use crate::output::csv::CsvFile;
+use crate::output::file::publish;
+use crate::output::progress::{Bar, threads};
+use crate::output::rows::{self, EVENTS, Summary};
+use stickslip_model::Engine;
+
+/// Computes every row of the input.
+///
+/// # Errors
+/// The input cannot be used, an output cannot be written, or some rows have no result; in the last
+/// case the outputs are complete.
+pub fn run(batch: &Batch) -> Result<(), Failure> {
+    let mut input = Input::open(&batch.input, &batch.given, &Columns::COLLISIONS)?;
+    let pool = threads(batch.threads)?;
+    let mut results = CsvFile::create(&batch.out)?;
+    let mut events = batch.events.as_deref().map(CsvFile::create).transpose()?;
+    results.write(|out| rows::write_header(out, input.header()))?;
+    if let Some(events) = &mut events {
+        events.write(|out| out.write_record(EVENTS))?;
+    }
+
+    let bar = Bar::bytes(input.progress().0);
+    let (mut count, mut failed) = (0, 0);
+    let (mut portion, mut computed) = (Vec::new(), Vec::new());
+    loop {
+        input.read_portion(&mut portion)?;
+        if portion.is_empty() {
+            break;
+        }
+        pool.install(|| compute(batch.engine, &portion, events.is_some(), &mut computed));
+        for (row, result) in portion.iter().zip(&computed) {
+            let summary = result.as_ref().map(|(summary, _)| summary);
+            results
+                .write(|out| rows::write_row(out, &row.fields, summary.map_err(String::as_str)))?;
+            if let (Some(events), Ok((_, switches))) = (&mut events, result) {
+                events.write(|out| rows::write_switches(out, count, switches))?;
+            }
+            failed += u64::from(result.is_err());
+            count += 1;
+        }
+        bar.reach(input.progress().1);
+    }
+    bar.finish();
+
+    let stored = [Some(results), events].into_iter().flatten().map(CsvFile::store);
+    publish(stored.collect::<Result<Vec<_>, _>>()?)?;
+    if failed > 0 {
+        return Err(Failure::Rows { failed, rows: count, path: batch.out.clone() });
+    }
+    Ok(())
+}
+
+/// A row's results and, where wanted, its switches; or why there are none.
+type Computed = Result<(Summary, Vec<Switch>), String>;
+
+/// Computes a portion. Each row depends on itself alone, so that the order of work does not show.
+fn compute(engine: Engine, portion: &[Row], with_switches: bool, computed: &mut Vec<Computed>) {
+    portion
+        .par_iter()
+        .map(|row| {
+            let contact = row.contact.clone()?;
+            let (collision, _) = engine.collide(contact).map_err(|e| e.to_string())?;
+            let summary = Summary::from(&collision);
+            let switches = if with_switches { collision.switches.to_vec() } else { Vec::new() };
+            Ok((summary, switches))
+        })
+        .collect_into_vec(computed);
+}

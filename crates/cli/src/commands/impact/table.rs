@@ -1,0 +1,164 @@
+//! An impact as readable tables.
+
+use std::io::{self, Write};
+
+use stickslip_model::{Engine, ForceSwitch, ImpactReport, Vector3};
+use stickslip_solver::Statistics;
+
+use crate::output::text::{aligned, describe, number, pairs, work};
+
+/// Writes `impact` for a reader.
+///
+/// # Errors
+/// `out` cannot be written.
+pub fn write(
+    out: &mut impl Write,
+    engine: &Engine,
+    impact: &ImpactReport,
+    statistics: Option<&Statistics>,
+) -> io::Result<()> {
+    let contact = &impact.collision.contact;
+    writeln!(
+        out,
+        "Impact with κ = {:?}, ψ = {:?}, damping a = {:?}, by {}\n",
+        contact.kappa(),
+        impact.psi(),
+        contact.damping(),
+        describe(engine)
+    )?;
+    vectors(out, impact)?;
+    switches(out, &impact.outcome.switches)?;
+    results(out, impact)?;
+    energy(out, impact)?;
+    observed(out, impact)?;
+    comparison(out, impact)?;
+    statistics.map_or(Ok(()), |statistics| work(out, statistics))
+}
+
+fn vectors(out: &mut impl Write, impact: &ImpactReport) -> io::Result<()> {
+    let ImpactReport { encounter, outcome, .. } = impact;
+    let row =
+        |name: &str, v: &Vector3<f64>| [name.to_owned(), number(v.x), number(v.y), number(v.z)];
+    let mut rows = vec![["", "x", "y", "z"].map(str::to_owned)];
+    for (index, motion) in impact.spheres().iter().enumerate() {
+        let name = |what| format!("spheres[{index}] after: {what}");
+        rows.push(row(&name("velocity [m/s]"), &motion.velocity_m_per_s));
+        rows.push(row(&name("spin [rad/s]"), &motion.spin_rad_per_s));
+    }
+    rows.push(row("impulse on spheres[0] [N s]", &outcome.impulse_n_s));
+    rows.push(row("point of contact [m]", &encounter.contact_point_m));
+    rows.push(row("normal n", &encounter.normal));
+    if let Some(tangent) = &encounter.tangent {
+        rows.push(row("tangent t", tangent));
+    }
+    aligned(out, &rows)?;
+    writeln!(out)
+}
+
+fn switches(out: &mut impl Write, switches: &[ForceSwitch]) -> io::Result<()> {
+    if switches.is_empty() {
+        return writeln!(out, "No switch.\n");
+    }
+    let header = [
+        "",
+        "time [s]",
+        "time left [s]",
+        "to",
+        "side",
+        "spring ζ [m]",
+        "velocity [m/s]",
+        "F_n [N]",
+        "F_t [N]",
+    ];
+    let row = |(index, switch): (usize, &ForceSwitch)| {
+        [
+            index.to_string(),
+            number(switch.time_s),
+            number(switch.time_left_s),
+            switch.to.to_string(),
+            format!("{:+}", switch.side.sign()),
+            number(switch.spring_m),
+            number(switch.velocity_m_per_s),
+            number(switch.normal_force_n),
+            number(switch.tangential_force_n),
+        ]
+    };
+    let rows = switches.iter().enumerate().map(row);
+    aligned(out, &std::iter::once(header.map(str::to_owned)).chain(rows).collect::<Vec<_>>())?;
+    writeln!(out)
+}
+
+fn results(out: &mut impl Write, impact: &ImpactReport) -> io::Result<()> {
+    let ImpactReport { encounter, outcome, .. } = impact;
+    pairs(
+        out,
+        &[
+            ("normal velocity g_n [m/s]", number(encounter.normal_m_per_s)),
+            ("tangential velocity g_t [m/s]", number(encounter.tangential_m_per_s)),
+            ("normal restitution ε_n", number(outcome.eps_n)),
+            ("tangential restitution ε_t", optional(outcome.eps_t)),
+            ("contact time [s]", number(outcome.contact_time_s)),
+            ("switches", outcome.switches.len().to_string()),
+            ("reversals of the motion", impact.reversals().to_string()),
+            ("itinerary", impact.itinerary()),
+        ],
+    )?;
+    writeln!(out)
+}
+
+fn energy(out: &mut impl Write, impact: &ImpactReport) -> io::Result<()> {
+    let energy = &impact.outcome.energy;
+    pairs(
+        out,
+        &[
+            ("kinetic energy before [J]", number(energy.kinetic_before_j)),
+            ("work of the wall [J]", number(energy.work_of_wall_j)),
+            ("kinetic energy after [J]", number(energy.kinetic_after_j)),
+            ("taken by sliding [J]", number(energy.sliding_j)),
+            ("taken by damping [J]", number(energy.damping_j)),
+            ("left in the spring [J]", number(energy.spring_left_j)),
+            ("left in the compression [J]", number(energy.compression_left_j)),
+            ("unbalanced [J]", number(energy.unbalanced_j())),
+        ],
+    )?;
+    writeln!(out)
+}
+
+fn observed(out: &mut impl Write, impact: &ImpactReport) -> io::Result<()> {
+    let observed = &impact.outcome.observed;
+    pairs(
+        out,
+        &[
+            ("β = −ε_t", optional(observed.beta)),
+            ("patch: Ψ₁ = g_t/g_n", number(observed.patch_psi_1)),
+            ("patch: Ψ₂ = ε_t g_t/g_n", number(observed.patch_psi_2)),
+            ("patch: angle of impact [rad]", number(observed.patch_impact_angle_rad)),
+            ("patch: angle of rebound [rad]", number(observed.patch_rebound_angle_rad)),
+            ("centre: e_t", optional(observed.centre_e_t)),
+            ("centre: angle of impact [rad]", number(observed.centre_impact_angle_rad)),
+            ("centre: angle of rebound [rad]", number(observed.centre_rebound_angle_rad)),
+            ("tangential / normal impulse", number(observed.impulse_ratio)),
+        ],
+    )?;
+    writeln!(out)
+}
+
+fn comparison(out: &mut impl Write, impact: &ImpactReport) -> io::Result<()> {
+    let comparison = &impact.comparison;
+    pairs(
+        out,
+        &[
+            ("ε_n by its series", number(comparison.eps_n_series)),
+            ("ε_n by a Padé approximant", number(comparison.eps_n_pade)),
+            ("ε_t of pure Coulomb sliding", optional(comparison.eps_t_coulomb)),
+            ("Mindlin's stiffness [kg/s²]", number(comparison.mindlin_stiffness_kg_per_s2)),
+            ("κ of Mindlin's stiffness", number(comparison.mindlin_kappa)),
+            ("undamped compression [m]", number(comparison.undamped_compression_m)),
+            ("undamped normal force [N]", number(comparison.undamped_normal_force_n)),
+        ],
+    )
+}
+
+fn optional(value: Option<f64>) -> String {
+    value.map_or_else(|| "none: central impact".to_owned(), number)
+}

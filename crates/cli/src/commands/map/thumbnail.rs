@@ -1,0 +1,77 @@
+//! A map at the resolution of a picture.
+
+use std::io;
+
+use stickslip_plane::{Grid, GridAxis, Tile};
+
+use super::tiles::Tiles;
+
+/// The size, columns and rows, of a picture of a map, and the results of its pixels, row by row
+/// from the lower edge.
+///
+/// A pixel shows the cell at its centre; there are at most `most` × `most` pixels and never more
+/// than the map has cells. One tile at a time is in memory.
+///
+/// # Errors
+/// A tile cannot be read.
+pub fn read(grid: &Grid, tiles: &Tiles, most: usize) -> io::Result<((usize, usize), Tile)> {
+    let [columns, rows] = [grid.columns, grid.rows].map(|axis| centres(axis, most));
+    let size = (columns.len(), rows.len());
+    let mut thumbnail = Tile { eps_t: Vec::new(), switch_count: Vec::new() };
+    let mut current: Option<(usize, Tile)> = None;
+    for row in rows {
+        for column in &columns {
+            let (index, offset) = tiles.task().place(grid.point(*column, row));
+            let tile = match current.take() {
+                Some((read, tile)) if read == index => tile,
+                _ => tiles.read(index)?,
+            };
+            thumbnail.eps_t.push(tile.eps_t[offset]);
+            thumbnail.switch_count.push(tile.switch_count[offset]);
+            current = Some((index, tile));
+        }
+    }
+    Ok((size, thumbnail))
+}
+
+/// The cells that hold the centres of at most `most` pixels of equal width.
+fn centres(axis: GridAxis, most: usize) -> Vec<usize> {
+    let pixels = axis.cells.min(most);
+    (0..pixels).map(|pixel| (2 * pixel + 1) * axis.cells / (2 * pixels)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use stickslip_plane::{Coordinates, Range};
+
+    use super::super::tiles::Task;
+    use super::*;
+
+    #[test]
+    fn every_pixel_shows_the_cell_at_its_centre() {
+        let axis = |cells| GridAxis { range: Range { low: 0.0, high: 1.0 }, cells };
+        assert_eq!(centres(axis(6), 10), [0, 1, 2, 3, 4, 5]);
+        assert_eq!(centres(axis(6), 3), [1, 3, 5]);
+        assert_eq!(centres(axis(7), 3), [1, 3, 5]);
+        assert_eq!(centres(axis(10_000_000_000), 1), [5_000_000_000]);
+
+        // The results of a point are its number; tiles end in the middle of rows.
+        let coordinates = Coordinates::Psi { damping: 0.0 };
+        let grid = Grid { columns: axis(7), rows: axis(5), coordinates };
+        let task = Task { description: String::new(), points: 35, tile_points: 4 };
+        let directory = tempfile::tempdir().unwrap();
+        let tiles = Tiles::open(&directory.path().join("map.npz"), task).unwrap();
+        for index in 0..9 {
+            let points = tiles.task().range(index);
+            let eps_t = points.clone().map(|point| point as f64).collect();
+            let switch_count = points.map(|point| i32::try_from(point).unwrap()).collect();
+            tiles.keep(index, &Tile { eps_t, switch_count }).unwrap();
+        }
+        let (size, thumbnail) = read(&grid, &tiles, 3).unwrap();
+        assert_eq!(size, (3, 3));
+        assert_eq!(thumbnail.switch_count, [1, 3, 5, 15, 17, 19, 29, 31, 33]);
+        assert_eq!(thumbnail.eps_t[8], 33.0);
+        let (_, all) = read(&grid, &tiles, 100).unwrap();
+        assert_eq!(all.switch_count, (0..35).collect::<Vec<_>>());
+    }
+}

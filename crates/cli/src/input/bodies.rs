@@ -1,0 +1,120 @@
+//! JSON files of two bodies and their surfaces, with their motion or without:
+//! docs/impact.schema.json.
+
+mod field;
+mod file;
+
+use std::fs;
+use std::io::{self, Read};
+use std::path::Path;
+
+use stickslip_model::{Body, Encounter, Motion, Pair, Sphere, Surface, Wall, WallMotion};
+
+use crate::error::Failure;
+
+/// What a file describes; motions that it does not have are `None`.
+pub struct Bodies {
+    sphere: (Sphere, Option<Motion>),
+    other: Other,
+    surface: Surface,
+}
+
+/// What the first sphere hits.
+enum Other {
+    Sphere(Sphere, Option<Motion>),
+    Wall(Wall, Option<WallMotion>),
+}
+
+/// The two bodies in the file at `path`, `-` for standard input, as their contact feels them.
+///
+/// Motions may be in the file; they do not matter here.
+///
+/// # Errors
+/// [`Failure::Input`]: the file cannot be read, is not JSON, or does not describe two bodies. It
+/// names the line or the field, and what is expected there.
+pub fn read_pair(path: &Path) -> Result<Pair, Failure> {
+    read(path, |Bodies { sphere: (sphere, _), other, surface }| {
+        let other = match other {
+            Other::Sphere(other, _) => Body::Sphere(other),
+            Other::Wall(wall, _) => Body::Wall(wall),
+        };
+        Pair::new(&sphere, &other, &surface).map_err(|invalid| invalid.to_string())
+    })
+}
+
+/// The two bodies in the file at `path`, `-` for standard input, about to touch.
+///
+/// # Errors
+/// [`Failure::Input`]: as [`read_pair`], or a motion is missing, or the bodies do not collide.
+pub fn read_encounter(path: &Path) -> Result<Encounter, Failure> {
+    read(path, |Bodies { sphere: (sphere, motion), other, surface }| {
+        let first = (&sphere, &field::required("spheres[0].motion", motion)?);
+        let encounter = match &other {
+            Other::Sphere(other, motion) => {
+                let motion = field::required("spheres[1].motion", *motion)?;
+                Encounter::of_spheres(first, (other, &motion), &surface)
+            }
+            Other::Wall(wall, plane) => {
+                let plane = field::required("wall.motion", *plane)?;
+                Encounter::with_wall(first, (wall, &plane), &surface)
+            }
+        };
+        encounter.map_err(|error| error.to_string())
+    })
+}
+
+fn read<T>(path: &Path, make: impl FnOnce(Bodies) -> Result<T, String>) -> Result<T, Failure> {
+    let standard = path == Path::new("-");
+    let shown = if standard { Path::new("standard input") } else { path };
+    let mut text = Vec::new();
+    let read = if standard {
+        io::stdin().lock().read_to_end(&mut text)
+    } else {
+        fs::File::open(path).and_then(|mut file| file.read_to_end(&mut text))
+    };
+    read.map_err(|error| Failure::input(shown, format!("cannot be read: {error}")))?;
+    Bodies::parse(&text).and_then(make).map_err(|reason| Failure::input(shown, reason))
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::{Value, json};
+    use stickslip_model::Material;
+
+    use super::*;
+
+    fn sphere(height_m: f64, velocity_m_per_s: [f64; 3]) -> Value {
+        json!({
+            "radius_m": 0.02,
+            "material": {"young_modulus_pa": 210e9, "poisson_ratio": 0.3, "density_kg_per_m3": 7850},
+            "motion": {
+                "position_m": [0, 0, height_m],
+                "velocity_m_per_s": velocity_m_per_s,
+                "spin_rad_per_s": [0, 0, 0],
+            },
+        })
+    }
+
+    #[test]
+    fn a_pair_is_the_same_with_and_without_motion() {
+        let steel =
+            Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
+        let surface =
+            Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e12, damping_time_s: 0.0 };
+        let expected = Pair::equal_spheres(0.02, &steel, &surface).unwrap();
+        let mut spheres = [sphere(0.04, [4.0, 0.0, -20.0]), sphere(0.0, [0.0; 3])];
+        for with_motion in [true, false] {
+            if !with_motion {
+                for sphere in &mut spheres {
+                    sphere.as_object_mut().unwrap().remove("motion").unwrap();
+                }
+            }
+            let surface = json!({
+                "friction": 0.4, "tangential_stiffness_kg_per_s2": 1e12, "damping_time_s": 0,
+            });
+            let file = tempfile::NamedTempFile::new().unwrap();
+            fs::write(&file, json!({"spheres": spheres, "surface": surface}).to_string()).unwrap();
+            assert_eq!(read_pair(file.path()).unwrap(), expected, "{with_motion}");
+        }
+    }
+}

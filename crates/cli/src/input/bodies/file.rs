@@ -1,0 +1,230 @@
+//! The layout of the file: what is written, and what it means.
+
+use serde::Deserialize;
+use serde_json::Value;
+use stickslip_model::quantity;
+use stickslip_model::{Elasticity, Motion, Sphere, Surface, Wall, WallMotion};
+
+use super::field::{Object, number, required, vector};
+use super::{Bodies, Other};
+use crate::input::json;
+
+impl Bodies {
+    /// The bodies that `text` describes.
+    ///
+    /// # Errors
+    /// What is wrong and where, and what is expected.
+    pub fn parse(text: &[u8]) -> Result<Self, String> {
+        let Object(file): Object<File> = json::parse(text)?;
+        file.resolve()
+    }
+}
+
+/// A file as it is written; what is missing is `None`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    #[serde(rename = "$schema")]
+    _schema: Option<String>,
+    #[serde(rename = "comment")]
+    _comment: Option<String>,
+    spheres: Option<Vec<Object<SphereFields>>>,
+    wall: Option<Object<WallFields>>,
+    surface: Option<Object<SurfaceFields>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SphereFields {
+    #[serde(rename = "comment")]
+    _comment: Option<String>,
+    radius_m: Option<Value>,
+    mass_kg: Option<Value>,
+    moment_of_inertia_kg_m2: Option<Value>,
+    material: Option<Object<MaterialFields>>,
+    motion: Option<Object<MotionFields>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WallFields {
+    #[serde(rename = "comment")]
+    _comment: Option<String>,
+    rigid: Option<bool>,
+    material: Option<Object<MaterialFields>>,
+    motion: Option<Object<PlaneFields>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MaterialFields {
+    #[serde(rename = "comment")]
+    _comment: Option<String>,
+    young_modulus_pa: Option<Value>,
+    poisson_ratio: Option<Value>,
+    density_kg_per_m3: Option<Value>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MotionFields {
+    #[serde(rename = "comment")]
+    _comment: Option<String>,
+    position_m: Option<Value>,
+    velocity_m_per_s: Option<Value>,
+    spin_rad_per_s: Option<Value>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PlaneFields {
+    #[serde(rename = "comment")]
+    _comment: Option<String>,
+    point_m: Option<Value>,
+    normal: Option<Value>,
+    velocity_m_per_s: Option<Value>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SurfaceFields {
+    #[serde(rename = "comment")]
+    _comment: Option<String>,
+    friction: Option<Value>,
+    tangential_stiffness_kg_per_s2: Option<Value>,
+    damping_time_s: Option<Value>,
+}
+
+const POSITION: &str = "in m";
+const VELOCITY: (&str, &str) = ("velocity_m_per_s", "in m/s");
+
+impl File {
+    fn resolve(self) -> Result<Bodies, String> {
+        let mut spheres = Vec::new();
+        for (index, Object(sphere)) in self.spheres.unwrap_or_default().iter().enumerate() {
+            spheres.push(sphere.resolve(&format!("spheres[{index}]"))?);
+        }
+        let wall = self.wall.map(|Object(wall)| wall.resolve()).transpose()?;
+        let (sphere, other) = match (&spheres[..], wall) {
+            (&[first, (sphere, motion)], None) => (first, Other::Sphere(sphere, motion)),
+            (&[first], Some((wall, plane))) => (first, Other::Wall(wall, plane)),
+            (_, wall) => {
+                return Err(format!(
+                    "spheres has {} entries, and there is {} wall; expected two spheres, or one \
+                     sphere and a wall",
+                    spheres.len(),
+                    if wall.is_some() { "a" } else { "no" }
+                ));
+            }
+        };
+        let Object(surface) = required("surface", self.surface)?;
+        Ok(Bodies { sphere, other, surface: surface.resolve()? })
+    }
+}
+
+impl SphereFields {
+    fn resolve(&self, place: &str) -> Result<(Sphere, Option<Motion>), String> {
+        let radius_m = number(place, &quantity::RADIUS, self.radius_m.as_ref())?;
+        let material_place = format!("{place}.material");
+        let Object(material) = required(&material_place, self.material.as_ref())?;
+        let elasticity = material.elasticity(&material_place)?;
+        let mass_kg = match (&self.mass_kg, &material.density_kg_per_m3) {
+            (mass @ Some(_), None) => number(place, &quantity::MASS, mass.as_ref())?,
+            (None, density @ Some(_)) => {
+                let density = number(&material_place, &quantity::DENSITY, density.as_ref())?;
+                Sphere::homogeneous_mass(radius_m, density)
+            }
+            (mass, _) => {
+                return Err(format!(
+                    "{place}.mass_kg and {material_place}.density_kg_per_m3 are {}; expected \
+                     exactly one of them, a finite number above 0",
+                    if mass.is_some() { "both given" } else { "both missing" }
+                ));
+            }
+        };
+        let moment_of_inertia_kg_m2 = match &self.moment_of_inertia_kg_m2 {
+            None => Sphere::homogeneous_moment(radius_m, mass_kg),
+            Some(_) if self.mass_kg.is_none() => {
+                return Err(format!(
+                    "{place}.moment_of_inertia_kg_m2 contradicts a density, which makes the sphere \
+                     homogeneous; accepted beside mass_kg only"
+                ));
+            }
+            moment => number(place, &quantity::MOMENT_OF_INERTIA, moment.as_ref())?,
+        };
+        let sphere = Sphere { radius_m, mass_kg, moment_of_inertia_kg_m2, elasticity };
+        let motion_place = format!("{place}.motion");
+        let motion = self.motion.as_ref().map(|Object(motion)| motion.resolve(&motion_place));
+        Ok((sphere, motion.transpose()?))
+    }
+}
+
+impl WallFields {
+    fn resolve(&self) -> Result<(Wall, Option<WallMotion>), String> {
+        let elasticity = match (&self.material, self.rigid.unwrap_or(false)) {
+            (None, true) => None,
+            (Some(Object(material)), false) if material.density_kg_per_m3.is_none() => {
+                Some(material.elasticity("wall.material")?)
+            }
+            (Some(_), false) => {
+                return Err(
+                    "wall.material.density_kg_per_m3 has no effect, since the mass of a wall \
+                            is infinite; accepted in spheres only"
+                        .to_owned(),
+                );
+            }
+            (material, _) => {
+                return Err(format!(
+                    "wall.material and wall.rigid = true are {}; expected exactly one of them",
+                    if material.is_some() { "both given" } else { "both missing" }
+                ));
+            }
+        };
+        let plane = self.motion.as_ref().map(|Object(plane)| plane.resolve("wall.motion"));
+        Ok((Wall { elasticity }, plane.transpose()?))
+    }
+}
+
+impl MaterialFields {
+    fn elasticity(&self, place: &str) -> Result<Elasticity, String> {
+        let (young, poisson) = (self.young_modulus_pa.as_ref(), self.poisson_ratio.as_ref());
+        Ok(Elasticity {
+            young_modulus_pa: number(place, &quantity::YOUNG_MODULUS, young)?,
+            poisson_ratio: number(place, &quantity::POISSON_RATIO, poisson)?,
+        })
+    }
+}
+
+impl MotionFields {
+    fn resolve(&self, place: &str) -> Result<Motion, String> {
+        let (position, spin) = (("position_m", POSITION), ("spin_rad_per_s", "in rad/s"));
+        Ok(Motion {
+            position_m: vector(place, position, self.position_m.as_ref())?,
+            velocity_m_per_s: vector(place, VELOCITY, self.velocity_m_per_s.as_ref())?,
+            spin_rad_per_s: vector(place, spin, self.spin_rad_per_s.as_ref())?,
+        })
+    }
+}
+
+impl PlaneFields {
+    fn resolve(&self, place: &str) -> Result<WallMotion, String> {
+        let (point, normal) = (("point_m", POSITION), ("normal", "not all 0, without unit"));
+        Ok(WallMotion {
+            point_m: vector(place, point, self.point_m.as_ref())?,
+            normal: vector(place, normal, self.normal.as_ref())?,
+            velocity_m_per_s: vector(place, VELOCITY, self.velocity_m_per_s.as_ref())?,
+        })
+    }
+}
+
+impl SurfaceFields {
+    fn resolve(&self) -> Result<Surface, String> {
+        let number = |quantity, value: &Option<Value>| number("surface", quantity, value.as_ref());
+        let stiffness = &self.tangential_stiffness_kg_per_s2;
+        Ok(Surface {
+            friction: number(&quantity::FRICTION, &self.friction)?,
+            tangential_stiffness_kg_per_s2: number(&quantity::TANGENTIAL_STIFFNESS, stiffness)?,
+            damping_time_s: number(&quantity::DAMPING_TIME, &self.damping_time_s)?,
+        })
+    }
+}

@@ -1,0 +1,123 @@
+//! The syntax of intervals and of sizes: `0:70`, `1000x800`.
+
+use stickslip_plane::Range;
+
+use crate::input::number::{self, NotANumber};
+
+/// Reads `LO:HI`.
+///
+/// # Errors
+/// [`NotARange`] says what is wrong and what is expected.
+pub fn parse(text: &str) -> Result<Range, NotARange> {
+    let (low, high) = text.split_once(':').ok_or(NotARange::Syntax)?;
+    let low = number::parse(low).map_err(|problem| NotARange::Low { problem })?;
+    let high = number::parse(high).map_err(|problem| NotARange::High { problem })?;
+    // A lower end of −0 would be the same interval written differently.
+    if low >= 0.0 && low < high {
+        Ok(Range { low: low.abs(), high })
+    } else {
+        Err(NotARange::Order)
+    }
+}
+
+/// Why a text is not an interval.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NotARange {
+    /// There are no two ends.
+    #[error("not a range; {ACCEPTED_RANGE}")]
+    Syntax,
+    /// The lower end is no number.
+    #[error("the lower end is {problem}; {ACCEPTED_RANGE}")]
+    Low {
+        /// What is wrong with it.
+        problem: NotANumber,
+    },
+    /// The upper end is no number.
+    #[error("the upper end is {problem}; {ACCEPTED_RANGE}")]
+    High {
+        /// What is wrong with it.
+        problem: NotANumber,
+    },
+    /// Negative, empty or reversed.
+    #[error("out of range; {ACCEPTED_RANGE}")]
+    Order,
+}
+
+const ACCEPTED_RANGE: &str =
+    "expected LO:HI with finite numbers 0 <= LO < HI, written like 0:70 or 2/7:1.5e3";
+
+/// Numbers of columns and rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size {
+    /// Columns.
+    pub columns: usize,
+    /// Rows.
+    pub rows: usize,
+}
+
+impl Size {
+    /// Most points, 10¹⁰: with these, the larger of the two arrays of results has 80 GB.
+    pub const MOST: usize = 10_usize.saturating_pow(10);
+
+    /// Reads `WxH`.
+    ///
+    /// # Errors
+    /// What is wrong with it and what is expected.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let expected = format!(
+            "expected WxH, two whole numbers from 1 whose product is at most {}, \
+             written like 1000x800",
+            Self::MOST
+        );
+        let size = text.split_once('x').and_then(|(columns, rows)| {
+            Some(Self { columns: columns.trim().parse().ok()?, rows: rows.trim().parse().ok()? })
+        });
+        let Some(size) = size else { return Err(format!("not a size; {expected}")) };
+        let points = size.columns.checked_mul(size.rows);
+        if points.is_some_and(|points| (1..=Self::MOST).contains(&points)) {
+            Ok(size)
+        } else {
+            Err(format!("out of range; {expected}"))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges() {
+        assert_eq!(parse("0:70"), Ok(Range { low: 0.0, high: 70.0 }));
+        assert_eq!(parse(" 2/7 : 1.5e3 "), Ok(Range { low: 2.0 / 7.0, high: 1500.0 }));
+        assert!(parse("-0:1").unwrap().low.is_sign_positive());
+        for (text, expected) in [
+            ("", NotARange::Syntax),
+            ("70", NotARange::Syntax),
+            ("0-70", NotARange::Syntax),
+            (":70", NotARange::Low { problem: NotANumber::Empty }),
+            ("nan:70", NotARange::Low { problem: NotANumber::Syntax }),
+            ("0:", NotARange::High { problem: NotANumber::Empty }),
+            ("0:1:2", NotARange::High { problem: NotANumber::Syntax }),
+            ("0:inf", NotARange::High { problem: NotANumber::Infinite }),
+            ("-1:70", NotARange::Order),
+            ("1:1", NotARange::Order),
+            ("2:1", NotARange::Order),
+        ] {
+            assert_eq!(parse(text), Err(expected), "{text}");
+        }
+    }
+
+    #[test]
+    fn sizes() {
+        assert_eq!(Size::parse("3x2"), Ok(Size { columns: 3, rows: 2 }));
+        assert_eq!(Size::parse("100000x100000"), Ok(Size { columns: 100_000, rows: 100_000 }));
+        for text in ["", "10", "10x", "x10", "10X10", "1x2x3", "-1x5", "1.5x2", "nanx1"] {
+            assert!(Size::parse(text).unwrap_err().starts_with("not a size"), "{text}");
+        }
+        let huge = "18446744073709551615x18446744073709551615";
+        for text in ["0x5", "5x0", "100000x100001", huge] {
+            assert!(Size::parse(text).unwrap_err().starts_with("out of range"), "{text}");
+        }
+    }
+}

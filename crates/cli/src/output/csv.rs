@@ -1,0 +1,51 @@
+//! CSV files.
+
+use std::path::Path;
+
+use csv::{Writer, WriterBuilder};
+
+use super::file::{OutputFile, StoredFile};
+use crate::error::Failure;
+
+/// A CSV file that is being written.
+pub struct CsvFile(Writer<OutputFile>);
+
+impl CsvFile {
+    /// Starts to write `path`.
+    ///
+    /// # Errors
+    /// [`Failure::Output`]: it cannot be created.
+    pub fn create(path: &Path) -> Result<Self, Failure> {
+        let file = OutputFile::create(path)?;
+        Ok(Self(WriterBuilder::new().flexible(true).from_writer(file)))
+    }
+
+    /// Writes rows.
+    ///
+    /// # Errors
+    /// [`Failure::Output`]: they cannot be written.
+    pub fn write(
+        &mut self,
+        rows: impl FnOnce(&mut Writer<OutputFile>) -> csv::Result<()>,
+    ) -> Result<(), Failure> {
+        let written = rows(&mut self.0);
+        written.map_err(|error| self.0.get_ref().failure(error))
+    }
+
+    /// The file with all rows.
+    ///
+    /// # Errors
+    /// [`Failure::Output`]: it cannot be stored.
+    pub fn store(mut self) -> Result<StoredFile, Failure> {
+        if let Err(error) = self.0.flush() {
+            return Err(self.0.get_ref().failure(error));
+        }
+        match self.0.into_inner() {
+            Ok(file) => file.store(),
+            Err(failed) => {
+                let error = failed.error().kind();
+                Err(failed.into_inner().get_ref().failure(error))
+            }
+        }
+    }
+}

@@ -1,0 +1,220 @@
+//! Output files that are complete or not there at all.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::{Builder, NamedTempFile};
+
+use crate::error::Failure;
+
+/// How the name of an incomplete file ends.
+pub const PARTIAL: &str = ".partial";
+
+/// The file that is replaced when `path` is written: behind a symbolic link, the one it points to
+/// and not the link. A device or a pipe has its own name.
+pub fn target(path: &Path) -> PathBuf {
+    match fs::canonicalize(path) {
+        Ok(target) if path.is_symlink() && !is_stream(path) => target,
+        _ => path.to_owned(),
+    }
+}
+
+/// A file that is written beside its target and gets the target's name when it is complete.
+///
+/// Dropped before [`publish`], it disappears and the target stays as it was. A device or a pipe is
+/// written directly: there is nothing to replace.
+#[derive(Debug)]
+pub struct OutputFile {
+    /// The name by which the user knows it.
+    path: PathBuf,
+    destination: Destination,
+}
+
+/// A file that is complete and stored, and lacks only its name.
+#[derive(Debug)]
+#[must_use = "it disappears unless it is published"]
+pub struct StoredFile(OutputFile);
+
+#[derive(Debug)]
+enum Destination {
+    Beside { partial: NamedTempFile, target: PathBuf },
+    Direct(File),
+}
+
+impl OutputFile {
+    /// Starts to write `path`, whose directory must exist.
+    ///
+    /// # Errors
+    /// [`Failure::Output`]: the directory is missing or cannot be written, or `path` is a directory.
+    pub fn create(path: &Path) -> Result<Self, Failure> {
+        let target = target(path);
+        let directory = match target.parent() {
+            Some(parent) if !parent.as_os_str().is_empty() => parent,
+            _ => Path::new("."),
+        };
+        Self::create_in(directory, path)
+    }
+
+    /// The same with the incomplete file in `directory`, on the file system of the target.
+    ///
+    /// # Errors
+    /// [`Failure::Output`]: `directory` is missing or cannot be written, or `path` is a directory.
+    pub fn create_in(directory: &Path, path: &Path) -> Result<Self, Failure> {
+        let destination = Destination::new(directory, path);
+        let destination = destination.map_err(|error| Failure::output(path, error))?;
+        Ok(Self { path: path.to_owned(), destination })
+    }
+
+    /// Starts to write `path` with all of `content`.
+    ///
+    /// # Errors
+    /// [`Failure::Output`]: it cannot be written.
+    pub fn complete(path: &Path, content: &[u8]) -> Result<StoredFile, Failure> {
+        let mut file = Self::create(path)?;
+        file.write_all(content).map_err(|error| Failure::output(path, error))?;
+        file.store()
+    }
+
+    /// Makes sure that `path` can be written, before there is work to lose.
+    ///
+    /// # Errors
+    /// [`Failure::Output`]: it cannot be created.
+    pub fn probe(path: &Path) -> Result<(), Failure> {
+        Self::create(path).map(drop)
+    }
+
+    /// Makes sure that everything has been stored.
+    ///
+    /// # Errors
+    /// [`Failure::Output`]: the disk is full or fails.
+    pub fn store(mut self) -> Result<StoredFile, Failure> {
+        let stored = match &mut self.destination {
+            Destination::Beside { partial, .. } => partial.as_file().sync_all(),
+            Destination::Direct(device) => device.flush(),
+        };
+        match stored {
+            Ok(()) => Ok(StoredFile(self)),
+            Err(error) => Err(self.failure(error)),
+        }
+    }
+
+    /// The failure to write this file.
+    pub fn failure(&self, error: impl Into<io::Error>) -> Failure {
+        Failure::output(&self.path, error)
+    }
+}
+
+/// Gives files their names, which are all complete by now.
+///
+/// # Errors
+/// [`Failure::Output`]: one cannot be renamed; it and those after it are removed.
+pub fn publish(files: impl IntoIterator<Item = StoredFile>) -> Result<(), Failure> {
+    files.into_iter().try_for_each(|StoredFile(OutputFile { path, destination })| match destination
+    {
+        Destination::Beside { partial, target } => match partial.persist(target) {
+            Ok(_) => Ok(()),
+            Err(failed) => Err(Failure::output(&path, failed.error)),
+        },
+        Destination::Direct(_) => Ok(()),
+    })
+}
+
+impl Destination {
+    fn new(directory: &Path, path: &Path) -> io::Result<Self> {
+        if is_stream(path) {
+            // At the end of whatever it leads to: another program may have written before.
+            return Ok(Self::Direct(OpenOptions::new().append(true).open(path)?));
+        }
+        if path.is_dir() {
+            return Err(io::ErrorKind::IsADirectory.into());
+        }
+        let target = target(path);
+        fs::metadata(directory)?;
+        let name = target.file_name().ok_or(io::ErrorKind::InvalidFilename)?;
+        let prefix = format!(".{}.", name.to_string_lossy());
+        let mut builder = Builder::new();
+        builder.prefix(&prefix).suffix(PARTIAL);
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        // The whole error would show the temporary name, which means nothing to the user.
+        let partial = builder.tempfile_in(directory).map_err(|error| error.kind())?;
+        Ok(Self::Beside { partial, target })
+    }
+}
+
+impl Write for OutputFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match &mut self.destination {
+            // The error of the file itself: `NamedTempFile` would add the temporary name to it.
+            Destination::Beside { partial, .. } => partial.as_file_mut().write(bytes),
+            Destination::Direct(device) => device.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match &mut self.destination {
+            Destination::Beside { partial, .. } => partial.as_file_mut().flush(),
+            Destination::Direct(device) => device.flush(),
+        }
+    }
+}
+
+/// Whether `path` leads to a device, a pipe or a stream of the process itself, which a file of the
+/// same name must not replace.
+fn is_stream(path: &Path) -> bool {
+    let own = ["/dev/stdout", "/dev/stderr", "/dev/fd", "/proc/self/fd"];
+    own.iter().any(|stream| path.starts_with(stream))
+        || fs::metadata(path).is_ok_and(|existing| !existing.is_file() && !existing.is_dir())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(directory: &Path) -> Vec<String> {
+        let entries = fs::read_dir(directory).unwrap();
+        let mut names: Vec<_> =
+            entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn appears_when_published_and_not_before() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("out.csv");
+        let mut file = OutputFile::create(&path).unwrap();
+        file.write_all(b"a,b\n").unwrap();
+        assert!(!path.exists());
+        publish([file.store().unwrap()]).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"a,b\n");
+        assert_eq!(names(directory.path()), ["out.csv"]);
+    }
+
+    #[test]
+    fn dropped_unpublished_it_leaves_what_was_there() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("out.csv");
+        fs::write(&path, "old").unwrap();
+        let mut file = OutputFile::create(&path).unwrap();
+        file.write_all(b"new").unwrap();
+        drop(file);
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(names(directory.path()), ["out.csv"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn replaces_what_a_link_points_to_and_keeps_the_link() {
+        let directory = tempfile::tempdir().unwrap();
+        let (target, link) = (directory.path().join("target"), directory.path().join("link"));
+        fs::write(&target, "old").unwrap();
+        std::os::unix::fs::symlink(&target, &link).unwrap();
+        let mut file = OutputFile::create(&link).unwrap();
+        file.write_all(b"new").unwrap();
+        publish([file.store().unwrap()]).unwrap();
+        assert_eq!(fs::read(&target).unwrap(), b"new");
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    }
+}

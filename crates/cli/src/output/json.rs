@@ -1,0 +1,37 @@
+//! Results as JSON on standard output.
+
+use std::io::{self, Write};
+
+use serde::Serialize;
+use serde_json::{Map, Value, json, to_value};
+use stickslip_model::Engine;
+use stickslip_solver::Statistics;
+
+/// Writes `result` as one JSON object of layout `schema` and a line end, with what computed it: the
+/// engine, and the integrator's work, which is an empty object for the exact solution.
+///
+/// # Errors
+/// `out` cannot be written.
+pub fn write(
+    out: &mut impl Write,
+    schema: &str,
+    result: &impl Serialize,
+    engine: &Engine,
+    statistics: Option<&Statistics>,
+) -> io::Result<()> {
+    let mut object = Map::from_iter([("schema".to_owned(), schema.into())]);
+    let method = to_value(engine)?;
+    if let Value::Object(fields) = to_value(result)? {
+        for (name, value) in fields {
+            let parameters = name == "parameters";
+            object.insert(name, value);
+            if parameters {
+                object.insert("method".to_owned(), method.clone());
+            }
+        }
+    }
+    let statistics = statistics.map_or(Ok(json!({})), to_value)?;
+    object.insert("statistics".to_owned(), statistics);
+    serde_json::to_writer_pretty(&mut *out, &object)?;
+    writeln!(out)
+}

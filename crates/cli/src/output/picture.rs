@@ -1,0 +1,76 @@
+//! Files of pictures.
+
+use std::path::PathBuf;
+
+use stickslip_figure::{FigureError, Svg, png};
+
+use super::file::{OutputFile, StoredFile};
+use crate::error::Failure;
+
+/// The file of a picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PictureFile {
+    path: PathBuf,
+    format: Format,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Svg,
+    Png,
+}
+
+impl PictureFile {
+    /// The picture file `path`, whose name tells its format.
+    ///
+    /// # Errors
+    /// The name does not end in .svg or .png.
+    pub fn new(path: PathBuf) -> Result<Self, String> {
+        let is =
+            |name: &str| path.extension().is_some_and(|given| given.eq_ignore_ascii_case(name));
+        let format = match (is("svg"), is("png")) {
+            (true, _) => Format::Svg,
+            (_, true) => Format::Png,
+            _ => {
+                return Err("not a picture; expected a name that ends in .svg or .png".to_owned());
+            }
+        };
+        Ok(Self { path, format })
+    }
+
+    /// Makes sure that the file can be written, before there is work to lose.
+    ///
+    /// # Errors
+    /// [`Failure::Output`]: the file cannot be created.
+    pub fn probe(&self) -> Result<(), Failure> {
+        OutputFile::probe(&self.path)
+    }
+
+    /// Writes `picture` beside the file.
+    ///
+    /// # Errors
+    /// [`Failure::Picture`]: it cannot be drawn. [`Failure::Output`]: it cannot be written.
+    pub fn write(&self, picture: Result<Svg, FigureError>) -> Result<StoredFile, Failure> {
+        let bytes = picture.and_then(|picture| match self.format {
+            Format::Svg => Ok(picture.document().into_bytes()),
+            Format::Png => png(&picture),
+        });
+        let failed = |source| Failure::Picture { path: self.path.clone(), source };
+        OutputFile::complete(&self.path, &bytes.map_err(failed)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_name_tells_the_format() {
+        let format = |name: &str| PictureFile::new(name.into()).map(|file| file.format);
+        assert_eq!(format("a/b.svg"), Ok(Format::Svg));
+        assert_eq!(format("b.c.PNG"), Ok(Format::Png));
+        for name in ["svg", ".png", "a.pdf", "a.svg.", ""] {
+            assert!(format(name).is_err(), "{name}");
+        }
+    }
+}

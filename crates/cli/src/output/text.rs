@@ -1,0 +1,188 @@
+//! One collision as a readable table.
+
+use std::io::{self, Write};
+
+use stickslip_model::{Collision, Switch};
+use stickslip_solver::Statistics;
+
+use stickslip_model::Engine;
+
+/// Digits shown; `--format json` has them all.
+const DIGITS: usize = 10;
+
+/// Writes `collision` for a reader.
+///
+/// # Errors
+/// `out` cannot be written.
+pub fn write(
+    out: &mut impl Write,
+    engine: &Engine,
+    collision: &Collision,
+    statistics: Option<&Statistics>,
+) -> io::Result<()> {
+    let contact = &collision.contact;
+    writeln!(
+        out,
+        "Collision with κ = {:?}, ψ = {:?}, damping a = {:?}, by {}",
+        contact.kappa(),
+        contact.psi(),
+        contact.damping(),
+        describe(engine)
+    )?;
+    writeln!(out)?;
+    if collision.switches.is_empty() {
+        writeln!(out, "No switch.")?;
+    } else {
+        let header = ["", "time", "time left", "to", "side", "spring y", "velocity w"];
+        let rows = collision.switches.iter().enumerate().map(|(index, switch)| row(index, switch));
+        aligned(out, &std::iter::once(header.map(str::to_owned)).chain(rows).collect::<Vec<_>>())?;
+    }
+    writeln!(out)?;
+    pairs(
+        out,
+        &[
+            ("normal restitution ε_n", number(collision.eps_n)),
+            ("tangential restitution ε_t", number(collision.eps_t())),
+            ("velocity w at the end", number(collision.final_velocity)),
+            ("contact time", number(collision.contact_time)),
+            ("switches", collision.switches.len().to_string()),
+            ("reversals of the motion", collision.reversals.to_string()),
+            ("itinerary", collision.itinerary()),
+        ],
+    )?;
+    energy(out, collision)?;
+    if let Some(statistics) = statistics {
+        work(out, statistics)?;
+    }
+    Ok(())
+}
+
+/// The method with its tolerances.
+pub fn describe(engine: &Engine) -> String {
+    match engine.tolerances() {
+        Some(tolerances) => {
+            format!("{} (rtol {:?}, atol {:?})", engine.name(), tolerances.rtol, tolerances.atol)
+        }
+        None => "the exact solution".to_owned(),
+    }
+}
+
+fn row(index: usize, switch: &Switch) -> [String; 7] {
+    [
+        index.to_string(),
+        number(switch.time),
+        number(switch.time_left),
+        switch.to.to_string(),
+        format!("{:+}", switch.side.sign()),
+        number(switch.spring),
+        number(switch.velocity),
+    ]
+}
+
+fn energy(out: &mut impl Write, collision: &Collision) -> io::Result<()> {
+    let ledger = &collision.energy;
+    writeln!(out)?;
+    aligned(
+        out,
+        &[
+            ["energy".to_owned(), "tangential".to_owned(), "normal".to_owned()],
+            entry("at impact", ledger.tangential_initial, ledger.normal_initial),
+            entry("motion at the end", ledger.tangential_final, ledger.normal_final),
+            entry("taken by sliding, damping", ledger.sliding, ledger.damping),
+            entry("left in spring, compression", ledger.spring_left, ledger.compression_left),
+            entry("unbalanced", ledger.tangential_unbalanced(), ledger.normal_unbalanced()),
+        ],
+    )
+}
+
+fn entry(name: &str, tangential: f64, normal: f64) -> [String; 3] {
+    [name.to_owned(), number(tangential), number(normal)]
+}
+
+/// What the integrator did, after a blank line.
+///
+/// # Errors
+/// `out` cannot be written.
+pub fn work(out: &mut impl Write, statistics: &Statistics) -> io::Result<()> {
+    writeln!(out)?;
+    pairs(
+        out,
+        &[
+            ("steps accepted", statistics.accepted.to_string()),
+            ("steps rejected for their error", statistics.rejected.to_string()),
+            ("steps too coarse for a guard", statistics.too_coarse.to_string()),
+            ("steps repeated to end on a switch", statistics.resteps.to_string()),
+            ("evaluations of the right-hand side", statistics.field.to_string()),
+            ("evaluations of the guards", statistics.guards.to_string()),
+            ("guards isolated in full", statistics.isolations.to_string()),
+            ("touches without a switch", statistics.grazings.to_string()),
+        ],
+    )
+}
+
+/// Names to the left, values after them.
+///
+/// # Errors
+/// `out` cannot be written.
+pub fn pairs(out: &mut impl Write, lines: &[(&str, String)]) -> io::Result<()> {
+    let width = lines.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
+    lines.iter().try_for_each(|(name, value)| writeln!(out, "{name:<width$}  {value}"))
+}
+
+/// Columns: the first to the left, the others to the right.
+///
+/// # Errors
+/// `out` cannot be written.
+pub fn aligned<const N: usize>(out: &mut impl Write, rows: &[[String; N]]) -> io::Result<()> {
+    let width =
+        |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths: [usize; N] = std::array::from_fn(width);
+    for row in rows {
+        write!(out, "{:<width$}", row[0], width = widths[0])?;
+        for (cell, width) in row.iter().zip(widths).skip(1) {
+            write!(out, "  {cell:>width$}")?;
+        }
+        writeln!(out)?;
+    }
+    Ok(())
+}
+
+/// `value` with [`DIGITS`] significant digits, with an exponent if it is very small or large.
+pub fn number(value: f64) -> String {
+    let rounded = format!("{value:.*e}", DIGITS - 1);
+    // The exponent of the rounded number: 9.9999999999 has one digit more than it seems.
+    let exponent: i32 =
+        rounded.split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or(0);
+    match usize::try_from(9 - exponent) {
+        Ok(decimals) if exponent >= -3 => format!("{value:.decimals$}"),
+        _ => rounded,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_ten_significant_digits() {
+        for (value, expected) in [
+            (0.0, "0.000000000"),
+            (1.0, "1.000000000"),
+            (-0.0151, "-0.01510000000"),
+            (9.99999999999, "10.00000000"),
+            (123456.789, "123456.7890"),
+            (1.5e-7, "1.500000000e-7"),
+            (-2.5e12, "-2.500000000e12"),
+        ] {
+            assert_eq!(number(value), expected);
+        }
+    }
+
+    #[test]
+    fn columns_are_aligned() {
+        let mut out = Vec::new();
+        let rows = [["a".to_owned(), "ψ".to_owned()], ["long".to_owned(), "1.5".to_owned()]];
+        aligned(&mut out, &rows).unwrap();
+        assert_eq!(String::from_utf8(out).unwrap(), "a       ψ\nlong  1.5\n");
+    }
+}

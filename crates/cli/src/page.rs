@@ -1,0 +1,119 @@
+//! The page with everything: one file that needs no other, no network and no scripts.
+//!
+//! It is well-formed XML as well, so that any tool can read it.
+
+pub mod report;
+
+use std::fmt::Write;
+
+use askama::Template;
+use askama::filters::{Html, escape};
+use stickslip_figure::markup::{Piece, PieceStyle, pieces};
+use stickslip_figure::number;
+use stickslip_studies::figures::Section;
+use stickslip_studies::{Cell, Column, Picture, Table};
+
+/// The title of the page and of the report.
+pub const TITLE: &str = "Tangential restitution of viscoelastic spheres, computed anew";
+
+/// What stands above everything.
+pub const INTRODUCTION: [&str; 2] = [
+    "The figures of T. Schwager, V. Becker and T. Pöschel, Coefficient of tangential restitution for \
+     viscoelastic spheres, Eur. Phys. J. E 27, 107 (2008), computed anew with every switch between \
+     sliding and sticking. Numbers in brackets are those of its equations.",
+    "Lengths, times and forces are scaled as there. κ is the scaled stiffness of the tangential \
+     spring (24), g_n and g_t are the normal and the tangential impact velocity, ψ = (α/μ) g_t/g_n, \
+     a is the scaled damping. The axis that Figures 3 to 6 of the paper call κ can be read in two \
+     ways, as κ of (24) and as ακ; both are shown.",
+];
+
+/// Pictures are not shown smaller than that, in parts of their size: letters would become too
+/// small.
+const LEAST_SCALE: f64 = 0.7;
+
+#[derive(Template)]
+#[template(path = "page.html")]
+struct Page<'a> {
+    sections: &'a [Section],
+}
+
+/// The page.
+pub fn html(sections: &[Section]) -> String {
+    // Writing to memory fails only where a value cannot be displayed, and all can.
+    Page { sections }.render().unwrap_or_default()
+}
+
+/// `text` as HTML, with subscripts, superscripts and code set as such.
+fn markup(text: &str) -> String {
+    let mut html = String::with_capacity(text.len());
+    for Piece { text, style } in pieces(text) {
+        let tag = match style {
+            PieceStyle::Plain => None,
+            PieceStyle::Lowered => Some("sub"),
+            PieceStyle::Raised => Some("sup"),
+            PieceStyle::Code => Some("code"),
+        };
+        let text = escaped(text);
+        // Writing to a string cannot fail.
+        let _ = match tag {
+            Some(tag) => write!(html, "<{tag}>{text}</{tag}>"),
+            None => write!(html, "{text}"),
+        };
+    }
+    html
+}
+
+/// `text` with the characters escaped that mean something in HTML.
+fn escaped(text: &str) -> String {
+    // Escaping cannot fail.
+    escape(text, Html).map(|escaped| escaped.to_string()).unwrap_or_default()
+}
+
+/// The width below which a picture scrolls, in pixels.
+fn least_width(picture: &Picture) -> f64 {
+    (LEAST_SCALE * picture.svg.width()).round()
+}
+
+/// The tables of a section that stand on the page.
+fn shown(section: &Section) -> Vec<&Table> {
+    let tables = section.study.tables.iter();
+    tables.filter(|table| section.shown.contains(&table.name)).collect()
+}
+
+/// The columns of a table, each with the class of its first cell.
+fn headings(table: &Table) -> Vec<(&Column, &'static str)> {
+    let first = table.rows.first().into_iter().flatten();
+    table.columns.iter().zip(first.map(class)).collect()
+}
+
+fn content(cell: &Cell) -> String {
+    match cell {
+        Cell::Number(value) if value.is_nan() => String::new(),
+        Cell::Number(value) => markup(&number(*value, 5)),
+        Cell::Count(count) => count.to_string(),
+        Cell::Text(text) => markup(text),
+    }
+}
+
+fn class(cell: &Cell) -> &'static str {
+    match cell {
+        Cell::Number(_) | Cell::Count(_) => "number",
+        Cell::Text(text) if !text.contains(' ') => "word",
+        Cell::Text(_) => "words",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::markup;
+
+    #[test]
+    fn markup_is_set_and_everything_else_escaped() {
+        assert_eq!(markup("g_t/g_n < 2μ/α"), "g<sub>t</sub>/g<sub>n</sub> &#60; 2μ/α");
+        assert_eq!(markup("β^{−2/5}, ε_t^C"), "β<sup>−2/5</sup>, ε<sub>t</sub><sup>C</sup>");
+        assert_eq!(
+            markup("`collide --psi <P>` a_b"),
+            "<code>collide --psi &#60;P&#62;</code> a<sub>b</sub>"
+        );
+    }
+}
