@@ -3,9 +3,12 @@
 //! [`HybridSystem`] is what a user writes, [`run`](crate::run) what it is for, [`Observer`] how
 //! results come out while the run goes on.
 
+pub(crate) mod guard;
+
 use std::fmt;
 
-use crate::guard::Guard;
+pub use guard::{Direction, Guard};
+
 use crate::method::{Dense, Method, State, Step, Trial};
 
 /// A piecewise-smooth ODE of `N` components with at most `G` guards in a mode.

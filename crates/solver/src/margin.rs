@@ -10,16 +10,18 @@
 //! A minimum of a guard is a zero of its rate. It is found as any other switch is: decided on every
 //! step, and refined by steps of the method itself.
 
+mod prescribed;
+
 use std::cmp::Ordering;
 use std::hash::{Hash, Hasher};
 
 use crate::error::RunError;
-use crate::guard::{Direction, Guard};
+use crate::hybrid::guard::{Direction, Guard};
 use crate::hybrid::{HybridSystem, Observer, Outcome, Start, SwitchEvent};
+use crate::margin::prescribed::{Extremum, watch};
 use crate::method::Method;
 use crate::options::Options;
-use crate::prescribed::{Extremum, watch};
-use crate::runner::run;
+use crate::runs::runner::run;
 
 /// A place in a phase, which moves with the parameters: two that differ in nothing else are the
 /// same.

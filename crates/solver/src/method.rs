@@ -1,6 +1,15 @@
 //! A Runge–Kutta pair as data, and one step with it as a pure function.
 
+pub(crate) mod control;
+mod dop853;
+mod dopri5;
+mod order;
+
 use nalgebra::SVector;
+
+pub use dop853::Dop853;
+pub use dopri5::Dopri5;
+pub use order::{Order, fit_order};
 
 /// A state of `N` components.
 pub type State<const N: usize> = SVector<f64, N>;

@@ -9,15 +9,15 @@
 
 use std::marker::PhantomData;
 
-use crate::along_step::{AlongStep, rounding};
-use crate::event::{Event, bit};
-use crate::guard::Direction;
+use crate::events::along_step::{AlongStep, rounding};
+use crate::events::event::{Event, bit};
+use crate::events::isolate::{noise, sides};
+use crate::events::phase::Phase;
+use crate::events::quick::NODES;
+use crate::hybrid::guard::Direction;
 use crate::hybrid::{HybridSystem, Statistics};
-use crate::isolate::{noise, sides};
 use crate::method::{Dense, Method, State, Step, Trial};
 use crate::options::{Options, StepSize};
-use crate::phase::Phase;
-use crate::quick::NODES;
 
 /// A step ahead is cut to a fifth at most this often, like a step that is too coarse.
 const CUTS: usize = 60;

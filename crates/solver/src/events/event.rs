@@ -1,13 +1,13 @@
 //! One step and its guards: which of them fires first, if any.
 
 use crate::error::RunError;
-use crate::guard::Direction;
+use crate::events::isolate::Bracket;
+use crate::events::one_guard::{Crossing, Status};
+use crate::events::phase::Phase;
+use crate::events::quick;
+use crate::hybrid::guard::Direction;
 use crate::hybrid::{HybridSystem, Observer, Statistics};
-use crate::isolate::Bracket;
 use crate::method::{Method, State, Step, Trial};
-use crate::one_guard::{Crossing, Status};
-use crate::phase::Phase;
-use crate::quick;
 
 /// Guards closer to a switch than this part of the step fire together with it.
 const TOGETHER: f64 = 1e-12;

@@ -6,10 +6,13 @@
 //! On a monotone piece the signs at the ends decide. Where a sign lies within the error of the
 //! dense output, the method itself is asked, by a step to that point.
 
+pub(crate) mod chebyshev;
+pub(crate) mod panel;
+
 use std::ops::ControlFlow;
 
-use crate::chebyshev::COSINES;
-use crate::panel::{Panel, Points};
+use crate::events::isolate::chebyshev::COSINES;
+use crate::events::isolate::panel::{Panel, Points};
 
 /// Panels narrower than 2^−`DEPTH` of the step are not cut further.
 const DEPTH: u32 = 12;

@@ -1,11 +1,11 @@
 //! The mode that is active, with its guards.
 
 use crate::error::RunError;
-use crate::event::Event;
-use crate::guard::{Direction, Guard};
+use crate::events::event::Event;
+use crate::events::together::Standing;
 use crate::hybrid::HybridSystem;
+use crate::hybrid::guard::{Direction, Guard};
 use crate::method::State;
-use crate::together::Standing;
 
 /// The mode that is active, with its guards as they stand.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,7 @@
 //! The first look at a guard on a step: a quintic through six values that the step already holds.
 //!
 //! Most steps are far from any switch, and most crossings are steep. Both are recognised here at
-//! the price of four guard evaluations; everything else is left to [`crate::isolate`].
+//! the price of four guard evaluations; everything else is left to [`crate::events::isolate`].
 
 use crate::method::INTERIOR_NODES;
 
