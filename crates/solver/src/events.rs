@@ -1,10 +1,17 @@
 //! One step and its guards: which of them fires first, and where.
 
-pub(crate) mod along_step;
-pub(crate) mod event;
-pub(crate) mod isolate;
+mod along_step;
+mod event;
+mod examination;
+mod first_guard;
+mod isolate;
 mod locate;
-pub(crate) mod one_guard;
-pub(crate) mod phase;
+mod one_guard;
+mod phase;
 mod quick;
-pub(crate) mod together;
+mod together;
+
+pub(crate) use event::{Event, Found};
+pub(crate) use examination::Examination;
+pub(crate) use phase::{Phase, Standing};
+pub(crate) use together::Passage;

@@ -5,7 +5,8 @@
 
 use crate::error::RunError;
 use crate::events::along_step::rounding;
-use crate::events::event::{Event, Examination};
+use crate::events::event::Event;
+use crate::events::examination::Examination;
 use crate::events::one_guard::Crossing;
 use crate::hybrid::{HybridSystem, Observer};
 use crate::method::{Method, State, Step};

@@ -4,11 +4,10 @@ use std::marker::PhantomData;
 
 use crate::error::RunError;
 use crate::events::along_step::AlongStep;
-use crate::events::event::Examination;
+use crate::events::examination::Examination;
 use crate::events::isolate::{Bracket, Touch, Verdict, first_crossing, sides};
 use crate::events::quick::{self, Quick};
-use crate::hybrid::guard::Direction;
-use crate::hybrid::{Grazing, HybridSystem, Observer};
+use crate::hybrid::{Direction, Grazing, HybridSystem, Observer};
 use crate::method::{Method, Step, Trial};
 
 /// A guard that is zero throughout a step is looked at on longer ones, each four times as long as

@@ -3,9 +3,7 @@
 //! One accepted step is `advance`; whether it contains a switch is the business of `event`.
 
 use crate::error::RunError;
-use crate::events::event::{Event, Examination, Found};
-use crate::events::phase::Phase;
-use crate::events::together::{Passage, Standing};
+use crate::events::{Event, Examination, Found, Passage, Phase, Standing};
 use crate::hybrid::{HybridSystem, Observer, Outcome, Run, Start, Statistics, SwitchEvent};
 use crate::method::control::{Controller, first_step};
 use crate::method::{Method, State, Step, Trial};

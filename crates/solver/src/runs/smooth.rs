@@ -1,8 +1,7 @@
 //! A smooth ODE as a hybrid system of one mode and no guards.
 
 use crate::error::RunError;
-use crate::hybrid::guard::Guard;
-use crate::hybrid::{HybridSystem, Observer, Run, Start};
+use crate::hybrid::{Guard, HybridSystem, Observer, Run, Start};
 use crate::method::{Method, State};
 use crate::options::Options;
 use crate::runs::runner::run;

@@ -1,8 +1,9 @@
 //! Runs that step over switches, as codes without event location do: for comparison only.
 
 use crate::error::RunError;
-use crate::hybrid::guard::Direction;
-use crate::hybrid::{HybridSystem, Observer, Outcome, Run, Start, Statistics, SwitchEvent};
+use crate::hybrid::{
+    Direction, HybridSystem, Observer, Outcome, Run, Start, Statistics, SwitchEvent,
+};
 use crate::method::{Method, Step, Trial};
 use crate::options::{Options, StepSize};
 use crate::runs::clock::Clock;
@@ -158,7 +159,7 @@ fn fires(direction: Direction, before: f64, now: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hybrid::guard::Guard;
+    use crate::hybrid::Guard;
     use crate::method::State;
     use crate::runs::trajectory::Recorder;
     use crate::{Dop853, Dopri5, run};
