@@ -63,48 +63,31 @@
 //! (feedback with hysteresis), `impact_oscillator` (near grazing), `arenstorf` (smooth, with dense
 //! output).
 
-mod along_step;
-mod chebyshev;
-mod clock;
-mod control;
-mod dop853;
-mod dopri5;
-mod error;
-mod event;
-mod guard;
 pub mod hybrid;
-mod isolate;
-mod locate;
-pub mod margin;
-pub mod method;
-mod one_guard;
-mod options;
-mod order;
-mod panel;
-mod phase;
-mod prescribed;
-mod quick;
-mod runner;
-pub mod sensitivity;
-pub mod smooth;
-mod together;
-pub mod trajectory;
-mod unlocated;
 
-pub use dop853::Dop853;
-pub use dopri5::Dopri5;
+mod error;
+mod options;
+
+mod runs;
+
+mod events;
+
+pub mod method;
+
+pub mod margin;
+pub mod sensitivity;
+
 pub use error::RunError;
-pub use guard::{Direction, Guard};
-pub use hybrid::{Grazing, HybridSystem, Observer, Outcome, Run, Start, Statistics, SwitchEvent};
+pub use hybrid::{
+    Direction, Grazing, Guard, HybridSystem, Observer, Outcome, Run, Start, Statistics, SwitchEvent,
+};
 pub use margin::{Exit, Hint, Margin, Margins, NearMiss, Place, margin, margins};
-pub use method::{Dense, Method, State, Step, Tableau, Trial};
+pub use method::{Dense, Dop853, Dopri5, Method, Order, State, Step, Tableau, Trial, fit_order};
 pub use options::{InvalidOption, Options, StepSize};
-pub use order::{Order, fit_order};
-pub use runner::run;
+pub use runs::{
+    Recorder, Segment, Trajectory, integrate, run, run_over_switches, smooth, trajectory,
+};
 pub use sensitivity::{Change, Differentiable, Sensitivities, SwitchSensitivity, sensitivities};
-pub use smooth::integrate;
-pub use trajectory::{Recorder, Segment, Trajectory};
-pub use unlocated::run_over_switches;
 
 #[doc = include_str!("../README.md")]
 #[cfg(doctest)]

@@ -9,11 +9,10 @@
 //! Systems*, 2004, section 7.3).
 
 use crate::error::RunError;
-use crate::guard::Guard;
-use crate::hybrid::{HybridSystem, Observer, Outcome, Start, Statistics, SwitchEvent};
+use crate::hybrid::{Guard, HybridSystem, Observer, Outcome, Start, Statistics, SwitchEvent};
 use crate::method::{Method, State};
 use crate::options::Options;
-use crate::runner::run;
+use crate::runs::run;
 
 /// A small change: of the independent variable, of the state, and of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,17 +1,18 @@
 //! The first look at a guard on a step: a quintic through six values that the step already holds.
 //!
 //! Most steps are far from any switch, and most crossings are steep. Both are recognised here at
-//! the price of four guard evaluations; everything else is left to [`crate::isolate`].
+//! the price of four guard evaluations; everything else is left to [`crate::events::isolate`].
 
-use crate::method::INTERIOR_NODES;
+mod tables;
 
-const COUNT: usize = 6;
+pub(crate) use tables::NODES;
+
+use tables::{
+    BEND, COUNT, LATE_CUBIC_TERM, LATE_QUARTIC_TERM, QUARTIC, QUARTIC_TERM, QUINTIC, QUINTIC_TERM,
+};
+
 /// Rounding of a Bernstein coefficient, relative to the largest.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
-
-/// Step fractions of the six values.
-pub(crate) const NODES: [f64; COUNT] =
-    [0.0, INTERIOR_NODES[0], INTERIOR_NODES[1], INTERIOR_NODES[2], INTERIOR_NODES[3], 1.0];
 
 /// What six values of a guard tell about its sign on the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -144,162 +145,6 @@ fn multiply<const K: usize>(matrix: &[[f64; K]; K], values: &[f64; K]) -> [f64; 
 #[inline]
 fn last_term<const K: usize>(values: &[f64; K], weights: &[f64; K]) -> f64 {
     values.iter().zip(weights).map(|(value, weight)| value * weight).sum::<f64>().abs()
-}
-
-/// Columns of the map from values at the six nodes to Bernstein coefficients of degree 5.
-const QUINTIC: [[f64; 6]; 6] = to_bernstein(&NODES);
-/// The same for the five nodes after the start, degree 4.
-const QUARTIC: [[f64; 5]; 5] = to_bernstein(&LATE_NODES);
-const LATE_NODES: [f64; 5] = [NODES[1], NODES[2], NODES[3], NODES[4], NODES[5]];
-
-/// Weights that give the size of the expansion's last term on the step, and of the one before it.
-const QUINTIC_TERM: [f64; 6] = last_term_weights(&NODES, None, 2);
-const QUARTIC_TERM: [f64; 6] = last_term_weights(&NODES, Some(2), 3);
-const LATE_QUARTIC_TERM: [f64; 5] = last_term_weights(&LATE_NODES, None, 1);
-const LATE_CUBIC_TERM: [f64; 5] = last_term_weights(&LATE_NODES, Some(1), 2);
-
-/// By how much the quintic and its error may move at most, anywhere on the step, for each unit by
-/// which the value at a node differs from the chord through the ends.
-const BEND: [f64; 6] = {
-    let mut bend = [0.0; 6];
-    let mut i = 0;
-    while i < 6 {
-        bend[i] = greatest_lagrange(&NODES, i) + QUINTIC_TERM[i].abs() + QUARTIC_TERM[i].abs();
-        i += 1;
-    }
-    bend
-};
-
-/// The greatest absolute value on [0, 1] of the polynomial that is 1 at node `i` and 0 at the
-/// others, rounded up.
-const fn greatest_lagrange<const K: usize>(nodes: &[f64; K], i: usize) -> f64 {
-    let mut greatest = 0.0;
-    let mut sample = 0;
-    while sample <= 1000 {
-        let theta = sample as f64 / 1000.0;
-        let mut product = 1.0;
-        let mut j = 0;
-        while j < K {
-            if j != i {
-                product *= (theta - nodes[j]) / (nodes[i] - nodes[j]);
-            }
-            j += 1;
-        }
-        if product.abs() > greatest {
-            greatest = product.abs();
-        }
-        sample += 1;
-    }
-    1.01 * greatest
-}
-
-/// Newton's form through all nodes but `skip`, with node `last` added last: the weights of its
-/// highest coefficient times the greatest value of that coefficient's polynomial on [0, 1].
-const fn last_term_weights<const K: usize>(
-    nodes: &[f64; K],
-    skip: Option<usize>,
-    last: usize,
-) -> [f64; K] {
-    let skip = match skip {
-        Some(i) => i,
-        None => K,
-    };
-    let mut greatest = 0.0;
-    let mut sample = 0;
-    while sample <= 1000 {
-        let mut product = 1.0;
-        let mut i = 0;
-        while i < K {
-            if i != skip && i != last {
-                product *= sample as f64 / 1000.0 - nodes[i];
-            }
-            i += 1;
-        }
-        if product.abs() > greatest {
-            greatest = product.abs();
-        }
-        sample += 1;
-    }
-    let mut weights = [0.0; K];
-    let mut i = 0;
-    while i < K {
-        if i != skip {
-            let mut product = 1.0;
-            let mut j = 0;
-            while j < K {
-                if j != skip && j != i {
-                    product *= nodes[i] - nodes[j];
-                }
-                j += 1;
-            }
-            weights[i] = greatest / product;
-        }
-        i += 1;
-    }
-    weights
-}
-
-/// The inverse of the Bernstein collocation matrix at `nodes`, as columns.
-const fn to_bernstein<const K: usize>(nodes: &[f64; K]) -> [[f64; K]; K] {
-    let mut matrix = [[0.0; K]; K];
-    let mut inverse = [[0.0; K]; K];
-    let mut row = 0;
-    while row < K {
-        let mut column = 0;
-        while column < K {
-            matrix[row][column] = bernstein(K - 1, column, nodes[row]);
-            column += 1;
-        }
-        inverse[row][row] = 1.0;
-        row += 1;
-    }
-    // Gauss–Jordan; the matrix is totally positive, so it needs no pivoting.
-    let mut pivot = 0;
-    while pivot < K {
-        let scale = 1.0 / matrix[pivot][pivot];
-        let mut column = 0;
-        while column < K {
-            matrix[pivot][column] *= scale;
-            inverse[pivot][column] *= scale;
-            column += 1;
-        }
-        let mut row = 0;
-        while row < K {
-            if row != pivot {
-                let factor = matrix[row][pivot];
-                let mut column = 0;
-                while column < K {
-                    matrix[row][column] -= factor * matrix[pivot][column];
-                    inverse[row][column] -= factor * inverse[pivot][column];
-                    column += 1;
-                }
-            }
-            row += 1;
-        }
-        pivot += 1;
-    }
-    let mut columns = [[0.0; K]; K];
-    let mut row = 0;
-    while row < K {
-        let mut column = 0;
-        while column < K {
-            columns[column][row] = inverse[row][column];
-            column += 1;
-        }
-        row += 1;
-    }
-    columns
-}
-
-const fn bernstein(degree: usize, index: usize, theta: f64) -> f64 {
-    let mut product = 1.0;
-    let mut i = 0;
-    while i < degree {
-        product *=
-            if i < index { theta * (degree - i) as f64 / (index - i) as f64 } else { 1.0 - theta };
-        i += 1;
-    }
-    product
 }
 
 #[cfg(test)]

@@ -9,36 +9,20 @@
 
 use std::marker::PhantomData;
 
-use crate::along_step::{AlongStep, rounding};
-use crate::event::{Event, bit};
-use crate::guard::Direction;
-use crate::hybrid::{HybridSystem, Statistics};
-use crate::isolate::{noise, sides};
+use crate::events::along_step::{AlongStep, rounding};
+use crate::events::event::{Event, bit};
+use crate::events::isolate::{noise, sides};
+use crate::events::phase::{Phase, Standing};
+use crate::events::quick::NODES;
+use crate::hybrid::{Direction, HybridSystem, Statistics};
 use crate::method::{Dense, Method, State, Step, Trial};
 use crate::options::{Options, StepSize};
-use crate::phase::Phase;
-use crate::quick::NODES;
 
 /// A step ahead is cut to a fifth at most this often, like a step that is too coarse.
 const CUTS: usize = 60;
 
 /// Guards further from zero than this part of their largest value on the step are not at it.
 const NEAR: f64 = 1e-3;
-
-/// Where the guards stand after an event that changes nothing.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Standing<const G: usize> {
-    /// Guards that have fired with the event, one bit each.
-    pub(crate) fired: u32,
-    /// Orders of the zeros at which guards stand; 0 for those that do not.
-    pub(crate) zero_orders: [u32; G],
-    /// The signs with which they leave these zeros; 0 where it is not known.
-    pub(crate) sides: [f64; G],
-    /// Values that are as good as zero there.
-    pub(crate) hidden: [f64; G],
-    /// Guards that have crossed from that side, and fire next.
-    pub(crate) due: [bool; G],
-}
 
 /// All that tells where the guards stand after an event that changes nothing.
 pub(crate) struct Passage<'a, S: HybridSystem<N, G>, const N: usize, const G: usize> {

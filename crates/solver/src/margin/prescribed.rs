@@ -7,14 +7,13 @@
 
 use std::cell::Cell;
 
-use crate::control::first_step;
 use crate::error::RunError;
-use crate::guard::{Direction, Guard};
-use crate::hybrid::{HybridSystem, Observer, Outcome, Start, SwitchEvent};
-use crate::margin::Exit;
+use crate::hybrid::{Direction, Guard, HybridSystem, Observer, Outcome, Start, SwitchEvent};
+use crate::margin::name::Exit;
+use crate::method::control::first_step;
 use crate::method::{Method, State, Step, Trial};
 use crate::options::{Options, StepSize};
-use crate::runner::run;
+use crate::runs::run;
 
 /// Part of a step over which differences reach: their fourth power leaves 1e-11 of a rate, their
 /// rounding some 1e-13.

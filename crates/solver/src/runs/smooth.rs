@@ -1,11 +1,10 @@
 //! A smooth ODE as a hybrid system of one mode and no guards.
 
 use crate::error::RunError;
-use crate::guard::Guard;
-use crate::hybrid::{HybridSystem, Observer, Run, Start};
+use crate::hybrid::{Guard, HybridSystem, Observer, Run, Start};
 use crate::method::{Method, State};
 use crate::options::Options;
-use crate::runner::run;
+use crate::runs::runner::run;
 
 /// A right-hand side without guards.
 #[derive(Clone, Copy, Debug)]

@@ -3,12 +3,13 @@
 //! The dense output only says where to start: each iterate is a step from the same start to a trial
 //! place, so a switch is as accurate as any other point of the run.
 
-use crate::along_step::rounding;
 use crate::error::RunError;
-use crate::event::{Event, Examination};
+use crate::events::along_step::rounding;
+use crate::events::event::Event;
+use crate::events::examination::Examination;
+use crate::events::one_guard::Crossing;
 use crate::hybrid::{HybridSystem, Observer};
 use crate::method::{Method, State, Step};
-use crate::one_guard::Crossing;
 
 /// Part of a step that the end of a re-step may be off the switch; the midpoint rule bridges it
 /// with an error of the cube of this part, which is below rounding.

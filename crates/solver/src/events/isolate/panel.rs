@@ -1,6 +1,8 @@
 //! A curve on part of a step as a polynomial, and the points between which it is monotone.
 
-use crate::chebyshev::{TERMS, clenshaw, differentiate, dominated, expand, monotone_root};
+use crate::events::isolate::chebyshev::{
+    TERMS, clenshaw, differentiate, dominated, expand, monotone_root,
+};
 
 /// A curve on part of a step, in Chebyshev polynomials of the local variable t ∈ [−1, 1].
 pub(crate) struct Panel {

@@ -3,7 +3,8 @@
 //! Source: Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I*, sections II.4
 //! and IV.2, and the codes DOPRI5 and DOP853, whose step sequences it repeats.
 
-use crate::method::{Method, State};
+use crate::method::state::State;
+use crate::method::tableau::Method;
 
 const SAFETY: f64 = 0.9;
 

@@ -1,11 +1,12 @@
 //! Runs that step over switches, as codes without event location do: for comparison only.
 
-use crate::clock::Clock;
 use crate::error::RunError;
-use crate::guard::Direction;
-use crate::hybrid::{HybridSystem, Observer, Outcome, Run, Start, Statistics, SwitchEvent};
+use crate::hybrid::{
+    Direction, HybridSystem, Observer, Outcome, Run, Start, Statistics, SwitchEvent,
+};
 use crate::method::{Method, Step, Trial};
 use crate::options::{Options, StepSize};
+use crate::runs::clock::Clock;
 
 /// Integrates `system` from `start` to `end` in steps of `step_size` that know nothing of switches:
 /// the guards are looked at where a step ends, and the first in the list that has fired by then
@@ -158,9 +159,9 @@ fn fires(direction: Direction, before: f64, now: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::guard::Guard;
+    use crate::hybrid::Guard;
     use crate::method::State;
-    use crate::trajectory::Recorder;
+    use crate::runs::trajectory::Recorder;
     use crate::{Dop853, Dopri5, run};
 
     /// y' = 1 with one guard, a function of s, that changes nothing.

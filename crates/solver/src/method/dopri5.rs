@@ -4,7 +4,7 @@
 //! after Shampine as in Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I*,
 //! 2nd ed., section II.6 (code DOPRI5).
 
-use crate::method::{MAX_STAGES, Method, Tableau};
+use crate::method::tableau::{MAX_STAGES, Method, Tableau};
 
 /// Dormand–Prince 5(4): order 5, six stages and the derivative at the end, dense output of degree
 /// 4.

@@ -1,8 +1,8 @@
 //! A guard along a step, and what rounding does to it.
 
 use crate::error::RunError;
+use crate::events::isolate::Curve;
 use crate::hybrid::{HybridSystem, Statistics};
-use crate::isolate::Curve;
 use crate::method::{Dense, Method, State, Step};
 
 /// Relative change of state and time by which a guard's sensitivity to them is measured.

@@ -3,7 +3,7 @@
 //! Coefficients: the code DOP853 of Hairer and Wanner (Hairer, Nørsett and Wanner, *Solving
 //! Ordinary Differential Equations I*, 2nd ed., section II.10), as printed there in decimals.
 
-use crate::method::{MAX_STAGES, Method, Tableau};
+use crate::method::tableau::{MAX_STAGES, Method, Tableau};
 
 /// Dormand–Prince 8(5,3): order 8, twelve stages, dense output of degree 7 with three more.
 ///

@@ -1,11 +1,9 @@
 //! The mode that is active, with its guards.
 
 use crate::error::RunError;
-use crate::event::Event;
-use crate::guard::{Direction, Guard};
-use crate::hybrid::HybridSystem;
+use crate::events::event::Event;
+use crate::hybrid::{Direction, Guard, HybridSystem};
 use crate::method::State;
-use crate::together::Standing;
 
 /// The mode that is active, with its guards as they stand.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +25,21 @@ pub(crate) struct Phase<Mode, const G: usize> {
     pub(crate) due: [bool; G],
     /// Largest absolute values of the guards at the ends of the phase's steps.
     pub(crate) largest: [f64; G],
+}
+
+/// Where the guards stand after an event that changes nothing.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Standing<const G: usize> {
+    /// Guards that have fired with the event, one bit each.
+    pub(crate) fired: u32,
+    /// Orders of the zeros at which guards stand; 0 for those that do not.
+    pub(crate) zero_orders: [u32; G],
+    /// The signs with which they leave these zeros; 0 where it is not known.
+    pub(crate) sides: [f64; G],
+    /// Values that are as good as zero there.
+    pub(crate) hidden: [f64; G],
+    /// Guards that have crossed from that side, and fire next.
+    pub(crate) due: [bool; G],
 }
 
 impl<Mode: Copy, const G: usize> Phase<Mode, G> {

@@ -1,72 +1,16 @@
-//! One step and its guards: which of them fires first, if any.
+//! Which guard fires first on a step, if any.
 
 use crate::error::RunError;
-use crate::guard::Direction;
-use crate::hybrid::{HybridSystem, Observer, Statistics};
-use crate::isolate::Bracket;
-use crate::method::{Method, State, Step, Trial};
-use crate::one_guard::{Crossing, Status};
-use crate::phase::Phase;
-use crate::quick;
+use crate::events::event::{Event, Found, bit};
+use crate::events::examination::Examination;
+use crate::events::isolate::Bracket;
+use crate::events::one_guard::{Crossing, Status};
+use crate::events::quick;
+use crate::hybrid::{Direction, HybridSystem, Observer};
+use crate::method::{Method, Step};
 
 /// Guards closer to a switch than this part of the step fire together with it.
 const TOGETHER: f64 = 1e-12;
-
-/// A guard fires on a step.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Event<const N: usize> {
-    pub(crate) guard: usize,
-    pub(crate) simultaneous: u32,
-    /// Guards that crossed as well, at the same place or a hair before, and gave way to this one.
-    pub(crate) passed: u32,
-    /// Absolute slope of the guard there.
-    pub(crate) slope: f64,
-    /// From the start of the step.
-    pub(crate) elapsed: f64,
-    /// The state on the guard.
-    pub(crate) state: State<N>,
-    /// What is left of the guard's value there.
-    pub(crate) residual: f64,
-    /// The sign of the guard before it fired.
-    pub(crate) sign: f64,
-    /// The step that ends there.
-    pub(crate) step: Step<N>,
-}
-
-impl<const N: usize> Event<N> {
-    fn pass(&mut self, guard: usize) {
-        self.passed |= bit(guard);
-    }
-
-    pub(crate) fn has_passed(&self, guard: usize) -> bool {
-        self.passed & bit(guard) != 0
-    }
-}
-
-/// 0 for guards that are too many to be told apart.
-pub(crate) fn bit(guard: usize) -> u32 {
-    if guard < 32 { 1 << guard } else { 0 }
-}
-
-/// The result of examining a step.
-pub(crate) enum Found<const G: usize> {
-    /// No guard fires; their values at the step's end.
-    Nothing([f64; G]),
-    /// A guard fires; the event is in its place.
-    Event,
-    /// This guard is not resolved: a shorter step is needed.
-    TooCoarse(usize),
-}
-
-/// All that the examination of a step needs.
-pub(crate) struct Examination<'a, S: HybridSystem<N, G>, O, const N: usize, const G: usize> {
-    pub(crate) system: &'a S,
-    pub(crate) phase: &'a Phase<S::Mode, G>,
-    /// The step that was asked for.
-    pub(crate) trial: &'a Trial<'a, N>,
-    pub(crate) statistics: &'a mut Statistics,
-    pub(crate) observer: &'a mut O,
-}
 
 impl<S, O, const N: usize, const G: usize> Examination<'_, S, O, N, G>
 where
@@ -259,23 +203,6 @@ where
                     && values[5][other].abs() <= TOGETHER * largest(other, values)
             })
             .fold(0, |bits, other| bits | 1 << other)
-    }
-
-    /// Guards at [`quick::NODES`] of a step.
-    #[inline(always)]
-    pub(crate) fn values_on(&mut self, step: &Step<N>) -> [[f64; G]; 6] {
-        let at = |theta: f64, y: &State<N>| {
-            self.system.guard_values(self.phase.mode, step.s + theta * step.h, y)
-        };
-        self.statistics.guards += 5;
-        [
-            self.phase.values,
-            at(quick::NODES[1], &step.interior[0]),
-            at(quick::NODES[2], &step.interior[1]),
-            at(quick::NODES[3], &step.interior[2]),
-            at(quick::NODES[4], &step.interior[3]),
-            at(1.0, &step.y1),
-        ]
     }
 }
 

@@ -2,15 +2,13 @@
 //!
 //! One accepted step is `advance`; whether it contains a switch is the business of `event`.
 
-use crate::clock::{Clock, Zeno};
-use crate::control::{Controller, first_step};
 use crate::error::RunError;
-use crate::event::{Event, Examination, Found};
+use crate::events::{Event, Examination, Found, Passage, Phase, Standing};
 use crate::hybrid::{HybridSystem, Observer, Outcome, Run, Start, Statistics, SwitchEvent};
+use crate::method::control::{Controller, first_step};
 use crate::method::{Method, State, Step, Trial};
 use crate::options::{Options, StepSize};
-use crate::phase::Phase;
-use crate::together::{Passage, Standing};
+use crate::runs::clock::{Clock, Zeno};
 
 /// Integrates `system` from `start` to `end`, through every switch on the way.
 ///

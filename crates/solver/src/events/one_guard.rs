@@ -2,14 +2,13 @@
 
 use std::marker::PhantomData;
 
-use crate::along_step::AlongStep;
 use crate::error::RunError;
-use crate::event::Examination;
-use crate::guard::Direction;
-use crate::hybrid::{Grazing, HybridSystem, Observer};
-use crate::isolate::{Bracket, Touch, Verdict, first_crossing, sides};
+use crate::events::along_step::AlongStep;
+use crate::events::examination::Examination;
+use crate::events::isolate::{Bracket, Touch, Verdict, first_crossing, sides};
+use crate::events::quick::{self, Quick};
+use crate::hybrid::{Direction, Grazing, HybridSystem, Observer};
 use crate::method::{Method, Step, Trial};
-use crate::quick::{self, Quick};
 
 /// A guard that is zero throughout a step is looked at on longer ones, each four times as long as
 /// the one before, at most this often: a step of the least length that moves the time becomes one

@@ -1,0 +1,39 @@
+//! A state, and weighted sums of states.
+
+use nalgebra::SVector;
+
+use crate::method::tableau::MAX_STAGES;
+
+/// A state of `N` components.
+pub type State<const N: usize> = SVector<f64, N>;
+
+/// Whether steps of this build round a product and the sum it goes into once, together: where the
+/// processor that it is built for has the instruction. The last digits of results depend on it.
+pub const FUSED_PRODUCTS: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
+
+/// Σ weights[j] k[j] over the first `count` stages.
+#[inline(always)]
+pub(super) fn combine<const N: usize>(
+    weights: &[f64; MAX_STAGES],
+    k: &[State<N>; MAX_STAGES],
+    count: usize,
+) -> State<N> {
+    let mut sum = State::zeros();
+    for j in 0..count {
+        if weights[j] != 0.0 {
+            sum = add_multiple(&sum, &k[j], weights[j]);
+        }
+    }
+    sum
+}
+
+/// sum + factor·k, rounded once where the processor does that in one instruction: half the
+/// arithmetic of a step.
+#[inline(always)]
+pub(super) fn add_multiple<const N: usize>(sum: &State<N>, k: &State<N>, factor: f64) -> State<N> {
+    if FUSED_PRODUCTS {
+        State::from_fn(|i, _| k[i].mul_add(factor, sum[i]))
+    } else {
+        sum + k * factor
+    }
+}

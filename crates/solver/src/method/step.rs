@@ -1,0 +1,200 @@
+//! One step with a Runge–Kutta pair, as a pure function.
+
+use crate::method::dense::Dense;
+use crate::method::state::{State, add_multiple, combine};
+use crate::method::tableau::{INTERIOR_NODES, MAX_STAGES, Method};
+
+/// A step to be tried.
+#[derive(Clone, Copy, Debug)]
+pub struct Trial<'a, const N: usize> {
+    /// Where it starts.
+    pub s: f64,
+    /// The state there.
+    pub y: &'a State<N>,
+    /// Derivative of the state there.
+    pub slope: &'a State<N>,
+    /// Its size.
+    pub h: f64,
+    /// Relative and absolute tolerance by which its error is measured.
+    pub tolerances: (f64, f64),
+}
+
+/// A step of size `h` from `y0` at `s` to `y1`.
+#[derive(Clone, Copy, Debug)]
+pub struct Step<const N: usize> {
+    /// Where the step starts.
+    pub s: f64,
+    /// Its size.
+    pub h: f64,
+    /// State at its start.
+    pub y0: State<N>,
+    /// Derivative of the state at its start.
+    pub slope0: State<N>,
+    /// State at its end.
+    pub y1: State<N>,
+    /// States at [`INTERIOR_NODES`].
+    pub interior: [State<N>; 4],
+    /// Estimated error of `y1` relative to `atol + rtol·max(|y0|, |y1|)`, as a root mean square
+    /// over the components; the step is good if this is below 1, which NaN is not.
+    pub error: f64,
+    /// Derivative of the state at its end, once it is known.
+    slope1: Option<State<N>>,
+}
+
+impl<const N: usize> Step<N> {
+    /// Room for a step.
+    #[must_use]
+    pub fn blank() -> Self {
+        let zero = State::zeros();
+        Self {
+            s: 0.0,
+            h: 0.0,
+            y0: zero,
+            slope0: zero,
+            y1: zero,
+            interior: [zero; 4],
+            error: 0.0,
+            slope1: None,
+        }
+    }
+
+    /// Takes the step `trial` in place of the one that was here.
+    #[inline]
+    pub fn take<M: Method>(
+        &mut self,
+        field: &mut impl FnMut(f64, &State<N>) -> State<N>,
+        trial: &Trial<'_, N>,
+    ) {
+        let &Trial { s, y: y0, slope, h, tolerances: (rtol, atol) } = trial;
+        let mut k = stages::<M, N>(field, trial, &mut self.interior);
+        self.s = s;
+        self.h = h;
+        self.y0 = *y0;
+        self.slope0 = *slope;
+        let y1 = y0 + combine(&M::TABLEAU.b, &k, M::STAGES) * h;
+        self.y1 = y1;
+        self.slope1 = None;
+        if M::ERROR_USES_END {
+            k[M::STAGES] = field(s + h, &y1);
+            self.slope1 = Some(k[M::STAGES]);
+        }
+        let used = M::STAGES + usize::from(M::ERROR_USES_END);
+        let fine = combine(&M::TABLEAU.error, &k, used);
+        let coarse = combine(&M::TABLEAU.coarse_error, &k, used);
+        let (mut fine_sum, mut coarse_sum) = (0.0, 0.0);
+        for i in 0..N {
+            // A component without an error counts as one without a weight: compiled for a mode in
+            // which it is constant, it costs nothing.
+            if fine[i] == 0.0 && coarse[i] == 0.0 {
+                continue;
+            }
+            let (start, end) = (y0[i].abs(), y1[i].abs());
+            let weight = 1.0 / (atol + rtol * if start > end { start } else { end });
+            fine_sum += (fine[i] * weight) * (fine[i] * weight);
+            coarse_sum += (coarse[i] * weight) * (coarse[i] * weight);
+        }
+        let n = N as f64;
+        // Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.10: the fine
+        // estimate is damped where the coarse one says that it is accidentally small.
+        let blend = fine_sum + 0.01 * coarse_sum;
+        self.error = if blend == 0.0 { 0.0 } else { h.abs() * fine_sum / (n * blend).sqrt() };
+        if M::INTERIOR_STAGES.is_none() {
+            let dense = self.extend::<M>(field, k);
+            for (state, theta) in self.interior.iter_mut().zip(INTERIOR_NODES) {
+                *state = dense.at(theta);
+            }
+        }
+    }
+
+    /// A step of `h` from the same start, whose error is of no interest.
+    pub(crate) fn shortened(&self, h: f64) -> Trial<'_, N> {
+        Trial { s: self.s, y: &self.y0, slope: &self.slope0, h, tolerances: (1.0, 1.0) }
+    }
+
+    /// The step of size 0.
+    pub(crate) fn shrunk_to_start(&self) -> Self {
+        let (h, y1, interior) = (0.0, self.y0, [self.y0; 4]);
+        Self { h, y1, interior, slope1: Some(self.slope0), ..*self }
+    }
+
+    /// The derivative at the end of the step, computed on first use.
+    #[inline]
+    pub fn finish<M: Method>(
+        &mut self,
+        field: &mut impl FnMut(f64, &State<N>) -> State<N>,
+    ) -> State<N> {
+        *self.slope1.get_or_insert_with(|| field(self.s + self.h, &self.y1))
+    }
+
+    /// The continuous extension over the step.
+    ///
+    /// Takes the step's stages again, which few steps need and none keeps, and then the extension's
+    /// own.
+    pub fn dense<M: Method>(
+        &mut self,
+        field: &mut impl FnMut(f64, &State<N>) -> State<N>,
+    ) -> Dense<N> {
+        let k = stages::<M, N>(field, &self.shortened(self.h), &mut [State::zeros(); 4]);
+        self.extend::<M>(field, k)
+    }
+
+    fn extend<M: Method>(
+        &mut self,
+        field: &mut impl FnMut(f64, &State<N>) -> State<N>,
+        mut k: [State<N>; MAX_STAGES],
+    ) -> Dense<N> {
+        let f1 = self.finish::<M>(field);
+        k[M::STAGES] = f1;
+        for i in M::STAGES + 1..M::DENSE_STAGES {
+            let y = self.y0 + combine(&M::TABLEAU.a[i], &k, i) * self.h;
+            k[i] = field(self.s + M::TABLEAU.c[i] * self.h, &y);
+        }
+        let mut r = [State::zeros(); 8];
+        let rise = self.y1 - self.y0;
+        let bend = k[0] * self.h - rise;
+        r[0] = self.y0;
+        r[1] = rise;
+        r[2] = bend;
+        r[3] = rise - f1 * self.h - bend;
+        for (i, row) in M::TABLEAU.dense.iter().enumerate().take(M::DENSE_DEGREE - 3) {
+            r[4 + i] = combine(row, &k, M::DENSE_STAGES) * self.h;
+        }
+        Dense { s: self.s, h: self.h, r, degree: M::DENSE_DEGREE }
+    }
+}
+
+/// The derivatives at the stages of the step `trial`; states that sit at [`INTERIOR_NODES`] go to
+/// `interior`.
+///
+/// A local array throughout, so that the compiler can keep it in registers and drop what the
+/// right-hand side does not use.
+#[inline(always)]
+fn stages<M: Method, const N: usize>(
+    field: &mut impl FnMut(f64, &State<N>) -> State<N>,
+    trial: &Trial<'_, N>,
+    interior: &mut [State<N>; 4],
+) -> [State<N>; MAX_STAGES] {
+    let &Trial { s, y: y0, slope, h, .. } = trial;
+    let mut k = [State::zeros(); MAX_STAGES];
+    k[0] = *slope;
+    macro_rules! stages {
+        ($($i:literal)*) => {$(
+            if $i < M::STAGES {
+                // The newest stage comes last and with few operations: each waits for the one before it.
+                let weights = &M::TABLEAU.a[$i];
+                let early = y0 + combine(weights, &k, $i - 1) * h;
+                let y = add_multiple(&early, &k[$i - 1], h * weights[$i - 1]);
+                if let Some(stages) = M::INTERIOR_STAGES {
+                    for (interior, stage) in interior.iter_mut().zip(stages) {
+                        if stage == $i {
+                            *interior = y;
+                        }
+                    }
+                }
+                k[$i] = field(s + M::TABLEAU.c[$i] * h, &y);
+            }
+        )*};
+    }
+    stages!(1 2 3 4 5 6 7 8 9 10 11);
+    k
+}
