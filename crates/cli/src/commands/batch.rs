@@ -4,12 +4,12 @@ use rayon::prelude::*;
 use stickslip_model::Switch;
 
 use crate::error::Failure;
-use crate::plan::Batch;
 use crate::input::rows::{Columns, Input, Row};
 use crate::output::csv::CsvFile;
 use crate::output::file::publish;
 use crate::output::progress::{Bar, threads};
 use crate::output::rows::{self, EVENTS, Summary};
+use crate::plan::Batch;
 use stickslip_model::Engine;
 
 /// Computes every row of the input.
