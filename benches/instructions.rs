@@ -15,7 +15,7 @@ use std::error::Error;
 use std::hint::black_box;
 use std::process::Command;
 
-use stickslip::collisions::{CollisionFamily, CollisionPlane};
+use stickslip::plane::{CollisionFamily, CollisionPlane};
 use stickslip::model::{Collider, Collision, exact};
 use stickslip::solver::{Dop853, Dopri5, Method};
 use stickslip::tracer::{Family, TraceOptions, trace};

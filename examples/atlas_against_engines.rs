@@ -13,7 +13,7 @@ use std::error::Error;
 use std::time::Instant;
 
 use rayon::prelude::*;
-use stickslip::collisions::CollisionPlane;
+use stickslip::plane::CollisionPlane;
 use stickslip::model::{Collider, exact};
 use stickslip::solver::Margin;
 use stickslip::tracer::{

@@ -10,7 +10,7 @@ mod common;
 use std::sync::LazyLock;
 
 use rayon::prelude::*;
-use stickslip::collisions::{CollisionFamily, CollisionPlane};
+use stickslip::plane::{CollisionFamily, CollisionPlane};
 use stickslip::model::{Collider, exact};
 use stickslip::solver::{Margin, Place};
 use stickslip::tracer::{

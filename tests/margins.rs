@@ -4,7 +4,7 @@
 #[expect(dead_code, reason = "shared with other tests")]
 mod common;
 
-use stickslip::collisions::CollisionPlane;
+use stickslip::plane::CollisionPlane;
 use stickslip::model::regularized::{Phase, Regularized};
 use stickslip::model::{Contact, exact};
 use stickslip::solver::margin::{Margin, Margins, Place, margin, margins};

@@ -1,6 +1,6 @@
 //! What holds of every collision, whatever its parameters.
 
-use stickslip::collisions::CollisionPlane;
+use stickslip::plane::CollisionPlane;
 use stickslip::model::exact::{self, ExactError};
 use stickslip::model::{
     Collider, Collision, CollisionError, Contact, EnergyLedger, Regime, Side, Switch,
