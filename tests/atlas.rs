@@ -10,8 +10,8 @@ mod common;
 use std::sync::LazyLock;
 
 use rayon::prelude::*;
-use stickslip::plane::{CollisionFamily, CollisionPlane};
 use stickslip::model::{Collider, exact};
+use stickslip::plane::{CollisionFamily, CollisionPlane};
 use stickslip::solver::{Margin, Place};
 use stickslip::tracer::{
     Location, Node, Point, Subdivision, TraceOptions, Tracer, VerifyOptions, verify_with,

@@ -4,9 +4,9 @@
 #[expect(dead_code, reason = "shared with other tests")]
 mod common;
 
-use stickslip::plane::CollisionPlane;
 use stickslip::model::regularized::{Phase, Regularized};
 use stickslip::model::{Contact, exact};
+use stickslip::plane::CollisionPlane;
 use stickslip::solver::margin::{Margin, Margins, Place, margin, margins};
 use stickslip::solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
 

@@ -1,10 +1,10 @@
 //! What holds of every collision, whatever its parameters.
 
-use stickslip::plane::CollisionPlane;
 use stickslip::model::exact::{self, ExactError};
 use stickslip::model::{
     Collider, Collision, CollisionError, Contact, EnergyLedger, Regime, Side, Switch,
 };
+use stickslip::plane::CollisionPlane;
 use stickslip::solver::{Dopri5, Method};
 
 /// Part of ψ² by which energies may not balance at the default tolerances of Dormand–Prince 8(5,3).

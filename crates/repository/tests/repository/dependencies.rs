@@ -2,12 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
-use std::path::Path;
 
 use cargo_metadata::semver::Version;
 use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package, PackageId};
 use expect_test::expect_file;
 use spdx::{Expression, LicenseItem, ParseMode};
+
+use crate::root;
 
 /// Licences that ask for nothing but that their text goes along.
 const ACCEPTED: [&str; 9] = [
@@ -27,17 +28,13 @@ const ABOUT: &str = "\
 
 Every crate in `Cargo.lock`, on whatever platform it is used, with the SPDX expression that it states. Made by
 
-    UPDATE_EXPECT=1 cargo test --test dependencies
+    UPDATE_EXPECT=1 cargo test -p repository
 
 which fails where an expression cannot be met with licences that ask for nothing but that their text goes along.
 ";
 
 #[test]
 fn licences_are_accepted_and_listed() {
-    if !Path::new(env!("CARGO_MANIFEST_DIR")).join("crates").is_dir() {
-        // A published package has the facade alone, and with it another list.
-        return;
-    }
     let metadata = metadata();
     let shipped = shipped(&metadata);
     let mut lists = [BTreeMap::new(), BTreeMap::new()];
@@ -66,7 +63,7 @@ fn licences_are_accepted_and_listed() {
             writeln!(text, "| {name} | {licences} |").expect("a text");
         }
     }
-    expect_file!["../docs/licences.md"].assert_eq(&text);
+    expect_file!["../../../../docs/licences.md"].assert_eq(&text);
 }
 
 #[test]
@@ -84,7 +81,7 @@ fn no_dependency_needs_a_newer_rust() {
 /// All packages that `Cargo.lock` names.
 fn metadata() -> Metadata {
     let mut command = MetadataCommand::new();
-    command.current_dir(env!("CARGO_MANIFEST_DIR")).other_options(vec!["--locked".to_owned()]);
+    command.current_dir(root()).other_options(vec!["--locked".to_owned()]);
     command.exec().unwrap_or_else(|error| panic!("cargo metadata: {error}"))
 }
 
