@@ -6,7 +6,6 @@
 //! `network` (what is collected), `naming` (what vertices are), `extrema` (of boundaries in a
 //! parameter).
 
-mod ahead;
 pub mod branch;
 mod corrector;
 pub mod extrema;
@@ -16,7 +15,4 @@ pub mod network;
 pub mod runs;
 mod scan;
 mod seed;
-mod special;
-mod step;
-mod touch;
 pub mod trace;

@@ -1,9 +1,9 @@
 //! A point well inside every region.
 
 use crate::family::Point;
-use crate::regions::crossing::Edge;
-use crate::regions::faces::Faces;
-use crate::regions::slabs::Slabs;
+use crate::regions::arrangement::crossing::Edge;
+use crate::regions::arrangement::faces::Faces;
+use crate::regions::arrangement::slabs::Slabs;
 use crate::regions::subdivision::Region;
 
 /// Sets `sample` and `clearance` of every region.

@@ -1,7 +1,7 @@
 //! Which region a point lies in, and how far the nearest boundary is.
 
 use crate::family::Point;
-use crate::regions::piece::Piece;
+use crate::regions::arrangement::piece::Piece;
 use crate::regions::subdivision::Subdivision;
 
 /// Where a point lies.

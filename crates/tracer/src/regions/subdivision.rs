@@ -3,13 +3,13 @@
 use crate::cubic::Cubic;
 use crate::curve::{Curve, Node, Vertex, VertexKind};
 use crate::family::{Point, Window};
-use crate::regions::crossing::{Crossings, Edge};
-use crate::regions::faces::Faces;
+use crate::regions::arrangement::crossing::{Crossings, Edge};
+use crate::regions::arrangement::faces::Faces;
+use crate::regions::arrangement::piece::Piece;
+use crate::regions::arrangement::slabs::Slabs;
+use crate::regions::arrangement::union::DisjointSets;
 use crate::regions::finding::{Euler, Finding, SubdivisionError};
 use crate::regions::interior;
-use crate::regions::piece::Piece;
-use crate::regions::slabs::Slabs;
-use crate::regions::union::DisjointSets;
 
 /// A window of the plane parted by curves into regions.
 ///

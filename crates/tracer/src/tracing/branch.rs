@@ -1,15 +1,19 @@
 //! One boundary, followed step by step.
 
+mod ahead;
+mod special;
+mod step;
+mod touch;
+
 use std::collections::VecDeque;
 
 use crate::cubic::Cubic;
 use crate::curve::{Node, VertexKind};
 use crate::family::{Family, FreeRun, Point};
 use crate::options::TraceError;
+use crate::tracing::branch::step::Attempt;
+use crate::tracing::branch::touch::touch;
 use crate::tracing::runs::{Runs, Traced};
-use crate::tracing::special;
-use crate::tracing::step::Attempt;
-use crate::tracing::touch::touch;
 
 /// Nodes closer than this part of the window's shorter extent are one.
 pub(crate) const SHORTEST: f64 = 1e-9;

@@ -3,11 +3,11 @@
 use crate::cubic::Cubic;
 use crate::curve::{Node, VertexKind};
 use crate::family::{Family, Point};
+use crate::tracing::branch::touch::{graze, narrow};
 use crate::tracing::branch::{Branch, FootholdOf, Special};
 use crate::tracing::corrector::{correct, crossing, stationary};
 use crate::tracing::runs::{Runs, Traced};
 use crate::tracing::seed::{bisect, identify};
-use crate::tracing::touch::{graze, narrow};
 
 /// Crossings that are not known better, in parts of the window's shorter extent, are looked at as
 /// touches: values tell the place of those to half the digits only.

@@ -4,7 +4,7 @@
 use std::convert::Infallible;
 use std::f64::consts::{PI, TAU};
 
-use stickslip::tracer::{
+use stickslip_tracer::{
     Curve, Family, FreeRun, Node, Point, Subdivision, SubdivisionError, Vertex, VertexKind, Window,
 };
 

@@ -4,10 +4,10 @@
 use crate::cubic::Cubic;
 use crate::curve::{Node, VertexKind};
 use crate::family::{Family, Point};
+use crate::tracing::branch::special::rivals;
 use crate::tracing::branch::{Branch, Foothold, FootholdOf, Special};
 use crate::tracing::corrector::{correct, crossing};
 use crate::tracing::runs::Traced;
-use crate::tracing::special::rivals;
 
 /// A special point, and whether it lies before the last foothold.
 type Touch<Margin> = (Special<Margin>, bool);

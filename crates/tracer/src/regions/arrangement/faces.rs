@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use crate::family::Point;
-use crate::regions::crossing::Edge;
-use crate::regions::piece::Piece;
-use crate::regions::slabs::Slabs;
-use crate::regions::union::DisjointSets;
+use crate::regions::arrangement::crossing::Edge;
+use crate::regions::arrangement::piece::Piece;
+use crate::regions::arrangement::slabs::Slabs;
+use crate::regions::arrangement::union::DisjointSets;
 
 /// The faces of both sides, left and right, of every edge; `None` is the outside.
 #[derive(Clone, Debug)]

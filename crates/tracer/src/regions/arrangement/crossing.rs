@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use crate::cubic::Cubic;
 use crate::family::Point;
-use crate::regions::piece::Piece;
-use crate::regions::slabs::Slabs;
+use crate::regions::arrangement::piece::Piece;
+use crate::regions::arrangement::slabs::Slabs;
 
 /// An edge of the subdivision: its vertices, and its pieces in its direction.
 #[derive(Clone, Debug)]

@@ -3,9 +3,9 @@
 use std::f64::consts::{PI, TAU};
 
 use proptest::prelude::*;
-use stickslip::tracer::{Location, Point, VerifyOptions, VertexKind, verify_with};
+use stickslip_tracer::{Location, Point, VerifyOptions, VertexKind, verify_with};
 
-use crate::planes::{Plane, TOLERANCE, UNIT, circle, even};
+use crate::subdivision::planes::{Plane, TOLERANCE, UNIT, circle, even};
 
 type Circle = (f64, f64, f64);
 
@@ -70,7 +70,7 @@ fn arrangement(circles: &[Circle]) -> Plane {
                     .iter()
                     .position(|vertex| (vertex.point - point).norm() < 0.1 * TOLERANCE);
                 known.unwrap_or_else(|| {
-                    plane.vertices.push(stickslip::tracer::Vertex {
+                    plane.vertices.push(stickslip_tracer::Vertex {
                         point,
                         kind,
                         margins: Vec::new(),

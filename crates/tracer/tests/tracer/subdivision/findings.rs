@@ -2,12 +2,14 @@
 
 use std::f64::consts::TAU;
 
-use stickslip::tracer::{
+use stickslip_tracer::{
     Curve, Finding, Origin, Point, Side, Subdivision, SubdivisionError, VerifyError, VerifyOptions,
     Vertex, VertexKind, verify,
 };
 
-use crate::planes::{Plane, TOLERANCE, circle, crossing_circles, even, inside, islands};
+use crate::subdivision::planes::{
+    Plane, TOLERANCE, circle, crossing_circles, even, inside, islands,
+};
 
 fn findings(plane: &Plane) -> Vec<Finding<i32>> {
     plane.subdivision().expect("curves with a meaning").findings().to_vec()

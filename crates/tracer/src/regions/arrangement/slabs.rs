@@ -2,7 +2,7 @@
 //! have an order.
 
 use crate::family::Point;
-use crate::regions::piece::Piece;
+use crate::regions::arrangement::piece::Piece;
 
 /// Pieces, and for every slab between neighbouring `walls` the pieces that cross it, from below.
 #[derive(Clone, Debug)]

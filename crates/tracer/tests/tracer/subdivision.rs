@@ -7,11 +7,11 @@ mod planes;
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use planes::{
+use self::planes::{
     Plane, close_curves, crossing_circles, cusp, disturbed, edges_and_corner, figure_of_eight,
     grid, islands, touching_circles, upright_cusp,
 };
-use stickslip::tracer::{Location, Point, Subdivision, VerifyOptions, verify};
+use stickslip_tracer::{Location, Point, Subdivision, VerifyOptions, verify};
 
 /// Regions with the areas of their labels, to 1e-9; labels at 1e5 random points and beside every
 /// curve, up to twice the tolerance.
