@@ -14,5 +14,5 @@ mod naming;
 pub mod network;
 pub mod runs;
 mod scan;
-mod seed;
+pub mod seed;
 pub mod trace;

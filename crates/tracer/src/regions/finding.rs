@@ -1,7 +1,7 @@
 //! What can be wrong with curves and vertices.
 
 use crate::curve::{Curve, Vertex};
-use crate::family::{Point, Window};
+use crate::window::{Point, Window};
 
 /// Something inconsistent in curves that are each well formed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -1,10 +1,10 @@
 //! A point well inside every region.
 
-use crate::family::Point;
-use crate::regions::arrangement::crossing::Edge;
 use crate::regions::arrangement::faces::Faces;
+use crate::regions::arrangement::piece::Edge;
 use crate::regions::arrangement::slabs::Slabs;
-use crate::regions::subdivision::Region;
+use crate::regions::region::Region;
+use crate::window::Point;
 
 /// Sets `sample` and `clearance` of every region.
 ///

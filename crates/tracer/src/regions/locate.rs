@@ -1,8 +1,8 @@
 //! Which region a point lies in, and how far the nearest boundary is.
 
-use crate::family::Point;
 use crate::regions::arrangement::piece::Piece;
 use crate::regions::subdivision::Subdivision;
+use crate::window::Point;
 
 /// Where a point lies.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,17 +1,19 @@
-//! Regions of the window, made from curves and vertices.
+//! The subdivision of a window into regions, made from curves and vertices.
 
 use crate::cubic::Cubic;
-use crate::curve::{Curve, Node, Vertex, VertexKind};
-use crate::family::{Point, Window};
-use crate::regions::arrangement::crossing::{Crossings, Edge};
+use crate::curve::{Curve, Node, Vertex};
+use crate::regions::arrangement::crossing::Crossings;
 use crate::regions::arrangement::faces::Faces;
-use crate::regions::arrangement::piece::Piece;
+use crate::regions::arrangement::piece::{Edge, Piece};
 use crate::regions::arrangement::slabs::Slabs;
 use crate::regions::arrangement::union::DisjointSets;
 use crate::regions::finding::{Euler, Finding, SubdivisionError};
+use crate::regions::frame::frame;
 use crate::regions::interior;
+use crate::regions::region::{Region, find_disagreements, regions};
+use crate::window::{Point, Window};
 
-/// A window of the plane parted by curves into regions.
+/// A window of the plane, divided by curves into regions.
 ///
 /// ```
 /// use stickslip_tracer::{Curve, Location, Node, Point, Subdivision, Vertex, VertexKind, Window};
@@ -49,31 +51,6 @@ pub struct Subdivision<Label, Margin> {
     pub(crate) faces: Faces,
 }
 
-/// A region: a connected part of the window that no curve enters.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Region<Label> {
-    /// The label that the curves around it have on this side, the most frequent one if they do not
-    /// agree; `None` if no curve bounds it.
-    pub label: Option<Label>,
-    /// Its area, without that of islands; exact for the interpolated curves.
-    pub area: f64,
-    /// A point well inside.
-    pub sample: Point,
-    /// Distance of `sample` from the region's boundary.
-    pub clearance: f64,
-    /// The curves that bound it, by index, with the side on which it lies.
-    pub boundary: Vec<(usize, Side)>,
-}
-
-/// A side of a curve, seen in its direction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Side {
-    /// To the left.
-    Left,
-    /// To the right.
-    Right,
-}
-
 impl<Label: Clone + Ord, Margin> Subdivision<Label, Margin> {
     /// The regions that `curves` make of `window`.
     ///
@@ -95,7 +72,7 @@ impl<Label: Clone + Ord, Margin> Subdivision<Label, Margin> {
         SubdivisionError::check(&window, &curves, &vertices, tolerance)?;
         let mut findings = Vec::new();
         let mut points: Vec<Point> = vertices.iter().map(|vertex| vertex.point).collect();
-        let around = outline(&window, &vertices, tolerance, &mut points, &mut findings);
+        let around = frame(&window, &vertices, tolerance, &mut points, &mut findings);
         let mut pieces = Vec::new();
         let mut edges = Vec::with_capacity(curves.len() + around.len());
         for (index, curve) in curves.iter().enumerate() {
@@ -234,40 +211,6 @@ impl<Label, Margin> Subdivision<Label, Margin> {
     }
 }
 
-/// The vertices around the window, counterclockwise; `points` gets them moved onto it, and the
-/// corners that were no vertices.
-fn outline<Label, Margin>(
-    window: &Window,
-    vertices: &[Vertex<Margin>],
-    tolerance: f64,
-    points: &mut Vec<Point>,
-    findings: &mut Vec<Finding<Label>>,
-) -> Vec<usize> {
-    let mut around = Vec::new();
-    for (index, vertex) in vertices.iter().enumerate() {
-        if let Some(point) = window.onto_boundary(&vertex.point, tolerance) {
-            points[index] = point;
-            around.push(index);
-        } else if !window.contains(&vertex.point)
-            || matches!(vertex.kind, VertexKind::WindowEdge | VertexKind::WindowCorner)
-        {
-            findings.push(Finding::VertexOffWindow { vertex: index });
-        }
-    }
-    for corner in window.corners() {
-        if !around.iter().any(|&vertex| points[vertex] == corner) {
-            around.push(points.len());
-        }
-        // Also where it is a vertex already, so that the number of points is fixed; such a one has
-        // no edges.
-        points.push(corner);
-    }
-    around.sort_by(|&i, &j| {
-        window.along_boundary(&points[i]).total_cmp(&window.along_boundary(&points[j]))
-    });
-    around
-}
-
 /// The cubics of a curve, with its ends at its vertices.
 fn cubics<Label, Margin>(
     index: usize,
@@ -290,83 +233,6 @@ fn cubics<Label, Margin>(
         nodes.push(nodes[0]);
     }
     nodes.windows(2).map(|pair: &[Node]| Cubic::between(&pair[0], &pair[1])).collect()
-}
-
-fn regions<Label: Clone + Ord, Margin>(
-    curves: &[Curve<Label, Margin>],
-    slabs: &Slabs,
-    edges: &[Edge],
-    faces: &Faces,
-    origin: &Point,
-) -> Vec<Region<Label>> {
-    let empty =
-        Region { label: None, area: 0.0, sample: *origin, clearance: 0.0, boundary: Vec::new() };
-    let mut regions = vec![empty; faces.count];
-    for (index, edge) in edges.iter().enumerate() {
-        let area: f64 = slabs.pieces[edge.pieces.clone()]
-            .iter()
-            .map(|piece| if piece.forward { 1.0 } else { -1.0 } * piece.cubic.area(origin))
-            .sum();
-        let sides = [(Side::Left, area), (Side::Right, -area)];
-        for (face, (side, area)) in faces.of_edges[index].into_iter().zip(sides) {
-            let Some(face) = face else { continue };
-            regions[face].area += area;
-            if index < curves.len() {
-                regions[face].boundary.push((index, side));
-            }
-        }
-    }
-    for region in &mut regions {
-        region.label = most_frequent(region.boundary.iter().map(|&side| label(curves, side)));
-    }
-    regions
-}
-
-fn label<Label, Margin>(curves: &[Curve<Label, Margin>], (curve, side): (usize, Side)) -> &Label {
-    &curves[curve].sides[usize::from(side == Side::Right)]
-}
-
-/// The least of the most frequent labels.
-fn most_frequent<'a, Label: Clone + Ord + 'a>(
-    labels: impl Iterator<Item = &'a Label>,
-) -> Option<Label> {
-    let mut counts = std::collections::BTreeMap::new();
-    for label in labels {
-        *counts.entry(label).or_insert(0_usize) += 1;
-    }
-    let most = counts.values().copied().max()?;
-    counts.into_iter().find(|&(_, count)| count == most).map(|(label, _)| label.clone())
-}
-
-/// Every curve that does not have the region's label on this side, beside one that has it, a
-/// neighbour at a vertex if there is one.
-fn find_disagreements<Label: Clone + Ord, Margin>(
-    index: usize,
-    region: &Region<Label>,
-    curves: &[Curve<Label, Margin>],
-    findings: &mut Vec<Finding<Label>>,
-) {
-    let Some(common) = &region.label else { return };
-    let (agreeing, others): (Vec<_>, Vec<_>) =
-        region.boundary.iter().partition(|&&side| label(curves, side) == common);
-    for &&other in &others {
-        let ends = |curve: usize| curves[curve].ends.into_iter().flatten();
-        let neighbour = agreeing.iter().find_map(|&&(curve, _)| {
-            let vertex = ends(other.0).find(|&vertex| ends(curve).any(|end| end == vertex))?;
-            Some((curve, Some(vertex)))
-        });
-        // The label came from a curve, so that one at least agrees.
-        let Some((curve, vertex)) = neighbour.or(agreeing.first().map(|side| (side.0, None)))
-        else {
-            continue;
-        };
-        findings.push(Finding::Labels {
-            region: index,
-            curves: [curve, other.0],
-            labels: [common.clone(), label(curves, other).clone()],
-            vertex,
-        });
-    }
 }
 
 /// A closed curve counts as an edge with one vertex.

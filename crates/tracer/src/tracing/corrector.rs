@@ -2,8 +2,9 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use crate::family::{Family, Point};
+use crate::family::Family;
 use crate::tracing::runs::{Runs, Traced};
+use crate::window::Point;
 
 /// A place on a boundary, with the margins evaluated to get there.
 pub(crate) struct Corrected {

@@ -2,10 +2,11 @@
 
 use crate::cubic::Cubic;
 use crate::curve::{Curve, Node};
-use crate::family::{Family, Point};
+use crate::family::Family;
 use crate::tracing::corrector::correct;
 use crate::tracing::runs::{Runs, Traced};
 use crate::tracing::seed::identify;
+use crate::window::Point;
 
 /// A place between the ends of a curve where one coordinate is greatest or least along it.
 #[derive(Clone, Copy, Debug, PartialEq)]

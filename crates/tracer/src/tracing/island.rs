@@ -2,10 +2,10 @@
 
 use nalgebra::Matrix2;
 
-use crate::family::{Family, Point};
+use crate::family::{Family, FreeRun};
 use crate::tracing::corrector::derivatives;
-use crate::tracing::runs::{Runs, Traced};
-use crate::tracing::seed::GridPlace;
+use crate::tracing::runs::{Runs, Sampled, Traced};
+use crate::window::Point;
 
 /// Places near those of the grid where a margin has another sign than around: one for each least
 /// value among neighbours whose minimum lies on the other side of zero.
@@ -13,7 +13,7 @@ use crate::tracing::seed::GridPlace;
 /// `grid` holds columns of `rows` places each, `cell` apart.
 pub(crate) fn islands<F: Family>(
     runs: &Runs<'_, F>,
-    grid: &[GridPlace<F>],
+    grid: &[Sampled<F>],
     rows: usize,
     cell: &Point,
 ) -> Traced<Vec<[Point; 2]>, F> {
@@ -31,7 +31,7 @@ pub(crate) fn islands<F: Family>(
 /// Whether no neighbour on the grid has the same margin closer to zero; one that has it on zero's
 /// other side has a boundary between, which needs no search.
 fn is_least<L, M: PartialEq>(
-    grid: &[(Point, crate::family::FreeRun<L, M>)],
+    grid: &[(Point, FreeRun<L, M>)],
     rows: usize,
     index: usize,
     margin: &M,

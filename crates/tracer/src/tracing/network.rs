@@ -2,8 +2,9 @@
 
 use crate::cubic::Cubic;
 use crate::curve::{Curve, Node, Vertex};
-use crate::family::{Family, Point, Window};
-use crate::tracing::branch::{SHORTEST, Special, Stop};
+use crate::family::Family;
+use crate::tracing::branch::end::{SHORTEST, Special, Stop};
+use crate::window::{Point, Window};
 
 /// All curves on which the label changes in a window, and where they end.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,11 +2,15 @@
 
 use std::cell::Cell;
 
-use crate::family::{Family, FreeRun, Point, Window};
+use crate::family::{Family, FreeRun};
 use crate::options::{TraceError, TraceOptions};
+use crate::window::{Point, Window};
 
 /// A result of the tracer for a family.
 pub(crate) type Traced<T, F> = Result<T, TraceError<<F as Family>::Error>>;
+
+/// A place, with the free run there.
+pub(crate) type Sampled<F> = (Point, FreeRun<<F as Family>::Label, <F as Family>::Margin>);
 
 /// A family in a window, with the options of a trace; every run goes through it.
 pub struct Runs<'a, F: Family> {

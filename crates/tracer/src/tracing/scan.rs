@@ -2,13 +2,15 @@
 
 use crate::cubic::Cubic;
 use crate::curve::{Curve, Node, VertexKind};
-use crate::family::{Family, Point};
-use crate::tracing::branch::{Branch, End, Seed, SeedOf, Special};
+use crate::family::Family;
+use crate::tracing::branch::Branch;
+use crate::tracing::branch::end::{End, Special};
 use crate::tracing::corrector::correct;
 use crate::tracing::network::Unresolved;
 use crate::tracing::runs::Traced;
-use crate::tracing::seed::{Change, bisect, holds, identify};
+use crate::tracing::seed::{Change, Seed, SeedOf, bisect, holds, identify};
 use crate::tracing::trace::Tracer;
+use crate::window::Point;
 
 impl<F: Family> Tracer<'_, F> {
     /// Traces every curve that changes the label along a segment, if it is not among the known

@@ -1,9 +1,25 @@
 //! Where to start: from two places with different labels to a boundary between them.
 
-use crate::family::{Family, FreeRun, Point};
-use crate::tracing::branch::{Seed, SeedOf};
+use crate::family::Family;
 use crate::tracing::corrector::correct;
 use crate::tracing::runs::{Runs, Traced};
+use crate::window::Point;
+
+/// A place on a boundary from which the boundary can be followed.
+#[derive(Clone, Debug)]
+pub struct Seed<Label, Margin> {
+    /// The place.
+    pub point: Point,
+    /// A unit vector along the boundary.
+    pub tangent: Point,
+    /// The margin that vanishes on the boundary.
+    pub margin: Margin,
+    /// The labels where the margin is positive and where it is negative.
+    pub labels: [Label; 2],
+}
+
+/// The seed of a family.
+pub(crate) type SeedOf<F> = Seed<<F as Family>::Label, <F as Family>::Margin>;
 
 impl<Label: Clone + Eq, Margin> Seed<Label, Margin> {
     /// A place between two others at which the label of the first one ends; `None` if their labels
@@ -141,6 +157,3 @@ pub(crate) fn holds<F: Family>(
         }
     }
 }
-
-/// A place of the grid with its free run.
-pub(crate) type GridPlace<F> = (Point, FreeRun<<F as Family>::Label, <F as Family>::Margin>);

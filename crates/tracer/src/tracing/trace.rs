@@ -1,15 +1,15 @@
 //! All boundaries in a window.
 
 use crate::curve::{Node, VertexKind};
-use crate::family::{Family, FreeRun, Point, Window};
+use crate::family::{Family, FreeRun};
 use crate::options::{TraceError, TraceOptions};
-use crate::tracing::branch::{SHORTEST, Special};
+use crate::tracing::branch::end::{SHORTEST, Special};
 use crate::tracing::corrector::crossing;
 use crate::tracing::extrema::{Extremum, extrema};
 use crate::tracing::island::islands;
 use crate::tracing::network::{Builder, NetworkOf};
-use crate::tracing::runs::{Runs, Traced};
-use crate::tracing::seed::GridPlace;
+use crate::tracing::runs::{Runs, Sampled, Traced};
+use crate::window::{Point, Window};
 
 /// Traces every boundary of a family in a window: what a new [`Tracer`] finds.
 ///
@@ -129,7 +129,7 @@ impl<'f, F: Family> Tracer<'f, F> {
 
     /// Scans a segment, in halves where its middle has another label or other margins than its ends
     /// let expect.
-    fn divide(&mut self, a: &GridPlace<F>, b: &GridPlace<F>, depth: u32) -> Traced<(), F> {
+    fn divide(&mut self, a: &Sampled<F>, b: &Sampled<F>, depth: u32) -> Traced<(), F> {
         if depth == 0 {
             return self.scan([a.0, b.0], [a.1.label.clone(), b.1.label.clone()]);
         }
@@ -239,7 +239,7 @@ impl<'f, F: Family> Tracer<'f, F> {
         let cells = self.runs.options.cells;
         let window = self.runs.window;
         let cell = window.extent() / cells as f64;
-        let mut grid: Vec<GridPlace<F>> = Vec::with_capacity(cells * cells);
+        let mut grid: Vec<Sampled<F>> = Vec::with_capacity(cells * cells);
         for column in 0..cells {
             for row in 0..cells {
                 let part = Point::new(column as f64 + 0.5, row as f64 + 0.5);

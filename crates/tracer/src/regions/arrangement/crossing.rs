@@ -1,19 +1,9 @@
 //! Edges that cross where there is no vertex.
 
-use std::ops::Range;
-
 use crate::cubic::Cubic;
-use crate::family::Point;
-use crate::regions::arrangement::piece::Piece;
+use crate::regions::arrangement::piece::{Edge, Piece};
 use crate::regions::arrangement::slabs::Slabs;
-
-/// An edge of the subdivision: its vertices, and its pieces in its direction.
-#[derive(Clone, Debug)]
-pub(crate) struct Edge {
-    /// `None` if it is closed without a vertex.
-    pub(crate) ends: Option<[usize; 2]>,
-    pub(crate) pieces: Range<usize>,
-}
+use crate::window::Point;
 
 /// Finds where two edges change places; each time two neighbours in a slab do.
 pub(crate) struct Crossings<'a> {

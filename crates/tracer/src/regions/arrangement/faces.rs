@@ -2,11 +2,10 @@
 
 use std::ops::Range;
 
-use crate::family::Point;
-use crate::regions::arrangement::crossing::Edge;
-use crate::regions::arrangement::piece::Piece;
+use crate::regions::arrangement::piece::{Edge, Piece};
 use crate::regions::arrangement::slabs::Slabs;
 use crate::regions::arrangement::union::DisjointSets;
+use crate::window::Point;
 
 /// The faces of both sides, left and right, of every edge; `None` is the outside.
 #[derive(Clone, Debug)]

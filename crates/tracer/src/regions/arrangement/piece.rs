@@ -1,7 +1,17 @@
 //! Pieces of edges that are monotone in both coordinates and in direction.
 
+use std::ops::Range;
+
 use crate::cubic::Cubic;
-use crate::family::Point;
+use crate::window::Point;
+
+/// An edge of the subdivision: its vertices, and its pieces in its direction.
+#[derive(Clone, Debug)]
+pub(crate) struct Edge {
+    /// `None` if it is closed without a vertex.
+    pub(crate) ends: Option<[usize; 2]>,
+    pub(crate) pieces: Range<usize>,
+}
 
 /// A part of an edge, turned so that x increases, or y if it is vertical.
 #[derive(Clone, Copy, Debug)]

@@ -1,8 +1,8 @@
 //! The plane cut into vertical slabs in which no piece begins or ends, so that the pieces of a slab
 //! have an order.
 
-use crate::family::Point;
 use crate::regions::arrangement::piece::Piece;
+use crate::window::Point;
 
 /// Pieces, and for every slab between neighbouring `walls` the pieces that cross it, from below.
 #[derive(Clone, Debug)]
