@@ -99,11 +99,12 @@ impl Cubic {
         sum / 20.0
     }
 
-    /// The parameters in (0, 1) that divide the cubic into pieces along which x, y and the direction
-    /// are monotone, in ascending order.
+    /// The parameters in (0, 1) that divide the cubic into pieces along which x, y and the
+    /// direction are monotone, in ascending order.
     #[must_use]
     pub fn monotone_cuts(&self) -> Vec<f64> {
-        // Closer to an end, the coordinates on the two sides of an extremum differ by rounding only.
+        // Closer to an end, the coordinates on the two sides of an extremum differ by rounding
+        // only.
         const ENDS: f64 = 1e-9;
         let [a, b, c] = self.hodograph();
         let mut cuts = Vec::new();

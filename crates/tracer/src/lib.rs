@@ -11,8 +11,8 @@
 //!   lies.
 //! - [`verify`] compares the labels of the regions with runs at random points.
 //!
-//! In this example the system is a bouncing ball; its height and its restitution are the parameters.
-//! The label of a region lists the guards that fire in its runs:
+//! In this example the system is a bouncing ball; its height and its restitution are the
+//! parameters. The label of a region lists the guards that fire in its runs:
 //!
 //! ```
 //! use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
@@ -67,8 +67,8 @@
 //! ```
 //!
 //! Other runs with labels and margins can be traced too: implement [`Family`] for them. The example
-//! `examples/belt_atlas` of the repository traces the stick–slip of a shaken mass, with all kinds of
-//! boundaries, and compares them with closed forms.
+//! `examples/belt_atlas` of the repository traces the stick–slip of a shaken mass, with all kinds
+//! of boundaries, and compares them with closed forms.
 //!
 //! # The source
 //!

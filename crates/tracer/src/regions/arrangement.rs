@@ -1,4 +1,4 @@
-//! Curves cut into pieces that have an order, and what the order tells.
+//! Curves cut into monotone pieces that have an order, and what follows from the order.
 //!
 //! In reading order: `piece` (edges and their monotone pieces), `slabs` (the order of the pieces),
 //! `faces` and `union` (which sides of edges belong to one face), `crossing` (edges that cross

@@ -4,8 +4,9 @@ use crate::curve::{Vertex, VertexKind};
 use crate::regions::finding::Finding;
 use crate::window::{Point, Window};
 
-/// The vertices around the window, counterclockwise; `points` gets them moved onto it, and the
-/// corners that were no vertices.
+/// The points on the window's boundary, counterclockwise: vertices, and the corners between them.
+///
+/// The vertices among `points` are moved onto the boundary, and the corners are added to `points`.
 pub fn frame<Label, Margin>(
     window: &Window,
     vertices: &[Vertex<Margin>],
@@ -28,8 +29,8 @@ pub fn frame<Label, Margin>(
         if !around.iter().any(|&vertex| points[vertex] == corner) {
             around.push(points.len());
         }
-        // Also where it is a vertex already, so that the number of points is fixed; such a one has
-        // no edges.
+        // A corner is added even if it is a vertex, so that the number of points is fixed. It then
+        // has no edges.
         points.push(corner);
     }
     around.sort_by(|&i, &j| {
@@ -39,9 +40,9 @@ pub fn frame<Label, Margin>(
 }
 
 impl Window {
-    /// `point` moved onto the sides of the window that are within `tolerance` of it; `None` if
+    /// `point`, moved onto the sides of the window that are closer than `tolerance`; `None` if
     /// there are none.
-    pub(crate) fn onto_boundary(&self, point: &Point, tolerance: f64) -> Option<Point> {
+    fn onto_boundary(&self, point: &Point, tolerance: f64) -> Option<Point> {
         let snap = |value: f64, low: f64, high: f64| {
             [low, high].into_iter().find(|side| (value - side).abs() <= tolerance)
         };
@@ -53,8 +54,8 @@ impl Window {
         on.then(|| Point::new(x.unwrap_or(point.x), y.unwrap_or(point.y)))
     }
 
-    /// How far along the boundary, counterclockwise from `low`, a point on it lies.
-    pub(crate) fn along_boundary(&self, point: &Point) -> f64 {
+    /// The length of the boundary, counterclockwise, from `low` to a point on it.
+    fn along_boundary(&self, point: &Point) -> f64 {
         let size = self.high - self.low;
         if point.y == self.low.y {
             point.x - self.low.x

@@ -7,19 +7,20 @@ use crate::window::Point;
 /// A part of the outline of a region.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stretch {
-    /// A whole curve, by its index, with the side of it on which the region lies: backwards if that
-    /// is the right.
+    /// A whole curve, given by its index, and the side on which the region lies. If this is the
+    /// right side, the outline follows the curve backwards.
     Curve(usize, Side),
     /// A straight part of the window's boundary.
     Window([Point; 2]),
 }
 
 impl<Label, Margin> Subdivision<Label, Margin> {
-    /// The rings around a region, which lies on their left: one around all of it counterclockwise
-    /// and one clockwise around each island. Where the region touches itself at a vertex, rings
-    /// end there, so that none comes to a vertex twice; it may then have
-    /// several counterclockwise ones. With [findings](Self::findings), rings that do not close are
-    /// left out.
+    /// The rings around a region, with the region on their left: a counterclockwise ring around the
+    /// whole, and a clockwise ring around each island.
+    ///
+    /// No ring comes to a vertex twice. A region that touches itself at a vertex may therefore have
+    /// several counterclockwise rings. If there are [findings](Self::findings), rings that do not
+    /// close are left out.
     #[must_use]
     pub fn outlines(&self, region: usize) -> Vec<Vec<Stretch>> {
         let mut rings = Vec::new();
@@ -34,7 +35,7 @@ impl<Label, Margin> Subdivision<Label, Margin> {
                 let stretch = if index < self.curves.len() {
                     Stretch::Curve(index, side)
                 } else {
-                    // A side of the window is one piece, in its direction or turned.
+                    // A part of the window's boundary is one piece, in its direction or reversed.
                     let piece = &self.slabs.pieces[edge.pieces.start];
                     let [first, last] = [piece.first(), piece.last()];
                     Stretch::Window(if piece.forward { [first, last] } else { [last, first] })

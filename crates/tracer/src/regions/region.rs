@@ -7,28 +7,28 @@ use crate::regions::arrangement::slabs::Slabs;
 use crate::regions::finding::Finding;
 use crate::window::Point;
 
-/// A region: a connected part of the window that no curve enters.
+/// A connected part of the window that no curve enters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Region<Label> {
-    /// The label that the curves around it have on this side, the most frequent one if they do not
-    /// agree; `None` if no curve bounds it.
+    /// The label that the curves around the region have on this side; the most frequent label if
+    /// they disagree, and `None` if no curve bounds the region.
     pub label: Option<Label>,
-    /// Its area, without that of islands; exact for the interpolated curves.
+    /// The area without that of islands. It is exact for the interpolated curves.
     pub area: f64,
     /// A point well inside.
     pub sample: Point,
-    /// Distance of `sample` from the region's boundary.
+    /// The distance of `sample` from the region's boundary.
     pub clearance: f64,
-    /// The curves that bound it, by index, with the side on which it lies.
+    /// The indices of the curves that bound the region, with the side on which the region lies.
     pub boundary: Vec<(usize, Side)>,
 }
 
-/// A side of a curve, seen in its direction.
+/// A side of a curve, seen in the direction of the curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Side {
-    /// To the left.
+    /// The left side.
     Left,
-    /// To the right.
+    /// The right side.
     Right,
 }
 
@@ -68,7 +68,7 @@ fn label<Label, Margin>(curves: &[Curve<Label, Margin>], (curve, side): (usize, 
     &curves[curve].sides[usize::from(side == Side::Right)]
 }
 
-/// The least of the most frequent labels.
+/// The most frequent label; the least one if there are several.
 fn most_frequent<'a, Label: Clone + Ord + 'a>(
     labels: impl Iterator<Item = &'a Label>,
 ) -> Option<Label> {
@@ -80,8 +80,8 @@ fn most_frequent<'a, Label: Clone + Ord + 'a>(
     counts.into_iter().find(|&(_, count)| count == most).map(|(label, _)| label.clone())
 }
 
-/// Every curve that does not have the region's label on this side, beside one that has it, a
-/// neighbour at a vertex if there is one.
+/// Adds a finding for every curve without the region's label on this side, together with a curve
+/// that has it: a neighbour at a vertex, if possible.
 pub fn find_disagreements<Label: Clone + Ord, Margin>(
     index: usize,
     region: &Region<Label>,
@@ -97,7 +97,7 @@ pub fn find_disagreements<Label: Clone + Ord, Margin>(
             let vertex = ends(other.0).find(|&vertex| ends(curve).any(|end| end == vertex))?;
             Some((curve, Some(vertex)))
         });
-        // The label came from a curve, so that one at least agrees.
+        // The label is that of a curve, so at least one curve agrees.
         let Some((curve, vertex)) = neighbour.or(agreeing.first().map(|side| (side.0, None)))
         else {
             continue;

@@ -18,7 +18,7 @@ use crate::window::{Point, Window};
 /// ```
 /// use stickslip_tracer::{Curve, Location, Node, Point, Subdivision, Vertex, VertexKind, Window};
 ///
-/// // A straight boundary from the window's lower side to its upper one.
+/// // A straight boundary from the lower side of the window to the upper side.
 /// let ends = [Point::new(0.5, 0.0), Point::new(0.5, 1.0)];
 /// let curve = Curve {
 ///     margin: "m",
@@ -52,17 +52,17 @@ pub struct Subdivision<Label, Margin> {
 }
 
 impl<Label: Clone + Ord, Margin> Subdivision<Label, Margin> {
-    /// The regions that `curves` make of `window`.
+    /// The regions into which `curves` divide `window`.
     ///
-    /// `tolerance` is the distance within which curves, which are interpolated, and vertices are
-    /// known; vertices within it of the window's boundary lie on the boundary. A closed curve
-    /// may repeat its first node as its last. What is inconsistent becomes a [`Finding`];
-    /// without findings the regions are those of the curves. Time and memory grow as the number of
-    /// cubic pieces times the number of curves over one abscissa.
+    /// `tolerance` is the accuracy of the curves, which are interpolated, and of the vertices. A
+    /// vertex that is closer than this to the window's boundary lies on the boundary. A closed
+    /// curve may repeat its first node as its last node. Inconsistencies become [`Finding`]s.
+    /// Without findings the regions are those of the curves. Time and memory grow as the number
+    /// of cubic pieces times the number of curves over one abscissa.
     ///
     /// # Errors
-    /// Input that has no meaning: numbers that are not finite, indices out of range, a window
-    /// without area.
+    /// The input has no meaning: a number is not finite, an index is out of range, or the window
+    /// has no area.
     pub fn new(
         window: Window,
         curves: Vec<Curve<Label, Margin>>,
@@ -128,6 +128,7 @@ impl<Label: Clone + Ord, Margin> Subdivision<Label, Margin> {
         Ok(plane)
     }
 
+    /// Adds the findings about ends, sides and labels of curves, and about regions.
     fn find_inconsistencies(&mut self) {
         let mut degrees = vec![0_usize; self.vertices.len() + 4];
         for end in self.edges.iter().filter_map(|edge| edge.ends).flatten() {
@@ -161,7 +162,7 @@ impl<Label, Margin> Subdivision<Label, Margin> {
         &self.window
     }
 
-    /// The distance within which the curves are known.
+    /// The accuracy of curves and vertices.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         self.tolerance
@@ -185,14 +186,14 @@ impl<Label, Margin> Subdivision<Label, Margin> {
         &self.regions
     }
 
-    /// The regions on the left and on the right of a curve; `None` is the outside, which only a
-    /// curve with findings has.
+    /// The regions on the left and on the right of a curve; `None` is the outside of the window.
+    /// Only a curve with findings has the outside on one of its sides.
     #[must_use]
     pub fn regions_beside(&self, curve: usize) -> [Option<usize>; 2] {
         self.faces.of_edges[curve]
     }
 
-    /// What is inconsistent; empty if nothing is.
+    /// The inconsistencies of curves and vertices.
     #[must_use]
     pub fn findings(&self) -> &[Finding<Label>] {
         &self.findings
@@ -204,7 +205,7 @@ impl<Label, Margin> Subdivision<Label, Margin> {
         self.euler
     }
 
-    /// Curves and vertices back, to add to them.
+    /// The curves and the vertices, without the regions.
     #[must_use]
     pub fn into_parts(self) -> (Vec<Curve<Label, Margin>>, Vec<Vertex<Margin>>) {
         (self.curves, self.vertices)
@@ -235,7 +236,7 @@ fn cubics<Label, Margin>(
     nodes.windows(2).map(|pair: &[Node]| Cubic::between(&pair[0], &pair[1])).collect()
 }
 
-/// A closed curve counts as an edge with one vertex.
+/// The counts of Euler's formula. A closed curve counts as an edge with one vertex.
 fn euler(edges: &[Edge], points: usize, regions: usize) -> Euler {
     let closed = edges.iter().filter(|edge| edge.ends.is_none()).count();
     let mut sets = DisjointSets::new(points);

@@ -1,4 +1,4 @@
-//! Runs against a subdivision: does the label of a region hold where it is tried?
+//! Verification: do runs at random points have the labels of their regions?
 //!
 //! `report` holds what a verification finds, `judge` compares the labels.
 
@@ -15,19 +15,19 @@ use crate::regions::verify::report::{
 };
 use crate::window::Point;
 
-/// Where labels are tried, besides the sample point of every region.
+/// Where labels are computed, besides the sample point of every region.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VerifyOptions {
-    /// Points spread evenly at random over the window.
+    /// The number of random points, spread evenly over the window.
     pub random_points: usize,
-    /// Points on each side of every curve, at distances between `nearest` and `farthest` whose
-    /// logarithms are spread evenly.
+    /// The number of random points on each side of every curve. The logarithms of their distances
+    /// from the curve are spread evenly between those of `nearest` and `farthest`.
     pub near_points: usize,
-    /// Least distance from the curve.
+    /// The least distance from the curve.
     pub nearest: f64,
-    /// Greatest distance from the curve.
+    /// The greatest distance from the curve.
     pub farthest: f64,
-    /// The same seed gives the same points.
+    /// The seed of the random numbers. The same seed gives the same points.
     pub seed: u64,
 }
 
@@ -37,10 +37,12 @@ impl Default for VerifyOptions {
     }
 }
 
-/// Tries the labels of `plane` against runs of `family`, one after the other.
+/// Compares the labels of `plane` with runs of `family`, one after the other.
+///
+/// A run that fails is not an error of the verification, but [`Unverified`].
 ///
 /// # Errors
-/// Distances that are not in order. A run that fails is no error but [`Unverified`].
+/// The distances of `options` are not in order.
 pub fn verify<F: Family>(
     plane: &Subdivision<F::Label, F::Margin>,
     family: &F,
@@ -49,11 +51,12 @@ pub fn verify<F: Family>(
     verify_with(plane, options, |points| points.iter().map(|point| family.label(point)).collect())
 }
 
-/// As [`verify`], with all labels asked for at once, so that runs can be parallel: `labels` returns
-/// them in the order of the points.
+/// Compares the labels of `plane` with those that `labels` returns, in the order of the points.
+///
+/// Unlike [`verify`] it asks for all labels at once, so that runs can be parallel.
 ///
 /// # Errors
-/// Distances that are not in order, or another number of labels than of points.
+/// The distances of `options` are not in order, or the numbers of labels and of points differ.
 pub fn verify_with<Label: Clone + Ord, Margin, Error>(
     plane: &Subdivision<Label, Margin>,
     options: &VerifyOptions,
@@ -68,8 +71,7 @@ pub fn verify_with<Label: Clone + Ord, Margin, Error>(
     for checkpoint in checkpoints(plane, options) {
         match plane.locate(&checkpoint.point) {
             Location::Region(region) => places.push((checkpoint, region)),
-            // A place beside a curve at the window's boundary may be outside: there is nothing to
-            // try.
+            // A point beside a curve near the window's boundary may lie outside and is left out.
             Location::Outside if !plane.window().contains(&checkpoint.point) => {}
             location => {
                 unverified.push(Unverified { checkpoint, reason: Reason::Location(location) });
@@ -88,7 +90,8 @@ pub fn verify_with<Label: Clone + Ord, Margin, Error>(
     Ok(judge.finish())
 }
 
-/// The sample points first, so that a region's label is known before it is needed.
+/// The points at which labels are computed. Sample points come first, so that the label of a region
+/// is known before it is needed.
 fn checkpoints<Label: Clone + Ord, Margin>(
     plane: &Subdivision<Label, Margin>,
     options: &VerifyOptions,

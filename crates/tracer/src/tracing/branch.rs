@@ -76,8 +76,8 @@ pub struct Branch<'a, 'f, F: Family> {
 impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
     /// The branch from `seed`; `None` if the seed is not on a boundary between its labels.
     ///
-    /// If `forward`, the margin is positive on the left of the branch, else on its right. The branch
-    /// ends at each of the `stops` that it comes to.
+    /// If `forward`, the margin is positive on the left of the branch, else on its right. The
+    /// branch ends at each of the `stops` that it comes to.
     ///
     /// # Errors
     /// A run fails, or a margin is not a number.

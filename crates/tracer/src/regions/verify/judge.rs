@@ -1,4 +1,4 @@
-//! Labels of runs compared with those of regions, and the statistics of the comparison.
+//! The comparison of the labels of runs with those of regions, and its statistics.
 
 use crate::regions::region::Side;
 use crate::regions::subdivision::Subdivision;
@@ -7,17 +7,24 @@ use crate::regions::verify::report::{
 };
 use crate::window::Point;
 
+/// Compares the labels of runs with those of regions, one after the other.
 pub struct Judge<'a, Label, Margin, Error> {
     plane: &'a Subdivision<Label, Margin>,
+    /// The labels of the regions.
     expected: Vec<Option<Label>>,
+    /// The number of compared labels in every region.
     tried: Vec<usize>,
+    /// Whether a region has a mismatch.
     wrong: Vec<bool>,
+    /// The points of every region that have its label.
     agreeing: Vec<Vec<Point>>,
     mismatches: Vec<Mismatch<Label>>,
     unverified: Vec<Unverified<Error>>,
-    /// Of every curve, whether a label was tried on the left and on the right.
+    /// Whether a label was compared on the left and on the right of every curve.
     beside: Vec<[bool; 2]>,
+    /// The number of random points of the window.
     random: u64,
+    /// The number of those that have another label than their region.
     wrong_random: u64,
 }
 
@@ -38,6 +45,7 @@ impl<'a, Label: Clone + Ord, Margin, Error> Judge<'a, Label, Margin, Error> {
         }
     }
 
+    /// Compares the label of a run in a region.
     pub fn consider(&mut self, checkpoint: Checkpoint, region: usize, label: Result<Label, Error>) {
         let found = match label {
             Ok(found) => found,
@@ -73,6 +81,7 @@ impl<'a, Label: Clone + Ord, Margin, Error> Judge<'a, Label, Margin, Error> {
         }
     }
 
+    /// The result of the comparison.
     pub fn finish(mut self) -> Verification<Label, Error> {
         for mismatch in &mut self.mismatches {
             let distance = |point: &Point| (point - mismatch.checkpoint.point).norm_squared();
@@ -104,7 +113,8 @@ impl<'a, Label: Clone + Ord, Margin, Error> Judge<'a, Label, Margin, Error> {
     }
 }
 
-/// The probability p for which `wrong` or fewer of `tried` have the probability 5 %.
+/// The probability p of a wrong point with which at most `wrong` of `tried` points are wrong with a
+/// probability of 5 %.
 fn upper_limit(tried: u64, wrong: u64) -> f64 {
     if wrong >= tried {
         return 1.0;
@@ -140,7 +150,7 @@ mod tests {
     fn limits_are_those_of_tables() {
         assert_eq!(upper_limit(0, 0), 1.0);
         assert!((upper_limit(100, 0) - (1.0 - 0.05_f64.powf(0.01))).abs() < 1e-12);
-        // One-sided 95 % limits: 1 of 10, and n − 1 of n, for which 1 − pⁿ = 0.05.
+        // One-sided 95 % limits for 1 of 10, and for n − 1 of n, where 1 − pⁿ = 0.05.
         assert!((upper_limit(10, 1) - 0.394163).abs() < 1e-6);
         assert!((upper_limit(10, 9) - 0.95_f64.powf(0.1)).abs() < 1e-12);
         assert!(upper_limit(100_000, 5_000) < 0.052);

@@ -5,67 +5,66 @@ use crate::regions::locate::Location;
 use crate::regions::region::Side;
 use crate::window::Point;
 
-/// A place at which a label was tried.
+/// A point at which a label was computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Checkpoint {
-    /// Where.
+    /// The point.
     pub point: Point,
-    /// Why there.
+    /// Why this point was chosen.
     pub origin: Origin,
 }
 
-/// Why a label was tried at a place.
+/// Why a point was chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Origin {
     /// The sample point of a region.
     Sample,
     /// A random point of the window.
     Random,
-    /// Beside a curve.
+    /// A random point beside a curve.
     Near {
-        /// The curve.
+        /// The index of the curve.
         curve: usize,
-        /// Which side of it.
+        /// The side of the curve.
         side: Side,
-        /// Distance from it.
+        /// The distance from the curve.
         distance: f64,
     },
 }
 
-/// A place at which the label is not that of the region.
+/// A point at which the label is not that of its region.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mismatch<Label> {
-    /// Where.
+    /// The point.
     pub checkpoint: Checkpoint,
-    /// The region by location.
+    /// The index of the region in which the point lies.
     pub region: usize,
-    /// Its label.
+    /// The label of the region.
     pub expected: Label,
     /// The label of the run.
     pub found: Label,
-    /// The nearest place of the same region at which the label was as expected. A boundary that is
-    /// missing, or one that is misplaced, leads between both points: a bracket to start
-    /// tracing from.
+    /// The nearest point of the same region at which the label was as expected. Between the two
+    /// points passes a boundary that is missing or misplaced, so that tracing can start there.
     pub agreeing: Option<Point>,
 }
 
-/// A place about which nothing is known.
+/// A point that could not be verified.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unverified<Error> {
-    /// Where.
+    /// The point.
     pub checkpoint: Checkpoint,
-    /// Why.
+    /// Why the point could not be verified.
     pub reason: Reason<Error>,
 }
 
-/// Why nothing is known about a place.
+/// Why a point could not be verified.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reason<Error> {
-    /// It is within the tolerance of a curve, or in no region.
+    /// The point is closer to a curve than the tolerance, or in no region.
     Location(Location),
-    /// The region has no label: no curve bounds it, and the run at its sample point failed.
+    /// The region has no label, because no curve bounds it and the run at its sample point failed.
     NoLabel {
-        /// The region.
+        /// The index of the region.
         region: usize,
     },
     /// The run failed.
@@ -77,27 +76,27 @@ pub enum Reason<Error> {
 pub struct Verification<Label, Error> {
     /// The counts of Euler's formula.
     pub euler: Euler,
-    /// How many findings the subdivision has.
+    /// The number of findings of the subdivision.
     pub findings: usize,
-    /// How many places were tried in each region.
+    /// The number of points in each region at which a label was compared.
     pub tried: Vec<usize>,
-    /// Where the label was another one, in the order in which places were tried.
+    /// The points with another label, in the order in which the points were chosen.
     pub mismatches: Vec<Mismatch<Label>>,
-    /// Places about which nothing is known.
+    /// The points that could not be verified.
     pub unverified: Vec<Unverified<Error>>,
-    /// Curves beside which no label was tried on one side at least.
+    /// The indices of curves without a compared label on at least one side.
     pub untried_curves: Vec<usize>,
-    /// Share of the window's area in regions that were tried without a mismatch.
+    /// The fraction of the window's area in regions with compared labels and without a mismatch.
     pub tried_area: f64,
-    /// With 95 % confidence, the share of the window's area that has another label is below this:
-    /// the upper limit of Clopper and Pearson (1934), from the random points.
+    /// With 95 % confidence, the fraction of the window's area with another label is below this
+    /// value. It is the upper limit of Clopper and Pearson (1934) for the random points.
     pub wrong_area_bound: f64,
 }
 
 impl<Label, Error> Verification<Label, Error> {
-    /// Pairs of places in one region by location, of which one has the label of the region and the
-    /// other has not: between them lies a boundary for
-    /// [`Tracer::look_between`](crate::Tracer::look_between) to find.
+    /// Pairs of points in one region, the first with the label of the region and the second with
+    /// another one. Between them passes a boundary, which
+    /// [`Tracer::look_between`](crate::Tracer::look_between) can find.
     #[must_use]
     pub fn brackets(&self) -> Vec<[Point; 2]> {
         let bracket = |mismatch: &Mismatch<Label>| {
@@ -106,35 +105,35 @@ impl<Label, Error> Verification<Label, Error> {
         self.mismatches.iter().filter_map(bracket).collect()
     }
 
-    /// Whether nothing speaks against the subdivision.
+    /// Whether there is no evidence against the subdivision.
     #[must_use]
     pub fn agrees(&self) -> bool {
         self.findings == 0 && self.euler.holds() && self.mismatches.is_empty()
     }
 }
 
-/// Verification cannot be done.
+/// Why a subdivision cannot be verified.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum VerifyError {
-    /// The curves make no subdivision.
+    /// The curves do not make a subdivision.
     #[error(transparent)]
     Subdivision(#[from] SubdivisionError),
-    /// The distances from curves are not in order.
+    /// The distances from curves are not finite, not above 0, or not in order.
     #[error(
-        "distances from {nearest:e} to {farthest:e}: both must be finite and above 0, the first not the greater"
+        "distances from {nearest:e} to {farthest:e}, expected finite values above 0 in ascending order"
     )]
     Distances {
-        /// Least distance.
+        /// The least distance.
         nearest: f64,
-        /// Greatest distance.
+        /// The greatest distance.
         farthest: f64,
     },
-    /// Not one label a point came back.
-    #[error("{points} points have {labels} labels")]
+    /// The numbers of labels and of points differ.
+    #[error("{labels} labels for {points} points, expected one for each")]
     Labels {
-        /// How many points.
+        /// The number of points.
         points: usize,
-        /// How many labels.
+        /// The number of labels.
         labels: usize,
     },
 }

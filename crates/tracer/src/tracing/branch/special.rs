@@ -11,12 +11,13 @@ use crate::tracing::runs::{Runs, Traced};
 use crate::tracing::seed::{bisect, identify};
 use crate::window::Point;
 
-/// Crossings with a larger uncertainty, as a fraction of the window's shorter extent, are also tried
-/// as touches. The values of margins tell the place of a touch only to half the digits.
+/// Crossings with a larger uncertainty, as a fraction of the window's shorter extent, are also
+/// tried as touches. The values of margins tell the place of a touch only to half the digits.
 const TANGENTIAL: f64 = 1e-9;
 
 /// The special point of a branch after `from`, within a failed step of length `h`; `None` if the
-/// step is too long to find it. `beyond` is the place that the step reached, if only its labels were wrong.
+/// step is too long to find it. `beyond` is the place that the step reached, if only its labels
+/// were wrong.
 pub(crate) fn locate<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,
@@ -190,8 +191,8 @@ fn is_last<F: Family>(
     Ok(!track.holds_closely(from, &after, 0.3 * length + 1e-6 * runs.scale)?)
 }
 
-/// The margins that separate a thin region beside `place` from the region with the branch's label on
-/// that side.
+/// The margins that separate a thin region beside `place` from the region with the branch's label
+/// on that side.
 fn wedge<F: Family>(track: &Track<'_, '_, F>, place: &FootholdOf<F>) -> Traced<Vec<F::Margin>, F> {
     let runs = track.runs;
     let left = Point::new(-place.node.tangent.y, place.node.tangent.x);

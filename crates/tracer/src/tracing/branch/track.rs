@@ -85,8 +85,9 @@ impl<F: Family> Track<'_, '_, F> {
         }
     }
 
-    /// The predicted place after a step of length `h` from the last node. It lies on the last cubic,
-    /// continued, if the step is not much longer than this cubic; else it lies on the tangent.
+    /// The predicted place after a step of length `h` from the last node. It lies on the last
+    /// cubic, continued, if the step is not much longer than this cubic; else it lies on the
+    /// tangent.
     pub fn predict(&self, node: &Node, h: f64) -> Point {
         let before = self.footholds.len().checked_sub(2).map(|index| self.footholds[index].node);
         if let Some(before) = before {
