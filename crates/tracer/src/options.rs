@@ -12,8 +12,8 @@ pub struct TraceOptions {
     /// The largest distance of the cubics between nodes from their boundary, at least ten times
     /// `tolerance`.
     pub interpolation: f64,
-    /// The distance from a boundary at which the labels on both of its sides are computed, at
-    /// least ten times `tolerance`.
+    /// The distance from a boundary at which the labels on both of its sides are computed, at least
+    /// ten times `tolerance`.
     pub offset: f64,
     /// The error of a margin: smaller values carry no information.
     pub noise: f64,

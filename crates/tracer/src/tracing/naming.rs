@@ -10,11 +10,10 @@ impl<Label> Network<Label, Margin> {
     /// there.
     ///
     /// Before this call, the kind of a vertex says how the tracer found it, but more curves may
-    /// have come to end there since. A boundary that crosses another one goes on beyond it, so
-    /// that at least four curves end at a [`VertexKind::Crossing`], whatever their margins are:
-    /// even the minimum and the end of one phase may vanish independently of each other. Where
-    /// fewer curves end, one boundary turns into another. The kind then depends on what
-    /// vanishes on the curves:
+    /// have come to end there since. A boundary that crosses another one goes on beyond it, so that
+    /// at least four curves end at a [`VertexKind::Crossing`], whatever their margins are: even the
+    /// minimum and the end of one phase may vanish independently of each other. Where fewer curves
+    /// end, one boundary turns into another. The kind then depends on what vanishes on the curves:
     ///
     /// - a minimum and the end of the same phase: [`VertexKind::GrazeAtEnd`]
     /// - ends of the run only: [`VertexKind::VanishingPhase`]

@@ -16,8 +16,8 @@ impl<F: Family> Tracer<'_, F> {
     /// Traces every curve that changes the label along a segment, unless it is known.
     ///
     /// The known curves that cross the segment explain how the label changes along it. A boundary
-    /// is searched for by bisection only where their sides do not fit together, or do not fit
-    /// the labels at the ends.
+    /// is searched for by bisection only where their sides do not fit together, or do not fit the
+    /// labels at the ends.
     pub(crate) fn scan(&mut self, segment: [Point; 2], labels: [F::Label; 2]) -> Traced<(), F> {
         /// The number of changes that are followed on one segment. Other edges of the grid find the
         /// curves of further ones.

@@ -23,11 +23,11 @@ impl Faces {
     /// The faces of the sides of `edges`.
     ///
     /// Each gap between two pieces of a slab is united with the sides of edges that face it, and
-    /// with the gaps beyond the walls of the slab. Edges that leave a vertex with one tangent
-    /// are closer together than `reach` beside it, and interpolation leaves open which one is
-    /// above. A gap therefore counts only if it is wider than `reach`. It is united with the
-    /// side of a piece only if the gap on the other side of the piece is wide too. `frame` are
-    /// the edges of the window, which have the outside on their right.
+    /// with the gaps beyond the walls of the slab. Edges that leave a vertex with one tangent are
+    /// closer together than `reach` beside it, and interpolation leaves open which one is above. A
+    /// gap therefore counts only if it is wider than `reach`. It is united with the side of a piece
+    /// only if the gap on the other side of the piece is wide too. `frame` are the edges of the
+    /// window, which have the outside on their right.
     pub(crate) fn new(slabs: &Slabs, edges: &[Edge], frame: Range<usize>, reach: f64) -> Self {
         let outside = 2 * edges.len();
         let gap_above = |slab: usize, place: usize| outside + 1 + slabs.start(slab) + place;

@@ -72,8 +72,7 @@ impl Slabs {
     }
 
     /// Whether the middle between the pieces at `gap` and `gap` + 1 of a slab is farther than
-    /// `reach` from every piece that is not vertical. Also true if there are no two such
-    /// pieces.
+    /// `reach` from every piece that is not vertical. Also true if there are no two such pieces.
     pub(crate) fn is_wide(&self, slab: usize, gap: usize, reach: f64) -> bool {
         let pieces = self.of(slab);
         gap + 1 >= pieces.len() || {

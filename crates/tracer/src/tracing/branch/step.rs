@@ -73,8 +73,8 @@ impl<F: Family> Track<'_, '_, F> {
         }
         let node = Node { point: corrected.point, tangent };
         let arc = Cubic::between(&from.node, &node);
-        // At 0.3 the errors of fourth and of fifth order both show, unlike in the middle. The
-        // error of fourth order has 0.7 of its maximum there.
+        // At 0.3 the errors of fourth and of fifth order both show, unlike in the middle. The error
+        // of fourth order has 0.7 of its maximum there.
         let Some(value) = runs.margin(&arc.at(0.3), &self.margin)? else {
             return Ok(Attempt::Lost);
         };
