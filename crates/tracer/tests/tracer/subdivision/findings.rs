@@ -1,15 +1,18 @@
-//! What is wrong with curves and vertices is found, by the subdivision or by runs against it.
+//! Errors in curves and vertices are found by the subdivision, or by runs compared with it.
 
 use std::f64::consts::TAU;
 
-use stickslip::tracer::{
+use stickslip_tracer::{
     Curve, Finding, Origin, Point, Side, Subdivision, SubdivisionError, VerifyError, VerifyOptions,
     Vertex, VertexKind, verify,
 };
 
-use crate::planes::{Plane, TOLERANCE, circle, crossing_circles, even, inside, islands};
+use crate::subdivision::planes::{
+    KnownPlane, TOLERANCE, circle, crossing_circles, even, inside, islands,
+};
 
-fn findings(plane: &Plane) -> Vec<Finding<i32>> {
+/// The findings of a plane.
+fn findings(plane: &KnownPlane) -> Vec<Finding<i32>> {
     plane.subdivision().expect("curves with a meaning").findings().to_vec()
 }
 
@@ -18,7 +21,8 @@ fn a_deleted_curve_leaves_labels_that_disagree() {
     let mut plane = crossing_circles();
     plane.curves.remove(0);
     let found = findings(&plane);
-    // The lens and the right lune are one region now, its label that of the majority or the least.
+    // The lens and the right lune are now one region, with the most frequent label or the least
+    // one.
     assert!(
         found.iter().any(|finding| matches!(finding, Finding::Labels { vertex: Some(_), .. })),
         "{found:?}"
@@ -55,7 +59,7 @@ fn a_moved_vertex_is_named() {
 
 #[test]
 fn crossings_without_a_vertex_are_found() {
-    let plane = Plane::new(|_| 0)
+    let plane = KnownPlane::new(|_| 0)
         .curve(circle(0.4, 0.5, 0.25), even(0.0, TAU, 200), [1, 0], None)
         .curve(circle(0.6, 0.5, 0.25), even(0.0, TAU, 200), [2, 0], None);
     let found = findings(&plane);
@@ -77,15 +81,15 @@ fn crossings_without_a_vertex_are_found() {
     }
 }
 
-/// Circles that overlap by less than the distance of two nodes, by so little that all labels away
-/// from there are right.
+/// Circles that overlap by less than the distance of two nodes. Away from the overlap all labels
+/// are right.
 #[test]
 fn short_overlaps_are_found_and_narrow_gaps_are_not_overlaps() {
     for angle in even(0.0, TAU, 24) {
         for overlap in [1e-3, 1e-6, 1e-8, -1e-8, -1e-6, -1e-3] {
             let (sin, cos) = angle.sin_cos();
             let apart = 0.3 - overlap;
-            let plane = Plane::new(|_| 0)
+            let plane = KnownPlane::new(|_| 0)
                 .curve(circle(0.5, 0.5, 0.2), even(0.0, TAU, 200), [1, 0], None)
                 .curve(
                     circle(0.5 + apart * cos, 0.5 + apart * sin, 0.1),
@@ -106,7 +110,8 @@ fn short_overlaps_are_found_and_narrow_gaps_are_not_overlaps() {
 
 #[test]
 fn curves_that_leave_the_window_are_found() {
-    let plane = Plane::new(|_| 0).curve(circle(0.1, 0.5, 0.2), even(0.0, TAU, 100), [1, 0], None);
+    let plane =
+        KnownPlane::new(|_| 0).curve(circle(0.1, 0.5, 0.2), even(0.0, TAU, 100), [1, 0], None);
     let found = findings(&plane);
     let half = 0.03_f64.sqrt();
     for y in [0.5 - half, 0.5 + half] {
@@ -119,7 +124,7 @@ fn curves_that_leave_the_window_are_found() {
 #[test]
 fn dangling_ends_are_found() {
     let line = |s: f64| [s, 0.5, 1.0, 0.0];
-    let plane = Plane::new(|_| 0)
+    let plane = KnownPlane::new(|_| 0)
         .vertex(0.0, 0.5, VertexKind::WindowEdge)
         .vertex(0.7, 0.5, VertexKind::Degenerate)
         .curve(line, even(0.0, 0.7, 3), [1, 0], Some([0, 1]));
@@ -139,7 +144,7 @@ fn a_curve_given_twice_is_found() {
 
 #[test]
 fn vertices_that_are_not_where_their_kind_says_are_found() {
-    let plane = Plane::new(|_| 0).vertex(0.0 + 1e-6, 0.5, VertexKind::WindowEdge);
+    let plane = KnownPlane::new(|_| 0).vertex(0.0 + 1e-6, 0.5, VertexKind::WindowEdge);
     assert_eq!(findings(&plane), [Finding::VertexOffWindow { vertex: 0 }]);
 }
 
@@ -154,7 +159,7 @@ fn a_missing_island_is_found_by_runs_and_traced_again() {
     let options = VerifyOptions::default();
     let first = verify(&made, &plane, &options).expect("distances in order");
     assert!(!first.agrees());
-    // A boundary is missing between every two places.
+    // Between the two points of every bracket a boundary is missing.
     let brackets = first.brackets();
     assert_eq!(brackets.len(), first.mismatches.len());
     for [agreeing, other] in &brackets {
@@ -203,7 +208,7 @@ fn verification_is_the_same_every_time() {
 
 #[test]
 fn input_without_meaning_is_refused_by_name() {
-    let refused = |change: fn(&mut Plane)| {
+    let refused = |change: fn(&mut KnownPlane)| {
         let mut plane = crossing_circles();
         change(&mut plane);
         plane.subdivision().map(|_| ()).expect_err("no meaning")

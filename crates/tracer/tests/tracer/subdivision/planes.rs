@@ -1,36 +1,36 @@
-//! Planes with known answers: curves from parametrised curves, labels from the signs of explicit
-//! functions.
+//! Planes with known answers: the curves are parametrised, and explicit functions give the labels.
 
 use std::convert::Infallible;
 use std::f64::consts::{PI, TAU};
 
-use stickslip::tracer::{
+use stickslip_tracer::{
     Curve, Family, FreeRun, Node, Point, Subdivision, SubdivisionError, Vertex, VertexKind, Window,
 };
 
 pub const TOLERANCE: f64 = 1e-10;
 pub const UNIT: Window = Window { low: Point::new(0.0, 0.0), high: Point::new(1.0, 1.0) };
 
-/// Curves that make a plane, and the label that is true at a point.
+/// A plane that is divided by curves, with the label that is true at each point.
 #[derive(Clone)]
-pub struct Plane {
+pub struct KnownPlane {
     pub curves: Vec<Curve<i32, usize>>,
     pub vertices: Vec<Vertex<usize>>,
     pub truth: fn(&Point) -> i32,
 }
 
-impl Plane {
+impl KnownPlane {
     pub fn new(truth: fn(&Point) -> i32) -> Self {
         Self { curves: Vec::new(), vertices: Vec::new(), truth }
     }
 
+    /// Adds a vertex.
     pub fn vertex(mut self, x: f64, y: f64, kind: VertexKind) -> Self {
         self.vertices.push(Vertex { point: Point::new(x, y), kind, margins: Vec::new() });
         self
     }
 
-    /// A curve through (x, y), with derivatives (x′, y′), at the `parameters`; `sides` are left and
-    /// right.
+    /// Adds a curve. At each of the `parameters`, `along` gives a node (x, y) and its derivatives
+    /// (x′, y′). `sides` are the labels on the left and on the right.
     pub fn curve(
         mut self,
         along: impl Fn(f64) -> [f64; 4],
@@ -53,7 +53,7 @@ impl Plane {
     }
 }
 
-impl Family for Plane {
+impl Family for KnownPlane {
     type Label = i32;
     type Margin = usize;
     type Error = Infallible;
@@ -71,16 +71,17 @@ impl Family for Plane {
     }
 }
 
-/// `count` + 1 parameters evenly from `from` to `to`.
+/// `count` + 1 parameters, spread evenly from `from` to `to`.
 pub fn even(from: f64, to: f64, count: u32) -> impl Iterator<Item = f64> {
     (0..=count).map(move |i| from + (to - from) * f64::from(i) / f64::from(count))
 }
 
-/// Parameters from 0 to `to`, dense at 0.
+/// `count` + 1 parameters from 0 to `to`, dense near 0.
 fn graded(to: f64, count: u32) -> impl Iterator<Item = f64> {
     even(0.0, 1.0, count).map(move |s| to * s * s)
 }
 
+/// A circle, parametrised by the angle.
 pub fn circle(x: f64, y: f64, radius: f64) -> impl Fn(f64) -> [f64; 4] {
     move |s| {
         let (sin, cos) = s.sin_cos();
@@ -88,15 +89,16 @@ pub fn circle(x: f64, y: f64, radius: f64) -> impl Fn(f64) -> [f64; 4] {
     }
 }
 
+/// 1 if the point is inside the circle, else 0.
 pub fn inside(point: &Point, x: f64, y: f64, radius: f64) -> i32 {
     i32::from((point - Point::new(x, y)).norm() < radius)
 }
 
-/// Label: 1 in the first circle, 2 in the second, 3 in both.
-pub fn crossing_circles() -> Plane {
+/// Two circles. The label is 1 in the first, 2 in the second and 3 in both.
+pub fn crossing_circles() -> KnownPlane {
     let half = 0.0525_f64.sqrt();
     let angle = half.atan2(0.1);
-    Plane::new(|p| inside(p, 0.4, 0.5, 0.25) + 2 * inside(p, 0.6, 0.5, 0.25))
+    KnownPlane::new(|p| inside(p, 0.4, 0.5, 0.25) + 2 * inside(p, 0.6, 0.5, 0.25))
         .vertex(0.5, 0.5 - half, VertexKind::Crossing)
         .vertex(0.5, 0.5 + half, VertexKind::Crossing)
         .curve(circle(0.4, 0.5, 0.25), even(-angle, angle, 60), [3, 2], Some([0, 1]))
@@ -113,9 +115,8 @@ pub fn crossing_circles() -> Plane {
 /// A circle, and a smaller one that touches it from inside or from outside in the direction
 /// `angle`.
 ///
-/// The label is not in closed form without the angle: `truth` is for the angle 0 and must be
-/// replaced for others.
-pub fn touching_circles(angle: f64, within: bool) -> Plane {
+/// `truth` is right for the angle 0 only.
+pub fn touching_circles(angle: f64, within: bool) -> KnownPlane {
     let (sin, cos) = angle.sin_cos();
     let (touch, middle) = (0.25, if within { 0.15 } else { 0.35 });
     let start = if within { angle } else { angle + PI };
@@ -124,7 +125,7 @@ pub fn touching_circles(angle: f64, within: bool) -> Plane {
     } else {
         |p| inside(p, 0.5, 0.5, 0.25) + 2 * inside(p, 0.85, 0.5, 0.1)
     };
-    Plane::new(truth)
+    KnownPlane::new(truth)
         .vertex(0.5 + touch * cos, 0.5 + touch * sin, VertexKind::Degenerate)
         .curve(circle(0.5, 0.5, 0.25), even(angle, angle + TAU, 200), [1, 0], Some([0, 0]))
         .curve(
@@ -135,16 +136,16 @@ pub fn touching_circles(angle: f64, within: bool) -> Plane {
         )
 }
 
-/// (y − 0.5)² = (x − 0.3)³, up to the window's right side. Label 1 between the branches.
-pub fn cusp() -> Plane {
+/// The cusp (y − 0.5)² = (x − 0.3)³. The label is 1 between the branches.
+pub fn cusp() -> KnownPlane {
     let reach = 0.7_f64.sqrt();
     let rise = reach * reach * reach;
     let branch =
         |sign: f64| move |s: f64| [0.3 + s * s, 0.5 + sign * s * s * s, 2.0, 3.0 * sign * s];
-    // The upper branch leaves the window above, at s = 0.5^(1/3); the lower one likewise below.
+    // The branches leave the window at the upper and at the lower side, at s = 0.5^(1/3).
     assert!(rise > 0.5);
     let s = 0.5_f64.cbrt();
-    Plane::new(|p| {
+    KnownPlane::new(|p| {
         let x = p.x - 0.3;
         i32::from(x > 0.0 && (p.y - 0.5).powi(2) < x.powi(3))
     })
@@ -155,9 +156,9 @@ pub fn cusp() -> Plane {
     .curve(branch(-1.0), graded(s, 500), [1, 0], Some([0, 2]))
 }
 
-/// The cusp with both coordinates exchanged: its branches leave upwards, both with a vertical
-/// tangent.
-pub fn upright_cusp() -> Plane {
+/// The cusp with both coordinates exchanged. Its branches leave the vertex upwards, both with a
+/// vertical tangent.
+pub fn upright_cusp() -> KnownPlane {
     let mut plane = cusp();
     plane.truth = |p| {
         let y = p.y - 0.3;
@@ -177,13 +178,14 @@ pub fn upright_cusp() -> Plane {
     plane
 }
 
-/// y² = x² − x⁴, scaled by 0.4 about the middle. Labels: 1 in the right lobe, 2 in the left one.
-pub fn figure_of_eight() -> Plane {
+/// The figure of eight y² = x² − x⁴, scaled by 0.4 about the middle of the window. The label is 1
+/// in the right lobe and 2 in the left one.
+pub fn figure_of_eight() -> KnownPlane {
     let along = |s: f64| {
         let (sin, cos) = s.sin_cos();
         [0.5 + 0.4 * sin, 0.5 + 0.4 * sin * cos, cos, cos * cos - sin * sin]
     };
-    Plane::new(|p| {
+    KnownPlane::new(|p| {
         let (x, y) = ((p.x - 0.5) / 0.4, (p.y - 0.5) / 0.4);
         let inside = y * y < x * x - x.powi(4);
         i32::from(inside) * if x > 0.0 { 1 } else { 2 }
@@ -193,22 +195,22 @@ pub fn figure_of_eight() -> Plane {
     .curve(along, even(PI, TAU, 800), [2, 0], Some([0, 0]))
 }
 
-/// An island of radius 1e-3 and label 2 in one of radius 0.3 and label 1; the first repeats its
-/// first node, the second does not.
-pub fn islands() -> Plane {
-    Plane::new(|p| inside(p, 0.5, 0.5, 0.3) + inside(p, 0.4, 0.6, 1e-3))
+/// An island with radius 1e-3 and label 2 in another one with radius 0.3 and label 1. The curve of
+/// the first repeats its first node as its last node, that of the second does not.
+pub fn islands() -> KnownPlane {
+    KnownPlane::new(|p| inside(p, 0.5, 0.5, 0.3) + inside(p, 0.4, 0.6, 1e-3))
         .curve(circle(0.4, 0.6, 1e-3), even(0.3, 0.3 + TAU, 60), [2, 1], None)
         .curve(circle(0.5, 0.5, 0.3), even(0.1, 0.1 + TAU * 199.0 / 200.0, 199), [1, 0], None)
 }
 
-/// Two waves 1e-6 apart, from the left side of the window to the right one. Labels from above: 2,
-/// 1, 0.
-pub fn close_curves() -> Plane {
+/// Two waves 1e-6 apart, from the left side of the window to the right one. The labels are 2, 1 and
+/// 0, from above.
+pub fn close_curves() -> KnownPlane {
     let wave = |lift: f64| {
         move |x: f64| [x, 0.5 + lift + 0.1 * (6.0 * x).sin(), 1.0, 0.6 * (6.0 * x).cos()]
     };
     let end = 0.5 + 0.1 * 6.0_f64.sin();
-    Plane::new(|p| {
+    KnownPlane::new(|p| {
         let y = p.y - 0.5 - 0.1 * (6.0 * p.x).sin();
         i32::from(y > 0.0) + i32::from(y > 1e-6)
     })
@@ -220,14 +222,14 @@ pub fn close_curves() -> Plane {
     .curve(wave(1e-6), even(0.0, 1.0, 700), [2, 1], Some([2, 3]))
 }
 
-/// A wave from corner to corner, a circle about a corner, and a circle that touches the window's
-/// left side from inside.
-pub fn edges_and_corner() -> Plane {
+/// A wave from corner to corner, a circle around a corner, and a circle that touches the left side
+/// of the window from inside.
+pub fn edges_and_corner() -> KnownPlane {
     let wave = |x: f64| {
         let angle = PI * x;
         [x, x * x + 0.1 * angle.sin(), 1.0, 2.0 * x + 0.1 * PI * angle.cos()]
     };
-    Plane::new(|p| {
+    KnownPlane::new(|p| {
         let above = i32::from(p.y > p.x * p.x + 0.1 * (PI * p.x).sin());
         above + 2 * inside(p, 1.0, 0.0, 0.4) + 4 * inside(p, 0.15, 0.7, 0.15)
     })
@@ -241,11 +243,11 @@ pub fn edges_and_corner() -> Plane {
     .curve(circle(0.15, 0.7, 0.15), even(PI, 3.0 * PI, 160), [5, 1], Some([4, 4]))
 }
 
-/// Three upright lines crossed by three level ones: vertices and walls above each other, pieces
-/// without extent in x.
-pub fn grid() -> Plane {
+/// Three upright lines that cross three level ones. Vertices lie above each other, and pieces have
+/// no extent in x.
+pub fn grid() -> KnownPlane {
     let at = |i: usize| 0.25 * i as f64;
-    let mut plane = Plane::new(|p| {
+    let mut plane = KnownPlane::new(|p| {
         let field = |x: f64| i32::from(x > 0.25) + i32::from(x > 0.5) + i32::from(x > 0.75);
         field(p.x) + 4 * field(p.y)
     });
@@ -280,9 +282,9 @@ pub fn grid() -> Plane {
     plane
 }
 
-/// The plane with every node moved by up to `distance` and every tangent turned by up to `angle`,
-/// as a trace leaves them.
-pub fn disturbed(mut plane: Plane, distance: f64, angle: f64, seed: u64) -> Plane {
+/// The plane with errors like those of a trace: every node is moved by up to `distance`, and every
+/// tangent is turned by up to `angle`.
+pub fn disturbed(mut plane: KnownPlane, distance: f64, angle: f64, seed: u64) -> KnownPlane {
     let mut random = fastrand::Rng::with_seed(seed);
     let mut up_to = |size: f64| size * (2.0 * random.f64() - 1.0);
     for node in plane.curves.iter_mut().flat_map(|curve| &mut curve.nodes) {

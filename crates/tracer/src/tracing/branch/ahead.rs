@@ -1,15 +1,16 @@
-//! What lies ahead of a branch: vertices that are known, its own start, and the stretch before it
-//! ends.
+//! What lies ahead of a branch: known vertices, its own start, and the piece before its end.
 
 use crate::cubic::Cubic;
 use crate::curve::Node;
-use crate::family::{Family, Point};
-use crate::tracing::branch::{Branch, FootholdOf, SHORTEST, Stop};
+use crate::family::Family;
+use crate::tracing::branch::end::{SHORTEST, Stop};
+use crate::tracing::branch::track::{FootholdOf, Track};
 use crate::tracing::corrector::correct;
 use crate::tracing::runs::Traced;
+use crate::window::Point;
 
-impl<F: Family> Branch<'_, '_, F> {
-    /// The first known vertex on the piece.
+impl<F: Family> Track<'_, '_, F> {
+    /// The index of the first known vertex on `arc`.
     pub(crate) fn passed_stop(&self, arc: &Cubic) -> Option<usize> {
         let [low, high] = arc.bounds();
         let passed = |stop: &Stop| {
@@ -24,8 +25,8 @@ impl<F: Family> Branch<'_, '_, F> {
         thetas.min_by(|one, two| one.0.total_cmp(&two.0)).map(|(_, index)| index)
     }
 
-    /// The known vertex ahead, within a step that failed, that the branch runs into without another
-    /// special point before.
+    /// The index of the known vertex that the branch reaches within a failed step of length `h`,
+    /// without another special point before it.
     pub(crate) fn aim(&self, from: &FootholdOf<F>, h: f64) -> Traced<Option<usize>, F> {
         let runs = self.runs;
         for (index, stop) in self.stops.iter().enumerate() {
@@ -58,11 +59,12 @@ impl<F: Family> Branch<'_, '_, F> {
         Ok(None)
     }
 
-    /// Whether the branch has its labels on a piece that ends at a vertex: at three places, and
-    /// close to the vertex.
+    /// Whether the branch keeps its labels on `arc`, which ends at a vertex. They are computed at
+    /// three places and close to the vertex.
     pub(crate) fn is_clear(&self, from: &FootholdOf<F>, arc: &Cubic) -> Traced<bool, F> {
-        /// From the vertex, in parts of the window's shorter extent: the thin region between curves
-        /// that touch there with a curvature of 1 is still wider than margins are exact.
+        /// The distance of the last place from the vertex, as a fraction of the window's shorter
+        /// extent. If two curves touch at the vertex with a curvature of 1, the region between them
+        /// is still wider there than the error of margins.
         const CLOSE: f64 = 3e-5;
         let chord = arc.chord();
         for theta in [0.5, 0.9, 0.99] {
@@ -74,8 +76,8 @@ impl<F: Family> Branch<'_, '_, F> {
         Ok(close > 0.5 || self.holds_closely(from, &arc.at(1.0 - close), 0.3 * chord)?)
     }
 
-    /// Whether the branch passes close to `guess` with its labels as near to it as can be told, so
-    /// that not even a thin region lies between.
+    /// Whether the branch passes close to `guess` and has its labels at the least distance that
+    /// margins resolve, so that not even a thin region lies beside it.
     pub(crate) fn holds_closely(
         &self,
         from: &FootholdOf<F>,
@@ -95,7 +97,7 @@ impl<F: Family> Branch<'_, '_, F> {
             && runs.label(&(found.point - left))? == self.sides[1])
     }
 
-    /// Whether the branch passes close to `guess` with its labels.
+    /// Whether the branch passes close to `guess` and has its labels there.
     pub(crate) fn holds(&self, from: &FootholdOf<F>, guess: &Point, reach: f64) -> Traced<bool, F> {
         let runs = self.runs;
         let reach = reach + 100.0 * runs.options.tolerance;
@@ -110,6 +112,7 @@ impl<F: Family> Branch<'_, '_, F> {
         })
     }
 
+    /// Whether `arc` passes through the start of the branch, in the direction of the branch there.
     pub(crate) fn passes_origin(&self, arc: &Cubic) -> bool {
         let (theta, distance) = arc.closest(&self.origin.point);
         distance < 1e-8 * self.runs.scale && theta > 0.0 && {
@@ -117,8 +120,9 @@ impl<F: Family> Branch<'_, '_, F> {
         }
     }
 
+    /// The node at `point`, where the branch ends.
     pub(crate) fn end_node(&self, last: &Node, point: &Point) -> Traced<Node, F> {
-        // Nothing can be said of directions over distances comparable to the tolerance.
+        // A chord comparable to the tolerance has no meaningful direction.
         let tangent = if (point - last.point).norm() < SHORTEST * self.runs.scale {
             last.tangent
         } else {
@@ -127,9 +131,9 @@ impl<F: Family> Branch<'_, '_, F> {
         Ok(Node { point: *point, tangent })
     }
 
-    /// The tangent at an end: across the gradient where there is one, else that of the circle
-    /// through the last node.
-    pub(crate) fn end_tangent(&self, last: &Node, point: &Point) -> Traced<Point, F> {
+    /// The tangent at `point`, where the branch ends: normal to the gradient if there is one, else
+    /// that of the circle through the last node.
+    fn end_tangent(&self, last: &Node, point: &Point) -> Traced<Point, F> {
         let chord = point - last.point;
         let mirrored = mirrored(&last.tangent, &chord);
         if let Some(gradient) = self.runs.gradient(point, &self.margin, &mirrored, self.radius)? {
@@ -143,7 +147,7 @@ impl<F: Family> Branch<'_, '_, F> {
     }
 }
 
-/// The tangent at the other end of a circle's arc with this tangent at one end.
+/// The tangent at the end of a circular arc that starts with `tangent`.
 fn mirrored(tangent: &Point, chord: &Point) -> Point {
     let chord = chord.normalize();
     chord * (2.0 * chord.dot(tangent)) - tangent

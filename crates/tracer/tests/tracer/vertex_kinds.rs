@@ -1,16 +1,17 @@
-//! Vertices of known kinds: guards that are cubics in u, for u from −1/2 to 1/2, which fire when
-//! they fall through zero and, once they have fired, when they rise again.
+//! Vertices of known kinds. Each guard is a cubic in u, for u from −1/2 to 1/2. It fires when it
+//! falls through zero and, after it has fired, when it rises again.
 
 use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
 use stickslip_tracer::{HybridFamily, Point, Problem, TraceOptions, VertexKind, Window, trace};
 
-/// The coefficients of the cubic at a point.
-struct Cubics(fn(&Point) -> [f64; 4]);
+/// The coefficients of the cubic guard at every point.
+struct CubicGuards(fn(&Point) -> [f64; 4]);
 
-struct Cubic([f64; 4]);
+/// A run of u with a cubic guard.
+struct CubicGuard([f64; 4]);
 
-impl HybridSystem<1, 2> for Cubic {
-    /// How often it has fired.
+impl HybridSystem<1, 2> for CubicGuard {
+    /// How often the guard has fired.
     type Mode = u32;
 
     fn field(&self, _fired: u32, _s: f64, _y: &State<1>) -> State<1> {
@@ -41,18 +42,18 @@ fn sign(fired: u32) -> f64 {
     if fired.is_multiple_of(2) { 1.0 } else { -1.0 }
 }
 
-impl Problem<1, 2> for Cubics {
-    type System = Cubic;
+impl Problem<1, 2> for CubicGuards {
+    type System = CubicGuard;
 
-    fn at(&self, point: &Point) -> (Cubic, Start<u32, 1>) {
-        (Cubic((self.0)(point)), Start { mode: 0, s: 0.0, state: State::from([-0.5]) })
+    fn at(&self, point: &Point) -> (CubicGuard, Start<u32, 1>) {
+        (CubicGuard((self.0)(point)), Start { mode: 0, s: 0.0, state: State::from([-0.5]) })
     }
 }
 
-/// The vertices inside the window, but for those at its edge, and how many curves there are.
+/// The vertices inside the window, without those at its edge, and the number of curves.
 fn vertices(cubic: fn(&Point) -> [f64; 4]) -> (Vec<(VertexKind, Point)>, usize) {
     let options = Options { rtol: 1e-14, atol: 1e-14, max_step: 0.1, ..Options::default() };
-    let family = HybridFamily { problem: Cubics(cubic), method: Dop853, options, end: 2.0 };
+    let family = HybridFamily { problem: CubicGuards(cubic), method: Dop853, options, end: 2.0 };
     let window = Window { low: Point::new(-0.1, -0.11), high: Point::new(0.12, 0.1) };
     let mut network = trace(&family, &window, &TraceOptions::default()).unwrap();
     assert_eq!(network.unresolved, []);
@@ -61,7 +62,7 @@ fn vertices(cubic: fn(&Point) -> [f64; 4]) -> (Vec<(VertexKind, Point)>, usize) 
     (inside.map(|vertex| (vertex.kind, vertex.point)).collect(), network.curves.len())
 }
 
-/// One vertex, at the origin.
+/// Asserts that there is one vertex, at the origin, and `of` curves.
 fn assert_single(
     (vertices, curves): (Vec<(VertexKind, Point)>, usize),
     kind: VertexKind,
@@ -72,29 +73,29 @@ fn assert_single(
     assert!(vertices[0].1.norm() < 1e-8, "{vertices:?}");
 }
 
-/// y + (1/2 + x − u)²: its minimum y leaves through the end at x = 0.
+/// The guard y + (1/2 + x − u)²: its minimum y leaves through the end at x = 0.
 #[test]
 fn a_minimum_that_leaves_through_the_end_is_a_graze_at_the_end() {
     let parabola = |p: &Point| [p.y + (0.5 + p.x).powi(2), -1.0 - 2.0 * p.x, 1.0, 0.0];
     assert_single(vertices(parabola), VertexKind::GrazeAtEnd, 3);
 }
 
-/// y (1/2 + u)² + (1/2 − u)(x + 6 (u + 0.1)²): its minimum vanishes with x where y does, which is
-/// its value at the end.
+/// The guard y (1/2 + u)² + (1/2 − u)(x + 6 (u + 0.1)²). Its value at the end is y. Where y
+/// vanishes, its minimum vanishes with x.
 #[test]
 fn a_minimum_and_an_end_of_one_phase_cross() {
     let cubic = |p: &Point| [0.25 * p.y + 0.5 * p.x + 0.03, p.y - p.x + 0.54, p.y + 1.8, -6.0];
     assert_single(vertices(cubic), VertexKind::Crossing, 4);
 }
 
-/// y − x u − 4u³: its minimum and its maximum, which there are for x < 0, merge at x = 0, and
+/// The guard y − x u − 4u³. For x < 0 it has a minimum and a maximum. They merge at x = 0, and
 /// vanish there for y = 0.
 #[test]
 fn a_minimum_that_merges_with_a_maximum_is_degenerate() {
     let (vertices, curves) = vertices(|p| [p.y, -p.x, 0.0, -4.0]);
     assert_eq!(curves, 2);
-    // Each branch may have an end of its own there: margins are cubic in the distance, and 6e-8 was
-    // measured.
+    // Each branch may have an end of its own there, because margins are cubic in the distance. The
+    // measured distance is 6e-8.
     for (kind, point) in vertices {
         assert_eq!(kind, VertexKind::Degenerate);
         assert!(point.norm() < 1.2e-7, "{point:?}");

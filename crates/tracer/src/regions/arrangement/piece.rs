@@ -1,21 +1,33 @@
-//! Pieces of edges that are monotone in both coordinates and in direction.
+//! Edges, and their pieces that are monotone in both coordinates and in direction.
+
+use std::ops::Range;
 
 use crate::cubic::Cubic;
-use crate::family::Point;
+use crate::window::Point;
 
-/// A part of an edge, turned so that x increases, or y if it is vertical.
+/// An edge of the subdivision: a curve, or a part of the window's boundary.
+#[derive(Clone, Debug)]
+pub(crate) struct Edge {
+    /// The indices of its first and its last vertex; `None` if it is closed without a vertex.
+    pub(crate) ends: Option<[usize; 2]>,
+    /// The indices of its pieces, in the direction of the edge.
+    pub(crate) pieces: Range<usize>,
+}
+
+/// A part of an edge, in the direction in which x increases, or y if the part is vertical.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Piece {
+    /// The index of the edge.
     pub(crate) edge: usize,
-    /// Whether the edge runs as the piece does.
+    /// Whether the edge has the direction of the piece.
     pub(crate) forward: bool,
     pub(crate) cubic: Cubic,
-    /// Coefficients of x and y in powers of t.
+    /// The coefficients of x and y in powers of t.
     powers: [Point; 4],
 }
 
 impl Piece {
-    /// The pieces of `cubic`, a part of edge `edge`, in the edge's direction.
+    /// Adds the pieces of `cubic`, a part of the edge `edge`, in the direction of the edge.
     pub(crate) fn of(edge: usize, cubic: Cubic, pieces: &mut Vec<Self>) {
         let mut rest = cubic;
         let mut done = 0.0;
@@ -27,7 +39,7 @@ impl Piece {
         pieces.extend(Self::new(edge, rest));
     }
 
-    /// `None` if it is a single point.
+    /// The piece of a monotone cubic; `None` if it is a single point.
     fn new(edge: usize, cubic: Cubic) -> Option<Self> {
         let [first, .., last] = cubic.points;
         if first == last {
@@ -66,7 +78,7 @@ impl Piece {
         let rise = x - first;
         let (mut low, mut high) = (0.0, 1.0);
         let mut t = rise / (last - first);
-        // Newton's method, halving where it leaves the bracket.
+        // Newton's method, with bisection where it leaves the bracket.
         for _ in 0..100 {
             let excess = t * (a + t * (b + t * c)) - rise;
             if excess > 0.0 {
@@ -84,7 +96,7 @@ impl Piece {
         t
     }
 
-    /// y at the parameter `t`.
+    /// The height y at the parameter `t`.
     #[inline]
     pub(crate) fn y(&self, t: f64) -> f64 {
         if t == 1.0 {
@@ -94,20 +106,21 @@ impl Piece {
         start + t * (a + t * (b + t * c))
     }
 
-    /// y where the piece has the coordinate `x`.
+    /// The height y where the piece has the coordinate `x`.
     #[inline]
     pub(crate) fn y_at(&self, x: f64) -> f64 {
         self.y(self.parameter_at(x))
     }
 
-    /// y and dy/dx where the piece has the coordinate `x`.
+    /// The height y and the slope dy/dx where the piece has the coordinate `x`.
     pub(crate) fn y_and_slope_at(&self, x: f64) -> (f64, f64) {
         let t = self.parameter_at(x);
         let tangent = self.cubic.derivative(t);
         (self.y(t), tangent.y / tangent.x)
     }
 
-    /// How far `point` is from the smallest box around the piece, along the farther coordinate.
+    /// The distance of `point` from the smallest box around the piece, along the coordinate in
+    /// which it is greater.
     #[inline]
     pub(crate) fn box_distance(&self, point: &Point) -> f64 {
         let (first, last) = (self.first(), self.last());

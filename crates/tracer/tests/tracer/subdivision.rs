@@ -1,5 +1,5 @@
-//! Planes with known answers: how many regions, which areas, which label where; and that what is
-//! wrong is found.
+//! Subdivisions with known answers: the number of regions, their areas and labels, and what is
+//! wrong with bad input.
 
 mod arrangements;
 mod findings;
@@ -7,15 +7,15 @@ mod planes;
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use planes::{
-    Plane, close_curves, crossing_circles, cusp, disturbed, edges_and_corner, figure_of_eight,
+use self::planes::{
+    KnownPlane, close_curves, crossing_circles, cusp, disturbed, edges_and_corner, figure_of_eight,
     grid, islands, touching_circles, upright_cusp,
 };
-use stickslip::tracer::{Location, Point, Subdivision, VerifyOptions, verify};
+use stickslip_tracer::{Location, Point, Subdivision, VerifyOptions, verify};
 
-/// Regions with the areas of their labels, to 1e-9; labels at 1e5 random points and beside every
-/// curve, up to twice the tolerance.
-fn holds(plane: &Plane, areas: &[(i32, f64)]) -> Subdivision<i32, usize> {
+/// Asserts that the regions have these labels and areas, to 1e-9, and that labels are right at 1e5
+/// random points and beside every curve, down to twice the tolerance.
+fn holds(plane: &KnownPlane, areas: &[(i32, f64)]) -> Subdivision<i32, usize> {
     let made = plane.subdivision().expect("curves with a meaning");
     assert!(made.findings().is_empty(), "{:?}", made.findings());
     assert!(made.euler().holds());
@@ -46,12 +46,13 @@ fn holds(plane: &Plane, areas: &[(i32, f64)]) -> Subdivision<i32, usize> {
     assert!(verification.mismatches.is_empty(), "{:?}", &verification.mismatches[..1]);
     assert!(verification.agrees() && verification.untried_curves.is_empty());
     assert!((verification.tried_area - 1.0).abs() < 1e-12);
-    // Nothing but places beside a curve that are as close to another one.
+    // Undecided are only places beside one curve that are as close to another curve.
     let near = verification.unverified.len();
     assert!(near * 500 < 4_000 * plane.curves.len(), "{near} places undecided");
     made
 }
 
+/// The area that both circles of `crossing_circles` contain.
 fn lens() -> f64 {
     let (radius, distance) = (0.25_f64, 0.2_f64);
     let half = distance / 2.0;
@@ -77,8 +78,7 @@ fn circles_that_touch() {
     holds(&touching_circles(0.0, false), &[(0, 1.0 - large - small), (1, large), (2, small)]);
 }
 
-/// In all directions, among them those in which both circles have a vertical or horizontal tangent
-/// at the touch.
+/// In some of the directions the common tangent of both circles is vertical or horizontal.
 #[test]
 fn circles_that_touch_in_any_direction() {
     let (large, small) = (PI * 0.0625, PI * 0.01);
@@ -102,7 +102,7 @@ fn circles_that_touch_in_any_direction() {
 
 #[test]
 fn cusps() {
-    // ∫ 2x^{3/2} from 0 to 0.5^{2/3}, and the strip of full height right of it.
+    // ∫ 2x^{3/2} from 0 to 0.5^{2/3}, and the strip of full height to the right of it.
     let end = 0.5_f64.cbrt().powi(2);
     let between = 0.8 * end.powf(2.5) + 0.7 - end;
     holds(&cusp(), &[(0, 1.0 - between), (1, between)]);
@@ -147,9 +147,9 @@ fn a_grid_of_lines() {
     assert!(made.regions().iter().all(|region| region.clearance == 0.125));
 }
 
-/// Nodes off by a fifth of the tolerance: curves that leave a vertex with one tangent cross each
-/// other beside it, again and again. The regions stay, and so does every label that the tolerance
-/// does not leave open.
+/// The nodes are moved by a fifth of the tolerance. Curves that leave a vertex with one tangent
+/// then cross each other many times beside it. The regions remain, and so do all labels that the
+/// tolerance does not leave open.
 #[test]
 fn disturbed_curves_keep_their_regions() {
     let planes = [
@@ -189,7 +189,7 @@ fn disturbed_curves_keep_their_regions() {
 
 #[test]
 fn a_window_without_curves_is_one_region() {
-    let plane = Plane::new(|_| 4);
+    let plane = KnownPlane::new(|_| 4);
     let made = plane.subdivision().expect("a window");
     assert!(made.findings().is_empty());
     assert_eq!((made.regions().len(), made.regions()[0].label), (1, None));
@@ -205,7 +205,7 @@ fn places_on_curves_outside_and_on_the_window() {
     let on = made.locate(&Point::new(0.5, 0.2 + 3e-11));
     let Location::OnBoundary { curve: 1, distance } = on else { panic!("{on:?}") };
     assert!((distance - 3e-11).abs() < 1e-12);
-    // The circle's leftmost place, where it is vertical.
+    // The leftmost place of the circle, where it is vertical.
     assert!(matches!(made.locate(&Point::new(0.2 - 9e-11, 0.5)), Location::OnBoundary { .. }));
     let outer = made.locate(&Point::new(0.2 - 2e-10, 0.5));
     for corner in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.5, 1.0)] {
@@ -230,11 +230,11 @@ fn distances_along_the_second_coordinate() {
             }
             let least = ends.iter().map(|end| (end - y).abs()).fold(f64::INFINITY, f64::min);
             let found = made.vertical_distance(&Point::new(x, y)).expect("a boundary");
-            assert!((found - least).abs() < 1e-9, "({x}, {y}): {found} for {least}");
+            assert!((found - least).abs() < 1e-9, "({x}, {y}): {found}, expected {least}");
         }
     }
     assert_eq!(made.vertical_distance(&Point::new(0.1, 0.5)), None);
-    // At the abscissa at which the circle begins, its one point there is the boundary.
+    // At the abscissa where the circle begins, it has a single point.
     let leftmost = made.vertical_distance(&Point::new(0.2, 0.4));
     assert!(leftmost.is_none_or(|distance| (distance - 0.1).abs() < 1e-4), "{leftmost:?}");
 }

@@ -1,14 +1,15 @@
-//! The plane cut into vertical slabs in which no piece begins or ends, so that the pieces of a slab
-//! have an order.
+//! Vertical slabs of the plane. No piece begins or ends inside a slab, so the pieces of a slab have
+//! an order.
 
-use crate::family::Point;
-use crate::regions::piece::Piece;
+use crate::regions::arrangement::piece::Piece;
+use crate::window::Point;
 
-/// Pieces, and for every slab between neighbouring `walls` the pieces that cross it, from below.
+/// The pieces, and the slabs between neighbouring `walls`. The pieces of each slab are ordered
+/// upwards.
 #[derive(Clone, Debug)]
 pub(crate) struct Slabs {
     pub(crate) pieces: Vec<Piece>,
-    /// Coordinates x at which pieces begin or end.
+    /// The coordinates x at which pieces begin or end.
     pub(crate) walls: Vec<f64>,
     /// `order[starts[i]..starts[i + 1]]` are the pieces of slab i.
     starts: Vec<usize>,
@@ -18,6 +19,7 @@ pub(crate) struct Slabs {
 }
 
 impl Slabs {
+    /// The slabs of `pieces`.
     pub(crate) fn new(pieces: Vec<Piece>) -> Self {
         let mut walls: Vec<f64> =
             pieces.iter().flat_map(|piece| [piece.first().x, piece.last().x]).collect();
@@ -52,24 +54,25 @@ impl Slabs {
         Self { pieces, walls, starts, order, verticals }
     }
 
+    /// The number of slabs.
     pub(crate) fn count(&self) -> usize {
         self.walls.len().saturating_sub(1)
     }
 
-    /// The pieces of a slab, from below.
+    /// The pieces of a slab, upwards.
     #[inline]
     pub(crate) fn of(&self, slab: usize) -> &[usize] {
         &self.order[self.starts[slab]..self.starts[slab + 1]]
     }
 
-    /// The index of a slab's first piece in the order of all slabs.
+    /// The index of the first piece of a slab in the order of all slabs.
     #[inline]
     pub(crate) fn start(&self, slab: usize) -> usize {
         self.starts[slab]
     }
 
     /// Whether the middle between the pieces at `gap` and `gap` + 1 of a slab is farther than
-    /// `reach` from every piece that is not vertical; also if there are no such two pieces.
+    /// `reach` from every piece that is not vertical. Also true if there are no two such pieces.
     pub(crate) fn is_wide(&self, slab: usize, gap: usize, reach: f64) -> bool {
         let pieces = self.of(slab);
         gap + 1 >= pieces.len() || {
@@ -80,19 +83,20 @@ impl Slabs {
         }
     }
 
-    /// The middle of a slab in x.
+    /// The coordinate x of the middle of a slab.
     pub(crate) fn middle(&self, slab: usize) -> f64 {
         0.5 * (self.walls[slab] + self.walls[slab + 1])
     }
 
-    /// The slab that `x` lies in, the right one of two; the nearest one if it lies in none.
+    /// The slab in which `x` lies: the right one if `x` is a wall, and the nearest one if `x` is
+    /// outside all slabs.
     #[inline]
     pub(crate) fn at(&self, x: f64) -> usize {
         let right = self.walls.partition_point(|&wall| wall <= x);
         right.saturating_sub(1).min(self.count().saturating_sub(1))
     }
 
-    /// How many pieces of the slab are below `point`, whose x may also be that of a wall of the
+    /// The number of pieces of the slab below `point`. Its x may also be that of a wall of the
     /// slab.
     #[inline]
     pub(crate) fn below(&self, slab: usize, point: &Point) -> usize {
@@ -107,7 +111,7 @@ impl Slabs {
         [above.checked_sub(1).map(|below| pieces[below]), pieces.get(above).copied()]
     }
 
-    /// The vertical pieces with x in [`from`, `to`].
+    /// The vertical pieces with x from `from` to `to`.
     pub(crate) fn verticals_between(&self, from: f64, to: f64) -> &[usize] {
         let x = |&piece: &usize| self.pieces[piece].first().x;
         let start = self.verticals.partition_point(|piece| x(piece) < from);
@@ -115,11 +119,11 @@ impl Slabs {
         &self.verticals[start..end.max(start)]
     }
 
-    /// The nearest piece within `reach` of `point` among those that `accept` takes, with its
-    /// distance.
+    /// The nearest piece within `reach` of `point` that `accept` accepts, with its distance.
     ///
-    /// In each slab within reach the pieces directly above and below the place nearest to `point`
-    /// suffice: the straight way to another piece leads through one of them.
+    /// In each slab within reach it suffices to look at the pieces directly above and below the
+    /// place nearest to `point`, because the straight way to another piece leads through one of
+    /// them.
     #[inline]
     pub(crate) fn nearest(
         &self,
@@ -160,7 +164,7 @@ impl Slabs {
     }
 }
 
-/// A height as a key to sort by.
+/// A height as a key for sorting.
 #[derive(PartialEq)]
 struct OrderedHeight(f64);
 

@@ -1,37 +1,39 @@
-//! Which sides of edges belong to one face.
+//! Faces: the sides of edges that belong together.
 
 use std::ops::Range;
 
-use crate::family::Point;
-use crate::regions::crossing::Edge;
-use crate::regions::piece::Piece;
-use crate::regions::slabs::Slabs;
-use crate::regions::union::DisjointSets;
+use crate::regions::arrangement::piece::{Edge, Piece};
+use crate::regions::arrangement::slabs::Slabs;
+use crate::regions::arrangement::union::DisjointSets;
+use crate::window::Point;
 
-/// The faces of both sides, left and right, of every edge; `None` is the outside.
+/// The faces of a subdivision.
 #[derive(Clone, Debug)]
 pub(crate) struct Faces {
+    /// The faces on the left and on the right of every edge; `None` is the outside of the window.
     pub(crate) of_edges: Vec<[Option<usize>; 2]>,
+    /// The number of faces, without the outside.
     pub(crate) count: usize,
-    /// The face above every piece in every slab, in the slabs' order; `None` also where it could
-    /// not be told.
+    /// The face above every piece in every slab, in the order of the slabs; `None` is the outside
+    /// or an unknown face.
     of_gaps: Vec<Option<usize>>,
 }
 
 impl Faces {
-    /// Joins the gaps between pieces of a slab with the sides that look into them, and with the
-    /// gaps beyond the slab's walls.
+    /// The faces of the sides of `edges`.
     ///
-    /// Edges that leave a vertex with one tangent are closer together than `reach` beside it, and
-    /// interpolation leaves open which one is above. So a gap counts only where it is wider,
-    /// and speaks for a piece only if the gap on the piece's other side is wider as well.
-    /// `outline` are the edges of the window, which have the outside on their right.
-    pub(crate) fn new(slabs: &Slabs, edges: &[Edge], outline: Range<usize>, reach: f64) -> Self {
+    /// Each gap between two pieces of a slab is united with the sides of edges that face it, and
+    /// with the gaps beyond the walls of the slab. Edges that leave a vertex with one tangent are
+    /// closer together than `reach` beside it, and interpolation leaves open which one is above. A
+    /// gap therefore counts only if it is wider than `reach`. It is united with the side of a piece
+    /// only if the gap on the other side of the piece is wide too. `frame` are the edges of the
+    /// window, which have the outside on their right.
+    pub(crate) fn new(slabs: &Slabs, edges: &[Edge], frame: Range<usize>, reach: f64) -> Self {
         let outside = 2 * edges.len();
         let gap_above = |slab: usize, place: usize| outside + 1 + slabs.start(slab) + place;
         let mut sets = DisjointSets::new(gap_above(slabs.count(), 0));
         let mut seen = vec![false; outside];
-        for edge in outline {
+        for edge in frame {
             sets.unite(2 * edge + 1, outside);
             seen[2 * edge + 1] = true;
         }
@@ -75,8 +77,8 @@ impl Faces {
                 }
             }
         }
-        // What no slab has shown: sides of edges that are vertical or nearly so are looked at from
-        // beside.
+        // The remaining sides belong to edges that are vertical or nearly so. A point beside the
+        // edge shows the gap that such a side faces.
         for side in (0..outside).filter(|&side| !seen[side]) {
             let edge = &edges[side / 2];
             let gap = slabs.pieces[edge.pieces.clone()].iter().find_map(|piece| {
@@ -102,7 +104,7 @@ impl Faces {
         Self::numbered(&mut sets, edges.len(), slabs.start(slabs.count()))
     }
 
-    /// Numbers the faces in the order of their first edges.
+    /// The faces of united sides and gaps, numbered in the order of their first edges.
     fn numbered(sets: &mut DisjointSets, edges: usize, gaps: usize) -> Self {
         let outside = sets.least(2 * edges);
         let mut numbers = vec![None; 2 * edges + 1];
@@ -122,8 +124,8 @@ impl Faces {
         Self { of_edges, count, of_gaps }
     }
 
-    /// The face between the pieces at `gap` and `gap` + 1 of a slab; between pieces too close to
-    /// tell, that above the lower one.
+    /// The face between the pieces at `gap` and `gap` + 1 of a slab. If this is unknown because the
+    /// pieces are too close, the face above the lower piece.
     #[inline]
     pub(crate) fn of_gap(&self, slabs: &Slabs, slab: usize, gap: usize) -> Option<usize> {
         self.of_gaps[slabs.start(slab) + gap].or_else(|| {
@@ -133,7 +135,7 @@ impl Faces {
     }
 }
 
-/// A side of an edge as a member of the sets: left ones are even.
+/// The number of a side of an edge in the sets. Left sides are even, and right sides are odd.
 fn side(piece: &Piece, right: bool) -> usize {
     2 * piece.edge + usize::from(right)
 }

@@ -1,37 +1,37 @@
-//! Boundaries that touch: special points that show neither in labels nor as a crossing of two
-//! margins.
+//! Boundaries that touch: special points that neither labels nor crossings of margins show.
 
 use crate::cubic::Cubic;
 use crate::curve::{Node, VertexKind};
-use crate::family::{Family, Point};
-use crate::tracing::branch::{Branch, Foothold, FootholdOf, Special};
+use crate::family::Family;
+use crate::tracing::branch::end::Special;
+use crate::tracing::branch::track::{Foothold, FootholdOf, Track};
 use crate::tracing::corrector::{correct, crossing};
 use crate::tracing::runs::Traced;
-use crate::tracing::special::rivals;
+use crate::window::Point;
 
 /// A special point, and whether it lies before the last foothold.
 type Touch<Margin> = (Special<Margin>, bool);
 
-/// A special point that the labels do not show: between the last two footholds and `next` another
-/// margin comes down to zero and goes up again.
+/// A special point that the labels do not show: along the last two footholds and `next`, another
+/// margin falls to zero and rises again.
 pub(crate) fn touch<F: Family>(
-    branch: &Branch<'_, '_, F>,
+    track: &Track<'_, '_, F>,
     next: &FootholdOf<F>,
 ) -> Traced<Option<Touch<F::Margin>>, F> {
-    let [Some(first), Some(middle)] = [branch.trail().front(), branch.trail().get(1)] else {
+    let [Some(first), Some(middle)] = [track.footholds.front(), track.footholds.get(1)] else {
         return Ok(None);
     };
     let lengths = [
         (middle.node.point - first.node.point).norm(),
         (next.node.point - middle.node.point).norm(),
     ];
-    for margin in rivals(branch, middle, None) {
+    for margin in track.rivals(middle, None) {
         let [Some(a), Some(b), Some(c)] =
             [first, middle, next].map(|foothold| value_beside(foothold, &margin))
         else {
             continue;
         };
-        // A dip so shallow that its values at the nodes are most of it does not reach zero.
+        // The parabola through the three values must come close to zero in between.
         if b.abs() > a.abs() || b.abs() >= c.abs() {
             continue;
         }
@@ -42,14 +42,14 @@ pub(crate) fn touch<F: Family>(
         if b.signum() * lowest > 0.3 * a.abs().max(c.abs()) {
             continue;
         }
-        if let Some(found) = dip(branch, [first, middle, next], &margin, -0.5 * slope / bend)? {
+        if let Some(found) = dip(track, [first, middle, next], &margin, -0.5 * slope / bend)? {
             return Ok(Some(found));
         }
     }
     Ok(None)
 }
 
-/// The value of a margin in the free runs beside a place.
+/// The value of `margin` in the free runs beside a foothold.
 fn value_beside<L, M: PartialEq>(foothold: &Foothold<L, M>, margin: &M) -> Option<f64> {
     foothold
         .sides
@@ -59,18 +59,18 @@ fn value_beside<L, M: PartialEq>(foothold: &Foothold<L, M>, margin: &M) -> Optio
         .map(|(_, value)| *value)
 }
 
-/// Where a margin that dips along the boundary touches zero, or first crosses it. `guess` is the
-/// length from the middle place.
+/// The place where a margin that dips along the boundary touches zero, or first crosses it. `guess`
+/// is the length from the middle foothold.
 ///
-/// The lowest place is where the gradients of the two margins are parallel, which is solved by the
-/// secant method: values near a minimum tell it to half the digits only.
+/// The margin is lowest where its gradient is parallel to that of the branch. The secant method
+/// solves for this, because values near a minimum tell its place only to half the digits.
 fn dip<F: Family>(
-    branch: &Branch<'_, '_, F>,
+    track: &Track<'_, '_, F>,
     places: [&FootholdOf<F>; 3],
     margin: &F::Margin,
     guess: f64,
 ) -> Traced<Option<Touch<F::Margin>>, F> {
-    let runs = branch.runs;
+    let runs = track.runs;
     let arcs = [
         Cubic::between(&places[0].node, &places[1].node),
         Cubic::between(&places[1].node, &places[2].node),
@@ -85,12 +85,12 @@ fn dip<F: Family>(
     let chords = arcs.map(|arc| arc.chord());
     let start = [guess, guess + 0.1 * chords[0].min(chords[1])];
     let Some((length, last)) =
-        parallel(branch, place, places[1], margin, start, [-chords[0], chords[1]])?
+        parallel(track, place, places[1], margin, start, [-chords[0], chords[1]])?
     else {
         return Ok(None);
     };
     let gap = last.value / last.slope;
-    let margins = vec![branch.margin.clone(), margin.clone()];
+    let margins = vec![track.margin.clone(), margin.clone()];
     let special = |point, uncertainty| Special {
         point,
         kind: VertexKind::Crossing,
@@ -106,54 +106,56 @@ fn dip<F: Family>(
     if (beside < 0.0) == (gap < 0.0) {
         return Ok(None);
     }
-    // Twice through zero: the first time lies between the first place and the lowest one.
+    // The margin crosses zero twice, first between the first foothold and the lowest place.
     let before = value_beside(places[0], margin).unwrap_or(beside);
-    // A parabola has its zero there.
+    // The zero of a parabola with its vertex at the lowest place.
     let part = (last.value.abs() / (before.abs() + last.value.abs())).sqrt();
     let start = place(length - part * (length + chords[0]));
     let tangent = &places[1].node.tangent;
     let reach = 2.0 * (chords[0] + chords[1]);
-    let crossed =
-        crossing(runs, [&branch.margin, margin], &start, tangent, branch.radius(), reach)?;
+    let crossed = crossing(runs, [&track.margin, margin], &start, tangent, track.radius, reach)?;
     Ok(crossed.map(|(point, uncertainty)| {
         let along = (point - places[1].node.point).dot(&places[1].node.tangent);
         (special(point, uncertainty), along < 0.0)
     }))
 }
 
-/// What the search for the lowest place of a margin along a boundary looks at.
+/// A place of a branch, with what the search for the lowest value of another margin needs.
 struct Probe {
     point: Point,
-    /// Sine of the angle between the gradients.
+    /// The sine of the angle between the gradients of the two margins.
     sine: f64,
+    /// The value of the other margin.
     value: f64,
+    /// The length of its gradient.
     slope: f64,
 }
 
-/// Where, along a branch, the gradients of its own and of another margin are parallel, by the
-/// secant method: the length there, and what is found. Where the other margin stops to exist before
-/// that place, as an extremum does that leaves through the end of its phase, the place is
-/// approached from the side on which it exists.
+/// The place along a branch where the gradients of its own and of another margin are parallel, by
+/// the secant method: the length up to it, and the place.
+///
+/// The other margin may cease to exist before that place, for instance if its extremum leaves
+/// through the end of its phase. Then the result is the last place at which it exists.
 fn parallel<F: Family>(
-    branch: &Branch<'_, '_, F>,
+    track: &Track<'_, '_, F>,
     place: impl Fn(f64) -> Point,
     near: &FootholdOf<F>,
     margin: &F::Margin,
     start: [f64; 2],
     limits: [f64; 2],
 ) -> Traced<Option<(f64, Probe)>, F> {
-    let runs = branch.runs;
+    let runs = track.runs;
     let width = limits[1] - limits[0];
     let probe = |length: f64| -> Traced<Option<Probe>, F> {
         let reach = 0.3 * width + 100.0 * runs.options.tolerance;
         let guess = place(length);
-        let Some(found) = correct(runs, &branch.margin, &guess, &near.gradient, reach)? else {
+        let Some(found) = correct(runs, &track.margin, &guess, &near.gradient, reach)? else {
             return Ok(None);
         };
         let (point, tangent) = (found.point, &near.node.tangent);
         let (Some(own), Some(other), Some(value)) = (
-            runs.gradient(&point, &branch.margin, tangent, branch.radius())?,
-            runs.gradient(&point, margin, tangent, branch.radius())?,
+            runs.gradient(&point, &track.margin, tangent, track.radius)?,
+            runs.gradient(&point, margin, tangent, track.radius)?,
             runs.margin(&point, margin)?,
         ) else {
             return Ok(None);
@@ -196,34 +198,34 @@ pub(crate) fn narrow<F: Family>(
 ) -> bool {
     let values =
         [Some(from), beyond].map(|foothold| foothold.and_then(|f| value_beside(f, margin)));
-    // Not known beside the step: found across a wedge.
+    // A margin without a value beside the step was found on the other side of a wedge.
     values.iter().all(Option::is_none)
         || values.iter().flatten().any(|value| value.abs() <= h * from.gradient.norm())
 }
 
-/// Where the boundary of `margin` touches the branch within the step.
+/// The place within the step where the boundary of `margin` touches the branch.
 pub(crate) fn graze<F: Family>(
-    branch: &Branch<'_, '_, F>,
+    track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,
     beyond: Option<&FootholdOf<F>>,
     margin: &F::Margin,
     h: f64,
 ) -> Traced<Option<Point>, F> {
     let end = beyond.map_or_else(
-        || Node { point: branch.predict(&from.node, h), tangent: from.node.tangent },
+        || Node { point: track.predict(&from.node, h), tangent: from.node.tangent },
         |foothold| foothold.node,
     );
-    if is_twin(branch, margin)? {
+    if is_twin(track, margin)? {
         return Ok(None);
     }
     let arc = Cubic::between(&from.node, &end);
     let chord = arc.chord();
-    let slack = 1e-8 * branch.runs.scale;
+    let slack = 1e-8 * track.runs.scale;
     for start in [[chord, 0.75 * chord], [0.0, 0.25 * chord]] {
         let place = |length: f64| arc.at(length / chord);
-        let found = parallel(branch, place, from, margin, start, [-slack, chord + slack])?;
+        let found = parallel(track, place, from, margin, start, [-slack, chord + slack])?;
         if let Some((_, probe)) = found
-            && (probe.value / probe.slope).abs() <= branch.runs.options.interpolation
+            && (probe.value / probe.slope).abs() <= track.runs.options.interpolation
         {
             return Ok(Some(probe.point));
         }
@@ -231,11 +233,11 @@ pub(crate) fn graze<F: Family>(
     Ok(None)
 }
 
-/// Whether another margin vanishes all along the branch, as the two do that a boundary has from its
-/// two sides.
-fn is_twin<F: Family>(branch: &Branch<'_, '_, F>, margin: &F::Margin) -> Traced<bool, F> {
-    let Some(back) = branch.trail().front() else { return Ok(false) };
-    let value = branch.runs.margin(&back.node.point, margin)?;
-    let floor = branch.runs.options.interpolation * back.gradient.norm();
+/// Whether another margin vanishes all along the branch. A boundary may have two such margins, one
+/// in the free runs on each side.
+fn is_twin<F: Family>(track: &Track<'_, '_, F>, margin: &F::Margin) -> Traced<bool, F> {
+    let Some(back) = track.footholds.front() else { return Ok(false) };
+    let value = track.runs.margin(&back.node.point, margin)?;
+    let floor = track.runs.options.interpolation * back.gradient.norm();
     Ok(value.is_some_and(|value| value.abs() <= floor))
 }

@@ -1,29 +1,30 @@
-//! Random circles, cut where they meet each other and the window: every region, whatever its place.
+//! Random circles, cut where they meet each other and the window. Every region must be right.
 
 use std::f64::consts::{PI, TAU};
 
 use proptest::prelude::*;
-use stickslip::tracer::{Location, Point, VerifyOptions, VertexKind, verify_with};
+use stickslip_tracer::{Location, Point, VerifyOptions, Vertex, VertexKind, verify_with};
 
-use crate::planes::{Plane, TOLERANCE, UNIT, circle, even};
+use crate::subdivision::planes::{KnownPlane, TOLERANCE, UNIT, circle, even};
 
+/// A circle: x, y and the radius.
 type Circle = (f64, f64, f64);
 
-/// The circles that contain a point, as bits.
+/// The circles that contain a point, one bit for each.
 fn truth(circles: &[Circle], point: &Point) -> i32 {
     circles.iter().enumerate().fold(0, |label, (bit, &(x, y, radius))| {
         label | i32::from((point - Point::new(x, y)).norm() < radius) << bit
     })
 }
 
-/// The angles on the first circle at which it meets the second one.
+/// The angles on the first circle where it meets the second one.
 fn meetings(&(x, y, r): &Circle, &(u, v, s): &Circle) -> Option<[f64; 2]> {
     let (towards, distance) = ((v - y).atan2(u - x), (u - x).hypot(v - y));
     let cosine = (distance * distance + r * r - s * s) / (2.0 * distance * r);
     (cosine.abs() < 1.0).then(|| [towards - cosine.acos(), towards + cosine.acos()])
 }
 
-/// The angles at which a circle meets the window's sides.
+/// The angles on a circle where it meets the sides of the window.
 fn exits(&(x, y, r): &Circle) -> Vec<f64> {
     let mut angles = Vec::new();
     for (centre, quarter) in [(x, 0.0), (y, 0.5 * PI)] {
@@ -42,8 +43,9 @@ fn exits(&(x, y, r): &Circle) -> Vec<f64> {
     angles
 }
 
-fn arrangement(circles: &[Circle]) -> Plane {
-    let mut plane = Plane::new(|_| 0);
+/// The arcs of the circles inside the window, between vertices.
+fn arrangement(circles: &[Circle]) -> KnownPlane {
+    let mut plane = KnownPlane::new(|_| 0);
     for (index, own) in circles.iter().enumerate() {
         let &(x, y, r) = own;
         let place = |angle: f64| Point::new(x + r * angle.cos(), y + r * angle.sin());
@@ -70,11 +72,7 @@ fn arrangement(circles: &[Circle]) -> Plane {
                     .iter()
                     .position(|vertex| (vertex.point - point).norm() < 0.1 * TOLERANCE);
                 known.unwrap_or_else(|| {
-                    plane.vertices.push(stickslip::tracer::Vertex {
-                        point,
-                        kind,
-                        margins: Vec::new(),
-                    });
+                    plane.vertices.push(Vertex { point, kind, margins: Vec::new() });
                     plane.vertices.len() - 1
                 })
             })

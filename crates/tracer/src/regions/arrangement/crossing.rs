@@ -1,39 +1,29 @@
 //! Edges that cross where there is no vertex.
 
-use std::ops::Range;
-
 use crate::cubic::Cubic;
-use crate::family::Point;
-use crate::regions::piece::Piece;
-use crate::regions::slabs::Slabs;
+use crate::regions::arrangement::piece::{Edge, Piece};
+use crate::regions::arrangement::slabs::Slabs;
+use crate::window::Point;
 
-/// An edge of the subdivision: its vertices, and its pieces in its direction.
-#[derive(Clone, Debug)]
-pub(crate) struct Edge {
-    /// `None` if it is closed without a vertex.
-    pub(crate) ends: Option<[usize; 2]>,
-    pub(crate) pieces: Range<usize>,
-}
-
-/// Finds where two edges change places; each time two neighbours in a slab do.
+/// Finds the places where two edges cross: their pieces are neighbours in a slab and change places.
 pub(crate) struct Crossings<'a> {
     pub(crate) slabs: &'a Slabs,
     pub(crate) edges: &'a [Edge],
-    /// Two edges from one vertex may change places within the error of interpolation.
+    /// The accuracy of edges. Closer together than this, two edges from one vertex may cross.
     pub(crate) tolerance: f64,
-    /// What rounding may do to a height.
+    /// The rounding error of heights.
     pub(crate) rounding: f64,
-    /// Slopes above are not used for bounds.
+    /// The greatest slope that is used for bounds.
     pub(crate) steepest: f64,
 }
 
 impl Crossings<'_> {
-    /// Pairs of edges with the place at which they cross, from left to right.
+    /// The pairs of edges that cross, with the places where they do, from left to right.
     ///
-    /// Decided, not sampled: pieces of a slab cross if they change order between its middle and its
-    /// walls, if the order differs on both sides of a wall, or if they dip below each other and
-    /// come back; that the last happens, deeper than the tolerance, is excluded by bounds from
-    /// the slopes, which are monotone along a piece.
+    /// Crossings are decided, not sampled. Pieces of a slab cross if they change order between its
+    /// middle and its walls, if their order differs on the two sides of a wall, or if one dips
+    /// below the other and comes back. Bounds from the slopes, which are monotone along a piece,
+    /// prove that no dip deeper than the tolerance is missed.
     pub(crate) fn find(&self) -> Vec<([usize; 2], Point)> {
         let mut found = Vec::new();
         let mut place = vec![usize::MAX; self.slabs.pieces.len()];
@@ -84,7 +74,7 @@ impl Crossings<'_> {
         found
     }
 
-    /// The piece that goes on as `piece` beyond the wall on its left.
+    /// The piece that continues `piece` beyond the wall on its left.
     fn before(&self, piece: usize, wall: f64) -> Option<usize> {
         let own = &self.slabs.pieces[piece];
         if own.first().x < wall {
@@ -104,12 +94,13 @@ impl Crossings<'_> {
         (!other.is_vertical() && other.last() == own.first()).then_some(left)
     }
 
+    /// The height of `upper` above `lower` at `x`.
     fn gap(&self, lower: usize, upper: usize, x: f64) -> f64 {
         self.slabs.pieces[upper].y_at(x) - self.slabs.pieces[lower].y_at(x)
     }
 
-    /// Where `upper` falls below `lower` between `from`, where it does not, and `to` on either
-    /// side.
+    /// The place between `from` and `to` where `upper` falls below `lower`. At `from` it is above;
+    /// `to` may be on either side of `from`.
     fn dip(&self, lower: usize, upper: usize, from: f64, to: f64) -> Option<f64> {
         let [p, q] = [lower, upper].map(|piece| &self.slabs.pieces[piece]);
         let ((p0, ps0), (p1, ps1)) = (p.y_and_slope_at(from), p.y_and_slope_at(to));
@@ -123,7 +114,7 @@ impl Crossings<'_> {
         }
         let slopes = [ps0, ps1, qs0, qs1];
         if slopes.iter().all(|slope| slope.abs() <= self.steepest) {
-            // The gap's slope in the direction from `from` to `to` lies in [falls, rises].
+            // The slope of the gap in the direction from `from` to `to` lies in [falls, rises].
             let way = (to - from).signum();
             let (a, b) = (qs0.min(qs1) - ps0.max(ps1), qs0.max(qs1) - ps0.min(ps1));
             let (falls, rises) = if way > 0.0 { (a, b) } else { (-b, -a) };
@@ -148,7 +139,7 @@ impl Crossings<'_> {
         self.dip(lower, upper, from, middle).or_else(|| self.dip(lower, upper, middle, to))
     }
 
-    /// Where the gap, positive at `from` and negative at `to`, changes sign.
+    /// The place where the gap changes its sign. It is positive at `from` and negative at `to`.
     fn change(&self, lower: usize, upper: usize, mut from: f64, mut to: f64) -> f64 {
         loop {
             let middle = 0.5 * (from + to);
@@ -163,6 +154,7 @@ impl Crossings<'_> {
         }
     }
 
+    /// Records a crossing at `x`, if it is certain.
     fn record(&self, pieces: [usize; 2], x: f64, found: &mut Vec<([usize; 2], Point)>) {
         let [a, b] = pieces.map(|piece| &self.slabs.pieces[piece]);
         let point = Point::new(x, a.y_at(x));
@@ -171,10 +163,12 @@ impl Crossings<'_> {
         }
     }
 
-    /// Whether the crossing is not certain: between a vertex that the edges share and the crossing,
-    /// they enclose an area whose mean width is below the tolerance; or an edge that crosses
-    /// itself encloses less than the tolerance squared, as it does where both sides of a fold
-    /// are rounded.
+    /// Whether a crossing may be an error of interpolation.
+    ///
+    /// This is so if the edges share a vertex and the area between them, from the vertex to the
+    /// crossing, has a mean width below the tolerance. It is also so if an edge crosses itself and
+    /// encloses less than the tolerance squared, for instance where both sides of a fold are
+    /// rounded.
     fn within_interpolation(&self, pieces: [usize; 2], point: &Point) -> bool {
         let [a, b] = pieces.map(|piece| &self.edges[self.slabs.pieces[piece].edge]);
         if std::ptr::eq(a, b) {
@@ -206,17 +200,17 @@ impl Crossings<'_> {
         })
     }
 
-    /// The first or last point of an edge.
+    /// The first point of an edge if `which` is 0, else the last one.
     fn end(&self, edge: &Edge, which: usize) -> Point {
         let index = if which == 0 { edge.pieces.start } else { edge.pieces.end - 1 };
         let piece = &self.slabs.pieces[index];
         if (which == 0) == piece.forward { piece.first() } else { piece.last() }
     }
 
-    /// The area between an edge, from its end `which` up to `place` on `piece`, and the rays from
-    /// `origin`.
+    /// The area between an edge, from its end `which` to `place` on `piece`, and the rays from
+    /// `origin` to these two points.
     fn area(&self, edge: &Edge, which: usize, piece: usize, place: &Point, origin: &Point) -> f64 {
-        // `away`: the edge's direction leads away from that end.
+        // Whether the direction of the edge leads away from that end.
         let away = which == 0;
         let before = if away { edge.pieces.start..piece } else { piece + 1..edge.pieces.end };
         let directed = |piece: &Piece| if piece.forward == away { 1.0 } else { -1.0 };

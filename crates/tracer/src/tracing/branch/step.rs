@@ -1,71 +1,36 @@
-//! One step of a branch: predict, correct, and see whether it is good.
+//! One step of a branch: predict, correct, and check.
 
 use crate::cubic::Cubic;
 use crate::curve::Node;
-use crate::family::{Family, Point};
-use crate::tracing::branch::{Branch, Foothold, FootholdOf};
+use crate::family::Family;
+use crate::tracing::branch::track::{Foothold, FootholdOf, Track};
 use crate::tracing::corrector::correct;
 use crate::tracing::runs::Traced;
+use crate::window::Point;
 
-/// What became of a step.
+/// The outcome of a step that was tried.
 pub(crate) enum Attempt<Label, Margin> {
     Accepted {
         foothold: Foothold<Label, Margin>,
+        /// The distance of the new cubic from the boundary.
         error: f64,
+        /// The number of evaluations of the margin in the correction.
         evaluations: usize,
+        /// Whether the step ends at the edge of the window.
         edge: bool,
     },
-    /// The margin does not exist, or its zero is not found.
+    /// The margin does not exist, or its zero was not found.
     Lost,
-    /// It turns too much, by this angle.
+    /// The tangent turns too much, by this angle.
     Turn(f64),
-    /// The cubic misses it by this distance.
+    /// The new cubic is too far from the boundary, by this distance.
     Rough(f64),
-    /// Labels on the sides are others.
+    /// The labels on the sides are not those of the branch.
     Labels(Foothold<Label, Margin>),
 }
 
-impl<F: Family> Branch<'_, '_, F> {
-    /// Tangent at a place with this gradient.
-    pub(crate) fn tangent(&self, gradient: &Point) -> Point {
-        Point::new(gradient.y, -gradient.x) * (self.orientation / gradient.norm())
-    }
-
-    /// The place on the boundary with the free runs on both sides; `Err` if their labels are not
-    /// those of the branch.
-    ///
-    /// Where another boundary is closer than the offset, a smaller offset is tried, as far as the
-    /// place itself is known.
-    pub(crate) fn foothold(
-        &self,
-        point: &Point,
-        gradient: &Point,
-    ) -> Traced<Result<FootholdOf<F>, FootholdOf<F>>, F> {
-        let tangent = self.tangent(gradient);
-        let left = Point::new(-tangent.y, tangent.x);
-        let resolution = self.runs.resolution(gradient.norm());
-        let mut offset = self.runs.options.offset.max(10.0 * resolution);
-        let node = Node { point: *point, tangent };
-        let mut first = None;
-        loop {
-            let sides = [
-                self.runs.free(&(point + left * offset))?,
-                self.runs.free(&(point - left * offset))?,
-            ];
-            let holds = sides[0].label == self.sides[0] && sides[1].label == self.sides[1];
-            let foothold = Foothold { node, gradient: *gradient, sides };
-            if holds {
-                return Ok(Ok(foothold));
-            }
-            offset *= 0.1;
-            let widest = first.get_or_insert(foothold);
-            if offset < 5.0 * resolution {
-                return Ok(Err(widest.clone()));
-            }
-        }
-    }
-
-    /// The step to try: not far beyond the window.
+impl<F: Family> Track<'_, '_, F> {
+    /// The length of the step to try, which does not lead far beyond the window.
     pub(crate) fn limited_step(&self, from: &Node) -> f64 {
         let window = &self.runs.window;
         let mut exit = f64::INFINITY;
@@ -83,6 +48,7 @@ impl<F: Family> Branch<'_, '_, F> {
             .min(exit + 1e-3 * self.runs.scale)
     }
 
+    /// Tries a step of length `h`.
     pub(crate) fn attempt(
         &self,
         from: &FootholdOf<F>,
@@ -107,8 +73,8 @@ impl<F: Family> Branch<'_, '_, F> {
         }
         let node = Node { point: corrected.point, tangent };
         let arc = Cubic::between(&from.node, &node);
-        // Off the middle, where the errors of fourth and of fifth order both show; the first has
-        // 0.7 of its maximum there.
+        // At 0.3 the errors of fourth and of fifth order both show, unlike in the middle. The error
+        // of fourth order has 0.7 of its maximum there.
         let Some(value) = runs.margin(&arc.at(0.3), &self.margin)? else {
             return Ok(Attempt::Lost);
         };
@@ -134,7 +100,7 @@ impl<F: Family> Branch<'_, '_, F> {
                 if let Some(index) = self.passed_stop(&arc) {
                     let end = self.end_node(&from.node, &self.stops[index].point)?;
                     let arc = Cubic::between(&from.node, &end);
-                    // Another special point lies before the vertex: shorter steps find it.
+                    // Another special point lies before the vertex. Shorter steps find it.
                     if arc.chord() > 1e-6 * runs.scale && !self.is_clear(from, &arc)? {
                         return Ok(Attempt::Lost);
                     }
@@ -145,20 +111,8 @@ impl<F: Family> Branch<'_, '_, F> {
         })
     }
 
-    /// The last cubic goes on, if the step is not much longer than it; else the tangent.
-    pub(crate) fn predict(&self, from: &Node, h: f64) -> Point {
-        let before = self.trail.len().checked_sub(2).map(|index| self.trail[index].node);
-        if let Some(before) = before {
-            let arc = Cubic::between(&before, from);
-            if h < 2.5 * arc.chord() && arc.chord() > 1e-6 * self.runs.scale {
-                return arc.at(1.0 + h / arc.chord());
-            }
-        }
-        from.point + from.tangent * h
-    }
-
-    /// Where the piece leaves the window, solved on the edge; `None` if it does not.
-    pub(crate) fn leave_window(&self, arc: &Cubic, gradient: &Point) -> Traced<Option<Point>, F> {
+    /// The place where `arc` leaves the window, solved for on the edge; `None` if it does not.
+    fn leave_window(&self, arc: &Cubic, gradient: &Point) -> Traced<Option<Point>, F> {
         let window = &self.runs.window;
         if window.contains(&arc.at(1.0)) {
             return Ok(None);
