@@ -37,6 +37,7 @@ pub struct SwitchEvent<Mode, const N: usize> {
 /// A guard came so close to zero without firing, or fired so briefly, that the dense output could
 /// not tell; a step of the method to the extremum did.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Grazing<Mode> {
     /// Where.
     pub s: f64,
@@ -68,6 +69,7 @@ impl<Mode, const N: usize> Observer<Mode, N> for () {}
 
 /// Why a run ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "snake_case"))]
 pub enum Outcome {
     /// A terminal guard fired.
     EndedByGuard {
@@ -89,6 +91,7 @@ pub enum Outcome {
 
 /// Work done by a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Statistics {
     /// Accepted steps, those that end on a switch included.
     pub accepted: usize,

@@ -13,6 +13,7 @@ const FEW: usize = 5;
 
 /// The power of the step with which an error falls, as [`fit_order`] finds it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Order {
     /// The power: the slope of ln error against ln step.
     pub order: f64,
