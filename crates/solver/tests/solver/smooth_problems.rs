@@ -2,7 +2,7 @@
 //! counters.
 
 use serde_json::Value;
-use stickslip::solver::{Dop853, Dopri5, Method, Options, Run, State, integrate};
+use stickslip_solver::{Dop853, Dopri5, Method, Options, Run, State, integrate};
 
 /// The restricted three-body problem on a closed orbit of Arenstorf's: Hairer, Nørsett and Wanner,
 /// *Solving Ordinary Differential Equations I*, 2nd ed., section II.0.
@@ -112,7 +112,7 @@ fn the_orbit_closes() {
 
 /// The states at the end, to 25 digits.
 fn reference(problem: &str) -> Vec<f64> {
-    let text = include_str!("data/detest.json");
+    let text = include_str!("detest.json");
     let data: Value = serde_json::from_str(text).expect("valid JSON");
     let found = data["problems"].as_array().expect("a list");
     let found = found.iter().find(|entry| entry["problem"] == problem).expect("a known problem");

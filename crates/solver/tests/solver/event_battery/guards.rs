@@ -1,12 +1,12 @@
 //! What guards mean: which of several fires, known zeros, the side at the start, and what has no
 //! meaning.
 
-use stickslip::solver::{
+use stickslip_solver::{
     Direction, Dop853, Dopri5, Guard, HybridSystem, Method, Observer, Options, Outcome, RunError,
     Start, State, SwitchEvent, run,
 };
 
-use crate::planted::{Planted, Times, step_sizes, times};
+use super::planted::{Planted, Times, step_sizes, times};
 
 /// A system of two guards on y' = 1, which stops at the first switch.
 struct Two {

@@ -1,6 +1,6 @@
 //! Guards with planted zeros.
 
-use stickslip::solver::{
+use stickslip_solver::{
     Direction, Dop853, Dopri5, Grazing, Guard, HybridSystem, Method, Observer, Options, Outcome,
     RunError, Start, State, StepSize, SwitchEvent, run,
 };

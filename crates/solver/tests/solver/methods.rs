@@ -7,8 +7,8 @@
 
 use std::cell::Cell;
 
-use stickslip::solver::method::{INTERIOR_NODES, MAX_STAGES};
-use stickslip::solver::{
+use stickslip_solver::method::{INTERIOR_NODES, MAX_STAGES};
+use stickslip_solver::{
     Dense, Dop853, Dopri5, Method, Observer, Options, State, Step, StepSize, Trial, integrate,
 };
 

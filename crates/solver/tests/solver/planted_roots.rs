@@ -6,7 +6,7 @@
 //! (below 64 units in the last place of its largest value there), nothing is asked.
 
 use proptest::prelude::*;
-use stickslip::solver::{
+use stickslip_solver::{
     Direction, Dop853, Dopri5, Guard, HybridSystem, Method, Observer, Options, Outcome, Start,
     State, StepSize, SwitchEvent, run,
 };

@@ -10,7 +10,7 @@ mod systems;
 mod together;
 
 use planted::{Score, cases, dip, score, triple};
-use stickslip::solver::{Dop853, Dopri5};
+use stickslip_solver::{Dop853, Dopri5};
 use systems::{LEVELS, oscillator, relay};
 
 impl Score {

@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use stickslip::solver::{
+use stickslip_solver::{
     Direction, Dop853, Dopri5, Guard, HybridSystem, Margins, Method, Options, Outcome, Recorder,
     RunError, Start, State, margins, run,
 };

@@ -1,6 +1,6 @@
 //! What holds of every run of a hybrid system, made from bytes.
 
-use stickslip::solver::{
+use stickslip_solver::{
     Direction, Dop853, Dopri5, Guard, HybridSystem, Method, Observer, Options, Outcome, RunError,
     Start, State, StepSize, SwitchEvent, margins, run,
 };

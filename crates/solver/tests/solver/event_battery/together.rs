@@ -1,12 +1,12 @@
 //! Guards that vanish together in a mode that goes on unchanged: each crossing counts once, by an
 //! event of its own or by one that names it.
 
-use stickslip::solver::{
+use stickslip_solver::{
     Direction, Dop853, Dopri5, Guard, HybridSystem, Method, Observer, Options, Outcome, Start,
     State, StepSize, SwitchEvent, run,
 };
 
-use crate::planted::{Score, step_sizes};
+use super::planted::{Score, step_sizes};
 
 /// y' = 1 with products of (y − root) as guards; a switch changes nothing.
 struct Products {

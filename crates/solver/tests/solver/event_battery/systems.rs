@@ -1,11 +1,11 @@
 //! Systems whose switches are known in closed form, and runs that do not come to their end.
 
-use stickslip::solver::{
+use stickslip_solver::{
     Direction, Dop853, Dopri5, Guard, HybridSystem, Method, Options, Outcome, Run, Start, State,
     run,
 };
 
-use crate::planted::{Planted, Score, Times, step_sizes};
+use super::planted::{Planted, Score, Times, step_sizes};
 
 /// A ball on the floor y = 0 with acceleration −1; the first phase starts at a height, later ones
 /// at zero.
