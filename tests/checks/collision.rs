@@ -1,11 +1,10 @@
 //! What holds of every collision, whatever its parameters.
 
-use stickslip::collisions::CollisionPlane;
-use stickslip::model::exact::{self, ExactError};
-use stickslip::model::{
+use stickslip_model::exact::{self, ExactError};
+use stickslip_model::{
     Collider, Collision, CollisionError, Contact, EnergyLedger, Regime, Side, Switch,
 };
-use stickslip::solver::{Dopri5, Method};
+use stickslip_solver::{Dopri5, Method};
 
 /// Part of ψ² by which energies may not balance at the default tolerances of Dormand–Prince 8(5,3).
 const BALANCE: f64 = 1e-9;
@@ -100,7 +99,7 @@ pub fn exact(contact: Contact) -> Result<Result<Collision, ExactError>, String> 
 fn near_misses(collision: &Collision) -> Result<(), String> {
     let contact = &collision.contact;
     let Ok(margins) = exact::margins(contact) else { return Ok(()) };
-    require(margins.fired == CollisionPlane::label(collision), || format!("{:?}", margins.fired))?;
+    require(margins.fired == collision.fired(), || format!("{:?}", margins.fired))?;
     for (which, value) in &margins.near_misses {
         require(*value >= 0.0, || format!("{which:?} is {value:e}"))?;
         let again = exact::margin(contact, which).map_err(|error| error.to_string())?;

@@ -1,7 +1,9 @@
 //! Reference collisions read from tests/data.
 
+use std::path::Path;
+
 use serde_json::Value;
-use stickslip::model::{Collision, Contact};
+use stickslip_model::{Collision, Contact};
 
 /// A reference collision.
 pub struct Case {
@@ -37,10 +39,14 @@ pub fn number(value: &Value) -> f64 {
     value.as_str().expect("a decimal string").parse().expect("a number")
 }
 
-/// A reference file.
+/// A reference file, from `tests/data` of the package or of the workspace around it.
 pub fn file(name: &str) -> Value {
-    let path = format!("{}/tests/data/{name}.json", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(&path).expect("a reference file");
+    let folders = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors();
+    let file = folders
+        .map(|folder| folder.join(format!("tests/data/{name}.json")))
+        .find(|file| file.is_file())
+        .expect("a reference file");
+    let text = std::fs::read_to_string(file).expect("a text");
     serde_json::from_str(&text).expect("JSON")
 }
 

@@ -1,11 +1,9 @@
 //! The closed form against the reference data, closer than `tests/reference.rs` asks of both
 //! engines.
 
-mod common;
-
-use common::{Case, cases, file, number};
-use stickslip::model::exact::{self, CONTACT_TIME};
-use stickslip::model::{Collision, Contact};
+use crate::common::{Case, cases, file, number};
+use stickslip_model::exact::{self, CONTACT_TIME};
+use stickslip_model::{Collision, Contact};
 
 fn exact(contact: Contact) -> Collision {
     exact::collide(contact).expect("an undamped collision")

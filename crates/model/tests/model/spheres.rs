@@ -2,9 +2,9 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use stickslip::model::{
+use stickslip_model::{
     Body, Collider, Contact, Elasticity, Encounter, EncounterError, Material, Motion, Outcome,
-    Pair, WallMotion, Sphere, Surface, Vector3, Wall, coulomb, normal,
+    Pair, Sphere, Surface, Vector3, Wall, WallMotion, coulomb, normal,
 };
 
 const STEEL: Material =
@@ -308,7 +308,8 @@ fn bodies_that_do_not_collide() {
     let velocity_m_per_s = Vector3::new(f64::INFINITY, 0.0, 0.0);
     assert!(message(meet(Motion { velocity_m_per_s, ..at(-0.02) })).contains("finite"));
 
-    let hit = |plane: WallMotion| Encounter::with_wall((&sphere, &motion), (&FLOOR.0, &plane), &SURFACE);
+    let hit =
+        |plane: WallMotion| Encounter::with_wall((&sphere, &motion), (&FLOOR.0, &plane), &SURFACE);
     let plane = FLOOR.1;
     assert!(hit(plane).is_ok());
     assert!(message(hit(WallMotion { normal: -plane.normal, ..plane })).contains("above the wall"));

@@ -3,11 +3,9 @@
 //! tests/data/README.md says where the references come from. Bounds are about twice what was
 //! measured, except where the project promises a number.
 
-mod common;
-
-use common::{Case, cases, number};
-use stickslip::model::{Collider, Collision, exact};
-use stickslip::solver::{Dop853, Dopri5};
+use crate::common::{Case, cases, file, number};
+use stickslip_model::{Collider, Collision, exact};
+use stickslip_solver::{Dop853, Dopri5};
 
 const UNDAMPED: [&str; 3] = ["undamped_paper", "undamped_random", "undamped_hard"];
 
@@ -123,11 +121,11 @@ fn the_error_falls_with_the_tolerance() {
 /// The count changes across every reference boundary, and is right on both sides.
 #[test]
 fn counts_across_the_boundaries() {
-    let file = common::file("boundaries");
-    for boundary in file["boundaries"].as_array().expect("an array") {
+    let boundaries = file("boundaries");
+    for boundary in boundaries["boundaries"].as_array().expect("an array") {
         let (kappa, psi) = (number(&boundary["kappa"]), number(&boundary["psi"]));
         for (factor, key) in [(1.0 - 1e-11, "below"), (1.0 + 1e-11, "above")] {
-            let contact = stickslip::model::Contact::new(kappa, psi * factor, 0.0).expect("valid");
+            let contact = stickslip_model::Contact::new(kappa, psi * factor, 0.0).expect("valid");
             let count = boundary[key].as_u64();
             let integrated = Collider::with_tolerances(Dop853, 1e-15, 1e-15).collide(contact);
             assert_eq!(integrated.map(|c| c.switches.len() as u64).ok(), count, "{boundary}");

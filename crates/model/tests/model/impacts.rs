@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use nalgebra::{Rotation3, Unit};
-use stickslip::model::{
-    Collider, Elasticity, Encounter, EncounterError, Motion, Outcome, WallMotion, Sphere, Surface,
-    Vector3, Wall, encounter::TOUCH,
+use stickslip_model::{
+    Collider, Elasticity, Encounter, EncounterError, Motion, Outcome, Sphere, Surface, Vector3,
+    Wall, WallMotion, encounter::TOUCH,
 };
 
 /// Numbers that depend on the seed alone (splitmix64).
@@ -152,7 +152,10 @@ impl Case {
             Other::Wall(wall, plane) => {
                 let point_m = turn * plane.point_m;
                 let velocity_m_per_s = turn * plane.velocity_m_per_s + boost;
-                Other::Wall(*wall, WallMotion { point_m, normal: turn * plane.normal, velocity_m_per_s })
+                Other::Wall(
+                    *wall,
+                    WallMotion { point_m, normal: turn * plane.normal, velocity_m_per_s },
+                )
             }
         };
         Self { motion: motion(&self.motion), other, ..*self }

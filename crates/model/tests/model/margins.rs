@@ -1,14 +1,12 @@
 //! Margins of prescribed runs vanish on the switch boundaries, at the places known to twenty
 //! digits.
 
-#[expect(dead_code, reason = "shared with other tests")]
-mod common;
+use stickslip_model::regularized::{Phase, Regularized};
+use stickslip_model::{Contact, exact};
+use stickslip_solver::margin::{Margin, Margins, Place, margin, margins};
+use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
 
-use stickslip::collisions::CollisionPlane;
-use stickslip::model::regularized::{Phase, Regularized};
-use stickslip::model::{Contact, exact};
-use stickslip::solver::margin::{Margin, Margins, Place, margin, margins};
-use stickslip::solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
+use crate::common::{file, number};
 
 fn options() -> Options {
     Options { rtol: 1e-14, atol: 1e-14, first_step: Some(0.1), max_step: 0.1, ..Options::default() }
@@ -37,10 +35,10 @@ fn assert_zeros_at_boundaries(
     free: impl Fn(f64, f64) -> (usize, Vec<(Margin, f64)>),
     value: impl Fn(f64, f64, &Margin) -> f64,
 ) {
-    let data = common::file("boundaries");
+    let data = file("boundaries");
     let mut largest = 0.0_f64;
     for boundary in data["boundaries"].as_array().unwrap() {
-        let (kappa, psi) = (common::number(&boundary["kappa"]), common::number(&boundary["psi"]));
+        let (kappa, psi) = (number(&boundary["kappa"]), number(&boundary["psi"]));
         let (below, above) = (boundary["below"].as_u64(), boundary["above"].as_u64());
         // The side of fewer switches, a little off.
         let side = if below < above { -1.0 } else { 1.0 };
@@ -117,7 +115,7 @@ fn exact_margins_are_those_of_the_free_run() {
             undamped(1e-3 * 1e7_f64.powf(random.f64()), 3e-3 * 1e3_f64.powf(random.f64()));
         let found = exact::margins(&contact).unwrap();
         let collision = exact::collide(contact).unwrap();
-        assert_eq!(found.fired, CollisionPlane::label(&collision), "{contact:?}");
+        assert_eq!(found.fired, collision.fired(), "{contact:?}");
         for (which, value) in &found.near_misses {
             assert!(*value >= 0.0, "{contact:?}: {which:?} is {value}");
             let again = exact::margin(&contact, which).unwrap().expect("it exists here");
