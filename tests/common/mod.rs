@@ -1,4 +1,4 @@
-//! Reference collisions read from tests/data.
+//! Reference collisions, read from tests/data. Several packages share this file.
 
 use std::path::Path;
 
@@ -7,24 +7,24 @@ use stickslip_model::{Collision, Contact};
 
 /// A reference collision.
 pub struct Case {
-    /// Its parameters.
+    /// The parameters.
     pub contact: Contact,
-    /// Its results.
+    /// The results, as in the file.
     pub expected: Value,
 }
 
 impl Case {
-    /// A number of the results, given as a decimal string.
+    /// A number among the results, which the file has as a decimal string.
     pub fn number(&self, key: &str) -> f64 {
         number(&self.expected[key])
     }
 
-    /// The reference switches.
+    /// The switches, as in the file.
     pub fn switches(&self) -> &[Value] {
         self.expected["switches"].as_array().expect("an array of switches")
     }
 
-    /// Whether regimes and sides of all switches agree.
+    /// Whether all switches of `collision` have the regimes and sides of the reference.
     pub fn same_itinerary(&self, collision: &Collision) -> bool {
         self.switches().len() == collision.switches.len()
             && self.switches().iter().zip(&collision.switches).all(|(expected, switch)| {
@@ -34,7 +34,7 @@ impl Case {
     }
 }
 
-/// A number of a reference file.
+/// A number of a reference file, from its decimal string.
 pub fn number(value: &Value) -> f64 {
     value.as_str().expect("a decimal string").parse().expect("a number")
 }
