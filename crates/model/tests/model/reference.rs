@@ -1,17 +1,14 @@
 //! Every switch of the reference collisions, by the integrator and by the exact engine.
 //!
-//! tests/data/README.md says where the references come from. Bounds are about twice what was
-//! measured, except where the project promises a number.
+//! Bounds are about twice the measured errors, except where the documentation promises a number.
 
-mod common;
-
-use common::{Case, cases, number};
-use stickslip::model::{Collider, Collision, exact};
-use stickslip::solver::{Dop853, Dopri5};
+use crate::common::{Case, cases, file, number};
+use stickslip_model::{Collider, Collision, exact};
+use stickslip_solver::{Dop853, Dopri5};
 
 const UNDAMPED: [&str; 3] = ["undamped_paper", "undamped_random", "undamped_hard"];
 
-/// Largest errors over a set.
+/// The largest errors over a set of reference collisions.
 #[derive(Debug, Default)]
 struct Errors {
     velocity: f64,
@@ -25,8 +22,8 @@ struct Errors {
     unbalanced: f64,
 }
 
-/// Collides a whole set; every count and itinerary must be right. `error_of_velocity` is the error
-/// that the engine may make in w.
+/// The largest errors of `collide` over a whole set, in which every count and itinerary must be
+/// right. `error_of_velocity` is the error that the engine may make in w.
 fn errors(name: &str, error_of_velocity: f64, collide: impl Fn(&Case) -> Collision) -> Errors {
     let mut errors = Errors::default();
     for case in cases(name) {
@@ -55,8 +52,8 @@ fn errors(name: &str, error_of_velocity: f64, collide: impl Fn(&Case) -> Collisi
             *of_its_kind = of_its_kind.max(error);
             if let Some(time_left) = expected.get("time_left").map(number) {
                 let relative = (switch.time_left / time_left - 1.0).abs();
-                // Near the end time_left ≈ (2κw/3)²: an error δ of w shows as 2δ/w, whatever the
-                // method.
+                // Near the end time_left ≈ (2κw/3)²: with every method, an error δ of w becomes a
+                // relative error 2δ/w.
                 let of_velocity = 2.0 * error_of_velocity / number(&expected["w"]).abs();
                 let of_its_kind =
                     if grazes { &mut errors.time_left_near_graze } else { &mut errors.time_left };
@@ -104,8 +101,7 @@ fn dopri5_at_1e_10() {
     }
 }
 
-/// The error follows the tolerance down to rounding: less than it, for tolerances from 1e-8 to
-/// 1e-14.
+/// The error is proportional to the tolerance down to rounding, and smaller, from 1e-8 to 1e-14.
 #[test]
 fn the_error_falls_with_the_tolerance() {
     for exponent in 8..=14 {
@@ -120,14 +116,14 @@ fn the_error_falls_with_the_tolerance() {
     }
 }
 
-/// The count changes across every reference boundary, and is right on both sides.
+/// The number of switches is right on both sides of every reference boundary.
 #[test]
 fn counts_across_the_boundaries() {
-    let file = common::file("boundaries");
-    for boundary in file["boundaries"].as_array().expect("an array") {
+    let boundaries = file("boundaries");
+    for boundary in boundaries["boundaries"].as_array().expect("an array") {
         let (kappa, psi) = (number(&boundary["kappa"]), number(&boundary["psi"]));
         for (factor, key) in [(1.0 - 1e-11, "below"), (1.0 + 1e-11, "above")] {
-            let contact = stickslip::model::Contact::new(kappa, psi * factor, 0.0).expect("valid");
+            let contact = stickslip_model::Contact::new(kappa, psi * factor, 0.0).expect("valid");
             let count = boundary[key].as_u64();
             let integrated = Collider::with_tolerances(Dop853, 1e-15, 1e-15).collide(contact);
             assert_eq!(integrated.map(|c| c.switches.len() as u64).ok(), count, "{boundary}");

@@ -1,14 +1,12 @@
-//! Margins of prescribed runs vanish on the switch boundaries, at the places known to twenty
+//! Margins of prescribed runs vanish on the switch boundaries, whose places are known to twenty
 //! digits.
 
-#[expect(dead_code, reason = "shared with other tests")]
-mod common;
+use stickslip_model::regularized::{Phase, Regularized};
+use stickslip_model::{Contact, exact};
+use stickslip_solver::margin::{Margin, Margins, Place, margin, margins};
+use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
 
-use stickslip::model::regularized::{Phase, Regularized};
-use stickslip::model::{Contact, exact};
-use stickslip::plane::CollisionPlane;
-use stickslip::solver::margin::{Margin, Margins, Place, margin, margins};
-use stickslip::solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
+use crate::common::{file, number};
 
 fn options() -> Options {
     Options { rtol: 1e-14, atol: 1e-14, first_step: Some(0.1), max_step: 0.1, ..Options::default() }
@@ -30,19 +28,19 @@ fn value(kappa: f64, psi: f64, which: &Margin) -> f64 {
     miss.expect("the margin exists near the boundary").value
 }
 
-/// The place nearest to each reference boundary at which the least margin on the side of fewer
-/// switches vanishes.
+/// Checks that the least margin on the side of fewer switches vanishes within `accuracy` of each
+/// reference boundary.
 fn assert_zeros_at_boundaries(
     accuracy: f64,
     free: impl Fn(f64, f64) -> (usize, Vec<(Margin, f64)>),
     value: impl Fn(f64, f64, &Margin) -> f64,
 ) {
-    let data = common::file("boundaries");
+    let data = file("boundaries");
     let mut largest = 0.0_f64;
     for boundary in data["boundaries"].as_array().unwrap() {
-        let (kappa, psi) = (common::number(&boundary["kappa"]), common::number(&boundary["psi"]));
+        let (kappa, psi) = (number(&boundary["kappa"]), number(&boundary["psi"]));
         let (below, above) = (boundary["below"].as_u64(), boundary["above"].as_u64());
-        // The side of fewer switches, a little off.
+        // A place near the boundary, on the side of fewer switches.
         let side = if below < above { -1.0 } else { 1.0 };
         let near = psi * (1.0 + side * 1e-5);
         let (count, margins) = free(kappa, near);
@@ -56,7 +54,7 @@ fn assert_zeros_at_boundaries(
             Place::Minimum { .. } => "stick-graze",
         };
         assert_eq!(boundary["kind"], kind, "κ = {kappa}, ψ = {psi}");
-        // Secant steps through zero: the margin exists on both sides.
+        // The secant method: the margin exists on both sides of its zero.
         let (mut last, mut at) = (near, psi * (1.0 - side * 1e-6));
         let (mut last_value, mut at_value) = (*nearest, value(kappa, at, which));
         assert!(at_value < 0.0, "beyond the boundary the margin is negative");
@@ -107,7 +105,8 @@ fn boundaries_are_the_zeros_of_exact_margins() {
     assert_zeros_at_boundaries(1e-13, pairs, value);
 }
 
-/// Each exact margin has the value that the free run leaves, and names itself where it stands.
+/// Each exact margin has the same value after the free run and after the prescribed one, and its
+/// hints fit the collision to which they belong.
 #[test]
 fn exact_margins_are_those_of_the_free_run() {
     let mut random = fastrand::Rng::with_seed(1);
@@ -117,13 +116,13 @@ fn exact_margins_are_those_of_the_free_run() {
             undamped(1e-3 * 1e7_f64.powf(random.f64()), 3e-3 * 1e3_f64.powf(random.f64()));
         let found = exact::margins(&contact).unwrap();
         let collision = exact::collide(contact).unwrap();
-        assert_eq!(found.fired, CollisionPlane::label(&collision), "{contact:?}");
+        assert_eq!(found.fired, collision.fired(), "{contact:?}");
         for (which, value) in &found.near_misses {
             assert!(*value >= 0.0, "{contact:?}: {which:?} is {value}");
             let again = exact::margin(&contact, which).unwrap().expect("it exists here");
             largest = largest.max((again - value).abs() / value.max(1.0));
             let moved = exact::moved(&contact, which).unwrap();
-            // Hints are equal whatever they say.
+            // Hints compare as equal whatever their numbers are; their text does not.
             assert_eq!(format!("{:?}", moved.exits), format!("{:?}", which.exits), "{contact:?}");
             count += 1;
         }
@@ -132,7 +131,7 @@ fn exact_margins_are_those_of_the_free_run() {
     assert!(count > 100_000 && largest < 1e-15);
 }
 
-/// Across a boundary and away from it, margins of both engines have the same sign.
+/// Margins of both engines have the same sign on both sides of a boundary and away from it.
 #[test]
 fn both_engines_have_margins_of_one_sign() {
     let mut random = fastrand::Rng::with_seed(2);
@@ -144,8 +143,8 @@ fn both_engines_have_margins_of_one_sign() {
         assert_eq!(integrated.fired, exact.fired, "κ = {kappa}, ψ = {psi}");
         let (kappa, psi) = (kappa * (0.8 + 0.4 * random.f64()), psi * (0.8 + 0.4 * random.f64()));
         for miss in &integrated.near_misses {
-            // Extrema of the gap and of the ratio are counted apart: those of one phase and guard
-            // belong together if they are alone.
+            // Minima of the gap and tops of the ratio have different numbers. If there is one of
+            // each in a phase and guard, they belong together.
             let alike = |other: &Margin| {
                 let Margin { exits, guard, place } = &miss.margin;
                 let end = (*place == Place::End) == (other.place == Place::End);
@@ -173,7 +172,7 @@ fn both_engines_have_margins_of_one_sign() {
     assert!(counts[0] > 2000 && counts[1] > 100, "{counts:?}");
 }
 
-/// A body that is dropped, with g = 1.
+/// A body that falls with g = 1 and bounces.
 struct Drop;
 
 impl HybridSystem<2, 1> for Drop {
@@ -196,7 +195,7 @@ impl HybridSystem<2, 1> for Drop {
     }
 }
 
-/// Height at the end of a run of length 1, above the floor and below: h − 1/2.
+/// The margin is the height at the end of a run of length 1, h − 1/2, above the floor and below it.
 #[test]
 fn the_end_of_the_span_leaves_a_margin() {
     let start = |height| Start { mode: (), s: 0.0, state: State::from([height, 0.0]) };
@@ -211,7 +210,7 @@ fn the_end_of_the_span_leaves_a_margin() {
         // Measured: 1.0e-15.
         assert!((value - (height - 0.5)).abs() < 2e-15, "{height}: {value}");
     }
-    // After a bounce it is the next flight that ends in the air.
+    // After a bounce the next flight ends in the air.
     let free = margins(Dop853, &Drop, start(0.4), 1.0, &options).unwrap();
     assert_eq!(free.fired, [0]);
     assert!(
@@ -219,7 +218,7 @@ fn the_end_of_the_span_leaves_a_margin() {
     );
 }
 
-/// Phases that another one follows have no end of the run.
+/// Phases that are followed by another one have no margin at the end of the run.
 #[test]
 fn only_the_last_phase_leaves_a_margin_at_the_end() {
     let run = free(63.0, 0.5);

@@ -1,8 +1,8 @@
-//! Spheres in SI units against closed forms, limits and published figures.
+//! Spheres in SI units against closed forms, limits and published numbers.
 
 use std::f64::consts::FRAC_PI_4;
 
-use stickslip::model::{
+use stickslip_model::{
     Body, Collider, Contact, Elasticity, Encounter, EncounterError, Material, Motion, Outcome,
     Pair, Sphere, Surface, Vector3, Wall, WallMotion, coulomb, normal,
 };
@@ -67,8 +67,8 @@ fn the_steel_spheres_of_figure_2() {
     close(outcome(&encounter).contact_time_s, 6.6093921523826032723e-5, 1e-12);
 }
 
-/// The footnote prints ζ = 1.109e5 m s²/kg / k_t for μ = 0.5, with Y in MPa where GPa belong and
-/// the number 250 where 31.25 belongs: F_n⁵ = (31.25/243) π³ ρ³ R¹⁰ Y² g⁶/(1 − ν²)².
+/// The footnote prints ζ = 1.109e5 m s²/kg / k_t for μ = 0.5. Its Y is in MPa instead of GPa, and
+/// its number 250 should be 31.25: F_n⁵ = (31.25/243) π³ ρ³ R¹⁰ Y² g⁶/(1 − ν²)².
 #[test]
 fn footnote_2_and_its_correction() {
     let impact = Pair::equal_spheres(0.02, &STEEL, &SURFACE).unwrap().impact(20.0, 4.0).unwrap();
@@ -94,7 +94,7 @@ fn mindlin_s_stiffness() {
     }
 }
 
-/// Two materials and two sizes: every reduced quantity from its formula.
+/// Every reduced quantity of two materials and two sizes has the value of its formula.
 #[test]
 fn unequal_spheres() {
     let glass = Material { young_modulus_pa: 63e9, poisson_ratio: 0.24, density_kg_per_m3: 2500.0 };
@@ -122,13 +122,14 @@ fn unequal_spheres() {
 fn a_wall_is_a_sphere_without_end() {
     let moving = steel([3.0, 1.0, -2.0], [10.0, -40.0, 70.0]);
     let surface = Surface { tangential_stiffness_kg_per_s2: 1e9, damping_time_s: 1e-6, ..SURFACE };
-    let plane = WallMotion { velocity_m_per_s: Vector3::new(0.5, 0.0, 0.25), ..FLOOR.1 };
+    let wall_motion = WallMotion { velocity_m_per_s: Vector3::new(0.5, 0.0, 0.25), ..FLOOR.1 };
     let wall = Wall { elasticity: Some(STEEL.elasticity()) };
-    let limit = Encounter::with_wall((&moving.0, &moving.1), (&wall, &plane), &surface).unwrap();
+    let limit =
+        Encounter::with_wall((&moving.0, &moving.1), (&wall, &wall_motion), &surface).unwrap();
     let errors = [1e3, 1e5].map(|radius_m| {
         let large = Sphere::homogeneous(radius_m, &STEEL);
         let position_m = Vector3::new(0.0, 0.0, -radius_m);
-        let velocity_m_per_s = plane.velocity_m_per_s;
+        let velocity_m_per_s = wall_motion.velocity_m_per_s;
         let below = Motion { position_m, velocity_m_per_s, ..REST };
         let encounter =
             Encounter::of_spheres((&moving.0, &moving.1), (&large, &below), &surface).unwrap();
@@ -160,7 +161,8 @@ fn a_central_impact_has_no_tangential_force() {
     assert!(outcome_.energy.unbalanced_j().abs() < 1e-12 * outcome_.energy.kinetic_before_j);
     assert_eq!(outcome_.observed.centre_rebound_angle_rad, 0.0);
 
-    // It is the limit of small tangential velocities, which need not be resolved below rounding.
+    // The central impact is the limit of small tangential velocities; those below rounding count as
+    // none.
     for tangential in [1e-3, 1e-6, 1e-9, 1e-12, 1e-14, 1e-20, 1e-300] {
         let encounter = on_floor(steel([tangential, 0.0, -2.0], spin), &surface);
         let [near, _] = outcome(&encounter).motions;
@@ -182,7 +184,7 @@ fn normal_restitution_with_damping() {
         let contact = Contact::new(18.0, 0.7, damping).unwrap();
         let eps_n = Collider::default().collide(contact).unwrap().eps_n;
         assert!((eps_n - expected).abs() < 1e-12, "{damping}: {eps_n}");
-        // In SI units: the damping time that makes this a.
+        // The same in SI units, with the damping time that gives this a.
         let moving = steel([0.3, 0.0, -2.0], [0.0; 3]);
         let unit = on_floor(moving, &SURFACE).impact.time_unit_s;
         let surface = Surface { damping_time_s: damping * unit, ..SURFACE };
@@ -202,7 +204,7 @@ fn series_and_pade_approximant_of_the_normal_restitution() {
         let error = (normal::series(damping) - eps_n(damping)) / damping.powi(5);
         assert!(error > 0.14 && error < most, "{damping}: {error} a⁵");
     }
-    // That of the approximant is of order a³.
+    // The first neglected term of the approximant is of order a³.
     let mut worst = 0.0_f64;
     for exponent in -32..=40 {
         let damping = 2.0_f64.powf(0.25 * f64::from(exponent));
@@ -233,7 +235,7 @@ fn sliding_all_the_time_is_coulomb_s_law() {
         let encounter = on_floor(steel([15.0, 0.0, -2.0], [0.0; 3]), &surface);
         let outcome = outcome(&encounter);
         let expected = coulomb::restitution(encounter.contact().psi(), outcome.eps_n);
-        // With damping a spring as stiff as this one takes the first 1e-16 s only.
+        // With damping, a spring as stiff as this one sticks during the first 1e-16 s only.
         assert!((outcome.eps_t.unwrap() - expected).abs() < 1e-12, "{damping_time_s}");
         close(outcome.observed.impulse_ratio, 0.4, 1e-12);
     }
@@ -247,7 +249,7 @@ fn what_experiments_report() {
     let (eps_t, observed) = (outcome.eps_t.unwrap(), outcome.observed);
     assert!(eps_t < 0.0, "the patch is thrown back");
     assert_eq!(observed.beta, Some(-eps_t));
-    // v' = v + α(ε_t − 1)v of a homogeneous sphere without spin.
+    // A homogeneous sphere without spin has v' = v + α(ε_t − 1)v.
     close(observed.centre_e_t.unwrap(), 1.0 - 2.0 / 7.0 * (1.0 - eps_t), 1e-14);
     close(observed.patch_psi_1, 1.0, 1e-15);
     close(observed.patch_psi_2, eps_t, 1e-14);
@@ -308,15 +310,21 @@ fn bodies_that_do_not_collide() {
     let velocity_m_per_s = Vector3::new(f64::INFINITY, 0.0, 0.0);
     assert!(message(meet(Motion { velocity_m_per_s, ..at(-0.02) })).contains("finite"));
 
-    let hit =
-        |plane: WallMotion| Encounter::with_wall((&sphere, &motion), (&FLOOR.0, &plane), &SURFACE);
-    let plane = FLOOR.1;
-    assert!(hit(plane).is_ok());
-    assert!(message(hit(WallMotion { normal: -plane.normal, ..plane })).contains("above the wall"));
-    assert!(message(hit(WallMotion { normal: Vector3::zeros(), ..plane })).contains("normal"));
+    let hit = |wall_motion: WallMotion| {
+        Encounter::with_wall((&sphere, &motion), (&FLOOR.0, &wall_motion), &SURFACE)
+    };
+    let wall_motion = FLOOR.1;
+    assert!(hit(wall_motion).is_ok());
+    assert!(
+        message(hit(WallMotion { normal: -wall_motion.normal, ..wall_motion }))
+            .contains("above the wall")
+    );
+    assert!(
+        message(hit(WallMotion { normal: Vector3::zeros(), ..wall_motion })).contains("normal")
+    );
 
     let bad =
         Sphere { elasticity: Elasticity { poisson_ratio: 0.6, ..sphere.elasticity }, ..sphere };
-    let result = Encounter::with_wall((&bad, &motion), (&FLOOR.0, &plane), &SURFACE);
+    let result = Encounter::with_wall((&bad, &motion), (&FLOOR.0, &wall_motion), &SURFACE);
     assert!(message(result).contains("poisson_ratio = 0.6"));
 }

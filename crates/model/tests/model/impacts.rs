@@ -1,14 +1,14 @@
-//! Impacts in three dimensions: what is conserved, and what must not matter.
+//! Impacts in three dimensions: what is conserved, and on what the outcome does not depend.
 
 use std::f64::consts::TAU;
 
 use nalgebra::{Rotation3, Unit};
-use stickslip::model::{
+use stickslip_model::{
     Collider, Elasticity, Encounter, EncounterError, Motion, Outcome, Sphere, Surface, Vector3,
     Wall, WallMotion, encounter::TOUCH,
 };
 
-/// Numbers that depend on the seed alone (splitmix64).
+/// Random numbers that depend on the seed alone (splitmix64).
 struct Random(u64);
 
 impl Random {
@@ -44,7 +44,7 @@ impl Random {
     }
 }
 
-/// What the first sphere hits.
+/// The body that the first sphere hits.
 #[derive(Clone, Copy)]
 enum Other {
     Sphere(Sphere, Motion),
@@ -61,7 +61,7 @@ struct Case {
 
 impl Case {
     /// Unequal spheres, or a sphere and a wall that may move, in any orientation. κ, ψ and a are
-    /// drawn, so that all kinds of collisions occur; of ten impacts one is central.
+    /// random, so that all kinds of collisions occur. One impact of ten is central.
     fn random(random: &mut Random) -> Self {
         let elasticity = |random: &mut Random| Elasticity {
             young_modulus_pa: random.logarithmic(1e6, 4e11),
@@ -86,7 +86,7 @@ impl Case {
         let sideways = if central { Vector3::zeros() } else { random.direction() * (0.9 * speed) };
         let touch = random.direction() * random.between(0.0, 5.0 * first.radius_m);
         let motion = Motion {
-            // Positions need not be better than this.
+            // Positions may be wrong by this much.
             position_m: touch
                 + normal * (first.radius_m * (1.0 + random.between(-1.0, 1.0) * TOUCH / 2.0)),
             velocity_m_per_s: drift - normal * speed + sideways,
@@ -96,8 +96,8 @@ impl Case {
             let elasticity = random.chance(0.7).then(|| elasticity(random));
             let across = random.direction().cross(&normal) * first.radius_m;
             let point_m = touch + across;
-            let plane = WallMotion { point_m, normal: normal * 3.0, velocity_m_per_s: drift };
-            Other::Wall(Wall { elasticity }, plane)
+            let wall_motion = WallMotion { point_m, normal: normal * 3.0, velocity_m_per_s: drift };
+            Other::Wall(Wall { elasticity }, wall_motion)
         } else {
             let second = sphere(random);
             let position_m = touch - normal * second.radius_m;
@@ -107,7 +107,8 @@ impl Case {
         let mut surface =
             Surface { friction: 1.0, tangential_stiffness_kg_per_s2: 1.0, damping_time_s: 1.0 };
         let case = Self { sphere: first, motion, other, surface };
-        // With unit values, κ, ψ and a are the factors by which these numbers are to be scaled.
+        // Here the properties of the surface are 1. κ and a are proportional to the stiffness and
+        // the damping time, and ψ to 1/friction.
         let encounter = case.encounter();
         let contact = encounter.contact();
         surface.friction = contact.psi() / random.logarithmic(1e-3, 3.0);
@@ -130,7 +131,9 @@ impl Case {
             Other::Sphere(sphere, motion) => {
                 Encounter::of_spheres(first, (sphere, motion), &self.surface)
             }
-            Other::Wall(wall, plane) => Encounter::with_wall(first, (wall, plane), &self.surface),
+            Other::Wall(wall, wall_motion) => {
+                Encounter::with_wall(first, (wall, wall_motion), &self.surface)
+            }
         }
     }
 
@@ -140,7 +143,7 @@ impl Case {
         (encounter, encounter.outcome(&collision))
     }
 
-    /// The same with every vector put through `turn`, and `boost` added to the velocities.
+    /// The same case with every vector turned by `turn`, and `boost` added to the velocities.
     fn moved(&self, turn: &Rotation3<f64>, boost: Vector3<f64>) -> Self {
         let motion = |motion: &Motion| Motion {
             position_m: turn * motion.position_m,
@@ -149,19 +152,19 @@ impl Case {
         };
         let other = match &self.other {
             Other::Sphere(sphere, second) => Other::Sphere(*sphere, motion(second)),
-            Other::Wall(wall, plane) => {
-                let point_m = turn * plane.point_m;
-                let velocity_m_per_s = turn * plane.velocity_m_per_s + boost;
+            Other::Wall(wall, wall_motion) => {
+                let point_m = turn * wall_motion.point_m;
+                let velocity_m_per_s = turn * wall_motion.velocity_m_per_s + boost;
                 Other::Wall(
                     *wall,
-                    WallMotion { point_m, normal: turn * plane.normal, velocity_m_per_s },
+                    WallMotion { point_m, normal: turn * wall_motion.normal, velocity_m_per_s },
                 )
             }
         };
         Self { motion: motion(&self.motion), other, ..*self }
     }
 
-    /// Mass, moment of inertia and motion of the spheres.
+    /// The spheres with their motions.
     fn spheres(&self) -> Vec<(Sphere, Motion)> {
         match self.other {
             Other::Sphere(sphere, motion) => vec![(self.sphere, self.motion), (sphere, motion)],
@@ -170,7 +173,7 @@ impl Case {
     }
 }
 
-/// The largest of errors that are relative already.
+/// The largest of several relative errors.
 #[derive(Default)]
 struct Worst(f64);
 
@@ -186,7 +189,7 @@ impl Worst {
 fn restitution_error(encounter: &Encounter, outcome: &Outcome) -> f64 {
     let [one, two] = outcome.motions.map(|motion| {
         let lever = encounter.contact_point_m - motion.position_m;
-        // The motion of a wall is that of its surface, without a spin.
+        // The motion of a wall is that of its surface and has no spin.
         (motion.velocity_m_per_s, motion.spin_rad_per_s.cross(&lever))
     });
     let expected = encounter.normal * (outcome.eps_n * encounter.normal_m_per_s)
@@ -196,7 +199,7 @@ fn restitution_error(encounter: &Encounter, outcome: &Outcome) -> f64 {
     (one.0 + one.1 - two.0 - two.1 - expected).norm() / size
 }
 
-/// Relative to the sums of the sizes of what is added up.
+/// Errors are relative to the sums of the sizes of the terms.
 #[test]
 fn momentum_angular_momentum_and_energy_are_conserved() {
     let mut random = Random(1);
@@ -206,7 +209,7 @@ fn momentum_angular_momentum_and_energy_are_conserved() {
         let case = Case::random(&mut random);
         let (encounter, outcome) = case.outcome();
         let point = random.direction() * random.logarithmic(1e-3, 10.0);
-        // A wall takes up the opposite of the impulse where it is touched.
+        // A wall receives the opposite impulse at the point of contact.
         let on_wall = match case.other {
             Other::Sphere(..) => Vector3::zeros(),
             Other::Wall(..) => -outcome.impulse_n_s,
@@ -236,16 +239,16 @@ fn momentum_angular_momentum_and_energy_are_conserved() {
         kinds[2] += usize::from(encounter.tangent.is_none());
     }
     assert!(kinds.iter().all(|&count| count > 9_000), "{kinds:?}");
-    // Measured: 9.3e-13, from the rounding of the point of contact beside a sphere 10⁴ times
-    // smaller than its partner.
+    // Measured: 9.3e-13, from the rounding of the point of contact if one sphere is 10⁴ times
+    // smaller than the other.
     assert!(surfaces.0 < 2e-12, "{}", surfaces.0);
-    // Measured: 1.5e-16, 2.7e-16 and 6.3e-13. Energy shows the errors of the integration, which
+    // Measured: 1.5e-16, 2.7e-16 and 6.3e-13. The energy has the errors of the integration, which
     // grow with κ.
     assert!(momentum.0 < 3e-16 && angular.0 < 6e-16, "{} {}", momentum.0, angular.0);
     assert!(energy.0 < 1e-12, "{}", energy.0);
 }
 
-/// Relative to the speeds of the surfaces.
+/// Errors are relative to the speeds of the surfaces.
 #[test]
 fn orientation_frame_and_order_do_not_matter() {
     let mut random = Random(2);

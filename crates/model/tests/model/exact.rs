@@ -1,20 +1,18 @@
-//! The closed form against the reference data, closer than `tests/reference.rs` asks of both
-//! engines.
+//! The exact engine against the reference data, with narrower bounds than `reference.rs` has for
+//! both engines.
 
-mod common;
-
-use common::{Case, cases, file, number};
-use stickslip::model::exact::{self, CONTACT_TIME};
-use stickslip::model::{Collision, Contact};
+use crate::common::{Case, cases, file, number};
+use stickslip_model::exact::{self, CONTACT_TIME};
+use stickslip_model::{Collision, Contact};
 
 fn exact(contact: Contact) -> Collision {
     exact::collide(contact).expect("an undamped collision")
 }
 
-/// Largest errors of the switches of one collision: time, spring and velocity, and of the time left
-/// relative to itself.
+/// Largest errors of the switches of one collision: the absolute error of times, springs and
+/// velocities, and the relative error of times left.
 ///
-/// Its itinerary and final velocity must be right.
+/// The itinerary and the final velocity of the collision must be right.
 fn errors(case: &Case) -> (f64, f64) {
     let collision = exact(case.contact);
     assert!(case.same_itinerary(&collision), "{:?}", case.contact);
@@ -50,7 +48,7 @@ fn collisions_beside_switch_boundaries() {
     for case in cases("undamped_hard") {
         let (absolute, of_time_left) = errors(&case);
         assert!(absolute < 1e-11, "{:?}: {absolute}", case.contact);
-        // Close to the end the time left goes as w², and w is known to about 4e-16.
+        // Close to the end the time left is proportional to w², and w is known to about 4e-16.
         let known = 2.0 * 4e-16 / case.number("w_final").abs();
         assert!(of_time_left < known + 1e-11, "{:?}: {of_time_left}", case.contact);
     }

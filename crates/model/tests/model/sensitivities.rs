@@ -1,15 +1,12 @@
-//! Derivatives of collisions, against differences of references with 60 digits.
+//! Derivatives of collisions against differences of references with 60 digits.
 
-#[expect(dead_code, reason = "shared with other tests")]
-mod common;
-
-use common::{cases, number};
+use crate::common::{cases, number};
 use serde_json::Value;
-use stickslip::model::{Collider, Contact, Derived};
-use stickslip::solver::Dopri5;
+use stickslip_model::{Collider, Contact, Derived};
+use stickslip_solver::Dopri5;
 
-/// The largest error of a result and of its derivatives, relative to the largest derivative of its
-/// kind in the collision, or to 1.
+/// The largest error of results and of their derivatives, relative to the largest of the same kind
+/// in the collision, or to 1.
 fn error(expected: &[&Value], found: &[Derived]) -> f64 {
     assert_eq!(expected.len(), found.len());
     let part = |derived: &Derived| [derived.value, derived.kappa, derived.psi, derived.damping];
@@ -25,8 +22,8 @@ fn error(expected: &[&Value], found: &[Derived]) -> f64 {
     errors.fold(0.0, f64::max)
 }
 
-/// The largest errors over all references: of the states at the end, and of times.
-fn largest(sensitivity: impl Fn(Contact) -> stickslip::model::Sensitivity) -> [f64; 2] {
+/// The largest errors over all references: of final states, and of times.
+fn largest(sensitivity: impl Fn(Contact) -> stickslip_model::Sensitivity) -> [f64; 2] {
     let mut largest = [0.0_f64; 2];
     for case in cases("sensitivities") {
         let found = sensitivity(case.contact);
