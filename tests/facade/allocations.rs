@@ -1,12 +1,10 @@
 //! A collision allocates nothing.
 
-mod common;
-
 use std::error::Error;
 use std::hint::black_box;
 
 use allocation_counter::measure;
-use common::cases;
+use crate::common::cases;
 use stickslip::model::regularized::{END, Phase, Regularized};
 use stickslip::model::{
     Collider, Collision, Contact, Encounter, FEW_SWITCHES, Material, Motion, Sphere, Surface,

@@ -4,9 +4,6 @@
 //! `cargo run --release --example atlas_against_engines` does the same with more points, also up to
 //! κ = 1000.
 
-#[expect(dead_code, reason = "shared with other tests")]
-mod common;
-
 use std::sync::LazyLock;
 
 use rayon::prelude::*;
@@ -180,8 +177,8 @@ fn reference_boundaries_lie_on_traced_curves() {
     let plane = &*ATLAS;
     let mut largest = 0.0_f64;
     let mut count = 0;
-    for boundary in common::file("boundaries")["boundaries"].as_array().expect("boundaries") {
-        let (kappa, psi) = (common::number(&boundary["kappa"]), common::number(&boundary["psi"]));
+    for boundary in crate::common::file("boundaries")["boundaries"].as_array().expect("boundaries") {
+        let (kappa, psi) = (crate::common::number(&boundary["kappa"]), crate::common::number(&boundary["psi"]));
         let point = CollisionPlane::point(kappa, psi);
         if !plane.window().contains(&point) {
             continue;

@@ -1,16 +1,16 @@
 //! The examples run, and hold what they assert.
 
-#[path = "../examples/arenstorf.rs"]
+#[path = "../../examples/arenstorf.rs"]
 mod arenstorf;
-#[path = "../examples/belt_atlas/main.rs"]
+#[path = "../../examples/belt_atlas/main.rs"]
 mod belt_atlas;
-#[path = "../examples/bouncing_ball.rs"]
+#[path = "../../examples/bouncing_ball.rs"]
 mod bouncing_ball;
-#[path = "../examples/friction_belt.rs"]
+#[path = "../../examples/friction_belt.rs"]
 mod friction_belt;
-#[path = "../examples/impact_oscillator.rs"]
+#[path = "../../examples/impact_oscillator.rs"]
 mod impact_oscillator;
-#[path = "../examples/relay.rs"]
+#[path = "../../examples/relay.rs"]
 mod relay;
 
 #[test]
