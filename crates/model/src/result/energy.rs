@@ -2,7 +2,7 @@
 
 use super::finite::NotFinite;
 
-/// Where the energy of a collision went, in reduced variables.
+/// The energy ledger of a collision, in reduced variables: where its energy went.
 ///
 /// Normal motion and tangential motion exchange no energy; each has entries of its own. Normal
 /// energies are in units of m g_n² (½ at impact), tangential ones in units of α m g_n² (μ/α)² (ψ²/2

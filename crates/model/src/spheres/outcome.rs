@@ -52,7 +52,7 @@ pub struct ForceSwitch {
     pub tangential_force_n: f64,
 }
 
-/// Where the energy of a collision went, in J.
+/// The energy account of a collision in J: where its energy went.
 ///
 /// Kinetic energies are those of the spheres, rotation included, in the frame in which the motions
 /// are given.

@@ -163,7 +163,7 @@ fn follow_exits(contact: &Contact, which: &Margin, on_exit: &mut impl FnMut(Exit
     }
 }
 
-/// The crest of a slip phase, of which there is one.
+/// The place of the only crest of a slip phase.
 const CREST: Place = Place::Minimum { near: Hint(0.0), number: 0 };
 
 /// C − h at the crest, if the phase passes the crest before the largest compression.

@@ -1,5 +1,4 @@
-//! What is added up over the phases of a collision: the work of sliding, and the reversals of the
-//! motion.
+//! Totals over the phases of a collision: the work of sliding, and the reversals of the motion.
 
 use super::slide::SlipPhase;
 use super::trajectory::{Half, Moment, NormalMotion};

@@ -1,4 +1,4 @@
-//! What a run adds up while it goes on: switches, reversals and the work of sliding.
+//! The account of a run while it goes on: switches, reversals and the work of sliding.
 
 use stickslip_solver::{Observer, State, SwitchEvent};
 

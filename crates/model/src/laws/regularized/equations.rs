@@ -38,8 +38,8 @@ pub(crate) struct Force<T> {
     pub second: T,
 }
 
-/// A parameter of a contact by which the equations are differentiated. Stiffness and impact ratio
-/// may have any size: their logarithms are used.
+/// A parameter of the derivatives. Stiffness and impact ratio may have any size: their logarithms
+/// are used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Parameter {
     LnKappa,
