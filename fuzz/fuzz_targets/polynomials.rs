@@ -1,4 +1,4 @@
-//! Bytes as a hybrid system: what `crates/solver/tests/solver/checks.rs` says of its runs.
+//! Bytes as polynomial guards. `crates/solver/tests/solver/checks.rs` says what must hold.
 
 #![no_main]
 #![allow(dead_code, reason = "each target uses one of the checks")]

@@ -1,35 +1,36 @@
-//! What holds of every run of a hybrid system, made from bytes.
+//! What holds of every run of a hybrid system. Tests and fuzz targets share these checks.
 
 use stickslip_solver::{
     Direction, Dop853, Dopri5, Guard, HybridSystem, Method, Observer, Options, Outcome, RunError,
     Start, State, StepSize, SwitchEvent, margins, run,
 };
 
-/// Runs polynomials as guards by both methods, and holds that their signs change where the run
-/// says, and nowhere else.
+/// Runs polynomials as guards by both methods, and checks that their signs change exactly where the
+/// run reports it. The polynomials are made from bytes.
 ///
 /// # Errors
-/// What does not hold.
+/// A description of what does not hold.
 pub fn polynomials(bytes: &[u8]) -> Result<(), String> {
     let mut bytes = Bytes(bytes);
     let step_size = bytes.step_size();
     signs([bytes.polynomial(), bytes.polynomial()], step_size)
 }
 
-/// The same for the polynomials with these coefficients, lowest first, on [0, 1].
+/// Checks on [0, 1] that the signs of two polynomials change exactly where the run reports it.
+/// Their coefficients are given, lowest first.
 ///
 /// # Errors
-/// What does not hold.
+/// A description of what does not hold.
 pub fn signs(guards: [[f64; COEFFICIENTS]; 2], step_size: StepSize) -> Result<(), String> {
     follow_signs(Dop853, &Polynomials { guards }, step_size)?;
     follow_signs(Dopri5, &Polynomials { guards }, step_size)
 }
 
-/// Runs a system of any expressions by both methods, with its margins, and holds that results are
-/// finite, in order and in the span.
+/// Runs a system of any expressions by both methods, with its margins, and checks that results are
+/// finite, in order and in the span. The system is made from bytes.
 ///
 /// # Errors
-/// What does not hold.
+/// A description of what does not hold.
 pub fn expressions(bytes: &[u8]) -> Result<(), String> {
     let mut bytes = Bytes(bytes);
     let options = Options {
@@ -51,7 +52,7 @@ pub fn expressions(bytes: &[u8]) -> Result<(), String> {
     in_order(Dopri5, &system, start, end, &options)
 }
 
-/// Degrees up to which the six values of the first look decide by themselves.
+/// The number of coefficients. Up to this degree, the six values of the first look are decisive.
 pub const COEFFICIENTS: usize = 6;
 
 /// y' = 1 with two polynomials as guards that fire in either direction.
@@ -86,8 +87,8 @@ fn value(coefficients: &[f64; COEFFICIENTS], y: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * y + coefficient)
 }
 
-/// Whether a polynomial is so flat at a root that steps beside it, too short to show the scatter of
-/// its values, may leave it unresolved: see the limits in `docs/numerics.md`.
+/// Whether a polynomial is so flat at a root that it may stay unresolved. Steps beside such a root
+/// may be too short to show the scatter of the values. See the limits in `docs/numerics.md`.
 fn is_double_root(coefficients: &[f64; COEFFICIENTS], s: f64) -> bool {
     let size: f64 = coefficients.iter().map(|coefficient| coefficient.abs()).sum();
     let slope =
@@ -95,7 +96,7 @@ fn is_double_root(coefficients: &[f64; COEFFICIENTS], s: f64) -> bool {
     value(coefficients, s).abs() <= 1e-14 * size && value(&slope, s).abs() <= 1e-6 * size
 }
 
-/// Where which guards fired, one bit each.
+/// The guards that fired, one bit each, and the places where they fired.
 struct Fired(Vec<(u32, f64)>);
 
 impl<Mode, const N: usize> Observer<Mode, N> for Fired {
@@ -111,7 +112,7 @@ fn follow_signs<M: Method>(
 ) -> Result<(), String> {
     let options = Options { step_size, max_steps: 2000, max_switches: 100, ..Options::default() };
     let start = Start { mode: (), s: 0.0, state: State::from([0.0]) };
-    // A guard that starts from a zero has to say so.
+    // A guard that starts from zero would have to declare that.
     if system.guards.iter().any(|guard| *guard != [0.0; COEFFICIENTS] && guard[0] == 0.0) {
         return Ok(());
     }
@@ -129,7 +130,7 @@ fn follow_signs<M: Method>(
     }
     for (guard, coefficients) in system.guards.iter().enumerate() {
         let size: f64 = coefficients.iter().map(|coefficient| coefficient.abs()).sum();
-        // Clusters of roots whose guard stays below this count by their sum only.
+        // In a cluster of roots where the guard stays below this, only the total counts.
         let clear = |value: f64| value.abs() > 1e-13 * size;
         let first = value(coefficients, 0.0);
         if !clear(first) {
@@ -149,11 +150,11 @@ fn follow_signs<M: Method>(
     Ok(())
 }
 
-/// Modes of a system of expressions.
+/// The number of modes of a system of expressions.
 const MODES: usize = 2;
 
-/// A system whose right-hand sides and guards are any expressions; guard 0 leads to the other mode,
-/// guard 1 moves the state.
+/// A system whose right-hand sides and guards are any expressions. Guard 0 leads to the other mode,
+/// and guard 1 moves the state.
 struct Expressions {
     field: [[Expression; 2]; MODES],
     guards: [[Guard; 2]; MODES],
@@ -212,7 +213,7 @@ fn in_order<M: Method>(
     }
 }
 
-/// Operations on a stack of numbers.
+/// Operations on a stack of two numbers.
 #[derive(Clone, Copy, Debug)]
 struct Expression([(u8, f64); 8]);
 
@@ -241,7 +242,7 @@ impl Expression {
     }
 }
 
-/// Bytes that are used up from the front, and are 0 afterwards.
+/// Bytes that are read from the front. After the last one, they are 0.
 struct Bytes<'a>(&'a [u8]);
 
 impl Bytes<'_> {

@@ -1,8 +1,8 @@
-//! The event battery: guards whose zeros are known, and what a run makes of them.
+//! The event battery: guards whose zeros are known, and what a run finds of them.
 //!
-//! Most cases run on y' = 1, which both methods integrate exactly, so that the guard along the run
-//! is the planted function of s itself. `cargo test --test event_battery -- --ignored --nocapture`
-//! prints the table of docs/numerics.md.
+//! Most cases run on y' = 1. Both methods integrate this exactly, so that the guard along the run
+//! is the planted function of s itself. `cargo test -p stickslip-solver --test solver
+//! print_the_table -- --ignored --nocapture` prints the table of `docs/numerics.md`.
 
 mod guards;
 mod planted;

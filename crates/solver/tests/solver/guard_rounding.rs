@@ -1,5 +1,4 @@
-//! Guards that are known to their own rounding only: runs and margins go on where their signs are
-//! lost in it.
+//! Guards whose signs are lost in their own rounding. Runs and margins must cope with them.
 
 use std::f64::consts::PI;
 
@@ -8,8 +7,8 @@ use stickslip_solver::{
     RunError, Start, State, margins, run,
 };
 
-/// A load on a belt of velocity v that is shaken, in units in which its time scale is `scale`: w′ =
-/// v + fΩ sin Ωt − u.
+/// A load on a belt of velocity v that is shaken: w′ = v + fΩ sin Ωt − u. Its time scale is
+/// `scale`.
 struct Belt {
     velocity: f64,
     frequency: f64,
@@ -62,10 +61,10 @@ impl Belt {
     }
 }
 
-/// Where fΩ is a little above v the excess w = vt − f cos Ωt − 1 of the load has extrema at sin Ωt
-/// = −v/fΩ, where its rate is the difference of two terms of size 0.5.
+/// If fΩ is a little above v, the excess w = vt − f cos Ωt − 1 of the load has extrema at sin Ωt =
+/// −v/fΩ. Its rate there is the difference of two terms of size 0.5.
 #[test]
-fn a_rate_that_cancels_within_leaves_its_minimum() {
+fn a_rate_that_is_a_difference_of_large_terms_still_shows_its_minimum() {
     for own_rates in [true, false] {
         for away in [0.0, 1e-15, -1e-15, 1e-12, -1e-12, 3e-12, 1e-10, -1e-10, 1e-9, -1e-9, 1e-8] {
             let belt = Belt {
@@ -83,8 +82,8 @@ fn a_rate_that_cancels_within_leaves_its_minimum() {
             let found = belt.margins();
             let first = &found.near_misses[0];
             assert!(first.margin.exits.is_empty());
-            // Measured: 1.5e-13, the rounding of 0.5 over the curvature, which is 5e-4, and
-            // 1.7e-15.
+            // Measured: 1.5e-13 and 1.7e-15. The first is the rounding of 0.5 divided by the
+            // curvature, which is 5e-4.
             assert!((first.s - minimum).abs() < 3e-13, "{own_rates} {away}");
             assert!((first.value - value).abs() < 4e-15, "{own_rates} {away}");
             assert_eq!(found.outcome, Outcome::EndedByGuard { guard: 1 });
@@ -92,8 +91,7 @@ fn a_rate_that_cancels_within_leaves_its_minimum() {
     }
 }
 
-/// Without own rates the same margins are found as with them, whether the time scale is a second or
-/// a microsecond.
+/// Margins are the same with and without rates of the system, also on other time scales.
 #[test]
 fn margins_by_differences_are_those_by_rates() {
     let mut random = fastrand::Rng::with_seed(3);
@@ -124,7 +122,7 @@ fn margins_by_differences_are_those_by_rates() {
     assert!(compared > 1000 && largest < 3e-14, "{compared} {largest:e}");
 }
 
-/// y′ = 1 with guard 0.5 + e + 0.5 cos y, which dips below zero at π if e < 0 and whose rounding is
+/// y′ = 1 with the guard 0.5 + e + 0.5 cos y. It dips below zero at π if e < 0, and its rounding is
 /// that of 0.5.
 struct Dip {
     raised: f64,
@@ -176,7 +174,7 @@ fn a_dip_of_rounding_depth_is_not_identically_zero() {
                         [crossings(Dopri5, &dip, y, &options), crossings(Dop853, &dip, y, &options)]
                     {
                         let name = format!("{direction:?} {raised:e} {y} {max_step:e}: {found:?}");
-                        // Where the depth is that of the rounding it may show or not.
+                        // A dip whose depth is that of the rounding may be found or not.
                         if raised.abs() > 2e-16 || raised >= 0.0 {
                             assert_eq!(found.len(), expected, "{name}");
                         }

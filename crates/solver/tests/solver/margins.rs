@@ -27,7 +27,7 @@ impl HybridSystem<2, 1> for Drop {
     }
 }
 
-/// Height at the end of a run of length 1, above the floor and below: h − 1/2.
+/// The height at the end of a run of length 1 is h − 1/2, also below the floor.
 #[test]
 fn the_end_of_the_span_leaves_a_margin() {
     let start = |height| Start { mode: (), s: 0.0, state: State::from([height, 0.0]) };
@@ -42,7 +42,7 @@ fn the_end_of_the_span_leaves_a_margin() {
         // Measured: 1.0e-15.
         assert!((value - (height - 0.5)).abs() < 2e-15, "{height}: {value}");
     }
-    // After a bounce it is the next flight that ends in the air.
+    // After a bounce, the next flight ends in the air.
     let free = margins(Dop853, &Drop, start(0.4), 1.0, &options).unwrap();
     assert_eq!(free.fired, [0]);
     assert!(

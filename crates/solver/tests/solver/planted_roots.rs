@@ -1,9 +1,9 @@
-//! Polynomials with planted roots as guards: as many crossings are found as were planted, in any
-//! steps.
+//! Polynomials with planted roots as guards: a run finds exactly the planted crossings, with any
+//! step size.
 //!
-//! The guard is a polynomial of y with y' = 1, so that its roots are known; they are random,
-//! clustered and double. Where the guard is too small on a step to have a sign in double precision
-//! (below 64 units in the last place of its largest value there), nothing is asked.
+//! The guard is a polynomial of y with y' = 1, so that its roots are known. They are random,
+//! clustered or double. The tests avoid guards that are too small on a step to have a sign in
+//! double precision, below 64 units in the last place of their largest value there.
 
 use proptest::prelude::*;
 use stickslip_solver::{
@@ -41,8 +41,8 @@ impl HybridSystem<1, 1> for Planted<'_> {
 }
 
 impl Planted<'_> {
-    /// The crossings in [0, 1] that fire: roots of odd multiplicity, in order, by the side from
-    /// which they come.
+    /// The crossings in [0, 1] that fire, in order: roots of odd multiplicity that the guard
+    /// crosses in its direction.
     fn expected(&self) -> Vec<f64> {
         let mut roots = self.roots.to_vec();
         roots.sort_by(f64::total_cmp);
@@ -83,7 +83,7 @@ impl Planted<'_> {
         times.0
     }
 
-    /// Holds that both methods find what was planted, to rounding, in steps of any size.
+    /// Checks that both methods find the planted crossings to rounding, with steps of any size.
     fn check(&self, step_sizes: &[StepSize]) -> Result<(), TestCaseError> {
         let expected = self.expected();
         for &step_size in step_sizes {
@@ -106,22 +106,22 @@ impl Planted<'_> {
     }
 }
 
-/// Bound of the error of a time: the state's rounding over up to 1000 steps. Measured in 200 000
-/// runs: 5e-14 inside clusters, 7e-15 elsewhere.
+/// A bound for the error of a time: the rounding of the state over up to 1000 steps. Measured in
+/// 200 000 runs: 5e-14 inside clusters, and 7e-15 elsewhere.
 const ROUNDING: f64 = 1e-13;
 
 fn directions() -> impl Strategy<Value = Direction> {
     prop::sample::select(vec![Direction::Falling, Direction::Rising, Direction::Either])
 }
 
-/// One step, a few, many, and those of the error estimate.
+/// One step, a few steps, many steps, and adaptive steps.
 fn step_sizes() -> impl Strategy<Value = [StepSize; 4]> {
     (0.002..0.02, 0.05..0.5).prop_map(|(many, few)| {
         [StepSize::Fixed(1.0), StepSize::Fixed(few), StepSize::Fixed(many), StepSize::Adaptive]
     })
 }
 
-/// Whether neighbours are apart, and all of them from the ends of the run.
+/// Whether all roots are at least `least` apart, and 1e-3 away from the ends of the run.
 fn apart(roots: &[f64], least: f64) -> bool {
     let mut roots = roots.to_vec();
     roots.sort_by(f64::total_cmp);
@@ -160,8 +160,8 @@ proptest! {
     ) {
         let d = 0.1 * 10.0_f64.powf(-digits);
         let roots = [place, place + d, third];
-        // Between the two the guard reaches d²/4 times its slope there: above 1e-16 for d > 3e-8 if the third
-        // root is no nearer than 0.05.
+        // Between the two roots the guard reaches d²/4 times its slope there. That is above 1e-16
+        // for d > 3e-8 if the third root is at least 0.05 away.
         prop_assume!((third - place).abs() > 0.05);
         prop_assume!(apart(&roots, 1e-8));
         Planted { roots: &roots, positive: 1.0, sign, direction }.check(&steps)?;
@@ -178,7 +178,7 @@ proptest! {
     ) {
         let d = 0.1 * 10.0_f64.powf(-digits);
         let roots = [place, place + d, place + d * (1.0 + ratio)];
-        // Gaps of 5e-5 and more: the guard reaches 0.3 gap³ = 4e-14 between the roots.
+        // With gaps of at least 5e-5 the guard reaches 0.3 gap³ = 4e-14 between the roots.
         prop_assume!(apart(&roots, 5e-5));
         Planted { roots: &roots, positive: 0.5, sign, direction }.check(&steps)?;
     }

@@ -1,5 +1,5 @@
-//! What must hold of every run, for a bounded number of random systems. The fuzz targets (`fuzz/`)
-//! hold the same for as long as they run.
+//! What must hold of every run, for a bounded number of random systems. The fuzz targets in `fuzz/`
+//! check the same for as long as they run.
 
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -8,7 +8,7 @@ use stickslip_solver::StepSize;
 
 use crate::checks;
 
-/// Holds `check` for `cases` values, the same ones every time.
+/// Checks `cases` values, which are the same every time.
 fn hold<S: Strategy>(cases: u32, strategy: &S, check: impl Fn(S::Value) -> Result<(), String>) {
     let config = ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() };
     let rng = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
@@ -24,7 +24,7 @@ fn polynomials_as_guards() {
     hold(20_000, &vec(any::<u8>(), 0..16), |bytes| checks::polynomials(&bytes));
 }
 
-/// The coefficients of the polynomial with these roots, in 64ths: those that fit are exact.
+/// The coefficients of the polynomial with these roots, which are given in 64ths.
 fn with_roots(roots: &[u8], factor: f64) -> [f64; checks::COEFFICIENTS] {
     let mut coefficients = [0.0; checks::COEFFICIENTS];
     coefficients[0] = factor;
@@ -44,12 +44,12 @@ fn polynomials_with_common_roots() {
     let factors = prop::sample::select(vec![1.0, -1.0, 0.25, -3.0]);
     let step = prop_oneof![
         Just(StepSize::Adaptive),
-        // Many end on a root.
+        // Many of these steps end on a root.
         (1..128_u8).prop_map(|part| StepSize::Fixed(f64::from(part) / 128.0)),
     ];
     hold(5000, &(1..64_u8, others(), others(), factors, step), |case| {
         let (common, one, other, factor, step) = case;
-        // Simple roots: a double one that cancels within rounding may show a side it has not.
+        // The roots are simple, because rounding near a double root may show a wrong sign.
         let [one, other] = [one, other].map(|mut roots| {
             roots.push(common);
             roots.sort_unstable();
@@ -60,7 +60,7 @@ fn polynomials_with_common_roots() {
     });
 }
 
-/// Guards that vanish together, which fired in turns without end.
+/// Guards that vanish together, and once fired by turns without end.
 #[test]
 fn common_roots_found_before() {
     let cases = [
@@ -79,15 +79,15 @@ fn expressions_as_systems() {
     hold(3000, &vec(any::<u8>(), 0..200), |bytes| checks::expressions(&bytes));
 }
 
-/// Found by fuzzing.
+/// Faults that fuzzing found.
 #[test]
 fn faults_found_before() {
-    // A double root at the end of the span, whose guard fires between two steps too short to show
-    // its scatter.
+    // A guard with a double root at the end of the span. It fires between two steps that are too
+    // short to show the scatter of its values.
     checks::polynomials(&[0x82, 0x02, 0x80, 0x00, 0x00, 0x00, 0xfd, 0x01, 0xff, 0xff, 0x01])
         .unwrap();
-    // A guard that is not a number at its own minimum; a guard that fires where the right-hand side
-    // is infinite.
+    // A guard that is not a number at its own minimum, and a guard that fires where the right-hand
+    // side is infinite.
     checks::expressions(&[
         0x1b, 0xe9, 0xe9, 0xe9, 0xe9, 0xe9, 0xe9, 0xe9, 0xe9, 0xe9, 0xe9, 0xe9, 0xe9, 0xe9, 0xe9,
         0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x31, 0x3d, 0x01, 0x03, 0xb1, 0xb0, 0xb0, 0xb0,

@@ -1,11 +1,10 @@
-//! Smooth problems with known ends: published results of a published code, DETEST, and work
-//! counters.
+//! Smooth problems: published results of other codes, the DETEST problems, and work counters.
 
 use serde_json::Value;
 use stickslip_solver::{Dop853, Dopri5, Method, Options, Run, State, integrate};
 
-/// The restricted three-body problem on a closed orbit of Arenstorf's: Hairer, Nørsett and Wanner,
-/// *Solving Ordinary Differential Equations I*, 2nd ed., section II.0.
+/// The restricted three-body problem on a closed orbit of Arenstorf (Hairer, Nørsett and Wanner,
+/// *Solving Ordinary Differential Equations I*, 2nd ed., section II.0).
 fn three_bodies(_s: f64, y: &State<4>) -> State<4> {
     let moon = 0.012277471;
     let earth = 1.0 - moon;
@@ -31,14 +30,14 @@ fn orbit<M: Method>(method: M, tolerance: f64, first_step: Option<f64>) -> Run<(
         .expect("a smooth problem")
 }
 
-/// Accepted and rejected steps and evaluations of the right-hand side.
+/// The numbers of accepted steps, of rejected steps, and of evaluations of the right-hand side.
 fn work<const N: usize>(run: &Run<(), N>) -> (usize, usize, usize) {
     (run.statistics.accepted, run.statistics.rejected, run.statistics.field)
 }
 
 #[test]
 fn the_orbit_repeats_the_published_run_of_dopri5() {
-    // dopri5.f of Hairer and Wanner, as quoted by cpmech/russell,
+    // The output of dopri5.f of Hairer and Wanner, as quoted by cpmech/russell,
     // russell_ode/tests/test_dopri5_arenstorf_debug.rs: 238 steps, 217 accepted, 21 rejected,
     // 1429 evaluations, and this state.
     let published = State::from([
@@ -49,8 +48,8 @@ fn the_orbit_repeats_the_published_run_of_dopri5() {
     ]);
     let run = orbit(Dopri5, 1e-7, Some(1e-4));
     assert_eq!(work(&run), (217, 21, 1429));
-    // The same steps: only rounding differs, which the orbit amplifies about 1e6 times. Measured:
-    // 2.7e-10 and, with the weights' sums in another order, 5.6e-10.
+    // The steps are the same, and only rounding differs. The orbit amplifies it about 1e6 times.
+    // Measured: 2.7e-10, and 5.6e-10 if the weighted sums are taken in another order.
     let off = (run.state - published).norm();
     println!("off by {off:.1e}");
     assert!(off < 2e-9, "{off:e}");
@@ -63,11 +62,12 @@ fn van_der_pol(epsilon: f64) -> impl Fn(f64, &State<2>) -> State<2> {
 
 #[test]
 fn van_der_pol_repeats_the_published_runs_of_dop853() {
-    // dop853.f, as quoted by cpmech/russell, russell_ode/tests/test_dopri8_van_der_pol.rs and
-    // test_dopri8_van_der_pol_debug.rs. They report 2 evaluations before the first step where this
-    // code needs 1 if told the first step, and the first run 3 more an accepted step for its
-    // dense output. Ends measured off by 1e-13 and 1.3e-9: the second run amplifies rounding at
-    // its loose tolerance.
+    // The output of dop853.f, as quoted by cpmech/russell,
+    // russell_ode/tests/test_dopri8_van_der_pol.rs and test_dopri8_van_der_pol_debug.rs. It counts
+    // 2 evaluations before the first step, where this code needs 1 if the first step is given. In
+    // the first run it counts 3 more for each accepted step, for dense output. The measured
+    // differences at the end are 1e-13 and 1.3e-9. The second run amplifies rounding because of its
+    // loose tolerance.
     let published = [
         (
             1e-3,
@@ -97,9 +97,9 @@ fn van_der_pol_repeats_the_published_runs_of_dop853() {
 
 #[test]
 fn the_orbit_closes() {
-    // Distance of the end from the start over the tolerance. The orbit amplifies errors about 1e6
-    // times near the moon. Measured: 7e3, 8e3, 4e3, 1e4 for 8(5,3) and 1.5e4, 2e4, 2.9e4, 3e4
-    // for 5(4).
+    // The distance of the end from the start, divided by the tolerance. The orbit amplifies errors
+    // about 1e6 times near the moon. Measured: 7e3, 8e3, 4e3, 1e4 for 8(5,3) and 1.5e4, 2e4, 2.9e4,
+    // 3e4 for 5(4).
     for tolerance in [1e-7, 1e-9, 1e-11, 1e-13] {
         let off = (orbit(Dop853, tolerance, None).state - orbit_start()).norm();
         println!("dop853 {tolerance:e}: {off:.1e}");
@@ -110,7 +110,7 @@ fn the_orbit_closes() {
     }
 }
 
-/// The states at the end, to 25 digits.
+/// The state at the end of a problem, to 25 digits.
 fn reference(problem: &str) -> Vec<f64> {
     let text = include_str!("detest.json");
     let data: Value = serde_json::from_str(text).expect("valid JSON");
@@ -120,8 +120,8 @@ fn reference(problem: &str) -> Vec<f64> {
     digits.iter().map(|x| x.as_str().expect("digits").parse().expect("a number")).collect()
 }
 
-/// Runs a problem of DETEST to s = 20 at tolerances from 1e-6 to 1e-12: the largest error over the
-/// tolerance.
+/// Runs a DETEST problem to s = 20 at tolerances from 1e-6 to 1e-12, and returns the largest error
+/// divided by the tolerance.
 fn detest<M: Method, const N: usize>(
     method: M,
     problem: &str,
@@ -142,7 +142,7 @@ fn detest<M: Method, const N: usize>(
     worst
 }
 
-/// Problems D: Kepler's ellipse from its pericentre.
+/// The right-hand side of the problems D: Kepler's ellipse, which starts at its pericentre.
 fn kepler(_s: f64, y: &State<4>) -> State<4> {
     let cube = (y[0] * y[0] + y[1] * y[1]).powf(1.5);
     State::from([y[2], y[3], -y[0] / cube, -y[1] / cube])
@@ -152,7 +152,7 @@ fn pericentre(e: f64) -> [f64; 4] {
     [1.0 - e, 0.0, 0.0, ((1.0 + e) / (1.0 - e)).sqrt()]
 }
 
-/// The largest error over the tolerance for each problem, with its bound.
+/// Checks the largest error divided by the tolerance against a bound, for each problem.
 fn detest_set<M: Method>(method: M, bounds: [f64; 11]) {
     let worst = [
         detest(method, "A1", [1.0], |_s, y: &State<1>| -y),
@@ -179,25 +179,26 @@ fn detest_set<M: Method>(method: M, bounds: [f64; 11]) {
 
 #[test]
 fn detest_problems_with_dopri5() {
-    // Measured: 0.08, 0.38, 8.9, 1.7, 8.5, 18, 19, 880, 750, 617, 19. Kepler's phase drifts over
-    // three turns.
+    // Measured: 0.08, 0.38, 8.9, 1.7, 8.5, 18, 19, 880, 750, 617, 19. In the problems D, the phase
+    // drifts over three turns.
     let bounds = [0.12, 0.6, 13.0, 2.5, 12.0, 27.0, 28.0, 1300.0, 1100.0, 900.0, 28.0];
     detest_set(Dopri5, bounds);
 }
 
 #[test]
 fn detest_problems_with_dop853() {
-    // Measured: 0.01, 0.01, 63, 0.37, 5.9, 26, 3.2, 86, 279, 302, 1.1. The pair's estimate is too
-    // low on A3, also in SciPy's implementation (557 tolerances at 1e-8 in as many steps).
+    // Measured: 0.01, 0.01, 63, 0.37, 5.9, 26, 3.2, 86, 279, 302, 1.1. The error estimate of the
+    // pair is too low on A3. SciPy's implementation shows the same (557 tolerances at 1e-8 in as
+    // many steps).
     let bounds = [0.02, 0.02, 95.0, 0.6, 9.0, 39.0, 5.0, 130.0, 420.0, 450.0, 1.7];
     detest_set(Dop853, bounds);
 }
 
 #[test]
 fn work_counters_stay_as_they_are() {
-    // A change here changes what every run costs, and must be meant. Each run's first step is
-    // estimated, which costs one evaluation beside the one at the start; a step costs 6 (5(4)),
-    // or 11 and one more if it is accepted (8(5,3)).
+    // A change of these numbers changes the cost of every run, and must be intended. The estimate
+    // of the first step costs one evaluation, and the start another one. A step of 5(4) costs 6
+    // evaluations. A step of 8(5,3) costs 11, and one more if it is accepted.
     let options = Options::with_tolerance(1e-10);
     let start = State::from(pericentre(0.9));
     let run = integrate(Dopri5, kepler, 0.0, start, 20.0, &options, &mut ()).expect("smooth");
@@ -208,7 +209,7 @@ fn work_counters_stay_as_they_are() {
     let start = State::from([2.0, 0.0]);
     let run = integrate(Dop853, oscillator, 0.0, start, 20.0, &options, &mut ()).expect("smooth");
     assert_eq!(work(&run), (184, 56, 2 + 12 * 184 + 11 * 56));
-    // Nothing that belongs to guards is done without guards.
+    // Without guards there is no work for guards.
     let rest = (run.statistics.resteps, run.statistics.isolations, run.statistics.too_coarse);
     assert_eq!(rest, (0, 0, 0));
 }

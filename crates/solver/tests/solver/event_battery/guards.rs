@@ -1,5 +1,5 @@
-//! What guards mean: which of several fires, known zeros, the side at the start, and what has no
-//! meaning.
+//! The rules for guards: which of several guards fires, known zeros, guards that start negative,
+//! and guards that have no meaning.
 
 use stickslip_solver::{
     Direction, Dop853, Dopri5, Guard, HybridSystem, Method, Observer, Options, Outcome, RunError,
@@ -8,7 +8,7 @@ use stickslip_solver::{
 
 use super::planted::{Planted, Times, step_sizes, times};
 
-/// A system of two guards on y' = 1, which stops at the first switch.
+/// y' = 1 with two guards.
 struct Two {
     values: fn(f64) -> [f64; 2],
     guards: [Guard; 2],
@@ -34,7 +34,7 @@ impl HybridSystem<1, 2> for Two {
     }
 }
 
-/// Where a run was switched, by which guard, and which others were at zero.
+/// The switches of a run: the place, the guard, and the other guards that were at zero.
 #[derive(Debug, Default, PartialEq)]
 struct Fired(Vec<(f64, usize, u32)>);
 
@@ -73,22 +73,22 @@ fn of_two_guards_the_earlier_fires_and_of_equal_ones_the_first() {
             }
         };
         let both = |values: fn(f64) -> [f64; 2], expected| check(values, [guard; 2], expected);
-        // Equal places, in either order of steepness: the guard listed first decides, the other is
-        // named.
+        // At equal places the guard that is listed first decides, whichever is steeper. The other
+        // one is reported as simultaneous.
         both(|s| [0.43 - s, 2.0 * (0.43 - s)], (0.43, 0, 0b10));
         both(|s| [(0.43 - s) * (1.0 + s), 0.43 - s], (0.43, 0, 0b10));
-        // One that gives way is named, and fires only where it is the earlier one.
+        // A guard that yields is reported as simultaneous, and fires only if it is earlier.
         let yielding = [guard.yielding(), guard];
         check(|s| [0.43 - s, 2.0 * (0.43 - s)], yielding, (0.43, 1, 0b01));
         check(|s| [(0.43 - s) * (1.0 + s), 0.43 - s], yielding, (0.43, 1, 0b01));
         check(|s| [0.37 - s, 0.43 - s], yielding, (0.37, 0, 0));
         check(|s| [0.43 - s, 0.43 - s], [guard.yielding(); 2], (0.43, 0, 0b10));
-        // Different places: the earlier, wherever it is listed.
+        // At different places the earlier guard fires, wherever it is listed.
         both(|s| [0.43 - s, 0.37 - s], (0.37, 1, 0));
         both(|s| [0.37 - s, 0.43 - s], (0.37, 0, 0));
         both(|s| [0.43 + 1e-9 - s, 0.43 - s], (0.43, 1, 0));
         both(|s| [0.43 - s, 0.43 + 1e-9 - s], (0.43, 0, 0));
-        // A pair of the second guard before the first guard's root.
+        // The second guard has a pair of roots before the root of the first guard.
         both(|s| [0.43 - s, (s - 0.2) * (s - 0.2001)], (0.2, 1, 0));
     }
 }
@@ -107,21 +107,22 @@ fn a_known_zero_at_the_start_does_not_fire_and_hides_nothing() {
             a.switches.into_iter().chain(b.switches).fold(None, |_, s| Some(s))
         };
         for direction in [Direction::Below, Direction::Falling] {
-            // Leaves upwards and falls at 0.61, from a simple and a double zero.
+            // These guards leave a simple and a double zero upwards, and fall at 0.61.
             let simple = fired(|s| s * (0.61 - s), 1, direction);
             let double = fired(|s| s * s * (0.61 - s), 2, direction);
             for found in [simple, double] {
                 assert!((found.expect("falls") - 0.61).abs() < 1e-15, "{found:?} {options:?}");
             }
         }
-        // Leaves downwards: a bound of the domain is left there and then, a falling guard waits.
+        // These guards leave the zero downwards. A bound of the domain then fires at once, and a
+        // falling guard waits.
         assert_eq!(fired(|s| -s * (0.61 - s), 1, Direction::Below), Some(0.0));
         assert_eq!(fired(|s| -s * s * (0.61 - s), 2, Direction::Below), Some(0.0));
         assert_eq!(fired(|s| -s * (0.61 - s), 1, Direction::Falling), None);
         assert_eq!(fired(|s| -s * s * (0.61 - s), 2, Direction::Falling), None);
         let rises = fired(|s| -s * s * (0.61 - s), 2, Direction::Rising).expect("rises");
         assert!((rises - 0.61).abs() < 1e-15);
-        // The pair right behind the zero is not taken for it.
+        // The pair of roots right after the zero is not mistaken for the zero.
         let near = fired(|s| s * (1e-3 - s) * (2e-3 - s), 1, Direction::Falling).expect("falls");
         assert!((near - 1e-3).abs() < 1e-15, "{near} {options:?}");
     }
@@ -158,7 +159,7 @@ fn guards_without_a_meaning_are_errors() {
         assert_eq!(zero, Err(RunError::GuardIdenticallyZero { guard: 0, s: 0.0 }), "{options:?}");
         let nan = times(Dop853, |_| f64::NAN, Direction::Falling, &options);
         assert_eq!(nan, Err(RunError::GuardNotANumber { guard: 0, s: 0.0 }), "{options:?}");
-        // A domain that ends without a switch: the error says where.
+        // A guard whose domain ends without a switch. The error tells where.
         match times(Dop853, |s| 1.0 + (0.5 - s).sqrt(), Direction::Falling, &options) {
             Err(
                 RunError::GuardUnresolved { guard: 0, s, .. }
@@ -166,7 +167,7 @@ fn guards_without_a_meaning_are_errors() {
             ) => assert!((s - 0.5).abs() < 1e-9, "{s} {options:?}"),
             other => panic!("{other:?}"),
         }
-        // The same domain, left through the guard 1e-6 and 1e-12 before it ends.
+        // The same domain, but the guard ends the run 1e-6 and 1e-12 before the domain ends.
         for margin in [1e-3, 1e-6] {
             let system = Planted {
                 value: |s: f64| (0.5 - s).sqrt() - margin,

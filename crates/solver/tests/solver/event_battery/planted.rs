@@ -5,7 +5,7 @@ use stickslip_solver::{
     RunError, Start, State, StepSize, SwitchEvent, run,
 };
 
-/// y' = 1 with one guard, a function of y = s; a switch changes nothing.
+/// y' = 1 with one guard, which is a function of y = s. A switch changes nothing.
 pub struct Planted<F> {
     pub value: F,
     pub guard: Guard,
@@ -31,7 +31,7 @@ impl<F: Fn(f64) -> f64> HybridSystem<1, 1> for Planted<F> {
     }
 }
 
-/// Where guards fired and where they grazed.
+/// The places where guards fired, and the places and values where they grazed.
 #[derive(Debug, Default, PartialEq)]
 pub struct Times {
     pub switches: Vec<f64>,
@@ -68,23 +68,24 @@ pub fn times<M: Method>(
     Ok(times)
 }
 
-/// Steps from tiny to the whole span, dividing it and not, and the adaptive ones.
+/// Steps from 1e-3 to the whole span, some of which divide the span, and adaptive steps.
 pub fn step_sizes() -> Vec<Options> {
     let sizes = [1e-3, 0.01, 0.03, 1.0 / 16.0, 0.1, 0.25, 0.3, 1.0];
     sizes.map(fixed).into_iter().chain([Options::default()]).collect()
 }
 
-/// A guard with its crossings.
+/// A guard with its known crossings.
 pub struct Case {
     pub name: String,
     pub value: Box<dyn Fn(f64) -> f64>,
     pub falling: Vec<f64>,
     pub rising: Vec<f64>,
-    /// Bound of a root's error, mostly the state's rounding over 1000 steps. Measured: 3e-15.
+    /// A bound for the error of a root, mostly the rounding of the state over 1000 steps.
+    /// Measured: 3e-15.
     pub tolerance: f64,
 }
 
-/// What became of a case: counts and the largest error of a root found.
+/// The result of a case: counts, and the largest error of a root that was found.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Score {
     pub planted: usize,
@@ -133,17 +134,17 @@ fn product(roots: &[f64], s: f64) -> f64 {
     roots.iter().map(|root| s - root).product()
 }
 
-/// Three simple roots, 1 and 1.5 times 10^−`digits` apart.
+/// Three simple roots whose distances are 1 and 1.5 times 10^−`digits`.
 pub fn triple(digits: i32) -> Case {
     let d = 10.0_f64.powi(-digits);
     let roots = [CENTRE, CENTRE + d, CENTRE + 2.5 * d];
     let name = format!("three roots 1e-{digits} apart");
-    // Of a cluster that is not resolved, the crossing that is found lies anywhere in it.
+    // If a cluster is not resolved, the crossing that is found lies anywhere in it.
     let tolerance = if digits < 5 { 4e-15 } else { 1e-12 };
     case(name, &[roots[0], roots[2]], &[roots[1]], tolerance, move |s| -product(&roots, s))
 }
 
-/// Where most roots are: on no step's end.
+/// The place of most roots. It is not the end of a step.
 const CENTRE: f64 = 0.4375 + 1.0 / 3000.0;
 
 /// The planted cases.
@@ -173,7 +174,7 @@ pub fn cases() -> Vec<Case> {
     }
     cases.push(case("double root, minimum", &[], &[], 4e-15, move |s| (s - c) * (s - c)));
     cases.push(case("double root, maximum", &[], &[], 4e-15, move |s| -(s - c) * (s - c)));
-    // Flat: within 6e-14 of it the guard is below 1e-39.
+    // This guard is flat: it is below 1e-39 within 6e-14 of the root.
     cases.push(case("triple root", &[c], &[], 2e-13, move |s| -(s - c) * (s - c) * (s - c)));
     for digits in 1..=13 {
         let d = 10.0_f64.powi(-digits);
@@ -242,9 +243,9 @@ fn planted_crossings_are_all_found_and_none_invented() {
 
 #[test]
 fn clusters_below_the_rounding_of_a_step_keep_their_parity() {
-    // Between three roots d apart the guard stays below 0.7 d³. Where that is below 64 units in the
-    // last place of its largest value on the step, the three count as one: its sign before and
-    // after is what can be told.
+    // Between three roots at distance d the guard stays below 0.7 d³. If that is below 64 units in
+    // the last place of its largest value on the step, only the signs before and after the roots
+    // can be told, and the three roots count as one.
     for digits in [5, 7, 9, 11, 13] {
         let case = triple(digits);
         let (mut merged, mut resolved) = (0, 0);
@@ -266,12 +267,13 @@ fn clusters_below_the_rounding_of_a_step_keep_their_parity() {
                 }
             }
         }
-        // The smaller the steps, the smaller a cluster is resolved.
+        // With smaller steps, smaller clusters are resolved.
         assert_eq!(merged == 0, digits == 5, "1e-{digits}: {merged} merged, {resolved} resolved");
     }
 }
 
-/// A dip to −1 of half width `width` in a guard that is 1 elsewhere, in steps of `h`.
+/// The result for a dip of half width `width` to −1, in a guard that is 1 elsewhere, in steps of
+/// `h`.
 pub fn dip(width: f64, h: f64) -> Score {
     let half = width * 2.0_f64.ln().sqrt();
     let mut score = Score::default();
@@ -291,9 +293,10 @@ pub fn dip(width: f64, h: f64) -> Score {
 
 #[test]
 fn a_dip_is_found_unless_it_is_narrow_against_the_step() {
-    // A guard that is no polynomial of the state can hide between the six values of the first look,
-    // whatever is done with them; a longest step excludes that. Found: all at half widths of a
-    // tenth of the step and more, three fifths at a twentieth, none invented.
+    // A guard that is not a polynomial of the state can hide between the six values of the first
+    // look, whatever is done with them. A bound on the step size excludes that. All dips are found
+    // if the half width is at least a tenth of the step, and three fifths at a twentieth. None is
+    // invented.
     for (width, h) in [(0.3, 1.0), (0.1, 1.0), (0.03, 0.1), (0.01, 0.1), (3e-3, 0.01), (1e-3, 0.01)]
     {
         let score = dip(width, h);

@@ -1,4 +1,4 @@
-//! Systems whose switches are known in closed form, and runs that do not come to their end.
+//! Systems whose switches are known in closed form, and runs that stop before their end.
 
 use stickslip_solver::{
     Direction, Dop853, Dopri5, Guard, HybridSystem, Method, Options, Outcome, Run, Start, State,
@@ -7,14 +7,14 @@ use stickslip_solver::{
 
 use super::planted::{Planted, Score, Times, step_sizes};
 
-/// A ball on the floor y = 0 with acceleration −1; the first phase starts at a height, later ones
-/// at zero.
+/// A ball on the floor y = 0 with acceleration −1. The first phase starts above the floor, and
+/// later phases start at zero.
 struct Ball {
     restitution: f64,
 }
 
 impl HybridSystem<2, 1> for Ball {
-    /// Whether it has bounced.
+    /// Whether the ball has bounced.
     type Mode = bool;
 
     fn field(&self, _bounced: bool, _s: f64, y: &State<2>) -> State<2> {
@@ -40,10 +40,10 @@ fn a_bouncing_ball_ends_at_its_zeno_point() {
         let exact = 2.0_f64.sqrt() * (1.0 + restitution) / (1.0 - restitution);
         let check = |end: Run<bool, 2>| {
             let Outcome::Zeno { accumulation } = end.outcome else { panic!("{:?}", end.outcome) };
-            // Measured: 1.3e-12 at most (8(5,3) and 0.9, where it is 26.9), otherwise 3e-13.
+            // Measured: at most 3e-13, except 1.3e-12 of 26.9 with 8(5,3) and restitution 0.9.
             let error = (accumulation - exact).abs();
             assert!(error < 2e-13 * exact, "{restitution}: off by {error:e}");
-            // As many bounces as bring the rest below 1e-13 of the whole.
+            // The number of bounces after which the remaining time is below 1e-13 of the whole.
             let bounces = (1e-13_f64.ln() / restitution.ln()).ceil();
             let counted = f64::from(u32::try_from(end.statistics.switches).expect("few"));
             assert!((counted - bounces).abs() < 3.0, "{counted} bounces, not {bounces}");
@@ -56,7 +56,7 @@ fn a_bouncing_ball_ends_at_its_zeno_point() {
     }
 }
 
-/// A relay with hysteresis: y' = ±2 − y, switched at ±1; every phase lasts ln 3.
+/// A relay with hysteresis: y' = ±2 − y, switched at ±1. Every phase lasts ln 3.
 struct Relay;
 
 impl HybridSystem<1, 1> for Relay {
@@ -79,7 +79,7 @@ impl HybridSystem<1, 1> for Relay {
     }
 }
 
-/// The relay's switches against k ln 3.
+/// The result for the switches of the relay, which should be at k ln 3.
 pub fn relay<M: Method>(method: M, switches: u32) -> Score {
     let span = 3.0_f64.ln();
     let options = Options::with_tolerance(1e-14);
@@ -106,7 +106,7 @@ fn ten_thousand_switches_are_all_found() {
     }
 }
 
-/// Two modes that send a run back to each other from s = 1 on.
+/// Two modes that send a run to each other again and again at y = 1.
 struct Chatter;
 
 impl HybridSystem<1, 1> for Chatter {
@@ -139,7 +139,8 @@ fn chattering_ends() {
             assert!((end.s - (1.0 - y)).abs() < 1e-13, "{options:?}: {:e}", end.s - 1.0 + y);
             match end.outcome {
                 Outcome::Zeno { accumulation } => assert!((accumulation - end.s).abs() < 1e-14),
-                // Right from the start no time passes against which the phases would be short.
+                // If the run chatters from its start, no time passes with which phases could be
+                // compared.
                 outcome => assert_eq!((outcome, y), (Outcome::SwitchLimit, 1.0), "{options:?}"),
             }
         }
@@ -157,7 +158,7 @@ fn limits_are_outcomes() {
     let end = run(Dop853, &Relay, start, f64::INFINITY, &options, &mut ()).expect("a relay");
     let steps = end.statistics.accepted + end.statistics.rejected + end.statistics.too_coarse;
     assert_eq!((end.outcome, steps), (Outcome::StepLimit, 50));
-    // No guard at all and no end: the steps grow until there are no more.
+    // Without guards and without an end, the steps grow until their limit.
     let system = Planted { value: |_| 1.0, guard: Guard::OFF };
     let start = Start { mode: (), s: 0.0, state: State::from([0.0]) };
     let end = run(Dopri5, &system, start, f64::INFINITY, &options, &mut ()).expect("y' = 1");
@@ -166,7 +167,7 @@ fn limits_are_outcomes() {
     assert_eq!((end.outcome, end.s), (Outcome::ReachedEnd, 1.0));
 }
 
-/// sin s and cos s as states, with a level of the sine as guard.
+/// sin s and cos s as the state, with a level of the sine as the guard.
 struct Oscillator {
     level: f64,
 }
@@ -191,12 +192,12 @@ impl HybridSystem<2, 1> for Oscillator {
     }
 }
 
-/// Crossings of `level` by sin s in [0, 100] against the inverse sine.
+/// The result for the crossings of `level` by sin s in [0, 100], which the inverse sine tells.
 pub fn oscillator<M: Method>(method: M, level: f64, tolerance: f64) -> Score {
     let mut planted = Vec::new();
     for turn in 0..16 {
         let turns = f64::from(turn) * std::f64::consts::TAU;
-        // The inverse sine near 1, where its argument has lost digits.
+        // The inverse sine in a form that is accurate near 1.
         let half = (2.0 * (1.0 - level) * (1.0 - 0.5 * (1.0 - level))).sqrt().atan2(level);
         planted.push(turns + std::f64::consts::FRAC_PI_2 - half);
         planted.push(turns + std::f64::consts::FRAC_PI_2 + half);
@@ -211,9 +212,9 @@ pub fn oscillator<M: Method>(method: M, level: f64, tolerance: f64) -> Score {
     score
 }
 
-/// Levels of the sine with how well their crossings can be known at a tolerance of 1e-13: the error
-/// of the sine (2e-14 for 8(5,3), 2e-13 for 5(4)) over its slope there. Measured: 1.7e-12, 2.1e-11,
-/// 2.1e-9, 2.1e-8.
+/// Levels of the sine, each with a bound for the error of its crossings at a tolerance of 1e-13.
+/// The error is that of the sine (2e-14 for 8(5,3), 2e-13 for 5(4)), divided by its slope there.
+/// Measured: 1.7e-12, 2.1e-11, 2.1e-9, 2.1e-8.
 pub const LEVELS: [(f64, f64); 4] =
     [(0.5, 5e-12), (0.99, 6e-11), (1.0 - 1e-6, 6e-9), (1.0 - 1e-8, 6e-8)];
 

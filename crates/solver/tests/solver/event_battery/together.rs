@@ -1,5 +1,5 @@
-//! Guards that vanish together in a mode that goes on unchanged: each crossing counts once, by an
-//! event of its own or by one that names it.
+//! Guards that vanish together in a mode that goes on unchanged. Each crossing counts once: either
+//! it has an event of its own, or another event reports it as simultaneous.
 
 use stickslip_solver::{
     Direction, Dop853, Dopri5, Guard, HybridSystem, Method, Observer, Options, Outcome, Start,
@@ -8,7 +8,7 @@ use stickslip_solver::{
 
 use super::planted::{Score, step_sizes};
 
-/// y' = 1 with products of (y − root) as guards; a switch changes nothing.
+/// y' = 1 with products of (y − root) as guards. A switch changes nothing.
 struct Products {
     guards: [(&'static [f64], Direction, u32); 3],
 }
@@ -29,7 +29,7 @@ impl HybridSystem<1, 3> for Products {
     }
 }
 
-/// Where each guard fired.
+/// The places where each guard fired.
 #[derive(Default)]
 struct Fired([Vec<f64>; 3]);
 
@@ -43,7 +43,7 @@ impl Observer<(), 1> for Fired {
     }
 }
 
-/// A case with the places where its guards are to fire.
+/// A case, with the places where its guards should fire.
 pub struct Case {
     pub name: &'static str,
     system: Products,
@@ -67,8 +67,8 @@ pub fn cases() -> Vec<Case> {
     };
     let simple: &[f64] = &[C];
     let with_another: &[f64] = &[C, 0.9];
-    // A triple root is flat, and of guards closer than 1e-12 of a step the one listed first may
-    // decide on the place.
+    // A triple root is flat. If guards are closer together than 1e-12 of a step, the guard that is
+    // listed first may determine the place of both.
     let near = |case| Case { tolerance: 2e-13, ..case };
     vec![
         two("both cross", (simple, Rising, 0), (with_another, Falling, 0), [simple, simple]),
@@ -169,8 +169,8 @@ fn guards_that_vanish_together_fire_once_each() {
     }
 }
 
-/// A guard that is exactly zero where a step ends has come from the side that it had last, however
-/// short it was there.
+/// A guard that is exactly zero where a step ends comes from the side on which it was last, even if
+/// it was there for a short time only.
 #[test]
 fn a_crossing_on_the_end_of_a_step_right_after_another() {
     let guards = [
@@ -189,7 +189,7 @@ fn a_crossing_on_the_end_of_a_step_right_after_another() {
     }
 }
 
-/// Guards whose common zero is where the run ends have fired or not, once at most.
+/// Guards whose common zero is the end of the run may fire there, but only once.
 #[test]
 fn together_at_the_end_of_the_span() {
     let guards = [
@@ -214,8 +214,8 @@ fn together_at_the_end_of_the_span() {
     }
 }
 
-/// A terminal guard that crosses with one that is listed before it ends the run there, by an event
-/// of its own.
+/// A terminal guard crosses together with a guard that is listed before it. It ends the run there,
+/// by an event of its own.
 #[test]
 fn a_terminal_guard_that_crosses_with_another_ends_the_run() {
     struct Ends(Direction);
