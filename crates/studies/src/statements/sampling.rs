@@ -1,14 +1,14 @@
-//! Which collisions are tried, and how: at random, along a line, one by one in parallel.
+//! Which collisions are tried, and how: at random, along a line, in parallel.
 
 use fastrand::Rng;
 use rayon::prelude::*;
 
 use crate::error::StudyError;
 
-/// `of` each of `inputs`, in their order; in parallel.
+/// `of` each of `inputs`, in their order, on the threads of the current pool.
 ///
 /// # Errors
-/// The first in that order.
+/// The first error in that order, whatever the number of threads.
 pub fn each<T: Sync, U: Send>(
     inputs: &[T],
     of: impl Fn(&T) -> Result<U, StudyError> + Send + Sync,

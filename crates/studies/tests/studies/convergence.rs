@@ -1,12 +1,12 @@
 //! Observed orders in fixed steps, through all switches of a collision.
 //!
-//! In the regularised coordinates both methods keep their order; in plain time the contact law
-//! takes it down, and without located switches nothing is left of it. [`fit_order`] chooses the
-//! steps.
+//! In the regularised coordinates both methods keep their order. In plain time the contact law
+//! lowers it, and without located switches the order of the method does not matter. [`fit_order`]
+//! chooses the steps.
 
-use stickslip::model::convergence::{Coordinates, Switching, measure, reference};
-use stickslip::model::{Collision, Contact};
-use stickslip::solver::{Dop853, Dopri5, Method, Options, Order, StepSize, fit_order};
+use stickslip_model::{Collision, Contact};
+use stickslip_solver::{Dop853, Dopri5, Method, Options, Order, StepSize, fit_order};
+use stickslip_studies::convergence::{Coordinates, Switching, measure, reference};
 
 /// Collisions with two to eight switches, three to seven with damping.
 fn references(damping: f64) -> Vec<Collision> {

@@ -1,0 +1,4 @@
+//! Tests of the studies, in one program.
+
+mod convergence;
+mod stiff_limit;
