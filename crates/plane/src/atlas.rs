@@ -18,7 +18,7 @@ mod polyline;
 #[cfg(feature = "serde")]
 mod read;
 mod regions;
-mod traced;
+mod tracing;
 mod verification;
 
 pub use boundary::Kind;
@@ -32,5 +32,5 @@ pub use polyline::polyline;
 #[cfg(feature = "serde")]
 pub use read::DocumentError;
 pub use regions::{Atlas, Regions, switch_count};
-pub use traced::{AtlasError, VerifiedAtlas, trace};
+pub use tracing::{AtlasError, VerifiedAtlas, trace};
 pub use verification::{LabelError, VerificationReport};
