@@ -1,8 +1,8 @@
 //! The study of convergence: how errors fall with the step and the tolerance, and what they cost.
 //!
-//! Start reading here; then, in this order: `settings` (which collisions), [`plain_time`] (the law as
-//! the paper writes it), `measure` (the errors of one way to integrate), `series` (all ways, over
-//! steps and tolerances), `collisions` (the errors of `collide`), `findings` (what that says),
+//! Start reading here; then, in this order: `settings` (which collisions), [`plain_time`] (the law
+//! as the paper writes it), `measure` (the errors of one way to integrate), `series` (all ways,
+//! over steps and tolerances), `collisions` (the errors of `collide`), `findings` (what that says),
 //! `tables` and `pictures`.
 
 mod collisions;

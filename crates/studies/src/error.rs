@@ -51,8 +51,8 @@ pub enum StudyError {
     /// Boundaries cannot be traced.
     #[error("the boundaries cannot be traced: {0}")]
     Atlas(#[from] AtlasError),
-    /// The points of Figure 4 cannot be named: their line crosses another number of regions than the
-    /// paper has points.
+    /// The points of Figure 4 cannot be named: their line crosses another number of regions than
+    /// the paper has points.
     #[error("the line at κ = {kappa} crosses {found} regions; expected {expected}")]
     Regions {
         /// The stiffness κ of the line.

@@ -6,8 +6,8 @@
 //!
 //! Start reading in [`study`]; then, in this order: [`paper`] (what the paper's symbols and axes
 //! mean), [`figures`] (its figures, and everything together), [`statements`] (its statements, each
-//! with a verdict), [`stiff_springs`] (the limit of stiff springs), [`convergence`] (how accurate the
-//! integrators are), `search` (maxima and zeros).
+//! with a verdict), [`stiff_springs`] (the limit of stiff springs), [`convergence`] (how accurate
+//! the integrators are), `search` (maxima and zeros).
 //!
 //! ```
 //! use stickslip_studies::statements::{self, Spring, Verdict};

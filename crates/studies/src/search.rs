@@ -139,8 +139,8 @@ where
     Ok(Extremum { at, value })
 }
 
-/// A function whose minimum or zero is looked for, and its first failure. After a failure the solver
-/// goes on with an infinite cost, since argmin panics where a cost fails at the start.
+/// A function whose minimum or zero is looked for, and its first failure. After a failure the
+/// solver goes on with an infinite cost, since argmin panics where a cost fails at the start.
 struct Cost<P, F, E> {
     value: F,
     failed: RefCell<Option<E>>,

@@ -1,14 +1,14 @@
 //! The paper's statements, each tested by a computation of its own.
 //!
 //! A verdict follows from numbers by a rule, so that another model of the spring changes it. A
-//! collision that cannot be computed is an error of the whole audit. A doubt about boundaries is not:
-//! it is the verdict "cannot be decided".
+//! collision that cannot be computed is an error of the whole audit. A doubt about boundaries is
+//! not: it is the verdict "cannot be decided".
 //!
 //! Start reading here; then, in this order: `statement` (what is said of one), `catalogue` (all of
 //! them), [`Spring`] (two models of the spring; [`unreset`] is the second one), `subject` (what all
 //! tests share), `line` (all boundaries at one stiffness), `sampling` (which collisions are tried),
-//! the tests by topic: `sliding`, `parameters`, `regimes`, `counts`, `course`, `bounds`; and `report`
-//! (a study of them).
+//! the tests by topic: `sliding`, `parameters`, `regimes`, `counts`, `course`, `bounds`; and
+//! `report` (a study of them).
 
 mod bounds;
 mod catalogue;

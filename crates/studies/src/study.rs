@@ -14,13 +14,13 @@ pub struct Study {
     pub name: &'static str,
     /// The title of the study.
     pub title: &'static str,
-    /// The main results, in sentences that stand alone: for the opening of a page on which there are
-    /// several studies.
+    /// The main results, in sentences that stand alone: for the opening of a page on which there
+    /// are several studies.
     pub headlines: Vec<String>,
     /// All results, in sentences with their numbers.
     pub findings: Vec<String>,
-    /// All numbers, as an object. Its file also holds the title, the findings and the meaning of the
-    /// other files.
+    /// All numbers, as an object. Its file also holds the title, the findings and the meaning of
+    /// the other files.
     pub json: Value,
     /// The same numbers as tables.
     pub tables: Vec<Table>,

@@ -1,8 +1,9 @@
 //! One collision, integrated in ways that keep accuracy or lose it, and its errors.
 //!
-//! [`integrate`] takes the coordinates and whether switches are located. [`Approximation::deviation`]
-//! compares with a [`reference()`]. [`measure`] does so for several collisions at once: their errors
-//! together show the order, while the error of a single one passes through zero now and then.
+//! [`integrate`] takes the coordinates and whether switches are located.
+//! [`Approximation::deviation`] compares with a [`reference()`]. [`measure`] does so for several
+//! collisions at once: their errors together show the order, while the error of a single one passes
+//! through zero now and then.
 
 use serde::Serialize;
 use stickslip_model::exact::{self, ExactError};
@@ -59,8 +60,8 @@ pub struct Approximation {
 pub struct Deviation {
     /// The error of the final velocity w. The error of ε_t is this over ψ.
     pub velocity: f64,
-    /// The error of the time of each switch; `None` if the switches are others, so that their times
-    /// have nothing to compare with.
+    /// The error of the time of each switch; `None` if the switches are others, so that their
+    /// times have nothing to compare with.
     pub switch_times: Option<Vec<f64>>,
 }
 

@@ -4,10 +4,10 @@
 //! ẋ = v     v̇ = −F     stick: ẏ = w, ẇ = −κ y     slip: ẇ = −s F, y = s F/κ     F = x^{3/2} + a √x v
 //! ```
 //!
-//! F is not smooth where x = 0. Without damping this is so at both ends of contact: F ~ t^{3/2}, and a
-//! method of order 5 or 8 converges with order about 2.5 here. With damping only the start has x = 0,
-//! since contact ends at F = 0 with x > 0; but there F ~ a√t, and the order is about 1.5.
-//! [`stickslip_model::regularized`] is the same collision without that defect. Only studies of
+//! F is not smooth where x = 0. Without damping this is so at both ends of contact: F ~ t^{3/2},
+//! and a method of order 5 or 8 converges with order about 2.5 here. With damping only the start
+//! has x = 0, since contact ends at F = 0 with x > 0; but there F ~ a√t, and the order is about
+//! 1.5. [`stickslip_model::regularized`] is the same collision without that defect. Only studies of
 //! convergence ([`super::measure()`]) should use this one.
 
 use stickslip_model::regularized::{Phase, Progress};

@@ -1,9 +1,8 @@
 //! The points a to o of Figure 4.
 //!
-//! They stand between the boundaries on a line of one stiffness, which are read off the atlas of the
-//! whole plane of Figure 4. The tests of the statements (`statements::line`) compute the same
-//! boundaries in another way, each for itself. They are computed twice on purpose: the results check
-//! each other, and a test holds that both agree.
+//! They stand between the boundaries on a line of one stiffness, which are read off the atlas of
+//! the whole plane of Figure 4. The tests of the statements compute the same boundaries in another
+//! way (`statements::line`). This is an independent check: a test holds that both agree.
 
 use stickslip_model::Collision;
 

@@ -1,10 +1,10 @@
 //! The switches over ψ at one stiffness, with every boundary located.
 //!
-//! The boundaries are traced in a narrow window around the stiffness, and solved for at the stiffness
-//! itself. Those of another model are bisected between samples.
+//! The boundaries are traced in a narrow window around the stiffness, and solved for at the
+//! stiffness itself. Those of another model are bisected between samples.
 //!
-//! At κ = 18 and 63 Figure 4 has the same boundaries (`figures::points`), read off an atlas of the
-//! whole plane. They are computed twice on purpose: the results check each other, and a test holds
+//! At κ = 18 and 63 Figure 4 has the same boundaries, read off an atlas of its whole plane
+//! (`figures::points`). They are computed twice on purpose, as an independent check: a test holds
 //! that both agree.
 
 use stickslip_plane::CollisionPlane;
@@ -83,8 +83,8 @@ impl Line {
 ///
 /// # Errors
 /// [`Stop::Failed`]: a collision cannot be computed. [`Stop::Open`]: the boundaries are in doubt,
-/// because the tracer could not explain something, or because a collision does not have the switches
-/// of its stretch.
+/// because the tracer could not explain something, or because a collision does not have the
+/// switches of its stretch.
 pub fn line(spring: Spring, kappa: f64) -> Result<Line, Stop> {
     let (method, boundaries) = match spring {
         Spring::Reset => ("traced and solved for", traced(kappa)?),
@@ -104,7 +104,8 @@ pub fn line(spring: Spring, kappa: f64) -> Result<Line, Stop> {
 /// The stretch between two neighbouring boundaries. Samples must confirm it.
 ///
 /// Away from boundaries, the number of reversals changes only where the velocity at the end passes
-/// 0. With a reset spring this is a boundary itself; with another one it is bisected between samples.
+/// zero. With a reset spring this is a boundary itself; with another one it is bisected between
+/// samples.
 fn stretch(spring: Spring, kappa: f64, low: f64, high: f64) -> Result<Stretch, Stop> {
     let collide = |psi| spring.collide(kappa, psi, 0.0);
     let first = if low == 0.0 { SMALL_PSI } else { low + (high - low) * 1e-3 };
@@ -210,8 +211,8 @@ fn secant<E>(value: impl Fn(f64) -> Result<Option<f64>, E>, guess: f64) -> Resul
 mod tests {
     use super::*;
 
-    /// Both ways lead to the same boundaries: sampling finds all at this stiffness, and bisecting the
-    /// exact solution is accurate to rounding.
+    /// Both ways lead to the same boundaries: sampling finds all at this stiffness, and bisecting
+    /// the exact solution is accurate to rounding.
     #[test]
     fn traced_boundaries_are_those_between_samples() {
         let (traced, bisected) = (traced(18.0).unwrap(), bisected(Spring::Reset, 18.0).unwrap());
@@ -219,6 +220,16 @@ mod tests {
         for (one, other) in traced.iter().zip(bisected) {
             assert!((one - other).abs() < 2e-14, "{one} {other}");
         }
+    }
+
+    #[test]
+    fn a_margin_that_cannot_be_computed_is_an_error_and_not_a_missing_boundary() {
+        assert_eq!(secant(|_| Err("broken"), 0.3), Err("broken"));
+        let breaks = |y: f64| if y > 1.0 { Err("broken") } else { Ok(Some(2.0 - y)) };
+        assert_eq!(secant(breaks, 0.3), Err("broken"));
+        assert_eq!(secant(|_| Ok::<_, &str>(None), 0.3), Ok(None));
+        let found = secant(|y| Ok::<_, &str>(Some(2.0 - y)), 0.3).unwrap();
+        assert!(found.is_some_and(|y| (y - 2.0).abs() < 1e-12));
     }
 
     /// The velocity at the end of an unreset spring passes 0 between two boundaries.

@@ -17,8 +17,8 @@ pub fn each<T: Sync, U: Send>(
     results.into_iter().collect()
 }
 
-/// Random collisions [κ, ψ, a]: κ from 0.05 to 1000 and, if damped, a from 0.001 to 1, evenly in the
-/// logarithm; ψ from 0.01 to 3.
+/// Random collisions [κ, ψ, a]: κ from 0.05 to 1000 and, if damped, a from 0.001 to 1, evenly in
+/// the logarithm; ψ from 0.01 to 3.
 pub fn random(count: usize, seed: u64, damped: bool) -> Vec<[f64; 3]> {
     let mut random = Rng::with_seed(seed);
     let mut draw = || {

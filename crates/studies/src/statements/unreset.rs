@@ -2,8 +2,8 @@
 //!
 //! Equations (9) and (10) of Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008), say that
 //! the spring follows the motion, ẏ = w, and that its force is cut off at the limit. The text after
-//! (18) adds that the spring is reset to the limit as long as the limit is active. That is the model
-//! of all other modules. Here the sentence is left out:
+//! (18) adds that the spring is reset to the limit as long as the limit is active. That is the
+//! model of all other modules. Here the sentence is left out:
 //!
 //! ```text
 //! stick: ẏ = w, ẇ = −κ y     while κ|y| < F
@@ -42,8 +42,8 @@ const TURN: usize = 3;
 /// A collision with a spring that is not reset.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnresetCollision {
-    /// The collision. Its energy counts what the spring holds beyond the limit as taken by sliding;
-    /// sliding may give it back.
+    /// The collision. Its energy counts what the spring holds beyond the limit as taken by
+    /// sliding; sliding may give it back.
     pub collision: Collision,
     /// The largest |y|.
     pub largest_spring: f64,
@@ -274,8 +274,8 @@ mod tests {
         collide(Contact::new(kappa, psi, damping).unwrap()).unwrap()
     }
 
-    /// The law of (9) and (10) in plain time, integrated by the classical Runge–Kutta method in small
-    /// fixed steps.
+    /// The law of (9) and (10) in plain time, integrated by the classical Runge–Kutta method in
+    /// small fixed steps.
     fn in_plain_time(kappa: f64, psi: f64, damping: f64) -> (f64, f64, usize) {
         let force = |x: f64, v: f64| (x.max(0.0).sqrt() * (x.max(0.0) + damping * v)).max(0.0);
         let field = |[x, v, y, w]: [f64; 4]| {
@@ -304,7 +304,8 @@ mod tests {
         }
     }
 
-    /// The largest differences are 3e-11 in w and 6e-6 in y; the latter is part of a step at the end.
+    /// The largest differences are 3e-11 in w and 6e-6 in y; the latter is part of a step at the
+    /// end.
     #[test]
     fn obeys_the_law_in_plain_time() {
         for (kappa, psi, damping) in

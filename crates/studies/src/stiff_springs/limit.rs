@@ -1,7 +1,7 @@
 //! The limit of stiff springs, ε_t → 0, from full collisions without damping.
 //!
-//! At fixed κ the final velocity oscillates with ψ, between zeros where a switch falls on the end of
-//! contact. The height of these oscillations is the [`envelope`]. It tends to κ^{−5/4} times
+//! At fixed κ the final velocity oscillates with ψ, between zeros where a switch falls on the end
+//! of contact. The height of these oscillations is the [`envelope`]. It tends to κ^{−5/4} times
 //! [`inner::peak`](stickslip_model::inner::peak), and is the same for all of them. All maxima are
 //! found by Brent's method from a bracket, on collisions of the exact engine.
 
@@ -12,8 +12,8 @@ use stickslip_model::{Collision, Contact, InvalidParameter, largest};
 
 use crate::search::{SearchError, highest, root};
 
-/// (5/4)^{3/5}, the largest value of x^{3/2}: the factor that the bound (27) of Schwager, Becker and
-/// Pöschel (2008) lacks.
+/// (5/4)^{3/5}, the largest value of x^{3/2}: the factor that the bound (27) of Schwager, Becker
+/// and Pöschel (2008) lacks.
 ///
 /// The spring's limit reaches (5/4)^{3/5}/κ. With 1/κ instead, as printed in (25), a spring that is
 /// let go from its limit reaches the velocity 1/√κ, and |ε_t| ≤ 1/(ψ√κ).
@@ -54,8 +54,8 @@ pub enum StiffError {
 /// without damping.
 ///
 /// Only a local maximum is found, the next one uphill from `psi`. From about κ = 2 on there is only
-/// one between two zeros. |w_final| then has a relative error of about 1e-14, and ψ has half as many
-/// correct digits.
+/// one between two zeros. |w_final| then has a relative error of about 1e-14, and ψ has half as
+/// many correct digits.
 ///
 /// Cost: about 25 collisions.
 ///

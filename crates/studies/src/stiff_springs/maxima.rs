@@ -6,7 +6,8 @@ use stickslip_plane::Range;
 use super::limit::{self, Crest, StiffError, contact};
 use crate::error::{CollisionFailure, StudyError};
 
-/// Up to this stiffness the integrator, whose work grows as √κ, repeats what the exact engine found.
+/// Up to this stiffness the integrator, whose work grows as √κ, repeats what the exact engine
+/// found.
 const MOST_INTEGRATED: f64 = 1e8;
 
 /// Up to this stiffness single oscillations can be told apart in a picture.
@@ -27,8 +28,8 @@ pub struct LargestVelocity {
     pub switch_count: usize,
     /// This number over √κ t_c/π.
     pub count_ratio: f64,
-    /// The same ratio if all half swings lasted π/√κ, and if there were no switches while the spring
-    /// cannot reach its limit.
+    /// The same ratio if all half swings lasted π/√κ, and if there were no switches while the
+    /// spring cannot reach its limit.
     pub count_expected: f64,
 }
 
