@@ -1,8 +1,8 @@
 //! A collision integrated from first touch to separation: start reading here.
 
 use stickslip_solver::{
-    Dop853, Method, Observer, Options, Outcome, RunError, Start, State, Statistics, SwitchEvent,
-    run,
+    Dense, Dop853, Method, Observer, Options, Outcome, RunError, Start, State, Statistics,
+    SwitchEvent, run,
 };
 
 use super::domain::{self, OutOfDomain};
@@ -110,11 +110,40 @@ impl<M: Method> Collider<M> {
         collision: &mut Collision,
     ) -> Result<Statistics, CollisionError> {
         let options = self.options_for(&contact)?;
+        self.observe(contact, &options, collision, &mut ())
+    }
+
+    /// Integrates one collision and keeps its course in time as well, both from one run.
+    ///
+    /// The collision is bit for bit that of [`Self::collide`]. The course is that of
+    /// [`Self::history`], with as many steps at most. The statistics are those of this run, which
+    /// repeats the step to every switch so that the course ends exactly there.
+    ///
+    /// # Errors
+    /// As [`Self::collide`].
+    pub fn followed(
+        &self,
+        contact: Contact,
+    ) -> Result<(Collision, Statistics, History), CollisionError> {
+        let options = self.recorded_options(&contact)?;
+        let (mut collision, mut history) = (Collision::before(contact), History::before(contact));
+        let statistics = self.observe(contact, &options, &mut collision, &mut history)?;
+        Ok((collision, statistics, history))
+    }
+
+    /// Integrates one collision into `collision`, while `course` observes the run too.
+    fn observe<O: Observer<Phase, STATE>>(
+        &self,
+        contact: Contact,
+        options: &Options,
+        collision: &mut Collision,
+        course: &mut O,
+    ) -> Result<Statistics, CollisionError> {
         let system = Regularized::new(contact);
         collision.reset(contact);
         let phase = Phase::first(&contact);
         let start = Start { mode: phase, s: 0.0, state: system.start() };
-        let mut account = Account {
+        let account = Account {
             system,
             collision,
             entered: start.state,
@@ -123,7 +152,9 @@ impl<M: Method> Collider<M> {
             sliding: 0.0,
             flatness: 0.0,
         };
-        let run = run(self.method, &system, start, f64::INFINITY, &options, &mut account)?;
+        let mut observed = Observed { account, course };
+        let run = run(self.method, &system, start, f64::INFINITY, options, &mut observed)?;
+        let mut account = observed.account;
         if run.outcome != (Outcome::EndedByGuard { guard: END }) {
             let time = account.elapsed + run.state[T];
             return Err(CollisionError::Unfinished { outcome: run.outcome, time });
@@ -151,7 +182,7 @@ impl<M: Method> Collider<M> {
             compression_left: 0.4 * compression,
         };
         if self.refined && flatness > FLAT && run.mode.regime == Regime::Slip {
-            refine::refine(self.method, &options, collision);
+            refine::refine(self.method, options, collision);
         }
         Ok(run.statistics)
     }
@@ -166,13 +197,18 @@ impl<M: Method> Collider<M> {
     /// # Errors
     /// As [`Self::collide`].
     pub fn history(&self, contact: Contact) -> Result<History, CollisionError> {
-        let max_steps = self.options.max_steps.min(History::MOST_STEPS);
-        let options = Options { max_steps, ..self.options_for(&contact)? };
+        let options = self.recorded_options(&contact)?;
         let (history, outcome) = History::record(self.method, &options, contact)?;
         if outcome == (Outcome::EndedByGuard { guard: END }) {
             return Ok(history);
         }
         Err(CollisionError::Unfinished { outcome, time: history.duration() })
+    }
+
+    /// The options for `contact` where its course is kept.
+    fn recorded_options(&self, contact: &Contact) -> Result<Options, OutOfDomain> {
+        let options = self.options_for(contact)?;
+        Ok(Options { max_steps: options.max_steps.min(History::MOST_STEPS), ..options })
     }
 
     /// The options for `contact`, if it is one that can be integrated.
@@ -288,12 +324,25 @@ impl Account<'_> {
     }
 }
 
-impl Observer<Phase, STATE> for Account<'_> {
+/// The account of a run, and another observer of the same run.
+struct Observed<'a, O> {
+    account: Account<'a>,
+    course: &'a mut O,
+}
+
+impl<O: Observer<Phase, STATE>> Observer<Phase, STATE> for Observed<'_, O> {
+    const WANTS_SEGMENTS: bool = O::WANTS_SEGMENTS;
+
+    fn on_segment(&mut self, phase: Phase, step: &Dense<STATE>) {
+        self.course.on_segment(phase, step);
+    }
+
     fn on_switch(&mut self, event: &SwitchEvent<Phase, STATE>) {
+        self.course.on_switch(event);
         if event.guard == END {
             return;
         }
-        self.flatness = self.flatness.max(event.flatness);
-        self.switch(event.from, event.to, &event.before);
+        self.account.flatness = self.account.flatness.max(event.flatness);
+        self.account.switch(event.from, event.to, &event.before);
     }
 }
