@@ -15,8 +15,8 @@ use std::error::Error;
 use std::hint::black_box;
 use std::process::Command;
 
-use stickslip::plane::{CollisionFamily, CollisionPlane};
 use stickslip::model::{Collider, Collision, exact};
+use stickslip::plane::{CollisionFamily, CollisionPlane};
 use stickslip::solver::{Dop853, Dopri5, Method};
 use stickslip::tracer::{Family, TraceOptions, trace};
 

@@ -1,10 +1,14 @@
-//! A satellite on Arenstorf's periodic orbit around earth and moon: a smooth problem, with dense
+//! A satellite on Arenstorf's periodic orbit around earth and moon: a smooth problem with dense
 //! output.
 //!
-//! The restricted three-body problem in the rotating frame, with the initial values and the period
-//! of Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I*, section II.0. The
-//! orbit closes after its period, is its own mirror image, and keeps Jacobi's integral x² + y² +
-//! 2(1 − μ)/r₁ + 2μ/r₂ − x′² − y′². It passes the moon so closely that errors grow a million times.
+//! This is the restricted three-body problem in the rotating frame, with the initial values and the
+//! period of Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I*, section II.0.
+//! The orbit closes after its period and is its own mirror image. It passes the moon so closely that
+//! errors grow by a factor of a million. Jacobi's integral is constant along it:
+//!
+//! ```text
+//! x² + y² + 2(1 − μ)/r₁ + 2μ/r₂ − x′² − y′²
+//! ```
 //!
 //! Run with `cargo run --release --example arenstorf`.
 
@@ -15,10 +19,11 @@ use stickslip::solver::{Dop853, Options, Recorder, State, integrate};
 const MOON: f64 = 0.012277471;
 const EARTH: f64 = 1.0 - MOON;
 const PERIOD: f64 = 17.0652165601579625588917206249;
-/// x and y′ after half of it, where y and x′ vanish: by Taylor series of degree 44 with 50 digits.
+/// The state after half the period, where y and x′ vanish. It was computed by Taylor series of
+/// degree 44 with 50 digits.
 const HALF_WAY: [f64; 4] = [-1.244822052026569705584788, 0.0, 0.0, 0.5539903081422230677752908];
 
-/// Distances from earth and moon.
+/// The distances from earth and moon.
 fn distances(y: &State<4>) -> (f64, f64) {
     ((y[0] + MOON).hypot(y[1]), (y[0] - EARTH).hypot(y[1]))
 }
@@ -39,7 +44,7 @@ fn jacobi(y: &State<4>) -> f64 {
     y[0] * y[0] + y[1] * y[1] + 2.0 * (EARTH / earth + MOON / moon) - y[2] * y[2] - y[3] * y[3]
 }
 
-/// Follows the orbit once around, and looks at it in between.
+/// Follows the orbit for one period and checks it in between.
 ///
 /// # Errors
 /// The run failed.
@@ -62,11 +67,13 @@ pub fn main() -> Result<(), Box<dyn Error>> {
         farthest = farthest.max(y[0].hypot(y[1]));
     }
     println!(
-        "{} steps; the orbit reaches {farthest:.6} and closes to {gap:.1e}, half way off by {off:.1e}",
+        "{} steps; the orbit reaches {farthest:.6} and closes to {gap:.1e}, with the error {off:.1e} half way",
         end.statistics.accepted
     );
-    println!("dense output: Jacobi's integral to {drift:.1e}, the mirror image to {asymmetry:.1e}");
-    // Measured: 1.4e-9, 2.5e-12, 2.0e-12, 1.7e-11.
+    println!(
+        "dense output: error {drift:.1e} of Jacobi's integral, {asymmetry:.1e} of the mirror image"
+    );
+    // The measured errors are 1.4e-9, 2.5e-12, 2.0e-12 and 1.7e-11.
     assert!(gap < 3e-9 && off < 5e-12 && drift < 4e-12 && asymmetry < 4e-11);
     Ok(())
 }

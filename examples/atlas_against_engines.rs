@@ -13,8 +13,8 @@ use std::error::Error;
 use std::time::Instant;
 
 use rayon::prelude::*;
-use stickslip::plane::CollisionPlane;
 use stickslip::model::{Collider, exact};
+use stickslip::plane::CollisionPlane;
 use stickslip::solver::Margin;
 use stickslip::tracer::{
     Location, Point, Subdivision, TraceOptions, Tracer, VerifyOptions, verify_with,

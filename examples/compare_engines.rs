@@ -1,9 +1,9 @@
 //! Random collisions by both engines: do they ever disagree on a switch?
 //!
-//! κ is log-uniform in [0.02, 400], ψ uniform in [0.002, 2.3]. Prints the largest difference of the
-//! final velocity and every collision whose itineraries differ, with its margin: the least relative
-//! change of ψ that changes the exact engine's itinerary. Fails if a collision with a margin of
-//! 1e-12 or more differs.
+//! κ is log-uniform in [0.02, 400], ψ uniform in [0.002, 2.3]. The program prints the largest
+//! difference of the final velocity and every collision whose itineraries differ, with its margin:
+//! the least relative change of ψ that changes the itinerary of the exact engine. It fails if a
+//! collision with a margin of 1e-12 or more differs.
 //!
 //! Run with `cargo run --release --example compare_engines -- [COUNT] [SEED]`; one million without
 //! arguments.
@@ -13,11 +13,11 @@ use std::process::ExitCode;
 use rayon::prelude::*;
 use stickslip::model::{Collider, Collision, Contact, exact};
 
-/// Margins from here on must not decide differently.
+/// Margin from which on both engines must find the same itinerary.
 const DECISIVE: f64 = 1e-12;
 const CHUNK: u64 = 10_000;
 
-/// What a chunk of collisions showed.
+/// The result of a chunk of collisions.
 #[derive(Default)]
 struct Comparison {
     switches: usize,
@@ -112,7 +112,8 @@ fn collide(
     Ok((collider.collide(contact)?, exact::collide(contact)?))
 }
 
-/// The least relative change of ψ, by powers of 2, that changes the exact engine's itinerary.
+/// The least relative change of ψ, up to a factor of 2, that changes the itinerary of the exact
+/// engine.
 fn margin(contact: Contact) -> f64 {
     let itinerary = |factor: f64| {
         let moved = Contact::new(contact.kappa(), contact.psi() * factor, 0.0).ok()?;
@@ -126,7 +127,7 @@ fn margin(contact: Contact) -> f64 {
     change
 }
 
-/// Two numbers in [0, 1) that depend on the case alone (splitmix64), so that threads do not matter.
+/// Two random numbers in [0, 1) that depend on seed and case alone (splitmix64), not on threads.
 fn uniform_pair(seed: u64, case: u64) -> (f64, f64) {
     let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(case << 1);
     let mut next = || {

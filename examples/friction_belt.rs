@@ -1,16 +1,16 @@
 //! Stick–slip of a mass on a moving belt: the period of its limit cycle against the closed form.
 //!
-//! A mass on a spring lies on a belt of velocity v, mass and stiffness 1. Friction holds it up to
-//! the static force F_s and drags it with the smaller kinetic force F_k while it slips:
+//! A mass of 1 on a spring of stiffness 1 lies on a belt of velocity v. Friction holds the mass up
+//! to the static force F_s. While the mass slips, the smaller kinetic force F_k drags it:
 //!
 //! ```text
 //! stick:  x′ = v          until x = F_s
 //! slip:   x″ = F_k − x    until x′ = v
 //! ```
 //!
-//! With D = F_s − F_k, slip is x = F_k + D cos t + v sin t, whose velocity comes back to v after 2π
-//! − 2 atan(D/v), where x = F_k − D. The belt then carries the mass over 2D. The period is 2π − 2
-//! atan(D/v) + 2D/v.
+//! With D = F_s − F_k, the slip is x = F_k + D cos t + v sin t. Its velocity is v again after the
+//! time 2π − 2 atan(D/v), at x = F_k − D. Then the belt carries the mass over the distance 2D. The
+//! period is 2π − 2 atan(D/v) + 2D/v.
 //!
 //! Run with `cargo run --release --example friction_belt`.
 
@@ -26,7 +26,7 @@ struct Belt {
 }
 
 impl HybridSystem<2, 1> for Belt {
-    /// Whether it sticks.
+    /// Whether the mass sticks.
     type Mode = bool;
 
     fn field(&self, sticks: bool, _time: f64, y: &State<2>) -> State<2> {
@@ -63,8 +63,8 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     let slips: Vec<f64> = switches.iter().filter(|event| event.from).map(|event| event.s).collect();
     let errors = slips.windows(2).map(|pair| (pair[1] - pair[0] - period).abs());
     let largest = errors.fold(0.0, f64::max);
-    println!("{} cycles of period {period:.12}, off by at most {largest:.1e}", slips.len() - 1);
-    // Measured: 1.5e-13.
+    println!("{} cycles of period {period:.12}, largest error {largest:.1e}", slips.len() - 1);
+    // The measured error is 1.5e-13.
     assert!(slips.len() > 50 && largest < 3e-13);
     Ok(())
 }

@@ -1,10 +1,10 @@
-//! Random collisions over the whole range of κ, ψ and damping: is every result one, and how long
-//! does the longest take?
+//! Random collisions over the whole range of κ, ψ and damping: is every result right, and how long
+//! does the slowest take?
 //!
-//! κ is log-uniform in [1e-12, 1e5], ψ in [1e-12, 1e12]; half of the collisions are without
-//! damping, which is log-uniform in [1e-12, 1e3] in the others. What is held of each collision by
-//! each engine is in `tests/checks/collision.rs`. Prints what became of the collisions of each part
-//! of the range, and fails if something does not hold.
+//! κ is log-uniform in [1e-12, 1e5], ψ in [1e-12, 1e12]. Half of the collisions have no damping; in
+//! the others it is log-uniform in [1e-12, 1e3]. `tests/checks/collision.rs` checks each collision
+//! of each engine. The program prints the number of results for each part of the range, and fails
+//! if a check fails.
 //!
 //! Run with `cargo run --release --example full_range -- [COUNT] [SEED]`; 100 000 without
 //! arguments.
@@ -20,7 +20,7 @@ use stickslip::solver::{Dop853, Dopri5};
 #[allow(dead_code, reason = "the fuzz targets and tests use the rest")]
 mod checks;
 
-/// What became of the collisions of a part of the range.
+/// The results in a part of the range.
 #[derive(Default)]
 struct Part {
     ok: u64,
@@ -86,11 +86,11 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
         );
     }
     let wrong: u64 = parts.values().map(|part| part.wrong).sum();
-    println!("{count} contacts: {wrong} results are none, {differ} differ between the engines");
+    println!("{count} contacts: {wrong} results are wrong, {differ} differ between the engines");
     Ok(if wrong + differ == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// The number of switches, none if the engine refuses, or what does not hold.
+/// The number of switches, `None` if the engine refuses the contact, or what is wrong.
 fn outcome<E>(held: &Result<Result<Collision, E>, String>) -> Result<Option<usize>, &str> {
     match held {
         Ok(Ok(collision)) => Ok(Some(collision.switches.len())),

@@ -1,10 +1,11 @@
-//! An oscillator that grazes a stop: the square root in its map.
+//! An oscillator that grazes a stop: its map has a square root.
 //!
-//! A mass on a spring, x″ = −x, starts at x = 0 with the velocity 1 + δ against a stop at x = 1,
-//! from which it comes back with the part r of its velocity. For δ ≤ 0 it returns to where it was
-//! after 2π. For δ > 0 it hits the stop with √(2δ + δ²), however gently, and after 2π is at x = (1
-//! + r) √(2δ + δ²)/(1 + δ): the map over one turn has an infinite slope at the graze, which makes
-//! grazing bifurcations what they are (Nordmark, *J. Sound Vib.* 145, 279, 1991).
+//! A mass on a spring, x″ = −x, starts at x = 0 with the velocity 1 + δ towards a stop at x = 1. It
+//! leaves the stop with the fraction r of its velocity. For δ ≤ 0 the mass is at x = 0 again after
+//! the time 2π. For δ > 0 it hits the stop with the velocity √(2δ + δ²), however small, and after
+//! the time 2π it is at x = (1 + r) √(2δ + δ²)/(1 + δ). So the map over one turn has an infinite
+//! slope at the graze, which is the cause of grazing bifurcations (Nordmark, *J. Sound Vib.* 145,
+//! 279, 1991).
 //!
 //! Run with `cargo run --release --example impact_oscillator`.
 
@@ -38,7 +39,7 @@ impl HybridSystem<2, 1> for Oscillator {
     }
 }
 
-/// Measures the map over one turn from δ = 0.01 to 1e-12, and its exponent.
+/// Computes the map over one turn, from δ = 0.01 to 1e-12, and its exponent.
 ///
 /// # Errors
 /// The run failed.
@@ -54,20 +55,21 @@ pub fn main() -> Result<(), Box<dyn Error>> {
 
     let mut last: Option<(f64, f64)> = None;
     for digits in [2, 4, 6, 8, 10, 12] {
-        // As the start is rounded.
+        // The same δ as after rounding of the start.
         let delta = 1.0 + 10.0_f64.powi(-digits) - 1.0;
         let end = turn(delta)?;
         let moved = end.state[0];
         let exact = (1.0 + oscillator.restitution) * (delta * (2.0 + delta)).sqrt() / (1.0 + delta);
         let error = (moved / exact - 1.0).abs();
-        println!("δ = {delta:.1e}: moved by {moved:.9e}, off by {error:.1e}");
-        // An error of 1e-16 in the velocity is one of 1e-16/δ. Measured: 2.6e-16/δ at most.
+        println!("δ = {delta:.1e}: moved by {moved:.9e}, error {error:.1e}");
+        // An error of 1e-16 in the velocity becomes an error of 1e-16/δ. The measured error is at
+        // most 2.6e-16/δ.
         assert!(end.statistics.switches == 1 && error * delta < 5e-16);
         if let Some((delta_before, moved_before)) = last {
             let exponent = (moved_before / moved).ln() / (delta_before / delta).ln();
             println!("{:>14} exponent {exponent:.7}", "");
-            // (1 + δ/2)/(1 + δ) goes to 1. Measured: within 0.16 δ, then within 4.7e-7; 1.3e-6
-            // where products are rounded.
+            // (1 + δ/2)/(1 + δ) tends to 1. The measured error is at most 0.16 δ, and 4.7e-7 for
+            // small δ; it is 1.3e-6 if products are rounded.
             let rounding = if FUSED_PRODUCTS { 1e-6 } else { 3e-6 };
             assert!((exponent - 0.5).abs() < 0.2 * delta_before + rounding);
         }

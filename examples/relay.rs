@@ -1,9 +1,9 @@
 //! A relay with hysteresis in a feedback loop: the period of its limit cycle against the closed
 //! form.
 //!
-//! A lag of gain K follows a relay, y′ = ±K − y. The relay turns on where y falls below −h, and off
-//! where it rises above h < K. In between y relaxes exponentially, from −h to h in ln((K + h)/(K −
-//! h)), half the period.
+//! A first-order lag of gain K follows a relay: y′ = ±K − y. The relay turns on when y falls below
+//! −h, and turns off when y rises above h, where h < K. In between y relaxes exponentially. From −h
+//! to h it takes the time ln((K + h)/(K − h)), which is half the period.
 //!
 //! Run with `cargo run --release --example relay`.
 
@@ -17,7 +17,7 @@ struct Relay {
 }
 
 impl HybridSystem<1, 1> for Relay {
-    /// Whether it is on.
+    /// Whether the relay is on.
     type Mode = bool;
 
     fn field(&self, on: bool, _time: f64, y: &State<1>) -> State<1> {
@@ -37,7 +37,7 @@ impl HybridSystem<1, 1> for Relay {
     }
 }
 
-/// Follows relays through their switches and compares the times between them with the closed form.
+/// Follows relays and compares the times between their switches with the closed form.
 ///
 /// # Errors
 /// The run failed.
@@ -54,8 +54,8 @@ pub fn main() -> Result<(), Box<dyn Error>> {
         let errors = times.windows(2).map(|pair| (pair[1] - pair[0] - half).abs());
         let largest = errors.fold(0.0, f64::max);
         let period = 2.0 * half;
-        println!("h = {hysteresis}: period {period:.12}, off by at most {largest:.1e}");
-        // Measured: 9.4e-14 at most.
+        println!("h = {hysteresis}: period {period:.12}, largest error {largest:.1e}");
+        // The measured error is at most 9.4e-14.
         assert!(times.len() == 100 && largest < 2e-13);
     }
     Ok(())

@@ -1,5 +1,5 @@
-//! One collision of the steel spheres of Schwager, Becker and Pöschel (2008), Fig. 2: every switch
-//! in seconds.
+//! Every switch, in SI units, of a collision of the steel spheres of Schwager, Becker and Pöschel
+//! (2008), Fig. 2.
 //!
 //! Run with `cargo run --release --example steel_spheres`.
 

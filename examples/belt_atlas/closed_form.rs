@@ -1,7 +1,8 @@
 //! The belt without an integrator: every phase is a sum of sines.
 //!
-//! Roots are found by steps that a bound of the second derivative proves too short to miss one, and
-//! the boundary beside a point by Newton's method. Nothing is shared with the solver or the tracer.
+//! Roots are found in steps. A bound of the second derivative proves that no step passes a root.
+//! The boundary beside a point is found by Newton's method. No code is shared with the solver or
+//! the tracer.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -9,41 +10,44 @@ use stickslip::tracer::Point;
 
 use super::{BELT, Belt, OBSERVED, POSITION};
 
-/// offset + slope·t + Σ a sin(ωt + φ).
+/// The function offset + slope·t + Σ a sin(ωt + φ).
 #[derive(Clone, Copy)]
 struct Sines {
     offset: f64,
     slope: f64,
-    /// a, ω, φ.
+    /// Amplitude a, frequency ω and phase φ.
     waves: [[f64; 3]; 2],
 }
 
 impl Sines {
+    /// The value at the time `t`.
     fn at(&self, t: f64) -> f64 {
         let waves = self.waves.map(|[a, omega, phase]| a * (omega * t + phase).sin());
         self.offset + self.slope * t + waves.iter().sum::<f64>()
     }
 
+    /// The derivative.
     fn rate(&self) -> Self {
         let waves = self.waves.map(|[a, omega, phase]| [a * omega, omega, phase + FRAC_PI_2]);
         Self { offset: self.slope, slope: 0.0, waves }
     }
 
+    /// The function with the opposite sign.
     fn reflected(&self) -> Self {
         let waves = self.waves.map(|[a, omega, phase]| [-a, omega, phase]);
         Self { offset: -self.offset, slope: -self.slope, waves }
     }
 
-    /// A bound of what is left of it after at least two derivatives.
+    /// A bound of the function. It must be a second or higher derivative, without offset and slope.
     fn bound(&self) -> f64 {
         self.waves.iter().map(|[a, ..]| a.abs()).sum()
     }
 
-    /// The first zero after `start`, where it is positive or leaves upwards from a zero of this
-    /// order; `None` if there is none while the run is observed.
+    /// The first zero after `start`, where the function is positive, or rises from a zero of this
+    /// order; `None` if there is none before the end of the run.
     fn falls(&self, start: f64, order: i32) -> Option<f64> {
         let (rate, second) = (self.rate(), self.rate().rate());
-        // Above zero to twice that far, by the last term of Taylor's formula.
+        // By Taylor's formula the function is positive up to twice this time after the start.
         let opening = match order {
             0 => 0.0,
             1 => rate.at(start) / second.bound(),
@@ -52,7 +56,7 @@ impl Sines {
         let (mut t, most) = (start + opening, second.bound());
         while t < OBSERVED {
             let (value, slope) = (self.at(t), rate.at(t));
-            // To the zero of value + slope·τ − most·τ²/2, which lies below.
+            // The zero of the lower bound value + slope·τ − most·τ²/2.
             let step = 2.0 * value / ((slope * slope + 2.0 * most * value).sqrt() - slope);
             if value <= 0.0 || step < 1e-15 * t {
                 return Some(t);
@@ -63,7 +67,7 @@ impl Sines {
     }
 }
 
-/// A phase: its guard, which is u in slip and −w in stick.
+/// A phase, with its guard: u in slip and −w in stick.
 #[derive(Clone, Copy)]
 struct Phase {
     start: f64,
@@ -72,12 +76,12 @@ struct Phase {
 }
 
 impl Phase {
-    /// Where the guard fires; in slip it starts from a double zero.
+    /// The time at which the guard fires. In slip it starts from a double zero.
     fn end(&self) -> Option<f64> {
         self.guard.falls(self.start, if self.slips { 2 } else { 0 })
     }
 
-    /// The guard's minimum that is nearest to zero.
+    /// The time of the minimum of the guard that is nearest to zero.
     fn touch(&self) -> Option<f64> {
         let rate = self.guard.rate();
         let mut rises = self.slips || rate.at(self.start) > 0.0;
@@ -95,6 +99,7 @@ impl Phase {
 }
 
 impl Belt {
+    /// The stick phase that begins at `start` with the excess `excess` of the load.
     fn stick(&self, start: f64, excess: f64) -> Phase {
         let wave = [self.amplitude, self.frequency, FRAC_PI_2];
         let mut guard = Sines { offset: 0.0, slope: -BELT, waves: [wave, [0.0, 1.0, 0.0]] };
@@ -102,6 +107,7 @@ impl Belt {
         Phase { start, slips: false, guard }
     }
 
+    /// The slip phase that begins at `start`.
     fn slip(&self, start: f64) -> Phase {
         let Self { frequency, amplitude } = *self;
         let forced = amplitude * frequency / (1.0 - frequency * frequency);
@@ -118,7 +124,7 @@ impl Belt {
         let first = self.stick(0.0, POSITION - self.amplitude - 1.0);
         std::iter::successors(Some(first), |phase| {
             let end = phase.end()?;
-            // u′ = w where a slip ends.
+            // The excess w is u′ where a slip ends.
             Some(if phase.slips {
                 self.stick(end, phase.guard.rate().at(end))
             } else {
@@ -127,7 +133,7 @@ impl Belt {
         })
     }
 
-    /// How many switches there are while the run is observed.
+    /// The number of switches before the end of the run.
     pub fn switches(&self) -> usize {
         self.phases().count() - 1
     }
@@ -143,8 +149,8 @@ impl Belt {
         })
     }
 
-    /// The guard after so many switches: at the end of the run, or where it touches zero, with the
-    /// time since the phase began.
+    /// The value of the guard after this number of switches, at the end of the run or at its
+    /// minimum nearest to zero, with the time since the phase began.
     fn margin(&self, switches: usize, at_end: bool) -> Option<(f64, f64)> {
         let phase = self.phases().nth(switches)?;
         let place = if at_end { OBSERVED } else { phase.touch()? };
@@ -152,8 +158,8 @@ impl Belt {
     }
 }
 
-/// The distance of `point` from a boundary along `normal`, by Newton's method; `None` where the
-/// phase that grazes is shorter than 0.02, so that its sines cancel.
+/// The distance of `point` from a boundary along `normal`, by Newton's method. `None` if the phase
+/// is shorter than 0.02, so that its sines cancel.
 pub fn distance(point: &Point, normal: &Point, switches: usize, at_end: bool) -> Option<f64> {
     const REACH: f64 = 1e-10;
     let margin = |away: f64| {

@@ -1,24 +1,27 @@
-//! An atlas of a shaken mass on a moving belt: where in the plane of frequency and amplitude its
-//! stick–slip changes.
+//! An atlas of a shaken mass on a moving belt: the places in the plane of frequency and amplitude
+//! where its stick–slip changes.
 //!
-//! A mass on a spring lies on a belt of constant velocity v and is shaken harmonically; mass,
-//! stiffness and dry friction are 1:
+//! A mass on a spring lies on a belt of constant velocity v and is shaken harmonically. The mass,
+//! the stiffness and the dry friction are 1:
 //!
 //! ```text
 //! slip:   x″ = 1 − (x − f cos Ωt)   while x′ < v
 //! stick:  x′ = v                    while the load x − f cos Ωt is below 1
 //! ```
 //!
-//! The state is what the guards look at: the slip velocity u = v − x′ and the excess w = x − f cos
-//! Ωt − 1 of the load, with w′ = v − u + fΩ sin Ωt, in slip u′ = w, in stick u = 0. Stick ends
-//! where w rises to zero. Slip starts from u = w = 0, a double zero of u, and ends where u falls
-//! back to zero. Three kinds of boundaries part the plane: a slip grazes (u touches zero), a
-//! load grazes (w touches zero), and a switch happens just as the observation ends.
+//! The state consists of the slip velocity u = v − x′ and of the excess w = x − f cos Ωt − 1 of the
+//! load, because the guards depend on these. They satisfy w′ = v − u + fΩ sin Ωt, and u′ = w in
+//! slip, u = 0 in stick. Stick ends where w rises to zero. Slip starts from u = w = 0, a double
+//! zero of u, and ends where u falls back to zero.
 //!
-//! The family is one of transients: v = 0.3, all runs start with the belt at x = 0.5, and end at t
-//! = 18. The mass never overtakes the belt, which would be a third mode: the load stays above −1.
+//! Three kinds of boundaries divide the plane: a slip grazes (u touches zero), the load grazes (w
+//! touches zero), or a switch happens just at the end of the observation.
 //!
-//! Every phase has a closed form, with which all is compared: see `closed_form.rs`.
+//! The runs are transients with v = 0.3. They start with the velocity of the belt at x = 0.5 and
+//! end at t = 18. The load stays above −1, so that the mass never overtakes the belt, which would
+//! be a third mode.
+//!
+//! Every phase has a closed form, and `closed_form.rs` compares everything with it.
 //!
 //! Run with `cargo run --release --example belt_atlas`.
 
@@ -34,11 +37,11 @@ use stickslip::tracer::{
     Window, trace, verify,
 };
 
-/// Velocity of the belt.
+/// The velocity of the belt.
 const BELT: f64 = 0.3;
-/// Where the mass starts.
+/// The position at which the mass starts.
 const POSITION: f64 = 0.5;
-/// When a run ends.
+/// The time at which a run ends.
 const OBSERVED: f64 = 18.0;
 const WINDOW: Window = Window { low: Point::new(0.25, 0.5), high: Point::new(0.45, 1.2) };
 
@@ -80,7 +83,7 @@ impl HybridSystem<2, 2> for Belt {
     }
 }
 
-/// A belt at every point of the plane.
+/// The belts of all points of the plane.
 struct Belts;
 
 impl Problem<2, 2> for Belts {
@@ -93,7 +96,7 @@ impl Problem<2, 2> for Belts {
     }
 }
 
-/// The largest distances of nodes and of the cubics between them from the closed form.
+/// The largest distances from the closed form, at nodes and on the cubics between them.
 #[derive(Default)]
 struct Distances {
     nodes: f64,
@@ -105,7 +108,7 @@ struct Distances {
 impl Distances {
     fn add(&mut self, curve: &Curve<Vec<usize>, Margin>) {
         let (switches, at_end) = (curve.margin.exits.len(), curve.margin.place == Place::End);
-        // Without the first node and the last, which are vertices: other margins vanish there too.
+        // The first and the last node are vertices, where other margins vanish too.
         for (piece, nodes) in curve.nodes.windows(2).enumerate() {
             let cubic = Cubic::between(&nodes[0], &nodes[1]);
             for i in i32::from(piece == 0)..10 {
@@ -148,12 +151,12 @@ pub fn main() -> Result<(), Box<dyn Error>> {
         };
         kinds[kind].1.add(curve);
     }
-    println!("largest distance from the closed form, over {} curves:", network.curves.len());
+    println!("largest distances of {} curves from the closed form:", network.curves.len());
     for (kind, Distances { nodes, cubics, compared, left_out }) in &kinds {
         println!(
             "{kind:>20}: {nodes:.1e} at nodes, {cubics:.1e} between ({compared} places, {left_out} left out)"
         );
-        // Measured: 3.7e-13 and 9.3e-11; the trace promises 1e-12 and 1e-10.
+        // Measured were 3.7e-13 and 9.3e-11; the trace guarantees 1e-12 and 1e-10.
         assert!(*nodes < 7e-13 && *cubics < 1.5e-10);
         assert!(*compared > 500 && *left_out < 5);
     }
@@ -173,7 +176,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
             compared += 1;
         }
     }
-    println!("{} regions, right at {compared} random points", plane.regions().len());
+    println!("{} regions, correct at {compared} random points", plane.regions().len());
     assert!(plane.regions().len() == 5 && compared > 9990);
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! κ, ψ and a as 24 bytes: what `tests/checks/collision.rs` says of every collision.
+//! κ, ψ and a as 24 bytes, with the checks of `tests/checks/collision.rs`.
 
 #![no_main]
 
@@ -10,7 +10,7 @@ use stickslip::model::Contact;
 
 fuzz_target!(|bits: [u64; 3]| {
     let [kappa, psi, damping] = bits.map(f64::from_bits);
-    // The stiffest take seconds.
+    // Collisions of the stiffest springs take seconds.
     if (1e5..1e17).contains(&kappa) {
         return;
     }

@@ -1,9 +1,9 @@
-//! Bytes as a hybrid system: what `tests/checks/hybrid.rs` says of its runs.
+//! Bytes as polynomial guards. `crates/solver/tests/solver/checks.rs` says what must hold.
 
 #![no_main]
 #![allow(dead_code, reason = "each target uses one of the checks")]
 
-#[path = "../../tests/checks/hybrid.rs"]
+#[path = "../../crates/solver/tests/solver/checks.rs"]
 mod checks;
 
 use libfuzzer_sys::fuzz_target;

@@ -1,28 +1,28 @@
-//! What holds of every collision, whatever its parameters.
+//! Properties of every collision, for all parameters. Tests, fuzz targets and examples share this
+//! file.
 
-use stickslip::plane::CollisionPlane;
-use stickslip::model::exact::{self, ExactError};
-use stickslip::model::{
+use stickslip_model::exact::{self, ExactError};
+use stickslip_model::{
     Collider, Collision, CollisionError, Contact, EnergyLedger, Regime, Side, Switch,
 };
-use stickslip::solver::{Dopri5, Method};
+use stickslip_solver::{Dopri5, Method};
 
-/// Part of ψ² by which energies may not balance at the default tolerances of Dormand–Prince 8(5,3).
+/// Largest unbalanced energy, in units of ψ², at the default tolerances of Dormand–Prince 8(5,3).
 const BALANCE: f64 = 1e-9;
 /// Largest difference of w between integrator and exact solution, in units of ψ, for springs up to
-/// κ = [`SOFT`]; beyond, the number of steps whose errors add up grows as √κ.
+/// κ = [`SOFT`]. Beyond, it grows as √κ, like the number of steps whose errors add up.
 const VELOCITY: f64 = 1e-9;
 const SOFT: f64 = 1e3;
-/// Largest difference of a switch time.
+/// Largest difference of a switch time between integrator and exact solution.
 const TIME: f64 = 1e-8;
-/// Relative change of κ or ψ, times ψ^{2/3} for ψ < 1, that may change which switches the engines
-/// find.
+/// Relative change of κ or ψ, times ψ^{2/3} for ψ < 1, that may change the switches which the
+/// engines find.
 const UNDECIDED: f64 = 1e-11;
 
-/// Collides `contact` by every engine that takes it, and holds what is true of the results.
+/// Collides `contact` by every engine that computes it, and checks the results.
 ///
 /// # Errors
-/// What does not hold.
+/// A description of the first property that does not hold.
 pub fn every_engine(contact: Contact) -> Result<(), String> {
     let accurate = integrated(&Collider::default(), contact)?;
     let _ = integrated(&Collider::new(Dopri5), contact)?;
@@ -32,10 +32,10 @@ pub fn every_engine(contact: Contact) -> Result<(), String> {
     Ok(())
 }
 
-/// Integrates `contact` and holds that a result is one.
+/// Integrates `contact` and checks the collision, if there is one.
 ///
 /// # Errors
-/// What does not hold of the result.
+/// A description of the first property that does not hold.
 pub fn integrated<M: Method>(
     collider: &Collider<M>,
     contact: Contact,
@@ -47,16 +47,16 @@ pub fn integrated<M: Method>(
     Ok(result)
 }
 
-/// Holds that two engines found the same, unless a change of ψ in the last digits changes what
-/// there is to find.
+/// Checks that two engines found the same collision, unless a change of κ or ψ in the last digits
+/// changes its switches.
 ///
 /// # Errors
-/// What differs.
+/// A description of the difference.
 pub fn agree(integrated: &Collision, closed: &Collision) -> Result<(), String> {
     let contact = closed.contact;
     if integrated.itinerary() != closed.itinerary() {
-        // A small impact ends its last slip within |w| ≈ 1e-12 ψ^{1/3} of another stick: see
-        // `docs/numerics.md`.
+        // After a small impact the last slip ends within |w| ≈ 1e-12 ψ^{1/3} of another stick
+        // phase; see `docs/numerics.md`.
         let undecided = UNDECIDED * contact.psi().min(1.0).powf(-2.0 / 3.0);
         let decided = [-undecided, undecided].into_iter().all(|change| {
             let (kappa, psi) = (contact.kappa(), contact.psi());
@@ -81,10 +81,10 @@ pub fn agree(integrated: &Collision, closed: &Collision) -> Result<(), String> {
     Ok(())
 }
 
-/// The exact solution of `contact`, and holds that it is one.
+/// The exact solution of `contact`, checked if there is one.
 ///
 /// # Errors
-/// What does not hold of the result.
+/// A description of the first property that does not hold.
 pub fn exact(contact: Contact) -> Result<Result<Collision, ExactError>, String> {
     let result = exact::collide(contact);
     if let Ok(collision) = &result {
@@ -95,12 +95,11 @@ pub fn exact(contact: Contact) -> Result<Result<Collision, ExactError>, String> 
     Ok(result)
 }
 
-/// Holds that an exact collision leaves the margins of the guards that did not fire, if it has few
-/// enough switches for them.
+/// Checks the margins of an exact collision, if it has few enough switches for them.
 fn near_misses(collision: &Collision) -> Result<(), String> {
     let contact = &collision.contact;
     let Ok(margins) = exact::margins(contact) else { return Ok(()) };
-    require(margins.fired == CollisionPlane::label(collision), || format!("{:?}", margins.fired))?;
+    require(margins.fired == collision.fired(), || format!("{:?}", margins.fired))?;
     for (which, value) in &margins.near_misses {
         require(*value >= 0.0, || format!("{which:?} is {value:e}"))?;
         let again = exact::margin(contact, which).map_err(|error| error.to_string())?;
@@ -112,7 +111,7 @@ fn near_misses(collision: &Collision) -> Result<(), String> {
     Ok(())
 }
 
-/// Holds what is true of every collision.
+/// Checks the properties of every collision.
 fn sound(collision: &Collision) -> Result<(), String> {
     let Collision { contact, eps_n, final_velocity, contact_time, start, switches, .. } = collision;
     require(collision.eps_t().is_finite(), || format!("ε_t = {:e}", collision.eps_t()))?;
@@ -120,7 +119,7 @@ fn sound(collision: &Collision) -> Result<(), String> {
         format!("contact time {contact_time:e}")
     })?;
     let damped = contact.damping() > 0.0;
-    // Rounding of v: without damping ε_n is 1.
+    // Without damping ε_n is 1, and v is rounded.
     require(*eps_n >= 0.0 && *eps_n <= 1.0 + 1e-11, || format!("ε_n = {eps_n:e}"))?;
     require(damped || (eps_n - 1.0).abs() <= 1e-11, || format!("ε_n = {eps_n:e} without damping"))?;
     require(final_velocity.abs() <= contact.psi() * (1.0 + 1e-9), || {
@@ -140,8 +139,8 @@ fn sound(collision: &Collision) -> Result<(), String> {
     balanced(&collision.energy, contact.psi())
 }
 
-/// Regimes alternate, slip on the side that its switch says, and the spring is on the side of its
-/// limit.
+/// Checks that regimes alternate, that slip is on the side of its switch, and that the spring is on
+/// the side of its limit.
 fn in_turns(collision: &Collision) -> Result<(), String> {
     let (mut regime, mut side) = (collision.start, Side::Positive);
     for (index, switch) in collision.switches.iter().enumerate() {
@@ -156,8 +155,8 @@ fn in_turns(collision: &Collision) -> Result<(), String> {
     require(regime == Regime::Slip, || format!("ends in {regime}"))
 }
 
-/// Times rise, and times left fall, both within the contact; together they make it up, to the
-/// rounding of their sums.
+/// Checks that times rise and times left fall, both within the contact, and that their sum is the
+/// contact time to rounding.
 fn in_time(switches: &[Switch], contact_time: f64) -> Result<(), String> {
     let rounding = f64::EPSILON * contact_time * (switches.len() + 4) as f64;
     let (mut time, mut left) = (0.0, contact_time + rounding);
@@ -173,11 +172,12 @@ fn in_time(switches: &[Switch], contact_time: f64) -> Result<(), String> {
     Ok(())
 }
 
-/// No energy is negative, and none is lost.
+/// Checks that no energy is negative and that none is lost.
 fn balanced(energy: &EnergyLedger, psi: f64) -> Result<(), String> {
     let EnergyLedger { tangential_final, spring_left, normal_final, compression_left, .. } =
         *energy;
-    // Sliding is an impulse, which rounding of v leaves known to 1e-16, times a velocity.
+    // The work of sliding is an impulse, which is known to 1e-16 by the rounding of v, times a
+    // velocity.
     let error = BALANCE * psi * psi + 1e-15 * psi;
     let place = || format!("{energy:?}");
     require(tangential_final >= 0.0 && spring_left >= 0.0, place)?;

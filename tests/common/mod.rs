@@ -1,28 +1,30 @@
-//! Reference collisions read from tests/data.
+//! Reference collisions, read from tests/data. Several packages share this file.
+
+use std::path::Path;
 
 use serde_json::Value;
-use stickslip::model::{Collision, Contact};
+use stickslip_model::{Collision, Contact};
 
 /// A reference collision.
 pub struct Case {
-    /// Its parameters.
+    /// The parameters.
     pub contact: Contact,
-    /// Its results.
+    /// The results, as in the file.
     pub expected: Value,
 }
 
 impl Case {
-    /// A number of the results, given as a decimal string.
+    /// A number among the results, which the file has as a decimal string.
     pub fn number(&self, key: &str) -> f64 {
         number(&self.expected[key])
     }
 
-    /// The reference switches.
+    /// The switches, as in the file.
     pub fn switches(&self) -> &[Value] {
         self.expected["switches"].as_array().expect("an array of switches")
     }
 
-    /// Whether regimes and sides of all switches agree.
+    /// Whether all switches of `collision` have the regimes and sides of the reference.
     pub fn same_itinerary(&self, collision: &Collision) -> bool {
         self.switches().len() == collision.switches.len()
             && self.switches().iter().zip(&collision.switches).all(|(expected, switch)| {
@@ -32,15 +34,19 @@ impl Case {
     }
 }
 
-/// A number of a reference file.
+/// A number of a reference file, from its decimal string.
 pub fn number(value: &Value) -> f64 {
     value.as_str().expect("a decimal string").parse().expect("a number")
 }
 
-/// A reference file.
+/// A reference file, from `tests/data` of the package or of the workspace around it.
 pub fn file(name: &str) -> Value {
-    let path = format!("{}/tests/data/{name}.json", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(&path).expect("a reference file");
+    let folders = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors();
+    let file = folders
+        .map(|folder| folder.join(format!("tests/data/{name}.json")))
+        .find(|file| file.is_file())
+        .expect("a reference file");
+    let text = std::fs::read_to_string(file).expect("a text");
     serde_json::from_str(&text).expect("JSON")
 }
 

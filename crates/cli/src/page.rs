@@ -8,10 +8,11 @@ use std::fmt::Write;
 
 use askama::Template;
 use askama::filters::{Html, escape};
-use stickslip_figure::markup::{Piece, PieceStyle, pieces};
+use stickslip_figure::markup::{Piece, PieceStyle, pieces, plain};
 use stickslip_figure::number;
-use stickslip_studies::figures::Section;
-use stickslip_studies::{Cell, Column, Picture, Table};
+use stickslip_studies::figures::{Section, headlines};
+use stickslip_studies::statements::{Audit, Verdict};
+use stickslip_studies::{Cell, Column, Table};
 
 /// The title of the page and of the report.
 pub const TITLE: &str = "Tangential restitution of viscoelastic spheres, computed anew";
@@ -27,14 +28,17 @@ pub const INTRODUCTION: [&str; 2] = [
      ways, as κ of (24) and as ακ; both are shown.",
 ];
 
-/// Pictures are not shown smaller than that, in parts of their size: letters would become too
-/// small.
-const LEAST_SCALE: f64 = 0.7;
-
 #[derive(Template)]
 #[template(path = "page.html")]
 struct Page<'a> {
     sections: &'a [Section],
+}
+
+impl Page<'_> {
+    /// The audits among the parts, of which there is one.
+    fn audits(&self) -> impl Iterator<Item = &Audit> {
+        self.sections.iter().filter_map(|section| section.audit.as_ref())
+    }
 }
 
 /// The page.
@@ -69,11 +73,6 @@ fn escaped(text: &str) -> String {
     escape(text, Html).map(|escaped| escaped.to_string()).unwrap_or_default()
 }
 
-/// The width below which a picture scrolls, in pixels.
-fn least_width(picture: &Picture) -> f64 {
-    (LEAST_SCALE * picture.svg.width()).round()
-}
-
 /// The tables of a section that stand on the page.
 fn shown(section: &Section) -> Vec<&Table> {
     let tables = section.study.tables.iter();
@@ -84,6 +83,21 @@ fn shown(section: &Section) -> Vec<&Table> {
 fn headings(table: &Table) -> Vec<(&Column, &'static str)> {
     let first = table.rows.first().into_iter().flatten();
     table.columns.iter().zip(first.map(class)).collect()
+}
+
+/// The cells of a row, each with its column.
+fn labelled<'a>(row: &'a [Cell], table: &'a Table) -> Vec<(&'a Cell, &'a Column)> {
+    row.iter().zip(&table.columns).collect()
+}
+
+/// The class of a verdict and a mark that tells it apart without its colour.
+fn verdict(verdict: Verdict) -> (&'static str, char) {
+    match verdict {
+        Verdict::Holds => ("holds", '✓'),
+        Verdict::HoldsWithACondition => ("condition", '◐'),
+        Verdict::DoesNotHold => ("fails", '✗'),
+        Verdict::CannotBeDecided => ("open", '?'),
+    }
 }
 
 fn content(cell: &Cell) -> String {

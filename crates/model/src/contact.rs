@@ -1,6 +1,6 @@
-//! The three numbers that decide a collision.
+//! The parameters of a collision.
 
-/// One collision in scaled variables: the two numbers that decide the switching, and the damping.
+/// The parameters of one collision in scaled variables: stiffness, impact ratio and damping.
 ///
 /// Scaled units: time β^{−2/5} g_n^{−1/5}, length g_n^{4/5} β^{−2/5}, with β = ρ/m.
 ///
@@ -21,9 +21,8 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// A collision with scaled stiffness `kappa` = k_t/(α m β^{4/5} g_n^{2/5}) > 0,
-    /// impact ratio `psi` = (g_t/g_n) α/μ > 0 and scaled damping `damping` = A β^{2/5} g_n^{1/5} ≥
-    /// 0.
+    /// A collision with the scaled stiffness `kappa` = k_t/(α m β^{4/5} g_n^{2/5}) > 0, the impact
+    /// ratio `psi` = (g_t/g_n) α/μ > 0 and the scaled damping `damping` = A β^{2/5} g_n^{1/5} ≥ 0.
     ///
     /// # Errors
     /// [`InvalidParameter`] names the first parameter that is out of its range.
@@ -68,6 +67,6 @@ pub struct InvalidParameter {
     pub name: &'static str,
     /// The value that was given.
     pub value: f64,
-    /// What is expected.
+    /// The range in words.
     pub expected: &'static str,
 }

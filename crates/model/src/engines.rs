@@ -1,4 +1,6 @@
 //! What computes a collision: an integrator with its tolerances, or the exact solution.
+//!
+//! A further engine is a module beside [`integrator`] and [`exact`] and a variant of [`Engine`].
 
 use stickslip_solver::{Dop853, Dopri5, Statistics};
 
@@ -33,13 +35,14 @@ pub enum Engine {
     Dop853(Tolerances),
     /// Dormand–Prince 5(4).
     Dopri5(Tolerances),
-    /// The exact solution, for contacts without damping only.
+    /// The exact solution, which only contacts without damping have.
     Exact,
-    /// The exact solution where there is one, else Dormand–Prince 8(5,3) at its default tolerances.
+    /// The exact solution without damping, and with it Dormand–Prince 8(5,3) at its default
+    /// tolerances.
     Auto,
 }
 
-/// Tolerances of a step: its error stays below `atol + rtol·|y|`.
+/// Tolerances of a step, whose error in a component y stays below `atol + rtol·|y|`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerances {
     /// Relative tolerance, 1e-15 to 0.1.
@@ -48,7 +51,7 @@ pub struct Tolerances {
     pub atol: f64,
 }
 
-/// Why an engine has no result.
+/// The reason why an engine has no result.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum EngineError {
     /// The integration failed.
@@ -63,10 +66,10 @@ pub enum EngineError {
 }
 
 impl Tolerances {
-    /// Defaults of Dormand–Prince 8(5,3), at which w is good to 1e-12.
+    /// Defaults of Dormand–Prince 8(5,3), with which w is within 1e-12.
     pub const DOP853: Self =
         Self { rtol: Collider::<Dop853>::RTOL, atol: Collider::<Dop853>::ATOL };
-    /// Defaults of Dormand–Prince 5(4), which would need very many steps for the same accuracy.
+    /// Defaults of Dormand–Prince 5(4). It would need very many steps for the accuracy of 8(5,3).
     pub const DOPRI5: Self = Self { rtol: 1e-10, atol: 1e-10 };
 }
 
@@ -82,7 +85,7 @@ impl Engine {
         }
     }
 
-    /// The integrator's tolerances; none where [`Self::resolved`] is not an integrator of its own.
+    /// The tolerances of an integrator; `None` for [`Self::Exact`] and [`Self::Auto`].
     #[must_use]
     pub fn tolerances(&self) -> Option<Tolerances> {
         match *self {
@@ -91,7 +94,7 @@ impl Engine {
         }
     }
 
-    /// The engine that computes the collision of `contact`: for [`Self::Auto`] the one it chooses.
+    /// The engine that computes the collision of `contact`: itself, or what [`Self::Auto`] chooses.
     #[must_use]
     pub fn resolved(self, contact: &Contact) -> Self {
         match self {
@@ -101,12 +104,12 @@ impl Engine {
         }
     }
 
-    /// Computes the collision of `contact`, with the integrator's work if there is an integrator.
+    /// Computes the collision of `contact`, with the statistics of the run if it is integrated.
     ///
     /// # Errors
-    /// [`EngineError`]: the contact is out of the engine's range, the integration fails, or a
-    /// result is beyond the range of doubles; the energies may still be
-    /// ([`EnergyLedger::require_finite`](crate::EnergyLedger::require_finite)).
+    /// [`EngineError`]: the contact is out of the engine's range, the integration fails, or a result
+    /// is beyond the range of doubles. Energies are not checked; see
+    /// [`EnergyLedger::require_finite`](crate::EnergyLedger::require_finite).
     pub fn collide(
         &self,
         contact: Contact,
@@ -130,11 +133,11 @@ impl Engine {
         Ok((collision, statistics))
     }
 
-    /// The collision of `contact` with its course, the integrator's from one run; without an
-    /// integrator of the engine's own, the course is that of [`Self::history`].
+    /// The collision of `contact` with its course. An integrator computes both with one run; the
+    /// course of the exact solution is that of [`Self::history`].
     ///
-    /// The collision is bit for bit that of [`Self::collide`]; the integrator's work is that of the
-    /// run that records the course, which repeats some steps.
+    /// The collision is bit for bit that of [`Self::collide`]. The integrator's work is that of the
+    /// run that keeps the course, which repeats some steps.
     ///
     /// # Errors
     /// As [`Self::collide`]; or the run takes more than [`History::MOST_STEPS`] steps.
@@ -158,8 +161,8 @@ impl Engine {
         Ok((collision, Some(statistics), history))
     }
 
-    /// The course of the collision of `contact`; without an integrator of the engine's own, by
-    /// Dormand–Prince 8(5,3) at its default tolerances.
+    /// The course of the collision of `contact` in time. For [`Self::Exact`] and [`Self::Auto`],
+    /// Dormand–Prince 8(5,3) integrates it at its default tolerances.
     ///
     /// # Errors
     /// [`EngineError::Collision`]: the integration fails.

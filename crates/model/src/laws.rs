@@ -1,7 +1,7 @@
 //! Laws of the contact, as hybrid systems.
 //!
-//! There is one so far, [`regularized`]: viscoelastic spheres with a tangential spring of constant
-//! stiffness. Each further law is a file of its own beside it; [`phase`] is what they share.
+//! There is one so far, [`regularized`]: viscoelastic spheres and a tangential spring of constant
+//! stiffness. A further law is a file beside it. [`phase`] holds what laws have in common.
 
 pub(crate) mod phase;
 pub mod regularized;

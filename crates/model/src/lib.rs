@@ -1,15 +1,24 @@
 //! The collision of two frictional viscoelastic spheres, integrated and exact.
 //!
 //! During one contact the tangential force switches several times between Coulomb sliding and a
-//! spring (Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107, 2008). In scaled variables two
-//! numbers decide all of it, the stiffness κ and the impact ratio ψ, and a third one with damping:
-//! a [`Contact`]. A [`Collider`] integrates it, [`exact::collide`] solves it in closed form where
-//! there is no damping; both return a [`Collision`] with every switch.
+//! spring (Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107, 2008). In scaled variables a
+//! collision has three parameters: the stiffness κ, the impact ratio ψ and the damping. Together
+//! they are a [`Contact`]. A [`Collider`] integrates its collision. Without damping,
+//! [`exact::collide`] solves it in closed form. Both return a [`Collision`] with every switch, and
+//! an [`Engine`] is a choice between them.
 //!
-//! Start reading in [`collision`]; then [`regularized`] (the equations), [`exact`] (the closed form),
-//! [`Engine`] (either of them), [`history`] (its course in time), [`scaling`] (SI units), [`bodies`] and
-//! [`encounter`] (spheres in three dimensions), [`normal`], [`coulomb`], [`largest`] and [`inner`] (closed
-//! forms to compare with), [`sensitivity`] (derivatives).
+//! Start reading in [`integrator`]. The source has one folder for each idea; in reading order:
+//!
+//! | folder | modules |
+//! |---|---|
+//! | `laws` | [`regularized`]: the equations of the contact as a hybrid system |
+//! | `engines` | [`integrator`], [`exact`]: two ways to a collision; [`history`]: its course in time; [`sensitivity`]: its derivatives |
+//! | `result` | what every engine returns: [`Collision`], [`Switch`], [`EnergyLedger`] |
+//! | `spheres` | SI units: [`quantity`], [`bodies`], [`scaling`] to a [`Contact`], [`encounter`] in three dimensions, its [`Outcome`] and [`ImpactReport`] |
+//! | `limits` | [`normal`], [`coulomb`], [`largest`], [`inner`]: closed forms and limits to compare with |
+//! | `numerics` | numbers with twice the digits, roots in a bracket |
+//!
+//! With the feature `serde`, results serialise themselves.
 //!
 //! ```
 //! use stickslip_model::{Collider, Contact, exact};
@@ -35,7 +44,7 @@ mod spheres;
 pub use contact::{Contact, InvalidParameter};
 pub use engines::domain::OutOfDomain;
 pub use engines::history::{History, PhaseHistory, Snapshot};
-/// The [`integrator`] under a second name.
+#[doc(hidden)]
 pub use engines::integrator as collision;
 pub use engines::integrator::{Collider, CollisionError};
 pub use engines::sensitivity::{Derived, Sensitivity};

@@ -1,4 +1,4 @@
-//! Laws and limits to compare collisions with, in closed form.
+//! Closed forms and limits with which collisions are compared.
 
 pub mod coulomb;
 pub mod inner;

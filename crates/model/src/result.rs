@@ -1,4 +1,4 @@
-//! What a collision returns, the same for every engine.
+//! The result of a collision, the same for every engine.
 
 use smallvec::SmallVec;
 
@@ -10,33 +10,7 @@ use crate::laws::phase::{OTHER_SIDE, Phase, Regime, SAME_SIDE, Side};
 pub use energy::EnergyLedger;
 pub use finite::NotFinite;
 
-/// A switch between Coulomb sliding and the spring.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct Switch {
-    /// Scaled time since the start of contact.
-    pub time: f64,
-    /// Scaled time until the end of contact, accurate relative to itself however small it is.
-    pub time_left: f64,
-    /// The regime that begins.
-    pub to: Regime,
-    /// The side of the sliding that begins, or for a switch to stick, of the sliding that ends.
-    pub side: Side,
-    /// Reduced elongation y of the spring.
-    pub spring: f64,
-    /// Reduced tangential velocity w.
-    pub velocity: f64,
-}
-
-/// Switches of which a collision allocates nothing: as many as it may have below κ = 240.
-pub const FEW_SWITCHES: usize = 16;
-
-/// The switches of a collision: a slice whose first [`FEW_SWITCHES`] lie in the collision itself.
-pub type Switches = SmallVec<[Switch; FEW_SWITCHES]>;
-
-/// The outcome of one collision in reduced variables.
-///
-/// The same type comes from the integrator and from the exact engine.
+/// The result of one collision in reduced variables, from any engine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Collision {
     /// The collision's parameters.
@@ -53,12 +27,37 @@ pub struct Collision {
     pub switches: Switches,
     /// Number of sign changes of the tangential velocity during contact.
     pub reversals: usize,
-    /// Where the energy went.
+    /// The energy before, during and after the contact.
     pub energy: EnergyLedger,
 }
 
+/// A switch between Coulomb sliding and the spring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Switch {
+    /// Scaled time since the start of contact.
+    pub time: f64,
+    /// Scaled time until the end of contact, accurate relative to itself however small it is.
+    pub time_left: f64,
+    /// The regime that begins.
+    pub to: Regime,
+    /// The side of the sliding that begins or, at a switch to stick, of the sliding that ends.
+    pub side: Side,
+    /// Reduced elongation y of the spring.
+    pub spring: f64,
+    /// Reduced tangential velocity w.
+    pub velocity: f64,
+}
+
+/// Number of switches up to which a collision allocates nothing: no collision with κ below 240 has
+/// more.
+pub const FEW_SWITCHES: usize = 16;
+
+/// The switches of a collision. Up to [`FEW_SWITCHES`] of them are stored in the collision itself.
+pub type Switches = SmallVec<[Switch; FEW_SWITCHES]>;
+
 impl Collision {
-    /// A collision of which nothing is known yet.
+    /// A collision that has not been computed yet; its results are NaN.
     #[must_use]
     pub fn before(contact: Contact) -> Self {
         Self {
@@ -73,7 +72,7 @@ impl Collision {
         }
     }
 
-    /// Forgets everything but its memory, which stays where it is.
+    /// Makes this [`Collision::before`] of `contact`, and keeps its memory.
     pub(crate) fn reset(&mut self, contact: Contact) {
         self.contact = contact;
         (self.eps_n, self.final_velocity, self.contact_time) = (f64::NAN, f64::NAN, f64::NAN);
@@ -89,7 +88,7 @@ impl Collision {
         self.final_velocity / self.contact.psi()
     }
 
-    /// One character a phase: `+` and `-` for slip on side ±1, `o` for stick.
+    /// One character for each phase: `+` and `-` for slip on side +1 and −1, `o` for stick.
     #[must_use]
     pub fn itinerary(&self) -> String {
         let start = match self.start {
@@ -104,10 +103,9 @@ impl Collision {
         std::iter::once(start).chain(entered).collect()
     }
 
-    /// The guards that fired: [`SAME_SIDE`] or [`OTHER_SIDE`] for each switch.
-    ///
-    /// It is the name of the itinerary that margins use, see
-    /// [`exact::Margins::fired`](crate::exact::Margins::fired).
+    /// The guards that fired, [`SAME_SIDE`](crate::regularized::SAME_SIDE) or
+    /// [`OTHER_SIDE`](crate::regularized::OTHER_SIDE) for each switch, as
+    /// [`exact::Margins::fired`](crate::exact::Margins::fired) names them.
     #[must_use]
     pub fn fired(&self) -> Vec<usize> {
         let mut side = Side::Positive;
@@ -116,5 +114,28 @@ impl Collision {
             if same { SAME_SIDE } else { OTHER_SIDE }
         };
         self.switches.iter().map(guard).collect()
+    }
+
+    /// Checks that all results but the energies are finite numbers; see
+    /// [`EnergyLedger::require_finite`] for those.
+    ///
+    /// # Errors
+    /// [`NotFinite`] names the first that is not.
+    pub fn require_finite(&self) -> Result<(), NotFinite> {
+        let results = [
+            ("eps_n", self.eps_n),
+            ("eps_t", self.eps_t()),
+            ("w_final", self.final_velocity),
+            ("contact_time", self.contact_time),
+        ];
+        let switches = self.switches.iter().flat_map(|switch| {
+            [
+                ("the time of a switch", switch.time),
+                ("the time left at a switch", switch.time_left),
+                ("the spring at a switch", switch.spring),
+                ("the velocity at a switch", switch.velocity),
+            ]
+        });
+        NotFinite::among(results.into_iter().chain(switches))
     }
 }

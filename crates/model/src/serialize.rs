@@ -1,7 +1,6 @@
-//! Results as JSON objects, with the names and the order in which programs print them.
+//! Results as JSON objects, with the names and the order in which the program prints them.
 //!
-//! Here are the types whose object differs from their fields; the others derive it. Numbers in SI
-//! units have the unit in their name.
+//! This file has the types whose objects differ from their fields; other types derive `Serialize`.
 
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 

@@ -1,4 +1,6 @@
-//! Spheres and walls in SI units.
+//! Spheres and walls in SI units: from bodies and their motions to a scaled
+//! [`Contact`](crate::Contact), and from its [`Collision`](crate::Collision) back to forces,
+//! motions and energies.
 
 pub mod bodies;
 pub mod encounter;

@@ -1,27 +1,28 @@
-//! Why a run failed.
+//! Why a run fails.
 
 use crate::options::InvalidOption;
 
-/// A run failed; every variant carries the numbers that tell where.
+/// The reason for which a run failed. Every variant carries the numbers that tell where.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum RunError {
     /// An option is out of its range.
     #[error(transparent)]
     Option(#[from] InvalidOption),
-    /// The span of the run is not a forward one.
+    /// The end of the run does not lie after its start, or the start is not finite.
     #[error("cannot run from s = {from} to s = {to}: the end must lie after a finite start")]
     Span {
-        /// Start of the run.
+        /// The start of the run.
         from: f64,
-        /// Its end.
+        /// The end of the run.
         to: f64,
     },
-    /// The initial state, or one that a transition returned, is not finite.
+    /// A state from which the run or one of its phases starts is not finite.
     #[error(
-        "component {component} of the state at s = {s}, where the run or a phase starts, is not finite"
+        "component {component} of the state at s = {s}, where the run or a phase starts, is not \
+         finite"
     )]
     State {
-        /// Where.
+        /// Where the run or the phase starts.
         s: f64,
         /// The first component that is not finite.
         component: usize,
@@ -34,17 +35,17 @@ pub enum RunError {
         /// Steps tried so far.
         step: usize,
     },
-    /// No step is short enough for the tolerance.
+    /// The error exceeds the tolerance on every step that still moves the time.
     #[error("the tolerance cannot be met at s = {s}: a step of {h:e} is too long (step {step})")]
     Tolerance {
         /// Where the step started.
         s: f64,
-        /// The last step tried.
+        /// The size of the last step tried.
         h: f64,
         /// Steps tried so far.
         step: usize,
     },
-    /// A guard is not a number; it is looked at a little beyond its zeros too.
+    /// A guard is not a number. Guards are evaluated a little beyond their zeros too.
     #[error("guard {guard} is not a number near s = {s}")]
     GuardNotANumber {
         /// The guard's index.
@@ -52,10 +53,11 @@ pub enum RunError {
         /// Where the step started.
         s: f64,
     },
-    /// A guard is zero throughout a step, so that its crossings mean nothing. Where a mode has no
-    /// use for it, it is [`Guard::OFF`](crate::Guard::OFF).
+    /// A guard is zero throughout a step, so that its crossings have no meaning. A mode that does
+    /// not use a guard returns [`Guard::OFF`](crate::Guard::OFF) for it.
     #[error(
-        "guard {guard} is identically zero on a step from s = {s}; a mode that does not use it turns it off"
+        "guard {guard} is identically zero on a step from s = {s}; a mode that does not use it \
+         should turn it off"
     )]
     GuardIdenticallyZero {
         /// The guard's index.
@@ -63,18 +65,18 @@ pub enum RunError {
         /// Where the step started.
         s: f64,
     },
-    /// A guard has more structure than any step can resolve: it is not smooth there, or does not
-    /// start from the zero of which [`Guard::from_zero`](crate::Guard::from_zero) tells.
+    /// A guard has more structure than any step can resolve. Either it is not smooth there, or it
+    /// does not start from the zero that [`Guard::from_zero`](crate::Guard::from_zero) declares.
     #[error(
-        "guard {guard} cannot be resolved near s = {s} by a step of {h:e}: it is not smooth, or does not start from the zero that it \
-         is said to start from"
+        "guard {guard} cannot be resolved near s = {s} by a step of {h:e}: either it is not smooth, \
+         or it does not start from the zero that was declared for it"
     )]
     GuardUnresolved {
         /// The guard's index.
         guard: usize,
         /// Where the step started.
         s: f64,
-        /// The last step tried.
+        /// The size of the last step tried.
         h: f64,
     },
 }

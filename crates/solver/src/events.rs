@@ -1,4 +1,19 @@
-//! One step and its guards: which of them fires first, and where.
+//! One step and its guards: which guard fires first, and where.
+//!
+//! The files, in reading order:
+//!
+//! | file | content |
+//! |---|---|
+//! | `phase` | the active mode with its guards, between two steps |
+//! | `event` | a guard that fires on a step |
+//! | `examination` | everything that the examination of a step needs |
+//! | `first_guard` | which guard of a step fires first |
+//! | `one_guard` | what one guard does on a step |
+//! | `quick` | the first look at a guard, from six values that the step already has |
+//! | `isolate` | the decision about a guard, from its monotone pieces |
+//! | `along_step` | a guard as a function along a step, and its rounding |
+//! | `locate` | the place of a switch, by steps of the method |
+//! | `together` | guards that vanish where another guard fires |
 
 mod along_step;
 mod event;

@@ -1,16 +1,11 @@
 //! Adaptive integration of piecewise-smooth ODEs that finds every switch.
 //!
-//! A hybrid system has modes, a smooth right-hand side in each, guards whose zeros end a mode, and
-//! transitions. [`run`] integrates it with a Dormand–Prince pair. On every step it is *decided*,
-//! not sampled, whether a guard crosses zero: the dense output makes the guard an analytic function
-//! of the step fraction, whose monotone pieces are isolated. Switch times come from steps of the
-//! method to the switch, not from the dense output.
-//!
-//! Start reading in [`hybrid`]; then, in this order: `runner` (from switch to switch), `phase` and
-//! `event` (one step and its guards), `quick`, `isolate` and `chebyshev` (the decision), `locate`
-//! (the refinement), [`method`], [`Dopri5`] and [`Dop853`], `control`, `clock`, [`smooth`],
-//! [`trajectory`], [`mod@margin`] and `prescribed`, [`sensitivity`], `unlocated` and `order` (what
-//! is lost without all this, and how orders are measured).
+//! A hybrid system has modes. Each mode has a smooth right-hand side, guards whose zeros end the
+//! mode, and transitions to other modes. [`run`] integrates such a system with a Dormand–Prince
+//! pair. On every step it *decides* whether a guard crosses zero, and does not rely on samples:
+//! along the dense output the guard is an analytic function of the step fraction, and its monotone
+//! pieces are isolated. The time of a switch comes from steps of the method to the switch, not from
+//! the dense output.
 //!
 //! ```
 //! use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State, run};
@@ -46,27 +41,43 @@
 //! # Ok::<(), stickslip_solver::RunError>(())
 //! ```
 //!
-//! | what is wanted | what does it |
+//! | you want | use |
 //! |---|---|
 //! | several guards in a mode | as many values and as many guards; [`Guard::OFF`] where a mode has fewer |
 //! | a guard that ends the run | [`Guard::terminal`], [`Outcome::EndedByGuard`] |
-//! | a guard that starts from zero, and must not fire there | nothing if it is exactly 0 and rises; else [`Guard::from_zero`] |
-//! | a crossing noted, and nothing else | [`Direction::Falling`], [`Rising`](Direction::Rising) or [`Either`](Direction::Either), and the provided transition |
-//! | switches that accumulate, as of a ball that comes to rest | [`Outcome::Zeno`] |
+//! | a guard that starts from zero and must not fire there | nothing if it is exactly 0 and rises; else [`Guard::from_zero`] |
+//! | a crossing that is reported and changes nothing | [`Direction::Falling`], [`Rising`](Direction::Rising) or [`Either`](Direction::Either), and the provided transition |
+//! | switches that accumulate, as when a ball comes to rest | [`Outcome::Zeno`] |
 //! | the state at any time | [`Recorder`] as the observer |
-//! | switches alone; nothing but the end | a `Vec`; `()` |
+//! | only the switches | a `Vec` as the observer |
+//! | only the end of the run | `()` as the observer |
 //! | no guards at all | [`integrate`] with a closure |
 //! | how far a run is from another sequence of switches | [`fn@margins`], and the crate `stickslip-tracer` |
 //!
-//! The repository's `examples`, each held to a closed form or an independent value in less than 80
-//! lines: `bouncing_ball` (switches that accumulate), `friction_belt` (stick–slip), `relay`
-//! (feedback with hysteresis), `impact_oscillator` (near grazing), `arenstorf` (smooth, with dense
-//! output).
+//! The repository's `examples` have less than 80 lines each and check themselves against a closed
+//! form or an independent value: `bouncing_ball` (switches that accumulate), `friction_belt`
+//! (stick–slip), `relay` (feedback with hysteresis), `impact_oscillator` (near grazing) and
+//! `arenstorf` (a smooth problem with dense output).
+//!
+//! # The source
+//!
+//! Start reading in [`hybrid`]. The other modules follow in reading order:
+//!
+//! | module | content |
+//! |---|---|
+//! | [`hybrid`] | what a user writes (a system with guards), and the results of a run |
+//! | `options`, `error` | settings of a run, and why it can fail |
+//! | `runs` | the loop from switch to switch; smooth problems, trajectories, runs without event location |
+//! | `events` | one step and its guards: which guard fires first, and where |
+//! | [`method`] | Runge–Kutta pairs, one step, its dense output, step-size control, measured orders |
+//! | [`mod@margin`] | how near a run came to other switches |
+//! | [`sensitivity`] | derivatives of a run with respect to parameters |
 
 pub mod hybrid;
 
-mod error;
 mod options;
+
+mod error;
 
 mod runs;
 
@@ -75,6 +86,7 @@ mod events;
 pub mod method;
 
 pub mod margin;
+
 pub mod sensitivity;
 
 pub use error::RunError;

@@ -1,14 +1,15 @@
-//! How near a run came to switching otherwise, and runs whose itinerary is prescribed.
+//! Margins: how near a run came to other switches.
 //!
-//! A guard that does not fire still tells how far it was from firing: by its value at each local
-//! minimum and at the end of the run. These are the *margins* of the run. Where one of them passes
-//! through zero as the parameters of a system change, the itinerary changes. To follow a margin
-//! through zero, and beyond, the itinerary that leads to it is prescribed: in every phase
-//! only the guard that is to end it is looked at, so that the margin is a smooth function of the
-//! parameters on both sides.
+//! A guard that does not fire still tells how far it was from firing, by its value at each local
+//! minimum and at the end of the run. These values are the *margins* of the run. The itinerary
+//! changes where a margin passes through zero as the parameters of a system change.
 //!
-//! A minimum of a guard is a zero of its rate. It is found as any other switch is: decided on every
-//! step, and refined by steps of the method itself.
+//! To follow a margin to zero and beyond, the itinerary up to it is prescribed: in every phase,
+//! only the guard that should end the phase may fire. The margin is then a smooth function of the
+//! parameters on both sides of zero.
+//!
+//! A minimum of a guard is a zero of its rate. It is found like any other switch: every step
+//! decides whether it contains one, and steps of the method locate it.
 
 mod name;
 mod prescribed;
@@ -25,36 +26,35 @@ pub use name::{Exit, Hint, Margin, Place};
 /// A margin of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NearMiss {
-    /// Which.
+    /// The name of the margin.
     pub margin: Margin,
-    /// Where it was taken.
+    /// The place where it was taken.
     pub s: f64,
-    /// The guard's value there, with its sign turned if it fires while rising: positive where it
-    /// does not fire.
+    /// The guard's value at that place. Its sign is reversed for a guard that fires while rising,
+    /// so that it is positive where the guard does not fire.
     pub value: f64,
 }
 
-/// A free run as its switches and all its margins.
+/// The switches and all margins of a free run, whose itinerary is not prescribed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Margins {
-    /// The guards that fired, in order, without the one that ended the run.
+    /// The guards that fired, in order, without the guard that ended the run.
     pub fired: Vec<usize>,
-    /// In order of their phases.
+    /// The margins, in the order of their phases.
     pub near_misses: Vec<NearMiss>,
     /// Why the run ended.
     pub outcome: Outcome,
 }
 
-/// Part of the run below which its last phase may be about to vanish: boundaries get their names
-/// from runs 1e-9 beside them, where a phase that vanishes there is shorter. One taken for
-/// vanishing without need only costs a longer run.
+/// If the last phase is shorter than this part of the run, it may be about to vanish. Boundaries
+/// get their names from runs 1e-9 beside them, where a vanishing phase is shorter than this. If the
+/// phase does not vanish, the only cost is a longer run.
 const SHORT: f64 = 1e-6;
 
 /// Runs `system` freely and returns every margin that the run leaves.
 ///
-/// Guards that fire in either direction leave none, and terminal guards none. A minimum takes about
-/// one step more than the run itself; the margins of a phase take a run over that phase for each of
-/// its guards.
+/// Terminal guards and guards that fire in either direction have no margins. The margins of a phase
+/// take one run over that phase for each of its guards, and each minimum takes about one step more.
 ///
 /// # Errors
 /// Those of [`run`].
@@ -81,7 +81,7 @@ where
     for (k, &start) in starts.iter().enumerate() {
         let exit = fired.get(k).copied();
         let exited = starts.get(k + 1).map_or(end, |next| next.s);
-        // Where the last phase shrinks to nothing, the one before it lasts to the end.
+        // If the last phase is about to vanish, the phase before it lasts to the end.
         let lasts = k + 1 == starts.len()
             || (k + 2 == starts.len() && free.s - exited <= SHORT * (free.s - starts[0].s));
         let until = if lasts { end } else { exited };
@@ -114,9 +114,9 @@ where
     Ok(Margins { fired, near_misses, outcome: free.outcome })
 }
 
-/// The margin `margin` of the run of `system` whose itinerary up to there is prescribed.
+/// The value of `margin` for `system`, by a run that follows the itinerary in its name.
 ///
-/// `None` where that itinerary cannot be followed or there is no such minimum.
+/// The result is `None` if the run cannot follow that itinerary, or if there is no such minimum.
 ///
 /// # Errors
 /// Those of [`run`].
@@ -134,7 +134,7 @@ where
 {
     let exits = &margin.exits;
     let enough = match margin.place {
-        // The minimum nearest to a place is the last one before it or the first one after it.
+        // The minimum that is nearest to a place is the last one before or the first one after it.
         Place::Minimum { near, .. } => near.0,
         Place::End => f64::INFINITY,
     };
@@ -160,13 +160,13 @@ where
     Ok(at.map(|at| NearMiss { margin: moved, s: at.s, value: at.value }))
 }
 
-/// Whether the direction of a guard says on which side of zero it does not fire.
+/// Whether the guard has margins: its direction tells the side of zero where it does not fire.
 fn leaves_margins(guard: Guard) -> bool {
     let either = matches!(guard.direction(), Direction::Off | Direction::Either);
     !either && !guard.ends_run()
 }
 
-/// Takes down where the phases of a run start.
+/// Records the starts of the phases of a run.
 struct Phases<Mode, const N: usize> {
     starts: Vec<Start<Mode, N>>,
     fired: Vec<usize>,

@@ -1,4 +1,8 @@
-//! Runge–Kutta pairs: their coefficients, one step, the size of the next one, and measured orders.
+//! Runge–Kutta pairs: coefficients, one step, the size of the next step, and measured orders.
+//!
+//! Start reading in `tableau` (a pair as data) and `step` (one step as a pure function). Then come
+//! `dense` (the state inside a step), `dopri5` and `dop853` (the two pairs), `control` (the step
+//! size) and `order` (orders of convergence, from measured errors).
 
 pub(crate) mod control;
 mod dense;

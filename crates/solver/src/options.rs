@@ -1,16 +1,17 @@
-//! What a run may be told.
+//! Options of a run.
 
 /// How the step size is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StepSize {
-    /// By the embedded error estimate, so that each step's error is below `atol + rtol·|y|`.
+    /// The embedded error estimate chooses the size, so that each step's error is below
+    /// `atol + rtol·|y|`.
     Adaptive,
-    /// The same size throughout, shortened only at switches and at the end: for convergence
-    /// studies.
+    /// All steps have this size, except shorter ones at switches and at the end. This is for
+    /// convergence studies.
     Fixed(f64),
 }
 
-/// Options of a run, checked by [`Options::validate`] when the run starts.
+/// Options of a run. [`Options::validate`] checks them when the run starts.
 ///
 /// ```
 /// use stickslip_solver::Options;
@@ -27,7 +28,7 @@ pub struct Options {
     pub atol: f64,
     /// How the step size is chosen.
     pub step_size: StepSize,
-    /// Size of the first step; `None` has it estimated.
+    /// The size of the first step. `None` lets the run estimate it.
     pub first_step: Option<f64>,
     /// The longest step allowed.
     pub max_step: f64,
@@ -35,8 +36,9 @@ pub struct Options {
     pub max_steps: usize,
     /// The run stops after this many switches.
     pub max_switches: usize,
-    /// A sequence of switches whose remaining time, extrapolated geometrically, falls below this
-    /// part of the time that has passed counts as a Zeno accumulation.
+    /// The bound for a Zeno accumulation. The time that a sequence of switches still takes is
+    /// extrapolated geometrically. The switches accumulate if it falls below this part of the time
+    /// that has passed.
     pub zeno: f64,
 }
 
@@ -65,7 +67,8 @@ impl Options {
     /// Checks every field.
     ///
     /// # Errors
-    /// The first field that is out of its range, with its value and the range.
+    /// [`InvalidOption`] names the first field that is out of its range, with its value and the
+    /// range.
     pub fn validate(&self) -> Result<(), InvalidOption> {
         let check = |name, value: f64, expected, ok: bool| {
             if ok { Ok(()) } else { Err(InvalidOption { name, value, expected }) }
@@ -91,8 +94,8 @@ impl Options {
 pub struct InvalidOption {
     /// The option's name.
     pub name: &'static str,
-    /// The value that was given.
+    /// The value that is out of range.
     pub value: f64,
-    /// What is expected.
+    /// The range that is expected.
     pub expected: &'static str,
 }

@@ -1,4 +1,8 @@
-//! Runs from switch to switch, and what is kept of them.
+//! Runs from switch to switch, and observers that record them.
+//!
+//! Start reading in `runner` (the loop) and `clock` (its independent variable). Then come `smooth`
+//! (problems without guards), `trajectory` (recorded runs) and `unlocated` (runs without event
+//! location, for comparison).
 
 pub(crate) mod clock;
 pub(crate) mod runner;

@@ -1,12 +1,11 @@
-//! How a run changes with parameters: derivatives of switches and of the state, through every
-//! switch.
+//! Derivatives of a run with respect to parameters, through every switch.
 //!
-//! Between switches a small change δy of the state, made by a change of a parameter, obeys the
-//! variational equations. At a switch it also moves the switch: by δs = −δg/g', with δg the change
-//! of the guard at its place and g' its slope along the solution. The change that goes on beyond is
-//! that of the transition at the place that has moved, less what the new right-hand side does in δs
-//! (the saltation matrix; Leine and Nijmeijer, *Dynamics and Bifurcations of Non-Smooth Mechanical
-//! Systems*, 2004, section 7.3).
+//! A small change of a parameter changes the state by δy. Between switches, δy obeys the
+//! variational equations. At a switch, the change also moves the switch by δs = −δg/g'. Here δg is
+//! the change of the guard at a fixed place, and g' is its slope along the solution. After the
+//! switch, δy is the change of the transition at the moved place, minus the change that the new
+//! right-hand side makes in δs. This is the saltation matrix (Leine and Nijmeijer, *Dynamics and
+//! Bifurcations of Non-Smooth Mechanical Systems*, 2004, section 7.3).
 
 use crate::error::RunError;
 use crate::hybrid::{Guard, HybridSystem, Observer, Outcome, Start, Statistics, SwitchEvent};
@@ -14,29 +13,29 @@ use crate::method::{Method, State};
 use crate::options::Options;
 use crate::runs::run;
 
-/// A small change: of the independent variable, of the state, and of a parameter.
+/// A small change of the independent variable, of the state and of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Change<const N: usize> {
-    /// Of the independent variable.
+    /// The change of the independent variable.
     pub s: f64,
-    /// Of the state.
+    /// The change of the state.
     pub y: State<N>,
-    /// The parameter that changes, by 1; `None` if none does.
+    /// The parameter that changes by 1, or `None` if no parameter changes.
     pub parameter: Option<usize>,
 }
 
 /// A hybrid system with `P` parameters that knows its derivatives.
 ///
-/// Each function returns how one of [`HybridSystem`] changes, to first order, under a [`Change`] of
-/// what it depends on.
+/// Each function belongs to a function of [`HybridSystem`]. It returns the change of that function,
+/// to first order, under a [`Change`] of its arguments and of a parameter.
 pub trait Differentiable<const N: usize, const G: usize, const P: usize>:
     HybridSystem<N, G>
 {
     /// The change of the right-hand side.
     fn field_change(&self, mode: Self::Mode, s: f64, y: &State<N>, change: &Change<N>) -> State<N>;
 
-    /// The changes of the guards' values; all guards may be multiplied by the same positive
-    /// function, since their zeros stay.
+    /// The changes of the guards' values. All guards may be multiplied by the same positive
+    /// function, since this does not move their zeros.
     fn guard_changes(&self, mode: Self::Mode, s: f64, y: &State<N>, change: &Change<N>)
     -> [f64; G];
 
@@ -51,42 +50,44 @@ pub trait Differentiable<const N: usize, const G: usize, const P: usize>:
     ) -> State<N>;
 }
 
-/// A switch, or the end of a run, and its derivatives with respect to the parameters.
+/// A switch, or the end of a run, with its derivatives with respect to the parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SwitchSensitivity<Mode, const N: usize, const P: usize> {
-    /// The guard that fired; `None` where the run came to its end.
+    /// The guard that fired, or `None` if the run reached its end.
     pub guard: Option<usize>,
     /// The mode that ends here.
     pub mode: Mode,
-    /// Where.
+    /// The place of the switch or of the end.
     pub s: f64,
-    /// Its derivatives.
+    /// The derivatives of the place.
     pub s_derivatives: [f64; P],
-    /// The state there, before the transition.
+    /// The state at the place, before the transition.
     pub state: State<N>,
-    /// Its derivatives, with the place moving along.
+    /// The derivatives of the state at the place, which moves too.
     pub state_derivatives: [State<N>; P],
 }
 
-/// A run with its derivatives.
+/// A run with its derivatives with respect to parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sensitivities<Mode, const N: usize, const P: usize> {
-    /// Every switch, in order.
+    /// The switches, in order.
     pub switches: Vec<SwitchSensitivity<Mode, N, P>>,
     /// The end of the run.
     pub end: SwitchSensitivity<Mode, N, P>,
-    /// Why it ended.
+    /// Why the run ended.
     pub outcome: Outcome,
-    /// The work done; a right-hand side is that of state and derivatives together.
+    /// The work done. One evaluation of the right-hand side is that of state and derivatives
+    /// together.
     pub statistics: Statistics,
 }
 
-/// Integrates `system` as [`run`] does, together with the derivatives of its state with respect to
-/// `P` parameters, which are `start_derivatives` at the start.
+/// Integrates `system` like [`run`], together with the derivatives of its state with respect to `P`
+/// parameters.
 ///
-/// State and derivatives together are `A` = N (1 + P) numbers, which the caller has to name; error
-/// control covers all of them, so derivatives are about as accurate as the state. They are those of
-/// the run as it is: the itinerary stays the same. Towards a graze they grow without bound.
+/// The derivatives of the state at the start are `start_derivatives`. State and derivatives
+/// together are `A` = N (1 + P) numbers, and the caller has to name `A`. Error control covers all
+/// of them, so derivatives are about as accurate as the state. The derivatives hold for an
+/// unchanged itinerary. They grow without bound towards a graze.
 ///
 /// ```
 /// use stickslip_solver::{
@@ -94,7 +95,7 @@ pub struct Sensitivities<Mode, const N: usize, const P: usize> {
 ///     sensitivities,
 /// };
 ///
-/// /// A ball falls on the floor and bounces with a coefficient of restitution, which is the parameter, until time 2.
+/// /// A ball that bounces on the floor. Its coefficient of restitution is the parameter.
 /// struct Ball(f64);
 ///
 /// impl HybridSystem<2, 1> for Ball {
@@ -128,7 +129,7 @@ pub struct Sensitivities<Mode, const N: usize, const P: usize> {
 ///     }
 /// }
 ///
-/// // Thrown up with velocity v, it is back after 2v/g, and after another 2ev/g.
+/// // Thrown up with velocity v, the ball is back after 2v/g, and again after another 2ev/g.
 /// let (restitution, velocity) = (0.5, 4.905);
 /// let start = Start { mode: (), s: 0.0, state: State::from([0.0, velocity]) };
 /// let (ball, options) = (Ball(restitution), Options::default());
@@ -142,8 +143,8 @@ pub struct Sensitivities<Mode, const N: usize, const P: usize> {
 /// ```
 ///
 /// # Errors
-/// Those of [`run`]; [`RunError::State`] also where a switch is a graze, at which derivatives do
-/// not exist.
+/// Those of [`run`]. [`RunError::State`] is also returned if a switch is a graze, where derivatives
+/// do not exist.
 pub fn sensitivities<M, S, const N: usize, const G: usize, const P: usize, const A: usize>(
     method: M,
     system: &S,
@@ -159,9 +160,9 @@ where
     let varied = Varied { system };
     let state = join::<N, P, A>(&start.state, &start_derivatives);
     let start = Start { mode: start.mode, s: start.s, state };
-    let mut noted = Noted::<S, S::Mode, N, G, P> { varied: &varied, switches: Vec::new() };
-    let run = run(method, &varied, start, end, options, &mut noted)?;
-    let Noted { mut switches, .. } = noted;
+    let mut recorded = Recorded::<S, S::Mode, N, G, P> { varied: &varied, switches: Vec::new() };
+    let run = run(method, &varied, start, end, options, &mut recorded)?;
+    let Recorded { mut switches, .. } = recorded;
     let ended = match run.outcome {
         Outcome::EndedByGuard { .. } => switches.pop(),
         _ => None,
@@ -183,8 +184,8 @@ struct Varied<'a, S, const N: usize, const P: usize> {
 }
 
 impl<S, const N: usize, const P: usize> Varied<'_, S, N, P> {
-    /// Where `guard` fires at the state `y`: the derivatives of the place, and of the state at the
-    /// place that moves.
+    /// The derivatives of the place where `guard` fires at the state `y`, and those of the state at
+    /// that moving place.
     fn moved<const G: usize, const A: usize>(
         &self,
         mode: S::Mode,
@@ -252,14 +253,14 @@ where
     }
 }
 
-/// Notes the switches with their derivatives.
-struct Noted<'a, S, Mode, const N: usize, const G: usize, const P: usize> {
+/// Records the switches with their derivatives.
+struct Recorded<'a, S, Mode, const N: usize, const G: usize, const P: usize> {
     varied: &'a Varied<'a, S, N, P>,
     switches: Vec<SwitchSensitivity<Mode, N, P>>,
 }
 
 impl<S, const N: usize, const G: usize, const P: usize, const A: usize> Observer<S::Mode, A>
-    for Noted<'_, S, S::Mode, N, G, P>
+    for Recorded<'_, S, S::Mode, N, G, P>
 where
     S: Differentiable<N, G, P>,
 {
@@ -278,7 +279,7 @@ where
     }
 }
 
-/// State and derivatives in one vector.
+/// Joins state and derivatives in one vector.
 fn join<const N: usize, const P: usize, const A: usize>(
     state: &State<N>,
     derivatives: &[State<N>; P],
@@ -292,7 +293,7 @@ fn join<const N: usize, const P: usize, const A: usize>(
     joined
 }
 
-/// The state, which is part 0, or a derivative.
+/// The state, which is part 0, or one of the derivatives, which are the other parts.
 fn part<const N: usize, const A: usize>(joined: &State<A>, index: usize) -> State<N> {
     joined.fixed_rows::<N>(N * index).into_owned()
 }

@@ -1,25 +1,25 @@
-//! The cubic between two nodes: how points with tangents are a curve.
+//! The cubic between two nodes, which makes a curve of points with tangents.
 
 pub(crate) mod bernstein;
 mod search;
 
 use crate::cubic::bernstein::each_root;
 use crate::curve::Node;
-use crate::family::Point;
+use crate::window::Point;
 
-/// A cubic in the plane, by its Bézier points.
+/// A cubic curve in the plane, given by its Bézier points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cubic {
-    /// First point, two handles, last point.
+    /// The first point, two handles and the last point.
     pub points: [Point; 4],
 }
 
 impl Cubic {
-    /// The cubic that leaves `from` and reaches `to` with their tangents.
+    /// The cubic from `from` to `to` with their tangents.
     ///
-    /// Both handles have the length (2/3)·|chord|/(1 + cos(θ/2)), θ the angle between the tangents.
-    /// On a circle of radius R that is the optimal (4/3) R tan(θ/4), with an error of 4 R
-    /// (θ/4)⁶/27; elsewhere the error is of fourth order in the chord.
+    /// Both handles have the length (2/3)·|chord|/(1 + cos(θ/2)), where θ is the angle between the
+    /// tangents. On a circle of radius R this is the optimal length (4/3) R tan(θ/4), with an error
+    /// of 4 R (θ/4)⁶/27. On other curves the error is of fourth order in the chord.
     ///
     /// ```
     /// use stickslip_tracer::{Cubic, Node, Point};
@@ -63,7 +63,7 @@ impl Cubic {
         a * (s * s * s) + b * (3.0 * s * s * t) + c * (3.0 * s * t * t) + d * (t * t * t)
     }
 
-    /// The derivative by `t`.
+    /// The derivative with respect to `t`.
     #[must_use]
     pub fn derivative(&self, t: f64) -> Point {
         let [a, b, c] = self.hodograph();
@@ -71,7 +71,7 @@ impl Cubic {
         a * (s * s) + b * (2.0 * s * t) + c * (t * t)
     }
 
-    /// The parts before and after `t`, which share the point between them to the last bit.
+    /// The parts before and after `t`. The point between them is the same in both to the last bit.
     #[must_use]
     pub fn split(&self, t: f64) -> [Self; 2] {
         let [a, b, c, d] = self.points;
@@ -88,8 +88,8 @@ impl Cubic {
         Self { points: [d, c, b, a] }
     }
 
-    /// ½∫(x dy − y dx) along the curve, coordinates counted from `origin`: over a closed
-    /// counterclockwise path the sum is the area. Exact but for rounding.
+    /// ½∫(x dy − y dx) along the curve, with coordinates relative to `origin`, exact but for
+    /// rounding. Summed over a closed counterclockwise path, it is the area inside.
     #[must_use]
     pub fn area(&self, origin: &Point) -> f64 {
         let [a, b, c, d] = self.points.map(|point| point - origin);
@@ -99,11 +99,12 @@ impl Cubic {
         sum / 20.0
     }
 
-    /// The parameters in (0, 1) that part it into pieces along which x, y and the direction are
-    /// monotone, in ascending order.
+    /// The parameters in (0, 1) that divide the cubic into pieces along which x, y and the
+    /// direction are monotone, in ascending order.
     #[must_use]
     pub fn monotone_cuts(&self) -> Vec<f64> {
-        // Nearer to an end, the two sides of an extremum differ by less than rounding.
+        // Closer to an end, the coordinates on the two sides of an extremum differ by rounding
+        // only.
         const ENDS: f64 = 1e-9;
         let [a, b, c] = self.hodograph();
         let mut cuts = Vec::new();
@@ -114,20 +115,20 @@ impl Cubic {
         };
         each_root(&[a.x, b.x, c.x], &mut keep);
         each_root(&[a.y, b.y, c.y], &mut keep);
-        // c′ × c″ is of degree 2: the cubic terms cancel.
+        // c′ × c″ is of degree 2, because the cubic terms cancel.
         each_root(&[a.perp(&b), 0.5 * a.perp(&c), b.perp(&c)], &mut keep);
         cuts.sort_by(f64::total_cmp);
         cuts.dedup_by(|later, earlier| *later - *earlier < ENDS);
         cuts
     }
 
-    /// The distance of `point` from the curve: the least over the ends and all roots of (c(t) −
-    /// point)·c′(t).
+    /// The distance of `point` from the curve: the least distance from the ends and from the points
+    /// at the roots of (c(t) − point)·c′(t).
     #[must_use]
     pub fn distance(&self, point: &Point) -> f64 {
         let p = self.points.map(|own| own - point);
         let d = self.hodograph();
-        // The product of degree 3 by degree 2 in the Bernstein basis of degree 5.
+        // The product of degrees 3 and 2 in the Bernstein basis of degree 5.
         let product = [
             p[0].dot(&d[0]),
             0.4 * p[0].dot(&d[1]) + 0.6 * p[1].dot(&d[0]),

@@ -1,46 +1,48 @@
-//! Curves as traced: points with tangents, and what ends them.
+//! Curves as a trace returns them: nodes with tangents, between vertices.
 
-use crate::family::Point;
+use crate::window::Point;
 
-/// A point of a boundary with the direction in which the boundary goes on.
+/// A point of a boundary, with the boundary's direction there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Node {
-    /// The point, on the boundary to the tolerance of the trace.
+    /// The point, which lies on the boundary to the tolerance of the trace.
     pub point: Point,
-    /// Unit tangent.
+    /// The unit tangent.
     pub tangent: Point,
 }
 
-/// A piece of a boundary between two vertices, or closed.
+/// A piece of a boundary between two vertices, or a closed boundary.
 ///
-/// Between two nodes the curve is the cubic that has their points and tangents; tracing keeps its
-/// distance from the boundary below the tolerance of interpolation.
+/// Between two nodes the curve is the cubic with their points and tangents,
+/// [`Cubic::between`](crate::Cubic::between). The trace keeps the distance of the cubic from the
+/// boundary below [`interpolation`](crate::TraceOptions::interpolation).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve<Label, Margin> {
-    /// The margin that vanishes on it.
+    /// The margin that vanishes on the curve.
     pub margin: Margin,
-    /// The label on the left of its direction, and the one on the right.
+    /// The labels on the left and on the right, seen in the direction of the curve.
     pub sides: [Label; 2],
-    /// Nodes in order, at least two.
+    /// The nodes in order, at least two.
     pub nodes: Vec<Node>,
-    /// Index of the vertex at which it starts and of the one at which it ends; `None` for both if
-    /// it is closed.
+    /// The indices of the vertices at which the curve starts and ends; `None` if it is closed.
     pub ends: Option<[usize; 2]>,
 }
 
-/// Where boundaries end or meet.
+/// A place where boundaries end or meet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vertex<Margin> {
-    /// Where.
+    /// The place.
     pub point: Point,
-    /// What it is.
+    /// What kind of place it is.
     pub kind: VertexKind,
-    /// Margins that vanish there.
+    /// The margins that vanish there.
     pub margins: Vec<Margin>,
 }
 
-/// What a vertex is. A trace tells the first four apart,
-/// [`Network::name_vertices`](crate::Network::name_vertices) all of them.
+/// The kind of a vertex.
+///
+/// A trace tells the first four kinds apart. For hybrid systems,
+/// [`Network::name_vertices`](crate::Network::name_vertices) tells all of them apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VertexKind {
     /// A boundary leaves the window.
@@ -49,13 +51,13 @@ pub enum VertexKind {
     WindowCorner,
     /// Two or more margins vanish together.
     Crossing,
-    /// The margin that vanishes stops to exist: its extremum merges with another one or with the
-    /// end of its phase.
+    /// The margin that vanishes ceases to exist: its extremum merges with another one, or reaches
+    /// the end of its phase.
     Degenerate,
-    /// The minimum of a guard that vanishes reaches the end of the run: the guard's value there
-    /// takes over.
+    /// The minimum that vanishes reaches the end of the run. Beyond the vertex the value of the
+    /// guard at the end vanishes instead.
     GrazeAtEnd,
-    /// Values at the end of the run vanish together, of one phase and of others that begin as it
-    /// ends.
+    /// Values at the end of the run vanish together: that of one phase, and those of phases that
+    /// begin where it ends.
     VanishingPhase,
 }

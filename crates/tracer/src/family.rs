@@ -1,25 +1,21 @@
-//! What the tracer follows: a family of runs in two parameters, and the margins that they leave.
+//! What is traced: runs that depend on two parameters, and their margins.
 
 use std::fmt::Debug;
 use std::hash::Hash;
 
-use nalgebra::Vector2;
-
-/// A point of the parameter plane, in the coordinates in which it is traced.
-///
-/// A family that spans decades chooses logarithms here and converts on its own side.
-pub type Point = Vector2<f64>;
+use crate::window::Point;
 
 /// Runs that depend on two parameters.
 ///
-/// A free run has a *label*, the itinerary of its switches. Where the label changes, a *margin*
-/// vanishes: the value of a guard where it comes closest to firing. A margin belongs to the
-/// itinerary that leads to that place and is followed through zero with the itinerary held fixed,
-/// so that it is a smooth function of the parameters.
+/// In a *free run* every guard fires that can. Its *label* says what happens: the sequence of its
+/// switches, called its itinerary. A *margin* is the value of a guard at the place where the guard
+/// comes closest to firing; where the label changes, a margin vanishes. A margin belongs to the
+/// itinerary that leads to its place. It is computed with this itinerary prescribed, even where the
+/// free run has another one, so that it is a smooth function of the parameters through zero.
 pub trait Family {
-    /// What a free run does; two points of one region have the same.
+    /// What a free run does. All points of one region have the same label.
     type Label: Clone + Debug + Eq + Ord + Hash;
-    /// Which margin.
+    /// The name of a margin.
     type Margin: Clone + Debug + Eq + Ord + Hash;
     /// Why a run failed.
     type Error: std::error::Error + 'static;
@@ -30,18 +26,20 @@ pub trait Family {
     /// The run failed.
     fn label(&self, point: &Point) -> Result<Self::Label, Self::Error>;
 
-    /// The margin `margin` at `point`: positive where its guard does not fire, negative beyond,
-    /// smooth through zero.
+    /// The value of `margin` at `point`: positive where its guard does not fire, negative where it
+    /// does, and smooth through zero.
     ///
-    /// `None` where there is no such extremum, or the itinerary that leads to it cannot be
-    /// followed.
+    /// `None` if the guard has no such extremum at `point`, or if the itinerary that leads to it
+    /// cannot be followed.
     ///
     /// # Errors
     /// The run failed.
     fn margin(&self, point: &Point, margin: &Self::Margin) -> Result<Option<f64>, Self::Error>;
 
-    /// `margin` as it is to be named at `point`, which lies on its boundary: a family that tells
-    /// the minima of a guard apart by where they are moves such hints along.
+    /// The name that `margin` has at `point`, which lies on its boundary.
+    ///
+    /// A family that tells the minima of a guard apart by their places updates the place here. The
+    /// default returns `margin` unchanged.
     ///
     /// # Errors
     /// The run failed.
@@ -49,47 +47,26 @@ pub trait Family {
         Ok(margin.clone())
     }
 
-    /// The free run at `point` with all its margins: a boundary through a place close by is the
-    /// zero of one of them, or of one of those at the places on the boundary's other side.
+    /// The free run at `point` with all its margins.
     ///
-    /// Each listed margin is also watched along boundaries and on the grid: two boundaries that
-    /// touch or cross twice between two nodes, and islands smaller than the grid's cells, are
-    /// found if a free run beside them lists the margin. A margin may be listed with a negative
-    /// value, for a guard that has fired.
+    /// On a boundary close to `point`, one of these margins vanishes, or one of the margins of the
+    /// free runs on the other side of the boundary.
+    ///
+    /// The tracer also watches each listed margin along boundaries and on the grid. So it finds
+    /// boundaries that touch or that cross twice between two nodes, and islands smaller than the
+    /// cells of the grid, if a free run beside them lists their margin. The margin of a guard that
+    /// has fired may be listed too, with a negative value.
     ///
     /// # Errors
     /// The run failed.
     fn free_run(&self, point: &Point) -> Result<FreeRun<Self::Label, Self::Margin>, Self::Error>;
 }
 
-/// What a free run does and how far it is from doing something else.
+/// What a free run does, and how far it is from doing something else.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FreeRun<Label, Margin> {
-    /// The same as [`Family::label`] returns.
+    /// The label, as [`Family::label`] returns it.
     pub label: Label,
     /// Each margin once, with the value that [`Family::margin`] returns.
     pub margins: Vec<(Margin, f64)>,
-}
-
-/// A rectangle of the parameter plane, in the coordinates of [`Point`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Window {
-    /// The corner with the least coordinates.
-    pub low: Point,
-    /// The corner with the greatest.
-    pub high: Point,
-}
-
-impl Window {
-    /// Width and height.
-    #[must_use]
-    pub fn extent(&self) -> Point {
-        self.high - self.low
-    }
-
-    /// Whether a point lies inside or on the edge.
-    #[must_use]
-    pub fn contains(&self, point: &Point) -> bool {
-        (0..2).all(|axis| (self.low[axis]..=self.high[axis]).contains(&point[axis]))
-    }
 }

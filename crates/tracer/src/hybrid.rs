@@ -1,19 +1,21 @@
-//! A hybrid system with two parameters as a family of runs.
+//! Hybrid systems with two parameters as families of runs.
 
 use stickslip_solver::{
     HybridSystem, Margin, Method, NearMiss, Observer, Options, Outcome, RunError, Start,
     SwitchEvent, margin, margins, run,
 };
 
-use crate::family::{Family, FreeRun, Point};
+use crate::family::{Family, FreeRun};
+use crate::window::Point;
 
-/// A hybrid system at every point of a parameter plane: a function from points to systems and
-/// starts of their runs is one.
+/// A hybrid system that depends on two parameters.
+///
+/// Every function that returns a system and the start of its run for a point is a problem.
 pub trait Problem<const N: usize, const G: usize> {
-    /// The system.
+    /// The hybrid system.
     type System: HybridSystem<N, G>;
 
-    /// The system at `point`, and where its run starts.
+    /// The system at `point`, and the start of its run.
     fn at(&self, point: &Point) -> (Self::System, Start<ModeOf<Self, N, G>, N>);
 }
 
@@ -29,44 +31,47 @@ where
     }
 }
 
-/// A mode of a problem's system.
+/// The mode of a problem's system.
 pub type ModeOf<P, const N: usize, const G: usize> =
     <<P as Problem<N, G>>::System as HybridSystem<N, G>>::Mode;
 
-/// The runs of a problem: labels are the guards that fired, in order; margins are those of the
-/// solver.
+/// The runs of a problem.
+///
+/// A label lists the guards that fire, in order. Margins are those of the solver,
+/// [`stickslip_solver::Margin`].
 #[derive(Clone, Copy, Debug)]
 pub struct HybridFamily<P, M, const N: usize, const G: usize> {
-    /// The problem.
+    /// The system and the start of its run, at every point.
     pub problem: P,
-    /// The method.
+    /// The Runge–Kutta method of every run.
     pub method: M,
-    /// Options of every run. Margins are as accurate as these make the runs.
+    /// The options of every run. They also determine the accuracy of margins.
     pub options: Options,
-    /// Where every run ends, if no terminal guard ends it before. Runs that stop before for
-    /// another reason, as at an accumulation of switches, are errors: the window or the end
-    /// has to be such that there are none.
+    /// The end of every run, if no terminal guard ends it before.
+    ///
+    /// A run that stops before for another reason, for instance at an accumulation of switches, is
+    /// an error. Choose the window and the end so that this does not happen.
     pub end: f64,
 }
 
-/// A run of a family failed.
+/// A run of a hybrid family failed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("at ({}, {}): {kind}", .point.x, .point.y)]
 pub struct FamilyError {
-    /// Where in the parameter plane.
+    /// The point of the parameter plane.
     pub point: Point,
-    /// Why.
+    /// Why the run failed.
     pub kind: FamilyErrorKind,
 }
 
-/// Why a run of a family failed.
+/// Why a run of a hybrid family failed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum FamilyErrorKind {
     /// The integration failed.
     #[error(transparent)]
     Run(#[from] RunError),
-    /// The run did not come to its end.
-    #[error("the run did not come to its end, nor to a guard that ends it: {0:?}")]
+    /// The run stopped before its end.
+    #[error("the run stopped before its end and before a terminal guard: {0:?}")]
     Unfinished(Outcome),
 }
 
@@ -132,7 +137,7 @@ fn finished(point: &Point, outcome: Outcome) -> Result<(), FamilyError> {
     }
 }
 
-/// Takes down the guards that fire.
+/// Records the guards that fire.
 struct Fired(Vec<usize>);
 
 impl<Mode, const N: usize> Observer<Mode, N> for Fired {

@@ -1,14 +1,18 @@
 //! Curves in a parameter plane on which the switching of a piecewise-smooth ODE changes, and the
-//! subdivision of the plane that they make.
+//! regions between them.
 //!
-//! What is traced is a [`Family`]: at each point of the plane a run has a label, its itinerary, and
-//! leaves margins, one of which vanishes where the label changes. A [`HybridFamily`] makes one of a
-//! hybrid system of `stickslip_solver` that depends on two parameters. [`trace`] finds
-//! the boundaries in a [`Window`] and follows them between their vertices; a [`Subdivision`]
-//! answers what lies between them, and [`verify`] asks runs at random places whether it is true.
+//! A [`Family`] says what is traced. At each point of the plane its run has a label, the sequence
+//! of its switches, and margins. On a boundary, where the label changes, a margin vanishes. A
+//! [`HybridFamily`] is the family of a hybrid system of `stickslip_solver` that depends on two
+//! parameters.
 //!
-//! A system of the solver, given as a function of two parameters, is traced; regions are labelled
-//! by the guards that fire in them:
+//! - [`trace`] finds the boundaries in a [`Window`] and follows them from vertex to vertex.
+//! - A [`Subdivision`] holds the regions between the curves and answers in which region a point
+//!   lies.
+//! - [`verify`] compares the labels of the regions with runs at random points.
+//!
+//! In this example the system is a bouncing ball; its height and its restitution are the
+//! parameters. The label of a region lists the guards that fire in its runs:
 //!
 //! ```
 //! use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
@@ -16,7 +20,7 @@
 //!     HybridFamily, Location, Point, Subdivision, TraceOptions, Window, trace,
 //! };
 //!
-//! /// A ball that keeps a part of its velocity at each bounce; lengths and times are such that g = 1.
+//! /// A ball that keeps a fraction of its velocity at each bounce, in units in which g = 1.
 //! struct Ball {
 //!     restitution: f64,
 //! }
@@ -38,7 +42,7 @@
 //!     }
 //! }
 //!
-//! /// A ball of restitution y, dropped from height x.
+//! /// A ball of restitution y that is dropped from the height x.
 //! fn drop(point: &Point) -> (Ball, Start<(), 2>) {
 //!     let start = Start { mode: (), s: 0.0, state: State::from([point.x, 0.0]) };
 //!     (Ball { restitution: point.y }, start)
@@ -50,25 +54,34 @@
 //! let network = trace(&family, &window, &TraceOptions::default())?;
 //! assert!(network.unresolved.is_empty());
 //!
-//! // The second bounce is at √(2x)(1 + 2y): where that is 2.4, a boundary passes.
+//! // The second bounce is at the time √(2x)(1 + 2y). On the boundary this is the end of the run.
 //! let second = |point: &Point| (2.0 * point.x).sqrt() * (1.0 + 2.0 * point.y);
 //! let on_second = |point: &Point| (second(point) - 2.4).abs() < 1e-11;
 //! assert!(network.curves[0].nodes.iter().all(|node| on_second(&node.point)));
 //!
 //! let regions = Subdivision::new(window, network.curves, network.vertices, 1e-9)?;
 //! let Location::Region(region) = regions.locate(&Point::new(0.6, 0.55)) else { panic!("a boundary") };
-//! // The guards that fire in this region before the end: those of two bounces.
+//! // In this region the guard fires twice before the end, at two bounces.
 //! assert_eq!(regions.regions()[region].label, Some(vec![0, 0]));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Anything else whose runs have labels and margins implements [`Family`]. The repository's
-//! `examples/belt_atlas` traces stick–slip of a shaken mass, with all kinds of boundaries, and
-//! holds them to closed forms.
+//! Other runs with labels and margins can be traced too: implement [`Family`] for them. The example
+//! `examples/belt_atlas` of the repository traces the stick–slip of a shaken mass, with all kinds
+//! of boundaries, and compares them with closed forms.
 //!
-//! In reading order: `family` (what is traced), `hybrid` (hybrid systems as families), `curve`
-//! (what comes out), `cubic` (curves between nodes), `options`; then `tracing` (how boundaries are
-//! found and followed) and `regions` (what they make of the window).
+//! # The source
+//!
+//! Start reading in `tracing/trace.rs`. The modules in reading order:
+//!
+//! - `window`: points and windows of the parameter plane
+//! - `family`: what is traced
+//! - `hybrid`: hybrid systems as families
+//! - `curve`: what a trace returns
+//! - `cubic`: curves between nodes
+//! - `options`: options and errors of a trace
+//! - `tracing`: how boundaries are found and followed
+//! - `regions`: the regions between the curves
 
 mod cubic;
 mod curve;
@@ -77,25 +90,30 @@ mod hybrid;
 mod options;
 mod regions;
 mod tracing;
+mod window;
 
 pub use cubic::Cubic;
 pub use curve::{Curve, Node, Vertex, VertexKind};
-pub use family::{Family, FreeRun, Point, Window};
+pub use family::{Family, FreeRun};
 pub use hybrid::{FamilyError, FamilyErrorKind, HybridFamily, ModeOf, Problem};
 pub use options::{InvalidTraceOption, TraceError, TraceOptions};
 pub use regions::finding::{Euler, Finding, SubdivisionError};
 pub use regions::locate::Location;
 pub use regions::outline::Stretch;
-pub use regions::subdivision::{Region, Side, Subdivision};
-pub use regions::verify::{
-    Checkpoint, Mismatch, Origin, Reason, Unverified, Verification, VerifyError, VerifyOptions,
-    verify, verify_with,
+pub use regions::region::{Region, Side};
+pub use regions::subdivision::Subdivision;
+pub use regions::verify::report::{
+    Checkpoint, Mismatch, Origin, Reason, Unverified, Verification, VerifyError,
 };
-pub use tracing::branch::{Branch, End, Seed, Special, Stop};
+pub use regions::verify::{VerifyOptions, verify, verify_with};
+pub use tracing::branch::Branch;
+pub use tracing::branch::end::{End, Special, Stop};
 pub use tracing::extrema::Extremum;
 pub use tracing::network::{Network, NetworkOf, TraceStatistics, Unresolved};
 pub use tracing::runs::Runs;
+pub use tracing::seed::Seed;
 pub use tracing::trace::{Tracer, trace};
+pub use window::{Point, Window};
 
 #[doc = include_str!("../README.md")]
 #[cfg(doctest)]

@@ -1,31 +1,32 @@
-//! What a trace may be told, and how it fails.
+//! The options of a trace, and its errors.
 
-use crate::family::{Point, Window};
+use crate::window::{Point, Window};
 
-/// Options of a trace, checked by [`TraceOptions::validate`] when it starts.
+/// The options of a trace. [`TraceOptions::validate`] checks them when the trace starts.
 ///
 /// Lengths are in the coordinates of the window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TraceOptions {
-    /// Distance of a node from its boundary, above 0.
+    /// The largest distance of a node from its boundary, above 0.
     pub tolerance: f64,
-    /// Distance of the cubics between nodes from their boundary, at least ten times `tolerance`.
+    /// The largest distance of the cubics between nodes from their boundary, at least ten times
+    /// `tolerance`.
     pub interpolation: f64,
-    /// How far apart the two points are at which both sides of a boundary are asked for their
-    /// labels, half of it; above `tolerance`.
+    /// The distance from a boundary at which the labels on both of its sides are computed, at least
+    /// ten times `tolerance`.
     pub offset: f64,
-    /// The error of a margin: below it, no margin says anything.
+    /// The error of a margin: smaller values carry no information.
     pub noise: f64,
-    /// The longest step, as a part of the window's shorter extent, up to 0.25.
+    /// The longest step, as a fraction of the window's shorter extent, up to 0.25.
     pub max_step: f64,
     /// The largest angle between the tangents of consecutive nodes, in radians, up to 0.5.
     pub max_angle: f64,
-    /// Cells of the grid of seeds along each axis, at least 2; each side of the window is looked
-    /// at in twice as many places.
+    /// The number of cells of the grid along each axis, at least 2. Along each side of the window,
+    /// twice as many segments are searched.
     pub cells: usize,
-    /// A branch stops after this many nodes.
+    /// The greatest number of nodes of a branch, which stops there.
     pub max_nodes: usize,
-    /// The trace stops after this many curves.
+    /// The greatest number of curves. Further ones are reported as unresolved.
     pub max_curves: usize,
 }
 
@@ -77,25 +78,25 @@ impl TraceOptions {
     }
 }
 
-/// An option is out of its range.
+/// An option that is out of its range.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{name} is {value}, expected {expected}")]
 pub struct InvalidTraceOption {
-    /// The field.
+    /// The name of the field.
     pub name: &'static str,
-    /// Its value.
+    /// The value of the field.
     pub value: f64,
-    /// What it may be.
+    /// The range of valid values.
     pub expected: &'static str,
 }
 
-/// A trace failed.
+/// Why a trace failed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TraceError<E: std::error::Error + 'static> {
     /// An option is out of its range.
     #[error(transparent)]
     Option(#[from] InvalidTraceOption),
-    /// The window is empty, infinite or not a number.
+    /// The window has no area, or its corners are not finite.
     #[error("the window from {:?} to {:?} is not a rectangle", window.low.as_slice(), window.high.as_slice())]
     Window {
         /// The window.
@@ -104,15 +105,15 @@ pub enum TraceError<E: std::error::Error + 'static> {
     /// A run failed.
     #[error("the run at ({}, {}) failed", point.x, point.y)]
     Run {
-        /// Where.
+        /// The point of the run.
         point: Point,
-        /// Why.
+        /// The error of the run.
         source: E,
     },
     /// A margin is not a number.
     #[error("a margin at ({}, {}) is not a number", point.x, point.y)]
     NotANumber {
-        /// Where.
+        /// The point of the margin.
         point: Point,
     },
 }

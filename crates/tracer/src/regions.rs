@@ -1,18 +1,23 @@
-//! What curves make of a window.
+//! The regions into which curves divide a window.
 //!
-//! In reading order: `subdivision` (curves in, regions out), `piece` and `slabs` (monotone pieces,
-//! in order), `faces` and `union` (what is connected), `crossing`, `finding` and `outline` (what
-//! can be wrong), `interior` (a place well inside), `locate` (where a point lies), `verify` (runs
-//! against the subdivision).
+//! In reading order:
+//!
+//! - `subdivision`: curves in, regions out
+//! - `frame`: the window's boundary, cut at vertices
+//! - `arrangement`: the curves cut into pieces that have an order
+//! - `region`: regions and their labels
+//! - `interior`: a point well inside each region
+//! - `finding`: what can be wrong
+//! - `locate`: where a point lies
+//! - `outline`: the rings around a region
+//! - `verify`: runs against the subdivision
 
-mod crossing;
-mod faces;
+mod arrangement;
 pub mod finding;
+mod frame;
 mod interior;
 pub mod locate;
 pub mod outline;
-mod piece;
-mod slabs;
+pub mod region;
 pub mod subdivision;
-mod union;
 pub mod verify;

@@ -1,13 +1,21 @@
-//! Boundaries, followed one by one.
+//! How boundaries are found and followed.
 //!
-//! In reading order: `trace` (how all are found), `scan` (on one segment), `branch` (how one is
-//! followed), `step` (a step), `special`, `touch` and `ahead` (where it ends), `seed` and `island`
-//! (where it starts), `corrector` (onto a boundary), `runs` (the family, with its runs counted),
-//! `network` (what is collected), `naming` (what vertices are), `extrema` (of boundaries in a
-//! parameter).
+//! In reading order:
+//!
+//! - `trace`: all boundaries in a window
+//! - `scan`: the boundaries that cross a segment
+//! - `seed`: from a change of the label to a place on a boundary
+//! - `island`: closed boundaries between the places of the grid
+//! - `branch`: one boundary, followed from its seed
+//! - `corrector`: from a guess to the zero of a margin
+//! - `runs`: the runs of a family, counted
+//! - `builder`: the network that grows
+//! - `network`: what a trace finds
+//! - `naming`: the kinds of vertices
+//! - `extrema`: where boundaries are extremal in a coordinate
 
-mod ahead;
 pub mod branch;
+mod builder;
 mod corrector;
 pub mod extrema;
 mod island;
@@ -15,8 +23,5 @@ mod naming;
 pub mod network;
 pub mod runs;
 mod scan;
-mod seed;
-mod special;
-mod step;
-mod touch;
+pub mod seed;
 pub mod trace;

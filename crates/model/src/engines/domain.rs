@@ -1,27 +1,27 @@
-//! The parameters for which collisions are computed, and what is said of others.
+//! The parameters for which engines compute collisions, and the error for all others.
 
 use crate::contact::Contact;
 
-/// A contact is beyond what an engine computes.
+/// A contact is out of the range of an engine.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{quantity} = {value:?} is out of the range of {engine}; expected {least:e} to {most:e}")]
 pub struct OutOfDomain {
-    /// The engine.
+    /// The engine in words.
     pub engine: &'static str,
-    /// What is out of its range.
+    /// The quantity that is out of its range.
     pub quantity: &'static str,
-    /// Its value.
+    /// The value of the quantity.
     pub value: f64,
-    /// The least value that is accepted.
+    /// The least value of the range.
     pub least: f64,
-    /// The largest.
+    /// The largest value of the range.
     pub most: f64,
 }
 
 /// Largest scaled stiffness κ that [`collide`](crate::exact::collide) accepts.
 ///
-/// The phase of the spring reaches √κ t_c, of which rounding takes 1e-16: at this stiffness
-/// 4e-8 of a radian.
+/// The phase of the spring reaches √κ t_c, which rounding changes by a part of 1e-16: at this
+/// stiffness by 4e-8 of a radian.
 pub const MOST_STIFFNESS: f64 = 1e16;
 
 /// The ranges of one engine.
@@ -29,13 +29,13 @@ struct Domain {
     engine: &'static str,
     kappa: (f64, f64),
     psi: (f64, f64),
-    /// κψ, of which the spring's force at the first switch and at the end is made.
+    /// Range of κψ, which decides the spring's force at the first switch and at the end.
     pull: (f64, f64),
     damping: (f64, f64),
 }
 
-/// The exact solution: beyond, energies and the moments of switches near both ends of contact leave
-/// the range of doubles.
+/// The range of the exact solution. Beyond it, energies and the moments of switches near both ends
+/// of contact leave the range of doubles.
 const EXACT: Domain = Domain {
     engine: "the exact solution",
     kappa: (1e-100, MOST_STIFFNESS),
@@ -44,8 +44,10 @@ const EXACT: Domain = Domain {
     damping: (0.0, 0.0),
 };
 
-/// The integrators without damping: a slip that has turned round sticks once more at u = (2/3)κ|w|
-/// before it ends at u = 0, which is told apart only down to |w| ≈ 1e-12 ψ^{1/3}.
+/// The range of the integrators without damping.
+///
+/// A slip that has turned round sticks once more, at u = (2/3)κ|w|, before the contact ends at u =
+/// 0. The two moments can be distinguished only down to |w| ≈ 1e-12 ψ^{1/3}.
 const UNDAMPED: Domain = Domain {
     engine: "the integrator",
     kappa: (1e-20, 1e10),
@@ -54,9 +56,11 @@ const UNDAMPED: Domain = Domain {
     damping: (0.0, 0.0),
 };
 
-/// The integrators with damping: the first stick phase is (a/κψ)² long, and the force at the end
-/// rounds to 1e-16. A stronger damping leaves a force of −x/a² at the end, which Dormand–Prince
-/// 5(4) does not tell from none, so that the contact goes on.
+/// The range of the integrators with damping.
+///
+/// The first stick phase is (a/κψ)² long, and the force at the end is rounded to 1e-16. A stronger
+/// damping leaves a force of −x/a² at the end, which Dormand–Prince 5(4) does not distinguish from
+/// 0: the contact would not end.
 const DAMPED: Domain = Domain {
     engine: "the integrator",
     kappa: (1e-20, 1e10),
@@ -65,12 +69,12 @@ const DAMPED: Domain = Domain {
     damping: (1e-12, 1e4),
 };
 
-/// Holds that the integrators compute `contact`.
+/// Checks that `contact` is in the range of the integrators.
 pub(crate) fn integrated(contact: &Contact) -> Result<(), OutOfDomain> {
     if contact.damping() > 0.0 { DAMPED.check(contact) } else { UNDAMPED.check(contact) }
 }
 
-/// Holds that the exact solution computes `contact`, which is without damping.
+/// Checks that `contact`, which has no damping, is in the range of the exact solution.
 pub(crate) fn exact(contact: &Contact) -> Result<(), OutOfDomain> {
     EXACT.check(contact)
 }

@@ -1,15 +1,18 @@
 //! The exact engine: collisions without damping, from their closed-form solution.
 //!
-//! Without damping v² + (4/5) x^{5/2} = 1, so the normal motion is one universal trajectory. In
-//! slip s·w − v is constant, in stick the spring swings harmonically in time. Only the moments at
-//! which one turns into the other have to be solved for, and each is the one root of a function
-//! in a bracket on which that function is known to be monotone or to cross once: no switch is
-//! looked for by sampling, so none is missed and none invented. What decides tells how near the
-//! collision came to other switches, too: its [`margins`].
+//! Without damping v² + (4/5) x^{5/2} = 1: the normal motion is one universal trajectory. In slip
+//! s·w − v is constant; in stick the spring oscillates harmonically in time. Only the moments of
+//! the switches have to be solved for. Each is the single root of a function in a bracket on which
+//! the function is known to be monotone or to cross zero once. Nothing is searched by sampling, so
+//! that no switch is missed and none is invented. The functions that decide also tell how near the
+//! collision came to other switches: its [`margins`].
+//!
+//! Source files in reading order: `trajectory` is the normal motion, `slide` finds the end of a
+//! slip phase, `swing` and `release` the end of a stick phase, `margin` follows prescribed
+//! switches.
 //!
 //! Source of the law: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008).
 
-mod account;
 mod boundaries;
 mod error;
 mod flank;
@@ -21,13 +24,13 @@ mod refined_onset;
 mod release;
 mod slide;
 mod swing;
+mod totals;
 mod trajectory;
 
 pub use super::domain::MOST_STIFFNESS;
 use crate::contact::Contact;
 use crate::laws::phase::{Regime, Side};
 use crate::result::{Collision, Switch};
-use account::Account;
 pub use boundaries::{small_impact_boundary, top_boundary};
 pub use error::ExactError;
 use error::{too_many, undamped};
@@ -35,24 +38,30 @@ pub use margin::{Margins, margin, margins, moved};
 use release::Release;
 use slide::{Slide, SlipPhase};
 use swing::Swing;
+use totals::Totals;
 pub use trajectory::CONTACT_TIME;
 use trajectory::{Moment, NormalMotion};
 
-/// Most switches of a collision that [`collide`] lists, about 190 MB of them.
+/// Most switches that [`collide`] lists for one collision; they take about 190 MB.
 ///
-/// The count grows as √κ t_c/π; κ = 1e13 has 3.3 million.
+/// The count grows as √κ t_c/π: for κ = 1e13 it is 3.3 million.
 pub const MOST_SWITCHES: usize = 4_000_000;
 
-/// The collision of `contact`, which must be without damping, from the exact solution.
+/// The collision of `contact`, which must have no damping, from the exact solution.
 ///
-/// Accuracy, against 22-digit references for κ from 0.02 to 1e4 and ψ from 0.003 to 3: w within
-/// 1e-15; switch times, and y and w at them, within 1e-14, and within 1e-11 down to a relative
-/// distance 1e-10 from a graze; `time_left` relative to itself within twice the relative error
-/// of w. The count is right down to a relative distance 1e-14 from a boundary at which it
-/// changes; a touch within rounding is no switch. Numbers keep their accuracy as long as κψ, the
-/// scale of √x at the first switch, is above about 1e-100.
+/// Accuracy, against 22-digit references for κ from 0.02 to 1e4 and ψ from 0.003 to 3:
 ///
-/// Cost: 0.2 µs a switch, whatever the stiffness. The result is a pure function of `contact`.
+/// - w is within 1e-15.
+/// - Switch times, and y and w at the switches, are within 1e-14; at relative distances down to
+///   1e-10 from a graze they are within 1e-11.
+/// - The relative error of `time_left` is at most twice the relative error of w.
+/// - The number of switches is right down to a relative distance of 1e-14 from a boundary at which
+///   it changes. A touch within rounding is not a switch.
+///
+/// Numbers keep their accuracy as long as κψ, the scale of √x at the first switch, is above about
+/// 1e-100.
+///
+/// Cost: 0.2 µs for each switch at every stiffness. The result is a pure function of `contact`.
 ///
 /// ```
 /// use stickslip_model::{Contact, exact};
@@ -79,8 +88,8 @@ pub fn collide(contact: Contact) -> Result<Collision, ExactError> {
     Ok(collision)
 }
 
-/// As [`collide`], into a collision whose memory is used again: no number of switches makes a sweep
-/// allocate more than once.
+/// As [`collide`], into a collision whose memory is used again: a sweep allocates memory only where
+/// a collision has more switches than any before.
 ///
 /// ```
 /// use stickslip_model::{Collision, Contact, exact};
@@ -97,7 +106,7 @@ pub fn collide(contact: Contact) -> Result<Collision, ExactError> {
 /// ```
 ///
 /// # Errors
-/// As [`collide`]; `collision` then holds the switches found so far.
+/// As [`collide`]; `collision` then contains the switches found so far.
 pub fn collide_into(contact: Contact, collision: &mut Collision) -> Result<(), ExactError> {
     collide_within(contact, collision, MOST_SWITCHES)
 }
@@ -111,21 +120,21 @@ fn collide_within(
     undamped(&contact)?;
     let switches = &mut collision.switches;
     let slide = Slide::new(contact.kappa());
-    let mut account = Account::default();
+    let mut totals = Totals::default();
     let mut side = Side::Positive;
     let mut sliding = SlipPhase::at_impact(contact.psi());
     while let Some(onset) = slide.stick_onset(&sliding) {
         if switches.len() + 2 > limit {
             return Err(too_many(&contact, limit, onset));
         }
-        let point = NormalMotion::at(onset);
-        let velocity = sliding.velocity_at(onset, point);
-        account.slip(&sliding, onset, point, velocity.0);
-        let swing = Swing::new(&slide, onset, point, velocity);
+        let normal = NormalMotion::at(onset);
+        let velocity = sliding.velocity_at(onset, normal);
+        totals.slip(&sliding, onset, normal, velocity.0);
+        let swing = Swing::new(&slide, onset, normal, velocity);
         let release = Release::of(&swing, slide.crest.map(|crest| crest.root));
-        let released = slide.limit(release.point);
-        account.stick(slide.kappa, swing.elongation, released);
-        account.reversals += release.reversals;
+        let released = slide.limit(release.normal);
+        totals.stick(slide.kappa, swing.elongation, released);
+        totals.reversals += release.reversals;
 
         let orientation = side.sign();
         switches.push(Switch {
@@ -148,17 +157,17 @@ fn collide_within(
             spring: side.sign() * released,
             velocity,
         });
-        sliding = SlipPhase::new(release.moment, release.point, side.sign() * velocity);
+        sliding = SlipPhase::new(release.moment, release.normal, side.sign() * velocity);
     }
     let end = NormalMotion::at(Moment::END);
     let velocity = sliding.velocity_at(Moment::END, end).0;
-    account.slip(&sliding, Moment::END, end, velocity);
+    totals.slip(&sliding, Moment::END, end, velocity);
     let final_velocity = side.sign() * velocity;
     collision.eps_n = 1.0;
     collision.final_velocity = final_velocity;
     collision.contact_time = CONTACT_TIME;
-    collision.reversals = account.reversals;
-    collision.energy = account.ledger(contact.psi(), final_velocity);
+    collision.reversals = totals.reversals;
+    collision.energy = totals.ledger(contact.psi(), final_velocity);
     Ok(())
 }
 

@@ -1,4 +1,4 @@
-//! The course of a collision in time: where it is at every moment between its switches.
+//! The course of a collision in time, at every moment and not at its switches alone.
 
 use std::ops::Range;
 
@@ -19,14 +19,13 @@ pub struct Snapshot {
     pub time: f64,
     /// Scaled compression x.
     pub compression: f64,
-    /// Its rate v = dx/dt.
+    /// Rate v = dx/dt of the compression.
     pub normal_velocity: f64,
     /// Scaled normal force F = x^{3/2} + a √x v, in units of m β^{2/5} g_n^{6/5}.
     pub normal_force: f64,
     /// Reduced elongation y of the spring; s F/κ while sliding.
     pub spring: f64,
-    /// Reduced tangential force F_t/μ = −κ y, in the units of the normal force, which bounds it:
-    /// |F_t|/μ ≤ F.
+    /// Reduced tangential force F_t/μ = −κ y in the units of the normal force; |F_t|/μ ≤ F.
     pub tangential_force: f64,
     /// Reduced tangential velocity w.
     pub velocity: f64,
@@ -35,10 +34,10 @@ pub struct Snapshot {
 /// The course of one collision, from [`Collider::history`](crate::Collider::history).
 ///
 /// States are those of the integrator's dense output. At the default tolerances of Dormand–Prince
-/// 8(5,3) they are within 1e-11 of the closed form in x, 4e-12 in v and w, 4e-12/min(κ, √κ) in y,
-/// at 1500 times of each of 20 undamped collisions with κ from 0.02 to 1e4 and ψ from 0.01 to 3.
-/// Switches are where the integrator has them: unlike
-/// [`Collider::collide`](crate::Collider::collide) nothing is computed once more near a graze.
+/// 8(5,3) they differ from the closed form by at most 1e-11 in x, 4e-12 in v and w, and
+/// 4e-12/min(κ, √κ) in y. This was measured at 1500 times of each of 20 undamped collisions with κ
+/// from 0.02 to 1e4 and ψ from 0.01 to 3. Switches are where the integrator finds them: unlike
+/// [`Collider::collide`](crate::Collider::collide), nothing is computed once more near a graze.
 ///
 /// ```
 /// use stickslip_model::{Collider, Contact, Regime};
@@ -48,7 +47,7 @@ pub struct Snapshot {
 /// // The largest compression is (5/4)^{2/5}.
 /// assert!((middle.compression - 1.25_f64.powf(0.4)).abs() < 1e-11);
 ///
-/// // +o-o+o-: each phase for itself, at as many moments as are wanted.
+/// // +o-o+o-: seven phases, each at any number of moments.
 /// assert_eq!(history.phases().len(), 7);
 /// for phase in history.phases().filter(|phase| phase.regime() == Regime::Slip) {
 ///     for moment in phase.samples(10) {
@@ -61,45 +60,45 @@ pub struct Snapshot {
 #[derive(Clone, Debug)]
 pub struct History {
     system: Regularized,
-    /// Accepted steps, in order.
+    /// Accepted steps in order.
     steps: Vec<Dense<STATE>>,
-    phases: Vec<Record>,
+    phases: Vec<PhaseRecord>,
 }
 
 /// One phase of a [`History`].
 #[derive(Clone, Copy, Debug)]
 pub struct PhaseHistory<'a> {
     history: &'a History,
-    record: &'a Record,
+    record: &'a PhaseRecord,
 }
 
 /// A phase as the run went through it.
 #[derive(Clone, Debug)]
-struct Record {
+struct PhaseRecord {
     phase: Phase,
     /// Time at which it begins.
     since: f64,
     begin: State<STATE>,
     end: State<STATE>,
-    /// Its steps; none if it is too short for one.
+    /// Its steps among those of the history; none if the phase is too short for one.
     steps: Range<usize>,
 }
 
 impl History {
-    /// Most steps of the integrator that are kept, about 160 MB of them.
+    /// Most steps of the integrator that are kept; they take about 160 MB.
     ///
-    /// Without damping κ = 1e9 takes 200 000 at the default tolerances.
+    /// Without damping, κ = 1e9 takes 200 000 steps at the default tolerances.
     pub const MOST_STEPS: usize = 300_000;
 
     /// The course of `contact` before its run, which fills it as an observer.
     pub(crate) fn before(contact: Contact) -> Self {
         let system = Regularized::new(contact);
         let (phase, begin) = (Phase::first(&contact), system.start());
-        let first = Record { phase, since: 0.0, begin, end: begin, steps: 0..0 };
+        let first = PhaseRecord { phase, since: 0.0, begin, end: begin, steps: 0..0 };
         Self { system, steps: Vec::new(), phases: vec![first] }
     }
 
-    /// Integrates `contact` and keeps the trajectory.
+    /// Integrates the collision of `contact` and keeps its trajectory.
     pub(crate) fn record<M: Method>(
         method: M,
         options: &Options,
@@ -118,13 +117,13 @@ impl History {
         self.phases.last().map_or(0.0, |last| last.since + last.end[T])
     }
 
-    /// The phases between the switches, in order; one more than there are switches.
+    /// The phases in order; there is one more than there are switches.
     #[must_use]
     pub fn phases(&self) -> impl ExactSizeIterator<Item = PhaseHistory<'_>> {
         self.phases.iter().map(|record| PhaseHistory { history: self, record })
     }
 
-    /// The collision at scaled `time`; at a switch, in the phase that begins. `None` outside the
+    /// The collision at a scaled time, at a switch in the phase that begins; `None` outside the
     /// contact.
     #[must_use]
     pub fn at(&self, time: f64) -> Option<Snapshot> {
@@ -137,13 +136,13 @@ impl History {
     }
 
     /// The state a time `elapsed` after the phase began.
-    fn state_at(&self, record: &Record, elapsed: f64) -> State<STATE> {
+    fn state_at(&self, record: &PhaseRecord, elapsed: f64) -> State<STATE> {
         let steps = &self.steps[record.steps.clone()];
         let index = steps.partition_point(|step| step.at(0.0)[T] <= elapsed);
         let Some(step) = index.checked_sub(1).map(|index| &steps[index]) else {
             return record.begin;
         };
-        // t' = 2u: time rises with the step fraction. Newton's method, kept inside a bracket.
+        // With t' = 2u time grows with the step fraction: Newton's method, kept inside a bracket.
         let (mut low, mut high) = (0.0, 1.0);
         let mut theta = 0.5;
         for _ in 0..60 {
@@ -165,7 +164,7 @@ impl History {
         step.at(theta)
     }
 
-    fn snapshot(&self, record: &Record, state: &State<STATE>) -> Snapshot {
+    fn snapshot(&self, record: &PhaseRecord, state: &State<STATE>) -> Snapshot {
         let spring = self.system.spring(record.phase, state);
         Snapshot {
             time: record.since + state[T],
@@ -186,28 +185,28 @@ impl PhaseHistory<'_> {
         self.record.phase.regime
     }
 
-    /// The side of sliding; in stick, the side from which the spring comes.
+    /// The side of sliding or, in stick, the side from which the spring comes.
     #[must_use]
     pub fn side(&self) -> Side {
         self.record.phase.side
     }
 
-    /// The first moment.
+    /// The first moment of the phase.
     #[must_use]
     pub fn begin(&self) -> Snapshot {
         self.history.snapshot(self.record, &self.record.begin)
     }
 
-    /// The last moment.
+    /// The last moment of the phase.
     #[must_use]
     pub fn end(&self) -> Snapshot {
         self.history.snapshot(self.record, &self.record.end)
     }
 
-    /// `intervals` + 1 moments from the first to the last, closer to each other near the ends of
-    /// contact.
+    /// `intervals` + 1 moments from the first to the last.
     ///
-    /// They are evenly spaced in s, dt = 2√x ds, in which the motion is smooth.
+    /// They are evenly spaced in s, with dt = 2√x ds, in which the motion is smooth. In time they
+    /// are closer to each other near the ends of contact.
     pub fn samples(&self, intervals: usize) -> impl Iterator<Item = Snapshot> {
         let Self { history, record } = *self;
         let steps = &history.steps[record.steps.clone()];
@@ -243,7 +242,13 @@ impl Observer<Phase, STATE> for History {
         let since = ended.since + event.before[T];
         if event.guard != END {
             let (begin, end) = (event.after, event.after);
-            self.phases.push(Record { phase: event.to, since, begin, end, steps: steps..steps });
+            self.phases.push(PhaseRecord {
+                phase: event.to,
+                since,
+                begin,
+                end,
+                steps: steps..steps,
+            });
         }
     }
 }
@@ -259,7 +264,7 @@ mod tests {
         Collider::default().history(Contact::new(kappa, psi, damping).unwrap()).unwrap()
     }
 
-    /// Away from the switches by this much, a difference quotient sees one law only.
+    /// At this distance from the switches, a difference quotient sees one law only.
     const REACH: f64 = 1e-4;
 
     #[test]
@@ -282,7 +287,7 @@ mod tests {
                     let root = now.compression.sqrt();
                     let force = root * (now.compression + damping * now.normal_velocity);
                     assert!((now.normal_force - force).abs() < 1e-14);
-                    // The quotient's own error is REACH²/6 times the third derivative.
+                    // The error of the quotient is REACH²/6 times the third derivative.
                     assert!((rate(|s| s.compression) - now.normal_velocity).abs() < 1e-7);
                     assert!((rate(|s| s.normal_velocity) + force).abs() < 1e-6);
                     assert!((rate(|s| s.velocity) + kappa * now.spring).abs() < 1e-6);
@@ -363,7 +368,7 @@ mod tests {
     }
 
     #[test]
-    fn samples_are_in_order_and_as_many_as_asked_for() {
+    fn samples_are_in_order_and_of_the_requested_number() {
         let history = history(63.0, 0.5, 0.0);
         for phase in history.phases() {
             let samples: Vec<_> = phase.samples(12).collect();

@@ -1,9 +1,13 @@
 //! A collision integrated from first touch to separation: start reading here.
 
 use stickslip_solver::{
-    Dense, Dop853, Method, Observer, Options, Outcome, RunError, Start, State, Statistics,
-    SwitchEvent, run,
+    Dop853, Method, Observer, Options, Outcome, RunError, Start, Statistics, run,
 };
+
+mod account;
+mod last_slip;
+mod refine;
+mod reversals;
 
 use super::domain::{self, OutOfDomain};
 use super::history::History;
@@ -11,27 +15,24 @@ use crate::contact::Contact;
 use crate::laws::phase::{END, Phase, Regime};
 use crate::laws::regularized::Regularized;
 use crate::laws::regularized::components::{DAMPING, STATE, T, U, V};
-use crate::result::{Collision, EnergyLedger, Switch};
+use crate::result::{Collision, EnergyLedger};
+use account::{Account, Observed};
 
-mod last_slip;
-mod refine;
-mod reversals;
-
-/// Above this flatness of a switch, in s, its time would be worth clearly less than the state: the
-/// collision is refined.
+/// Flatness of a switch, in s, above which its time would be clearly less accurate than the state.
+/// Such a collision is refined.
 const FLAT: f64 = 30.0;
 
-/// Longest step in s, of which a contact lasts 2.62 without damping.
+/// Longest step in s. A contact without damping lasts 2.62.
 ///
-/// Where u is nearly linear, close to both ends of contact, the embedded estimates miss most of the
-/// error; there the step is held to the length on which u bends elsewhere.
+/// Close to both ends of contact u is nearly linear, and the embedded estimates miss most of the
+/// error. There the step is limited to the length on which u bends elsewhere.
 const LONGEST_STEP: f64 = 0.1;
 
-/// Length in s of a damped contact's first stick phase below which the first step has the length of
-/// that phase.
+/// Length in s of the first stick phase of a damped contact below which the first step is as short
+/// as that phase.
 const BRIEF: f64 = 1e-9;
 
-/// Most steps over √κ; Dormand–Prince 5(4) takes 170 at tolerances of 1e-15.
+/// Most steps divided by √κ. Dormand–Prince 5(4) takes 170 at tolerances of 1e-15.
 const MOST_STEPS_PER_OSCILLATION: f64 = 400.0;
 
 /// Integrates collisions with one method and one set of options.
@@ -58,9 +59,9 @@ impl Default for Collider<Dop853> {
 }
 
 impl<M: Method> Collider<M> {
-    /// Relative tolerance at which Dormand–Prince 8(5,3) gives w to 1e-12.
+    /// Relative tolerance with which Dormand–Prince 8(5,3) computes w to 1e-12.
     pub const RTOL: f64 = 4e-13;
-    /// Absolute tolerance that goes with it.
+    /// Absolute tolerance that goes with [`Self::RTOL`].
     pub const ATOL: f64 = 4e-13;
 
     /// A collider with the default tolerances.
@@ -69,7 +70,7 @@ impl<M: Method> Collider<M> {
         Self::with_tolerances(method, Self::RTOL, Self::ATOL)
     }
 
-    /// A collider with tolerances of one's own, checked when it is used.
+    /// A collider with these tolerances, which are checked when it is used.
     #[must_use]
     pub fn with_tolerances(method: M, rtol: f64, atol: f64) -> Self {
         let first_step = Some(LONGEST_STEP);
@@ -78,10 +79,10 @@ impl<M: Method> Collider<M> {
         Self { method, options, refined: true }
     }
 
-    /// A collider with options of one's own that returns just what the method gives, for
-    /// convergence studies.
+    /// A collider with these options that returns what the method computes, for convergence
+    /// studies.
     ///
-    /// The other ones compute collisions near a graze once more with twice the digits.
+    /// The other colliders compute collisions near a graze once more with twice the digits.
     #[must_use]
     pub fn unrefined(method: M, options: Options) -> Self {
         Self { method, options, refined: false }
@@ -97,13 +98,13 @@ impl<M: Method> Collider<M> {
         Ok(collision)
     }
 
-    /// The same into a collision whose memory is used again.
+    /// As [`Self::collide`], into a collision whose memory is used again.
     ///
-    /// That saves a copy, and memory for collisions with more than
-    /// [`FEW_SWITCHES`](crate::FEW_SWITCHES) switches; others allocate nothing either way.
+    /// That saves a copy, and for collisions with more than [`FEW_SWITCHES`](crate::FEW_SWITCHES)
+    /// switches it saves memory. Other collisions allocate nothing in either case.
     ///
     /// # Errors
-    /// As [`Self::collide`]; `collision` then holds what was found so far.
+    /// As [`Self::collide`]; `collision` then contains what was found so far.
     pub fn collide_into(
         &self,
         contact: Contact,
@@ -113,10 +114,10 @@ impl<M: Method> Collider<M> {
         self.observe(contact, &options, collision, &mut ())
     }
 
-    /// Integrates one collision and keeps its course in time as well, both from one run.
+    /// Integrates one collision and keeps its course in time, both with one run.
     ///
-    /// The collision is bit for bit that of [`Self::collide`]. The course is that of
-    /// [`Self::history`], with as many steps at most. The statistics are those of this run, which
+    /// The collision is bit for bit that of [`Self::collide`], and the course that of
+    /// [`Self::history`], with its limit of steps. The statistics are those of this run, which
     /// repeats the step to every switch so that the course ends exactly there.
     ///
     /// # Errors
@@ -143,15 +144,7 @@ impl<M: Method> Collider<M> {
         collision.reset(contact);
         let phase = Phase::first(&contact);
         let start = Start { mode: phase, s: 0.0, state: system.start() };
-        let account = Account {
-            system,
-            collision,
-            entered: start.state,
-            spring: 0.0,
-            elapsed: 0.0,
-            sliding: 0.0,
-            flatness: 0.0,
-        };
+        let account = Account::new(system, collision, start.state);
         let mut observed = Observed { account, course };
         let run = run(self.method, &system, start, f64::INFINITY, options, &mut observed)?;
         let mut account = observed.account;
@@ -164,10 +157,10 @@ impl<M: Method> Collider<M> {
         collision.contact_time = collision.switches.last().map_or(0.0, |s| s.time) + last_slip;
         let mut left = last_slip;
         for switch in collision.switches.iter_mut().rev() {
-            // `time_left` holds the duration of the phase that the switch ended.
+            // Until here `time_left` is the duration of the phase that the switch ended.
             left += std::mem::replace(&mut switch.time_left, left);
         }
-        // Without damping the contact ends at u = 0, which rounding may put on either side.
+        // Without damping the contact ends at u = 0, and rounding may make u negative.
         let compression = run.state[U].max(0.0).powi(5);
         collision.eps_n = -run.state[V];
         collision.final_velocity = system.velocity(&run.state);
@@ -191,8 +184,8 @@ impl<M: Method> Collider<M> {
         self.method
     }
 
-    /// Integrates one collision and keeps its course in time, up to [`History::MOST_STEPS`] steps
-    /// of it.
+    /// Integrates one collision and keeps its course in time, in at most [`History::MOST_STEPS`]
+    /// steps.
     ///
     /// # Errors
     /// As [`Self::collide`].
@@ -211,12 +204,12 @@ impl<M: Method> Collider<M> {
         Ok(Options { max_steps: options.max_steps.min(History::MOST_STEPS), ..options })
     }
 
-    /// The options for `contact`, if it is one that can be integrated.
+    /// The options for `contact`, if it can be integrated.
     pub(crate) fn options_for(&self, contact: &Contact) -> Result<Options, OutOfDomain> {
         domain::integrated(contact)?;
         let mut options = self.options;
         if self.refined {
-            // Where rounding keeps a contact from ending, it would take hours to the general limit.
+            // Where rounding keeps a contact from ending, the general limit would take hours.
             #[expect(
                 clippy::cast_possible_truncation,
                 clippy::cast_sign_loss,
@@ -235,7 +228,7 @@ impl<M: Method> Collider<M> {
     }
 }
 
-/// Why a collision could not be integrated.
+/// The reason why a collision could not be integrated.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum CollisionError {
     /// The contact is out of the integrator's range.
@@ -247,102 +240,9 @@ pub enum CollisionError {
     /// The contact did not end.
     #[error("the contact has not ended at scaled time {time}: {outcome:?}")]
     Unfinished {
-        /// Why the run stopped.
+        /// The reason why the run stopped.
         outcome: Outcome,
         /// Scaled time reached.
         time: f64,
     },
-}
-
-/// Keeps account of a run while it goes on.
-struct Account<'a> {
-    system: Regularized,
-    collision: &'a mut Collision,
-    /// State when the phase began.
-    entered: State<STATE>,
-    /// Spring when it began.
-    spring: f64,
-    /// Time at which it began.
-    elapsed: f64,
-    /// Energy taken by sliding before that.
-    sliding: f64,
-    /// The largest flatness of a switch.
-    flatness: f64,
-}
-
-impl Account<'_> {
-    /// Closes a phase that ends in state `y`, where the spring's elongation is `spring`.
-    fn leave(&mut self, phase: Phase, y: &State<STATE>, spring: f64) {
-        let kappa = self.collision.contact.kappa();
-        let (v0, w0) = (self.entered[V], self.system.velocity(&self.entered));
-        let w1 = self.system.velocity(y);
-        self.collision.reversals += match phase.regime {
-            Regime::Slip => usize::from(reversals::changed(w0, w1)),
-            Regime::Stick => reversals::on_spring(kappa, (self.spring, w0), w1, y[T]),
-        };
-        if phase.regime == Regime::Slip {
-            // s w = s w₀ + v − v₀ and F dt = −dv turn ∫ F (s w − dL/dt) dt into differences.
-            let work = (v0 - y[V]) * (phase.side.sign() * w0 + 0.5 * (y[V] - v0));
-            self.sliding += work - 0.5 * kappa * (spring * spring - self.spring * self.spring);
-        }
-        self.spring = spring;
-        self.entered = *y;
-    }
-
-    /// Closes the phase in whose state `y` the contact ends; the duration of the last slip.
-    fn finish(&mut self, phase: Phase, y: &State<STATE>) -> f64 {
-        let (slip, length) = match phase.regime {
-            Regime::Slip => (phase, y[T]),
-            Regime::Stick => {
-                let slip = last_slip::after(phase, self.system.spring(phase, y));
-                self.switch(phase, slip, y);
-                (slip, 0.0)
-            }
-        };
-        let short = match self.collision.switches.last() {
-            Some(switch) => last_slip::time_left(&self.system, y, switch.spring),
-            None => None,
-        };
-        // The limit, on which the spring is, is 0 at the end.
-        self.leave(slip, y, 0.0);
-        short.unwrap_or(length)
-    }
-
-    /// Takes down the switch from phase `from` to phase `to` in state `y`.
-    fn switch(&mut self, from: Phase, to: Phase, y: &State<STATE>) {
-        // A spring that sticks is known better than its limit, where that is small.
-        self.leave(from, y, self.system.spring(from, y));
-        self.elapsed += y[T];
-        self.collision.switches.push(Switch {
-            time: self.elapsed,
-            time_left: y[T],
-            to: to.regime,
-            side: to.side,
-            spring: self.spring,
-            velocity: self.system.velocity(y),
-        });
-    }
-}
-
-/// The account of a run, and another observer of the same run.
-struct Observed<'a, O> {
-    account: Account<'a>,
-    course: &'a mut O,
-}
-
-impl<O: Observer<Phase, STATE>> Observer<Phase, STATE> for Observed<'_, O> {
-    const WANTS_SEGMENTS: bool = O::WANTS_SEGMENTS;
-
-    fn on_segment(&mut self, phase: Phase, step: &Dense<STATE>) {
-        self.course.on_segment(phase, step);
-    }
-
-    fn on_switch(&mut self, event: &SwitchEvent<Phase, STATE>) {
-        self.course.on_switch(event);
-        if event.guard == END {
-            return;
-        }
-        self.account.flatness = self.account.flatness.max(event.flatness);
-        self.account.switch(event.from, event.to, &event.before);
-    }
 }

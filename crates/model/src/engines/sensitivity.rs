@@ -1,12 +1,12 @@
-//! How a collision changes with its parameters.
+//! Derivatives of a collision with respect to its parameters.
 //!
-//! The equations of the law are computed with dual numbers, which carry their derivative along; the
-//! solver integrates the derivatives beside the state and takes them through every switch
+//! The equations of the law are computed with dual numbers, which carry a derivative. The solver
+//! integrates the derivatives together with the state and takes them through every switch
 //! ([`stickslip_solver::sensitivity`]).
 //!
-//! Without damping a contact ends where u = 0, with it where F = u (u² + a v) = 0, earlier by a in
-//! time to first order: this is added to the derivative of the contact time at a = 0, which is that
-//! from above.
+//! Without damping a contact ends where u = 0. With damping it ends where F = u (u² + a v) = 0,
+//! which is earlier by a in time, to first order. This is added to the derivative of the contact
+//! time at a = 0, which is the derivative from above.
 
 use num_dual::Dual64;
 use stickslip_solver::{
@@ -28,11 +28,11 @@ const PARAMETERS: usize = Parameter::ALL.len();
 pub struct Derived {
     /// The result.
     pub value: f64,
-    /// Its derivative with respect to the scaled stiffness κ.
+    /// Derivative with respect to the scaled stiffness κ.
     pub kappa: f64,
-    /// Its derivative with respect to the impact ratio ψ.
+    /// Derivative with respect to the impact ratio ψ.
     pub psi: f64,
-    /// Its derivative with respect to the scaled damping a; at a = 0 the one from above.
+    /// Derivative with respect to the scaled damping a; at a = 0 the derivative from above.
     pub damping: f64,
 }
 
@@ -55,10 +55,10 @@ pub struct Sensitivity {
 impl<M: Method> Collider<M> {
     /// Integrates one collision with the derivatives of its results with respect to κ, ψ and a.
     ///
-    /// The derivatives are those of the collision with its own switches. They are about as accurate
-    /// as the results, relative to their largest value in the course of the collision; at a
-    /// relative distance d from a graze those of the switch beside it grow as 1/√d, and lose as
-    /// many digits again.
+    /// The derivatives are those of the collision with unchanged switches. Relative to their
+    /// largest value during the collision they are about as accurate as the results. At a
+    /// relative distance d from a graze, the derivatives of the switch beside it grow as 1/√d,
+    /// and their relative error grows by the same factor.
     ///
     /// ```
     /// use stickslip_model::{Collider, Contact};
@@ -75,7 +75,7 @@ impl<M: Method> Collider<M> {
     /// ```
     ///
     /// # Errors
-    /// As [`Self::collide`]; a switch that is a graze has no derivatives and is a
+    /// As [`Self::collide`]. A switch that is a graze has no derivatives: the error is
     /// [`RunError::State`](stickslip_solver::RunError::State).
     pub fn sensitivity(&self, contact: Contact) -> Result<Sensitivity, CollisionError> {
         const TOGETHER: usize = STATE * (1 + PARAMETERS);
@@ -115,7 +115,7 @@ impl<M: Method> Collider<M> {
             derived(component(end, W).map(|part| system.equations.velocity_unit * part));
         let earlier = if contact.damping() > 0.0 { 0.0 } else { 1.0 };
         let contact_time = derived(time);
-        // A contact that sticks to its end, to rounding, has its last switch there.
+        // A contact that sticks to its end, to rounding, has its last switch at the end.
         let sticks = end.mode.regime == Regime::Stick;
         let switches = found.switches.len() + usize::from(sticks);
         Ok(Sensitivity {
@@ -142,7 +142,7 @@ impl Derived {
     }
 }
 
-/// A component of the state where a phase ends, and its derivatives.
+/// A component of the state at the end of a phase, and its derivatives.
 fn component(
     end: &SwitchSensitivity<Phase, STATE, PARAMETERS>,
     index: usize,
@@ -156,7 +156,7 @@ fn add<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
 }
 
 impl Regularized {
-    /// The equations and a state with their derivatives under a change.
+    /// The equations and a state, with their derivatives along a change.
     fn along(
         &self,
         y: &State<STATE>,
@@ -167,7 +167,7 @@ impl Regularized {
     }
 }
 
-/// The terms of damping are always there, so that they have a derivative at a = 0.
+/// The terms of damping are always computed, so that they have a derivative at a = 0.
 impl Differentiable<STATE, GUARDS, PARAMETERS> for Regularized {
     fn field_change(
         &self,

@@ -1,26 +1,26 @@
-//! The phases of a contact, which all laws share, and the guards that end them.
+//! The phases of a contact, and the guards that end them.
 
 use std::fmt;
 
 use crate::contact::Contact;
 
-/// Guards of a phase.
+/// Number of guards of a phase.
 pub const GUARDS: usize = 3;
 
 /// Guard of the end of contact.
 pub const END: usize = 0;
-/// Guard of the switch on the side at hand.
+/// Guard of the switch that stays on the side of the phase.
 pub const SAME_SIDE: usize = 1;
 /// Guard of the switch to slip on the other side.
 pub const OTHER_SIDE: usize = 2;
 
-/// Which law the tangential force obeys.
+/// The law that the tangential force obeys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 pub enum Regime {
-    /// Coulomb sliding: the force is at its limit μ F_n.
+    /// Coulomb sliding: the force has its limit μ F_n.
     Slip,
-    /// The tangential spring, below the limit.
+    /// The tangential spring: the force is below the limit.
     Stick,
 }
 
@@ -65,7 +65,7 @@ impl Side {
 /// A phase of the contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Phase {
-    /// Its law.
+    /// The law that holds.
     pub regime: Regime,
     /// The side of sliding; in stick, the side from which the spring comes.
     pub side: Side,
@@ -85,15 +85,17 @@ pub enum Progress {
 }
 
 impl Phase {
-    /// The first phase: slip without damping, since the limit grows as t^{3/2} and the spring as t;
-    /// stick with it, since the limit then grows as a √t.
+    /// The first phase.
+    ///
+    /// The spring grows as t. Without damping its limit grows as t^{3/2}, and the first phase is
+    /// slip. With damping the limit grows as a √t, and the first phase is stick.
     #[must_use]
     pub fn first(contact: &Contact) -> Self {
         let regime = if contact.damping() > 0.0 { Regime::Stick } else { Regime::Slip };
         Self { regime, side: Side::Positive, progress: Progress::Touched }
     }
 
-    /// The phase that follows: the other regime, on the other side if the spring has reached its
+    /// The phase that follows: the other regime, and the other side if the spring has reached its
     /// limit there.
     #[must_use]
     pub fn after(self, on_other_side: bool) -> Self {

@@ -9,15 +9,15 @@
 //! slip:  w' = −2s u F      y = s F/κ
 //! ```
 //!
-//! A stick phase starts where its limit is reached and left at the same rate: gap = F − s κ y has a
-//! double zero there. In the first step of the phase the gap is therefore integrated by itself,
-//! from gap = 0 and rate = gap' = 0,
+//! At the start of a stick phase the spring is at its limit and moves as fast as the limit does:
+//! gap = F − s κ y has a double zero there. In the first step of the phase the gap is therefore a
+//! component of its own that starts with gap = 0 and rate = gap' = 0:
 //!
 //! ```text
 //! gap' = rate     rate' = F'' − 2sκ v w + 4u²κ s κ y
 //! ```
 //!
-//! so that it is never the difference of nearly equal numbers, however short the phase is.
+//! However short the phase is, the gap is then never the difference of two nearly equal numbers.
 
 use stickslip_solver::{Direction, Guard, HybridSystem, Method, State, Step, Trial};
 
@@ -45,7 +45,7 @@ impl Regularized {
         Self { contact, equations: Equations::new(&contact) }
     }
 
-    /// The contact.
+    /// The parameters of the contact.
     #[must_use]
     pub fn contact(&self) -> Contact {
         self.contact
@@ -84,8 +84,8 @@ impl Regularized {
     pub(crate) fn next(&self, phase: Phase, guard: usize, y: &State<STATE>) -> Phase {
         let mut other_side = guard == OTHER_SIDE;
         if phase.regime == Regime::Stick && self.is_damped() && y[SPRING] != 0.0 {
-            // Where the limit falls to 0 with the spring at rounding, only the spring still tells
-            // which side it is on.
+            // Where the limit falls to 0 and the spring is as small as rounding, only the sign of
+            // the spring tells which side it is on.
             other_side = (y[SPRING] > 0.0) != (phase.side == Side::Positive);
         }
         phase.after(other_side)
@@ -119,8 +119,8 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
         slope.into()
     }
 
-    /// Each right-hand side has a step compiled for itself, which knows the components that stand
-    /// still: these cost nothing, and quadratures no stage.
+    /// Each right-hand side has a step that is compiled for it and knows which components are
+    /// constant. Those cost nothing, and a quadrature costs no stage.
     fn step<M: Method>(&self, phase: Phase, trial: &Trial<'_, STATE>, step: &mut Step<STATE>) {
         let side = phase.side;
         let settled = phase.progress == Progress::Settled;
@@ -148,7 +148,7 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
     #[inline(always)]
     fn guards(&self, phase: Phase) -> [Guard; GUARDS] {
         let end = Guard::new(Direction::Below).terminal();
-        // With damping the limits end at zero, and a spring that stands there slips before.
+        // With damping both limits are 0 at the end: a spring that is there then slips first.
         let damped_stick = phase.regime == Regime::Stick && self.is_damped();
         let end = if damped_stick { end.yielding() } else { end };
         let leave = Guard::new(Direction::Below);
@@ -172,8 +172,8 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
         }
     }
 
-    /// Rates in s, which those of stick without damping share with u: divided by it, they do not
-    /// vanish where the contact ends.
+    /// Rates with respect to s. Those of stick without damping have a factor u, which is divided
+    /// out: they do not vanish where the contact ends.
     fn guard_rates(&self, phase: Phase, _s: f64, y: &State<STATE>) -> [f64; GUARDS] {
         let a = self.contact.damping();
         let (u, v) = (y[U], y[V]);

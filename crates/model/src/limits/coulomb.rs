@@ -1,4 +1,4 @@
-//! Tangential restitution without a spring: the laws to which the collision is compared.
+//! Tangential restitution without a spring: laws to compare the collision with.
 //!
 //! Source: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008), equations (15), (16) and
 //! the end of section 4.
@@ -12,8 +12,8 @@ use crate::engines::integrator::CollisionError;
 /// ε_t of pure Coulomb sliding, max(0, 1 − (1 + ε_n)/ψ), which is max(0, 1 − μ(1 + ε_n)/α ·
 /// g_n/g_t).
 ///
-/// It holds for every law of the normal force; sliding that comes to rest stays at rest. [`slide`]
-/// integrates it.
+/// It holds for every law of the normal force if surfaces that have come to rest stay at rest.
+/// [`slide`] integrates the same contact.
 ///
 /// ```
 /// use stickslip_model::coulomb;
@@ -26,8 +26,8 @@ pub fn restitution(psi: f64, eps_n: f64) -> f64 {
     pragmatic(psi, eps_n, 0.0)
 }
 
-/// ε_t of the pragmatic model max(`floor`, 1 − (1 + ε_n)/ψ), in which a constant stands for all
-/// that is not sliding.
+/// ε_t of the pragmatic model max(`floor`, 1 − (1 + ε_n)/ψ): a constant replaces everything that is
+/// not pure sliding.
 ///
 /// ```
 /// use stickslip_model::coulomb;
@@ -43,13 +43,13 @@ pub fn pragmatic(psi: f64, eps_n: f64, floor: f64) -> f64 {
 /// dashpot, n = 1 viscoelastic spheres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NormalLaw {
-    /// n.
+    /// The number n of powers of √x.
     pub half_powers: u8,
-    /// a, 0 or above.
+    /// The scaled damping a, 0 or above.
     pub damping: f64,
 }
 
-/// What pure Coulomb sliding leaves.
+/// The result of a contact with pure Coulomb friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sliding {
     /// Coefficient of normal restitution ε_n.
@@ -58,9 +58,9 @@ pub struct Sliding {
     pub eps_t: f64,
 }
 
-/// Integrates a contact with pure Coulomb friction: ẇ = −F until w = 0, then rest.
+/// Integrates a contact with pure Coulomb friction: ẇ = −F until w = 0, and w = 0 from then on.
 ///
-/// Errors of both coefficients are below 1e-12.
+/// The errors of both coefficients are below 1e-12.
 ///
 /// ```
 /// use stickslip_model::coulomb::{self, NormalLaw};
@@ -88,7 +88,7 @@ pub fn slide(law: NormalLaw, psi: f64) -> Result<Sliding, CollisionError> {
     Ok(Sliding { eps_n: -end.state[1], eps_t })
 }
 
-/// Whether the surfaces slide.
+/// The two regimes of pure Coulomb friction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Friction {
     Sliding,
@@ -98,7 +98,7 @@ enum Friction {
 /// A contact with pure Coulomb friction.
 struct SlidingContact(NormalLaw);
 
-/// The state is u = √x, v = ẋ, w, and dt = 2u ds, in which all is polynomial.
+/// The state is u = √x, v = ẋ and w, with dt = 2u ds: the equations are polynomials.
 impl HybridSystem<3, 2> for SlidingContact {
     type Mode = Friction;
 

@@ -1,18 +1,23 @@
 //! The last instants of a stiff contact: the inner problem of the limit κ → ∞, which has no
 //! parameter.
 //!
-//! Just before the end of contact |v| = 1, so that x is the time left and L = x^{3/2}/κ. With σ =
-//! √κ · (time left), y = κ^{−7/4} Y and w = κ^{−5/4} W the law becomes
+//! Just before the end of contact |v| = 1: x is the time left, and L = x^{3/2}/κ. With
+//! σ = √κ · (time left), y = κ^{−7/4} Y and w = κ^{−5/4} W the law becomes
 //!
-//! stick: Ẏ = W, Ẇ = −Y        slip on side s: Y = sσ^{3/2}, Ẇ = −sσ^{3/2}
+//! ```text
+//! stick:           Ẏ = W          Ẇ = −Y
+//! slip on side s:  Y = sσ^{3/2}   Ẇ = −sσ^{3/2}
+//! ```
 //!
-//! with σ falling at the rate 1. A stick phase starts where sY = σ^{3/2} and sW = −(3/2)√σ: its σ
-//! decides all that follows, and the motion is a map of one such *onset* to the next, half a swing
-//! later on the other side. Each onset of an orbit that comes from σ → ∞ has a [`phase`], which
-//! falls by 1 from one to the next. The last slip ends with |W| = F, a function of the phase alone with period 1: it is what is left of a collision, |w_final| = κ^{−5/4} F.
+//! where σ falls at the rate 1. A stick phase starts where sY = σ^{3/2} and sW = −(3/2)√σ. The σ of
+//! this *onset* decides all that follows. The motion is a map from one onset to the next, half a
+//! swing later and on the other side. Each onset of an orbit that comes from σ → ∞ has a [`phase`],
+//! which falls by 1 from each onset to the next. The last slip ends with |W| = F, a function of the
+//! phase alone with the period 1. It gives the final velocity of a collision, |w_final| = κ^{−5/4}
+//! F.
 //!
-//! [`peak`] has the largest F in closed form; `docs/physics.md` derives it. The stick phases are
-//! solved exactly, each with one root. Onsets and phases are good to 1e-13, F to 4e-13, the closed
+//! [`peak`] has the largest F in closed form; `docs/physics.md` derives it. Stick phases are solved
+//! exactly, with one root for each. Onsets and phases are good to 1e-13, F to 4e-13, the closed
 //! forms to 2e-15.
 //!
 //! ```
@@ -26,13 +31,13 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::numerics::root::{Jet, bracketed};
 
-/// Onsets from here on have their phase from its series, which lacks 1e-15 there.
+/// The σ from which on the phase of an onset is computed from its series; the error there is 1e-15.
 pub const FAR: f64 = 100.0;
 
 /// Coefficients b₁, b₂ … of the phase, σ/π + Σ b_k σ^{−k/2}.
 ///
-/// The series that falls by 1 from each onset to the next, computed with 60 digits from that of the
-/// map; b₁ = 2√(3/π).
+/// The series falls by 1 from each onset to the next. It was computed with 60 digits from the
+/// series of the map; b₁ = 2√(3/π).
 pub const PHASE: [f64; 15] = [
     1.954410047611679686345538,
     -0.2387324146378430036533256,
@@ -51,23 +56,23 @@ pub const PHASE: [f64; 15] = [
     54.08757197881407225993713,
 ];
 
-/// A stick phase and the slip that follows.
+/// A stick phase and the slip phase that follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HalfSwing {
-    /// σ where the stick phase starts.
+    /// σ at the start of the stick phase.
     pub onset: f64,
-    /// σ where it ends, on the other side.
+    /// σ at its end, which is on the other side.
     pub release: f64,
-    /// sW in the slip, carried on to the end of contact.
+    /// sW in slip, carried on to the end of contact.
     carried: f64,
 }
 
 impl HalfSwing {
     /// The half swing from an onset at σ = `onset` > 0.
     ///
-    /// The limit falls faster than its rate, L̈ > 0: the spring cannot reach it on the side it comes
-    /// from, and it reaches it on the other before its peak, whose height is at least the
-    /// limit's at the onset.
+    /// As L̈ > 0, the spring cannot reach its limit again on the side where it starts. On the other
+    /// side it reaches the limit before its peak, which is at least as high as the limit at the
+    /// onset.
     #[must_use]
     pub fn from_onset(onset: f64) -> Self {
         let (spring, velocity) = (onset * onset.sqrt(), -1.5 * onset.sqrt());
@@ -90,17 +95,17 @@ impl HalfSwing {
         Self { onset, release, carried }
     }
 
-    /// |W| at the end of contact, if the slip lasts until then.
+    /// |W| at the end of contact, if the slip phase lasts until then.
     #[must_use]
     pub fn final_velocity(&self) -> Option<f64> {
         (self.carried >= 0.0).then_some(self.carried)
     }
 
-    /// σ where the slip turns into the next stick phase, if it does.
+    /// σ at the start of the next stick phase, if there is one.
     #[must_use]
     pub fn next_onset(&self) -> Option<f64> {
         (self.carried < 0.0).then(|| {
-            // sW = carried + (2/5)σ^{5/2} has fallen to −(3/2)√σ; in √σ that is a polynomial.
+            // The condition is sW = carried + (2/5)σ^{5/2} = −(3/2)√σ, a polynomial in √σ.
             let root = bracketed(0.0, self.release.sqrt(), self.release.sqrt(), |root| {
                 let cube = root * root * root;
                 Jet {
@@ -114,7 +119,8 @@ impl HalfSwing {
     }
 }
 
-/// The phase of an onset at σ = `onset` > 0: about σ/π, the half swings to come if all lasted π.
+/// The phase of an onset at σ = `onset` > 0. It is about σ/π, the number of half swings to come if
+/// all of them lasted π.
 #[must_use]
 pub fn phase(onset: f64) -> f64 {
     let (mut onset, mut passed) = (onset, 0.0);
@@ -125,20 +131,20 @@ pub fn phase(onset: f64) -> f64 {
     far_phase(onset, PHASE.len()) - passed
 }
 
-/// The last half swing of the orbit whose onsets have `phase` and what differs from it by whole
-/// numbers.
+/// The last half swing of the orbit whose onsets have `phase` and the phases that differ from it by
+/// whole numbers.
 #[must_use]
 pub fn last_half_swing(phase: f64) -> HalfSwing {
     last_half_swing_from(phase, FAR, PHASE.len())
 }
 
 /// As [`last_half_swing`], from the first onset at σ > `start` and with the first `terms`
-/// coefficients of [`PHASE`]: to see how fast both converge. `start` is at least 10.
+/// coefficients of [`PHASE`]. It shows how fast both converge. `start` is at least 10.
 #[must_use]
 pub fn last_half_swing_from(phase: f64, start: f64, terms: usize) -> HalfSwing {
     let phase = phase - phase.floor() + (start / PI).ceil();
     let mut onset = PI * phase;
-    // The series is all but straight: each pass takes away all but a hundredth of the error.
+    // The series is almost linear: each pass leaves a hundredth of the error.
     for _ in 0..40 {
         onset += PI * (phase - far_phase(onset, terms));
     }
@@ -152,22 +158,22 @@ pub fn last_half_swing_from(phase: f64, start: f64, terms: usize) -> HalfSwing {
 /// The half swing with the largest final velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Peak {
-    /// σ of its onset.
+    /// σ at the onset.
     pub onset: f64,
-    /// σ of its release.
+    /// σ at the release.
     pub release: f64,
-    /// F = |W| at the end of contact.
+    /// F, which is |W| at the end of contact.
     pub velocity: f64,
-    /// How F changes with κ^{−5/4}: the largest κ^{5/4}|w_final| is `velocity` + `correction`
+    /// Coefficient of the next order: the largest κ^{5/4}|w_final| is `velocity` + `correction`
     /// κ^{−5/4} + O(κ^{−5/2}).
     pub correction: f64,
 }
 
-/// The half swing with the largest F, in closed form: its stick phase lasts exactly a quarter of a
+/// The half swing with the largest F, in closed form. Its stick phase lasts exactly a quarter of a
 /// period.
 ///
-/// With x = `release`, x³ = (9/4)(x + π/2), which has one positive root, and F = (8/27)x^{9/2} −
-/// (2/5)x^{5/2} = 4.4848423519475….
+/// Let x be `release`. Then x³ = (9/4)(x + π/2), which has one positive root, and F = (8/27)x^{9/2}
+/// − (2/5)x^{5/2} = 4.4848423519475….
 ///
 /// ```
 /// use stickslip_model::inner::{HalfSwing, peak};
@@ -193,7 +199,7 @@ pub fn peak() -> Peak {
     }
 }
 
-/// The phase of an onset far from the end, with `terms` coefficients.
+/// The phase of an onset far from the end, by the first `terms` coefficients.
 fn far_phase(onset: f64, terms: usize) -> f64 {
     let step = onset.sqrt().recip();
     let series = PHASE.iter().take(terms).rev().fold(0.0, |sum, b| (sum + b) * step);
@@ -203,7 +209,8 @@ fn far_phase(onset: f64, terms: usize) -> f64 {
 /// The onset before the one at σ = `next`.
 fn previous_onset(next: f64) -> f64 {
     let target = 0.4 * next * next * next.sqrt() + 1.5 * next.sqrt();
-    // The carried velocity falls from the peak on; the last half swing, the longest, lasts 5.81.
+    // The carried velocity falls from the peak on. The last half swing is the longest and lasts
+    // 5.81.
     let low = (next + PI).max(peak().onset);
     bracketed(low, next + 6.0, next + PI + 9.65 / (4.0 + next).powf(1.5), |onset| {
         let swing = HalfSwing::from_onset(onset);
@@ -216,7 +223,7 @@ fn previous_onset(next: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Phase, σ of the last onset and F, computed with 40 digits and 21 coefficients from σ = 1500.
+    /// Phase, σ at the last onset and F, computed with 40 digits and 21 coefficients from σ = 1500.
     const PROFILE: [(f64, f64, f64); 8] = [
         (0.0, 2.955804240154131554830447, 4.243210506901899416795425),
         (0.125, 3.601198694756546685411251, 4.484337462282218579856209),
@@ -231,9 +238,9 @@ mod tests {
     #[test]
     fn the_peak_has_its_closed_form() {
         let peak = peak();
-        // All with 40 digits: F as the largest of the map's values, the correction by
-        // differentiating the first order of the map in κ^{−5/4}, the phase by going back
-        // to σ = 1500.
+        // All were computed with 40 digits: F as the largest value of the map, the correction from
+        // the derivative of the first order of the map in κ^{−5/4}, the phase from onsets up to
+        // σ = 1500.
         assert!((peak.release - 2.0035095171077777508).abs() < 1e-15);
         assert!((peak.velocity - 4.4848423519475425884).abs() < 2e-15);
         assert!((peak.correction + 26.873347995682891380).abs() < 2e-14);
@@ -246,7 +253,7 @@ mod tests {
         for side in [-1.0, 1.0] {
             for distance in [1e-3, 0.1, 1.0, 2.0] {
                 let beside = HalfSwing::from_onset(peak.onset + side * distance).final_velocity();
-                // F is curved by −7 there, and less to the sides.
+                // The second derivative of F is −7 at the peak, and smaller in size beside it.
                 assert!(beside.unwrap() < peak.velocity - 0.1 * distance * distance);
             }
         }
@@ -258,11 +265,11 @@ mod tests {
             let last = last_half_swing(p);
             let found = last.final_velocity().unwrap();
             assert!((last.onset - onset).abs() < 1e-13, "{p}: {}", last.onset);
-            // F changes by up to 17 a phase, and the onsets have 1e-14.
+            // F changes by up to 17 in one phase, and onsets are known to 1e-14.
             assert!((found - velocity).abs() < 4e-13, "{p}: {found}");
             let back = phase(onset) - p;
             assert!((back - back.round()).abs() < 1e-13, "{p}: {back}");
-            // The period.
+            // F has the period 1.
             assert!((last_half_swing(p - 3.0).onset - onset).abs() < 1e-13);
         }
     }
@@ -278,7 +285,7 @@ mod tests {
             assert!((y + limit).abs() < 2e-15 * y0.hypot(w0), "{onset}");
             let w = w0 * angle.cos() - y0 * angle.sin();
             match swing.next_onset() {
-                // Side −1: −W falls by ∫ σ^{3/2} dσ to the rate of the limit.
+                // On side −1, −W falls by ∫ σ^{3/2} dσ to the rate of the limit.
                 Some(next) => {
                     let rate = -1.5 * next.sqrt();
                     let change = 0.4 * (swing.release.powf(2.5) - next.powf(2.5));
@@ -296,7 +303,8 @@ mod tests {
 
     #[test]
     fn phases_fall_by_one_as_fast_as_the_series_converges() {
-        // After n coefficients the fall is wrong by O(σ^{−(n + 3)/2}): twice the factors measured.
+        // With n coefficients the error of the fall is O(σ^{−(n + 3)/2}); these are twice the
+        // measured factors.
         const FACTORS: [f64; 15] = [
             1.0, 7.0, 22.0, 9.0, 55.0, 52.0, 92.0, 210.0, 240.0, 690.0, 720.0, 2200.0, 1600.0,
             3400.0, 5200.0,

@@ -1,16 +1,17 @@
-//! Largest values during a contact without damping, in closed form.
+//! The largest force and the largest elongation during a contact without damping, in closed form.
 
 use crate::laws::phase::Regime;
 use crate::result::Collision;
 
-/// The largest normal force, (5/4)^{3/5}, in scaled units: κ times the largest elongation of the
-/// spring.
+/// The largest normal force in scaled units, (5/4)^{3/5}. It is κ times the largest elongation of
+/// the spring.
 pub const FORCE: f64 = 1.1432626298183158660;
 
-/// The largest |y| during `collision`; none with damping, whose largest force has no closed form.
+/// The largest |y| during `collision`; `None` with damping, where the largest force has no closed
+/// form.
 ///
-/// While sliding the spring is at its limit, which is largest in the middle of the contact; while
-/// sticking it is longest where the velocity vanishes.
+/// In slip the spring is at its limit, which is largest in the middle of the contact. In stick it
+/// is longest where the velocity vanishes.
 ///
 /// ```
 /// use stickslip_model::{Contact, exact, largest};

@@ -1,10 +1,10 @@
 //! Normal restitution ε_n of damped spheres as a series and as a Padé approximant.
 //!
-//! [`crate::Collision::eps_n`] is the integrated value. These formulas are functions of the scaled
-//! damping a = A β^{2/5} g_n^{1/5}, with the force ρ(ξ^{3/2} + A √ξ ξ̇) and a contact that ends when
-//! this force returns to zero. **Sources that write (3/2)A for this A expand in (3/2)A β^{2/5}
-//! g_n^{1/5}**, which is this a: their coefficients are these, and their A is two thirds of this
-//! one.
+//! [`Collision::eps_n`](crate::Collision::eps_n) is the integrated value. These formulas are
+//! functions of the scaled damping a = A β^{2/5} g_n^{1/5}. The force is ρ(ξ^{3/2} + A √ξ ξ̇), and
+//! the contact ends when the force returns to zero. **Many sources write (3/2)A for this A and
+//! expand in (3/2)A β^{2/5} g_n^{1/5}.** That is the same a: the coefficients agree, and their A is
+//! two thirds of this one.
 //!
 //! Sources: Schwager and Pöschel, Phys. Rev. E 57, 650 (1998) and 78, 051304 (2008); Ramírez et
 //! al., Phys. Rev. E 60, 4465 (1999); Müller and Pöschel, Phys. Rev. E 84, 021302 (2011).
@@ -12,15 +12,15 @@
 /// C₁ = (4/5)(5/4)^{3/5} B(3/5, 3/2), with B the beta function.
 pub const C1: f64 = 1.153448858095288799;
 
-/// Coefficients of a³ and a⁴ in the series, computed in 40 digits from the equations of motion,
+/// Coefficients of a³ and a⁴ in the series, computed with 40 digits from the equations of motion
 /// expanded in a.
 const C3: f64 = -0.522882568088414964;
 const C4: f64 = 0.348742675260385035;
 
-/// ε_n to the order a^{9/2}; the error is below 0.34 a⁵ up to a = 1, where it has become useless.
+/// ε_n to the order a^{9/2}. The error is below 0.34 a⁵ up to a = 1, where the series is useless.
 ///
-/// 1 − C₁a + (3/5)C₁²a² + C₃a³ + C₄a⁴ is what a contact that lasts until ξ = 0 has; the earlier end
-/// at F_n = 0 adds (4/15) a^{5/2} times that to the power 3/2.
+/// A contact that lasts until ξ = 0 has ε_n = 1 − C₁a + (3/5)C₁²a² + C₃a³ + C₄a⁴. The earlier end
+/// at F_n = 0 adds (4/15) a^{5/2} times the power 3/2 of that.
 ///
 /// ```
 /// assert!((stickslip_model::normal::series(0.01) - 0.988547439643).abs() < 2e-11);

@@ -1,21 +1,21 @@
-//! Pairs of floating-point numbers as one number of about 106 bits.
+//! Numbers of about 106 bits, made of two floating-point numbers each.
 //!
-//! The operations are those of T. J. Dekker, Numer. Math. 18, 224 (1971), with fused
-//! multiplication for the error of a product.
+//! The operations are those of T. J. Dekker, Numer. Math. 18, 224 (1971). The error of a product
+//! comes from a fused multiplication.
 
-/// An unevaluated sum, the second number below the rounding of the first.
+/// A sum of two numbers that is kept as it is; the second is below the rounding of the first.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DoubleDouble(pub f64, pub f64);
 
 impl DoubleDouble {
-    /// a + b, exactly.
+    /// The exact sum a + b.
     pub fn sum(a: f64, b: f64) -> Self {
         let high = a + b;
         let part = high - a;
         Self(high, (a - (high - part)) + (b - part))
     }
 
-    /// a·b, exactly.
+    /// The exact product a·b.
     pub fn product(a: f64, b: f64) -> Self {
         let high = a * b;
         Self(high, a.mul_add(b, -high))
@@ -38,7 +38,7 @@ impl DoubleDouble {
         Self::sum(high, low + (self.0 * other.1 + self.1 * other.0))
     }
 
-    /// The product with a single number.
+    /// The product with a double.
     pub fn scaled(self, factor: f64) -> Self {
         let Self(high, low) = Self::product(self.0, factor);
         Self::sum(high, self.1.mul_add(factor, low))
@@ -51,7 +51,7 @@ impl DoubleDouble {
         Self::sum(quotient, rest / divisor.0)
     }
 
-    /// The nearest single number.
+    /// The nearest double.
     pub fn nearest(self) -> f64 {
         self.0 + self.1
     }

@@ -1,24 +1,25 @@
-//! Roots in a bracket, by Halley's step with bisection behind it.
+//! Roots in a bracket, by Halley's method with bisection as a safeguard.
 
-/// A function's value and first two derivatives.
+/// The value of a function with its first two derivatives.
 #[derive(Clone, Copy, Debug)]
 pub struct Jet {
-    /// f
+    /// The value f.
     pub value: f64,
-    /// f′
+    /// The first derivative f′.
     pub slope: f64,
-    /// f″
+    /// The second derivative f″.
     pub curvature: f64,
 }
 
-/// More than the bisections that take 1 to the smallest positive number, twice.
+/// Most steps: more than twice the bisections from 1 to the smallest positive number.
 const MOST_STEPS: usize = 2400;
 
 /// The root between `positive`, where f > 0, and `negative`, where f < 0.
 ///
-/// The signs at the ends are the caller's knowledge: f is not evaluated there, so an end may be
-/// a zero of f or a pole of its derivatives. Either end may be the larger. With a single root
-/// between them the result is that root to rounding of f; the first value tried is `guess`.
+/// The caller knows the signs at the ends. f is not evaluated there: an end may be a zero of f or a
+/// pole of its derivatives. Either end may be the larger one. The first value that is tried is
+/// `guess`. If there is a single root between the ends, the result is that root to the rounding of
+/// f.
 pub fn bracketed(
     mut positive: f64,
     mut negative: f64,
@@ -39,9 +40,9 @@ pub fn bracketed(
         }
         let newton = -jet.value / jet.slope;
         let bend = 0.5 * newton * jet.curvature / jet.slope;
-        // Halley's step; where it would be more than twice Newton's, f is too curved to trust it.
+        // Halley's step. Where it would be more than twice Newton's, f is too curved for it.
         let mut step = newton / (1.0 + bend).max(0.5);
-        // A step that leaves the bracket or shrinks too slowly proves nothing: halve instead.
+        // A step that leaves the bracket or shrinks too slowly is replaced by a bisection.
         if !(inside(x + step, positive, negative) && step.abs() < 0.5 * before) {
             if step.abs() <= f64::EPSILON * x.abs() {
                 return x;
@@ -51,7 +52,7 @@ pub fn bracketed(
                 return x;
             }
         } else if step.abs() < 1e-8 * x.abs() && bend.abs() < 1e-4 {
-            // What is left is of order bend² · step.
+            // The remaining error is of order bend² · step.
             return x + step;
         }
         x += step;
@@ -65,7 +66,7 @@ pub fn bracketed(
 mod tests {
     use super::*;
 
-    /// (x − a)(x² + c), counting its evaluations.
+    /// (x − a)(x² + c), which counts its evaluations.
     fn cubic(a: f64, c: f64, count: &mut u32) -> impl FnMut(f64) -> Jet {
         move |x| {
             *count += 1;
@@ -98,7 +99,7 @@ mod tests {
 
     #[test]
     fn steps_without_progress_give_way_to_bisection() {
-        // The root of sign(x − a)·√|x − a|, from which Newton's steps run in circles.
+        // sign(x − a)·√|x − a|, for which Newton's steps go round in circles.
         let a = 0.377;
         let root = bracketed(1.0, 0.0, 0.4, |x: f64| {
             let off = (x - a).abs().sqrt();

@@ -1,10 +1,12 @@
 //! The energy ledger of a collision.
 
-/// Where the energy of a collision went, in reduced variables.
+use super::finite::NotFinite;
+
+/// The energy ledger of a collision, in reduced variables: where its energy went.
 ///
-/// The normal motion and the tangential motion exchange no energy; each has its own account.
-/// Units: normal energies in m g_n² (½ at impact), tangential energies in α m g_n² (μ/α)²
-/// (ψ²/2 at impact).
+/// Normal motion and tangential motion exchange no energy; each has entries of its own. Normal
+/// energies are in units of m g_n² (½ at impact), tangential ones in units of α m g_n² (μ/α)² (ψ²/2
+/// at impact).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct EnergyLedger {
@@ -27,15 +29,32 @@ pub struct EnergyLedger {
 }
 
 impl EnergyLedger {
-    /// Tangential energy that the account does not explain.
+    /// Tangential energy that the ledger does not explain.
     #[must_use]
     pub fn tangential_unbalanced(&self) -> f64 {
         self.tangential_initial - self.tangential_final - self.sliding - self.spring_left
     }
 
-    /// Normal energy that the account does not explain.
+    /// Normal energy that the ledger does not explain.
     #[must_use]
     pub fn normal_unbalanced(&self) -> f64 {
         self.normal_initial - self.normal_final - self.damping - self.compression_left
+    }
+
+    /// Checks that all entries are finite numbers.
+    ///
+    /// # Errors
+    /// [`NotFinite`] names the first that is not.
+    pub fn require_finite(&self) -> Result<(), NotFinite> {
+        NotFinite::among([
+            ("tangential_initial", self.tangential_initial),
+            ("tangential_final", self.tangential_final),
+            ("sliding", self.sliding),
+            ("spring_left", self.spring_left),
+            ("normal_initial", self.normal_initial),
+            ("normal_final", self.normal_final),
+            ("damping", self.damping),
+            ("compression_left", self.compression_left),
+        ])
     }
 }

@@ -1,4 +1,4 @@
-//! Spheres and walls, and what they are made of.
+//! Spheres, walls and their materials.
 
 use super::quantity;
 use crate::contact::InvalidParameter;
@@ -15,7 +15,7 @@ pub struct Material {
 }
 
 impl Material {
-    /// What the material is to a contact.
+    /// The elastic constants, on which a contact depends.
     #[must_use]
     pub fn elasticity(&self) -> Elasticity {
         Elasticity { young_modulus_pa: self.young_modulus_pa, poisson_ratio: self.poisson_ratio }
@@ -42,18 +42,18 @@ impl Elasticity {
         Ok(())
     }
 
-    /// (1 − ν²)/Y in 1/Pa, the body's part of 1/E*.
+    /// (1 − ν²)/Y in 1/Pa, the part of the body in 1/E*.
     pub(crate) fn normal_compliance(&self) -> f64 {
         (1.0 - self.poisson_ratio * self.poisson_ratio) / self.young_modulus_pa
     }
 
-    /// (2 − ν)/G in 1/Pa with G = Y/(2(1 + ν)), the body's part of 1/G*.
+    /// (2 − ν)/G in 1/Pa with G = Y/(2(1 + ν)), the part of the body in 1/G*.
     pub(crate) fn tangential_compliance(&self) -> f64 {
         (2.0 - self.poisson_ratio) * 2.0 * (1.0 + self.poisson_ratio) / self.young_modulus_pa
     }
 }
 
-/// A sphere whose mass lies around its centre, evenly in all directions.
+/// A sphere whose mass is distributed around its centre equally in all directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
     /// Radius R in m.
@@ -62,7 +62,7 @@ pub struct Sphere {
     pub mass_kg: f64,
     /// Moment of inertia J about any axis through the centre, in kg m².
     pub moment_of_inertia_kg_m2: f64,
-    /// What it is made of.
+    /// Elastic constants.
     pub elasticity: Elasticity,
 }
 
@@ -106,11 +106,11 @@ impl Sphere {
 /// A plane wall: a sphere in the limit of infinite radius, mass and moment of inertia.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wall {
-    /// What it is made of; `None` is a rigid wall.
+    /// Elastic constants; `None` is a rigid wall.
     pub elasticity: Option<Elasticity>,
 }
 
-/// What a sphere hits.
+/// The body that a sphere hits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Body {
     /// Another sphere.

@@ -1,4 +1,5 @@
-//! Two bodies about to touch, in three dimensions: start reading here for spheres in SI units.
+//! Two bodies that touch and approach, in three dimensions: start reading here for spheres in SI
+//! units.
 //!
 //! Source: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008), equations (4)–(7), (11),
 //! (12).
@@ -9,11 +10,11 @@ use super::bodies::{Body, Sphere, Wall};
 use super::scaling::{Impact, Pair, Surface};
 use crate::contact::{Contact, InvalidParameter};
 
-/// Largest relative difference between the radii and the distance at which bodies count as
-/// touching.
+/// Largest relative difference between the distance of two bodies and their radii at which they
+/// count as touching.
 pub const TOUCH: f64 = 1e-6;
 
-/// Where a sphere is and how it moves.
+/// Position and motion of a sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
     /// Position of the centre in m.
@@ -24,24 +25,24 @@ pub struct Motion {
     pub spin_rad_per_s: Vector3<f64>,
 }
 
-/// Where a wall is and how it moves.
+/// Position and motion of a plane wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallMotion {
-    /// A point of the wall's surface in m.
+    /// A point of the surface of the wall in m.
     pub point_m: Vector3<f64>,
     /// Direction out of the wall, of any length.
     pub normal: Vector3<f64>,
-    /// Velocity in m/s of the wall where it is touched.
+    /// Velocity of the wall in m/s at the point of contact.
     pub velocity_m_per_s: Vector3<f64>,
 }
 
 /// Two bodies that touch and approach each other.
 ///
-/// Positions decide the normal n, from the second body to the first, and the point of contact,
+/// The positions decide the normal n, from the second body to the first, and the point of contact,
 /// which divides the line between the centres in the ratio of the radii. During contact n and the
-/// tangential direction t stay as they are. The lever arms are the distances of the centres from
-/// that point: momentum and angular momentum about any point are conserved to rounding, although
-/// the arms may differ from the radii by [`TOUCH`].
+/// tangential direction t do not change. The lever arms are the distances of the centres from the
+/// point of contact. They may differ from the radii by a part of [`TOUCH`], but momentum and
+/// angular momentum about any point are conserved to rounding.
 ///
 /// ```
 /// use stickslip_model::{Collider, Encounter, Material, Motion, Sphere, Surface, Vector3};
@@ -74,23 +75,23 @@ pub struct Encounter {
     pub contact_point_m: Vector3<f64>,
     /// Unit vector n from the second body to the first.
     pub normal: Vector3<f64>,
-    /// Unit vector t along the tangential velocity of the surfaces; `None` in a central impact,
-    /// which has none.
+    /// Unit vector t along the tangential velocity of the surfaces. A central impact has no such
+    /// velocity and `None` here.
     pub tangent: Option<Vector3<f64>>,
     /// Normal velocity g_n > 0 of approach in m/s.
     pub normal_m_per_s: f64,
     /// Tangential velocity g_t of the surfaces in m/s, 0 in a central impact.
     pub tangential_m_per_s: f64,
-    /// The impact, reduced to what the contact feels. In a central impact, whose tangential motion
-    /// is nil, its ψ stands for another impact with the same normal motion.
+    /// The impact, reduced to the numbers on which the contact depends. A central impact has no ψ;
+    /// the ψ here is then that of another impact with the same normal motion.
     pub impact: Impact,
-    pub(crate) parties: [Party; 2],
+    pub(crate) partners: [Partner; 2],
 }
 
 /// One of the two bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Party {
-    /// `None` is a wall, which nothing moves.
+pub(crate) struct Partner {
+    /// The sphere; `None` is a wall, whose motion does not change.
     pub sphere: Option<Sphere>,
     /// Distance of the centre from the point of contact; 0 for a wall.
     pub arm_m: f64,
@@ -98,10 +99,11 @@ pub(crate) struct Party {
 }
 
 impl Encounter {
-    /// Two spheres.
+    /// The encounter of two spheres.
     ///
     /// # Errors
-    /// [`EncounterError`]: a quantity is out of its range, the spheres do not touch, or they do not approach.
+    /// [`EncounterError`]: a quantity is out of its range, the spheres do not touch, or they do not
+    /// approach.
     pub fn of_spheres(
         first: (&Sphere, &Motion),
         second: (&Sphere, &Motion),
@@ -113,21 +115,21 @@ impl Encounter {
         let touching_m = first.0.radius_m + second.0.radius_m;
         require_touch("distance of the centres", distance_m, touching_m)?;
         let normal = separation / distance_m;
-        let party = |(sphere, motion): (&Sphere, &Motion)| Party {
+        let partner = |(sphere, motion): (&Sphere, &Motion)| Partner {
             sphere: Some(*sphere),
             arm_m: sphere.radius_m * (distance_m / touching_m),
             motion: *motion,
         };
-        let parties = [party(first), party(second)];
-        let contact_point_m = second.1.position_m + normal * parties[1].arm_m;
-        Self::new(pair, parties, normal, contact_point_m)
+        let partners = [partner(first), partner(second)];
+        let contact_point_m = second.1.position_m + normal * partners[1].arm_m;
+        Self::new(pair, partners, normal, contact_point_m)
     }
 
-    /// A sphere, the first body, and a wall, the second.
+    /// The encounter of a sphere, the first body, and a wall, the second body.
     ///
     /// # Errors
-    /// [`EncounterError`]: a quantity is out of its range, the sphere does not touch the wall on the side to which
-    /// the wall's normal points, or they do not approach.
+    /// [`EncounterError`]: a quantity is out of its range, the sphere does not touch the wall on the
+    /// side to which the wall's normal points, or they do not approach.
     pub fn with_wall(
         sphere: (&Sphere, &Motion),
         wall: (&Wall, &WallMotion),
@@ -136,7 +138,7 @@ impl Encounter {
         let (WallMotion { point_m, normal, velocity_m_per_s }, position_m) =
             (*wall.1, sphere.1.position_m);
         let pair = Pair::new(sphere.0, &Body::Wall(*wall.0), surface)?;
-        // Scaled first, so that no length is too large or too small for its square.
+        // Scaled first, so that the square of no length is too large or too small.
         let normal = normal / normal.amax();
         let normal = normal / normal.norm();
         if !normal.iter().all(|component| component.is_finite()) {
@@ -146,46 +148,48 @@ impl Encounter {
         require_touch("height of the centre above the wall", height_m, sphere.0.radius_m)?;
         let still =
             Motion { position_m: point_m, velocity_m_per_s, spin_rad_per_s: Vector3::zeros() };
-        let parties = [
-            Party { sphere: Some(*sphere.0), arm_m: height_m, motion: *sphere.1 },
-            Party { sphere: None, arm_m: 0.0, motion: still },
+        let partners = [
+            Partner { sphere: Some(*sphere.0), arm_m: height_m, motion: *sphere.1 },
+            Partner { sphere: None, arm_m: 0.0, motion: still },
         ];
-        Self::new(pair, parties, normal, position_m - normal * height_m)
+        Self::new(pair, partners, normal, position_m - normal * height_m)
     }
 
-    /// The scaled collision that decides the outcome; of a central impact, one with the same normal
-    /// motion.
+    /// The parameters of the scaled collision that decides the outcome. For a central impact, the
+    /// collision has the same normal motion.
     #[must_use]
     pub fn contact(&self) -> Contact {
         self.impact.contact
     }
 
-    /// Whether the surfaces meet without a tangential velocity.
+    /// Whether the impact is central: the surfaces have no tangential velocity.
     #[must_use]
     pub fn is_central(&self) -> bool {
         self.tangent.is_none()
     }
 
-    /// The spheres: two, or one before a wall.
+    /// The spheres: two, or one if the second body is a wall.
     pub fn spheres(&self) -> impl Iterator<Item = &Sphere> {
-        self.parties.iter().filter_map(|party| party.sphere.as_ref())
+        self.partners.iter().filter_map(|partner| partner.sphere.as_ref())
     }
 
     fn new(
         pair: Pair,
-        parties: [Party; 2],
+        partners: [Partner; 2],
         normal: Vector3<f64>,
         contact_point_m: Vector3<f64>,
     ) -> Result<Self, EncounterError> {
-        let [one, two] = parties.map(|party| party.motion);
-        let turning = parties.iter().filter_map(|party| {
-            party.sphere.map(|sphere| party.arm_m * party.arm_m / sphere.moment_of_inertia_kg_m2)
+        let [one, two] = partners.map(|partner| partner.motion);
+        let turning = partners.iter().filter_map(|partner| {
+            partner
+                .sphere
+                .map(|sphere| partner.arm_m * partner.arm_m / sphere.moment_of_inertia_kg_m2)
         });
         let alpha = 1.0 / (1.0 + pair.effective_mass_kg * turning.sum::<f64>());
         let pair = Pair { alpha, ..pair };
 
         let approach = one.velocity_m_per_s - two.velocity_m_per_s;
-        let turn = one.spin_rad_per_s * parties[0].arm_m + two.spin_rad_per_s * parties[1].arm_m;
+        let turn = one.spin_rad_per_s * partners[0].arm_m + two.spin_rad_per_s * partners[1].arm_m;
         let normal_m_per_s = -approach.dot(&normal);
         if !normal_m_per_s.is_finite() || !turn.iter().all(|component| component.is_finite()) {
             return Err(EncounterError::NotFinite);
@@ -194,15 +198,16 @@ impl Encounter {
             return Err(EncounterError::NotApproaching { normal_m_per_s });
         }
         let sliding = tangential(&(approach - turn.cross(&normal)), &normal);
-        let speeds = parties.map(|party| {
-            let Motion { velocity_m_per_s, spin_rad_per_s, .. } = party.motion;
-            velocity_m_per_s.norm() + party.arm_m * spin_rad_per_s.norm()
+        let speeds = partners.map(|partner| {
+            let Motion { velocity_m_per_s, spin_rad_per_s, .. } = partner.motion;
+            velocity_m_per_s.norm() + partner.arm_m * spin_rad_per_s.norm()
         });
         let (tangent, tangential_m_per_s) = direction(&sliding, speeds[0] + speeds[1])
             .map_or((None, 0.0), |(tangent, speed)| (Some(tangent), speed));
-        // The normal motion does not depend on the tangential one; a central impact borrows any.
-        let borrowed = if tangent.is_some() { tangential_m_per_s } else { normal_m_per_s };
-        let impact = pair.impact(normal_m_per_s, borrowed)?;
+        // The normal motion does not depend on the tangential one: a central impact may use any.
+        let tangential_or_any_m_per_s =
+            if tangent.is_some() { tangential_m_per_s } else { normal_m_per_s };
+        let impact = pair.impact(normal_m_per_s, tangential_or_any_m_per_s)?;
         Ok(Self {
             contact_point_m,
             normal,
@@ -210,12 +215,12 @@ impl Encounter {
             normal_m_per_s,
             tangential_m_per_s,
             impact,
-            parties,
+            partners,
         })
     }
 }
 
-/// Why two bodies do not collide.
+/// The reason why two bodies do not collide.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum EncounterError {
     /// A quantity is out of its range.
@@ -227,11 +232,11 @@ pub enum EncounterError {
         if value_m > touching_m { "are apart" } else { "overlap" }
     )]
     NotTouching {
-        /// Which distance.
+        /// The distance in words.
         name: &'static str,
-        /// Its value in m.
+        /// Value of the distance in m.
         value_m: f64,
-        /// Its value in m when the bodies touch.
+        /// Value of the distance in m at which the bodies touch.
         touching_m: f64,
     },
     /// The bodies separate, or keep their distance.
@@ -251,13 +256,13 @@ pub enum EncounterError {
     NotFinite,
 }
 
-/// The part of `vector` across `normal`.
+/// The part of `vector` that is perpendicular to `normal`.
 pub(crate) fn tangential(vector: &Vector3<f64>, normal: &Vector3<f64>) -> Vector3<f64> {
     vector - normal * vector.dot(normal)
 }
 
-/// Direction and length of a difference of velocities whose sizes add up to `speed`; `None` if
-/// there is nothing but their rounding.
+/// Direction and length of a difference of velocities whose sizes add up to `speed`; `None` if the
+/// difference is rounding alone.
 pub(crate) fn direction(difference: &Vector3<f64>, speed: f64) -> Option<(Vector3<f64>, f64)> {
     let length = difference.norm();
     (length > 8.0 * f64::EPSILON * speed).then(|| (difference / length, length))

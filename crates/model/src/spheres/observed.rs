@@ -1,4 +1,4 @@
-//! What experiments and DEM codes report of a collision, with the names they use.
+//! The quantities that experiments and DEM codes report of a collision, under their names.
 
 use nalgebra::Vector3;
 
@@ -6,11 +6,11 @@ use super::encounter::{Encounter, Motion, direction, tangential};
 
 /// A collision in the quantities of experiments.
 ///
-/// *Patch* quantities are those of the surfaces where they touch, *centre* quantities those of the
-/// relative motion of the centres, which is what a camera sees of spheres without marks; over a
-/// wall, of the motion relative to it. Angles are measured from the normal, in rad, and are
-/// positive on the side to which the motion before the contact points: a negative angle is a motion
-/// thrown back.
+/// *Patch* quantities describe the surfaces at the point of contact. *Centre* quantities describe
+/// the relative motion of the centres, which is what a camera sees of spheres without marks; with a
+/// wall, they describe the motion relative to the wall. Angles are measured from the normal, in
+/// rad. They are positive on the side to which the motion before the contact points: a negative
+/// angle is a motion thrown back.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Observed {
@@ -28,16 +28,16 @@ pub struct Observed {
     /// Angle atan(ε_t g_t/(ε_n g_n)) of the patch after the contact.
     pub patch_rebound_angle_rad: f64,
     /// Tangential velocity of the centre after over that before the contact, e_t of Kharaz, Gorham
-    /// and Salman (Powder Technol. 120, 281, 2001); along the velocity before. `None` if there
-    /// is none before.
+    /// and Salman (Powder Technol. 120, 281, 2001), along the velocity before; `None` if there is
+    /// none before.
     pub centre_e_t: Option<f64>,
     /// Angle of the motion of the centre at impact.
     pub centre_impact_angle_rad: f64,
-    /// Angle of the motion of the centre after the contact, in the plane of the motion before; of
-    /// a centre that had no tangential motion, in the plane of n and t.
+    /// Angle of the motion of the centre after the contact, in the plane of the motion before. If
+    /// the centre had no tangential motion before, it is in the plane of n and t.
     pub centre_rebound_angle_rad: f64,
-    /// Tangential over normal impulse, never above μ, which it is if sliding goes on in one
-    /// direction all the time.
+    /// Tangential impulse divided by normal impulse. It is at most μ, and equal to μ if there is
+    /// sliding in one direction throughout the contact.
     pub impulse_ratio: f64,
 }
 
@@ -56,7 +56,7 @@ impl Observed {
         let relative = |motions: [&Motion; 2]| {
             tangential(&(motions[0].velocity_m_per_s - motions[1].velocity_m_per_s), normal)
         };
-        let before = encounter.parties.each_ref().map(|party| &party.motion);
+        let before = encounter.partners.each_ref().map(|partner| &partner.motion);
         let speed = before.iter().map(|motion| motion.velocity_m_per_s.norm()).sum::<f64>();
         let centre_before = direction(&relative(before), speed);
         let along: Vector3<f64> =

@@ -1,9 +1,9 @@
-//! What an encounter leaves: motions, switches and energy in SI units.
+//! The outcome of an encounter: motions, switches and energy in SI units.
 
 use nalgebra::Vector3;
 use smallvec::SmallVec;
 
-use super::encounter::{Encounter, Motion, Party};
+use super::encounter::{Encounter, Motion, Partner};
 use super::observed::Observed;
 use crate::laws::phase::{Regime, Side};
 use crate::result::{Collision, FEW_SWITCHES, Switch};
@@ -11,22 +11,22 @@ use crate::result::{Collision, FEW_SWITCHES, Switch};
 /// Two bodies after their collision.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
-    /// Motions after the contact; positions are those at impact. A wall keeps its motion.
+    /// Motions after the contact. Positions are those at impact, and a wall keeps its motion.
     pub motions: [Motion; 2],
-    /// Impulse on the first body in N s; the second one receives the opposite.
+    /// Impulse on the first body in N s; the second body receives the opposite one.
     pub impulse_n_s: Vector3<f64>,
     /// Coefficient of normal restitution ε_n.
     pub eps_n: f64,
-    /// Coefficient of tangential restitution ε_t = g_t(t_c)/g_t(0), −1 is full reversal; none in a
-    /// central impact.
+    /// Coefficient of tangential restitution ε_t = g_t(t_c)/g_t(0); −1 is full reversal. `None` in
+    /// a central impact.
     pub eps_t: Option<f64>,
     /// Duration of the contact in s.
     pub contact_time_s: f64,
     /// Every switch between slip and stick, in order of time; none in a central impact.
     pub switches: SmallVec<[ForceSwitch; FEW_SWITCHES]>,
-    /// Where the energy went.
+    /// The energy before, during and after the contact.
     pub energy: EnergyAccount,
-    /// What experiments report.
+    /// The quantities that experiments report.
     pub observed: Observed,
 }
 
@@ -40,7 +40,7 @@ pub struct ForceSwitch {
     pub time_left_s: f64,
     /// The regime that begins.
     pub to: Regime,
-    /// The side of the sliding that begins, or for a switch to stick, of the sliding that ends.
+    /// The side of the sliding that begins or, at a switch to stick, of the sliding that ends.
     pub side: Side,
     /// Elongation ζ of the tangential spring in m.
     pub spring_m: f64,
@@ -52,7 +52,7 @@ pub struct ForceSwitch {
     pub tangential_force_n: f64,
 }
 
-/// Where the energy of a collision went, in J.
+/// The energy account of a collision in J: where its energy went.
 ///
 /// Kinetic energies are those of the spheres, rotation included, in the frame in which the motions
 /// are given.
@@ -64,18 +64,18 @@ pub struct EnergyAccount {
     pub kinetic_after_j: f64,
     /// Work of a moving wall on the sphere, impulse · velocity of the wall.
     pub work_of_wall_j: f64,
-    /// Taken by Coulomb sliding.
+    /// Energy taken by Coulomb sliding.
     pub sliding_j: f64,
-    /// Taken by the damping of the normal force.
+    /// Energy taken by the damping of the normal force.
     pub damping_j: f64,
-    /// Left in the tangential spring when the contact ends.
+    /// Energy left in the tangential spring when the contact ends.
     pub spring_left_j: f64,
-    /// Left in the compression when the contact ends; 0 without damping.
+    /// Energy left in the compression when the contact ends; 0 without damping.
     pub compression_left_j: f64,
 }
 
 impl EnergyAccount {
-    /// What the account does not explain, in J: it measures the errors of the calculation.
+    /// Energy in J that the account does not explain. It measures the errors of the calculation.
     #[must_use]
     pub fn unbalanced_j(&self) -> f64 {
         self.kinetic_before_j + self.work_of_wall_j
@@ -102,10 +102,10 @@ impl Encounter {
         let impulse = self.normal * along_normal + tangent * along_tangent;
         // The force of the second body is the opposite one, and so is its lever arm.
         let twist = self.normal.cross(&tangent) * -along_tangent;
-        let [one, two] = &self.parties;
+        let [one, two] = &self.partners;
         let motions = [one.after(impulse, twist), two.after(-impulse, twist)];
 
-        let wall = self.parties.iter().find(|party| party.sphere.is_none());
+        let wall = self.partners.iter().find(|partner| partner.sphere.is_none());
         let kinetic = |motions: [&Motion; 2]| one.energy(motions[0]) + two.energy(motions[1]);
         let normal_unit_j = m * self.normal_m_per_s * self.normal_m_per_s;
         let slope = pair.surface.friction / alpha;
@@ -156,9 +156,9 @@ impl Encounter {
     }
 }
 
-impl Party {
-    /// The motion after `impulse` at the point of contact, which turns a sphere with `twist` times
-    /// its arm.
+impl Partner {
+    /// The motion after `impulse` at the point of contact, whose angular momentum on a sphere is
+    /// `twist` times the arm.
     fn after(&self, impulse: Vector3<f64>, twist: Vector3<f64>) -> Motion {
         let Some(sphere) = self.sphere else { return self.motion };
         Motion {

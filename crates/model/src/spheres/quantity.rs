@@ -1,8 +1,8 @@
-//! The quantities that describe bodies and surfaces, with the ranges in which they are expected.
+//! The quantities that describe bodies and surfaces, with their ranges.
 
 use crate::contact::InvalidParameter;
 
-/// A quantity in SI units: its name, which holds the unit, and its range.
+/// A quantity in SI units: its name, which contains the unit, and its range.
 ///
 /// ```
 /// use stickslip_model::quantity;
@@ -14,9 +14,9 @@ use crate::contact::InvalidParameter;
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Quantity {
-    /// The name, as fields of structs and files have it.
+    /// The name of the field in structs and files.
     pub name: &'static str,
-    /// The range and the unit, for people.
+    /// The range and the unit in words.
     pub expected: &'static str,
     range: Range,
 }

@@ -1,4 +1,4 @@
-//! Everything that is known of one impact: the result that programs print.
+//! The report on one impact: everything that a program prints of it.
 
 use super::encounter::{Encounter, Motion};
 use super::outcome::Outcome;

@@ -1,4 +1,4 @@
-//! From spheres in SI units to the numbers that decide a collision, and back.
+//! From spheres in SI units to the parameters of a collision, and back.
 //!
 //! Source: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008), equations (1), (12),
 //! (21)–(24).
@@ -9,15 +9,14 @@ use crate::contact::{Contact, InvalidParameter};
 
 const POSITIVE: &str = "a finite number above 0";
 
-/// How the two surfaces act on each other.
+/// The properties of the two surfaces together.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
     /// Coulomb's coefficient of friction μ.
     pub friction: f64,
     /// Stiffness k_t of the tangential spring in kg/s².
     pub tangential_stiffness_kg_per_s2: f64,
-    /// Damping time A in s: F_n = ρ(ξ^{3/2} + A √ξ ξ̇). Many papers write (3/2) A where this one
-    /// writes A.
+    /// Damping time A in s in F_n = ρ(ξ^{3/2} + A √ξ ξ̇). Many papers write (3/2) A for this A.
     pub damping_time_s: f64,
 }
 
@@ -34,7 +33,7 @@ impl Surface {
     }
 }
 
-/// Two colliding bodies reduced to what their contact feels.
+/// Two colliding bodies, reduced to the numbers on which their contact depends.
 ///
 /// ```
 /// use stickslip_model::{Material, Pair, Surface};
@@ -55,24 +54,24 @@ pub struct Pair {
     /// Elastic constant ρ = (4/3) E* √R in kg m^{−1/2} s^{−2}; 2Y √R/(3(1 − ν²)) for equal
     /// materials.
     pub elastic_constant: f64,
-    /// Stiffness ratio 4G*/E* of tangential and normal motion without slip, 1/G* = (2 − ν_i)/G_i +
-    /// (2 − ν_j)/G_j; 2(1 − ν)/(2 − ν) for equal materials.
+    /// Stiffness ratio 4G*/E* of tangential and normal motion without slip, with 1/G* = (2 −
+    /// ν_i)/G_i
+    /// + (2 − ν_j)/G_j; 2(1 − ν)/(2 − ν) for equal materials.
     pub stiffness_ratio: f64,
     /// α = 1/(1 + m R_i²/J_i + m R_j²/J_j); 2/7 for homogeneous spheres.
     pub alpha: f64,
-    /// The surfaces.
+    /// The properties of the surfaces.
     pub surface: Surface,
 }
 
 impl Pair {
-    /// A sphere and what it hits.
+    /// The pair of a sphere and the body that it hits.
     ///
-    /// Two materials act together as in Hertz' contact: 1/E* = (1 − ν_i²)/Y_i + (1 − ν_j²)/Y_j. A
-    /// wall has infinite radius, mass and moment of inertia: R and m are those of the sphere,
-    /// and α = 1/(1 + m R²/J).
+    /// As in Hertz' contact, 1/E* = (1 − ν_i²)/Y_i + (1 − ν_j²)/Y_j. A wall has infinite radius,
+    /// mass and moment of inertia: R and m are those of the sphere, and α = 1/(1 + m R²/J).
     ///
     /// # Errors
-    /// [`InvalidParameter`] names the first quantity that is out of its range, or a result that is.
+    /// [`InvalidParameter`] names the first quantity or result that is out of its range.
     pub fn new(sphere: &Sphere, other: &Body, surface: &Surface) -> Result<Self, InvalidParameter> {
         sphere.validate()?;
         other.validate()?;
@@ -112,7 +111,7 @@ impl Pair {
         Ok(pair)
     }
 
-    /// Two equal homogeneous spheres of `radius_m`.
+    /// The pair of two equal homogeneous spheres of radius `radius_m`.
     ///
     /// # Errors
     /// [`InvalidParameter`] names the first quantity that is out of its range.
@@ -129,11 +128,11 @@ impl Pair {
     /// Scaled stiffness κ = (3/2)(5/4)^{1/5} (4G*/E*)/α of a spring with Mindlin's tangential
     /// stiffness.
     ///
-    /// A contact that does not slip has the stiffness k_t = 8G* √(Rξ), 4G*/E* times that of the
-    /// normal motion, dF_n/dξ = 2E* √(Rξ). Both grow with the compression ξ, while the spring
-    /// of this model has one stiffness: here it is taken at the largest compression of a
-    /// contact without damping. Its κ is then the same for every velocity, size and modulus:
-    /// 4.52 for equal homogeneous spheres with ν = 0.3.
+    /// A contact that does not slip has the stiffness k_t = 8G* √(Rξ). That is 4G*/E* times the
+    /// stiffness of the normal motion, dF_n/dξ = 2E* √(Rξ). Both grow with the compression ξ,
+    /// but the spring of this model has one stiffness. Here it is k_t at the largest
+    /// compression of a contact without damping. Its κ is then the same for every velocity,
+    /// size and modulus: 4.52 for equal homogeneous spheres with ν = 0.3.
     ///
     /// Source: R. D. Mindlin, J. Appl. Mech. 16, 259 (1949); K. L. Johnson, Contact Mechanics
     /// (1985), section 7.2.
@@ -142,11 +141,11 @@ impl Pair {
         1.5 * 1.25_f64.powf(0.2) * self.stiffness_ratio / self.alpha
     }
 
-    /// The impact of this pair with normal velocity `normal_m_per_s` and tangential velocity
-    /// `tangential_m_per_s` of the surfaces at the contact.
+    /// The impact of this pair. `normal_m_per_s` and `tangential_m_per_s` are the velocities of the
+    /// surfaces at the contact.
     ///
     /// # Errors
-    /// [`InvalidParameter`] if a velocity is not positive and finite, or the scaled parameters
+    /// [`InvalidParameter`] if a velocity is not positive and finite, or if the scaled parameters
     /// leave the range of numbers.
     pub fn impact(
         &self,
@@ -178,9 +177,9 @@ impl Pair {
 /// One impact of a pair: its scaled parameters and the units that lead back to SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
-    /// The scaled collision.
+    /// Parameters of the scaled collision.
     pub contact: Contact,
-    /// The bodies.
+    /// The two bodies.
     pub pair: Pair,
     /// Normal impact velocity g_n in m/s, the unit of velocity.
     pub normal_m_per_s: f64,
@@ -201,29 +200,28 @@ impl Impact {
         self.pair.effective_mass_kg * self.normal_m_per_s / self.time_unit_s
     }
 
-    /// Largest compression ξ = (5/4)^{2/5} length units in m of a contact without damping; with it,
-    /// ξ stays below.
+    /// Largest compression ξ in m without damping, (5/4)^{2/5} length units. With damping ξ stays
+    /// below it.
     #[must_use]
     pub fn largest_compression_m(&self) -> f64 {
         1.25_f64.powf(0.4) * self.length_unit_m()
     }
 
-    /// Largest normal force F_n = (5/4)^{3/5} force units in N of a contact without damping.
+    /// Largest normal force F_n in N without damping, (5/4)^{3/5} force units.
     #[must_use]
     pub fn largest_normal_force_n(&self) -> f64 {
         1.25_f64.powf(0.6) * self.force_unit_n()
     }
 
     /// Mindlin's tangential stiffness k_t = 8G* √(Rξ) in kg/s² of a contact that does not slip, at
-    /// [`Self::largest_compression_m`], where it is largest. [`Pair::mindlin_kappa`] is the κ of
-    /// it.
+    /// [`Self::largest_compression_m`], where it is largest. Its κ is [`Pair::mindlin_kappa`].
     #[must_use]
     pub fn mindlin_stiffness_kg_per_s2(&self) -> f64 {
         let Pair { elastic_constant, stiffness_ratio, .. } = self.pair;
         stiffness_ratio * 1.5 * elastic_constant * self.largest_compression_m().sqrt()
     }
 
-    /// Elongation ζ in m of a spring with reduced elongation y: ζ = (μ/α) y length units.
+    /// Elongation ζ in m of a spring with the reduced elongation y: ζ = (μ/α) y length units.
     #[must_use]
     pub fn spring_m(&self, spring: f64) -> f64 {
         self.pair.surface.friction / self.pair.alpha * spring * self.length_unit_m()
@@ -236,14 +234,14 @@ impl Impact {
     }
 }
 
-/// What two bodies add up in their contact; all are 0 for a rigid wall.
+/// The quantities that are added up over the two bodies; all are 0 for a rigid wall.
 #[derive(Clone, Copy, Default)]
 struct Reciprocals {
-    /// 1/mass.
+    /// 1/mass in 1/kg.
     mass: f64,
-    /// 1/R.
+    /// 1/R in 1/m.
     radius: f64,
-    /// R²/J.
+    /// R²/J in 1/kg.
     turning: f64,
     normal_compliance: f64,
     tangential_compliance: f64,

@@ -1,6 +1,18 @@
 //! Tests of the model, in one program.
 //!
-//! References are in `tests/data` of the workspace, whose README says where they come from.
+//! Reference data are in `tests/data` of the workspace, whose README says where they come from.
 
+#[path = "../../../../tests/checks/collision.rs"]
+mod checks;
+#[path = "../../../../tests/common/mod.rs"]
+mod common;
+
+mod exact;
+mod impacts;
+mod margins;
+mod properties;
+mod reference;
+mod sensitivities;
 #[cfg(feature = "serde")]
 mod serialization;
+mod spheres;

@@ -1,33 +1,33 @@
-//! A guard along a step, and what rounding does to it.
+//! A guard as a function along a step, and the effect of rounding on it.
 
 use crate::error::RunError;
 use crate::events::isolate::Curve;
 use crate::hybrid::{HybridSystem, Statistics};
 use crate::method::{Dense, Method, State, Step};
 
-/// Relative change of state and time by which a guard's sensitivity to them is measured.
+/// The relative change of state and time with which a guard's sensitivity to them is measured.
 const SLIGHT: f64 = 1e-12;
 
-/// What rounding of time and state to some units in the last place does to a guard's `value` at
-/// `y`, if they round like numbers of the sizes of `s_like` and `y_like`.
+/// The change of a guard's `value` at (`s`, `y`) if time and state change by some units in the last
+/// place of `s_scale` and `y_scale`.
 ///
-/// Zero where the guard has no value nearby: nothing is known of it beyond its domain.
+/// It is zero if the guard has no value nearby, since nothing is known about it beyond its domain.
 pub(crate) fn rounding<const N: usize>(
     value: impl Fn(f64, &State<N>) -> f64,
     (s, y): (f64, &State<N>),
-    (s_like, y_like): (f64, &State<N>),
+    (s_scale, y_scale): (f64, &State<N>),
 ) -> f64 {
     let here = value(s, y);
-    let mut change = (value(s + SLIGHT * s_like.abs(), y) - here).abs();
+    let mut change = (value(s + SLIGHT * s_scale.abs(), y) - here).abs();
     for i in 0..N {
         let mut moved = *y;
-        moved[i] += SLIGHT * y_like[i].abs();
+        moved[i] += SLIGHT * y_scale[i].abs();
         change += (value(s, &moved) - here).abs();
     }
     if change.is_finite() { 4.0 * f64::EPSILON / SLIGHT * change } else { 0.0 }
 }
 
-/// A guard along a step, for isolation.
+/// A guard as a function along a step, for isolation.
 pub(crate) struct AlongStep<'a, S: HybridSystem<N, G>, M, const N: usize, const G: usize> {
     pub(crate) system: &'a S,
     pub(crate) mode: S::Mode,

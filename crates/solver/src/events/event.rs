@@ -1,4 +1,4 @@
-//! What a step brings: the guard that fires, or none.
+//! The result of examining a step: the guard that fires, or none.
 
 use crate::method::{State, Step};
 
@@ -6,24 +6,27 @@ use crate::method::{State, Step};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Event<const N: usize> {
     pub(crate) guard: usize,
+    /// Further guards that are zero where the step ends, one bit each.
     pub(crate) simultaneous: u32,
-    /// Guards that crossed as well, at the same place or a hair before, and gave way to this one.
+    /// Guards that crossed too, at the same place or slightly before, and yielded to this one, one
+    /// bit each.
     pub(crate) passed: u32,
-    /// Absolute slope of the guard there.
+    /// The absolute slope of the guard where it fires.
     pub(crate) slope: f64,
-    /// From the start of the step.
+    /// The time from the start of the step to the event.
     pub(crate) elapsed: f64,
     /// The state on the guard.
     pub(crate) state: State<N>,
-    /// What is left of the guard's value there.
+    /// The absolute value of the guard at that state, which is zero up to rounding.
     pub(crate) residual: f64,
     /// The sign of the guard before it fired.
     pub(crate) sign: f64,
-    /// The step that ends there.
+    /// The step that ends at the event.
     pub(crate) step: Step<N>,
 }
 
 impl<const N: usize> Event<N> {
+    /// Notes that `guard` crossed too and yielded.
     pub(crate) fn pass(&mut self, guard: usize) {
         self.passed |= bit(guard);
     }
@@ -33,17 +36,17 @@ impl<const N: usize> Event<N> {
     }
 }
 
-/// 0 for guards that are too many to be told apart.
+/// The bit of a guard in a mask, or 0 for guards beyond the 32 that a mask can hold.
 pub(crate) fn bit(guard: usize) -> u32 {
     if guard < 32 { 1 << guard } else { 0 }
 }
 
 /// The result of examining a step.
 pub(crate) enum Found<const G: usize> {
-    /// No guard fires; their values at the step's end.
+    /// No guard fires. These are the values of the guards at the end of the step.
     Nothing([f64; G]),
-    /// A guard fires; the event is in its place.
+    /// A guard fires. The event has been written to the place that was passed for it.
     Event,
-    /// This guard is not resolved: a shorter step is needed.
+    /// This guard is not resolved, so that a shorter step is needed.
     TooCoarse(usize),
 }

@@ -1,15 +1,15 @@
-//! All that the examination of a step needs.
+//! What the examination of a step needs, and the values of its guards.
 
 use crate::events::phase::Phase;
 use crate::events::quick::NODES;
 use crate::hybrid::{HybridSystem, Observer, Statistics};
 use crate::method::{State, Step, Trial};
 
-/// All that the examination of a step needs.
+/// The data that the examination of a step needs.
 pub(crate) struct Examination<'a, S: HybridSystem<N, G>, O, const N: usize, const G: usize> {
     pub(crate) system: &'a S,
     pub(crate) phase: &'a Phase<S::Mode, G>,
-    /// The step that was asked for.
+    /// The step before it was shortened.
     pub(crate) trial: &'a Trial<'a, N>,
     pub(crate) statistics: &'a mut Statistics,
     pub(crate) observer: &'a mut O,
@@ -20,7 +20,7 @@ where
     S: HybridSystem<N, G>,
     O: Observer<S::Mode, N>,
 {
-    /// Guards at [`NODES`] of a step.
+    /// The values of all guards at the [`NODES`] of a step.
     #[inline(always)]
     pub(crate) fn values_on(&mut self, step: &Step<N>) -> [[f64; G]; 6] {
         let at = |theta: f64, y: &State<N>| {

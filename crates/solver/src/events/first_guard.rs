@@ -1,4 +1,4 @@
-//! Which guard fires first on a step, if any.
+//! Which guard of a step fires first, if any.
 
 use crate::error::RunError;
 use crate::events::event::{Event, Found, bit};
@@ -9,7 +9,7 @@ use crate::events::quick;
 use crate::hybrid::{Direction, HybridSystem, Observer};
 use crate::method::{Method, Step};
 
-/// Guards closer to a switch than this part of the step fire together with it.
+/// Guards whose zeros are closer together than this part of the step fire together.
 const TOGETHER: f64 = 1e-12;
 
 impl<S, O, const N: usize, const G: usize> Examination<'_, S, O, N, G>
@@ -17,7 +17,7 @@ where
     S: HybridSystem<N, G>,
     O: Observer<S::Mode, N>,
 {
-    /// Finds the first guard that fires on `step`, and puts it into `event`, which is empty.
+    /// Finds the first guard that fires on `step`, and writes it to `event`, which is empty.
     #[inline]
     pub(crate) fn look<M: Method>(
         &mut self,
@@ -39,11 +39,12 @@ where
         }
     }
 
-    /// Whether all guards stay clearly on the side where they do not fire: true of most steps.
+    /// Whether all guards stay clearly on the side where they do not fire. This holds on most
+    /// steps.
     #[inline(always)]
     fn all_clearly_away(&self, values: &[[f64; G]; 6]) -> bool {
-        // An array of verdicts first, so that the loop is unrolled and the values stay in
-        // registers.
+        // The verdicts are collected in an array, so that the loop is unrolled and the values stay
+        // in registers.
         let away: [bool; G] = std::array::from_fn(|guard| {
             let column = values.map(|at_node| at_node[guard]);
             match self.phase.guards[guard].direction() {
@@ -55,6 +56,7 @@ where
         !self.phase.at_zero && away == [true; G]
     }
 
+    /// Decides which guard fires first if the quick look alone does not tell that none fires.
     fn decide<M: Method>(
         &mut self,
         step: &mut Step<N>,
@@ -74,7 +76,7 @@ where
                         let at_start = on.h <= TOGETHER * self.trial.h;
                         let status = match self.isolate::<M>(guard, on, &column)? {
                             Some(status) => status,
-                            // It fires together with the event, or not: that shows behind it.
+                            // Whether it fires together with the event shows after the event.
                             None if at_start => Status::Clear,
                             None => {
                                 *event = None;
@@ -105,7 +107,7 @@ where
                 && next.elapsed >= (1.0 - TOGETHER) * event.elapsed
             {
                 if self.precedes(event.guard, guard) {
-                    // Both fire at the end of the shortened step: the one that precedes stands.
+                    // Both fire at the end of the shortened step, and the event's guard precedes.
                     event.pass(guard);
                     continue;
                 }
@@ -116,8 +118,8 @@ where
             next.simultaneous = self.simultaneous(guard, &at_nodes);
             let on = event.as_mut().map_or(&mut *step, |event| &mut event.step);
             if let Some(preceding) = self.preceding::<M>(&next, on, &values, &statuses)? {
-                // Of guards that fire together the one that precedes decides, wherever rounding
-                // puts the others.
+                // Of guards that fire together the one that precedes decides, even if rounding
+                // puts another one earlier.
                 next = preceding;
                 statuses[next.guard] = Status::Clear;
                 at_nodes = self.values_on(&next.step);
@@ -133,14 +135,15 @@ where
         }
     }
 
-    /// Whether guard `first` decides if it fires together with guard `second`: of both, the one
-    /// that does not give way, and else the one listed first.
+    /// Whether guard `first` decides the transition if it fires together with guard `second`. The
+    /// guard that does not yield decides; if both yield or neither does, the one listed first.
     fn precedes(&self, first: usize, second: usize) -> bool {
-        let rank = |guard: usize| (self.phase.guards[guard].gives_way(), guard);
+        let rank = |guard: usize| (self.phase.guards[guard].yields(), guard);
         rank(first) < rank(second)
     }
 
-    /// The crossing with the least step fraction; of equal ones that of the guard that precedes.
+    /// The crossing with the smallest step fraction, and its guard. If two fractions are equal, the
+    /// guard that precedes is taken.
     fn earliest(&self, statuses: &[Status; G]) -> Option<(usize, Crossing)> {
         let mut first: Option<(usize, Crossing)> = None;
         for (guard, status) in statuses.iter().enumerate() {
@@ -156,8 +159,8 @@ where
         first
     }
 
-    /// The first of the guards that precede that of `event` and fire with it, where `step` is the
-    /// one that `event` shortens, with its `values` and `statuses`.
+    /// The event of the first guard that fires together with the guard of `event` and precedes it.
+    /// `step` is the step before `event` shortens it; `values` and `statuses` belong to that step.
     fn preceding<M: Method>(
         &mut self,
         event: &Event<N>,
@@ -178,12 +181,13 @@ where
             let guess = event.elapsed / step.h;
             let Bracket { low, high, .. } = bracket;
             if low <= (1.0 + TOGETHER) * guess && (1.0 - TOGETHER) * guess <= high {
-                // From close to a zero that is known the search would find that one.
+                // If the guard starts from a known zero, a search that begins close to it would
+                // find that zero again.
                 let known = self.phase.sides[first] != 0.0;
                 let guess = if known { bracket.guess } else { guess };
                 let crossing = Crossing { sign, bracket: Bracket { guess, ..bracket } };
                 let mut preceding = self.locate::<M>(step, first, &crossing, true)?;
-                // One that touches zero here may fire elsewhere.
+                // A guard that only touches zero here may fire elsewhere.
                 if (preceding.elapsed - event.elapsed).abs() <= TOGETHER * event.elapsed {
                     preceding.passed = event.passed;
                     preceding.pass(event.guard);
@@ -194,7 +198,7 @@ where
         Ok(None)
     }
 
-    /// Guards other than `guard` that are at zero where the step ends.
+    /// The guards other than `guard` that are zero where the step ends, one bit each.
     fn simultaneous(&self, guard: usize, values: &[[f64; G]; 6]) -> u32 {
         (0..G.min(32))
             .filter(|&other| {
@@ -206,7 +210,7 @@ where
     }
 }
 
-/// Largest absolute value of a guard at the nodes of a step.
+/// The largest absolute value of a guard at the nodes of a step.
 fn largest<const G: usize>(guard: usize, values: &[[f64; G]; 6]) -> f64 {
     values.iter().fold(0.0, |size, at_node| size.max(at_node[guard].abs()))
 }

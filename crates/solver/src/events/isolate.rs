@@ -1,10 +1,10 @@
-//! Crossings of a guard on one step, decided.
+//! Isolation: it decides whether a guard crosses zero on a step.
 //!
 //! Along the dense output a guard is an analytic function q of the step fraction θ. It is expanded
-//! in Chebyshev polynomials on panels narrow enough for degree 8, its critical points are isolated
-//! by coefficient bounds and subdivision, and they cut the step into pieces on which q is monotone.
-//! On a monotone piece the signs at the ends decide. Where a sign lies within the error of the
-//! dense output, the method itself is asked, by a step to that point.
+//! in Chebyshev polynomials on panels that are narrow enough for degree 8. Bounds on the
+//! coefficients and subdivision isolate its critical points. These cut the step into pieces on
+//! which q is monotone, and on each piece the signs at the ends decide. If a value is smaller than
+//! the error of the dense output, a step of the method to that point tells its sign.
 
 mod chebyshev;
 mod curve;
@@ -17,13 +17,13 @@ use crate::events::isolate::panel::{Panel, Points};
 
 pub(crate) use curve::{Curve, noise};
 
-/// Panels are halved at most this often between critical points; stretches that are flat to within
-/// the error end the search earlier.
+/// Panels are halved at most this often in the search for critical points. A stretch that is flat
+/// to within the error ends the search earlier.
 const CRITICAL_DEPTH: u32 = 45;
-
-/// The part of the step whose expansion gives the value at the start of a quotient.
+/// The part of the step on which a quotient is expanded to find its value at the start.
 const OPENING: f64 = 0.25;
-/// A crossing from ≥ 0 to < 0 between two step fractions.
+
+/// The step fractions between which a curve crosses from ≥ 0 to < 0, and a guess in between.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Bracket {
     pub(crate) low: f64,
@@ -31,32 +31,34 @@ pub(crate) struct Bracket {
     pub(crate) guess: f64,
 }
 
-/// A local extremum within the error of the dense output of zero, and its value by the method.
+/// A local extremum whose distance from zero is within the error of the dense output, and its value
+/// by a step of the method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Touch {
     pub(crate) theta: f64,
     pub(crate) margin: f64,
 }
 
-/// What became of a guard on a step.
+/// What isolation finds out about a guard on a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Verdict {
-    /// No crossing.
+    /// The guard does not cross zero.
     None,
-    /// The first crossing.
+    /// The first crossing of the guard.
     Crossing(Bracket),
-    /// Negative from the start.
+    /// The guard bounds a domain and is negative from the start.
     StartsBelow,
-    /// The guard is not resolved on this step: a shorter one is needed.
+    /// The guard is not resolved on this step, so that a shorter one is needed.
     TooCoarse,
 }
 
 /// Finds the first crossing of a curve from ≥ 0 to < 0.
 ///
-/// `zero_order` is the order of a known zero at θ = 0, which is divided out, and `side` the sign
-/// with which the curve leaves it, 0 if that is not known; where it is, values up to `hidden` count
-/// as zero. `start` and `end` are the curve's values at the ends of the step. If the curve bounds a
-/// `domain`, a negative start counts. Touches met before the crossing go to `on_touch`.
+/// `zero_order` is the order of a known zero at θ = 0, which is divided out. `side` is the sign
+/// with which the curve leaves this zero, or 0 if that is not known. If it is known, values up to
+/// `hidden` count as zero. `start` and `end` are the curve's values at the ends of the step. If the
+/// curve bounds a `domain`, a negative start counts too. Touches before the crossing go to
+/// `on_touch`.
 pub(crate) fn first_crossing<C: Curve>(
     curve: &mut C,
     (zero_order, side, hidden): (u32, f64, f64),
@@ -70,7 +72,7 @@ pub(crate) fn first_crossing<C: Curve>(
         return Ok(Verdict::TooCoarse);
     }
     if side != 0.0 {
-        // What is left there is taken as zero.
+        // Values up to `hidden` count as zero at the start.
         accuracy.state.0 = accuracy.state.0.max(hidden);
     }
     // The last point whose sign is known, and the value there.
@@ -84,8 +86,8 @@ pub(crate) fn first_crossing<C: Curve>(
             }
             let error = accuracy.on(&panel, zero_order);
             before = Some((0.0, opening)).filter(|_| opening.abs() > error);
-            // A shorter step brings the opening nearer to zero, but not what noise and rounding do
-            // at the start.
+            // A shorter step diminishes the error at the opening, but not the effect of noise and
+            // rounding at the start.
             if before.is_none() && 2.0 * accuracy.lasting(&panel, zero_order) < error {
                 return Ok(Verdict::TooCoarse);
             }
@@ -105,7 +107,7 @@ pub(crate) fn first_crossing<C: Curve>(
                 let bracket = Bracket { low: before.0, high: point.0, guess };
                 return ControlFlow::Break(Verdict::Crossing(bracket));
             }
-            // The first side that shows is the one to which the curve leaves its zero.
+            // The first sign that can be told is that with which the curve leaves its zero.
             None if domain && point.1 < 0.0 => return ControlFlow::Break(Verdict::StartsBelow),
             _ => before = Some(point),
         }
@@ -118,8 +120,8 @@ pub(crate) fn first_crossing<C: Curve>(
     })
 }
 
-/// The signs of a curve where its first and its last side shows on a step; at the ends of it what
-/// is within `hidden` of zero is on neither. 0 where none shows; `None` if a shorter step is
+/// The first and the last sign that a curve shows on a step. They are 0 if it shows none. At the
+/// ends of the step, values up to `hidden` have no sign. `None` means that a shorter step is
 /// needed.
 pub(crate) fn sides<C: Curve>(
     curve: &mut C,
@@ -150,10 +152,12 @@ pub(crate) fn sides<C: Curve>(
     Ok(walked.map(|_| sides))
 }
 
-/// Visits, from left to right, points between which a quotient is monotone, each with the value
-/// there; leaves out those whose value the noise and `hidden`, in the guard, leave on neither side.
-/// The value at the end is given, with what leaves that on neither side: the middle of the last
-/// piece then stands for it. `None` if the step is too coarse.
+/// Visits points between which a quotient is monotone, from left to right, with the values there.
+///
+/// Points are left out if the guard's value there is within noise and `hidden` of zero, so that it
+/// has no sign. The value `end` at the end of the step is given. If it is within `hidden_end` of
+/// zero, the middle of the last piece is visited instead. The result is `None` if the step is too
+/// coarse.
 fn walk<C: Curve, B>(
     quotient: &mut Quotient<'_, C>,
     accuracy: &mut Accuracy,
@@ -176,8 +180,8 @@ fn walk<C: Curve, B>(
         }
         let narrow = high - low < 1.5 * NARROWEST;
         if panel.tail() > error && narrow {
-            // What no panel is narrow enough for may be noise, which a shorter step would not
-            // diminish.
+            // Structure that even the narrowest panel does not resolve may be noise. A shorter step
+            // would not diminish that.
             accuracy.noise = accuracy.noise.max(quotient.noise(low, high));
             error = accuracy.on(&panel, order);
         }
@@ -217,7 +221,7 @@ fn walk<C: Curve, B>(
                     on_touch(Touch { theta, margin: value * power(theta, order) });
                 }
                 if value.abs() * power(theta, order) <= accuracy.noise + hidden {
-                    // On neither side: what follows tells whether the guard goes through.
+                    // It has no sign. The points that follow tell whether the guard goes through.
                     continue;
                 }
             }
@@ -233,7 +237,8 @@ fn walk<C: Curve, B>(
     Ok(Some(ControlFlow::Continue(())))
 }
 
-/// Where the dense output puts the root between two points of opposite sign (Illinois' rule).
+/// The root of the quotient along the dense output between two points of opposite sign, by the
+/// Illinois rule.
 fn panel_root<C: Curve>(quotient: &mut Quotient<'_, C>, low: (f64, f64), high: (f64, f64)) -> f64 {
     let (mut a, mut b) = (low, high);
     let mut theta = b.0;

@@ -1,7 +1,7 @@
-//! The place of a switch, by steps of the method itself.
+//! The place of a switch, located by steps of the method.
 //!
-//! The dense output only says where to start: each iterate is a step from the same start to a trial
-//! place, so a switch is as accurate as any other point of the run.
+//! The dense output only tells where to begin. Each iteration takes a step from the same start to a
+//! trial place. So a switch is as accurate as any other point of the run.
 
 use crate::error::RunError;
 use crate::events::along_step::rounding;
@@ -11,13 +11,15 @@ use crate::events::one_guard::Crossing;
 use crate::hybrid::{HybridSystem, Observer};
 use crate::method::{Method, State, Step};
 
-/// Part of a step that the end of a re-step may be off the switch; the midpoint rule bridges it
-/// with an error of the cube of this part, which is below rounding.
+/// The largest distance from the end of a repeated step to the switch, as a part of the step, that
+/// the midpoint rule bridges. Its error is the cube of this part, which is below rounding.
 const BRIDGE: f64 = 1e-5;
-/// Part of the time below which a switch is at the start of its step.
+/// A switch whose distance from the start of its step is below this part of the time counts as a
+/// switch at the start.
 const NOWHERE: f64 = 1e-20;
-/// Part of a step over which a guard's slope is differenced: the step's own scale, on which the
-/// guard is known to change, so that cancellation cannot spoil the slope however short the step.
+/// The part of a step over which a guard is differenced to find its slope. The guard is known to
+/// change on the scale of the step, so that cancellation cannot spoil the slope, however short the
+/// step is.
 const REACH: f64 = 1e-3;
 
 impl<S, O, const N: usize, const G: usize> Examination<'_, S, O, N, G>
@@ -25,8 +27,8 @@ where
     S: HybridSystem<N, G>,
     O: Observer<S::Mode, N>,
 {
-    /// Ends `step` where `guard` crosses zero inside the bracket; if `exact`, the event's step ends
-    /// exactly there, otherwise within a small part of itself.
+    /// Ends `step` where `guard` crosses zero inside the bracket. If `exact`, the event's step ends
+    /// exactly at the crossing; otherwise it ends within a small part of itself.
     pub(crate) fn locate<M: Method>(
         &mut self,
         step: &Step<N>,
@@ -77,7 +79,7 @@ where
                 && let Some((elapsed, state, residual)) = self.bridge(&near, &trial, end)
             {
                 if elapsed > step.h {
-                    // Other guards have been looked at no further than to the step's end.
+                    // The other guards have been examined only up to the end of the step.
                     trial = self.restep::<M>(step, step.h);
                     let residual = near.value(step.s + step.h, &trial.y1);
                     return Ok(event(step.h, trial.y1, residual, end.slope, trial));
@@ -93,21 +95,20 @@ where
             }
             if high - low <= 4.0 * f64::EPSILON * high {
                 if theta < high {
-                    // A zero too flat for Newton's method is left behind.
+                    // The zero is too flat for Newton's method, and the step ends just beyond it.
                     theta = high;
                     continue;
                 }
                 return Ok(event(trial.h, trial.y1, end.value, end.slope, trial));
             }
-            // Newton's method where it makes progress, bisection where the guard is too flat for
-            // it.
+            // Newton's method if it makes progress, and bisection if the guard is too flat for it.
             let progress = end.value.abs() <= 0.1 * last_value;
             last_value = end.value.abs();
             theta = if progress && next > low && next < high { next } else { 0.5 * (low + high) };
         }
     }
 
-    /// A step of `h` from the same start.
+    /// A step of size `h` from the start of `step`.
     fn restep<M: Method>(&mut self, step: &Step<N>, h: f64) -> Step<N> {
         self.statistics.resteps += 1;
         self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
@@ -116,9 +117,9 @@ where
         shorter
     }
 
-    /// Moves from the end of `trial` onto the guard: how far from the start that is, the state
-    /// there, and what is left of the guard's value. `None` where Newton's method does not
-    /// converge as from a simple zero.
+    /// Moves from the end of `trial` to the zero of the guard. Returns the time from the start of
+    /// the step, the state, and the remaining value of the guard. The result is `None` if
+    /// Newton's method does not converge as it does near a simple zero.
     fn bridge(
         &mut self,
         near: &Near<'_, S, N, G>,
@@ -134,7 +135,7 @@ where
                 y += at.slope_of_state * shift;
                 let mut residual = near.value(s + moved, &y);
                 self.statistics.guards += 1;
-                // A slope that changes within the reach of its difference is not the slope here.
+                // A large value means that the slope changes within the reach of its difference.
                 if residual.abs() > 0.01 * at.value.abs()
                     && residual.abs() > 2.0 * near.rounding(s + moved, &y)
                 {
@@ -169,17 +170,17 @@ where
     }
 }
 
-/// A guard in the neighbourhood of its zero.
+/// A guard near its zero.
 struct Near<'a, S: HybridSystem<N, G>, const N: usize, const G: usize> {
     system: &'a S,
     mode: S::Mode,
     guard: usize,
     sign: f64,
-    /// Distance over which slopes are differenced.
+    /// The distance over which the guard is differenced.
     reach: f64,
 }
 
-/// A guard's value, and how it and the state change.
+/// A guard's value at a place, its derivatives along the solution, and the slope of the state.
 #[derive(Clone, Copy)]
 struct Probe<const N: usize> {
     value: f64,
@@ -190,12 +191,12 @@ struct Probe<const N: usize> {
 }
 
 impl<const N: usize> Probe<N> {
-    /// Newton's step to the zero.
+    /// The Newton step to the zero.
     fn shift(&self) -> f64 {
         if self.value == 0.0 { 0.0 } else { -self.value / self.slope }
     }
 
-    /// How far from the zero Newton's step leaves.
+    /// The distance from the zero that remains after a Newton step.
     fn left_by(&self, shift: f64) -> f64 {
         if shift == 0.0 { 0.0 } else { (self.bend / self.slope).abs() * shift * shift }
     }

@@ -1,4 +1,4 @@
-//! What one guard does on a step: by a quick look, and by isolation.
+//! What one guard does on a step, by a quick look and by isolation.
 
 use std::marker::PhantomData;
 
@@ -10,16 +10,19 @@ use crate::events::quick::{self, Quick};
 use crate::hybrid::{Direction, Grazing, HybridSystem, Observer};
 use crate::method::{Method, Step, Trial};
 
-/// A guard that is zero throughout a step is looked at on longer ones, each four times as long as
-/// the one before, at most this often: a step of the least length that moves the time becomes one
-/// of ordinary length.
+/// A guard that is zero throughout a step is examined on longer steps, each four times as long as
+/// the one before, at most this often. The shortest step that moves the time grows to ordinary
+/// length that way.
 const LONGER: i32 = 26;
 
-/// What is known of a guard on the step at hand.
+/// What is known about a guard on the step at hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Status {
+    /// The guard does not fire.
     Clear,
+    /// The quick look could not decide.
     Unclear,
+    /// The guard fires at this crossing.
     Fires(Crossing),
 }
 
@@ -31,6 +34,7 @@ pub(crate) struct Crossing {
 }
 
 impl Crossing {
+    /// A crossing at the start of the step.
     pub(crate) const fn at_start(sign: f64) -> Self {
         Self { sign, bracket: Bracket { low: 0.0, high: 0.0, guess: 0.0 } }
     }
@@ -41,7 +45,7 @@ where
     S: HybridSystem<N, G>,
     O: Observer<S::Mode, N>,
 {
-    /// What six values tell about a guard.
+    /// What the six values of a guard tell about it.
     pub(crate) fn glance<M: Method>(&self, guard: usize, values: &[[f64; G]; 6]) -> Status {
         let direction = self.phase.guards[guard].direction();
         if direction == Direction::Off {
@@ -61,8 +65,8 @@ where
         };
         let look = |sign: f64| {
             let look = quick::look(&column.map(|value| sign * value), order, M::QUICK_ERROR);
-            // Against the side to which the guard is known to go rounding stands, or a crossing at
-            // once.
+            // If the values contradict the side to which the guard is known to go, the reason is
+            // rounding, or a crossing right after the start.
             match look {
                 Quick::Positive | Quick::Falls { .. } if sign * side < 0.0 => Quick::Unclear,
                 Quick::Negative if sign * side > 0.0 => Quick::Unclear,
@@ -83,8 +87,8 @@ where
         }
     }
 
-    /// Whether a guard that is zero throughout a step is so only because the step is short, and not
-    /// throughout the longest step that meets the tolerance.
+    /// Whether a guard that is zero throughout `step` becomes nonzero on a longer step that meets
+    /// the tolerance. Then it is zero only because `step` is short.
     fn leaves_zero<M: Method>(&mut self, guard: usize, step: &Step<N>) -> bool {
         let (system, mode) = (self.system, self.phase.mode);
         let mut longer = Step::blank();
@@ -93,7 +97,7 @@ where
             system.step::<M>(mode, &Trial { h, ..*self.trial }, &mut longer);
             self.statistics.resteps += 1;
             self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
-            // Written so that NaN ends it.
+            // Written so that NaN ends the search.
             let good = longer.error < 1.0;
             if !good {
                 return false;
@@ -106,17 +110,17 @@ where
         false
     }
 
-    /// Decides by isolation; `None` if the step is too coarse for that.
+    /// Decides about a guard by isolation. The result is `None` if the step is too coarse for that.
     pub(crate) fn isolate<M: Method>(
         &mut self,
         guard: usize,
         step: &mut Step<N>,
         values: &[f64; 6],
     ) -> Result<Option<Status>, RunError> {
-        // At the start it may stand for the side from which the guard came.
+        // A tiny value at the start may stand for the side from which the guard came.
         if values[0].abs() <= f64::MIN_POSITIVE && values[1..].iter().all(|&value| value == 0.0) {
             if step.h < self.trial.h {
-                // It is asked on a longer step what becomes of it.
+                // A longer step will tell.
                 return Ok(Some(Status::Clear));
             }
             let identically = RunError::GuardIdenticallyZero { guard, s: step.s };
@@ -180,8 +184,9 @@ where
         Ok(Some(found))
     }
 
-    /// Values at a step's end; one that is exactly zero keeps the side from which it came, and so
-    /// does one that has not yet come away from its zero.
+    /// The values of the guards at the end of a step. A value is replaced by the smallest number of
+    /// the right sign in two cases: it is exactly zero, and the guard keeps the sign that it had
+    /// before; or the guard is still at its known zero, and keeps the sign with which it leaves it.
     pub(crate) fn on_their_side<M: Method>(
         &mut self,
         step: &mut Step<N>,
@@ -199,8 +204,8 @@ where
         ends
     }
 
-    /// The least value on the side from which a guard comes that is zero where the step ends; 0 if
-    /// it shows none.
+    /// The smallest number with the sign that a guard had last, if it is zero where the step ends.
+    /// The result is 0 if the guard shows no sign.
     fn last_side<M: Method>(&mut self, guard: usize, step: &mut Step<N>, values: &[f64; 6]) -> f64 {
         let (system, mode) = (self.system, self.phase.mode);
         let dense = step.dense::<M>(&mut |s, y| system.field(mode, s, y));
@@ -211,7 +216,7 @@ where
             AlongStep { system, mode, guard, sign, step, dense: &dense, statistics, method };
         match sides::<AlongStep<'_, S, M, N, G>>(&mut curve, 0.0, 0.0) {
             Ok(Some([_, last])) if last != 0.0 => f64::MIN_POSITIVE.copysign(last),
-            // As far as a few places tell.
+            // Otherwise the last nonzero value at the nodes decides.
             _ => values[..5]
                 .iter()
                 .rev()
@@ -220,8 +225,8 @@ where
         }
     }
 
-    /// Whether a guard that starts from a known zero, and leaves it to a known side, has not yet
-    /// come away from it.
+    /// Whether a guard is still at the known zero from which it started, if its side after this
+    /// zero is known.
     fn stays(&self, guard: usize, values: &[f64; 6]) -> bool {
         let hidden = self.phase.hidden[guard];
         self.phase.sides[guard] != 0.0 && values.iter().all(|value| value.abs() <= hidden)

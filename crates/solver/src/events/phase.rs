@@ -1,48 +1,48 @@
-//! The mode that is active, with its guards.
+//! The active mode with its guards, between two steps.
 
 use crate::error::RunError;
 use crate::events::event::Event;
 use crate::hybrid::{Direction, Guard, HybridSystem};
 use crate::method::State;
 
-/// The mode that is active, with its guards as they stand.
+/// The active mode, and what is known about its guards at the start of the next step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Phase<Mode, const G: usize> {
     pub(crate) mode: Mode,
     pub(crate) guards: [Guard; G],
-    /// Values of the guards at the start of the next step.
+    /// The values of the guards.
     pub(crate) values: [f64; G],
-    /// Whether a guard starts the next step from a known zero.
+    /// Whether any guard starts the next step from a known zero.
     pub(crate) at_zero: bool,
-    /// Orders of the zeros from which the guards start the next step.
+    /// The orders of the zeros from which the guards start the next step, 0 if they do not.
     pub(crate) zero_orders: [u32; G],
-    /// Signs with which the guards leave these zeros; 0 where it is not known.
+    /// The signs with which the guards leave these zeros, 0 if a sign is not known.
     pub(crate) sides: [f64; G],
-    /// Values that are as good as zero where such a sign is known.
+    /// The absolute values up to which a guard counts as zero, if its sign is known.
     pub(crate) hidden: [f64; G],
-    /// Guards that have crossed already, from the other side, and fire at the start of the next
-    /// step.
+    /// Whether a guard has crossed already and fires at the start of the next step.
     pub(crate) due: [bool; G],
-    /// Largest absolute values of the guards at the ends of the phase's steps.
+    /// The largest absolute values of the guards at the ends of the phase's steps.
     pub(crate) largest: [f64; G],
 }
 
 /// Where the guards stand after an event that changes nothing.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Standing<const G: usize> {
-    /// Guards that have fired with the event, one bit each.
+    /// The guards that have fired with the event, one bit each.
     pub(crate) fired: u32,
-    /// Orders of the zeros at which guards stand; 0 for those that do not.
+    /// The orders of the zeros at which the guards stand, 0 for guards that are not at zero.
     pub(crate) zero_orders: [u32; G],
-    /// The signs with which they leave these zeros; 0 where it is not known.
+    /// The signs with which the guards leave these zeros, 0 if a sign is not known.
     pub(crate) sides: [f64; G],
-    /// Values that are as good as zero there.
+    /// The absolute values up to which a guard counts as zero.
     pub(crate) hidden: [f64; G],
-    /// Guards that have crossed from that side, and fire next.
+    /// Whether a guard has crossed already and fires next.
     pub(crate) due: [bool; G],
 }
 
 impl<Mode: Copy, const G: usize> Phase<Mode, G> {
+    /// Enters `mode` at (`s`, `y`).
     pub(crate) fn enter<S: HybridSystem<N, G, Mode = Mode>, const N: usize>(
         system: &S,
         mode: Mode,
@@ -69,8 +69,8 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
         })
     }
 
-    /// The mode goes on after `event`, in another state: if the guard's value still stands at that
-    /// zero, it starts from a known one.
+    /// Goes on in the same mode after `event`, in another state. If the guard that fired is still
+    /// at zero, it starts from a known zero.
     pub(crate) fn resume<const N: usize>(&mut self, event: &Event<N>) {
         let guard = event.guard;
         if self.values[guard].abs() <= event.residual {
@@ -79,7 +79,7 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
         }
     }
 
-    /// Nothing has changed but where the guards stand.
+    /// Goes on after an event that changes neither mode nor state.
     pub(crate) fn stand(&mut self, standing: &Standing<G>) {
         self.at_zero = true;
         self.zero_orders = standing.zero_orders;
@@ -88,7 +88,7 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
         self.due = standing.due;
     }
 
-    /// A step is done, and the start of the phase lies behind.
+    /// Goes on after a step, at whose end the guards have these values.
     #[inline]
     pub(crate) fn advance(&mut self, values: [f64; G]) {
         self.values = values;

@@ -1,7 +1,7 @@
-//! The first look at a guard on a step: a quintic through six values that the step already holds.
+//! The first look at a guard on a step, by a quintic through six values that the step already has.
 //!
-//! Most steps are far from any switch, and most crossings are steep. Both are recognised here at
-//! the price of four guard evaluations; everything else is left to [`crate::events::isolate`].
+//! Most steps are far from any switch, and most crossings are steep. Both are recognised here for
+//! the cost of four guard evaluations. All other cases go to [`crate::events::isolate`].
 
 mod tables;
 
@@ -11,36 +11,38 @@ use tables::{
     BEND, COUNT, LATE_CUBIC_TERM, LATE_QUARTIC_TERM, QUARTIC, QUARTIC_TERM, QUINTIC, QUINTIC_TERM,
 };
 
-/// Rounding of a Bernstein coefficient, relative to the largest.
+/// The rounding of a Bernstein coefficient, relative to the largest one.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// What six values of a guard tell about its sign on the step.
+/// What the six values of a guard tell about its sign on the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Quick {
-    /// Positive throughout.
+    /// The guard is positive throughout.
     Positive,
-    /// Negative throughout.
+    /// The guard is negative throughout.
     Negative,
-    /// Falls through zero once, steeply.
+    /// The guard falls through zero once, steeply.
     Falls {
-        /// The step fraction, to about a thousandth of itself: where the search by steps of the
-        /// method begins.
+        /// The step fraction of the zero, to about a thousandth of itself. The search by steps of
+        /// the method begins there.
         theta: f64,
     },
-    /// Anything else.
+    /// None of the other cases is certain.
     Unclear,
 }
 
-/// Looks at a guard whose values at [`NODES`] are `values` and which starts the step from a zero of
-/// order `zero_order` (0: no known zero). `trust` is the part of the next-to-last term of the
-/// expansion that counts as its error, beside the whole last term.
+/// Looks at a guard with these `values` at [`NODES`].
+///
+/// The guard starts the step from a zero of order `zero_order`, which is 0 if there is no known
+/// zero. The error of the expansion is its whole last term and the part `trust` of the next-to-last
+/// term.
 #[inline]
 pub(crate) fn look(values: &[f64; COUNT], zero_order: u32, trust: f64) -> Quick {
     if zero_order == 0 {
         let error = last_term(values, &QUINTIC_TERM) + trust * last_term(values, &QUARTIC_TERM);
         return classify(&multiply(&QUINTIC, values), error);
     }
-    // With the known zero divided out, five values and a quartic remain.
+    // After division by the known zero, five values and a quartic remain.
     let mut quotient = [0.0; COUNT - 1];
     for i in 1..COUNT {
         quotient[i - 1] = values[i] / power(NODES[i], zero_order);
@@ -50,8 +52,9 @@ pub(crate) fn look(values: &[f64; COUNT], zero_order: u32, trust: f64) -> Quick 
     classify(&multiply(&QUARTIC, &quotient), error)
 }
 
-/// A first test that settles most guards: of one sign throughout, because far from zero compared
-/// with the values' distance from their chord. NaN spreads and settles nothing.
+/// A first test that settles most guards: a guard has one sign throughout if it is far from zero
+/// compared with the distance of its values from their chord. The result is false if a value is
+/// NaN.
 #[inline(always)]
 pub(crate) fn clearly_away(values: [f64; COUNT]) -> bool {
     let [start, .., end] = values;
@@ -69,7 +72,7 @@ fn power(theta: f64, order: u32) -> f64 {
     (0..order).fold(1.0, |product, _| product * theta)
 }
 
-/// Decides from Bernstein coefficients whose polynomial is within `error` of the guard.
+/// Decides from the Bernstein coefficients of a polynomial that is within `error` of the guard.
 #[inline]
 fn classify<const K: usize>(bernstein: &[f64; K], error: f64) -> Quick {
     let (mut least, mut most) = (bernstein[0], bernstein[0]);
@@ -77,16 +80,16 @@ fn classify<const K: usize>(bernstein: &[f64; K], error: f64) -> Quick {
         least = least.min(b);
         most = most.max(b);
     }
-    // Coefficients are combinations of the values with weights up to about 20.
+    // The coefficients are combinations of the values with weights up to about 20.
     let error = error + ROUNDING * most.max(-least);
-    // Comparisons are written so that NaN, which spreads to the sum and the error, is never clear.
+    // These comparisons are false for NaN, which spreads to the coefficients and the error.
     if least > error {
         return Quick::Positive;
     }
     if most < -error {
         return Quick::Negative;
     }
-    // A term of degree K whose size is `error` has a slope of at most 2K² times that (Markov).
+    // A term of degree K and of size `error` has a slope of at most 2K² times `error` (Markov).
     let slope_error = 2.0 * (K * K) as f64 * error;
     let falls =
         bernstein.windows(2).all(|pair| (pair[1] - pair[0]) * (K as f64 - 1.0) < -slope_error);
@@ -96,8 +99,8 @@ fn classify<const K: usize>(bernstein: &[f64; K], error: f64) -> Quick {
     Quick::Unclear
 }
 
-/// The root of a polynomial that falls through zero once, by Newton's method kept inside a
-/// bracket until it moves by less than a thousandth.
+/// The root of a polynomial that falls through zero once. Newton's method, kept inside a bracket,
+/// goes on until the root moves by less than a thousandth of itself.
 fn falling_root<const K: usize>(bernstein: &[f64; K]) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     let mut theta = bernstein[0] / (bernstein[0] - bernstein[K - 1]);
@@ -119,6 +122,7 @@ fn falling_root<const K: usize>(bernstein: &[f64; K]) -> f64 {
     theta
 }
 
+/// The value and the derivative of a polynomial at `theta`.
 fn de_casteljau<const K: usize>(bernstein: &[f64; K], theta: f64) -> (f64, f64) {
     let mut b = *bernstein;
     for last in (2..K).rev() {
@@ -132,7 +136,7 @@ fn de_casteljau<const K: usize>(bernstein: &[f64; K], theta: f64) -> (f64, f64) 
 
 #[inline]
 fn multiply<const K: usize>(matrix: &[[f64; K]; K], values: &[f64; K]) -> [f64; K] {
-    // Column by column, so that the products run over neighbours in memory.
+    // This goes column by column, so that the products run over neighbours in memory.
     let mut product = [0.0; K];
     for (column, value) in matrix.iter().zip(values) {
         for (sum, entry) in product.iter_mut().zip(column) {
@@ -173,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn a_double_zero_at_the_start_is_no_crossing() {
+    fn a_double_zero_at_the_start_is_not_a_crossing() {
         let values = sampled(|t: f64| t * t * (1.0 + 0.1 * t).ln_1p());
         assert_eq!(look(&values, 2, 0.1), Quick::Positive);
         let values = sampled(|t: f64| -t * t * (1.0 + 0.1 * t));

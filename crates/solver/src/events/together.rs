@@ -1,11 +1,11 @@
-//! Guards that vanish where another one fires, in a run that goes on unchanged.
+//! Guards that vanish where another guard fires, if the run goes on unchanged.
 //!
-//! The mode and the state are the same before and after such a switch, so that every guard goes on
-//! as it came. One that is zero there to within rounding has no sign at that place: the step that
-//! ends there tells from which side it comes, and a step ahead, which is not taken, to which it
-//! goes. It crosses if the two differ, and fires together with the guard that fired if that is its
-//! direction. Either way it starts the next step from a known zero, which it leaves to a known
-//! side.
+//! Mode and state are the same before and after such a switch, so that every guard goes on as it
+//! came. A guard that is zero there to within rounding has no sign at that place. The step that
+//! ends there tells from which side the guard comes. A step ahead, which is not accepted, tells to
+//! which side it goes. If the two sides differ, the guard crosses. If it crosses in its direction,
+//! it fires together with the guard that fired. In any case it starts the next step from a known
+//! zero, and leaves it to a known side.
 
 use std::marker::PhantomData;
 
@@ -18,29 +18,30 @@ use crate::hybrid::{Direction, HybridSystem, Statistics};
 use crate::method::{Dense, Method, State, Step, Trial};
 use crate::options::{Options, StepSize};
 
-/// A step ahead is cut to a fifth at most this often, like a step that is too coarse.
+/// A step ahead is cut to a fifth at most this often, as is a step that is too coarse.
 const CUTS: usize = 60;
 
-/// Guards further from zero than this part of their largest value on the step are not at it.
+/// A guard whose value exceeds this part of its largest value on the step is not at zero.
 const NEAR: f64 = 1e-3;
 
-/// All that tells where the guards stand after an event that changes nothing.
+/// The data that tell where the guards stand after an event that changes nothing.
 pub(crate) struct Passage<'a, S: HybridSystem<N, G>, const N: usize, const G: usize> {
     pub(crate) system: &'a S,
-    /// As it was before the step that ends at the event.
+    /// The phase before the step that ends at the event.
     pub(crate) phase: &'a Phase<S::Mode, G>,
     pub(crate) event: &'a Event<N>,
     /// The place of the event.
     pub(crate) s: f64,
-    /// The longest step ahead.
+    /// The size of the longest step ahead that does not pass the end of the run.
     pub(crate) ahead: f64,
-    /// The same, but for the end of the run.
+    /// The size of the longest step ahead, regardless of the end of the run.
     pub(crate) ordinary: f64,
     pub(crate) options: &'a Options,
     pub(crate) statistics: &'a mut Statistics,
 }
 
 impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G> {
+    /// Where the guards stand.
     pub(crate) fn standing<M: Method>(mut self) -> Standing<G> {
         let (event, phase) = (self.event, self.phase);
         let stays = event.elapsed == 0.0;
@@ -53,7 +54,7 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
         };
         let (mut fired, mut due) = (0, [false; G]);
         let mut stand = |guard: usize, side: f64, hidden: f64| {
-            // No time has passed since the zero that was known.
+            // If no time has passed, the known zero keeps its order.
             let order = if stays { phase.zero_orders[guard] } else { 0 };
             standing.zero_orders[guard] = order.max(1);
             standing.sides[guard] = side;
@@ -76,7 +77,7 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
             let hidden = self.hidden::<M>(guard, values[guard]);
             let at_zero = values[guard].abs() <= hidden;
             let (from, to) = if at_zero {
-                (self.side_before::<M>(guard, hidden), self.side_behind::<M>(guard, hidden))
+                (self.side_before::<M>(guard, hidden), self.side_after::<M>(guard, hidden))
             } else if event.has_passed(guard) {
                 let to = values[guard].signum();
                 let came_back = direction == Direction::Either && self.side_at_start(guard) == to;
@@ -89,8 +90,8 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
                 Direction::Either => from * to < 0.0,
                 _ => from > 0.0 && to < 0.0,
             };
-            // A bound of the domain fires as long as it is negative; the run ends with an event of
-            // its own.
+            // A bound of the domain fires as long as it is negative. A terminal guard ends the run
+            // with an event of its own.
             let by_itself =
                 phase.guards[guard].ends_run() || direction == Direction::Below || bit(guard) == 0;
             if fires && !by_itself {
@@ -106,18 +107,19 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
         Standing { fired, due, ..standing }
     }
 
-    /// What rounding leaves of a guard at its zero, on the scales of the step that ends there; less
-    /// if its `value` is far from that.
+    /// The largest absolute value that a guard may have at its zero because of rounding and noise,
+    /// on the scales of the step that ends there. Noise is not measured if `value` is far from
+    /// zero.
     fn hidden<M: Method>(&mut self, guard: usize, value: f64) -> f64 {
         let (system, phase, event) = (self.system, self.phase, self.event);
         let value_at = |s: f64, y: &State<N>| system.guard_values(phase.mode, s, y)[guard];
         self.statistics.guards += N + 2;
-        let like = event.state.zip_map(&event.step.y0, |y, y0| y.abs().max(y0.abs()));
-        let (here, like) = ((self.s, &event.state), (self.s.abs().max(event.step.s.abs()), &like));
-        let rounding = rounding(value_at, here, like);
+        let s_scale = self.s.abs().max(event.step.s.abs());
+        let y_scale = event.state.zip_map(&event.step.y0, |y, y0| y.abs().max(y0.abs()));
+        let rounding = rounding(value_at, (self.s, &event.state), (s_scale, &y_scale));
         let known = if phase.zero_orders[guard] > 0 { phase.hidden[guard] } else { 0.0 };
         let hidden = known.max(rounding);
-        // A step as short as rounding shows no scatter.
+        // A step that is as short as the rounding of the time would show no scatter.
         let at_end = self.event.elapsed >= self.ordinary;
         let mut step =
             if at_end { self.up_to_here::<M>() } else { self.step_ahead::<M>(self.ordinary) };
@@ -144,7 +146,7 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
         step
     }
 
-    /// A step from the event on.
+    /// A step of size `h` from the event on.
     fn step_ahead<M: Method>(&mut self, h: f64) -> Step<N> {
         let (mode, s, y) = (self.phase.mode, self.s, &self.event.state);
         let slope = &self.system.field(mode, s, y);
@@ -156,6 +158,7 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
         step
     }
 
+    /// The sign of a guard at the start of the step that ends at the event, 0 if it has none.
     fn side_at_start(&self, guard: usize) -> f64 {
         let value = self.phase.values[guard];
         if self.phase.zero_orders[guard] > 0 {
@@ -167,11 +170,11 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
         }
     }
 
-    /// The side from which a guard comes to the event; 0 where it is not known.
+    /// The sign of a guard before the event, 0 if it is not known.
     fn side_before<M: Method>(&mut self, guard: usize, hidden: f64) -> f64 {
         let start = self.side_at_start(guard);
         let elapsed = self.event.elapsed;
-        // One that fires either way has kept its side: it would have fired.
+        // A guard that fires in either direction has kept its sign, or it would have fired.
         if elapsed == 0.0
             || (start != 0.0 && self.phase.guards[guard].direction() == Direction::Either)
         {
@@ -184,8 +187,8 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
         }
     }
 
-    /// The side to which a guard goes after the event; 0 where it is not known.
-    fn side_behind<M: Method>(&mut self, guard: usize, hidden: f64) -> f64 {
+    /// The sign of a guard after the event, 0 if it is not known.
+    fn side_after<M: Method>(&mut self, guard: usize, hidden: f64) -> f64 {
         let mut h = self.ahead;
         for _ in 0..CUTS {
             if h <= 0.0 {
@@ -209,7 +212,8 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
         self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
     }
 
-    /// The first and the last side that a guard shows on a step; `None` if the step does not tell.
+    /// The first and the last sign that a guard shows on a step, or `None` if the step does not
+    /// tell.
     fn sides<M: Method>(
         &mut self,
         guard: usize,

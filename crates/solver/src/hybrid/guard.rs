@@ -1,29 +1,29 @@
-//! What makes a run switch.
+//! Guards: when a run switches.
 
 /// When a guard fires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
-    /// As soon as it is negative: the guard bounds the domain of its mode. One that is negative
-    /// when the mode is entered fires there and then, so that transitions lead to where it is
-    /// not; a run whose transitions do not ends as [`Outcome::Zeno`](crate::Outcome::Zeno).
+    /// As soon as it is negative: the guard bounds the domain of its mode. A guard that is negative
+    /// when the mode is entered fires at once. Transitions should therefore lead to places where
+    /// it is not negative; otherwise the run ends with
+    /// [`Outcome::Zeno`](crate::Outcome::Zeno).
     Below,
-    /// When it falls through zero; one that starts negative waits until it has risen.
+    /// When it falls through zero. A guard that starts negative must rise first.
     Falling,
     /// When it rises through zero.
     Rising,
-    /// When it changes sign.
+    /// When it falls or rises through zero.
     Either,
     /// Never: the guard is not part of this mode.
     Off,
 }
 
-/// A guard of a mode: when its value fires a switch, and what is known of it when the mode is
-/// entered.
+/// A guard of a mode: when it fires, what it causes, and whether it starts from zero.
 ///
 /// ```
 /// use stickslip_solver::{Direction, Guard};
 ///
-/// // Height above the floor: ends the run, and starts from zero as the body is thrown up.
+/// // Height above the floor. It ends the run, and starts from zero when the body is thrown up.
 /// let floor = Guard::new(Direction::Below).from_zero(1).terminal();
 /// assert!(floor.ends_run() && floor.zero_order() == 1);
 /// ```
@@ -36,7 +36,7 @@ pub struct Guard {
 }
 
 impl Guard {
-    /// A guard that is not part of the mode.
+    /// A guard that is not part of the mode, for unused places.
     pub const OFF: Self = Self::new(Direction::Off);
 
     /// A guard that fires in `direction` and causes a transition.
@@ -45,29 +45,30 @@ impl Guard {
         Self { direction, zero_order: 0, terminal: false, yields: false }
     }
 
-    /// The guard starts from a zero of this order whenever the mode is entered, also where the run
-    /// starts.
+    /// Declares that the guard starts from a zero of this order whenever the mode is entered, also
+    /// at the start of the run.
     ///
-    /// There is no need to say so of a guard that is exactly 0 there and rises. It takes this where
-    /// rounding may leave something else than 0, and where the zero is double: which way the
-    /// guard leaves it would be anybody's guess.
+    /// A guard that is exactly 0 there and rises does not need this. Two kinds of guards do: those
+    /// whose value may differ from 0 by rounding, and those with a double zero, because their side
+    /// after the zero could not be told otherwise.
     ///
-    /// The zero is divided out before any root is looked for, so the guard can neither fire at the
-    /// start nor need a nudge away from it. What the state's rounding leaves at the start is
-    /// taken as zero. Of a double zero least is left where guard and slope are components of
-    /// the state that start from exactly 0.
+    /// The zero is divided out before the search for roots. So the guard does not fire at the
+    /// start, and nobody has to nudge the state away from it. A value there that is only due to
+    /// rounding of the state counts as zero. A double zero is most accurate if guard and slope are
+    /// components of the state that start from exactly 0.
     #[must_use]
     pub const fn from_zero(self, order: u32) -> Self {
         Self { zero_order: order, ..self }
     }
 
-    /// The guard ends the run instead of causing a transition.
+    /// Makes the guard end the run instead of causing a transition.
     #[must_use]
     pub const fn terminal(self) -> Self {
         Self { terminal: true, ..self }
     }
 
-    /// The guard gives way to every other one that fires at the same place.
+    /// Makes the guard yield to every other guard that fires at the same place: the other one
+    /// decides the transition.
     #[must_use]
     pub const fn yielding(self) -> Self {
         Self { yields: true, ..self }
@@ -79,21 +80,21 @@ impl Guard {
         self.direction
     }
 
-    /// Order of the zero from which it starts; 0 for none.
+    /// The order of the zero from which the guard starts, or 0 if there is none.
     #[must_use]
     pub const fn zero_order(&self) -> u32 {
         self.zero_order
     }
 
-    /// Whether it ends the run.
+    /// Whether the guard ends the run.
     #[must_use]
     pub const fn ends_run(&self) -> bool {
         self.terminal
     }
 
-    /// Whether it gives way to the others.
+    /// Whether the guard yields to others that fire at the same place.
     #[must_use]
-    pub const fn gives_way(&self) -> bool {
+    pub const fn yields(&self) -> bool {
         self.yields
     }
 }

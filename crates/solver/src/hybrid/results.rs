@@ -1,66 +1,66 @@
-//! What comes of a run: events while it goes on, and its end.
+//! The results of a run: what it reports while it goes on, and how it ends.
 
 use crate::method::{Dense, State};
 
 /// A guard fired.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SwitchEvent<Mode, const N: usize> {
-    /// Where.
+    /// The place of the switch.
     pub s: f64,
     /// The guard that fired.
     pub guard: usize,
-    /// Further guards of the mode that vanish at the same place, one bit each. Of guards that fire
-    /// together the one listed first decides the transition, unless it gives way
-    /// ([`Guard::yielding`]).
+    /// Further guards of the mode that vanish at the same place, one bit each. If several guards
+    /// fire together, the guard that is listed first decides the transition, unless it yields
+    /// ([`Guard::yielding`](crate::Guard::yielding)).
     ///
-    /// Where mode and state go on unchanged these are the guards that cross here in their
-    /// direction, as far as rounding tells: they have fired with this event and do not fire
-    /// again. One that only touches is not among them, nor one whose zero can be told
-    /// apart, which fires by itself. A terminal guard and one of
-    /// [`Direction::Below`](crate::Direction::Below) are not either: they fire next, by an
-    /// event of their own at the same place.
+    /// If mode and state go on unchanged, these are the guards that cross here in their direction,
+    /// as far as rounding tells. They have fired with this event and do not fire again. The
+    /// following guards are not among them: a guard that only touches zero; a guard whose zero
+    /// lies measurably elsewhere, which fires by itself; a terminal guard and a guard with
+    /// [`Direction::Below`](crate::Direction::Below), which fire next, with an event of their own
+    /// at the same place.
     pub simultaneous: u32,
-    /// The guard's largest value in the phase over its slope here, in units of s: an error of the
-    /// guard relative to that value moves the switch by the error times this. Large near a
-    /// graze.
+    /// The guard's largest value in the phase divided by its slope here, in units of s. An error
+    /// of the guard, relative to its largest value, moves the switch by the error times this
+    /// number. It is large near a graze.
     pub flatness: f64,
     /// The mode that ended.
     pub from: Mode,
-    /// The mode that begins; `from` if the run ends here.
+    /// The mode that begins. It is `from` if the run ends here.
     pub to: Mode,
-    /// State on the guard, before the transition.
+    /// The state on the guard, before the transition.
     pub before: State<N>,
-    /// State after the transition; `before` if the run ends here.
+    /// The state after the transition. It is `before` if the run ends here.
     pub after: State<N>,
 }
 
-/// A guard came so close to zero without firing, or fired so briefly, that the dense output could
-/// not tell; a step of the method to the extremum did.
+/// A guard came so close to zero, or was beyond zero so briefly, that the dense output could not
+/// tell whether it fires. A step of the method to the extremum decided it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Grazing<Mode> {
-    /// Where.
+    /// The place of the extremum.
     pub s: f64,
-    /// The mode.
+    /// The mode at that place.
     pub mode: Mode,
-    /// The guard.
+    /// The guard that comes close to zero.
     pub guard: usize,
-    /// Its value at the extremum, by the method.
+    /// The guard's value at the extremum, by a step of the method.
     pub margin: f64,
 }
 
 /// Receives what a run finds, in order.
 pub trait Observer<Mode, const N: usize> {
-    /// Whether [`Self::on_segment`] is wanted: dense output costs further stages.
+    /// Whether the run calls [`Self::on_segment`]. Dense output costs further stages.
     const WANTS_SEGMENTS: bool = false;
 
     /// A guard fired.
     fn on_switch(&mut self, _event: &SwitchEvent<Mode, N>) {}
 
-    /// A guard touched zero or nearly so.
+    /// A guard touched zero, or nearly.
     fn on_grazing(&mut self, _grazing: &Grazing<Mode>) {}
 
-    /// A step was accepted; `dense` covers it.
+    /// A step was accepted, and `dense` is its dense output.
     fn on_segment(&mut self, _mode: Mode, _dense: &Dense<N>) {}
 }
 
@@ -73,10 +73,10 @@ impl<Mode, const N: usize> Observer<Mode, N> for () {}
 pub enum Outcome {
     /// A terminal guard fired.
     EndedByGuard {
-        /// Which.
+        /// The guard that fired.
         guard: usize,
     },
-    /// The end of the span.
+    /// The run reached the end of its span.
     ReachedEnd,
     /// [`Options::max_steps`](crate::Options::max_steps) was reached.
     StepLimit,
@@ -84,37 +84,37 @@ pub enum Outcome {
     SwitchLimit,
     /// The switches accumulate.
     Zeno {
-        /// Where, extrapolated geometrically.
+        /// The accumulation point, extrapolated geometrically.
         accumulation: f64,
     },
 }
 
-/// Work done by a run.
+/// The work done by a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Statistics {
-    /// Accepted steps, those that end on a switch included.
+    /// Accepted steps, including those that end on a switch.
     pub accepted: usize,
-    /// Steps rejected for their error.
+    /// Steps rejected because their error was too large.
     pub rejected: usize,
     /// Steps rejected because a guard was not resolved.
     pub too_coarse: usize,
     /// Evaluations of the right-hand side.
     pub field: usize,
-    /// Evaluations of all guards of a mode at a state.
+    /// Evaluations of the guards of a mode. One evaluation returns the values of all of them.
     pub guards: usize,
     /// Steps repeated to end on a switch or on an extremum.
     pub resteps: usize,
-    /// Guards on steps that needed the full isolation.
+    /// Isolations of a guard on a step, where the quick look did not suffice.
     pub isolations: usize,
-    /// Switches.
+    /// Switches, without the one that ends the run.
     pub switches: usize,
-    /// Touches.
+    /// Extrema close to zero that a step of the method had to decide ([`Grazing`]).
     pub grazings: usize,
 }
 
 impl Statistics {
-    /// Steps taken, good or not.
+    /// Steps tried, accepted or not.
     pub(crate) fn tried(&self) -> usize {
         self.accepted + self.rejected + self.too_coarse
     }
@@ -123,14 +123,14 @@ impl Statistics {
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Run<Mode, const N: usize> {
-    /// Why it ended.
+    /// Why the run ended.
     pub outcome: Outcome,
-    /// Where it ended.
+    /// Where the run ended.
     pub s: f64,
-    /// In which mode.
+    /// The mode at the end.
     pub mode: Mode,
-    /// The state there.
+    /// The state at the end.
     pub state: State<N>,
-    /// The work done.
+    /// The work done by the run.
     pub statistics: Statistics,
 }

@@ -1,10 +1,10 @@
-//! Names of margins, which hold while the parameters move.
+//! The names of margins, which stay the same while the parameters move.
 
 use std::cmp::Ordering;
 use std::hash::{Hash, Hasher};
 
-/// A place in a phase, which moves with the parameters: two that differ in nothing else are the
-/// same.
+/// A place that moves with the parameters. All hints are equal, so that margins which differ only
+/// in their hints are equal.
 #[derive(Clone, Copy, Debug)]
 pub struct Hint(pub f64);
 
@@ -37,37 +37,37 @@ impl Hash for Hint {
 pub struct Exit {
     /// The guard that fires.
     pub guard: usize,
-    /// Where the guard is looked at from: beyond its local minima, which it passes wherever they
-    /// lie.
+    /// The place after which the guard may fire. It lies after the guard's local minima, which are
+    /// passed even if the guard is negative there.
     pub after: Hint,
-    /// The part of the phase which that is; 0 if the guard has no minima before.
+    /// That place as a part of the phase, or 0 if the guard has no minima before it fires.
     pub part: Hint,
 }
 
-/// Where a margin is taken.
+/// The place where a margin is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Place {
-    /// At the local minimum of the guard that is nearest to a place.
+    /// The local minimum of the guard that is nearest to a place.
     Minimum {
-        /// Where it is to be looked for.
+        /// The place near which the minimum is expected.
         near: Hint,
-        /// Its number in its phase, from 0, where it was found.
+        /// The number of the minimum in its phase, from 0, in the run that found it.
         number: usize,
     },
-    /// Where the run ends, at a terminal guard or at the end of its span.
+    /// The end of the run, at a terminal guard or at the end of its span.
     End,
 }
 
-/// Names a margin: in the phase that follows `exits`, the value of `guard` at `place`.
+/// The name of a margin: the value of `guard` at `place`, in the phase that follows `exits`.
 ///
-/// Hints say which of several minima is meant. As the parameters move away, [`margin`] returns the
-/// margin with hints that have moved along.
+/// Hints tell which of several minima is meant. When the parameters move,
+/// [`margin`](crate::margin()) returns the name with hints that have moved along.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Margin {
-    /// The phases before.
+    /// The exits of the earlier phases, in order.
     pub exits: Vec<Exit>,
     /// The guard that does not fire.
     pub guard: usize,
-    /// Where.
+    /// The place in the phase.
     pub place: Place,
 }

@@ -1,9 +1,9 @@
-//! Runs whose itinerary is prescribed, and that watch a guard at the end of it.
+//! Runs with a prescribed itinerary, which watch a guard in their last phase.
 //!
-//! Where a system does not know its rates they are differences. Their reach follows the run: error
-//! control knows on which scale the solution changes, so the reach is a small part of the longest
-//! step so far, whatever the unit of time. The rounding that they bring is measured where a
-//! decision would fail for it.
+//! If a system does not know its rates, they are replaced by differences. The reach of these
+//! differences is a small part of the longest step so far. Error control knows the scale on which
+//! the solution changes, so this works in any unit of time. The rounding of the differences is
+//! measured if a decision depends on it.
 
 use std::cell::Cell;
 
@@ -15,8 +15,8 @@ use crate::method::{Method, State, Step, Trial};
 use crate::options::{Options, StepSize};
 use crate::runs::run;
 
-/// Part of a step over which differences reach: their fourth power leaves 1e-11 of a rate, their
-/// rounding some 1e-13.
+/// The part of a step over which differences reach. Its fourth power makes an error of 1e-11 of a
+/// rate, and rounding one of some 1e-13.
 const REACH: f64 = 1.0 / 256.0;
 
 /// A guard at a local minimum, or at the end of the run.
@@ -26,16 +26,18 @@ pub(crate) struct Extremum {
     pub value: f64,
 }
 
-/// What was seen of the guard that is watched.
+/// What a prescribed run finds about the guard that it watches.
 pub(crate) struct Watched {
-    /// Where the exits before happened.
+    /// The places of the prescribed exits.
     pub exits: Vec<f64>,
+    /// The local minima of the guard in the last phase.
     pub minima: Vec<Extremum>,
+    /// The guard at the end of the run, if the run got there.
     pub end: Option<Extremum>,
 }
 
-/// Follows `exits` and then watches `guard` to its first minimum after `enough`, or to the end of
-/// the run; `None` if that ends before.
+/// Follows `exits` and then watches `guard` up to its first minimum after `enough`, or to the end
+/// of the run. The result is `None` if the run ends before all exits have happened.
 pub(crate) fn watch<M, S, const N: usize, const G: usize>(
     method: M,
     system: &S,
@@ -51,13 +53,13 @@ where
 {
     let reach = Reach::new::<M, S, N, G>(system, &start, end, options);
     let prescribed = Prescribed { system, exits, watched: guard, enough, reach };
-    // A prescribed run may pass switches as close together as it likes.
+    // In a prescribed run, switches may be as close together as they like.
     let options = Options { zeno: 0.0, ..*options };
     let mut watching = Watching::<S, G> {
         prescribed: &prescribed,
         seen: Watched { exits: Vec::with_capacity(exits.len()), minima: Vec::new(), end: None },
     };
-    let mode = PhaseMode { mode: start.mode, phase: 0, part: Part::Start };
+    let mode = PhaseMode { mode: start.mode, phase: 0, progress: Progress::Start };
     let start = Start { mode, s: start.s, state: start.state };
     let run = run(method, &prescribed, start, end, &options, &mut watching)?;
     if run.mode.phase < exits.len() {
@@ -65,7 +67,7 @@ where
     }
     let mut seen = watching.seen;
     let ended = matches!(run.outcome, Outcome::EndedByGuard { .. } | Outcome::ReachedEnd);
-    if ended && run.mode.part != Part::Done {
+    if ended && run.mode.progress != Progress::Done {
         let value = prescribed.value(run.mode.mode, guard, run.s, &run.state);
         seen.end = Some(Extremum { s: run.s, value });
     }
@@ -76,27 +78,28 @@ where
     Ok(Some(seen))
 }
 
-/// A system whose guards fire only as prescribed. In the place of the guard that counts stands what
-/// is waited for: the place from which it is looked at, the guard itself, or its rate.
+/// A system whose guards fire only as prescribed. The value of one guard, the subject, is replaced
+/// by what the run waits for: a place, the guard itself, or its rate.
 struct Prescribed<'a, S> {
     system: &'a S,
     exits: &'a [Exit],
-    /// The guard to watch once they are done.
+    /// The guard to watch after all exits.
     watched: usize,
-    /// It is not watched beyond its first minimum after this place.
+    /// The guard is watched up to its first minimum after this place.
     enough: f64,
     reach: Reach,
 }
 
-/// How far the differences reach that stand in for unknown rates.
+/// The reach of the differences that replace unknown rates.
 struct Reach {
-    /// Where the step at hand starts.
+    /// The start of the present step.
     start: Cell<f64>,
+    /// The distance over which the differences reach.
     distance: Cell<f64>,
 }
 
 impl Reach {
-    /// For a run that is yet to take its first step.
+    /// The reach for the first step of a run.
     fn new<M, S, const N: usize, const G: usize>(
         system: &S,
         start: &Start<S::Mode, N>,
@@ -121,64 +124,64 @@ impl Reach {
         Self { start: Cell::new(s), distance: Cell::new(REACH * first) }
     }
 
-    /// A step is tried from `s`, so that the one before it was accepted as far as there.
+    /// Adapts the reach to the step before, which was accepted up to `s`, where a step now starts.
     fn follow(&self, s: f64) {
         let distance = REACH * (s - self.start.replace(s));
-        // Seldom, so that rates seldom change between two steps.
+        // It changes seldom, so that rates seldom change between two steps.
         if distance >= 2.0 * self.distance.get() {
             self.distance.set(distance);
         }
     }
 }
 
-/// A mode with what has happened so far.
+/// A mode of the system and the progress of the prescribed run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct PhaseMode<Mode> {
     mode: Mode,
-    /// Exits behind.
+    /// The number of exits that have happened.
     phase: usize,
-    part: Part,
+    progress: Progress,
 }
 
-/// How far a phase is.
+/// The progress within a phase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Part {
-    /// Nothing has been waited for yet.
+enum Progress {
+    /// Nothing that the run waits for has happened yet.
     Start,
-    /// The guard of the exit is looked at, from a place inside the phase on.
+    /// The run has passed the place after which the guard of the exit may fire.
     Armed,
-    /// A minimum of the guard that is watched is behind.
+    /// The run has passed a minimum of the guard that it watches.
     Minimum,
-    /// The minimum that was asked for is behind.
+    /// The run has passed the last minimum that it has to find.
     Done,
 }
 
-/// What is waited for.
+/// What the run waits for.
 enum Awaited {
-    /// This place.
+    /// The run waits for this place.
     Place(f64),
-    /// The guard's zero.
+    /// The run waits for the zero of the subject.
     Guard,
-    /// A minimum of the guard.
+    /// The run waits for a minimum of the subject.
     Minimum,
-    /// Nothing any more.
+    /// The run waits for nothing any more.
     Nothing,
 }
 
 impl<S> Prescribed<'_, S> {
-    /// The guard that counts, and what is waited for.
+    /// The subject, which is the guard that counts, and what the run waits for.
     fn subject<Mode>(&self, at: &PhaseMode<Mode>) -> (usize, Awaited) {
         match self.exits.get(at.phase) {
-            Some(exit) if at.part == Part::Start && exit.part.0 > 0.0 => {
+            Some(exit) if at.progress == Progress::Start && exit.part.0 > 0.0 => {
                 (exit.guard, Awaited::Place(exit.after.0))
             }
             Some(exit) => (exit.guard, Awaited::Guard),
-            None if at.part == Part::Done => (self.watched, Awaited::Nothing),
+            None if at.progress == Progress::Done => (self.watched, Awaited::Nothing),
             None => (self.watched, Awaited::Minimum),
         }
     }
 
-    /// The rate of `guard`, or differences where it is not known.
+    /// The rate of `guard`, by differences if it is not known.
     fn rate<const N: usize, const G: usize>(
         &self,
         mode: <S as HybridSystem<N, G>>::Mode,
@@ -233,8 +236,8 @@ where
         let (subject, awaited) = self.subject(&at);
         let own = self.system.guards(at.mode);
         std::array::from_fn(|guard| {
-            // In the middle of a phase its start lies behind.
-            let order = if at.part == Part::Start { own[guard].zero_order() } else { 0 };
+            // A zero at the start of the phase matters only there.
+            let order = if at.progress == Progress::Start { own[guard].zero_order() } else { 0 };
             if own[guard].ends_run() {
                 return Guard::new(own[guard].direction()).from_zero(order).terminal();
             }
@@ -243,11 +246,11 @@ where
             }
             match awaited {
                 Awaited::Place(_) => Guard::new(Direction::Below),
-                // Not `Below`: past a graze it is still negative, and to rise first.
+                // Not `Below`: after a graze it may still be negative, and must rise first.
                 Awaited::Guard => Guard::new(Direction::Falling).from_zero(order),
                 Awaited::Minimum => {
                     // The rate rises from zero after a minimum.
-                    let after_minimum = at.part == Part::Minimum;
+                    let after_minimum = at.progress == Progress::Minimum;
                     let order = if after_minimum { 1 } else { order.saturating_sub(1) };
                     Guard::new(Direction::Rising).from_zero(order)
                 }
@@ -287,20 +290,20 @@ where
         s: f64,
         y: &State<N>,
     ) -> (Self::Mode, State<N>) {
-        let part = match self.subject(&at).1 {
+        let progress = match self.subject(&at).1 {
             Awaited::Guard => {
                 let (mode, y) = self.system.transition(at.mode, guard, s, y);
-                return (PhaseMode { mode, phase: at.phase + 1, part: Part::Start }, y);
+                return (PhaseMode { mode, phase: at.phase + 1, progress: Progress::Start }, y);
             }
-            Awaited::Place(_) => Part::Armed,
-            Awaited::Minimum if s < self.enough => Part::Minimum,
-            Awaited::Minimum | Awaited::Nothing => Part::Done,
+            Awaited::Place(_) => Progress::Armed,
+            Awaited::Minimum if s < self.enough => Progress::Minimum,
+            Awaited::Minimum | Awaited::Nothing => Progress::Done,
         };
-        (PhaseMode { part, ..at }, *y)
+        (PhaseMode { progress, ..at }, *y)
     }
 }
 
-/// Takes down the exits and the minima of the guard that is watched.
+/// Records the exits, and the minima of the guard that is watched.
 struct Watching<'a, S, const G: usize> {
     prescribed: &'a Prescribed<'a, S>,
     seen: Watched,

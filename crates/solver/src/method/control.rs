@@ -1,14 +1,14 @@
 //! Step-size control: how large the next step is.
 //!
-//! Source: Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I*, sections II.4
-//! and IV.2, and the codes DOPRI5 and DOP853, whose step sequences it repeats.
+//! It repeats the step sequences of the codes DOPRI5 and DOP853. Source: Hairer, Nørsett and
+//! Wanner, *Solving Ordinary Differential Equations I*, sections II.4 and IV.2.
 
 use crate::method::state::State;
 use crate::method::tableau::Method;
 
 const SAFETY: f64 = 0.9;
 
-/// Proportional-integral control with the memory it needs.
+/// Proportional-integral control, with what it remembers of earlier steps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Controller {
     last_error: f64,
@@ -21,12 +21,12 @@ impl Controller {
         Self { last_error: 1e-4, just_rejected: false, fresh: true }
     }
 
-    /// A new right-hand side begins.
+    /// Prepares for a new right-hand side.
     pub(crate) fn begin(&mut self) {
         self.fresh = true;
     }
 
-    /// The step to take after one of size `h` whose relative `error` was good enough.
+    /// The size of the next step after an accepted one of size `h` and relative `error`.
     pub(crate) fn accepted<M: Method>(&mut self, h: f64, error: f64) -> f64 {
         let (least, most) = M::STEP_FACTORS;
         self.fresh = false;
@@ -37,11 +37,12 @@ impl Controller {
         h * factor.clamp(least, most)
     }
 
-    /// The step to try after one of size `h` whose relative `error` was too large, or NaN.
+    /// The size of the next trial after a rejected step of size `h`. Its relative `error` was too
+    /// large, or NaN.
     pub(crate) fn rejected<M: Method>(&mut self, h: f64, error: f64) -> f64 {
         self.just_rejected = true;
         if error.is_finite() {
-            // The first step of a right-hand side is a guess: it may be wrong by more.
+            // The first step of a right-hand side is a guess, and may be too long by far.
             let least = if self.fresh { 0.01 } else { M::STEP_FACTORS.0 };
             h * (SAFETY * power(error, -exponent::<M>())).max(least)
         } else {
@@ -50,7 +51,8 @@ impl Controller {
     }
 }
 
-/// `base^exponent`, quickly for the exponents of order 8: the next step waits for it.
+/// `base^exponent`. The exponents of order 8 are treated specially for speed, since the next step
+/// waits for this number.
 #[inline]
 fn power(base: f64, exponent: f64) -> f64 {
     if exponent == -0.125 {
@@ -62,15 +64,17 @@ fn power(base: f64, exponent: f64) -> f64 {
     }
 }
 
-/// `x^(−1/8)` of a finite x ≥ 0 to 1e-7 of itself; something large for 0.
+/// `x^(−1/8)` of a finite x ≥ 0, with a relative error below 1e-7. For x = 0 it is some large
+/// number.
 ///
-/// The bits of a double are nearly its logarithm, which gives 3 %; the binomial series of (1 −
-/// r)^(−1/8), by pairs so that few operations wait for each other, does the rest.
+/// The bits of a double are nearly its logarithm, which gives an approximation to 3 %. The binomial
+/// series of (1 − r)^(−1/8) gives the remaining digits. It is evaluated in pairs, so that few
+/// operations wait for each other.
 #[inline]
 fn inverse_eighth_root(x: f64) -> f64 {
-    /// The bits of 1, and the shift that spreads the error of the straight line evenly to both
-    /// sides.
+    /// The bits of 1.
     const ONE: u64 = 1.0_f64.to_bits();
+    /// A shift that makes the error of the straight line equally large on both sides.
     const SHIFT: u64 = (1 << 52) / 1000 * 54;
     const SERIES: [f64; 10] = {
         let mut series = [1.0; 10];
@@ -95,11 +99,12 @@ fn inverse_eighth_root(x: f64) -> f64 {
 
 fn exponent<M: Method>() -> f64 {
     let order = M::CONTROL_ORDER as f64;
-    // 0.75 β for order 5 and 0.2 β for order 8, as in the codes.
+    // 0.75 β for order 5 and 0.2 β for order 8, as in the codes DOPRI5 and DOP853.
     1.0 / order - M::CONTROL_BETA * if M::CONTROL_ORDER == 5 { 0.75 } else { 0.2 }
 }
 
-/// A first step from the sizes of the state, of its derivative `f0` and of its second derivative.
+/// A size for the first step, from the sizes of the state, of its derivative `f0` and of its second
+/// derivative.
 pub(crate) fn first_step<M: Method, const N: usize>(
     field: &mut impl FnMut(f64, &State<N>) -> State<N>,
     s: f64,

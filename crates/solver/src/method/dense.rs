@@ -1,9 +1,9 @@
-//! The state between the ends of a step.
+//! Dense output: the state between the ends of a step.
 
 use crate::method::state::State;
 
-/// The continuous extension of one step: a polynomial in the step fraction θ ∈ [0, 1],
-/// r₀ + θ(r₁ + (1−θ)(r₂ + θ(r₃ + (1−θ)(r₄ + …)))).
+/// The dense output (continuous extension) of one step: a polynomial in the step fraction
+/// θ ∈ [0, 1], r₀ + θ(r₁ + (1−θ)(r₂ + θ(r₃ + (1−θ)(r₄ + …)))).
 #[derive(Clone, Copy, Debug)]
 pub struct Dense<const N: usize> {
     pub(super) s: f64,
@@ -13,13 +13,13 @@ pub struct Dense<const N: usize> {
 }
 
 impl<const N: usize> Dense<N> {
-    /// Where the step starts.
+    /// The place where the step starts.
     #[must_use]
     pub fn start(&self) -> f64 {
         self.s
     }
 
-    /// The step's size.
+    /// The size of the step.
     #[must_use]
     pub fn size(&self) -> f64 {
         self.h
@@ -31,7 +31,8 @@ impl<const N: usize> Dense<N> {
         self.truncated(theta, self.degree)
     }
 
-    /// The same without the last term, whose size bounds the error of [`Self::at`].
+    /// The state at step fraction `theta` without the last term of the polynomial. The size of that
+    /// term bounds the error of [`Self::at`].
     #[must_use]
     pub fn coarse_at(&self, theta: f64) -> State<N> {
         self.truncated(theta, self.degree - 1)

@@ -1,11 +1,13 @@
-//! Dormand–Prince 8(5,3) with its seventh-degree continuous extension.
+//! Dormand–Prince 8(5,3) with its dense output of degree 7.
 //!
-//! Coefficients: the code DOP853 of Hairer and Wanner (Hairer, Nørsett and Wanner, *Solving
-//! Ordinary Differential Equations I*, 2nd ed., section II.10), as printed there in decimals.
+//! The coefficients are those of the code DOP853 of Hairer and Wanner (Hairer, Nørsett and Wanner,
+//! *Solving Ordinary Differential Equations I*, 2nd ed., section II.10), in the decimals of that
+//! code.
 
 use crate::method::tableau::{MAX_STAGES, Method, Tableau};
 
-/// Dormand–Prince 8(5,3): order 8, twelve stages, dense output of degree 7 with three more.
+/// Dormand–Prince 8(5,3): order 8, twelve stages, and dense output of degree 7 with three more
+/// stages.
 ///
 /// ```
 /// use stickslip_solver::{Dop853, Method};
@@ -56,7 +58,7 @@ const C: [f64; MAX_STAGES] = [
     7.0 / 9.0,
 ];
 
-/// A row's nonzero weights, each with its stage.
+/// The nonzero weights of a row, each with its stage.
 type Sparse = &'static [(usize, f64)];
 
 const A: [Sparse; MAX_STAGES] = [
@@ -167,10 +169,10 @@ const A: [Sparse; MAX_STAGES] = [
     ],
 ];
 
-/// Weights of the eighth-order solution: the row of the stage at the step's end.
+/// The weights of the eighth-order solution: the row of the stage at the end of the step.
 const B: [f64; MAX_STAGES] = sparse(&A[12]);
 
-/// Fifth-order error estimate.
+/// The weights of the fifth-order error estimate.
 const ERROR: Sparse = &[
     (0, 0.1312004499419488073250102996e-1),
     (5, -0.1225156446376204440720569753e1),
@@ -182,7 +184,8 @@ const ERROR: Sparse = &[
     (11, -0.2235530786388629525884427845e-1),
 ];
 
-/// Third-order solution, whose difference from the eighth-order one is the coarse estimate.
+/// The weights of a third-order solution. Its difference from the eighth-order solution is the
+/// coarse error estimate.
 const THIRD_ORDER: Sparse = &[
     (0, 0.244094488188976377952755905512),
     (8, 0.733846688281611857341361741547),

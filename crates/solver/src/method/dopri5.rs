@@ -1,13 +1,13 @@
-//! Dormand–Prince 5(4) with its fourth-degree continuous extension.
+//! Dormand–Prince 5(4) with its dense output of degree 4.
 //!
-//! Coefficients: Dormand and Prince, *J. Comput. Appl. Math.* 6 (1980) 19, table 2; dense output
-//! after Shampine as in Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I*,
-//! 2nd ed., section II.6 (code DOPRI5).
+//! The coefficients are from Dormand and Prince, *J. Comput. Appl. Math.* 6 (1980) 19, table 2. The
+//! dense output is Shampine's, as in Hairer, Nørsett and Wanner, *Solving Ordinary Differential
+//! Equations I*, 2nd ed., section II.6 (code DOPRI5).
 
 use crate::method::tableau::{MAX_STAGES, Method, Tableau};
 
-/// Dormand–Prince 5(4): order 5, six stages and the derivative at the end, dense output of degree
-/// 4.
+/// Dormand–Prince 5(4): order 5, six stages and the derivative at the end, and dense output of
+/// degree 4.
 ///
 /// ```
 /// use stickslip_solver::{Dopri5, Method};

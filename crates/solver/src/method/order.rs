@@ -1,49 +1,50 @@
-//! Orders of convergence, from measured errors.
+//! Orders of convergence, fitted to measured errors.
 
-/// Above this, an error of a quantity of size 1 is never taken for rounding.
+/// An error of a quantity of size 1 that is larger than this never counts as rounding.
 const ROUNDING: f64 = 1e-12;
-/// How far above the errors of the finest steps rounding still shows.
+/// Rounding affects errors up to this multiple of the errors of the finest steps.
 const SHOWS: f64 = 10.0;
-/// The largest difference of the slopes of two halves, in standard errors of the whole slope: twice
-/// its own standard error, which is four times that of the whole slope, as each half has an eighth
-/// of the whole's sum of squares.
+/// The largest difference between the slopes of the two halves, in standard errors of the whole
+/// slope. It is twice the standard error of the difference. That is four times the standard error
+/// of the whole slope, as each half has an eighth of the whole's sum of squares.
 const STRAIGHT: f64 = 8.0;
 /// The fewest points of a fit, and the number of finest steps that tell the level of rounding.
 const FEW: usize = 5;
 
-/// The power of the step with which an error falls, as [`fit_order`] finds it.
+/// The order of convergence that [`fit_order`] finds: an error falls with this power of the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Order {
     /// The power: the slope of ln error against ln step.
     pub order: f64,
     /// The standard error of the slope, from the scatter about the line.
     pub standard_error: f64,
-    /// By how much the slope over the finer half of the points exceeds that over the coarser half:
-    /// what is left of the way to the limit of small steps, which the scatter does not show.
+    /// The slope over the finer half of the points minus the slope over the coarser half. It tells
+    /// how far the slope still is from its limit for small steps, which the scatter does not show.
     pub drift: f64,
     /// The coarsest step of the fit.
     pub coarsest: f64,
-    /// The finest.
+    /// The finest step of the fit.
     pub finest: f64,
-    /// The number of steps in it.
+    /// The number of steps in the fit.
     pub points: usize,
 }
 
-/// The order with which `errors`, pairs of a step (or a tolerance) and an error in order of falling
-/// steps, fall, by least squares on those steps that are neither at rounding nor before the
-/// asymptotic range; `None` if these do not span a factor of `span`.
+/// The order of convergence of `errors`, by least squares over the asymptotic range.
 ///
-/// Which steps these are is decided by three rules:
+/// Each entry of `errors` is a step (or a tolerance) and the error that it leaves, with the largest
+/// step first. Errors are those of quantities of size 1. The result is `None` if the asymptotic
+/// range does not span a factor of `span`. Three rules decide which steps belong to this range:
 ///
 /// 1. *Rounding.* The root mean square of the last five errors is the level at which errors may
 ///    have stopped falling. The first error that is below ten times this level, and below 1e-12, is
-///    left out with all finer ones. Errors are those of quantities of size 1.
+///    left out together with all finer steps.
 /// 2. *No error.* NaN stands for an approximation that cannot be compared, for example because it
-///    has other switches. It is left out with all coarser steps.
-/// 3. *Asymptotic range.* It begins at the finest step that is left, spans at least a factor of
-///    `span` and has at least five points. The shortest such range, and all those over whose two
-///    halves the slopes differ by no more than twice the standard error of that difference,
-///    compete; the one with the smallest standard error of its slope is taken.
+///    has other switches. It is left out together with all coarser steps.
+/// 3. *Asymptotic range.* A range begins at the finest step that remains, spans at least a factor
+///    of `span` and has at least five points. Two kinds of ranges compete: the shortest one, and
+///    those whose two halves have slopes that differ by at most twice the standard error of that
+///    difference. The range whose slope has the smallest standard error is taken.
 ///
 /// ```
 /// use stickslip_solver::fit_order;
@@ -78,7 +79,7 @@ pub fn fit_order(errors: &[(f64, f64)], span: f64) -> Option<Order> {
     competing.min_by(|a, b| a.standard_error.total_cmp(&b.standard_error)).copied()
 }
 
-/// The line through points of ln step and ln error, the finest first.
+/// The order from points of ln step and ln error, with the finest step first.
 fn fit(points: &[(f64, f64)]) -> Order {
     let (order, standard_error) = line(points);
     let half = points.len().div_ceil(2);
@@ -106,7 +107,7 @@ fn line(points: &[(f64, f64)]) -> (f64, f64) {
 mod tests {
     use super::*;
 
-    /// Steps from 1 down by a factor of 2^{1/4} with their errors, which scatter by a hundredth.
+    /// Steps that fall from 1 by factors of 2^{1/4}, with their errors, which scatter by 1 %.
     fn errors(count: u32, error: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
         let scatter = |i: u32| 1.0 + 0.01 * f64::from(7 * i % 5) - 0.02;
         let step = |i: u32| 0.5_f64.powf(f64::from(i) / 4.0);
@@ -114,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn a_power_is_found_with_its_whole_range() {
+    fn a_pure_power_is_fitted_over_its_whole_range() {
         let fit = fit_order(&errors(21, |h| 3.0 * h.powf(2.5)), 4.0).unwrap();
         assert!((fit.order - 2.5).abs() < 0.003 && fit.standard_error < 0.004, "{fit:?}");
         assert!(fit.drift.abs() < 0.02, "{fit:?}");
@@ -122,28 +123,28 @@ mod tests {
     }
 
     #[test]
-    fn the_standard_error_is_that_of_the_textbook() {
-        // y = (0, 1, 3, 4, 5) at x = 0 … 4: slope 1.3, residuals −0.0, −0.3, 0.4, 0.1, −0.2, s² =
-        // 0.3/3, Σ(x − x̄)² = 10.
+    fn the_standard_error_agrees_with_the_textbook_formula() {
+        // y = (0, 1, 3, 4, 5) at x = 0 … 4: the slope is 1.3, the residuals are 0.0, −0.3, 0.4,
+        // 0.1 and −0.2, s² = 0.3/3, and Σ(x − x̄)² = 10.
         let points: Vec<_> = (0_u8..).map(f64::from).zip([0.0, 1.0, 3.0, 4.0, 5.0]).collect();
         let (slope, error) = line(&points);
         assert!((slope - 1.3).abs() < 1e-14 && (error - 0.1).abs() < 1e-14);
         let powers: Vec<_> = points.iter().rev().map(|p| (p.0.exp(), p.1.exp())).collect();
         let fit = fit_order(&powers, 2.0).unwrap();
         assert!((fit.order - 1.3).abs() < 1e-14 && (fit.standard_error - 0.1).abs() < 1e-14);
-        // Finer half 0, 1, 3: 1.5; coarser half 3, 4, 5: 1.
+        // The finer half 0, 1, 3 has slope 1.5, the coarser half 3, 4, 5 has slope 1.
         assert!((fit.drift - 0.5).abs() < 1e-14 && fit.points == 5);
     }
 
     #[test]
-    fn two_regimes_give_the_finer_one() {
+    fn of_two_regimes_the_finer_one_is_fitted() {
         let fit = fit_order(&errors(41, |h| h.powi(5) + 1e-3 * h * h), 4.0).unwrap();
         assert!((fit.order - 2.0).abs() < 0.01, "{fit:?}");
         assert!(fit.coarsest < 0.05, "{fit:?}");
     }
 
     #[test]
-    fn rounding_and_what_cannot_be_compared_are_left_out() {
+    fn rounding_and_errors_that_cannot_be_compared_are_left_out() {
         let floor = |h: f64| (h.powi(8)).hypot(2e-16);
         let fit = fit_order(&errors(60, floor), 4.0).unwrap();
         assert!((fit.order - 8.0).abs() < 0.01 && fit.finest > 0.012, "{fit:?}");
@@ -152,13 +153,13 @@ mod tests {
         others[3].1 = f64::NAN;
         let fit = fit_order(&others, 4.0).unwrap();
         assert_eq!(fit.points, 19);
-        // The same level of 1e-10 is no rounding.
+        // A level of 1e-10 does not count as rounding.
         let stuck = fit_order(&errors(60, |h| h.powi(8).hypot(1e-10)), 4.0).unwrap();
         assert!(stuck.order.abs() < 0.1, "{stuck:?}");
     }
 
     #[test]
-    fn too_little_is_no_order() {
+    fn too_few_errors_give_no_order() {
         assert_eq!(fit_order(&[], 4.0), None);
         assert_eq!(fit_order(&errors(8, |h| h), 4.0), None);
         assert!(fit_order(&errors(9, |h| h), 4.0).is_some());

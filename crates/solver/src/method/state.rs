@@ -7,11 +7,13 @@ use crate::method::tableau::MAX_STAGES;
 /// A state of `N` components.
 pub type State<const N: usize> = SVector<f64, N>;
 
-/// Whether steps of this build round a product and the sum it goes into once, together: where the
-/// processor that it is built for has the instruction. The last digits of results depend on it.
+/// Whether the steps of this build round a product and the sum to which it is added only once.
+///
+/// It is true if the processor for which the crate is built has an instruction for that. The last
+/// digits of results depend on it.
 pub const FUSED_PRODUCTS: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
 
-/// Σ weights[j] k[j] over the first `count` stages.
+/// The sum of the first `count` stages `k`, each times its weight.
 #[inline(always)]
 pub(super) fn combine<const N: usize>(
     weights: &[f64; MAX_STAGES],
@@ -27,8 +29,8 @@ pub(super) fn combine<const N: usize>(
     sum
 }
 
-/// sum + factor·k, rounded once where the processor does that in one instruction: half the
-/// arithmetic of a step.
+/// sum + factor·k. It is rounded only once if the processor has an instruction for that, which
+/// halves the arithmetic of a step.
 #[inline(always)]
 pub(super) fn add_multiple<const N: usize>(sum: &State<N>, k: &State<N>, factor: f64) -> State<N> {
     if FUSED_PRODUCTS {

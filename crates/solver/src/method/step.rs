@@ -7,42 +7,42 @@ use crate::method::tableau::{INTERIOR_NODES, MAX_STAGES, Method};
 /// A step to be tried.
 #[derive(Clone, Copy, Debug)]
 pub struct Trial<'a, const N: usize> {
-    /// Where it starts.
+    /// The place where the step starts.
     pub s: f64,
-    /// The state there.
+    /// The state at the start.
     pub y: &'a State<N>,
-    /// Derivative of the state there.
+    /// The derivative of the state at the start.
     pub slope: &'a State<N>,
-    /// Its size.
+    /// The size of the step.
     pub h: f64,
-    /// Relative and absolute tolerance by which its error is measured.
+    /// The relative and the absolute tolerance that scale the error.
     pub tolerances: (f64, f64),
 }
 
 /// A step of size `h` from `y0` at `s` to `y1`.
 #[derive(Clone, Copy, Debug)]
 pub struct Step<const N: usize> {
-    /// Where the step starts.
+    /// The place where the step starts.
     pub s: f64,
-    /// Its size.
+    /// The size of the step.
     pub h: f64,
-    /// State at its start.
+    /// The state at the start of the step.
     pub y0: State<N>,
-    /// Derivative of the state at its start.
+    /// The derivative of the state at the start of the step.
     pub slope0: State<N>,
-    /// State at its end.
+    /// The state at the end of the step.
     pub y1: State<N>,
-    /// States at [`INTERIOR_NODES`].
+    /// The states at [`INTERIOR_NODES`].
     pub interior: [State<N>; 4],
-    /// Estimated error of `y1` relative to `atol + rtol·max(|y0|, |y1|)`, as a root mean square
-    /// over the components; the step is good if this is below 1, which NaN is not.
+    /// The estimated error of `y1` relative to `atol + rtol·max(|y0|, |y1|)`, as a root mean
+    /// square over the components. The step is good if this is below 1. NaN is not below 1.
     pub error: f64,
-    /// Derivative of the state at its end, once it is known.
+    /// The derivative of the state at the end of the step, once it is known.
     slope1: Option<State<N>>,
 }
 
 impl<const N: usize> Step<N> {
-    /// Room for a step.
+    /// A step of size 0, as room for a step to be taken.
     #[must_use]
     pub fn blank() -> Self {
         let zero = State::zeros();
@@ -58,7 +58,7 @@ impl<const N: usize> Step<N> {
         }
     }
 
-    /// Takes the step `trial` in place of the one that was here.
+    /// Takes the step `trial` and stores it here.
     #[inline]
     pub fn take<M: Method>(
         &mut self,
@@ -83,8 +83,8 @@ impl<const N: usize> Step<N> {
         let coarse = combine(&M::TABLEAU.coarse_error, &k, used);
         let (mut fine_sum, mut coarse_sum) = (0.0, 0.0);
         for i in 0..N {
-            // A component without an error counts as one without a weight: compiled for a mode in
-            // which it is constant, it costs nothing.
+            // A component without error adds nothing. Compiled for a mode in which it is constant,
+            // it costs nothing either.
             if fine[i] == 0.0 && coarse[i] == 0.0 {
                 continue;
             }
@@ -94,8 +94,8 @@ impl<const N: usize> Step<N> {
             coarse_sum += (coarse[i] * weight) * (coarse[i] * weight);
         }
         let n = N as f64;
-        // Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.10: the fine
-        // estimate is damped where the coarse one says that it is accidentally small.
+        // Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, section II.10:
+        // the coarse estimate corrects the fine one where that is accidentally small.
         let blend = fine_sum + 0.01 * coarse_sum;
         self.error = if blend == 0.0 { 0.0 } else { h.abs() * fine_sum / (n * blend).sqrt() };
         if M::INTERIOR_STAGES.is_none() {
@@ -106,18 +106,18 @@ impl<const N: usize> Step<N> {
         }
     }
 
-    /// A step of `h` from the same start, whose error is of no interest.
+    /// A trial step of size `h` from the same start, whose error does not matter.
     pub(crate) fn shortened(&self, h: f64) -> Trial<'_, N> {
         Trial { s: self.s, y: &self.y0, slope: &self.slope0, h, tolerances: (1.0, 1.0) }
     }
 
-    /// The step of size 0.
+    /// The step of size 0 from the same start.
     pub(crate) fn shrunk_to_start(&self) -> Self {
         let (h, y1, interior) = (0.0, self.y0, [self.y0; 4]);
         Self { h, y1, interior, slope1: Some(self.slope0), ..*self }
     }
 
-    /// The derivative at the end of the step, computed on first use.
+    /// The derivative at the end of the step. It is computed on first use.
     #[inline]
     pub fn finish<M: Method>(
         &mut self,
@@ -126,10 +126,10 @@ impl<const N: usize> Step<N> {
         *self.slope1.get_or_insert_with(|| field(self.s + self.h, &self.y1))
     }
 
-    /// The continuous extension over the step.
+    /// The dense output over the step.
     ///
-    /// Takes the step's stages again, which few steps need and none keeps, and then the extension's
-    /// own.
+    /// This takes the stages of the step again, and then those of the dense output. A step does not
+    /// keep its stages, because few steps need them.
     pub fn dense<M: Method>(
         &mut self,
         field: &mut impl FnMut(f64, &State<N>) -> State<N>,
@@ -163,11 +163,11 @@ impl<const N: usize> Step<N> {
     }
 }
 
-/// The derivatives at the stages of the step `trial`; states that sit at [`INTERIOR_NODES`] go to
-/// `interior`.
+/// The derivatives at the stages of the step `trial`. The states at [`INTERIOR_NODES`] are written
+/// to `interior`.
 ///
-/// A local array throughout, so that the compiler can keep it in registers and drop what the
-/// right-hand side does not use.
+/// The stages are a local array everywhere, so that the compiler can keep it in registers and drop
+/// components that the right-hand side does not use.
 #[inline(always)]
 fn stages<M: Method, const N: usize>(
     field: &mut impl FnMut(f64, &State<N>) -> State<N>,
@@ -180,7 +180,8 @@ fn stages<M: Method, const N: usize>(
     macro_rules! stages {
         ($($i:literal)*) => {$(
             if $i < M::STAGES {
-                // The newest stage comes last and with few operations: each waits for the one before it.
+                // The newest stage is added last, by few operations, since each stage waits for the
+                // one before it.
                 let weights = &M::TABLEAU.a[$i];
                 let early = y0 + combine(weights, &k, $i - 1) * h;
                 let y = add_multiple(&early, &k[$i - 1], h * weights[$i - 1]);

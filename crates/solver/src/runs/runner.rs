@@ -1,6 +1,7 @@
 //! A run of a hybrid system from switch to switch.
 //!
-//! One accepted step is `advance`; whether it contains a switch is the business of `event`.
+//! `advance` takes one accepted step. The module `events` finds out whether the step contains a
+//! switch.
 
 use crate::error::RunError;
 use crate::events::{Event, Examination, Found, Passage, Phase, Standing};
@@ -12,11 +13,12 @@ use crate::runs::clock::{Clock, Zeno};
 
 /// Integrates `system` from `start` to `end`, through every switch on the way.
 ///
-/// `end` may be infinite where a terminal guard ends the run. Nothing is allocated.
+/// `end` may be infinite if a terminal guard ends the run. A run allocates no memory.
 ///
 /// # Errors
-/// [`RunError`]: invalid options, a right-hand side or guard that is not finite, a tolerance that no step
-/// meets, a guard that is identically zero.
+/// A [`RunError`] reports invalid options, a span that does not lead forward, a state or right-hand
+/// side that is not finite, a guard that is not a number, that is identically zero or that cannot
+/// be resolved, and a tolerance that no step meets.
 pub fn run<M, S, O, const N: usize, const G: usize>(
     _method: M,
     system: &S,
@@ -68,12 +70,12 @@ struct Runner<'a, S: HybridSystem<N, G>, O, const N: usize, const G: usize> {
     clock: Clock,
     phase: Phase<S::Mode, G>,
     state: State<N>,
-    /// Derivative of the state.
+    /// The derivative of the state.
     slope: State<N>,
-    /// Size of the next step.
+    /// The size of the next step.
     h: f64,
-    /// The same for the phase after this one, as the phase before this one left it: modes mostly
-    /// alternate.
+    /// The size of the first step of the next phase. It is taken over from the phase before the
+    /// present one, since modes mostly alternate.
     other_h: Option<f64>,
     controller: Controller,
     zeno: Zeno,
@@ -107,11 +109,11 @@ where
         }
     }
 
-    /// Takes one step that is good enough; if it meets a switch, it ends there. Takes none beyond
-    /// the limit of steps.
+    /// Takes one step that is good enough, unless the limit of steps is reached first. The step
+    /// ends at a switch if it meets one.
     ///
-    /// Events hold a step: they are written where they stay, since to return them would copy one on
-    /// every step.
+    /// An event contains a step. It is written to the place where it stays, since returning it
+    /// would copy it on every step.
     fn advance<M: Method>(
         &mut self,
         step: &mut Step<N>,
@@ -161,7 +163,7 @@ where
                     self.statistics.too_coarse += 1;
                     cuts += 1;
                     self.h = 0.2 * h;
-                    // A step that does not move the time gets nowhere.
+                    // A step that does not move the time is useless.
                     if cuts > 60 || self.h <= f64::EPSILON * self.clock.s.abs() {
                         return Err(RunError::GuardUnresolved { guard, s: self.clock.s, h });
                     }
@@ -241,7 +243,7 @@ where
         let unchanged = !ends && to == from && after == event.state;
         let standing = unchanged.then(|| self.standing::<M>(event));
         let largest = self.phase.largest[guard];
-        // A guard that was never anything but zero has no size.
+        // A guard that has always been zero has no size.
         let flatness = if largest == 0.0 { 0.0 } else { largest / event.slope };
         self.observer.on_switch(&SwitchEvent {
             s,
@@ -272,8 +274,7 @@ where
             self.controller.begin();
         }
         if let Some(standing) = standing {
-            // A step that does not move the time gets nowhere, and would find every guard where it
-            // stands.
+            // A step that does not move the time would find every guard where it was.
             if self.clock.until(self.end) <= f64::EPSILON * s.abs().max(s - self.zeno.start) {
                 self.clock.arrive(self.end);
                 return Ok(Some(Outcome::ReachedEnd));

@@ -38,7 +38,7 @@ impl<F: Fn(f64, &State<N>) -> State<N>, const N: usize> HybridSystem<N, 0> for S
 /// ```
 ///
 /// # Errors
-/// As [`run`].
+/// Those of [`run`].
 pub fn integrate<M: Method, O: Observer<(), N>, const N: usize>(
     method: M,
     field: impl Fn(f64, &State<N>) -> State<N>,

@@ -1,9 +1,9 @@
-//! Recording what a run finds, and its dense trajectory.
+//! Observers that record a run, and its trajectory as dense output.
 
 use crate::hybrid::{Grazing, Observer, SwitchEvent};
 use crate::method::{Dense, State};
 
-/// An accepted step with its continuous extension.
+/// An accepted step with its dense output.
 #[derive(Clone, Copy, Debug)]
 pub struct Segment<Mode, const N: usize> {
     /// The mode in which the step was taken.
@@ -12,7 +12,7 @@ pub struct Segment<Mode, const N: usize> {
     pub dense: Dense<N>,
 }
 
-/// The continuous extension of a whole run.
+/// The dense output of a whole run.
 #[derive(Clone, Debug)]
 pub struct Trajectory<Mode, const N: usize> {
     segments: Vec<Segment<Mode, N>>,
@@ -31,26 +31,28 @@ impl<Mode: Copy, const N: usize> Trajectory<Mode, N> {
         &self.segments
     }
 
-    /// Mode and state at `s`; at a switch, those that begin. `None` outside the run.
+    /// The mode and the state at `s`, or `None` if `s` is outside the run. At a switch they are
+    /// those after it.
     #[must_use]
     pub fn at(&self, s: f64) -> Option<(Mode, State<N>)> {
         let after = self.segments.partition_point(|segment| segment.dense.start() <= s);
         let segment = self.segments.get(after.checked_sub(1)?)?;
         let theta = (s - segment.dense.start()) / segment.dense.size();
-        // The end of the last step, with room for the rounding of its place.
+        // The place of the end of the last step may be rounded.
         (theta <= 1.0 + 1e-9).then(|| (segment.mode, segment.dense.at(theta.min(1.0))))
     }
 }
 
-/// Collects every switch, the one that ended the run included, for the cost of a copy each.
+/// Collects every switch, including the one that ends the run, at the cost of one copy each.
 impl<Mode: Copy, const N: usize> Observer<Mode, N> for Vec<SwitchEvent<Mode, N>> {
     fn on_switch(&mut self, event: &SwitchEvent<Mode, N>) {
         self.push(*event);
     }
 }
 
-/// Records switches, touches and the trajectory, which takes twice the stages; a `Vec` records
-/// switches alone.
+/// Records switches, touches and the trajectory.
+///
+/// The trajectory costs twice the stages. A `Vec` as the observer records only the switches.
 ///
 /// ```
 /// use stickslip_solver::{Dopri5, Options, Recorder, State, integrate};
@@ -65,11 +67,11 @@ impl<Mode: Copy, const N: usize> Observer<Mode, N> for Vec<SwitchEvent<Mode, N>>
 /// ```
 #[derive(Clone, Debug)]
 pub struct Recorder<Mode, const N: usize> {
-    /// Every switch, the one that ended the run included.
+    /// All switches, including the one that ended the run.
     pub switches: Vec<SwitchEvent<Mode, N>>,
-    /// Every touch.
+    /// All touches.
     pub grazings: Vec<Grazing<Mode>>,
-    /// The state everywhere.
+    /// The state at any time of the run.
     pub trajectory: Trajectory<Mode, N>,
 }
 

@@ -1,4 +1,4 @@
-//! Runs that step over switches, as codes without event location do: for comparison only.
+//! Runs without event location, as a standard of comparison.
 
 use crate::error::RunError;
 use crate::hybrid::{
@@ -8,14 +8,15 @@ use crate::method::{Method, Step, Trial};
 use crate::options::{Options, StepSize};
 use crate::runs::clock::Clock;
 
-/// Integrates `system` from `start` to `end` in steps of `step_size` that know nothing of switches:
-/// the guards are looked at where a step ends, and the first in the list that has fired by then
-/// switches there. At most `max_steps` are taken.
+/// Integrates `system` from `start` to `end` in steps of `step_size`, without locating switches.
 ///
-/// What fires and ceases to within a step is missed, and switches are late by up to a step, so that
-/// the order of the method is lost. [`run`](crate::run) is the same without these errors. A mode is
-/// entered as [`settled`](HybridSystem::settle), since the state at a late switch is not the one
-/// that the start of a phase is made for.
+/// The guards are evaluated only at the ends of steps. The first guard in the list that has fired
+/// during a step causes a switch at its end. At most `max_steps` steps are taken.
+///
+/// A guard that crosses zero and comes back within a step is missed. Switches are late by up to a
+/// step, so that the order of the method is lost. [`run`](crate::run) does not have these errors.
+/// Every mode is entered as if its first step was done ([`HybridSystem::settle`]), since the state
+/// at a late switch does not suit the start of a phase.
 ///
 /// ```
 /// use stickslip_solver::{
@@ -44,13 +45,14 @@ use crate::runs::clock::Clock;
 /// let start = Start { mode: (), s: 0.0, state: State::from([0.0, 10.0]) };
 /// let end = run_over_switches(Dop853, &Throw, start, 100.0, 0.01, 1_000_000, &mut ())?;
 /// assert_eq!(end.outcome, Outcome::EndedByGuard { guard: 0 });
-/// // It comes down at 20/9.81 = 2.0387, and is looked for every hundredth.
+/// // The ball comes down at 20/9.81 = 2.0387. The guard is evaluated every hundredth.
 /// assert!((end.s - 2.04).abs() < 1e-12);
 /// # Ok::<(), stickslip_solver::RunError>(())
 /// ```
 ///
 /// # Errors
-/// [`RunError`]: a step that is not finite and above 0, a right-hand side or guard that is not finite.
+/// A [`RunError`] reports a step size that is not finite and above 0, a span that does not lead
+/// forward, a state that is not finite, and a guard that is not a number.
 pub fn run_over_switches<M, S, O, const N: usize, const G: usize>(
     _method: M,
     system: &S,
@@ -144,7 +146,7 @@ where
     Ok(Run { outcome, s: clock.s, mode, state, statistics })
 }
 
-/// Whether a guard that stood at `before` has fired when it stands at `now`.
+/// Whether a guard has fired that changed from `before` to `now`.
 fn fires(direction: Direction, before: f64, now: f64) -> bool {
     let (falls, rises) = (before >= 0.0 && now < 0.0, before <= 0.0 && now > 0.0);
     match direction {
@@ -164,7 +166,7 @@ mod tests {
     use crate::runs::trajectory::Recorder;
     use crate::{Dop853, Dopri5, run};
 
-    /// y' = 1 with one guard, a function of s, that changes nothing.
+    /// y' = 1 with one guard, which is a function of s and changes nothing.
     struct Planted(Direction, fn(f64) -> f64);
 
     impl HybridSystem<1, 1> for Planted {
@@ -191,7 +193,7 @@ mod tests {
         Start { mode: (), s: 0.0, state: State::zeros() }
     }
 
-    /// Where a run from 0 to 1 in steps of 1/8 switches.
+    /// The places where a run from 0 to 1 in steps of 1/8 switches.
     fn switches(direction: Direction, guard: fn(f64) -> f64) -> Vec<f64> {
         let mut recorder = Recorder::default();
         let system = Planted(direction, guard);
@@ -226,14 +228,14 @@ mod tests {
     }
 
     #[test]
-    fn counts_its_work_and_says_what_is_wrong() {
+    fn work_is_counted_and_errors_are_reported() {
         let system = Planted(Direction::Falling, |s| 0.3 - s);
         let go = |h, steps, end| {
             run_over_switches(Dop853, &system, start(), end, h, steps, &mut ()).map(|run| {
                 (run.outcome, run.statistics.accepted, run.statistics.field, run.statistics.guards)
             })
         };
-        // Twelve right-hand sides a step, and one for the start.
+        // Each step takes twelve right-hand sides, and the start takes one.
         assert_eq!(go(0.125, 100, 1.0), Ok((Outcome::ReachedEnd, 8, 8 * 12, 8 + 2)));
         assert_eq!(go(0.125, 3, 1.0), Ok((Outcome::StepLimit, 3, 3 * 12 + 1, 3 + 2)));
         assert!(matches!(go(0.0, 9, 1.0), Err(RunError::Option(_))));

@@ -1,10 +1,10 @@
-//! Roots of polynomials in the Bernstein basis, decided by sign variation.
+//! Roots of polynomials in the Bernstein basis, isolated by sign changes.
 
 /// Calls `found` with every root in (0, 1) of Σ `coefficients[i]` Bᵢ(t), in ascending order.
 ///
-/// The number of sign changes in the coefficients bounds the number of roots; the interval is
-/// halved until it is 0 or 1 (Farouki and Rajan 1987). Roots closer together than 2⁻⁴⁰ are reported
-/// as one place, once for every part in which they cannot be told apart.
+/// The number of sign changes in the coefficients bounds the number of roots. The interval is
+/// halved until this number is 0 or 1 (Farouki and Rajan 1987). In intervals shorter than 2⁻⁴⁰
+/// roots are not told apart: `found` is called once, with the middle of the interval.
 pub(crate) fn each_root<const N: usize>(coefficients: &[f64; N], found: &mut impl FnMut(f64)) {
     isolate(coefficients, 0.0, 1.0, found);
 }
@@ -19,7 +19,7 @@ fn isolate<const N: usize>(c: &[f64; N], from: f64, to: f64, found: &mut impl Fn
             let (low, high) = halves(c);
             let middle = 0.5 * (from + to);
             isolate(&low, from, middle, found);
-            // A root at the middle is an end of both halves, inside neither.
+            // A root at the middle is an end of both halves and lies inside neither.
             if high[0] == 0.0 {
                 found(middle);
             }
@@ -40,9 +40,9 @@ fn sign_changes<const N: usize>(c: &[f64; N]) -> usize {
     changes
 }
 
-/// The one root in (0, 1), by Newton's method inside a bracket.
+/// The single root in (0, 1), by Newton's method inside a bracket.
 fn single_root<const N: usize>(c: &[f64; N]) -> f64 {
-    // The first coefficient that is not zero has the sign of the polynomial right of 0.
+    // The first coefficient that is not zero has the sign of the polynomial just above 0.
     let rising = c.iter().find(|&&value| value != 0.0).is_some_and(|&value| value < 0.0);
     let (mut low, mut high, mut t) = (0.0, 1.0, 0.5);
     for _ in 0..100 {
@@ -110,7 +110,7 @@ mod tests {
         };
         assert!((first - 0.5 + 1e-6).abs() < 1e-10 && (second - 0.5 - 1e-6).abs() < 1e-10);
         assert!(roots(&[0.25 + 1e-12, -0.25 + 1e-12, 0.25 + 1e-12]).is_empty());
-        // Linear, raised to degree 5: a single root.
+        // A linear function, raised to degree 5, has a single root.
         let [root] = roots(&[-0.3, -0.1, 0.1, 0.3, 0.5, 0.7])[..] else { panic!("one root") };
         assert!((root - 0.3).abs() < 1e-15);
     }

@@ -1,8 +1,8 @@
-//! What steps and searches ask of the cubic between two nodes.
+//! What traces need of the cubic between two nodes: places on it and crossings.
 
 use crate::cubic::Cubic;
 use crate::cubic::bernstein::each_root;
-use crate::family::Point;
+use crate::window::Point;
 
 impl Cubic {
     pub(crate) fn chord(&self) -> f64 {
@@ -13,13 +13,13 @@ impl Cubic {
         self.derivative(theta).normalize()
     }
 
-    /// Least and greatest coordinates of the four points whose hull holds the piece.
+    /// The least and the greatest coordinates of the four Bézier points, which enclose the cubic.
     pub(crate) fn bounds(&self) -> [Point; 2] {
         let [a, b, c, d] = self.points;
         [a.inf(&b).inf(&c).inf(&d), a.sup(&b).sup(&c).sup(&d)]
     }
 
-    /// The place θ in [0, 1] that is closest to `point`, and its distance; for pieces that turn by
+    /// The place θ in [0, 1] that is closest to `point`, and its distance. The cubic must turn by
     /// less than a right angle.
     pub(crate) fn closest(&self, point: &Point) -> (f64, f64) {
         let chord = self.points[3] - self.points[0];
@@ -38,8 +38,8 @@ impl Cubic {
         (theta, (point - self.at(theta)).norm())
     }
 
-    /// The places θ in [0, 1) where it crosses the segment from `a` to `b`, for pieces that turn by
-    /// less than a right angle, each with the place on the segment, from 0 to 1.
+    /// The places θ in [0, 1) where the cubic crosses the segment from `a` to `b`, each with the
+    /// place on the segment, from 0 to 1. The cubic must turn by less than a right angle.
     pub(crate) fn crossings(&self, a: &Point, b: &Point) -> Vec<[f64; 2]> {
         let along = b - a;
         let heights = self.points.map(|point| along.perp(&(point - a)));

@@ -1,9 +1,9 @@
-//! What can be wrong with curves and vertices.
+//! What can be wrong with curves and vertices: findings, and errors in the input.
 
-use crate::curve::{Curve, Vertex};
-use crate::family::{Point, Window};
+use crate::curve::{Curve, Node, Vertex};
+use crate::window::{Point, Window};
 
-/// Something inconsistent in curves that are each well formed.
+/// An inconsistency between curves and vertices, each of which is well formed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Finding<Label> {
     /// A curve does not end at its vertex.
@@ -13,17 +13,17 @@ pub enum Finding<Label> {
         curve: usize,
         /// The vertex.
         vertex: usize,
-        /// Their distance, above the tolerance.
+        /// The distance of the curve's end from the vertex, above the tolerance.
         distance: f64,
     },
-    /// A vertex is outside the window, or inside although its kind says that it is on the boundary.
-    #[error("vertex {vertex} is not on the window's boundary, or outside")]
+    /// A vertex is outside the window, or it is inside although its kind places it on the boundary.
+    #[error("vertex {vertex} is outside the window, or not on its boundary as its kind says")]
     VertexOffWindow {
         /// The vertex.
         vertex: usize,
     },
-    /// A curve ends where nothing else begins.
-    #[error("curve {curve} ends at vertex {vertex}, where nothing goes on")]
+    /// A curve ends inside the window at a vertex where no other curve ends.
+    #[error("curve {curve} ends at vertex {vertex}, where no other curve ends")]
     Dangling {
         /// The curve.
         curve: usize,
@@ -33,9 +33,9 @@ pub enum Finding<Label> {
     /// Two curves, or a curve and the window's boundary (`None`), cross where there is no vertex.
     #[error("curves {curves:?} cross without a vertex at ({}, {})", point.x, point.y)]
     Crossing {
-        /// The curves; twice the same if a curve crosses itself.
+        /// The curves; twice the same one if a curve crosses itself.
         curves: [Option<usize>; 2],
-        /// Where.
+        /// The place of the crossing.
         point: Point,
     },
     /// The curves around a region disagree about its label.
@@ -45,23 +45,23 @@ pub enum Finding<Label> {
     Labels {
         /// The region.
         region: usize,
-        /// A curve with the region's label, and one without.
+        /// A curve with the label of the region, and one with another label.
         curves: [usize; 2],
-        /// Their labels.
+        /// The labels of these curves.
         labels: [Label; 2],
-        /// A vertex at which they meet.
+        /// A vertex at which these curves meet.
         vertex: Option<usize>,
     },
-    /// A curve has the same region on both sides, or the outside on one.
-    #[error("curve {curve} has on its sides the regions {regions:?}")]
+    /// A curve has the same region on both sides, or the outside of the window on one side.
+    #[error("curve {curve} does not separate two regions; on its sides are {regions:?}")]
     SidesNotApart {
         /// The curve.
         curve: usize,
-        /// The regions on its left and right.
+        /// The regions on the left and on the right.
         regions: [Option<usize>; 2],
     },
-    /// No place was found in a region that is farther than the tolerance from its boundary.
-    #[error("region {region} is nowhere wider than the tolerance (clearance {clearance:e})")]
+    /// No point of a region was found that is farther than the tolerance from the boundary.
+    #[error("region {region} is not wider than the tolerance (clearance {clearance:e})")]
     Thin {
         /// The region.
         region: usize,
@@ -75,17 +75,18 @@ pub enum Finding<Label> {
 
 /// The counts of Euler's formula for plane graphs, V − E + F = 1 + C.
 ///
-/// Vertices, edges and components are counted in the graph, faces in the plane, so that the formula
-/// is a check.
+/// Vertices, edges and components are counted in the graph, and faces in the plane. The formula is
+/// therefore a check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Euler {
-    /// Vertices with an edge, corners of the window among them; one for every closed curve.
+    /// The number of vertices with an edge, including corners of the window, and one for every
+    /// closed curve.
     pub vertices: usize,
-    /// Curves, and parts of the window's boundary.
+    /// The number of curves and of parts of the window's boundary.
     pub edges: usize,
-    /// Regions, and the outside.
+    /// The number of regions, and one for the outside.
     pub faces: usize,
-    /// Connected components of the graph.
+    /// The number of connected components of the graph.
     pub components: usize,
 }
 
@@ -97,7 +98,7 @@ impl Euler {
     }
 }
 
-/// Input from which nothing can be made.
+/// Input from which no subdivision can be made.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum SubdivisionError {
     /// The window's corners are not finite, or not in order.
@@ -109,20 +110,22 @@ pub enum SubdivisionError {
         high: Point,
     },
     /// The tolerance is not a small positive number.
-    #[error("the tolerance {value} must be above 0 and below a thousandth of the window's sides")]
+    #[error(
+        "the tolerance is {value}, expected above 0 and below a thousandth of the window's sides"
+    )]
     Tolerance {
-        /// The value given.
+        /// The value that was given.
         value: f64,
     },
     /// A curve has too few nodes.
-    #[error("curve {curve} has {count} nodes; at least two are needed")]
+    #[error("curve {curve} has {count} nodes, expected at least two")]
     Nodes {
         /// The curve.
         curve: usize,
-        /// How many it has.
+        /// The number of its nodes.
         count: usize,
     },
-    /// All of a curve is one point.
+    /// A curve is a single point.
     #[error("curve {curve} has no length")]
     NoLength {
         /// The curve.
@@ -142,19 +145,20 @@ pub enum SubdivisionError {
         /// The vertex.
         vertex: usize,
     },
-    /// A curve ends at a vertex that there is not.
-    #[error("curve {curve} ends at vertex {vertex}; there are {count}")]
+    /// A curve ends at a vertex that does not exist.
+    #[error("curve {curve} ends at vertex {vertex}, but there are only {count} vertices")]
     End {
         /// The curve.
         curve: usize,
-        /// The index given.
+        /// The index that was given.
         vertex: usize,
-        /// How many vertices there are.
+        /// The number of vertices.
         count: usize,
     },
 }
 
 impl SubdivisionError {
+    /// Checks the input of a subdivision.
     pub(crate) fn check<Label, Margin>(
         window: &Window,
         curves: &[Curve<Label, Margin>],
@@ -176,9 +180,8 @@ impl SubdivisionError {
             if curve.nodes.len() < 2 {
                 return Err(Self::Nodes { curve: index, count: curve.nodes.len() });
             }
-            let good = |node: &crate::curve::Node| {
-                finite(&node.point) && (node.tangent.norm() - 1.0).abs() < 1e-6
-            };
+            let good =
+                |node: &Node| finite(&node.point) && (node.tangent.norm() - 1.0).abs() < 1e-6;
             if let Some(node) = curve.nodes.iter().position(|node| !good(node)) {
                 return Err(Self::Node { curve: index, node });
             }

@@ -1,15 +1,16 @@
-//! A point well inside every region.
+//! A sample point well inside every region.
 
-use crate::family::Point;
-use crate::regions::crossing::Edge;
-use crate::regions::faces::Faces;
-use crate::regions::slabs::Slabs;
-use crate::regions::subdivision::Region;
+use crate::regions::arrangement::faces::Faces;
+use crate::regions::arrangement::piece::Edge;
+use crate::regions::arrangement::slabs::Slabs;
+use crate::regions::region::Region;
+use crate::window::Point;
 
 /// Sets `sample` and `clearance` of every region.
 ///
-/// The best of some places halfway between two boundaries, moved as long as that leads farther from
-/// all of them: a local maximum of the distance to a thirtieth, not always the greatest.
+/// The search starts at the best of several places halfway between two boundaries. It moves as long
+/// as the distance from all boundaries grows. The result is a local maximum of the distance,
+/// accurate to a thirtieth, but not always the greatest one.
 pub(crate) fn place_samples<Label>(
     regions: &mut [Region<Label>],
     slabs: &Slabs,
@@ -56,12 +57,13 @@ pub(crate) fn place_samples<Label>(
     }
 }
 
+/// The directions in which a sample point is moved.
 const DIRECTIONS: [(f64, f64); 8] = {
     const D: f64 = std::f64::consts::FRAC_1_SQRT_2;
     [(1.0, 0.0), (D, D), (0.0, 1.0), (-D, D), (-1.0, 0.0), (-D, -D), (0.0, -1.0), (D, -D)]
 };
 
-/// For every region its parts in slabs: slab and position in it.
+/// The parts of every region, one in each gap of a slab: the slab, and the position of the gap.
 fn gaps(slabs: &Slabs, faces: &Faces) -> Vec<Vec<(usize, usize)>> {
     let mut gaps = vec![Vec::new(); faces.count];
     for slab in 0..slabs.count() {
@@ -74,7 +76,7 @@ fn gaps(slabs: &Slabs, faces: &Faces) -> Vec<Vec<(usize, usize)>> {
     gaps
 }
 
-/// Middles of parts evenly spread over all parts, and of the highest one.
+/// The middles of some parts, evenly spread over all of them, and of the highest part.
 fn candidates(slabs: &Slabs, gaps: &[(usize, usize)]) -> impl Iterator<Item = Point> {
     const SPREAD: usize = 48;
     let ends = |(slab, position): (usize, usize)| {

@@ -1,27 +1,28 @@
-//! Which region a point lies in, and how far the nearest boundary is.
+//! The region in which a point lies, and the distance of the nearest curve.
 
-use crate::family::Point;
-use crate::regions::piece::Piece;
+use crate::regions::arrangement::piece::Piece;
 use crate::regions::subdivision::Subdivision;
+use crate::window::Point;
 
-/// Where a point lies.
+/// Where a point lies in a subdivision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Location {
-    /// In a region, by index.
+    /// In the region with this index.
     Region(usize),
-    /// So close to a curve that the curve's tolerance leaves the side open.
+    /// So close to a curve that the accuracy of the curve leaves the side open.
     OnBoundary {
-        /// The nearest curve.
+        /// The index of the nearest curve.
         curve: usize,
-        /// Distance from it.
+        /// The distance from this curve.
         distance: f64,
     },
-    /// Outside the window, or not a number.
+    /// Outside the window; also if a coordinate is not a number.
     Outside,
 }
 
 impl<Label, Margin> Subdivision<Label, Margin> {
-    /// Where `point` lies: a binary search for the slab and one in it, both exact for the cubics.
+    /// Where `point` lies. Two binary searches, for the slab and in the slab, find the region
+    /// exactly for the interpolated curves.
     #[must_use]
     pub fn locate(&self, point: &Point) -> Location {
         if !self.window.contains(point) {
@@ -34,16 +35,16 @@ impl<Label, Margin> Subdivision<Label, Margin> {
         self.region_at(point).map_or(Location::Outside, Location::Region)
     }
 
-    /// The distance of `point` from the nearest curve in the direction of the second coordinate, up
-    /// or down; `None` if no curve has a point with its first coordinate, or if it is outside
-    /// the window.
+    /// The distance of `point` from the nearest curve along the second coordinate, up or down;
+    /// `None` if there is no curve above or below, or if the point is outside the window.
     #[must_use]
     pub fn vertical_distance(&self, point: &Point) -> Option<f64> {
         self.vertical_distances(point).into_iter().flatten().reduce(f64::min)
     }
 
-    /// The distances of `point` from the nearest curves below and above it; 0 for both on a curve,
-    /// `None` where there is none, and outside the window.
+    /// The distances of `point` from the nearest curves below and above it, along the second
+    /// coordinate. Both are 0 on a curve. A distance is `None` if there is no such curve, or if the
+    /// point is outside the window.
     #[must_use]
     pub fn vertical_distances(&self, point: &Point) -> [Option<f64>; 2] {
         if !self.window.contains(point) {
@@ -78,12 +79,12 @@ impl<Label, Margin> Subdivision<Label, Margin> {
         distances
     }
 
-    /// A place on a curve, `share` in [0, 1) of the way through its pieces, and the unit normal to
-    /// its left.
+    /// The place on a curve after the fraction `share` in [0, 1) of its pieces, and the unit normal
+    /// to the left there.
     pub(crate) fn place_on(&self, curve: usize, share: f64) -> (Point, Point) {
         let range = &self.edges[curve].pieces;
         let way = share * range.len() as f64;
-        // Truncation is meant, and `share` may be rounded up to 1.
+        // Truncation is intended, and `share` may have been rounded up to 1.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let index = (way as usize).min(range.len() - 1);
         let piece = &self.slabs.pieces[range.start + index];
@@ -95,7 +96,7 @@ impl<Label, Margin> Subdivision<Label, Margin> {
 
     fn region_at(&self, point: &Point) -> Option<usize> {
         let slab = self.slabs.at(point.x);
-        // The window's lower side is the first piece and belongs to the window.
+        // The lower side of the window is the first piece and belongs to the window.
         let above = self.slabs.below(slab, point).max(1);
         self.faces.of_gap(&self.slabs, slab, above - 1)
     }

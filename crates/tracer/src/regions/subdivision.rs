@@ -1,22 +1,24 @@
-//! Regions of the window, made from curves and vertices.
+//! The subdivision of a window into regions, made from curves and vertices.
 
 use crate::cubic::Cubic;
-use crate::curve::{Curve, Node, Vertex, VertexKind};
-use crate::family::{Point, Window};
-use crate::regions::crossing::{Crossings, Edge};
-use crate::regions::faces::Faces;
+use crate::curve::{Curve, Node, Vertex};
+use crate::regions::arrangement::crossing::Crossings;
+use crate::regions::arrangement::faces::Faces;
+use crate::regions::arrangement::piece::{Edge, Piece};
+use crate::regions::arrangement::slabs::Slabs;
+use crate::regions::arrangement::union::DisjointSets;
 use crate::regions::finding::{Euler, Finding, SubdivisionError};
+use crate::regions::frame::frame;
 use crate::regions::interior;
-use crate::regions::piece::Piece;
-use crate::regions::slabs::Slabs;
-use crate::regions::union::DisjointSets;
+use crate::regions::region::{Region, find_disagreements, regions};
+use crate::window::{Point, Window};
 
-/// A window of the plane parted by curves into regions.
+/// A window of the plane, divided by curves into regions.
 ///
 /// ```
 /// use stickslip_tracer::{Curve, Location, Node, Point, Subdivision, Vertex, VertexKind, Window};
 ///
-/// // A straight boundary from the window's lower side to its upper one.
+/// // A straight boundary from the lower side of the window to the upper side.
 /// let ends = [Point::new(0.5, 0.0), Point::new(0.5, 1.0)];
 /// let curve = Curve {
 ///     margin: "m",
@@ -49,43 +51,18 @@ pub struct Subdivision<Label, Margin> {
     pub(crate) faces: Faces,
 }
 
-/// A region: a connected part of the window that no curve enters.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Region<Label> {
-    /// The label that the curves around it have on this side, the most frequent one if they do not
-    /// agree; `None` if no curve bounds it.
-    pub label: Option<Label>,
-    /// Its area, without that of islands; exact for the interpolated curves.
-    pub area: f64,
-    /// A point well inside.
-    pub sample: Point,
-    /// Distance of `sample` from the region's boundary.
-    pub clearance: f64,
-    /// The curves that bound it, by index, with the side on which it lies.
-    pub boundary: Vec<(usize, Side)>,
-}
-
-/// A side of a curve, seen in its direction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Side {
-    /// To the left.
-    Left,
-    /// To the right.
-    Right,
-}
-
 impl<Label: Clone + Ord, Margin> Subdivision<Label, Margin> {
-    /// The regions that `curves` make of `window`.
+    /// The regions into which `curves` divide `window`.
     ///
-    /// `tolerance` is the distance within which curves, which are interpolated, and vertices are
-    /// known; vertices within it of the window's boundary lie on the boundary. A closed curve
-    /// may repeat its first node as its last. What is inconsistent becomes a [`Finding`];
-    /// without findings the regions are those of the curves. Time and memory grow as the number of
+    /// `tolerance` is the accuracy of the curves, which are interpolated, and of the vertices. A
+    /// vertex that is closer than this to the window's boundary lies on the boundary. A closed
+    /// curve may repeat its first node as its last node. Inconsistencies become [`Finding`]s.
+    /// Without findings the regions are those of the curves. Time and memory grow as the number of
     /// cubic pieces times the number of curves over one abscissa.
     ///
     /// # Errors
-    /// Input that has no meaning: numbers that are not finite, indices out of range, a window
-    /// without area.
+    /// The input has no meaning: a number is not finite, an index is out of range, or the window
+    /// has no area.
     pub fn new(
         window: Window,
         curves: Vec<Curve<Label, Margin>>,
@@ -95,7 +72,7 @@ impl<Label: Clone + Ord, Margin> Subdivision<Label, Margin> {
         SubdivisionError::check(&window, &curves, &vertices, tolerance)?;
         let mut findings = Vec::new();
         let mut points: Vec<Point> = vertices.iter().map(|vertex| vertex.point).collect();
-        let around = outline(&window, &vertices, tolerance, &mut points, &mut findings);
+        let around = frame(&window, &vertices, tolerance, &mut points, &mut findings);
         let mut pieces = Vec::new();
         let mut edges = Vec::with_capacity(curves.len() + around.len());
         for (index, curve) in curves.iter().enumerate() {
@@ -151,6 +128,7 @@ impl<Label: Clone + Ord, Margin> Subdivision<Label, Margin> {
         Ok(plane)
     }
 
+    /// Adds the findings about ends, sides and labels of curves, and about regions.
     fn find_inconsistencies(&mut self) {
         let mut degrees = vec![0_usize; self.vertices.len() + 4];
         for end in self.edges.iter().filter_map(|edge| edge.ends).flatten() {
@@ -184,7 +162,7 @@ impl<Label, Margin> Subdivision<Label, Margin> {
         &self.window
     }
 
-    /// The distance within which the curves are known.
+    /// The accuracy of curves and vertices.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         self.tolerance
@@ -208,14 +186,14 @@ impl<Label, Margin> Subdivision<Label, Margin> {
         &self.regions
     }
 
-    /// The regions on the left and on the right of a curve; `None` is the outside, which only a
-    /// curve with findings has.
+    /// The regions on the left and on the right of a curve; `None` is the outside of the window.
+    /// Only a curve with findings has the outside on one of its sides.
     #[must_use]
     pub fn regions_beside(&self, curve: usize) -> [Option<usize>; 2] {
         self.faces.of_edges[curve]
     }
 
-    /// What is inconsistent; empty if nothing is.
+    /// The inconsistencies of curves and vertices.
     #[must_use]
     pub fn findings(&self) -> &[Finding<Label>] {
         &self.findings
@@ -227,45 +205,11 @@ impl<Label, Margin> Subdivision<Label, Margin> {
         self.euler
     }
 
-    /// Curves and vertices back, to add to them.
+    /// The curves and the vertices, without the regions.
     #[must_use]
     pub fn into_parts(self) -> (Vec<Curve<Label, Margin>>, Vec<Vertex<Margin>>) {
         (self.curves, self.vertices)
     }
-}
-
-/// The vertices around the window, counterclockwise; `points` gets them moved onto it, and the
-/// corners that were no vertices.
-fn outline<Label, Margin>(
-    window: &Window,
-    vertices: &[Vertex<Margin>],
-    tolerance: f64,
-    points: &mut Vec<Point>,
-    findings: &mut Vec<Finding<Label>>,
-) -> Vec<usize> {
-    let mut around = Vec::new();
-    for (index, vertex) in vertices.iter().enumerate() {
-        if let Some(point) = window.onto_boundary(&vertex.point, tolerance) {
-            points[index] = point;
-            around.push(index);
-        } else if !window.contains(&vertex.point)
-            || matches!(vertex.kind, VertexKind::WindowEdge | VertexKind::WindowCorner)
-        {
-            findings.push(Finding::VertexOffWindow { vertex: index });
-        }
-    }
-    for corner in window.corners() {
-        if !around.iter().any(|&vertex| points[vertex] == corner) {
-            around.push(points.len());
-        }
-        // Also where it is a vertex already, so that the number of points is fixed; such a one has
-        // no edges.
-        points.push(corner);
-    }
-    around.sort_by(|&i, &j| {
-        window.along_boundary(&points[i]).total_cmp(&window.along_boundary(&points[j]))
-    });
-    around
 }
 
 /// The cubics of a curve, with its ends at its vertices.
@@ -292,84 +236,7 @@ fn cubics<Label, Margin>(
     nodes.windows(2).map(|pair: &[Node]| Cubic::between(&pair[0], &pair[1])).collect()
 }
 
-fn regions<Label: Clone + Ord, Margin>(
-    curves: &[Curve<Label, Margin>],
-    slabs: &Slabs,
-    edges: &[Edge],
-    faces: &Faces,
-    origin: &Point,
-) -> Vec<Region<Label>> {
-    let empty =
-        Region { label: None, area: 0.0, sample: *origin, clearance: 0.0, boundary: Vec::new() };
-    let mut regions = vec![empty; faces.count];
-    for (index, edge) in edges.iter().enumerate() {
-        let area: f64 = slabs.pieces[edge.pieces.clone()]
-            .iter()
-            .map(|piece| if piece.forward { 1.0 } else { -1.0 } * piece.cubic.area(origin))
-            .sum();
-        let sides = [(Side::Left, area), (Side::Right, -area)];
-        for (face, (side, area)) in faces.of_edges[index].into_iter().zip(sides) {
-            let Some(face) = face else { continue };
-            regions[face].area += area;
-            if index < curves.len() {
-                regions[face].boundary.push((index, side));
-            }
-        }
-    }
-    for region in &mut regions {
-        region.label = most_frequent(region.boundary.iter().map(|&side| label(curves, side)));
-    }
-    regions
-}
-
-fn label<Label, Margin>(curves: &[Curve<Label, Margin>], (curve, side): (usize, Side)) -> &Label {
-    &curves[curve].sides[usize::from(side == Side::Right)]
-}
-
-/// The least of the most frequent labels.
-fn most_frequent<'a, Label: Clone + Ord + 'a>(
-    labels: impl Iterator<Item = &'a Label>,
-) -> Option<Label> {
-    let mut counts = std::collections::BTreeMap::new();
-    for label in labels {
-        *counts.entry(label).or_insert(0_usize) += 1;
-    }
-    let most = counts.values().copied().max()?;
-    counts.into_iter().find(|&(_, count)| count == most).map(|(label, _)| label.clone())
-}
-
-/// Every curve that does not have the region's label on this side, beside one that has it, a
-/// neighbour at a vertex if there is one.
-fn find_disagreements<Label: Clone + Ord, Margin>(
-    index: usize,
-    region: &Region<Label>,
-    curves: &[Curve<Label, Margin>],
-    findings: &mut Vec<Finding<Label>>,
-) {
-    let Some(common) = &region.label else { return };
-    let (agreeing, others): (Vec<_>, Vec<_>) =
-        region.boundary.iter().partition(|&&side| label(curves, side) == common);
-    for &&other in &others {
-        let ends = |curve: usize| curves[curve].ends.into_iter().flatten();
-        let neighbour = agreeing.iter().find_map(|&&(curve, _)| {
-            let vertex = ends(other.0).find(|&vertex| ends(curve).any(|end| end == vertex))?;
-            Some((curve, Some(vertex)))
-        });
-        // The label came from a curve, so that one at least agrees.
-        let Some((curve, vertex)) = neighbour.or(agreeing.first().map(|side| (side.0, None)))
-        else {
-            continue;
-        };
-        findings.push(Finding::Labels {
-            region: index,
-            curves: [curve, other.0],
-            labels: [common.clone(), label(curves, other).clone()],
-            vertex,
-        });
-    }
-}
-
-/// A closed curve counts as an edge with one vertex.
+/// The counts of Euler's formula. A closed curve counts as an edge with one vertex.
 fn euler(edges: &[Edge], points: usize, regions: usize) -> Euler {
     let closed = edges.iter().filter(|edge| edge.ends.is_none()).count();
     let mut sets = DisjointSets::new(points);

@@ -1,23 +1,33 @@
-//! Runs against a subdivision: does the label of a region hold where it is tried?
+//! Verification: do runs at random points have the labels of their regions?
+//!
+//! `report` holds what a verification finds, `judge` compares the labels.
 
-use crate::family::{Family, Point};
-use crate::regions::finding::{Euler, SubdivisionError};
+mod judge;
+pub mod report;
+
+use crate::family::Family;
 use crate::regions::locate::Location;
-use crate::regions::subdivision::{Side, Subdivision};
+use crate::regions::region::Side;
+use crate::regions::subdivision::Subdivision;
+use crate::regions::verify::judge::Judge;
+use crate::regions::verify::report::{
+    Checkpoint, Origin, Reason, Unverified, Verification, VerifyError,
+};
+use crate::window::Point;
 
-/// Where labels are tried, besides the sample point of every region.
+/// Where labels are computed, besides the sample point of every region.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VerifyOptions {
-    /// Points spread evenly at random over the window.
+    /// The number of random points, spread evenly over the window.
     pub random_points: usize,
-    /// Points on each side of every curve, at distances between `nearest` and `farthest` whose
-    /// logarithms are spread evenly.
+    /// The number of random points on each side of every curve. The logarithms of their distances
+    /// from the curve are spread evenly between those of `nearest` and `farthest`.
     pub near_points: usize,
-    /// Least distance from the curve.
+    /// The least distance from the curve.
     pub nearest: f64,
-    /// Greatest distance from the curve.
+    /// The greatest distance from the curve.
     pub farthest: f64,
-    /// The same seed gives the same points.
+    /// The seed of the random numbers. The same seed gives the same points.
     pub seed: u64,
 }
 
@@ -27,144 +37,12 @@ impl Default for VerifyOptions {
     }
 }
 
-/// A place at which a label was tried.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Checkpoint {
-    /// Where.
-    pub point: Point,
-    /// Why there.
-    pub origin: Origin,
-}
-
-/// Why a label was tried at a place.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Origin {
-    /// The sample point of a region.
-    Sample,
-    /// A random point of the window.
-    Random,
-    /// Beside a curve.
-    Near {
-        /// The curve.
-        curve: usize,
-        /// Which side of it.
-        side: Side,
-        /// Distance from it.
-        distance: f64,
-    },
-}
-
-/// A place at which the label is not that of the region.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Mismatch<Label> {
-    /// Where.
-    pub checkpoint: Checkpoint,
-    /// The region by location.
-    pub region: usize,
-    /// Its label.
-    pub expected: Label,
-    /// The label of the run.
-    pub found: Label,
-    /// The nearest place of the same region at which the label was as expected. A boundary that is
-    /// missing, or one that is misplaced, leads between both points: a bracket to start
-    /// tracing from.
-    pub agreeing: Option<Point>,
-}
-
-/// A place about which nothing is known.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Unverified<Error> {
-    /// Where.
-    pub checkpoint: Checkpoint,
-    /// Why.
-    pub reason: Reason<Error>,
-}
-
-/// Why nothing is known about a place.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Reason<Error> {
-    /// It is within the tolerance of a curve, or in no region.
-    Location(Location),
-    /// The region has no label: no curve bounds it, and the run at its sample point failed.
-    NoLabel {
-        /// The region.
-        region: usize,
-    },
-    /// The run failed.
-    Run(Error),
-}
-
-/// What a verification found.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Verification<Label, Error> {
-    /// The counts of Euler's formula.
-    pub euler: Euler,
-    /// How many findings the subdivision has.
-    pub findings: usize,
-    /// How many places were tried in each region.
-    pub tried: Vec<usize>,
-    /// Where the label was another one, in the order in which places were tried.
-    pub mismatches: Vec<Mismatch<Label>>,
-    /// Places about which nothing is known.
-    pub unverified: Vec<Unverified<Error>>,
-    /// Curves beside which no label was tried on one side at least.
-    pub untried_curves: Vec<usize>,
-    /// Share of the window's area in regions that were tried without a mismatch.
-    pub tried_area: f64,
-    /// With 95 % confidence, the share of the window's area that has another label is below this:
-    /// the upper limit of Clopper and Pearson (1934), from the random points.
-    pub wrong_area_bound: f64,
-}
-
-impl<Label, Error> Verification<Label, Error> {
-    /// Pairs of places in one region by location, of which one has the label of the region and the
-    /// other has not: between them lies a boundary for
-    /// [`Tracer::look_between`](crate::Tracer::look_between) to find.
-    #[must_use]
-    pub fn brackets(&self) -> Vec<[Point; 2]> {
-        let bracket = |mismatch: &Mismatch<Label>| {
-            mismatch.agreeing.map(|agreeing| [agreeing, mismatch.checkpoint.point])
-        };
-        self.mismatches.iter().filter_map(bracket).collect()
-    }
-
-    /// Whether nothing speaks against the subdivision.
-    #[must_use]
-    pub fn agrees(&self) -> bool {
-        self.findings == 0 && self.euler.holds() && self.mismatches.is_empty()
-    }
-}
-
-/// Verification cannot be done.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum VerifyError {
-    /// The curves make no subdivision.
-    #[error(transparent)]
-    Subdivision(#[from] SubdivisionError),
-    /// The distances from curves are not in order.
-    #[error(
-        "distances from {nearest:e} to {farthest:e}: both must be finite and above 0, the first not the greater"
-    )]
-    Distances {
-        /// Least distance.
-        nearest: f64,
-        /// Greatest distance.
-        farthest: f64,
-    },
-    /// Not one label a point came back.
-    #[error("{points} points have {labels} labels")]
-    Labels {
-        /// How many points.
-        points: usize,
-        /// How many labels.
-        labels: usize,
-    },
-}
-
-/// Tries the labels of `plane` against runs of `family`, one after the other.
+/// Compares the labels of `plane` with runs of `family`, one after the other.
+///
+/// A run that fails is not an error of the verification, but [`Unverified`].
 ///
 /// # Errors
-/// Distances that are not in order. A run that fails is no error but [`Unverified`].
+/// The distances of `options` are not in order.
 pub fn verify<F: Family>(
     plane: &Subdivision<F::Label, F::Margin>,
     family: &F,
@@ -173,11 +51,12 @@ pub fn verify<F: Family>(
     verify_with(plane, options, |points| points.iter().map(|point| family.label(point)).collect())
 }
 
-/// As [`verify`], with all labels asked for at once, so that runs can be parallel: `labels` returns
-/// them in the order of the points.
+/// Compares the labels of `plane` with those that `labels` returns, in the order of the points.
+///
+/// Unlike [`verify`] it asks for all labels at once, so that runs can be parallel.
 ///
 /// # Errors
-/// Distances that are not in order, or another number of labels than of points.
+/// The distances of `options` are not in order, or the numbers of labels and of points differ.
 pub fn verify_with<Label: Clone + Ord, Margin, Error>(
     plane: &Subdivision<Label, Margin>,
     options: &VerifyOptions,
@@ -192,8 +71,7 @@ pub fn verify_with<Label: Clone + Ord, Margin, Error>(
     for checkpoint in checkpoints(plane, options) {
         match plane.locate(&checkpoint.point) {
             Location::Region(region) => places.push((checkpoint, region)),
-            // A place beside a curve at the window's boundary may be outside: there is nothing to
-            // try.
+            // A point beside a curve near the window's boundary may lie outside and is left out.
             Location::Outside if !plane.window().contains(&checkpoint.point) => {}
             location => {
                 unverified.push(Unverified { checkpoint, reason: Reason::Location(location) });
@@ -212,7 +90,8 @@ pub fn verify_with<Label: Clone + Ord, Margin, Error>(
     Ok(judge.finish())
 }
 
-/// The sample points first, so that a region's label is known before it is needed.
+/// The points at which labels are computed. Sample points come first, so that the label of a region
+/// is known before it is needed.
 fn checkpoints<Label: Clone + Ord, Margin>(
     plane: &Subdivision<Label, Margin>,
     options: &VerifyOptions,
@@ -240,144 +119,4 @@ fn checkpoints<Label: Clone + Ord, Margin>(
         }
     }
     checkpoints
-}
-
-struct Judge<'a, Label, Margin, Error> {
-    plane: &'a Subdivision<Label, Margin>,
-    expected: Vec<Option<Label>>,
-    tried: Vec<usize>,
-    wrong: Vec<bool>,
-    agreeing: Vec<Vec<Point>>,
-    mismatches: Vec<Mismatch<Label>>,
-    unverified: Vec<Unverified<Error>>,
-    /// Of every curve, whether a label was tried on the left and on the right.
-    beside: Vec<[bool; 2]>,
-    random: u64,
-    wrong_random: u64,
-}
-
-impl<'a, Label: Clone + Ord, Margin, Error> Judge<'a, Label, Margin, Error> {
-    fn new(plane: &'a Subdivision<Label, Margin>, unverified: Vec<Unverified<Error>>) -> Self {
-        let count = plane.regions().len();
-        Self {
-            plane,
-            expected: plane.regions().iter().map(|region| region.label.clone()).collect(),
-            tried: vec![0; count],
-            wrong: vec![false; count],
-            agreeing: vec![Vec::new(); count],
-            mismatches: Vec::new(),
-            unverified,
-            beside: vec![[false; 2]; plane.curves().len()],
-            random: 0,
-            wrong_random: 0,
-        }
-    }
-
-    fn consider(&mut self, checkpoint: Checkpoint, region: usize, label: Result<Label, Error>) {
-        let found = match label {
-            Ok(found) => found,
-            Err(error) => {
-                self.unverified.push(Unverified { checkpoint, reason: Reason::Run(error) });
-                return;
-            }
-        };
-        if checkpoint.origin == Origin::Sample && self.expected[region].is_none() {
-            self.expected[region] = Some(found.clone());
-        }
-        let Some(expected) = self.expected[region].clone() else {
-            self.unverified.push(Unverified { checkpoint, reason: Reason::NoLabel { region } });
-            return;
-        };
-        let right = found == expected;
-        self.tried[region] += 1;
-        match checkpoint.origin {
-            Origin::Sample => {}
-            Origin::Random => {
-                self.random += 1;
-                self.wrong_random += u64::from(!right);
-            }
-            Origin::Near { curve, side, .. } => {
-                self.beside[curve][usize::from(side == Side::Right)] = true;
-            }
-        }
-        if right {
-            self.agreeing[region].push(checkpoint.point);
-        } else {
-            self.wrong[region] = true;
-            self.mismatches.push(Mismatch { checkpoint, region, expected, found, agreeing: None });
-        }
-    }
-
-    fn finish(mut self) -> Verification<Label, Error> {
-        for mismatch in &mut self.mismatches {
-            let distance = |point: &Point| (point - mismatch.checkpoint.point).norm_squared();
-            mismatch.agreeing = self.agreeing[mismatch.region]
-                .iter()
-                .copied()
-                .min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        }
-        let tried_area: f64 = self
-            .plane
-            .regions()
-            .iter()
-            .zip(self.tried.iter().zip(&self.wrong))
-            .filter(|&(_, (&tried, &wrong))| tried > 0 && !wrong)
-            .map(|(region, _)| region.area)
-            .sum();
-        Verification {
-            euler: self.plane.euler(),
-            findings: self.plane.findings().len(),
-            tried: self.tried,
-            mismatches: self.mismatches,
-            unverified: self.unverified,
-            untried_curves: (0..self.beside.len())
-                .filter(|&curve| self.beside[curve].contains(&false))
-                .collect(),
-            tried_area: tried_area / self.plane.window().area(),
-            wrong_area_bound: upper_limit(self.random, self.wrong_random),
-        }
-    }
-}
-
-/// The probability p for which `wrong` or fewer of `tried` have the probability 5 %.
-fn upper_limit(tried: u64, wrong: u64) -> f64 {
-    if wrong >= tried {
-        return 1.0;
-    }
-    let (n, m) = (tried as f64, wrong as f64);
-    let choose: f64 = (0..wrong).map(|i| ((n - i as f64) / (i as f64 + 1.0)).ln()).sum();
-    let at_most = |p: f64| {
-        let mut term = (choose + m * p.ln() + (n - m) * (-p).ln_1p()).exp();
-        let mut sum = term;
-        for k in (0..wrong).rev() {
-            term *= (k as f64 + 1.0) * (1.0 - p) / ((n - k as f64) * p);
-            sum += term;
-        }
-        sum
-    };
-    let (mut low, mut high) = (m / n, 1.0);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if at_most(middle) > 0.05 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    high
-}
-
-#[cfg(test)]
-mod tests {
-    use super::upper_limit;
-
-    #[test]
-    fn limits_are_those_of_tables() {
-        assert_eq!(upper_limit(0, 0), 1.0);
-        assert!((upper_limit(100, 0) - (1.0 - 0.05_f64.powf(0.01))).abs() < 1e-12);
-        // One-sided 95 % limits: 1 of 10, and n − 1 of n, for which 1 − pⁿ = 0.05.
-        assert!((upper_limit(10, 1) - 0.394163).abs() < 1e-6);
-        assert!((upper_limit(10, 9) - 0.95_f64.powf(0.1)).abs() < 1e-12);
-        assert!(upper_limit(100_000, 5_000) < 0.052);
-    }
 }

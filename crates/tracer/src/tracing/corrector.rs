@@ -1,11 +1,12 @@
-//! From a guess to the zero of a margin, of two margins, or of a margin's gradient.
+//! From a guess to a zero of a margin, of two margins, or of the gradient of a margin.
 
 use nalgebra::{Matrix2, Vector2};
 
-use crate::family::{Family, Point};
+use crate::family::Family;
 use crate::tracing::runs::{Runs, Traced};
+use crate::window::Point;
 
-/// A place on a boundary, with the margins evaluated to get there.
+/// A place on a boundary, with the number of evaluations of the margin on the way.
 pub(crate) struct Corrected {
     pub point: Point,
     pub evaluations: usize,
@@ -14,9 +15,9 @@ pub(crate) struct Corrected {
 /// The zero of a margin on the line through `guess` along `gradient`, at most `reach` away, by the
 /// secant method.
 ///
-/// `gradient` is that of a place nearby; its length is the slope to start with. The last update is
-/// not evaluated again: it leaves an error of the update times the relative error of the slope,
-/// which is that of the update before or, of a secant, less.
+/// `gradient` is the gradient at a place nearby, and its length is the first slope. The margin is
+/// not evaluated after the last update. The remaining error is this update times the relative error
+/// of the slope, which is at most the contraction of the update before.
 pub(crate) fn correct<F: Family>(
     runs: &Runs<'_, F>,
     margin: &F::Margin,
@@ -44,7 +45,7 @@ pub(crate) fn correct<F: Family>(
         }
         let Some(next_value) = runs.margin(&next, margin)? else { return Ok(None) };
         contraction = (next_value / value).abs();
-        // Below that the difference of two margins is noise, and the slope at hand is better.
+        // A smaller difference of two values is noise, and the slope so far is better.
         let fall = next_value - value;
         if fall.abs() > 1e3 * runs.options.noise {
             let secant = fall / update;
@@ -60,11 +61,12 @@ pub(crate) fn correct<F: Family>(
     Ok(None)
 }
 
-/// The place near `guess` where two margins vanish together, by Newton's method, and how far off it
-/// may be, which is much where they all but touch; `direction` is that of differences.
+/// The place near `guess` where two margins vanish together, by Newton's method, and its largest
+/// error. The error is large if the boundaries almost touch. Gradients are differences along
+/// `direction` and across it.
 ///
-/// Where a margin stops to exist at the other's boundary, the place is approached from the side on
-/// which both do.
+/// If one margin ceases to exist at the boundary of the other, the place is approached from the
+/// side on which both exist.
 pub(crate) fn crossing<F: Family>(
     runs: &Runs<'_, F>,
     margins: [&F::Margin; 2],
@@ -73,10 +75,10 @@ pub(crate) fn crossing<F: Family>(
     radius: f64,
     reach: f64,
 ) -> Traced<Option<(Point, f64)>, F> {
-    /// An update that leads where a margin does not exist is trusted if it is less than this part
-    /// of the window: what it leaves is of second order.
+    /// An update to a place without one of the margins is trusted if it is shorter than this
+    /// fraction of the window's shorter extent. Its error is of second order.
     const LAST: f64 = 1e-7;
-    /// The least sine of the angle between two boundaries with which it is.
+    /// The least sine of the angle between the two boundaries for which such an update is trusted.
     const TRANSVERSAL: f64 = 0.03;
     let mut point = *guess;
     let mut update = Point::zeros();
@@ -123,7 +125,7 @@ pub(crate) fn crossing<F: Family>(
         if size <= runs.options.tolerance || (size <= 10.0 * resolution && size >= 0.5 * last) {
             return Ok(Some((point, 10.0 * resolution)));
         }
-        // Gradients serve as long as the updates shrink fast.
+        // The gradients are used again as long as the updates shrink fast.
         if size > 0.01 * last {
             inverse = None;
         }
@@ -132,9 +134,10 @@ pub(crate) fn crossing<F: Family>(
     Ok(None)
 }
 
-/// The place near `guess` where the gradient of a margin vanishes, by Newton's method with
-/// differences whose step follows the updates, so that a singular second derivative only makes it
-/// slow: at a cusp each round halves the distance.
+/// The place near `guess` where the gradient of a margin vanishes, by Newton's method.
+///
+/// The step of the differences follows the updates. So a singular second derivative only slows the
+/// method down: at a cusp each round halves the distance.
 pub(crate) fn stationary<F: Family>(
     runs: &Runs<'_, F>,
     margin: &F::Margin,
@@ -164,7 +167,7 @@ pub(crate) fn stationary<F: Family>(
     Ok(None)
 }
 
-/// Gradient and second derivatives of a margin by differences with step `h`.
+/// The gradient and the second derivatives of a margin by differences with step `h`.
 pub(crate) fn derivatives<F: Family>(
     runs: &Runs<'_, F>,
     margin: &F::Margin,

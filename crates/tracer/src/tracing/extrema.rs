@@ -1,28 +1,29 @@
-//! Where boundaries are extremal in a parameter.
+//! The places where boundaries are extremal in a coordinate.
 
 use crate::cubic::Cubic;
 use crate::curve::{Curve, Node};
-use crate::family::{Family, Point};
+use crate::family::Family;
 use crate::tracing::corrector::correct;
 use crate::tracing::runs::{Runs, Traced};
 use crate::tracing::seed::identify;
+use crate::window::Point;
 
-/// A place between the ends of a curve where one coordinate is greatest or least along it.
+/// A place between the ends of a curve where a coordinate has a maximum or minimum along the curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extremum {
-    /// The curve, by its index in the network.
+    /// The index of the curve in the network.
     pub curve: usize,
-    /// The coordinate, 0 or 1: the curve's tangent has no component along its axis.
+    /// The coordinate, 0 or 1. The tangent of the curve has no component along its axis.
     pub axis: usize,
-    /// The place, on the boundary.
+    /// The place, which lies on the boundary.
     pub point: Point,
 }
 
-/// Components of unit tangents up to this are none: those of a boundary that is straight along the
-/// other axis are rounding.
+/// Components of unit tangents up to this count as zero. On a boundary that is straight along the
+/// other axis they are rounding errors.
 const STRAIGHT: f64 = 1e-6;
 
-/// The extrema of `curves`, in their order and from start to end.
+/// The extrema of `curves`, in the order of the curves and from start to end.
 pub(crate) fn extrema<F: Family>(
     runs: &Runs<'_, F>,
     curves: &[Curve<F::Label, F::Margin>],
@@ -46,8 +47,8 @@ pub(crate) fn extrema<F: Family>(
     Ok(found)
 }
 
-/// Those of the successive extrema of a curve that are higher or lower than their neighbours, or
-/// the curve's ends, by more than `known`.
+/// The successive extrema of a curve that differ from their neighbours, or from the ends of the
+/// curve, by more than `known` in the coordinate.
 fn pronounced<Label, Margin>(
     curve: &Curve<Label, Margin>,
     axis: usize,
@@ -74,7 +75,7 @@ fn pronounced<Label, Margin>(
 
 /// Successive nodes of a curve between which a component of the tangent changes its sign.
 struct Bracket {
-    /// Index of the first one.
+    /// The index of the first node.
     first: usize,
     nodes: Vec<Node>,
 }
@@ -102,7 +103,7 @@ fn brackets<Label, Margin>(curve: &Curve<Label, Margin>, axis: usize) -> Vec<Bra
 }
 
 impl Bracket {
-    /// The cubic at a place that counts pieces, and the parameter on it.
+    /// The cubic at a place, and the parameter on it. Places count the pieces of the bracket.
     fn piece(&self, place: f64) -> (Cubic, f64) {
         let pieces = self.nodes.windows(2);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
@@ -111,10 +112,12 @@ impl Bracket {
     }
 }
 
-/// The extremum in a bracket, with its place along the curve counted in pieces: where the component
-/// of the tangent vanishes on the boundary itself, by the method of Illinois (Dowell and Jarratt,
-/// 1971). `None` if the component does not vanish but jumps, as at the end of a curve whose tangent
-/// there is not known, or if the boundary cannot be followed.
+/// The extremum in a bracket, with its place along the curve counted in pieces.
+///
+/// There the component of the tangent vanishes on the boundary itself. It is solved for by the
+/// Illinois method (Dowell and Jarratt, 1971). `None` if the component does not vanish but jumps,
+/// for instance at the end of a curve whose tangent there is not known, or if the boundary cannot
+/// be followed.
 fn solve<F: Family>(
     runs: &Runs<'_, F>,
     curve: &Curve<F::Label, F::Margin>,
@@ -156,8 +159,8 @@ fn solve<F: Family>(
     Ok(None)
 }
 
-/// The curve's margin as it is called in the middle of a bracket, by the free runs beside it, or as
-/// far as it moves along.
+/// The margin of a curve under the name that it has in the middle of a bracket: the name in the
+/// free runs beside it, or the name after a move there.
 fn margin<F: Family>(
     runs: &Runs<'_, F>,
     curve: &Curve<F::Label, F::Margin>,
@@ -174,7 +177,7 @@ fn margin<F: Family>(
     }
 }
 
-/// The place of the boundary beside that of a cubic, with its tangent in the cubic's direction.
+/// The node on the boundary next to a place of a cubic, with its tangent in the cubic's direction.
 fn on_boundary<F: Family>(
     runs: &Runs<'_, F>,
     margin: &F::Margin,

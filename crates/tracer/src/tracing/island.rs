@@ -1,19 +1,19 @@
-//! Closed boundaries between the places of a grid: minima of margins that dip below zero.
+//! Closed boundaries between the places of a grid: margins whose minima are below zero.
 
 use nalgebra::Matrix2;
 
-use crate::family::{Family, Point};
+use crate::family::{Family, FreeRun};
 use crate::tracing::corrector::derivatives;
-use crate::tracing::runs::{Runs, Traced};
-use crate::tracing::seed::GridPlace;
+use crate::tracing::runs::{Runs, Sampled, Traced};
+use crate::window::Point;
 
-/// Places near those of the grid where a margin has another sign than around: one for each least
-/// value among neighbours whose minimum lies on the other side of zero.
+/// Segments from places of the grid to places nearby where a margin has the other sign.
 ///
-/// `grid` holds columns of `rows` places each, `cell` apart.
+/// A search starts from each place where a margin is closer to zero than at the neighbours. `grid`
+/// holds columns of `rows` places each; `cell` is the distance between neighbours.
 pub(crate) fn islands<F: Family>(
     runs: &Runs<'_, F>,
-    grid: &[GridPlace<F>],
+    grid: &[Sampled<F>],
     rows: usize,
     cell: &Point,
 ) -> Traced<Vec<[Point; 2]>, F> {
@@ -28,10 +28,10 @@ pub(crate) fn islands<F: Family>(
     Ok(found)
 }
 
-/// Whether no neighbour on the grid has the same margin closer to zero; one that has it on zero's
-/// other side has a boundary between, which needs no search.
+/// Whether no neighbour on the grid has the same margin closer to zero or with the other sign. In
+/// the latter case a boundary passes between the two places, and no search is needed.
 fn is_least<L, M: PartialEq>(
-    grid: &[(Point, crate::family::FreeRun<L, M>)],
+    grid: &[(Point, FreeRun<L, M>)],
     rows: usize,
     index: usize,
     margin: &M,
@@ -57,8 +57,8 @@ fn is_least<L, M: PartialEq>(
     neighbours > 0
 }
 
-/// Goes down from a place of the grid by quadratic models, until the margin has changed its sign or
-/// cannot.
+/// Descends from a place of the grid by quadratic models to a place where the margin has the other
+/// sign; `None` if it does not change its sign nearby.
 fn dive<F: Family>(
     runs: &Runs<'_, F>,
     start: &Point,
@@ -75,7 +75,7 @@ fn dive<F: Family>(
         let (slope, second) = (slope * sign, second * sign);
         let step = downhill(&slope, &second, trust);
         let gain = -(slope.dot(&step) + 0.5 * step.dot(&(second * step)));
-        // The minimum is above zero by far more than the model can be wrong.
+        // The minimum is above zero by far more than the error of the model.
         if gain < 0.1 * height && step.norm() < 0.9 * trust {
             return Ok(None);
         }
@@ -101,7 +101,8 @@ fn dive<F: Family>(
     Ok(None)
 }
 
-/// The step to the lowest point of a quadratic model within `trust`, or downhill if it has none.
+/// The step to the lowest point of a quadratic model, or downhill if it has none; no longer than
+/// `trust`.
 fn downhill(slope: &Point, second: &Matrix2<f64>, trust: f64) -> Point {
     let newton = second.try_inverse().map(|inverse| -(inverse * slope));
     match newton {

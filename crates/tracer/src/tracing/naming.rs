@@ -1,4 +1,4 @@
-//! What the vertices of a hybrid system are.
+//! The kinds of the vertices of a hybrid system.
 
 use stickslip_solver::{Margin, Place};
 
@@ -6,16 +6,18 @@ use crate::curve::VertexKind;
 use crate::tracing::network::Network;
 
 impl<Label> Network<Label, Margin> {
-    /// Names the vertices inside the window by the margins of the curves that end there.
+    /// Sets the kinds of the vertices inside the window by the margins of the curves that end
+    /// there.
     ///
-    /// The tracer tells how it found a vertex, and other curves may have come to end there since. A
-    /// boundary that crosses another one goes on beyond it, so that four curves or more end at
-    /// a [`VertexKind::Crossing`], whatever vanishes there: the graze and the end of one phase
-    /// may do so independently of each other. Where fewer end, a boundary turns into another:
+    /// Before this call, the kind of a vertex says how the tracer found it, but more curves may
+    /// have come to end there since. A boundary that crosses another one goes on beyond it, so that
+    /// at least four curves end at a [`VertexKind::Crossing`], whatever their margins are: even the
+    /// minimum and the end of one phase may vanish independently of each other. Where fewer curves
+    /// end, one boundary turns into another. The kind then depends on what vanishes on the curves:
     ///
-    /// - a minimum and the end of the same phase: [`VertexKind::GrazeAtEnd`];
-    /// - ends of the run only: [`VertexKind::VanishingPhase`];
-    /// - else [`VertexKind::Degenerate`].
+    /// - a minimum and the end of the same phase: [`VertexKind::GrazeAtEnd`]
+    /// - ends of the run only: [`VertexKind::VanishingPhase`]
+    /// - anything else: [`VertexKind::Degenerate`]
     pub fn name_vertices(&mut self) {
         let mut arrivals: Vec<Vec<&Margin>> = vec![Vec::new(); self.vertices.len()];
         for curve in &self.curves {
@@ -33,7 +35,7 @@ impl<Label> Network<Label, Margin> {
     }
 }
 
-/// What a vertex inside the window is at which curves with these margins end.
+/// The kind of a vertex inside the window at which curves with these margins end.
 fn kind(margins: &[&Margin]) -> VertexKind {
     let (ends, minima): (Vec<&Margin>, Vec<&Margin>) =
         margins.iter().copied().partition(|margin| margin.place == Place::End);
@@ -49,7 +51,7 @@ fn kind(margins: &[&Margin]) -> VertexKind {
     }
 }
 
-/// Whether the same guards fired before; where each is looked at from does not matter.
+/// Whether the same guards fired before. From which place each guard is watched does not matter.
 fn same_phase(one: &Margin, other: &Margin) -> bool {
     let [one, other] = [one, other].map(|margin| margin.exits.iter().map(|exit| exit.guard));
     one.eq(other)

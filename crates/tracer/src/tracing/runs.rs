@@ -1,29 +1,33 @@
-//! The runs of a family, counted, with their failures located.
+//! The runs of a family: they are counted, and their errors get the point.
 
 use std::cell::Cell;
 
-use crate::family::{Family, FreeRun, Point, Window};
+use crate::family::{Family, FreeRun};
 use crate::options::{TraceError, TraceOptions};
+use crate::window::{Point, Window};
 
-/// A result of the tracer for a family.
+/// The result of a computation of the tracer with a family.
 pub(crate) type Traced<T, F> = Result<T, TraceError<<F as Family>::Error>>;
 
-/// A family in a window, with the options of a trace; every run goes through it.
+/// A place, with the free run there.
+pub(crate) type Sampled<F> = (Point, FreeRun<<F as Family>::Label, <F as Family>::Margin>);
+
+/// A family in a window, with the options of a trace. It makes and counts all runs.
 pub struct Runs<'a, F: Family> {
     family: &'a F,
     pub(crate) window: Window,
     pub(crate) options: TraceOptions,
-    /// The shorter extent of the window, against which steps are measured.
+    /// The shorter extent of the window, to which steps and distances are relative.
     pub(crate) scale: f64,
     free: Cell<usize>,
     prescribed: Cell<usize>,
 }
 
 impl<'a, F: Family> Runs<'a, F> {
-    /// Takes a family.
+    /// The runs of a family in a window.
     ///
     /// # Errors
-    /// An option out of its range, or a window that is not a rectangle.
+    /// An option is out of its range, or the window is not a rectangle.
     pub fn new(family: &'a F, window: Window, options: TraceOptions) -> Traced<Self, F> {
         options.validate()?;
         let extent = window.extent();
@@ -34,7 +38,7 @@ impl<'a, F: Family> Runs<'a, F> {
         Ok(Self { family, window, options, scale, free: Cell::new(0), prescribed: Cell::new(0) })
     }
 
-    /// Free runs and prescribed runs so far.
+    /// The numbers of free runs and of prescribed runs so far.
     #[must_use]
     pub fn counts(&self) -> [usize; 2] {
         [self.free.get(), self.prescribed.get()]
@@ -58,7 +62,7 @@ impl<'a, F: Family> Runs<'a, F> {
     }
 
     pub(crate) fn margin(&self, point: &Point, margin: &F::Margin) -> Traced<Option<f64>, F> {
-        // Newton's method may throw a point far away, where the family need not be defined.
+        // Newton's method may lead far away, where the family need not be defined.
         let beyond = self.window.extent() * 1e-2;
         let Window { low, high } = self.window;
         if !(Window { low: low - beyond, high: high + beyond }).contains(point) {
@@ -81,12 +85,13 @@ impl<'a, F: Family> Runs<'a, F> {
 
     /// The gradient of a margin by differences along `direction`, a unit vector, and across it.
     ///
-    /// With margins in error by ε and a scale L on which they vary, the error ε/h + h²/(6L²) of a
-    /// central difference is least for h = (3εL²)^⅓: 3e-5 of L for ε = 1e-14 and L = 1, which
-    /// leaves 5e-10. `radius` is the radius of curvature of the boundary, the scale that is
-    /// known. Where the margin exists on one side only, the difference is one-sided of second
-    /// order; where it exists on neither, the step shrinks. Boundaries end in wedges that are
-    /// thin across and long along them, which is why the direction matters.
+    /// If margins have an error ε and vary on a scale L, the error ε/h + h²/(6L²) of a central
+    /// difference is least for h = (3εL²)^⅓. For ε = 1e-14 and L = 1 this is 3e-5, and the error is
+    /// 5e-10. The scale is estimated by `radius`, the radius of curvature of the boundary.
+    ///
+    /// If the margin exists on one side only, the difference is one-sided, of second order. If it
+    /// exists on neither side, the step is reduced. The direction matters because boundaries end in
+    /// wedges that are long along them and thin across.
     pub(crate) fn gradient(
         &self,
         point: &Point,
@@ -105,6 +110,7 @@ impl<'a, F: Family> Runs<'a, F> {
         Ok(Some(direction * along + across * rise))
     }
 
+    /// The derivative of a margin along `direction`, by differences with step `h` at most.
     fn slope(
         &self,
         point: &Point,
@@ -133,7 +139,7 @@ impl<'a, F: Family> Runs<'a, F> {
         Ok(None)
     }
 
-    /// How far a zero of a margin can be told, given the length of its gradient.
+    /// The accuracy of a zero of a margin whose gradient has the length `slope`.
     pub(crate) fn resolution(&self, slope: f64) -> f64 {
         self.options.tolerance.max(self.options.noise / slope)
     }

@@ -1,24 +1,26 @@
-//! From a segment on which the label changes to the curves that change it.
+//! The curves that change the label along a segment.
 
 use crate::cubic::Cubic;
 use crate::curve::{Curve, Node, VertexKind};
-use crate::family::{Family, Point};
-use crate::tracing::branch::{Branch, End, Seed, SeedOf, Special};
+use crate::family::Family;
+use crate::tracing::branch::Branch;
+use crate::tracing::branch::end::{End, Special};
 use crate::tracing::corrector::correct;
 use crate::tracing::network::Unresolved;
 use crate::tracing::runs::Traced;
-use crate::tracing::seed::{Change, bisect, holds, identify};
+use crate::tracing::seed::{Change, Seed, SeedOf, bisect, holds, identify};
 use crate::tracing::trace::Tracer;
+use crate::window::Point;
 
 impl<F: Family> Tracer<'_, F> {
-    /// Traces every curve that changes the label along a segment, if it is not among the known
-    /// curves.
+    /// Traces every curve that changes the label along a segment, unless it is known.
     ///
-    /// The curves that cross the segment explain how the label changes along it; only where their
-    /// sides do not fit together, or with the labels at the ends, is the boundary looked for by
-    /// bisection.
+    /// The known curves that cross the segment explain how the label changes along it. A boundary
+    /// is searched for by bisection only where their sides do not fit together, or do not fit the
+    /// labels at the ends.
     pub(crate) fn scan(&mut self, segment: [Point; 2], labels: [F::Label; 2]) -> Traced<(), F> {
-        /// Changes on one segment; more are left to the grid's other edges.
+        /// The number of changes that are followed on one segment. Other edges of the grid find the
+        /// curves of further ones.
         const CHANGES: usize = 64;
         let [a, b] = segment;
         let gap = 2e-9 * self.runs.scale / (b - a).norm();
@@ -41,7 +43,7 @@ impl<F: Family> Tracer<'_, F> {
             if place >= 1.0 || (unexplained.is_none() && last == label) {
                 return Ok(());
             }
-            // Labels are asked for, as far as they come from curves.
+            // The labels so far came from curves. Here they come from runs.
             let first = if place > 0.0 { self.runs.label(&a.lerp(&b, place))? } else { label };
             let second = match &unexplained {
                 Some(_) if end > place => self.runs.label(&a.lerp(&b, end))?,
@@ -52,7 +54,8 @@ impl<F: Family> Tracer<'_, F> {
             let change = if !doubtful {
                 bisect(&self.runs, &segment, [place, end], [first, second])?
             } else if let Some(passage) = &unexplained {
-                // A curve with other sides than here: there is a vertex on it that was missed.
+                // The curve has other labels on its sides than those here: a vertex on it was
+                // missed.
                 let after = (end + 2.0 * gap).min(1.0);
                 let labels = [second, self.runs.label(&a.lerp(&b, after))?];
                 if labels[0] == labels[1] || labels == passage.labels {
@@ -67,8 +70,8 @@ impl<F: Family> Tracer<'_, F> {
             let places = change.places.map(|place| a.lerp(&b, place));
             match identify(&self.runs, &places, &change.labels)? {
                 Some(seed) => self.seed(&seed)?,
-                // Where curves are closer together than can be parted, the labels next to one are
-                // not its own.
+                // The labels beside a curve are not its own if another curve is closer than runs
+                // can tell apart.
                 None if doubtful => {}
                 None => {
                     let labels = change.labels.clone();
@@ -105,7 +108,7 @@ impl<F: Family> Tracer<'_, F> {
                 let mut nodes: Vec<Node> = backward.iter().rev().map(turned).collect();
                 nodes.push(origin);
                 nodes.extend(forward);
-                // A branch that closes one way and ends the other way met the vertex just at its
+                // If a branch closes in one direction and ends in the other, the vertex lies at its
                 // origin.
                 (nodes, Some([start.unwrap_or(end), end]))
             }
@@ -115,9 +118,9 @@ impl<F: Family> Tracer<'_, F> {
         Ok(())
     }
 
-    /// Takes out the parts of curves whose labels are wrong: two vertices lay between two nodes,
-    /// and only one of them was found later. The circles around it find the right curves.
-    fn look_at_suspects(&mut self) -> Traced<(), F> {
+    /// Removes the suspects whose labels are wrong. On them two vertices lay between two nodes, and
+    /// only one of the two was found later. The circles around this vertex find the right curves.
+    fn check_suspects(&mut self) -> Traced<(), F> {
         let mut wrong = Vec::new();
         for index in std::mem::take(&mut self.builder.suspects) {
             let curve = &self.builder.network.curves[index];
@@ -150,8 +153,8 @@ impl<F: Family> Tracer<'_, F> {
         Ok(())
     }
 
-    /// Origin, nodes, and the vertex at the end, `None` if it closes; `None` in place of all if no
-    /// branch starts there.
+    /// Follows a branch from a seed: its origin, its nodes, and the vertex at its end, `None` if it
+    /// closes. The whole is `None` if no branch starts at the seed.
     #[expect(clippy::type_complexity)]
     fn follow(
         &mut self,
@@ -176,7 +179,7 @@ impl<F: Family> Tracer<'_, F> {
             Some(End::Known(index)) => Some(index),
             Some(End::Vertex(special)) => {
                 let index = self.builder.add_vertex(&special);
-                self.look_at_suspects()?;
+                self.check_suspects()?;
                 Some(index)
             }
             Some(End::Limit) | None => {

@@ -1,13 +1,29 @@
-//! Where to start: from two places with different labels to a boundary between them.
+//! Seeds: from two places with different labels to a place on a boundary between them.
 
-use crate::family::{Family, FreeRun, Point};
-use crate::tracing::branch::{Seed, SeedOf};
+use crate::family::Family;
 use crate::tracing::corrector::correct;
 use crate::tracing::runs::{Runs, Traced};
+use crate::window::Point;
+
+/// A place on a boundary from which the boundary can be followed.
+#[derive(Clone, Debug)]
+pub struct Seed<Label, Margin> {
+    /// The place.
+    pub point: Point,
+    /// A unit vector along the boundary.
+    pub tangent: Point,
+    /// The margin that vanishes on the boundary.
+    pub margin: Margin,
+    /// The labels where the margin is positive and where it is negative.
+    pub labels: [Label; 2],
+}
+
+/// The seed of a family.
+pub(crate) type SeedOf<F> = Seed<<F as Family>::Label, <F as Family>::Margin>;
 
 impl<Label: Clone + Eq, Margin> Seed<Label, Margin> {
-    /// A place between two others at which the label of the first one ends; `None` if their labels
-    /// are the same, or no margin that vanishes there parts them.
+    /// A place between two others where the label of the first one ends; `None` if their labels are
+    /// the same, or if no margin vanishes where the label changes.
     ///
     /// # Errors
     /// A run fails, or a margin is not a number.
@@ -25,19 +41,20 @@ impl<Label: Clone + Eq, Margin> Seed<Label, Margin> {
     }
 }
 
-/// The first change of the label on a segment, from the label of its start.
+/// A place on a segment where the label of its start ends, bracketed.
 pub(crate) struct Change<Label> {
-    /// Where the label is still the first one, and where it is not, in parts of the segment.
+    /// A place with the label of the start, and one close behind it with another label, from 0 to
+    /// 1.
     pub places: [f64; 2],
-    /// The labels there.
+    /// The labels at both places.
     pub labels: [Label; 2],
 }
 
-/// Bisects a change of label between two places of the segment from `a` to `b` to 1e-9 of the
-/// window.
+/// Bisects a change of the label between two places of the segment from `a` to `b`, down to 1e-9 of
+/// the window's shorter extent.
 ///
-/// What it finds is a place where the label at the start ends; between it and the segment's end the
-/// label may change again.
+/// The result is a place where the label of the first place ends. Beyond it the label may change
+/// again.
 pub(crate) fn bisect<F: Family>(
     runs: &Runs<'_, F>,
     [a, b]: &[Point; 2],
@@ -63,23 +80,23 @@ pub(crate) fn bisect<F: Family>(
 }
 
 /// The boundary between two places that are close together: a margin of their free runs that
-/// vanishes there and parts their labels.
+/// vanishes between them and has their labels on its sides.
 pub(crate) fn identify<F: Family>(
     runs: &Runs<'_, F>,
     places: &[Point; 2],
     labels: &[F::Label; 2],
 ) -> Traced<Option<SeedOf<F>>, F> {
-    /// Margins looked at, those with the least values first.
+    /// The number of margins that are tried, those with the least values first.
     const CANDIDATES: usize = 12;
-    /// The greatest slope of a margin that is expected.
+    /// The greatest slope of a margin that can be expected.
     const STEEPEST: f64 = 1e4;
     let mut margins: Vec<(F::Margin, f64)> = Vec::new();
     for place in places {
         margins.extend(runs.free(place)?.margins);
     }
     margins.sort_by(|(one, x), (two, y)| x.abs().total_cmp(&y.abs()).then_with(|| one.cmp(two)));
-    // Of several that vanish together the one that comes first is the simplest: others may belong
-    // to phases that are about to vanish, and end at the boundary.
+    // Of several margins that vanish together, the first one in their order is the simplest. Others
+    // may belong to phases that vanish at the boundary, and so cease to exist there.
     let width = (places[1] - places[0]).norm();
     let together = margins.partition_point(|(_, value)| value.abs() <= STEEPEST * width);
     margins[..together].sort_by(|(one, _), (two, _)| one.cmp(two));
@@ -116,7 +133,7 @@ pub(crate) fn identify<F: Family>(
     Ok(None)
 }
 
-/// Whether the labels on both sides of a seed are its own.
+/// Whether the free runs on both sides of a seed have its labels.
 pub(crate) fn holds<F: Family>(
     runs: &Runs<'_, F>,
     seed: &Seed<F::Label, F::Margin>,
@@ -124,7 +141,7 @@ pub(crate) fn holds<F: Family>(
 ) -> Traced<bool, F> {
     let resolution = runs.resolution(gradient.norm());
     let mut offset = runs.options.offset.max(10.0 * resolution);
-    // A margin as flat as that says nothing about where its zero is.
+    // The zero of such a flat margin cannot be located.
     if offset.is_nan() || offset > 1e-3 * runs.scale {
         return Ok(false);
     }
@@ -141,6 +158,3 @@ pub(crate) fn holds<F: Family>(
         }
     }
 }
-
-/// A place of the grid with its free run.
-pub(crate) type GridPlace<F> = (Point, FreeRun<<F as Family>::Label, <F as Family>::Margin>);

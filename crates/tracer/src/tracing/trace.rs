@@ -1,20 +1,21 @@
-//! All boundaries in a window.
+//! All boundaries in a window: where they are searched for.
 
 use crate::curve::{Node, VertexKind};
-use crate::family::{Family, FreeRun, Point, Window};
+use crate::family::{Family, FreeRun};
 use crate::options::{TraceError, TraceOptions};
-use crate::tracing::branch::{SHORTEST, Special};
+use crate::tracing::branch::end::{SHORTEST, Special};
+use crate::tracing::builder::Builder;
 use crate::tracing::corrector::crossing;
 use crate::tracing::extrema::{Extremum, extrema};
 use crate::tracing::island::islands;
-use crate::tracing::network::{Builder, NetworkOf};
-use crate::tracing::runs::{Runs, Traced};
-use crate::tracing::seed::GridPlace;
+use crate::tracing::network::NetworkOf;
+use crate::tracing::runs::{Runs, Sampled, Traced};
+use crate::window::{Point, Window};
 
-/// Traces every boundary of a family in a window: what a new [`Tracer`] finds.
+/// Traces every boundary of a family in a window, with a new [`Tracer`].
 ///
 /// # Errors
-/// Options out of range, a window that is not a rectangle, a run that fails, a margin that is not a
+/// An option is out of its range, the window is not a rectangle, a run fails, or a margin is not a
 /// number.
 pub fn trace<F: Family>(
     family: &F,
@@ -26,40 +27,38 @@ pub fn trace<F: Family>(
     Ok(tracer.network())
 }
 
-/// Looks for boundaries in a window, and keeps what it has found, so that it can be told to look
-/// again.
+/// A search for boundaries in a window. It keeps what it has found and can be continued.
 ///
-/// Seeds come from the window's edges, from circles around every vertex, from a grid, and from the
-/// minima of margins between its places. What can be missed are closed curves, or pieces between
-/// two vertices, that pass between all of those: strips and islands with no place of the grid
-/// inside whose margin has no minimum that the grid sees. A verification may come upon them, and
-/// [`Self::look_between`] then finds them.
+/// Boundaries are searched for along the window's edges, on circles around every vertex, along the
+/// edges of a grid, and near minima of margins between places of the grid. A curve can be missed if
+/// none of these searches crosses it and its margin has no minimum that the grid shows. It may be
+/// the edge of a narrow strip or of a small island. A verification may find a point of such a
+/// region, and [`Self::look_between`] then finds the curve.
 ///
-/// The family is evaluated up to a thousandth of the window's extent outside of it. Nodes are on
-/// their boundary to `options.tolerance`, or as far as the noise of margins allows, the cubics
-/// between them to `options.interpolation`.
+/// The family is evaluated up to a hundredth of the window's extent outside the window. The
+/// distance of nodes from their boundary is at most `options.tolerance`, or what the noise of
+/// margins allows; that of the cubics between them is at most `options.interpolation`.
 pub struct Tracer<'f, F: Family> {
     pub(crate) runs: Runs<'f, F>,
     pub(crate) builder: Builder<F::Label, F::Margin>,
-    /// Vertices around which seeds were looked for.
+    /// The number of vertices around which boundaries were searched for.
     probed: usize,
 }
 
-/// Radii of the circles around a vertex on which seeds are looked for, in parts of the window's
-/// shorter extent.
+/// The radii of the circles around a vertex, as fractions of the window's shorter extent.
 const CIRCLES: [f64; 2] = [1e-3, 1e-5];
 
 impl<'f, F: Family> Tracer<'f, F> {
     /// A tracer that has found nothing yet.
     ///
     /// # Errors
-    /// Options out of range, a window that is not a rectangle.
+    /// An option is out of its range, or the window is not a rectangle.
     pub fn new(family: &'f F, window: &Window, options: &TraceOptions) -> Traced<Self, F> {
         let runs = Runs::new(family, *window, *options)?;
         Ok(Self { runs, builder: Builder::new(*window), probed: 0 })
     }
 
-    /// Looks everywhere.
+    /// Searches the whole window.
     ///
     /// # Errors
     /// A run fails, or a margin is not a number.
@@ -71,10 +70,11 @@ impl<'f, F: Family> Tracer<'f, F> {
         self.polish()
     }
 
-    /// Looks between pairs of places for boundaries that are not known yet; whether there are any.
+    /// Searches between pairs of places for boundaries that are not known yet. Returns whether the
+    /// number of curves has changed.
     ///
     /// # Errors
-    /// As [`Self::explore`].
+    /// A run fails, or a margin is not a number.
     pub fn look_between(&mut self, pairs: &[[Point; 2]]) -> Traced<bool, F> {
         let before = self.builder.network.curves.len();
         for &[a, b] in pairs {
@@ -87,7 +87,7 @@ impl<'f, F: Family> Tracer<'f, F> {
         Ok(self.builder.network.curves.len() != before)
     }
 
-    /// What has been found so far.
+    /// The network that has been found so far.
     #[must_use]
     pub fn network(&self) -> NetworkOf<F> {
         let mut network = self.builder.network.clone();
@@ -95,13 +95,12 @@ impl<'f, F: Family> Tracer<'f, F> {
         network
     }
 
-    /// Where the curves found so far are extremal in a coordinate, solved for on the boundaries, to
-    /// about 1e-9 of their radius of curvature along them.
+    /// The places where the curves found so far are extremal in a coordinate. They are solved for
+    /// on the boundaries; along them, the error is about 1e-9 of the radius of curvature.
     ///
-    /// A curve that runs along an axis to 1e-6 in its direction has none, and an extremum counts
-    /// only if the curve departs from it in its coordinate by more than ten times
-    /// `options.interpolation` on both sides, before the next one or the end. Ends of curves
-    /// are none.
+    /// The ends of curves are not extrema. A curve whose direction is that of an axis to 1e-6 has
+    /// no extrema. On both sides of an extremum, before the next one or the end, the coordinate
+    /// must change by more than ten times `options.interpolation`.
     ///
     /// # Errors
     /// A run fails, or a margin is not a number.
@@ -109,7 +108,7 @@ impl<'f, F: Family> Tracer<'f, F> {
         extrema(&self.runs, &self.builder.network.curves)
     }
 
-    /// Seeds from the window's edges, a ten-millionth inside.
+    /// Searches along the window's edges, a ten-millionth of its shorter extent inside.
     fn edges(&mut self) -> Traced<(), F> {
         let inset = Point::repeat(1e-7 * self.runs.scale);
         let (low, high) = (self.runs.window.low + inset, self.runs.window.high - inset);
@@ -127,9 +126,9 @@ impl<'f, F: Family> Tracer<'f, F> {
         Ok(())
     }
 
-    /// Scans a segment, in halves where its middle has another label or other margins than its ends
-    /// let expect.
-    fn divide(&mut self, a: &GridPlace<F>, b: &GridPlace<F>, depth: u32) -> Traced<(), F> {
+    /// Scans a segment. It is first halved if the run in its middle is not what the runs at its
+    /// ends let expect.
+    fn divide(&mut self, a: &Sampled<F>, b: &Sampled<F>, depth: u32) -> Traced<(), F> {
         if depth == 0 {
             return self.scan([a.0, b.0], [a.1.label.clone(), b.1.label.clone()]);
         }
@@ -142,8 +141,7 @@ impl<'f, F: Family> Tracer<'f, F> {
         self.divide(&middle, b, depth - 1)
     }
 
-    /// Seeds from two circles around every vertex that has come up and does not lie on the window's
-    /// edge.
+    /// Searches on two circles around every new vertex that does not lie on the window's edge.
     fn vertices(&mut self) -> Traced<(), F> {
         while let Some(vertex) = self.builder.network.vertices.get(self.probed) {
             let (point, kind) = (vertex.point, vertex.kind);
@@ -158,8 +156,8 @@ impl<'f, F: Family> Tracer<'f, F> {
         Ok(())
     }
 
-    /// Seeds from a circle around every vertex that has others inside its circles: between them,
-    /// where curves from one to the other pass.
+    /// Searches on a circle around every vertex with another one inside its circles. The circle
+    /// passes between the two, where it crosses curves from one to the other.
     fn close_vertices(&mut self) -> Traced<(), F> {
         let mut done = 0;
         while done < self.builder.stops.len() {
@@ -176,8 +174,8 @@ impl<'f, F: Family> Tracer<'f, F> {
         Ok(())
     }
 
-    /// Solves again for vertices that are not known well, with the margins of all curves that end
-    /// there: two of them may meet at a large angle.
+    /// Solves again for inaccurate vertices, with the margins of all curves that end there. Two of
+    /// these may meet at a large angle, which makes their crossing accurate.
     fn polish(&mut self) -> Traced<(), F> {
         for index in 0..self.builder.stops.len() {
             let stop = self.builder.stops[index];
@@ -220,12 +218,13 @@ impl<'f, F: Family> Tracer<'f, F> {
         Ok(())
     }
 
+    /// Searches on a circle.
     fn circle(&mut self, centre: &Point, radius: f64) -> Traced<(), F> {
         const CORNERS: u32 = 16;
         let places: Vec<Point> = (0..=CORNERS)
             .map(|i| {
-                // Turned, so that no corner lies on a line through the vertex along an axis or a
-                // diagonal.
+                // The polygon is turned, so that no corner lies on an axis or a diagonal through
+                // the vertex.
                 let turns = (f64::from(i % CORNERS) + 0.3) / f64::from(CORNERS);
                 let (sine, cosine) = (std::f64::consts::TAU * turns).sin_cos();
                 centre + Point::new(cosine, sine) * radius
@@ -234,12 +233,12 @@ impl<'f, F: Family> Tracer<'f, F> {
         self.walk(&places)
     }
 
-    /// Seeds from the grid and from the islands between its places.
+    /// Searches along the edges of the grid, and for islands between its places.
     fn grid(&mut self) -> Traced<(), F> {
         let cells = self.runs.options.cells;
         let window = self.runs.window;
         let cell = window.extent() / cells as f64;
-        let mut grid: Vec<GridPlace<F>> = Vec::with_capacity(cells * cells);
+        let mut grid: Vec<Sampled<F>> = Vec::with_capacity(cells * cells);
         for column in 0..cells {
             for row in 0..cells {
                 let part = Point::new(column as f64 + 0.5, row as f64 + 0.5);
@@ -268,7 +267,7 @@ impl<'f, F: Family> Tracer<'f, F> {
         Ok(())
     }
 
-    /// Scans the segments of a polygon.
+    /// Scans the sides of a polygon.
     fn walk(&mut self, places: &[Point]) -> Traced<(), F> {
         let mut labels = Vec::with_capacity(places.len());
         for place in places {
@@ -281,10 +280,10 @@ impl<'f, F: Family> Tracer<'f, F> {
     }
 }
 
-/// Halvings of a segment on the window's edge.
+/// How often a segment on the window's edge is halved, at most.
 const DIVISIONS: u32 = 4;
 
-/// Whether a run between two others is what these let expect: the same label, and margins near the
+/// Whether a run between two others is what they let expect: the same label, and margins near the
 /// mean of theirs.
 fn is_expected<L: Eq, M: PartialEq>(
     a: &FreeRun<L, M>,

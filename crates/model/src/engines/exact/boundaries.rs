@@ -1,15 +1,16 @@
-//! Where the number of switches changes, as far as closed forms tell.
+//! Boundaries on which the number of switches changes, as far as they have closed forms.
 
 use super::slide::Slide;
 use super::trajectory::CONTACT_TIME;
 
-/// The largest ψ with a switch at stiffness `kappa` > 0, without damping: from there on all contact
-/// is sliding, and ε_t = 1 − 2/ψ.
+/// The largest ψ with a switch at stiffness `kappa` > 0, without damping. Above it the whole
+/// contact is sliding, and ε_t = 1 − 2/ψ.
 ///
-/// It is max(2, ψ_g): at ψ = 2 the sliding ends with w = 0 at the end of contact; at ψ_g = 1 − v(1
-/// − B (1 − v²)^{1/5}), with B = (3/(2κ))(5/4)^{1/5} and v where that is stationary, the spring all
-/// but sticks in the compression. It is exactly 2, g_t/g_n = 2μ/α, for κ ≥ 0.57010237884189, and
-/// grows as (3/2)(5/14)^{1/5}(5/7)^{1/2}/κ = 1.03180026469/κ for κ → 0. Relative error below 3e-14.
+/// It is max(2, ψ_g). At ψ = 2 sliding ends with w = 0 at the end of contact. At ψ_g the spring
+/// almost sticks in the compression: ψ_g = 1 − v(1 − B (1 − v²)^{1/5}) with B = (3/(2κ))(5/4)^{1/5}
+/// and the v at which this is stationary. The boundary is exactly 2, g_t/g_n = 2μ/α, for κ ≥
+/// 0.57010237884189. For κ → 0 it grows as (3/2)(5/14)^{1/5}(5/7)^{1/2}/κ = 1.03180026469/κ. The
+/// relative error is below 3e-14.
 ///
 /// ```
 /// use stickslip_model::{Contact, exact};
@@ -25,11 +26,11 @@ pub fn top_boundary(kappa: f64) -> f64 {
     Slide::new(kappa).crest.map_or(2.0, |crest| crest.height.max(2.0))
 }
 
-/// κ_n = (nπ/(2 t_c))², where the `n`-th boundary ends as ψ → 0, without damping.
+/// κ_n = (nπ/(2 t_c))², at which the `n`-th boundary ends as ψ → 0, without damping.
 ///
 /// Almost all of such a contact is stick, and the spring swings through n quarters of its period.
-/// For odd n a switch falls on the end of contact; for even n the spring touches its limit. As ψ →
-/// 0 there are two switches below κ₁ and between κ_{2m} and κ_{2m+1}, and four elsewhere.
+/// For odd n a switch coincides with the end of contact; for even n the spring touches its limit.
+/// As ψ → 0 there are two switches below κ₁ and between κ_{2m} and κ_{2m+1}, and four elsewhere.
 ///
 /// ```
 /// use stickslip_model::exact;
@@ -56,7 +57,7 @@ mod tests {
         for (kappa, expected) in [(0.1, 10.4779732741472), (0.3, 3.6107667429891)] {
             assert!((top_boundary(kappa) / expected - 1.0).abs() < 3e-14, "{kappa}");
         }
-        // ψ_g passes 2 there.
+        // At the corner ψ_g passes 2.
         let corner = 0.5701023788418932873;
         assert_eq!(top_boundary(corner * (1.0 + 1e-14)), 2.0);
         let slope = (top_boundary(corner * (1.0 - 1e-9)) - 2.0) / 1e-9;
@@ -83,7 +84,7 @@ mod tests {
             assert!((small_impact_boundary(n) - expected).abs() < 5e-7, "{n}");
         }
         for n in 1..40 {
-            // The boundaries lean to larger κ; far from them this ψ is small enough.
+            // The boundaries bend towards larger κ; far from them this ψ is small enough.
             let middle = small_impact_boundary(n).midpoint(small_impact_boundary(n + 1));
             assert_eq!(switches(middle, 1e-9), if n % 2 == 0 { 2 } else { 4 }, "{n}");
         }

@@ -1,38 +1,39 @@
-//! Collisions that the exact engine refuses.
+//! Collisions that the exact engine does not compute.
 
 use super::trajectory::Moment;
 use crate::contact::Contact;
 use crate::engines::domain::{self, OutOfDomain};
 
-/// A collision that the exact engine does not take.
+/// The reason why the exact engine does not compute a collision.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ExactError {
-    /// The closed form holds without damping only.
+    /// The contact is damped, and there is no closed form.
     #[error("the exact solution holds without damping; the scaled damping is {damping}")]
     Damped {
-        /// The contact's scaled damping.
+        /// Scaled damping of the contact.
         damping: f64,
     },
     /// The contact is out of range.
     #[error(transparent)]
     Domain(#[from] OutOfDomain),
-    /// The spring is too stiff for a list of its switches.
+    /// The collision has too many switches for a list.
     #[error(
         "more than {limit} switches at kappa = {kappa}, psi = {psi}: \
          the limit is reached a scaled time {time_left} before the end of contact"
     )]
     TooManySwitches {
-        /// The most switches accepted.
+        /// The largest number of switches.
         limit: usize,
-        /// The contact's scaled stiffness.
+        /// Scaled stiffness of the contact.
         kappa: f64,
-        /// The contact's reduced impact ratio.
+        /// Reduced impact ratio of the contact.
         psi: f64,
         /// Scaled time left at the first switch beyond the limit.
         time_left: f64,
     },
 }
 
+/// Checks that `contact` has no damping and is in the range of the engine.
 pub fn undamped(contact: &Contact) -> Result<(), ExactError> {
     if contact.damping() != 0.0 {
         return Err(ExactError::Damped { damping: contact.damping() });
@@ -40,6 +41,7 @@ pub fn undamped(contact: &Contact) -> Result<(), ExactError> {
     Ok(domain::exact(contact)?)
 }
 
+/// The error of a collision that has more than `limit` switches, the first of them at `onset`.
 pub fn too_many(contact: &Contact, limit: usize, onset: Moment) -> ExactError {
     let (kappa, psi) = (contact.kappa(), contact.psi());
     ExactError::TooManySwitches { limit, kappa, psi, time_left: onset.time_left() }

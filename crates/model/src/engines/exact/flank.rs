@@ -1,18 +1,19 @@
-//! The pieces of a half swing on which the spring gains on its limit: only there a stick phase can
-//! end.
+//! The pieces of a half swing on which the spring gains on its limit. A stick phase can only end
+//! there.
 //!
-//! On a half swing, on which q = ±y > 0, the ratio R = q/L rises or falls with the sign of
-//! W = L q̇ − L̇ q, and
+//! On a half swing q = ±y > 0. The ratio R = q/L rises where W = L q̇ − L̇ q is positive and falls
+//! where it is negative, and
 //!
 //! dW/dt = −q (κL + L̈).
 //!
-//! The bracket is positive for κ ≥ 1.568…; otherwise it is negative between the two crests of
-//! [`Slide`](super::slide::Slide) and positive outside. So W is monotone on known pieces and R
-//! between the zeros of W: whether R reaches 1 is decided by its values at the ends of such
-//! pieces, and where it does, the root is the only one in a known bracket.
+//! For κ ≥ 1.568… the bracket is positive. Otherwise it is negative between the two crests of
+//! [`Slide`](super::slide::Slide) and positive outside. Therefore W is monotone on known pieces,
+//! and R is monotone between the zeros of W. Whether R reaches 1 is decided by its values at the
+//! ends of these pieces; where it does, the root is the only one in a known bracket.
 //!
-//! The phase starts with R = 1 and W = 0. As long as the bracket is positive R falls from there:
-//! the side the phase comes from cannot be met again on the first half swing.
+//! The phase starts with R = 1 and W = 0. As long as the bracket is positive, R falls from there:
+//! on the first half swing the spring cannot reach its limit again on the side where the phase
+//! started.
 
 use std::f64::consts::PI;
 
@@ -22,33 +23,34 @@ use super::swing::{Swing, half_swing_sign};
 use super::trajectory::{Half, MIDDLE_ROOT, Moment, NormalMotion};
 use crate::numerics::root::{Jet, bracketed};
 
-/// The ratio of dD/dt to dq/dt below which an exit is improved: at it rounding of the angle √κ·τ,
-/// a few 1e-16, moves the exit by about 1e-14.
+/// Ratio of dD/dt to dq/dt below which an exit is improved. At this ratio the rounding of the angle
+/// √κ·τ, a few 1e-16, moves the exit by about 1e-14.
 const SLOW: f64 = 0.05;
 
-/// Where R rises on one half swing of a stick phase.
+/// The pieces of one half swing of a stick phase on which R rises.
 pub struct Flanks {
     half_swing: u32,
-    /// Here R starts to rise, below 1 unless that is the start of the phase.
+    /// The place where R starts to rise. There R is below 1 unless it is the start of the phase.
     low: Low,
-    /// It turns round between these places, or rises to infinity at the end of contact.
+    /// R has its top between these places; if there are none, it rises to infinity at the end of
+    /// contact.
     turn: Option<[Moment; 2]>,
-    /// After that it falls, turns round once more between these places, and rises to infinity at
+    /// After the top R falls, turns round once more between these places, and rises to infinity at
     /// the end of contact.
     again: Option<[Moment; 2]>,
 }
 
-/// Where R starts to rise on a half swing.
+/// The place where R starts to rise on a half swing.
 enum Low {
-    /// Where the spring passes 0.
+    /// The moment at which the spring passes 0.
     Zero(Moment),
     /// On the first half swing, somewhere between the two zeros of κL + L̈.
     Between(Moment, Moment),
 }
 
 impl Flanks {
-    /// Those of half swing `k`, if there are any; `crest` is the root coordinate of the two zeros
-    /// of κL + L̈, if there are any.
+    /// The pieces of half swing `k`, if there are any. `crest` is the root coordinate of the two
+    /// zeros of κL + L̈, if there are any.
     pub fn of(swing: &Swing, crest: Option<f64>, k: u32) -> Option<Self> {
         match (crest, k) {
             (None, 0) => None,
@@ -59,7 +61,7 @@ impl Flanks {
         }
     }
 
-    /// κ ≥ 1.568…: R rises to one top and falls.
+    /// For κ ≥ 1.568…, R rises to one top and falls.
     fn fast(swing: &Swing, half_swing: u32) -> Option<Self> {
         let angle = |quarters: f64| swing.moment_at_angle(0.5 * PI * quarters);
         let past = 2.0 * f64::from(half_swing);
@@ -73,8 +75,8 @@ impl Flanks {
         Some(Self { half_swing, low: Low::Zero(start), turn, again: None })
     }
 
-    /// κ < 1.568…, first half swing: W falls from 0 up to the first crest, rises up to the second,
-    /// then falls. R can come back to 1 only if W has become positive by the second.
+    /// The first half swing for κ < 1.568…. W falls from 0 until the first crest, rises until the
+    /// second, and falls again. R can only come back to 1 if W is positive at the second crest.
     fn first(swing: &Swing, crest: f64) -> Option<Self> {
         let [rise, fall] = crests(crest);
         let zero = swing.moment_at_angle(0.0);
@@ -86,8 +88,8 @@ impl Flanks {
         Some(Self { half_swing: 0, low: Low::Between(rise, fall), turn, again: None })
     }
 
-    /// κ < 1.568…, second half swing, which lasts to the end of contact: there W → 0 from above and
-    /// R → ∞. Only before the first crest R can have a top.
+    /// The second half swing for κ < 1.568…. It lasts to the end of contact, where W → 0 from above
+    /// and R → ∞. R can only have a top before the first crest.
     fn second(swing: &Swing, crest: f64) -> Option<Self> {
         let [rise, fall] = crests(crest);
         let zero = swing.moment_at_angle(0.0);
@@ -104,13 +106,13 @@ impl Flanks {
         })
     }
 
-    /// Where R turns round.
+    /// The top of R.
     pub fn top(&self, swing: &Swing) -> Option<Moment> {
         self.turn.map(|[low, high]| top(swing, self.half_swing, low, high))
     }
 
-    /// Where D falls through 0, and whether that is after the top. Where it may be before or after,
-    /// `after_top` decides.
+    /// The moment at which D falls through 0, and whether that is after the top. If there are two
+    /// such moments, `after_top` says which one is wanted.
     pub fn exit(&self, swing: &Swing, after_top: bool) -> Option<(Moment, bool)> {
         let k = self.half_swing;
         let after = || {
@@ -140,23 +142,23 @@ fn crests(root: f64) -> [Moment; 2] {
     [Half::Compression, Half::Decompression].map(|half| Moment { half, root })
 }
 
-/// The top of R between `low`, where W > 0, and `high`, where W < 0.
+/// The top of R, between `low`, where W > 0, and `high`, where W < 0.
 pub fn top(swing: &Swing, k: u32, low: Moment, high: Moment) -> Moment {
-    root_between(low, high, None, |moment, point| turning(swing, k, moment, point))
+    root_between(low, high, None, |moment, normal| turning(swing, k, moment, normal))
 }
 
-/// The lowest place of R between `low`, where W < 0, and `high`, where W > 0.
+/// The minimum of R, between `low`, where W < 0, and `high`, where W > 0.
 fn bottom(swing: &Swing, k: u32, low: Moment, high: Moment) -> Moment {
-    root_between(low, high, None, |moment, point| {
-        let Jet { value, slope, curvature } = turning(swing, k, moment, point);
+    root_between(low, high, None, |moment, normal| {
+        let Jet { value, slope, curvature } = turning(swing, k, moment, normal);
         Jet { value: -value, slope: -slope, curvature: -curvature }
     })
 }
 
-/// W along the root coordinate.
-fn turning(swing: &Swing, k: u32, moment: Moment, point: NormalMotion) -> Jet {
-    let gap = swing.gap(k, moment, point);
-    along_root(moment, gap.turning(), -gap.q * pull(swing.bend, point.u), 0.0)
+/// W as a function of the root coordinate.
+fn turning(swing: &Swing, k: u32, moment: Moment, normal: NormalMotion) -> Jet {
+    let gap = swing.gap(k, moment, normal);
+    along_root(moment, gap.turning(), -gap.q * pull(swing.bend, normal.u), 0.0)
 }
 
 /// Whether R > 1 at `moment`.
@@ -164,18 +166,18 @@ pub fn exceeds_limit(swing: &Swing, k: u32, moment: Moment) -> bool {
     swing.gap(k, moment, NormalMotion::at(moment)).value < 0.0
 }
 
-/// The one zero of D on half swing `k` between `low`, where D > 0, and `high`, where D < 0.
+/// The only zero of D on half swing `k` between `low`, where D > 0, and `high`, where D < 0.
 pub fn exit(swing: &Swing, k: u32, low: Moment, high: Moment, guess: Option<Moment>) -> Moment {
     let guess = guess.or_else(|| (high == Moment::END).then(|| guess_before_end(swing)));
-    let moment = root_between(low, high, guess, |moment, point| {
-        let gap = swing.gap(k, moment, point);
+    let moment = root_between(low, high, guess, |moment, normal| {
+        let gap = swing.gap(k, moment, normal);
         along_root(moment, gap.value, gap.rate, gap.acceleration)
     });
     settled(swing, k, moment)
 }
 
-/// `moment`, a zero of D, improved where rounding in D has moved it: beside a graze, D falls
-/// through 0 slowly.
+/// The zero `moment` of D, improved if D falls through 0 slowly. That is the case beside a graze,
+/// where rounding in D has moved the zero.
 fn settled(swing: &Swing, k: u32, moment: Moment) -> Moment {
     let gap = swing.gap(k, moment, NormalMotion::at(moment));
     if gap.rate.abs() < SLOW * gap.q_rate.abs() {
@@ -187,13 +189,14 @@ fn settled(swing: &Swing, k: u32, moment: Moment) -> Moment {
 
 /// The zero of D on the first half swing between `rise`, where D ≥ 0, and `fall`, where D < 0.
 ///
-/// D has a double zero at the start of the phase, so D/τ², here multiplied by a constant power
-/// of τ, is solved instead.
+/// D has a double zero at the start of the phase. Therefore the root of D/τ² is solved for. Its
+/// value and its derivatives are all multiplied by τ, which changes no step towards the root.
 fn first_exit(swing: &Swing, rise: Moment, fall: Moment) -> Moment {
-    // D̈ falls through 0 at `rise`: were it straight, the phase would be three times as long.
+    // D̈ falls through 0 at `rise`. If D̈ were linear, the phase would be three times as long as the
+    // time until then.
     let guess = swing.start.after(3.0 * swing.start.time_until(rise));
-    let moment = root_between(rise, fall, Some(guess), |moment, point| {
-        let gap = swing.gap(0, moment, point);
+    let moment = root_between(rise, fall, Some(guess), |moment, normal| {
+        let gap = swing.gap(0, moment, normal);
         let tau = swing.start.time_until(moment);
         let scaled = gap.value / tau;
         let rate = (gap.rate - 2.0 * scaled) / tau;
@@ -203,14 +206,14 @@ fn first_exit(swing: &Swing, rise: Moment, fall: Moment) -> Moment {
     if swing.is_onset(0, moment) { moment } else { settled(swing, 0, moment) }
 }
 
-/// The exit if the spring stood still at where it ends and the limit were r³/κ.
+/// The exit of a spring that stands still at its last elongation, with the limit r³/κ.
 fn guess_before_end(swing: &Swing) -> Moment {
     let (end, _) = swing.motion(swing.start.time_left());
     let root = (swing.kappa * end.abs()).cbrt().min(MIDDLE_ROOT);
     Moment { half: Half::Decompression, root }
 }
 
-/// A function's derivatives in time as derivatives in the root coordinate.
+/// The derivatives of a function in time as derivatives in the root coordinate.
 fn along_root(moment: Moment, value: f64, rate: f64, acceleration: f64) -> Jet {
     let time_per_root = moment.time_per_root();
     // d²t/dr² = (dt/dr)/r
@@ -222,7 +225,7 @@ fn along_root(moment: Moment, value: f64, rate: f64, acceleration: f64) -> Jet {
     }
 }
 
-/// The root between `low`, where f > 0, and `high`, where f < 0, in whichever half it lies.
+/// The root between `low`, where f > 0, and `high`, where f < 0, which may be in different halves.
 fn root_between(
     mut low: Moment,
     mut high: Moment,

@@ -1,13 +1,16 @@
-//! The limit L of the spring along the normal motion, and where the spring can keep up with it.
+//! Properties of the spring's limit L = u³/κ that slip and stick phases both use.
+//!
+//! With b = 3/(2κ), dL/dt = b u v. While sliding, the number that decides is
+//! h = (1 − |v|) + b u |v|; `slide` says why.
 
 use super::trajectory::{Half, LARGEST_U, MIDDLE_ROOT, Moment, NormalMotion, speed_at};
 
-/// The largest value of h.
+/// The place where h is largest, if that is not the largest compression.
 #[derive(Clone, Copy, Debug)]
 pub struct Crest {
-    /// Its root coordinate, in either half.
+    /// The root coordinate, in either half.
     pub root: f64,
-    /// h there.
+    /// The value of h.
     pub height: f64,
 }
 
@@ -15,8 +18,8 @@ impl Crest {
     /// Solves dh/dt = 0, that is u⁴/b + 1/2 = (7/5) u⁵, for b u > 1 at the largest compression.
     pub fn new(kappa: f64, bend: f64) -> Self {
         let scale = kappa / 1.5;
-        // From the zero to the largest u the function is concave and falls, so Newton's steps
-        // from the right approach the zero from one side.
+        // From the zero to the largest u the function is concave and falls: Newton's steps from
+        // the right approach the zero from one side.
         let mut u = LARGEST_U;
         for _ in 0..60 {
             let u3 = u * u * u;
@@ -28,7 +31,7 @@ impl Crest {
             }
         }
         let mut moment = Moment::near_compression(Half::Compression, u);
-        // One Newton step in time, by dv/dt = −u³.
+        // One Newton step in time, with dv/dt = −u³.
         let error = NormalMotion::at(moment).v - speed_at(u);
         moment.root = (moment.root + error / (2.0 * moment.root * u * u * u)).min(MIDDLE_ROOT);
         let NormalMotion { u, v, deficit } = NormalMotion::at(moment);
@@ -36,9 +39,9 @@ impl Crest {
     }
 }
 
-/// κL + d²L/dt² = u³ + b (1/(2u) − (7/5) u⁴), what drives the spring and its limit apart.
+/// κL + L̈ = u³ + b (1/(2u) − (7/5) u⁴), which drives the spring and its limit apart.
 ///
-/// In slip it is −dg/dt; in stick D = L ∓ y obeys D̈ + κD = this.
+/// In slip it is −dg/dt. In stick it is D̈ + κD for D = L ∓ y.
 pub fn pull(bend: f64, u: f64) -> f64 {
     u * u * u + bend * (0.5 / u - 1.4 * (u * u) * (u * u))
 }

@@ -1,16 +1,17 @@
-//! How near a collision comes to switching otherwise, and collisions whose itinerary is prescribed.
+//! Margins: how near a collision comes to other switches, also if its switches are prescribed.
 //!
 //! A margin belongs to a phase in which something almost happened (see
-//! [`mod@stickslip_solver::margin`]). The exact engine decides by three numbers, and these are its
+//! [`mod@stickslip_solver::margin`]). The exact engine decides by three numbers. They are its
 //! margins:
 //!
-//! - a slip phase lasts over a crest of h if C − h > 0 there, and to the end of contact if s·w > 0
-//!   there;
-//! - a stick phase lasts over a half swing if (L/|y|)² − 1 > 0 where |y|/L is largest. Near the end
-//!   of contact this is linear in the time at which y vanishes, where the gap L − |y| is not.
+//! - A slip phase passes a crest of h if C − h > 0 at the crest.
+//! - A slip phase lasts to the end of contact if s·w > 0 at the end.
+//! - A stick phase passes a half swing if (L/|y|)² − 1 > 0 where |y|/L is largest. Near the end of
+//!   contact this number is linear in the time at which y vanishes; the gap L − |y| is not.
 //!
-//! Each is smooth through 0 as long as the switches before it are prescribed: those of slip before
-//! or after the crest, those of stick by the number of the half swing.
+//! Each margin is smooth through 0 as long as the switches before it are prescribed. A switch that
+//! ends slip is prescribed as before or after the crest, a switch that ends stick by the number of
+//! the half swing.
 
 use stickslip_solver::{Exit, Hint, Margin, Place};
 
@@ -24,23 +25,23 @@ use super::trajectory::{Half, Moment, NormalMotion};
 use crate::contact::Contact;
 use crate::laws::phase::{OTHER_SIDE, SAME_SIDE};
 
-/// Each margin names the switches before it, so that a list of margins grows as the square of their
-/// number.
+/// Most switches of a collision whose margins are listed. Each margin names the switches before it:
+/// the length of a list grows as the square of their number.
 const MOST_SWITCHES: usize = 1000;
 
 /// The guards that fire in a collision, in order, with its margins.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Margins {
-    /// [`SAME_SIDE`] or [`OTHER_SIDE`], each.
+    /// The guard of each switch, [`SAME_SIDE`] or [`OTHER_SIDE`].
     pub fired: Vec<usize>,
-    /// Each with its value, positive, in the order of their phases.
+    /// The margins in the order of their phases, each with its positive value.
     pub near_misses: Vec<(Margin, f64)>,
 }
 
-/// All margins of the collision of `contact`, which must be without damping.
+/// All margins of the collision of `contact`, which must have no damping.
 ///
-/// Those of slip are in units of the reduced velocity w, those of stick (L/|y|)² − 1. Their zeros
-/// are within 1e-15 of the boundaries in ψ, up to κ = 400.
+/// Margins of slip are in units of the reduced velocity w; margins of stick are (L/|y|)² − 1. Up to
+/// κ = 400 their zeros are within 1e-15 of the boundaries in ψ.
 ///
 /// ```
 /// use stickslip_model::{Contact, exact};
@@ -56,7 +57,7 @@ pub struct Margins {
 /// ```
 ///
 /// # Errors
-/// Those of [`collide`](super::collide), and more than 1000 switches.
+/// As [`collide`](super::collide), and [`ExactError::TooManySwitches`] for more than 1000 switches.
 pub fn margins(contact: &Contact) -> Result<Margins, ExactError> {
     undamped(contact)?;
     let slide = Slide::new(contact.kappa());
@@ -92,14 +93,15 @@ pub fn margins(contact: &Contact) -> Result<Margins, ExactError> {
     }
 }
 
-/// The margin `which`, one of [`margins`] of some contact, of the collision of `contact` whose
-/// switches up to there are prescribed; none if they cannot be followed, or there is no such half
-/// swing or crest.
+/// The margin `which`, one of the [`margins`] of any contact, of the collision of `contact` with
+/// the switches that `which` prescribes.
+///
+/// It is `None` if these switches cannot be followed, or if there is no such half swing or crest.
 ///
 /// ```
 /// use stickslip_model::{Contact, exact};
 ///
-/// // Just above ψ = 2 the contact ends sliding; below it, w would have changed its sign.
+/// // Just above ψ = 2 the contact ends in slip; below it, w would have changed its sign.
 /// let near = exact::margins(&Contact::new(63.0, 2.001, 0.0)?)?;
 /// let (last, _) = &near.near_misses[0];
 /// let value = exact::margin(&Contact::new(63.0, 1.999, 0.0)?, last)?;
@@ -113,8 +115,8 @@ pub fn margin(contact: &Contact, which: &Margin) -> Result<Option<f64>, ExactErr
     follow(contact, which, |_| ())
 }
 
-/// `which` with hints that fit the collision of `contact`, as [`stickslip_solver::margin()`]
-/// returns it; itself where it does not exist.
+/// The margin `which` with hints that fit the collision of `contact`, as
+/// [`stickslip_solver::margin()`] returns it. A margin that does not exist is returned unchanged.
 ///
 /// # Errors
 /// As [`margin`].
@@ -124,6 +126,7 @@ pub fn moved(contact: &Contact, which: &Margin) -> Result<Margin, ExactError> {
     Ok(found.map_or_else(|| which.clone(), |_| Margin { exits, ..*which }))
 }
 
+/// Follows the switches that `which` prescribes, calls `on_exit` with each, and returns the margin.
 fn follow(
     contact: &Contact,
     which: &Margin,
@@ -160,19 +163,21 @@ fn follow_exits(contact: &Contact, which: &Margin, on_exit: &mut impl FnMut(Exit
     }
 }
 
-/// The one crest of a slip phase.
+/// The place of the only crest of a slip phase.
 const CREST: Place = Place::Minimum { near: Hint(0.0), number: 0 };
 
-/// C − h at the crest, if the phase passes it before the largest compression.
+/// C − h at the crest, if the phase passes the crest before the largest compression.
 fn crest_margin(slide: &Slide, sliding: &SlipPhase) -> Option<f64> {
     let Crest { root, height } = slide.crest?;
     let passes = sliding.start.is_before(Moment { half: Half::Compression, root });
     passes.then(|| sliding.at_start() - height)
 }
 
-/// 1/R² − 1 at the top of R on half swing `k`; on the first, where this has a double zero at the
-/// start of the phase, divided by the square of the angle since then, so that it does not become
-/// flat where the phase shrinks to nothing.
+/// 1/R² − 1 at the top of R on half swing `k`.
+///
+/// On the first half swing this number has a double zero at the start of the phase. It is divided
+/// by the square of the angle since then, so that it is not flat where the length of the phase goes
+/// to 0.
 fn top_margin(slide: &Slide, swing: &Swing, k: u32) -> Option<f64> {
     let flanks = Flanks::of(swing, slide.crest.map(|crest| crest.root), k)?;
     let top = flanks.top(swing)?;
@@ -182,22 +187,23 @@ fn top_margin(slide: &Slide, swing: &Swing, k: u32) -> Option<f64> {
     Some(if k == 0 { excess / (angle * angle) } else { excess })
 }
 
-/// The top of half swing `k` among those on its side.
+/// The place of the top of half swing `k` among the tops on its side.
 fn top_place(k: u32) -> Place {
     Place::Minimum { near: Hint(f64::from(k)), number: (k / 2) as usize }
 }
 
-/// The guard of half swing `k`.
+/// The guard that fires on half swing `k`.
 fn guard(k: u32) -> usize {
     if k.is_multiple_of(2) { SAME_SIDE } else { OTHER_SIDE }
 }
 
-/// How a slip phase ends: its hint is 0 before the crest and 1 after.
+/// The exit at the end of a slip phase; its hint is 0 before the crest and 1 after it.
 fn slip_exit(onset: Moment) -> Exit {
     let after = if onset.half == Half::Compression { 0.0 } else { 1.0 };
     Exit { guard: SAME_SIDE, after: Hint(after), part: Hint(0.0) }
 }
 
+/// The moment at which the slip phase ends as `exit` prescribes.
 fn prescribed_onset(slide: &Slide, sliding: &SlipPhase, exit: &Exit) -> Option<Moment> {
     if slide.crest.is_none() {
         return slide.stick_onset(sliding);
@@ -209,22 +215,24 @@ fn prescribed_onset(slide: &Slide, sliding: &SlipPhase, exit: &Exit) -> Option<M
     if within { slide.onset_after_crest(sliding) } else { None }
 }
 
-/// How a stick phase ends: its hint is the number of the half swing, and a half more after the top
-/// of R.
+/// The exit at the end of a stick phase; its hint is the number of the half swing, and 1/2 more
+/// after the top of R.
 fn stick_exit(k: u32, after_top: bool) -> Exit {
     let after = f64::from(k) + if after_top { 0.5 } else { 0.0 };
     Exit { guard: guard(k), after: Hint(after), part: Hint(0.0) }
 }
 
+/// The half swing of the exit of a stick phase, and whether the exit is after the top of R.
 fn flank_of(exit: &Exit) -> (u32, bool) {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number")]
     let k = exit.after.0 as u32;
     (k, exit.after.0 - f64::from(k) > 0.25)
 }
 
+/// The stick phase that starts at `onset`.
 fn swing(slide: &Slide, sliding: &SlipPhase, onset: Moment) -> Swing {
-    let point = NormalMotion::at(onset);
-    Swing::new(slide, onset, point, sliding.velocity_at(onset, point))
+    let normal = NormalMotion::at(onset);
+    Swing::new(slide, onset, normal, sliding.velocity_at(onset, normal))
 }
 
 /// The slip phase that starts where `swing` ends on half swing `k`.

@@ -1,14 +1,13 @@
 //! The first instants of a stick phase, where the spring and its limit are almost equal.
 //!
-//! D = L − s·y starts with D = Ḋ = 0, and beside a slip graze the whole phase is so short that
-//! L and s·y agree to all digits throughout. The Taylor series of D from its second term keeps
-//! the digits.
+//! D = L − s·y starts with D = Ḋ = 0. Beside a slip graze the whole phase is so short that L and
+//! s·y agree to all digits. The Taylor series of D, which starts with τ², keeps the digits.
 
 use super::limit::pull;
 use super::trajectory::{Half, Moment, NormalMotion};
 
-/// Number of Taylor coefficients, for a phase shorter than a sixteenth of its starting time: the
-/// series converges up to that time, so the remainder is below 16⁻¹⁴ of the whole.
+/// Number of Taylor coefficients, for a phase that is shorter than a sixteenth of the time at which
+/// it starts. The series converges up to that time: the remainder is below 16⁻¹⁴ of the whole.
 const TERMS: usize = 16;
 
 /// The Taylor series of D around the start of a stick phase.
@@ -16,24 +15,24 @@ const TERMS: usize = 16;
 pub struct Onset {
     /// Coefficients of τ², τ³, …
     series: [f64; TERMS],
-    /// Largest τ for which the series is used.
+    /// The largest τ for which the series is used.
     pub reach: f64,
 }
 
 impl Onset {
-    /// The series for a phase that starts at `start`, if it may be short: it is three times as
-    /// long as the time to the crest with root coordinate `crest`.
+    /// The series for a phase that starts at `start`, if it may be short. Its length is three times
+    /// the time to the crest, whose root coordinate is `crest`.
     pub fn new(
         kappa: f64,
         start: Moment,
-        point: NormalMotion,
+        normal: NormalMotion,
         velocity: f64,
         crest: f64,
     ) -> Option<Self> {
         let age = start.time();
         let crest = Moment { half: Half::Compression, root: crest };
         let short = start.half == Half::Compression && start.time_until(crest) < age / 64.0;
-        short.then(|| Self { series: series(kappa, point, velocity), reach: age / 16.0 })
+        short.then(|| Self { series: series(kappa, normal, velocity), reach: age / 16.0 })
     }
 
     /// D, dD/dt and d²D/dt² a time `tau` after the start, if that is within reach.
@@ -52,11 +51,11 @@ impl Onset {
     }
 }
 
-/// Coefficients of τ² and up of L − s·y, from ẋ = v, v̇ = −F, xḞ = (3/2) F v and ÿ = −κ y.
-fn series(kappa: f64, point: NormalMotion, velocity: f64) -> [f64; TERMS] {
+/// Coefficients of τ², τ³, … in L − s·y, from ẋ = v, v̇ = −F, xḞ = (3/2) F v and ÿ = −κ y.
+fn series(kappa: f64, normal: NormalMotion, velocity: f64) -> [f64; TERMS] {
     const ORDER: usize = TERMS + 2;
     let numbered = || (0_u8..).map(f64::from).enumerate();
-    let NormalMotion { u, v: speed, .. } = point;
+    let NormalMotion { u, v: speed, .. } = normal;
     let [mut x, mut v, mut f, mut y] = [[0.0; ORDER]; 4];
     x[0] = u * u;
     v[0] = speed;
@@ -78,7 +77,7 @@ fn series(kappa: f64, point: NormalMotion, velocity: f64) -> [f64; TERMS] {
     for (n, coefficient) in series.iter_mut().enumerate() {
         *coefficient = f[n + 2] / kappa - y[n + 2];
     }
-    // The first coefficient is the small one: take it from its closed form.
+    // The first coefficient is small: its closed form keeps the digits.
     series[0] = 0.5 * pull(1.5 / kappa, u);
     series
 }
@@ -92,10 +91,10 @@ mod tests {
     fn series_is_the_difference_of_limit_and_spring() {
         let kappa: f64 = 1.0;
         let start = Moment { half: Half::Compression, root: 0.95 };
-        let point = NormalMotion::at(start);
-        let velocity = 1.5 / kappa * point.u * point.v;
-        let elongation = point.u * point.u * point.u / kappa;
-        let onset = Onset::new(kappa, start, point, velocity, 0.955).unwrap();
+        let normal = NormalMotion::at(start);
+        let velocity = 1.5 / kappa * normal.u * normal.v;
+        let elongation = normal.u * normal.u * normal.u / kappa;
+        let onset = Onset::new(kappa, start, normal, velocity, 0.955).unwrap();
         for part in [0.25, 0.5, 1.0] {
             let tau = part * onset.reach;
             let (value, ..) = onset.gap(tau).unwrap();
@@ -105,14 +104,14 @@ mod tests {
             assert!((value - direct).abs() < 4e-16, "{value} {direct}");
         }
         assert!(onset.gap(1.01 * onset.reach).is_none());
-        assert!(Onset::new(kappa, start, point, velocity, MIDDLE_ROOT).is_none());
+        assert!(Onset::new(kappa, start, normal, velocity, MIDDLE_ROOT).is_none());
     }
 
     #[test]
     fn derivatives_belong_to_the_value() {
         let start = Moment { half: Half::Compression, root: 0.95 };
-        let point = NormalMotion::at(start);
-        let onset = Onset::new(1.0, start, point, 1.5 * point.u * point.v, 0.955).unwrap();
+        let normal = NormalMotion::at(start);
+        let onset = Onset::new(1.0, start, normal, 1.5 * normal.u * normal.v, 0.955).unwrap();
         let (tau, step) = (0.5 * onset.reach, 1e-5);
         let at = |tau| onset.gap(tau).unwrap();
         let (before, here, after) = (at(tau - step), at(tau), at(tau + step));

@@ -1,16 +1,14 @@
-//! Switches beside a graze, where rounding in the guard would be magnified.
+//! The end of a stick phase beside a graze, without the errors of rounding in its guard.
 //!
-//! A guard that falls through 0 at the rate δ turns an error of 1e-16 in itself into one of
-//! 1e-16/δ in the switch. One Newton step with the guard computed in [`DoubleDouble`]s takes it away.
+//! As in `refined_onset`, one Newton step with the guard in [`DoubleDouble`] numbers removes them.
 
 use super::swing::Swing;
 use super::trajectory::{CONTACT_TIME, CONTACT_TIME_REST, Half, Moment, NormalMotion};
 use crate::numerics::double_double::DoubleDouble;
 
-/// `moment`, where a stick phase ends on the side `sign`, improved beside a stick graze; `rate`
-/// is d(L − sign·y)/dt there.
+/// The moment at which a stick phase ends on the side `sign`: `moment`, improved.
 ///
-/// The angle √κ·τ of the spring suffers most from rounding.
+/// `rate` is d(L − sign·y)/dt at `moment`. Most of the rounding is in the angle √κ·τ of the spring.
 pub fn refined_exit(swing: &Swing, sign: f64, moment: Moment, rate: f64) -> Moment {
     let omega = DoubleDouble(
         swing.omega,
@@ -24,11 +22,11 @@ pub fn refined_exit(swing: &Swing, sign: f64, moment: Moment, rate: f64) -> Mome
     let y = elongation.times(cos).plus(swing.velocity.over(omega).times(sin));
     let gap = limit(swing.kappa, moment).minus(DoubleDouble(sign * y.0, sign * y.1));
     let root = moment.root - gap.nearest() / rate / moment.time_per_root();
-    // A touch within rounding has no rate to divide by.
+    // At a touch within rounding the rate is too small to divide by.
     if (root - moment.root).abs() < 1e-6 * moment.root { Moment { root, ..moment } } else { moment }
 }
 
-/// L = u³/κ.
+/// The limit L = u³/κ.
 fn limit(kappa: f64, moment: Moment) -> DoubleDouble {
     let u = DoubleDouble::sum(moment.root, NormalMotion::excess(moment.root));
     u.times(u).times(u).over(DoubleDouble(kappa, 0.0))

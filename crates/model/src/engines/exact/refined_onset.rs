@@ -1,22 +1,23 @@
-//! Switches beside a graze, where rounding in the guard would be magnified.
+//! The end of a slip phase beside a graze, without the errors of rounding in its guard.
 //!
-//! A guard that falls through 0 at the rate δ turns an error of 1e-16 in itself into one of
-//! 1e-16/δ in the switch. One Newton step with the guard computed in [`DoubleDouble`]s takes it away.
+//! If a guard falls through 0 at the rate δ, an error of 1e-16 in the guard becomes an error of
+//! 1e-16/δ in the switch. One Newton step with the guard in [`DoubleDouble`] numbers removes it.
 
 use super::limit::pull;
 use super::trajectory::{Half, Moment, NormalMotion};
 use crate::numerics::double_double::DoubleDouble;
 
-/// `root`, where a slip phase in the compression ends, improved beside a slip graze; `target` is
-/// s·w carried back to the start of contact, `crest` the end of the piece on which h rises.
+/// The root coordinate at which a slip phase in the compression ends: `root`, improved if it is
+/// beside a slip graze.
 ///
-/// The step is taken in v, in which u = ((5/4)(1 − v²))^{1/5} and
-/// g = (target − 1) + v (1 − b u) need nothing that is known to rounding only.
+/// `target` is s·w carried back to the start of contact, and `crest` the end of the piece on which
+/// h rises. The unknown of the step is v: u = ((5/4)(1 − v²))^{1/5} and g = (target − 1) + v (1 − b
+/// u) need no number that is known to rounding only.
 pub fn refined_onset(kappa: f64, bend: f64, target: f64, root: f64, crest: f64) -> f64 {
     let NormalMotion { u, v, .. } = NormalMotion::at(Moment { half: Half::Compression, root });
     let slope = pull(bend, u);
-    // Elsewhere rounding moves the switch by 1e-14 at most, and v is no good unknown near the
-    // start, far from every graze.
+    // With a larger slope, rounding moves the switch by at most 1e-14. Near the start, where there
+    // is no graze, v is not a good unknown.
     if slope > 0.02 || v > 0.9 {
         return root;
     }
@@ -29,6 +30,6 @@ pub fn refined_onset(kappa: f64, bend: f64, target: f64, root: f64, crest: f64) 
     let guard =
         DoubleDouble::sum(target, -1.0).plus(one.minus(bend.times(u)).times(DoubleDouble(v, 0.0)));
     let refined = root + guard.nearest() / slope / (2.0 * root);
-    // Beside the crest itself a Newton step is of no use.
+    // At the crest itself a Newton step would not help.
     if (refined - root).abs() < 0.1 * (crest - root) { refined } else { root }
 }

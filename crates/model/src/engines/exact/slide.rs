@@ -1,17 +1,18 @@
-//! The slip phase: where sliding turns into sticking.
+//! The slip phase, and where it turns into a stick phase.
 //!
-//! While sliding on side s, s·w − v is constant and the phase ends where
-//! g = s·w − dL/dt = s·w − b u v, b = 3/(2κ), falls through 0. With one function for all slip
-//! phases of a collision,
+//! While sliding on side s, s·w − v is constant, and the phase ends where g = s·w − dL/dt =
+//! s·w − b u v, with b = 3/(2κ), falls through 0. All slip phases of a collision share the function
 //!
-//! h = (1 − |v|) + b u |v|,
+//! h = (1 − |v|) + b u |v|.
 //!
-//! g is C − h in the compression and h − (2 − C) in the decompression, C being s·w carried back
-//! to the start of contact. Away from either end of contact h rises from 0 up to its crest: the
-//! largest compression if b u ≤ 1 there (κ ≥ 1.568…), else the one zero of dh/dt before it.
-//! Between the crests of the two halves g does not fall. So the phase ends in the compression if
-//! it starts before the crest and C is below h there, else in the decompression if C < 2, else
-//! not before the contact does.
+//! Let C be s·w carried back to the start of contact. Then g is C − h in the compression and
+//! h − (2 − C) in the decompression. From either end of contact h rises from 0 up to its crest. The
+//! crest is the largest compression if b u ≤ 1 there (κ ≥ 1.568…), and otherwise the one zero of
+//! dh/dt before it. Between the crests of the two halves g does not fall. There are three cases:
+//!
+//! - The phase ends in the compression if it starts before the crest and C is below h at the crest.
+//! - Otherwise it ends in the decompression if C < 2.
+//! - Otherwise it lasts to the end of contact.
 
 use super::limit::{Crest, pull};
 use super::refined_onset::refined_onset;
@@ -19,48 +20,48 @@ use super::trajectory::{Half, LARGEST_U, MIDDLE_ROOT, Moment, NormalMotion};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::root::{Jet, bracketed};
 
-/// The value of b u at the largest compression above which h is nearly flat somewhere: dg/dt is
-/// −u³(1 − b u) at the largest compression and no smaller before it.
+/// Value of b u at the largest compression above which h is nearly flat somewhere: there dg/dt is
+/// −u³(1 − b u), and before it |dg/dt| is not smaller.
 const FLAT: f64 = 0.97;
 
-/// What the slip phases of one collision have in common.
+/// The properties that all slip phases of one collision share.
 #[derive(Clone, Copy, Debug)]
 pub struct Slide {
     /// Scaled stiffness κ.
     pub kappa: f64,
     /// b = 3/(2κ).
     pub bend: f64,
-    /// Where h is largest, if not at the largest compression.
+    /// The place where h is largest, if that is not the largest compression.
     pub crest: Option<Crest>,
 }
 
 /// The start of a slip phase, in the orientation of its side.
 #[derive(Clone, Copy, Debug)]
 pub struct SlipPhase {
-    /// When.
+    /// The moment at which it starts.
     pub start: Moment,
-    /// 1 − |v| there.
+    /// 1 − |v| at the start.
     pub deficit: f64,
-    /// s·w there.
+    /// s·w at the start.
     pub velocity: f64,
 }
 
 impl SlipPhase {
-    /// The phase with which the contact starts.
+    /// The slip phase with which the contact starts.
     pub fn at_impact(psi: f64) -> Self {
         Self { start: Moment::START, deficit: 0.0, velocity: psi }
     }
 
-    /// The phase that starts at `start`, where s·w is `velocity`.
-    pub fn new(start: Moment, point: NormalMotion, velocity: f64) -> Self {
-        Self { start, deficit: point.deficit, velocity }
+    /// The slip phase that starts at `start` with s·w = `velocity`.
+    pub fn new(start: Moment, normal: NormalMotion, velocity: f64) -> Self {
+        Self { start, deficit: normal.deficit, velocity }
     }
 
     /// s·w at a later moment of the phase.
-    pub fn velocity_at(&self, moment: Moment, point: NormalMotion) -> DoubleDouble {
+    pub fn velocity_at(&self, moment: Moment, normal: NormalMotion) -> DoubleDouble {
         match moment.half {
-            Half::Compression => DoubleDouble::sum(self.at_start(), -point.deficit),
-            Half::Decompression => DoubleDouble::sum(self.at_end(), point.deficit),
+            Half::Compression => DoubleDouble::sum(self.at_start(), -normal.deficit),
+            Half::Decompression => DoubleDouble::sum(self.at_end(), normal.deficit),
         }
     }
 
@@ -89,16 +90,18 @@ impl Slide {
     }
 
     /// The spring's limit L = u³/κ.
-    pub fn limit(&self, point: NormalMotion) -> f64 {
-        point.u * point.u * point.u / self.kappa
+    pub fn limit(&self, normal: NormalMotion) -> f64 {
+        normal.u * normal.u * normal.u / self.kappa
     }
 
-    /// When `sliding` turns into sticking; none if it lasts to the end of contact.
+    /// The moment at which the slip phase turns into stick; `None` if it lasts to the end of
+    /// contact.
     pub fn stick_onset(&self, sliding: &SlipPhase) -> Option<Moment> {
         self.onset_before_crest(sliding).or_else(|| self.onset_after_crest(sliding))
     }
 
-    /// When `sliding` turns into sticking before the crest of the compression.
+    /// The moment at which the slip phase turns into stick before the crest of the compression, if
+    /// it does.
     pub fn onset_before_crest(&self, sliding: &SlipPhase) -> Option<Moment> {
         let Crest { root: crest, height } = self.highest();
         let carried_back = sliding.at_start();
@@ -116,7 +119,8 @@ impl Slide {
         Some(Moment { half: Half::Compression, root })
     }
 
-    /// When `sliding` turns into sticking if it does not before the crest of the compression.
+    /// The moment at which the slip phase turns into stick, if it does and if it has not done so
+    /// before the crest of the compression.
     pub fn onset_after_crest(&self, sliding: &SlipPhase) -> Option<Moment> {
         let Crest { root: crest, .. } = self.highest();
         let carried_on = sliding.at_end();
@@ -129,15 +133,15 @@ impl Slide {
         })
     }
 
-    /// Where h is largest.
+    /// The place where h is largest.
     pub fn highest(&self) -> Crest {
         self.crest.unwrap_or(Crest { root: MIDDLE_ROOT, height: 1.0 })
     }
 
-    /// The root coordinate between `low` and `high`, on the rising piece, at which h is `target`.
+    /// The root coordinate at which h is `target`, between `low` and `high` on the rising piece.
     fn inverse(&self, target: f64, low: f64, high: f64) -> f64 {
-        // h = b u + (1 − |v|)(1 − b u). Close to an end of contact the first term is all of h,
-        // for a stiff spring the second is; up to h = 1 each alone gives a u above the root.
+        // h = b u + (1 − |v|)(1 − b u). Close to an end of contact the first term dominates, for a
+        // stiff spring the second. Up to h = 1 each of them alone gives a u above the root.
         let soft = target / self.bend;
         let u = if target < 1.0 {
             soft.min((1.25 * target * (2.0 - target)).powf(0.2))

@@ -1,4 +1,4 @@
-//! The motion of the spring in a stick phase, beside its limit.
+//! The motion of the spring in a stick phase, compared with its limit.
 
 use super::limit::pull;
 use super::onset::Onset;
@@ -6,8 +6,8 @@ use super::slide::Slide;
 use super::trajectory::{CONTACT_TIME, Moment, NormalMotion};
 use crate::numerics::double_double::DoubleDouble;
 
-/// One stick phase, in the orientation in which it starts on side +1:
-/// y = A cos θ, with θ rising at the rate ω = √κ.
+/// One stick phase, in the orientation in which it starts on side +1: y = A cos θ, where θ grows at
+/// the rate ω = √κ.
 #[derive(Clone, Copy, Debug)]
 pub struct Swing {
     /// Scaled stiffness κ.
@@ -16,50 +16,49 @@ pub struct Swing {
     pub omega: f64,
     /// b = 3/(2κ).
     pub bend: f64,
-    /// When the phase starts.
+    /// The moment at which the phase starts.
     pub start: Moment,
-    /// y at the start, equal to the limit L there.
+    /// y at the start, where it is equal to the limit L.
     pub elongation: f64,
-    /// w at the start, with what rounding left out of it.
+    /// w at the start, with twice the digits.
     pub velocity: DoubleDouble,
-    /// A, the largest |y| of the swing.
+    /// The amplitude A.
     pub amplitude: f64,
     /// The angle from the start to the first y = 0, between 0 and π.
     pub first_zero: f64,
-    /// D just after the start, for a phase that may be very short.
+    /// The series of D just after the start, for a phase that may be very short.
     onset: Option<Onset>,
 }
 
-/// The spring and its limit at one moment of a half swing: q = ±y is positive on it.
+/// The spring and its limit at one moment of a half swing, on which q = ±y is positive.
 #[derive(Clone, Copy, Debug)]
 pub struct Gap {
-    /// D = L − q.
+    /// The gap D = L − q.
     pub value: f64,
     /// dD/dt.
     pub rate: f64,
     /// d²D/dt².
     pub acceleration: f64,
-    /// q.
+    /// The elongation q.
     pub q: f64,
     /// dq/dt.
     pub q_rate: f64,
 }
 
 impl Gap {
-    /// W = L q̇ − L̇ q, which has the sign of the rate of q/L; written in D, which may be known
-    /// far better than L and q apart.
+    /// W = L q̇ − L̇ q, which has the sign of the rate of q/L. It is computed from D, which may be
+    /// known far better than L and q are.
     pub fn turning(&self) -> f64 {
         self.q_rate * self.value - self.q * self.rate
     }
 }
 
 impl Swing {
-    /// The phase that starts at `start`, where the normal motion is at `point` and w is
-    /// `velocity`.
-    pub fn new(slide: &Slide, start: Moment, point: NormalMotion, velocity: DoubleDouble) -> Self {
+    /// The phase that starts at `start`, where the normal motion is `normal` and w is `velocity`.
+    pub fn new(slide: &Slide, start: Moment, normal: NormalMotion, velocity: DoubleDouble) -> Self {
         let kappa = slide.kappa;
         let omega = kappa.sqrt();
-        let elongation = point.u * point.u * point.u / kappa;
+        let elongation = normal.u * normal.u * normal.u / kappa;
         let across = velocity.0 / omega;
         Self {
             kappa,
@@ -72,11 +71,11 @@ impl Swing {
             first_zero: elongation.atan2(-across),
             onset: slide
                 .crest
-                .and_then(|crest| Onset::new(kappa, start, point, velocity.0, crest.root)),
+                .and_then(|crest| Onset::new(kappa, start, normal, velocity.0, crest.root)),
         }
     }
 
-    /// (y, w) a time `tau` after the start.
+    /// y and w a time `tau` after the start.
     pub fn motion(&self, tau: f64) -> (f64, f64) {
         let (sin, cos) = (self.omega * tau).sin_cos();
         (
@@ -85,8 +84,8 @@ impl Swing {
         )
     }
 
-    /// The gap on half swing `k` at `moment`, where the normal motion is at `point`.
-    pub fn gap(&self, k: u32, moment: Moment, point: NormalMotion) -> Gap {
+    /// The gap on half swing `k` at `moment`, where the normal motion is `normal`.
+    pub fn gap(&self, k: u32, moment: Moment, normal: NormalMotion) -> Gap {
         let tau = self.start.time_until(moment);
         let sign = half_swing_sign(k);
         let (y, w) = self.motion(tau);
@@ -96,7 +95,7 @@ impl Swing {
         {
             return Gap { value, rate, acceleration, q, q_rate };
         }
-        let NormalMotion { u, v, .. } = point;
+        let NormalMotion { u, v, .. } = normal;
         let value = u * u * u / self.kappa - q;
         Gap {
             value,
@@ -107,20 +106,19 @@ impl Swing {
         }
     }
 
-    /// Whether [`Swing::gap`] is free of cancellation at `moment`, being a series there.
+    /// Whether [`Swing::gap`] is a series at `moment`, and therefore free of cancellation.
     pub fn is_onset(&self, k: u32, moment: Moment) -> bool {
         k == 0 && self.onset.is_some_and(|onset| self.start.time_until(moment) <= onset.reach)
     }
 
-    /// The moment an angle `past_zero` after the first y = 0; [`Moment::END`] if that is not
-    /// before the end of contact.
+    /// The moment an angle `past_zero` after the first y = 0, at most [`Moment::END`].
     pub fn moment_at_angle(&self, past_zero: f64) -> Moment {
         let duration = (self.first_zero + past_zero) / self.omega;
         if duration < CONTACT_TIME { self.start.after(duration) } else { Moment::END }
     }
 }
 
-/// (−1)^k: the side of half swing `k`, seen from the side on which the phase starts.
+/// The side of half swing `k` relative to the side on which the phase starts: (−1)^k.
 pub fn half_swing_sign(k: u32) -> f64 {
     if k.is_multiple_of(2) { 1.0 } else { -1.0 }
 }

@@ -1,5 +1,4 @@
-//! Laws that every collision has to keep. `tests/exact.rs` of the workspace compares with the
-//! reference data.
+//! Laws that every exact collision obeys. `tests/model/exact.rs` compares with reference data.
 
 use std::f64::consts::PI;
 
@@ -35,7 +34,7 @@ fn stiff_springs_leave_a_velocity_of_order_kappa_to_minus_five_quarters() {
     assert!((largest(1e7) - 4.484).abs() < 4e-3, "{}", largest(1e7));
 }
 
-/// Numbers between 0 and 1 (xorshift64), the same on every machine.
+/// Numbers between 0 and 1 by xorshift64, the same on every machine.
 fn randoms() -> impl FnMut() -> f64 {
     let mut state = 0x9e37_79b9_7f4a_7c15_u64;
     move || {
@@ -46,7 +45,7 @@ fn randoms() -> impl FnMut() -> f64 {
     }
 }
 
-/// `count` contacts with log₁₀ κ and log₁₀ ψ in the ranges given.
+/// Random contacts, `count` of them, with log₁₀ κ and log₁₀ ψ in these ranges.
 fn contacts(count: usize, kappa: (f64, f64), psi: (f64, f64)) -> impl Iterator<Item = Contact> {
     let mut random = randoms();
     let mut draw = move |(low, high): (f64, f64)| 10_f64.powf(low + (high - low) * random());
@@ -93,7 +92,7 @@ fn every_collision_is_finite_ordered_even_and_balanced() {
     }
 }
 
-/// The moment of a switch, from the times it reports.
+/// The moment of a switch, from its times.
 fn moment(switch: &Switch) -> Moment {
     if switch.time < switch.time_left {
         Moment { half: Half::Compression, root: switch.time.sqrt() }
@@ -102,7 +101,7 @@ fn moment(switch: &Switch) -> Moment {
     }
 }
 
-/// `count` moments from `from` to `to`, evenly spaced in the root coordinate.
+/// Moments between `from` and `to`, which divide the root coordinate into `count` equal parts.
 fn moments(from: Moment, to: Moment, count: u32) -> impl Iterator<Item = Moment> {
     let place = |moment: Moment| match moment.half {
         Half::Compression => moment.root,
@@ -119,8 +118,8 @@ fn moments(from: Moment, to: Moment, count: u32) -> impl Iterator<Item = Moment>
     })
 }
 
-/// Walks through a collision as reported and checks the law of each phase inside it and at its
-/// end; returns the sign changes of w that it meets.
+/// Follows a collision as reported, and checks the law of each phase inside it and at its end.
+/// Returns the number of sign changes of w on the way.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small and positive")]
 fn audit(collision: &Collision) -> usize {
     let contact = collision.contact;
@@ -132,19 +131,19 @@ fn audit(collision: &Collision) -> usize {
     for pair in collision.switches.chunks(2) {
         let (onset, release) = (moment(&pair[0]), moment(&pair[1]));
         for at in moments(sliding.start, onset, 200) {
-            let point = NormalMotion::at(at);
-            let velocity = sliding.velocity_at(at, point).0;
+            let normal = NormalMotion::at(at);
+            let velocity = sliding.velocity_at(at, normal).0;
             velocities.push(side * velocity);
-            let guard = velocity - slide.bend * point.u * point.v;
+            let guard = velocity - slide.bend * normal.u * normal.v;
             assert!(guard > -tolerance, "{contact:?}: missed stick, {guard} at {at:?}");
         }
-        let point = NormalMotion::at(onset);
-        let velocity = sliding.velocity_at(onset, point);
-        let guard = velocity.0 - slide.bend * point.u * point.v;
+        let normal = NormalMotion::at(onset);
+        let velocity = sliding.velocity_at(onset, normal);
+        let guard = velocity.0 - slide.bend * normal.u * normal.v;
         assert!(guard.abs() < tolerance, "{contact:?}: invented stick, {guard} at {onset:?}");
         velocities.push(side * velocity.0);
 
-        let swing = Swing::new(&slide, onset, point, velocity);
+        let swing = Swing::new(&slide, onset, normal, velocity);
         let angle = swing.omega * onset.time_until(release);
         let tolerance = 1e-15 * swing.amplitude * (4.0 + angle);
         for at in moments(onset, release, 100 + 50 * (angle / PI) as u32) {
@@ -167,9 +166,9 @@ fn audit(collision: &Collision) -> usize {
         sliding = SlipPhase::new(release, NormalMotion::at(release), exit * pair[1].velocity);
     }
     for at in moments(sliding.start, Moment::END, 200) {
-        let point = NormalMotion::at(at);
-        let velocity = sliding.velocity_at(at, point).0;
-        let guard = velocity - slide.bend * point.u * point.v;
+        let normal = NormalMotion::at(at);
+        let velocity = sliding.velocity_at(at, normal).0;
+        let guard = velocity - slide.bend * normal.u * normal.v;
         assert!(guard > -tolerance, "{contact:?}: missed stick, {guard} at {at:?}");
         velocities.push(side * velocity);
     }
@@ -256,8 +255,8 @@ fn the_audit_sees_a_late_switch() {
     audit(&collision);
 }
 
-/// κ, ψ a relative distance 1e-6, 1e-9 or 1e-10 below a slip graze, and the times of the first
-/// two switches, computed with 40 digits from the closed form.
+/// κ and ψ at a relative distance of 1e-6, 1e-9 or 1e-10 below a slip graze, and the times of the
+/// first two switches, computed with 40 digits from the closed form.
 const SLIP_GRAZES: [(f64, f64, f64, f64); 6] = [
     (0.2, 5.324485084798437, 0.73301009509621493916, 0.73303659202271994763),
     (0.7, 1.6748688531396472, 0.86482996032894687174, 0.86492858482875625191),
@@ -276,7 +275,8 @@ fn short_phases_beside_slip_grazes_keep_their_digits() {
     }
 }
 
-/// The closed form at `moment`: compression, its rate, spring and tangential velocity.
+/// The closed form at `moment`: compression, rate of the compression, spring and tangential
+/// velocity.
 fn closed_form(collision: &Collision, moment: Moment) -> [f64; 4] {
     let NormalMotion { u, v, .. } = NormalMotion::at(moment);
     let kappa = collision.contact.kappa();

@@ -1,15 +1,15 @@
 //! The normal motion without damping: one universal trajectory, known in closed form.
 //!
-//! v² + (4/5) x^{5/2} = 1 holds, so time is an incomplete beta function of the compression. With
-//! r the square root of the time to the nearer end of contact, √x/r and (1 − |v|)/r⁵ are analytic
-//! functions of r⁵ whose nearest singularity is the far end of contact, 5.7 times as far away as
-//! the largest compression. Two short polynomials therefore hold them to rounding, and small
+//! As v² + (4/5) x^{5/2} = 1, time is an incomplete beta function of the compression. Let r be the
+//! square root of the time to the nearer end of contact. Then √x/r and (1 − |v|)/r⁵ are analytic
+//! functions of r⁵. Their nearest singularity is the far end of contact, 5.7 times as far away as
+//! the largest compression. Two short polynomials therefore give them to rounding, and small
 //! quantities near either end keep their relative accuracy.
 
 /// Duration of the contact, t_c = (4/5)(5/4)^{2/5} B(2/5, 1/2).
 pub const CONTACT_TIME: f64 = 3.21806545971904308453593;
 
-/// What [`CONTACT_TIME`] lacks.
+/// The exact duration of the contact minus [`CONTACT_TIME`].
 pub const CONTACT_TIME_REST: f64 = 7.5689901148521077495e-17;
 
 /// √(t_c/2), the root coordinate of the largest compression.
@@ -18,7 +18,8 @@ pub const MIDDLE_ROOT: f64 = 1.26847653894722134205163;
 /// √x at the largest compression, (5/4)^{1/5}.
 pub const LARGEST_U: f64 = 1.04563955259127323065299;
 
-/// (√x/r − 1)/r⁵ in powers of r⁵ on 0 ≤ r⁵ ≤ (t_c/2)^{5/2}; error of √x/r below 1e-17.
+/// Coefficients of (√x/r − 1)/r⁵ in powers of r⁵ on 0 ≤ r⁵ ≤ (t_c/2)^{5/2}; the error of √x/r is
+/// below 1e-17.
 ///
 /// The polynomial through the 12 Chebyshev nodes of that interval, computed with 50 digits from
 /// t = x · ₂F₁(2/5, 1/2; 7/5; (4/5) x^{5/2}).
@@ -37,7 +38,7 @@ const U_EXCESS: [f64; 12] = [
     -6.86646992740783468199e-18,
 ];
 
-/// (1 − |v|)/r⁵ in powers of r⁵, as [`U_EXCESS`].
+/// Coefficients of (1 − |v|)/r⁵ in powers of r⁵, computed as [`U_EXCESS`].
 const DEFICIT_OVER_ROOT5: [f64; 12] = [
     0.399999999999999999957,
     -0.0342857142857142819126,
@@ -53,7 +54,8 @@ const DEFICIT_OVER_ROOT5: [f64; 12] = [
     -9.92195001942052843787e-18,
 ];
 
-/// Time to the nearer end divided by x, in powers of |v|; relative error below 1e-8.
+/// Coefficients of the time to the nearer end divided by x, in powers of |v|; the relative error is
+/// below 1e-8.
 ///
 /// The polynomial through the 11 Chebyshev nodes of 0 ≤ |v| ≤ 1.
 const TIME_OVER_X: [f64; 11] = [
@@ -70,7 +72,7 @@ const TIME_OVER_X: [f64; 11] = [
     0.00481755702258528943,
 ];
 
-/// Half of the contact.
+/// A half of the contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Half {
     /// The compression increases: time is counted from the start.
@@ -90,13 +92,13 @@ impl Half {
 
 /// A time of the contact, held as the square root of the time to the nearer end.
 ///
-/// Near both ends the motion is smooth in this root, not in time, and times far below the
-/// spacing of floating-point numbers around t_c stay apart.
+/// Near both ends the motion is smooth in this root, not in time. Moments that are closer together
+/// than neighbouring floating-point numbers around t_c are still distinguished.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
-    /// Which end is nearer.
+    /// The half of the contact, which tells the nearer end.
     pub half: Half,
-    /// √(time to the nearer end), from 0 to [`MIDDLE_ROOT`].
+    /// The root coordinate r, √(time to the nearer end), from 0 to [`MIDDLE_ROOT`].
     pub root: f64,
 }
 
@@ -137,7 +139,7 @@ impl Moment {
         }
     }
 
-    /// The moment `duration` ≥ 0 later, at most [`Moment::END`].
+    /// The moment a time `duration` ≥ 0 later, at most [`Moment::END`].
     pub fn after(self, duration: f64) -> Self {
         let time = self.time() + duration;
         if time < 0.5 * CONTACT_TIME {
@@ -148,13 +150,13 @@ impl Moment {
         }
     }
 
-    /// The moment `duration` ≥ 0 earlier, at least [`Moment::START`].
+    /// The moment a time `duration` ≥ 0 earlier, at least [`Moment::START`].
     pub fn before(self, duration: f64) -> Self {
         let mirrored = Self { half: self.half.other(), ..self }.after(duration);
         Self { half: mirrored.half.other(), ..mirrored }
     }
 
-    /// The moment in `half` at which √x = `u`, to 1e-8 of the time to the nearer end.
+    /// The moment in `half` at which √x = `u`; its error is 1e-8 of the time to the nearer end.
     pub fn near_compression(half: Half, u: f64) -> Self {
         let speed = speed_at(u);
         let ratio =
@@ -188,18 +190,19 @@ pub struct NormalMotion {
     pub u: f64,
     /// v = dx/dt, 1 at the start and −1 at the end of contact.
     pub v: f64,
-    /// 1 − |v|, accurate relative to itself.
+    /// 1 − |v|, with a relative error near rounding.
     pub deficit: f64,
 }
 
 impl NormalMotion {
-    /// u − r at root coordinate `r`, so small beside r that both as a pair are u beyond rounding.
+    /// u − r at root coordinate `r`. It is so small that r and it together have more digits of u
+    /// than one number.
     pub fn excess(r: f64) -> f64 {
         let z = r * r * (r * r) * r;
         r * (z * polynomial(&U_EXCESS, z))
     }
 
-    /// The normal motion at `moment`; relative errors a few 1e-16 in u and 1 − |v|.
+    /// The normal motion at `moment`, with relative errors of a few 1e-16 in u and 1 − |v|.
     pub fn at(moment: Moment) -> Self {
         let r = moment.root;
         let z = r * r * (r * r) * r;
@@ -214,12 +217,13 @@ impl NormalMotion {
     }
 }
 
-/// |v| at √x = `u`, to 1e-16/|v|.
+/// |v| at √x = `u`, with an error of 1e-16/|v|.
 pub fn speed_at(u: f64) -> f64 {
     (1.0 - 0.8 * u * (u * u) * (u * u)).max(0.0).sqrt()
 }
 
-/// Even and odd powers apart: two short dependency chains instead of a long one.
+/// The value of a polynomial. Even and odd powers are summed separately: two short dependency
+/// chains instead of a long one.
 fn polynomial(c: &[f64; 12], z: f64) -> f64 {
     let z2 = z * z;
     let even = ((((c[10] * z2 + c[8]) * z2 + c[6]) * z2 + c[4]) * z2 + c[2]) * z2 + c[0];
@@ -231,7 +235,7 @@ fn polynomial(c: &[f64; 12], z: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Moments of the compression, their roots spread evenly and towards 0.
+    /// Moments of the compression with evenly spread roots, and with roots that go to 0.
     fn moments() -> impl Iterator<Item = Moment> {
         let spread = (0..=1000).map(|i| f64::from(i) / 1000.0);
         let small = (1..60).map(|i| 0.5_f64.powi(i));
@@ -270,10 +274,10 @@ mod tests {
     #[test]
     fn largest_compression_is_the_closed_form() {
         for half in [Half::Compression, Half::Decompression] {
-            let point = NormalMotion::at(Moment { half, root: MIDDLE_ROOT });
-            assert!((point.u - LARGEST_U).abs() < 3e-16);
-            assert!((point.u * point.u - 1.09336207394327805637).abs() < 5e-16);
-            assert!(point.v.abs() < 1e-15);
+            let normal = NormalMotion::at(Moment { half, root: MIDDLE_ROOT });
+            assert!((normal.u - LARGEST_U).abs() < 3e-16);
+            assert!((normal.u * normal.u - 1.09336207394327805637).abs() < 5e-16);
+            assert!(normal.v.abs() < 1e-15);
         }
         assert!((2.0 * MIDDLE_ROOT * MIDDLE_ROOT - CONTACT_TIME).abs() < 1e-15);
     }

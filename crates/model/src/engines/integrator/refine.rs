@@ -1,10 +1,10 @@
 //! Twice the digits for collisions near a graze.
 //!
-//! Where a guard crosses zero at a small slope, an error δ of the state moves the switch by δ over
-//! that slope: at a relative distance d from a graze the switch times are worth 1/√d less than the
-//! state. The integrator has by then decided which switches there are; here the same itinerary is
-//! followed once more by a Taylor method in pairs of numbers, whose errors near 1e-21 leave the
-//! times good to rounding.
+//! Where a guard crosses zero with a small slope, an error δ of the state moves the switch by δ
+//! divided by that slope: at a relative distance d from a graze, switch times are less accurate
+//! than the state by 1/√d. The integrator has already decided which switches there are. Here a
+//! Taylor method with [`DoubleDouble`] numbers follows the same itinerary once more. Its errors are
+//! near 1e-21, so that times are accurate to rounding.
 
 use smallvec::SmallVec;
 use stickslip_solver::{Method, Observer, Options, Start, SwitchEvent, run};
@@ -17,25 +17,25 @@ use crate::result::{Collision, EnergyLedger, FEW_SWITCHES};
 
 /// Degree of the Taylor series.
 const DEGREE: usize = 24;
-/// Size of the first neglected terms of a step.
+/// Size of the first terms that a step neglects.
 const TOLERANCE: f64 = 1e-22;
 
-/// Phases of a collision that allocates nothing.
+/// Number of phases up to which nothing is allocated.
 const PHASES: usize = FEW_SWITCHES + 1;
 /// Phases with their lengths in s.
 type Phases = SmallVec<[(Phase, f64); PHASES]>;
 
-/// Replaces times, states, restitution and energies of `collision`, except what damping took, by
-/// ones computed with twice the digits.
+/// Replaces times, states, restitution and energies of `collision`, except the energy taken by
+/// damping, by values computed with twice the digits.
 ///
 /// Returns false and changes nothing if Newton's method leaves the neighbourhood of a switch that
 /// the integrator found.
 pub(crate) fn refine<M: Method>(method: M, options: &Options, collision: &mut Collision) -> bool {
     let contact = collision.contact;
     let Some(phases) = phases(method, options, contact) else { return false };
-    let mut state = Motion::start(contact);
+    let mut state = FineState::start(contact);
     let mut sliding = ZERO;
-    let mut ends = SmallVec::<[Motion; PHASES]>::new();
+    let mut ends = SmallVec::<[FineState; PHASES]>::new();
     for (index, (phase, length)) in phases.iter().enumerate() {
         let exit = phases.get(index + 1).map(|(next, _)| *next);
         let Some(end) = state.follow(contact, *phase, exit, *length) else { return false };
@@ -77,7 +77,7 @@ pub(crate) fn refine<M: Method>(method: M, options: &Options, collision: &mut Co
 
 /// The phases that the integrator finds, with their lengths in s.
 fn phases<M: Method>(method: M, options: &Options, contact: Contact) -> Option<Phases> {
-    /// Notes phases and where they end.
+    /// Records phases with their lengths, and where the last one ended.
     #[derive(Default)]
     struct Itinerary(Phases, f64);
 
@@ -95,10 +95,10 @@ fn phases<M: Method>(method: M, options: &Options, contact: Contact) -> Option<P
     Some(itinerary.0)
 }
 
-/// The contact at one moment: u, v, velocity w, spring y (while sticking) and the time t since the
+/// The contact at one moment: u, v, velocity w, spring y (in stick only) and the time t since the
 /// phase began.
 #[derive(Clone, Copy, Debug)]
-struct Motion {
+struct FineState {
     u: DoubleDouble,
     v: DoubleDouble,
     w: DoubleDouble,
@@ -108,7 +108,7 @@ struct Motion {
 
 const ZERO: DoubleDouble = DoubleDouble(0.0, 0.0);
 
-impl Motion {
+impl FineState {
     fn start(contact: Contact) -> Self {
         Self {
             u: ZERO,
@@ -146,7 +146,7 @@ impl Motion {
         }
     }
 
-    /// Energy taken by sliding on `side` from here to `end`: ∫ F (s w − dL/dt) dt with F dt = −dv.
+    /// Energy taken by sliding on `side` from here to `end`: ∫ F (s w − dL/dt) dt, with F dt = −dv.
     fn slid(&self, end: &Self, contact: Contact, side: Side) -> DoubleDouble {
         let slowed = self.v.minus(end.v);
         let mean = self.w.scaled(side.sign()).minus(slowed.scaled(0.5));
@@ -155,7 +155,7 @@ impl Motion {
         slowed.times(mean).minus(stored.over(DoubleDouble(contact.kappa(), 0.0)))
     }
 
-    /// The function that vanishes where `phase` gives way to `exit`, or the contact ends.
+    /// The function that vanishes where `phase` changes into `exit`, or where the contact ends.
     fn guard(&self, contact: Contact, phase: Phase, exit: Option<Phase>) -> DoubleDouble {
         let kappa = contact.kappa();
         match exit {
@@ -180,7 +180,7 @@ impl Motion {
         Self { y, t: ZERO, ..*self }
     }
 
-    /// Follows `phase` from here to its end, about `length` away.
+    /// Follows `phase` from here to its end, which is about `length` away.
     fn follow(
         &self,
         contact: Contact,
@@ -202,10 +202,10 @@ impl Motion {
     }
 }
 
-/// Taylor series of a motion in s.
+/// The Taylor series of the state in s.
 struct Series {
     side: Option<Side>,
-    start: Motion,
+    start: FineState,
     u: [DoubleDouble; DEGREE + 1],
     v: [DoubleDouble; DEGREE + 1],
     w: [DoubleDouble; DEGREE + 1],
@@ -213,7 +213,7 @@ struct Series {
 }
 
 impl Series {
-    fn new(contact: Contact, phase: Phase, start: &Motion) -> Self {
+    fn new(contact: Contact, phase: Phase, start: &FineState) -> Self {
         let side = (phase.regime == Regime::Slip).then_some(phase.side);
         let blank = [ZERO; DEGREE + 1];
         let mut series = Self { side, start: *start, u: blank, v: blank, w: blank, y: blank };
@@ -235,8 +235,8 @@ impl Series {
         series
     }
 
-    /// The step at which the last terms are below the tolerance; six of them, since at the start of
-    /// contact only every fifth differs from 0.
+    /// The step at which the last six terms are below the tolerance. Fewer would not do: at the
+    /// start of contact only every fifth term differs from 0.
     fn reach(&self) -> f64 {
         (DEGREE - 5..=DEGREE).fold(1.0, |reach: f64, k| {
             let size = |terms: &[DoubleDouble; DEGREE + 1]| terms[k].0.abs();
@@ -245,8 +245,8 @@ impl Series {
         })
     }
 
-    /// The motion a distance `h` from the start of the series.
-    fn at(&self, h: f64) -> Motion {
+    /// The state at a distance `h` from the start of the series.
+    fn at(&self, h: f64) -> FineState {
         let (u, v) = (value(&self.u, h), value(&self.v, h));
         let (w, y) = match self.side {
             // s w − v is constant while sliding.
@@ -261,17 +261,17 @@ impl Series {
             })
             .scaled(2.0)
             .scaled(h);
-        Motion { u, v, w, y, t: self.start.t.plus(t) }
+        FineState { u, v, w, y, t: self.start.t.plus(t) }
     }
 
-    /// The motion where the guard vanishes, by Newton's method from `h`.
+    /// The state where the guard vanishes, by Newton's method from `h`.
     fn guard_zero(
         &self,
         contact: Contact,
         phase: Phase,
         exit: Option<Phase>,
         mut h: f64,
-    ) -> Option<Motion> {
+    ) -> Option<FineState> {
         let guard = |h: f64| self.at(h).guard(contact, phase, exit);
         let first = h;
         let mut moved = f64::INFINITY;
@@ -281,7 +281,7 @@ impl Series {
             let slope = rise / ((h + reach) - (h - reach));
             let shift = -guard(h).nearest() / slope;
             h += shift;
-            // Rounding of h is all that is left once the shifts stop shrinking.
+            // When the shifts stop shrinking, only the rounding of h is left.
             if shift.abs() <= f64::EPSILON * h || shift.abs() >= moved && moved < 1e-12 * h {
                 return ((h - first).abs() <= 0.3 * first).then(|| self.at(h));
             }
@@ -291,7 +291,7 @@ impl Series {
     }
 }
 
-/// The k-th coefficient of a product of two series; four sums that do not wait for each other.
+/// The k-th coefficient of a product of two series, by four sums that do not wait for each other.
 fn product(
     a: &[DoubleDouble; DEGREE + 1],
     b: &[DoubleDouble; DEGREE + 1],
@@ -304,6 +304,7 @@ fn product(
     sums[0].plus(sums[1]).plus(sums[2].plus(sums[3]))
 }
 
+/// The value of a series at a distance `h`.
 fn value(terms: &[DoubleDouble; DEGREE + 1], h: f64) -> DoubleDouble {
     terms.iter().rev().fold(ZERO, |sum, &term| sum.scaled(h).plus(term))
 }

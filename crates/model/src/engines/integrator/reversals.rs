@@ -1,9 +1,10 @@
-//! Sign changes of the tangential velocity, counted without looking for them.
+//! Number of sign changes of the tangential velocity, without a search for each.
 
-/// Sign changes of w = w₀ cos ωt − ω y₀ sin ωt (the velocity on a spring with ω² = κ) while t goes
-/// from 0 to `duration`, when it ends as `w1`.
+/// Sign changes of w = w₀ cos ωt − ω y₀ sin ωt, the velocity on a spring with ω² = κ, from t = 0 to
+/// `duration`, where w is `w1`.
 ///
-/// The phase angle swept gives the number; the signs at both ends settle what rounding leaves open.
+/// The number follows from the angle that the phase passes through. Where rounding leaves it open,
+/// the signs at both ends decide.
 pub(crate) fn on_spring(kappa: f64, (y0, w0): (f64, f64), w1: f64, duration: f64) -> usize {
     let omega = kappa.sqrt();
     let from = (omega * y0).atan2(w0) - std::f64::consts::FRAC_PI_2;
@@ -14,12 +15,12 @@ pub(crate) fn on_spring(kappa: f64, (y0, w0): (f64, f64), w1: f64, duration: f64
     if (count % 2 == 1) == changed(w0, w1) {
         return count;
     }
-    // An end lies on a zero to rounding: the nearer neighbour has the right parity.
+    // To rounding, an end is at a zero: the nearer neighbour of the count has the right parity.
     let exact = turns(from + omega * duration) - turns(from).floor() - 0.5;
     if exact > swept { count + 1 } else { count.saturating_sub(1) + usize::from(count == 0) }
 }
 
-/// Whether a velocity that is monotone in between has changed its sign.
+/// Whether a velocity that is monotone between `w0` and `w1` changes its sign.
 pub(crate) fn changed(w0: f64, w1: f64) -> bool {
     (w0 < 0.0) != (w1 < 0.0)
 }

@@ -1,18 +1,19 @@
-//! The components of the state in regularized coordinates.
+//! The state in regularized coordinates: which component is what.
 
 use stickslip_solver::State;
 
-/// Components of the state.
+/// Number of components.
 pub const STATE: usize = 8;
 
-/// u = √x.
+/// u = √x, the root of the compression.
 pub const U: usize = 0;
-/// v = dx/dt.
+/// v = dx/dt, the rate of the compression.
 pub const V: usize = 1;
-/// c ω y/σ while sticking, with c = max(1, κ^{1/4}) and σ = min(1, ψ), which makes errors of y and
-/// of switch times comparable to those of w.
+/// c ω y/σ while sticking, with c = max(1, κ^{1/4}) and σ = min(1, ψ): these factors make errors of
+/// y and of switch times comparable to those of w.
 pub const SPRING: usize = 2;
-/// w/σ; see [`Regularized::velocity`](super::Regularized::velocity).
+/// w/σ, the scaled tangential velocity; see
+/// [`Regularized::velocity`](super::Regularized::velocity).
 pub const W: usize = 3;
 /// Time since the phase began.
 pub const T: usize = 4;
@@ -23,7 +24,7 @@ pub const GAP: usize = 6;
 /// rate/c², in the first step of a stick phase.
 pub const RATE: usize = 7;
 
-/// The components of a state.
+/// The components of a state as an array.
 #[inline(always)]
 pub(crate) fn array(y: &State<STATE>) -> &[f64; STATE] {
     &y.data.0[0]

@@ -6,7 +6,7 @@ use super::components::{GAP, RATE, SPRING, STATE, T as TIME, U, V, W};
 use crate::contact::Contact;
 use crate::laws::phase::{GUARDS, Phase, Progress, Regime, Side};
 
-/// What the equations are computed with.
+/// A number with which the equations are computed.
 pub(crate) trait Number: DualNum<Primitive = f64> + Copy {}
 
 impl<T: DualNum<Primitive = f64> + Copy> Number for T {}
@@ -16,14 +16,15 @@ impl<T: DualNum<Primitive = f64> + Copy> Number for T {}
 pub(crate) struct Equations<T> {
     kappa: T,
     damping: T,
-    /// c.
+    /// The factor c of [`SPRING`].
     pub scale: f64,
     /// 1/c².
     rate_scale: f64,
-    /// 2ωc and 2ω/c: rates of the spring and of the velocity.
+    /// 2ωc, the rate of the spring.
     pub spring_rate: T,
+    /// 2ω/c, the rate of the velocity.
     velocity_rate: T,
-    /// κ y over the component [`SPRING`].
+    /// κ y divided by the component [`SPRING`].
     pub spring_force: T,
     /// σ = min(1, ψ), the size of the velocity.
     pub velocity_unit: f64,
@@ -37,8 +38,8 @@ pub(crate) struct Force<T> {
     pub second: T,
 }
 
-/// A parameter of a contact; stiffness and impact ratio are taken by their logarithms, which suits
-/// values of any size.
+/// A parameter of the derivatives. Stiffness and impact ratio may have any size: their logarithms
+/// are used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Parameter {
     LnKappa,
@@ -67,11 +68,12 @@ impl Equations<f64> {
         }
     }
 
-    /// The same with the derivative by a parameter. The units c and σ stay what they are.
+    /// The same equations with their derivatives with respect to a parameter. The units c and σ are
+    /// kept constant.
     pub fn by(&self, parameter: Option<Parameter>) -> Equations<Dual64> {
         let by_kappa = f64::from(parameter == Some(Parameter::LnKappa));
         let by_damping = f64::from(parameter == Some(Parameter::Damping));
-        // These three are proportional to ω = √κ.
+        // Three of the numbers are proportional to ω = √κ.
         let like_root = |value: f64| Dual64::new(value, 0.5 * by_kappa * value);
         Equations {
             kappa: Dual64::new(self.kappa, by_kappa * self.kappa),
@@ -94,7 +96,7 @@ impl Equations<f64> {
         y
     }
 
-    /// Its derivative.
+    /// The derivative of the state at the start of contact with respect to a parameter.
     pub fn start_by(&self, psi: f64, parameter: Parameter) -> [f64; STATE] {
         let mut y = [0.0; STATE];
         match parameter {
@@ -113,6 +115,7 @@ impl<T: Number> Equations<T> {
         y[W] * self.velocity_unit
     }
 
+    /// The normal force and its derivatives.
     #[inline(always)]
     pub fn force<const DAMPED: bool>(&self, u: T, v: T) -> Force<T> {
         let uu = u * u;
@@ -134,6 +137,7 @@ impl<T: Number> Equations<T> {
         }
     }
 
+    /// The right-hand side of slip.
     #[inline(always)]
     pub fn slip<const DAMPED: bool>(&self, side: Side, y: &[T; STATE]) -> [T; STATE] {
         let (u, v, zero) = (y[U], y[V], T::from(0.0));
@@ -142,6 +146,7 @@ impl<T: Number> Equations<T> {
         [v, dv, zero, pull, u * 2.0, self.loss::<DAMPED>(u, v), zero, zero]
     }
 
+    /// The right-hand side of stick.
     #[inline(always)]
     pub fn stick<const DAMPED: bool>(&self, y: &[T; STATE]) -> [T; STATE] {
         let (u, v, zero) = (y[U], y[V], T::from(0.0));
@@ -151,7 +156,7 @@ impl<T: Number> Equations<T> {
         [v, dv, stretch, pull, u * 2.0, self.loss::<DAMPED>(u, v), zero, zero]
     }
 
-    /// Stick with its gap.
+    /// The right-hand side of the first step of a stick phase, with its gap.
     #[inline(always)]
     pub fn first_stick<const DAMPED: bool>(&self, side: Side, y: &[T; STATE]) -> [T; STATE] {
         let (u, v, w) = (y[U], y[V], self.velocity(y));
@@ -164,18 +169,20 @@ impl<T: Number> Equations<T> {
         slope
     }
 
+    /// dv/ds.
     #[inline(always)]
     pub fn deceleration<const DAMPED: bool>(&self, u: T, v: T) -> T {
         let uu = u * u;
         if DAMPED { uu * -2.0 * (uu + self.damping * v) } else { uu * uu * -2.0 }
     }
 
+    /// The rate in s of the energy that damping takes.
     #[inline(always)]
     fn loss<const DAMPED: bool>(&self, u: T, v: T) -> T {
         if DAMPED { self.damping * 2.0 * (u * v) * (u * v) } else { T::from(0.0) }
     }
 
-    /// s κ w, of which the slip on side s has its guard.
+    /// s κ w, which the guard of slip on side s contains.
     #[inline(always)]
     pub fn stretching(&self, side: Side, y: &[T; STATE]) -> T {
         self.kappa * side.sign() * self.velocity(y)
@@ -191,8 +198,8 @@ impl<T: Number> Equations<T> {
         }
     }
 
-    /// The values of the guards. That of slip is s w − dL/dt, without damping in the form that has
-    /// no zero of its own where u = 0.
+    /// The values of the guards. The guard of slip is s w − dL/dt, without damping in the form that
+    /// does not vanish by itself where u = 0.
     #[inline(always)]
     pub fn guards<const DAMPED: bool>(&self, phase: Phase, y: &[T; STATE]) -> [T; GUARDS] {
         let (u, v) = (y[U], y[V]);
@@ -213,8 +220,8 @@ impl<T: Number> Equations<T> {
                     let force = u * (u * u + self.damping * v);
                     [end, force - pull, force + pull]
                 } else if DAMPED {
-                    // A phase may begin so late that u² + a v is nothing but rounding: the force is
-                    // what gap and spring say.
+                    // A phase may begin so late that u² + a v is rounding alone. The force is
+                    // therefore computed from gap and spring.
                     let gap = y[GAP] * self.scale;
                     [gap + pull, gap, gap + pull * 2.0]
                 } else {
@@ -224,7 +231,7 @@ impl<T: Number> Equations<T> {
         }
     }
 
-    /// The state in which the phase `next` begins.
+    /// The state with which the phase `next` begins, from the state `y` at the switch.
     #[inline(always)]
     pub fn enter<const DAMPED: bool>(&self, next: Phase, y: &[T; STATE]) -> [T; STATE] {
         let zero = T::from(0.0);

@@ -1,10 +1,10 @@
 //! Chebyshev expansions of degree 8 on [−1, 1].
 
-/// Terms of an expansion.
+/// The number of terms of an expansion.
 pub(crate) const TERMS: usize = 9;
 
-/// cos(10° m) for m = 0 … 9: the nodes of degree 8 are at 10°, 30°, … 170°, none of them an end of
-/// the interval, where a quotient may have no value.
+/// cos(10° m) for m = 0 … 9. The nodes of degree 8 are at 10°, 30°, …, 170°. None of them is an end
+/// of the interval, where a quotient may have no value.
 pub(crate) const COSINES: [f64; 10] = [
     1.0,
     0.984807753012208,
@@ -27,7 +27,7 @@ fn cosine(tens_of_degrees: usize) -> f64 {
     }
 }
 
-/// Chebyshev coefficients of the interpolant of degree 8 on [−1, 1].
+/// The Chebyshev coefficients of the interpolant of degree 8 on [−1, 1].
 pub(crate) fn expand(mut function: impl FnMut(f64) -> f64) -> [f64; TERMS] {
     let values: [f64; TERMS] = std::array::from_fn(|j| function(cosine(2 * j + 1)));
     std::array::from_fn(|k| {
@@ -37,6 +37,7 @@ pub(crate) fn expand(mut function: impl FnMut(f64) -> f64) -> [f64; TERMS] {
     })
 }
 
+/// The value of an expansion at `t`, by Clenshaw's recurrence.
 pub(crate) fn clenshaw(coefficients: &[f64; TERMS], t: f64) -> f64 {
     let (mut b1, mut b2) = (0.0, 0.0);
     for &c in coefficients[1..].iter().rev() {
@@ -45,6 +46,7 @@ pub(crate) fn clenshaw(coefficients: &[f64; TERMS], t: f64) -> f64 {
     coefficients[0] + t * b1 - b2
 }
 
+/// The expansion of the derivative.
 pub(crate) fn differentiate(coefficients: &[f64; TERMS]) -> [f64; TERMS] {
     let mut derivative = [0.0; TERMS];
     for k in (0..TERMS - 1).rev() {
@@ -55,12 +57,12 @@ pub(crate) fn differentiate(coefficients: &[f64; TERMS]) -> [f64; TERMS] {
     derivative
 }
 
-/// Whether the constant term outweighs all others, so that there is no root.
+/// Whether the constant term is larger than all others together, so that there is no root.
 pub(crate) fn dominated(coefficients: &[f64; TERMS]) -> bool {
     coefficients[0].abs() > coefficients[1..].iter().map(|c| c.abs()).sum()
 }
 
-/// The root of a monotone expansion whose signs at ±1 differ, by bisection.
+/// The root of a monotone expansion whose signs at ±1 differ, found by bisection.
 pub(crate) fn monotone_root(coefficients: &[f64; TERMS]) -> f64 {
     let (mut low, mut high) = (-1.0, 1.0);
     let negative_left = clenshaw(coefficients, low) < 0.0;

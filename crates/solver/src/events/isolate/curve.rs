@@ -1,39 +1,41 @@
-//! A guard along a step, as isolation sees it, and how well it is known.
+//! A guard as isolation sees it: a curve, its quotient by a known zero, and the accuracy of both.
 
 use crate::events::isolate::chebyshev::COSINES;
 use crate::events::isolate::panel::Panel;
 
 /// Panels narrower than 2^−`DEPTH` of the step are not cut further.
 pub(super) const DEPTH: u32 = 12;
+/// The width of such a panel, as a part of the step.
 pub(super) const NARROWEST: f64 = 1.0 / (1_u32 << DEPTH) as f64;
-/// By how much the dense output's error may exceed its last term. A value that is too large costs
-/// steps of the method; one too small would cost decisions.
+
+/// The factor by which the error of the dense output may exceed its last term. A value that is too
+/// large costs steps of the method. One that is too small would make decisions wrong.
 const SAFETY: f64 = 4.0;
-/// A value counts as beyond its noise at this multiple of the noise's standard deviation.
+/// A value has a sign if it exceeds the standard deviation of its noise by this factor.
 const BEYOND_NOISE: f64 = 32.0;
-/// Points in a row from which the noise is measured, and the order of the differences that are
-/// taken of them.
+/// The number of points in a row from which noise is measured.
 const ROW: usize = 9;
+/// The order of the differences that are taken of these points.
 const DIFFERENCES: usize = 6;
-/// By how much such a difference is larger than the noise: the square root of the sum of its
-/// squared weights, C(12, 6).
+/// The factor by which such a difference is larger than the noise: the square root of C(12, 6), the
+/// sum of its squared weights.
 const DIFFERENCED: f64 = 30.397_368_307_141_3;
 
 /// A guard's value along a step.
 pub(crate) trait Curve {
-    /// Why a value cannot be had.
+    /// The reason for which a value cannot be computed.
     type Error;
-    /// By the dense output, and by the dense output without its last term.
+    /// The value by the dense output, and by the dense output without its last term.
     fn dense(&mut self, theta: f64) -> (f64, f64);
-    /// What the rounding of state and time may do to a value: at the start of the step, and at
-    /// most.
+    /// The effect of rounding of state and time on a value: at the start of the step, and the
+    /// largest on the step.
     fn rounding(&mut self) -> (f64, f64);
-    /// By a step of the method to `theta`.
+    /// The value by a step of the method to `theta`.
     fn truth(&mut self, theta: f64) -> Result<f64, Self::Error>;
 }
 
-/// How far a curve's values scatter where the step starts or, if `at_end`, ends, if that is more
-/// than their own rounding there.
+/// The scatter of a curve's values at the start of the step or, if `at_end`, at its end. It is 0 if
+/// the values scatter only by their own rounding.
 pub(crate) fn noise<C: Curve>(curve: &mut C, at_end: bool) -> f64 {
     let width = NARROWEST / 64.0;
     let (low, high) = if at_end { (1.0 - width, 1.0) } else { (0.0, width) };
@@ -42,27 +44,31 @@ pub(crate) fn noise<C: Curve>(curve: &mut C, at_end: bool) -> f64 {
     if noise > BEYOND_NOISE * f64::EPSILON * largest { noise } else { 0.0 }
 }
 
+/// θ to the power `order`.
 pub(super) fn power(theta: f64, order: u32) -> f64 {
     (0..order).fold(1.0, |product, _| product * theta)
 }
 
-/// A curve with the known zero at its start divided out.
+/// A curve divided by θ to the power `order`, to remove a known zero at its start.
 pub(super) struct Quotient<'a, C> {
     pub(super) curve: &'a mut C,
     pub(super) order: u32,
 }
 
 impl<C: Curve> Quotient<'_, C> {
+    /// The quotient by the dense output, and by the dense output without its last term.
     pub(super) fn at(&mut self, theta: f64) -> (f64, f64) {
         let (fine, coarse) = self.curve.dense(theta);
         let divisor = power(theta, self.order);
         (fine / divisor, coarse / divisor)
     }
 
+    /// The quotient by a step of the method.
     pub(super) fn truth(&mut self, theta: f64) -> Result<f64, C::Error> {
         Ok(self.curve.truth(theta)? / power(theta, self.order))
     }
 
+    /// The errors of the quotient on the step.
     pub(super) fn accuracy(&mut self) -> Accuracy {
         let state = self.curve.rounding();
         let mut accuracy = Accuracy { dense: 0.0, rounding: 0.0, state, noise: 0.0 };
@@ -70,9 +76,9 @@ impl<C: Curve> Quotient<'_, C> {
             let theta = f64::from(j) / 16.0;
             let divisor = power(theta, self.order);
             let (fine, coarse) = self.curve.dense(theta);
-            // The error vanishes as θ²(1−θ)² at the ends of the step, but its ratio to a double
-            // zero at the start does not, where the last term's does: 16 is the inverse
-            // of the maximum of θ²(1−θ)².
+            // The error of the dense output vanishes as θ²(1−θ)² at the ends of the step. Divided
+            // by a double zero, it is not zero at the start, whereas the last term is. 16 is the
+            // inverse of the maximum of θ²(1−θ)².
             let weight = if self.order > 1 { (1.0 / divisor).max(16.0) } else { 1.0 / divisor };
             let error = SAFETY * weight * (fine - coarse).abs();
             if error.is_nan() {
@@ -84,13 +90,12 @@ impl<C: Curve> Quotient<'_, C> {
         accuracy
     }
 
-    /// How far the curve's values scatter between two step fractions, beyond which they mean
-    /// something.
+    /// The noise of the curve's values between two step fractions. Larger values have a sign.
     ///
-    /// High differences of successive values are left by noise alone, which is estimated from them
-    /// (Moré and Wild, SIAM J. Sci. Comput. 33 (2011) 1292). What a function does diminishes
-    /// when the values move together, and a jump is in one place; noise is neither: of two
-    /// spacings the smaller estimate counts, of three places the middle one.
+    /// Noise is estimated from differences of high order of successive values (Moré and Wild, SIAM
+    /// J. Sci. Comput. 33 (2011) 1292). A smooth function hardly contributes to them if the values
+    /// are close together, and a jump contributes in one place only. Therefore the smaller of the
+    /// estimates with two spacings counts, and the middle one of those at three places.
     pub(super) fn noise(&mut self, low: f64, high: f64) -> f64 {
         let mut at = [0.0, 1.0 / 3.0, 2.0 / 3.0].map(|place| {
             let start = low + place * (high - low);
@@ -114,25 +119,27 @@ impl<C: Curve> Quotient<'_, C> {
     }
 }
 
-/// How well a quotient is known along the dense output.
+/// The errors of a quotient along the dense output.
 pub(super) struct Accuracy {
-    /// Error of the dense output as the guard sees it: the effect of its last term.
+    /// The error of the dense output: the effect of its last term on the guard.
     pub(super) dense: f64,
-    /// Rounding of the guard before the known zero is divided out, which magnifies it.
+    /// The rounding of the guard before the known zero is divided out, which magnifies it.
     pub(super) rounding: f64,
-    /// What rounding of state and time does to the guard, at the start of the step and at most.
+    /// The effect of rounding of state and time on the guard: at the start of the step, and the
+    /// largest on the step.
     pub(super) state: (f64, f64),
-    /// What the guard's values scatter beyond that, where it was measured.
+    /// The noise of the guard's values beyond that, if it was measured.
     pub(super) noise: f64,
 }
 
 impl Accuracy {
+    /// The error of the quotient on `panel`.
     pub(super) fn on(&self, panel: &Panel, order: u32) -> f64 {
         let state = self.state.0 + panel.high * self.state.1;
         self.dense + (self.rounding + state + self.noise) / power(panel.theta(-COSINES[1]), order)
     }
 
-    /// The part of it that does not diminish with the step.
+    /// The part of the error at the start of `panel` that a shorter step does not diminish.
     pub(super) fn lasting(&self, panel: &Panel, order: u32) -> f64 {
         (self.state.0 + self.noise) / power(panel.theta(-COSINES[1]), order)
     }

@@ -1,10 +1,10 @@
-//! A curve on part of a step as a polynomial, and the points between which it is monotone.
+//! A curve on part of a step as a polynomial, and the critical points of that polynomial.
 
 use crate::events::isolate::chebyshev::{
     TERMS, clenshaw, differentiate, dominated, expand, monotone_root,
 };
 
-/// A curve on part of a step, in Chebyshev polynomials of the local variable t ∈ [−1, 1].
+/// A curve on part of a step, expanded in Chebyshev polynomials of the local variable t ∈ [−1, 1].
 pub(crate) struct Panel {
     pub(crate) low: f64,
     pub(crate) high: f64,
@@ -12,13 +12,14 @@ pub(crate) struct Panel {
 }
 
 impl Panel {
-    /// That of `curve` between `low` and `high`.
+    /// Expands `curve` between the step fractions `low` and `high`.
     pub(crate) fn new(low: f64, high: f64, mut curve: impl FnMut(f64) -> f64) -> Self {
         let middle = 0.5 * (low + high);
         let half = 0.5 * (high - low);
         Self { low, high, coefficients: expand(|t| curve(middle + half * t)) }
     }
 
+    /// The step fraction at the local variable `local`.
     pub(crate) fn theta(&self, local: f64) -> f64 {
         if local >= 1.0 {
             self.high
@@ -27,18 +28,19 @@ impl Panel {
         }
     }
 
+    /// The value of the expansion at the local variable `local`.
     pub(crate) fn at(&self, local: f64) -> f64 {
         clenshaw(&self.coefficients, local)
     }
 
-    /// Size of the last two terms: what degree 8 leaves out is smaller where the function is
-    /// smooth.
+    /// The size of the last two terms. If the function is smooth, all terms beyond degree 8 are
+    /// smaller.
     pub(crate) fn tail(&self) -> f64 {
         self.coefficients[TERMS - 1].abs() + self.coefficients[TERMS - 2].abs()
     }
 
-    /// Collects, from left to right, points of ]low, high[ that cut it into monotone pieces; a
-    /// stretch flat to within `error` gives its middle.
+    /// Collects points of ]low, high[ that cut this interval into monotone pieces, from left to
+    /// right. A stretch that is flat to within `error` contributes its middle.
     pub(crate) fn critical_points(
         &self,
         low: f64,
@@ -71,13 +73,13 @@ impl Panel {
         }
         let middle = 0.5 * (low + high);
         self.critical_points(low, middle, error, depth - 1, points);
-        // An extremum that rounding puts on neither side of the cut is on the cut.
+        // Rounding may put an extremum on neither side of the cut. Then it lies on the cut.
         points.push(middle);
         self.critical_points(middle, high, error, depth - 1, points);
     }
 }
 
-/// Points in order.
+/// The critical points of a panel, in order.
 pub(crate) struct Points {
     items: [f64; 64],
     count: usize,

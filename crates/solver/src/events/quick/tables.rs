@@ -1,28 +1,32 @@
-//! Weights of the first look, computed when the crate is compiled.
+//! Weights for the first look at a guard, computed when the crate is compiled.
 
 use crate::method::INTERIOR_NODES;
 
-/// Values of a guard that a step gives without further work.
+/// The number of values of a guard that a step provides without further work.
 pub(super) const COUNT: usize = 6;
 
-/// Step fractions of the six values.
+/// The step fractions of the six values.
 pub(crate) const NODES: [f64; COUNT] =
     [0.0, INTERIOR_NODES[0], INTERIOR_NODES[1], INTERIOR_NODES[2], INTERIOR_NODES[3], 1.0];
 
-/// Columns of the map from values at the six nodes to Bernstein coefficients of degree 5.
+/// The matrix, by columns, from values at the six nodes to Bernstein coefficients of degree 5.
 pub(super) const QUINTIC: [[f64; 6]; 6] = to_bernstein(&NODES);
-/// The same for the five nodes after the start, degree 4.
+/// The matrix, by columns, from values at the five nodes after the start to Bernstein coefficients
+/// of degree 4.
 pub(super) const QUARTIC: [[f64; 5]; 5] = to_bernstein(&LATE_NODES);
 const LATE_NODES: [f64; 5] = [NODES[1], NODES[2], NODES[3], NODES[4], NODES[5]];
 
-/// Weights that give the size of the expansion's last term on the step, and of the one before it.
+/// Weights that give the size of the last term of the quintic on the step.
 pub(super) const QUINTIC_TERM: [f64; 6] = last_term_weights(&NODES, None, 2);
+/// Weights that give the size of the next-to-last term of the quintic.
 pub(super) const QUARTIC_TERM: [f64; 6] = last_term_weights(&NODES, Some(2), 3);
+/// Weights that give the size of the last term of the quartic on the step.
 pub(super) const LATE_QUARTIC_TERM: [f64; 5] = last_term_weights(&LATE_NODES, None, 1);
+/// Weights that give the size of the next-to-last term of the quartic.
 pub(super) const LATE_CUBIC_TERM: [f64; 5] = last_term_weights(&LATE_NODES, Some(1), 2);
 
-/// By how much the quintic and its error may move at most, anywhere on the step, for each unit by
-/// which the value at a node differs from the chord through the ends.
+/// The largest change of the quintic and its error, anywhere on the step, if the value at a node
+/// moves by one unit away from the chord through the ends.
 pub(super) const BEND: [f64; 6] = {
     let mut bend = [0.0; 6];
     let mut i = 0;
@@ -33,8 +37,8 @@ pub(super) const BEND: [f64; 6] = {
     bend
 };
 
-/// The greatest absolute value on [0, 1] of the polynomial that is 1 at node `i` and 0 at the
-/// others, rounded up.
+/// The largest absolute value on [0, 1] of the polynomial that is 1 at node `i` and 0 at the other
+/// nodes, rounded up.
 const fn greatest_lagrange<const K: usize>(nodes: &[f64; K], i: usize) -> f64 {
     let mut greatest = 0.0;
     let mut sample = 0;
@@ -56,8 +60,11 @@ const fn greatest_lagrange<const K: usize>(nodes: &[f64; K], i: usize) -> f64 {
     1.01 * greatest
 }
 
-/// Newton's form through all nodes but `skip`, with node `last` added last: the weights of its
-/// highest coefficient times the greatest value of that coefficient's polynomial on [0, 1].
+/// Weights that give the size of the last term of Newton's form on [0, 1].
+///
+/// Newton's form goes through all nodes but `skip`, and node `last` is added last. Its last term is
+/// the highest coefficient, times a polynomial. The weights are those of this coefficient, times
+/// the largest absolute value of the polynomial on [0, 1].
 const fn last_term_weights<const K: usize>(
     nodes: &[f64; K],
     skip: Option<usize>,
@@ -102,7 +109,7 @@ const fn last_term_weights<const K: usize>(
     weights
 }
 
-/// The inverse of the Bernstein collocation matrix at `nodes`, as columns.
+/// The inverse of the Bernstein collocation matrix at `nodes`, by columns.
 const fn to_bernstein<const K: usize>(nodes: &[f64; K]) -> [[f64; K]; K] {
     let mut matrix = [[0.0; K]; K];
     let mut inverse = [[0.0; K]; K];
@@ -116,7 +123,7 @@ const fn to_bernstein<const K: usize>(nodes: &[f64; K]) -> [[f64; K]; K] {
         inverse[row][row] = 1.0;
         row += 1;
     }
-    // Gauss–Jordan; the matrix is totally positive, so it needs no pivoting.
+    // Gauss–Jordan elimination. The matrix is totally positive, so no pivoting is needed.
     let mut pivot = 0;
     while pivot < K {
         let scale = 1.0 / matrix[pivot][pivot];
@@ -154,6 +161,7 @@ const fn to_bernstein<const K: usize>(nodes: &[f64; K]) -> [[f64; K]; K] {
     columns
 }
 
+/// The Bernstein polynomial of this degree and index at `theta`.
 const fn bernstein(degree: usize, index: usize, theta: f64) -> f64 {
     let mut product = 1.0;
     let mut i = 0;

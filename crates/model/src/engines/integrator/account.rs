@@ -1,0 +1,122 @@
+//! The account of a run while it goes on: switches, reversals and the work of sliding.
+
+use stickslip_solver::{Dense, Observer, State, SwitchEvent};
+
+use super::{last_slip, reversals};
+use crate::laws::phase::{END, Phase, Regime};
+use crate::laws::regularized::Regularized;
+use crate::laws::regularized::components::{STATE, T, V};
+use crate::result::{Collision, Switch};
+
+/// The running account of a collision.
+pub struct Account<'a> {
+    system: Regularized,
+    collision: &'a mut Collision,
+    /// State in which the phase began.
+    entered: State<STATE>,
+    /// Elongation of the spring when it began.
+    spring: f64,
+    /// Time at which it began.
+    pub elapsed: f64,
+    /// Energy taken by sliding in the phases before.
+    pub sliding: f64,
+    /// The largest flatness of a switch so far.
+    pub flatness: f64,
+}
+
+impl<'a> Account<'a> {
+    /// The account of a run that begins in state `start`; switches go into `collision`.
+    pub fn new(system: Regularized, collision: &'a mut Collision, start: State<STATE>) -> Self {
+        Self {
+            system,
+            collision,
+            entered: start,
+            spring: 0.0,
+            elapsed: 0.0,
+            sliding: 0.0,
+            flatness: 0.0,
+        }
+    }
+
+    /// Closes a phase that ends in state `y` with the elongation `spring`.
+    fn leave(&mut self, phase: Phase, y: &State<STATE>, spring: f64) {
+        let kappa = self.collision.contact.kappa();
+        let (v0, w0) = (self.entered[V], self.system.velocity(&self.entered));
+        let w1 = self.system.velocity(y);
+        self.collision.reversals += match phase.regime {
+            Regime::Slip => usize::from(reversals::changed(w0, w1)),
+            Regime::Stick => reversals::on_spring(kappa, (self.spring, w0), w1, y[T]),
+        };
+        if phase.regime == Regime::Slip {
+            // With s w = s w₀ + v − v₀ and F dt = −dv, ∫ F (s w − dL/dt) dt is made of differences.
+            let work = (v0 - y[V]) * (phase.side.sign() * w0 + 0.5 * (y[V] - v0));
+            self.sliding += work - 0.5 * kappa * (spring * spring - self.spring * self.spring);
+        }
+        self.spring = spring;
+        self.entered = *y;
+    }
+
+    /// Closes the phase in which the contact ends, in state `y`, and returns the duration of the
+    /// last slip.
+    pub fn finish(&mut self, phase: Phase, y: &State<STATE>) -> f64 {
+        let (slip, length) = match phase.regime {
+            Regime::Slip => (phase, y[T]),
+            Regime::Stick => {
+                let slip = last_slip::after(phase, self.system.spring(phase, y));
+                self.switch(phase, slip, y);
+                (slip, 0.0)
+            }
+        };
+        let short = match self.collision.switches.last() {
+            Some(switch) => last_slip::time_left(&self.system, y, switch.spring),
+            None => None,
+        };
+        // At the end the spring is at its limit, which is 0.
+        self.leave(slip, y, 0.0);
+        short.unwrap_or(length)
+    }
+
+    /// Records the switch from phase `from` to phase `to` in state `y`.
+    fn switch(&mut self, from: Phase, to: Phase, y: &State<STATE>) {
+        // Where the limit is small, the spring of a stick phase is known better than the limit.
+        self.leave(from, y, self.system.spring(from, y));
+        self.elapsed += y[T];
+        self.collision.switches.push(Switch {
+            time: self.elapsed,
+            time_left: y[T],
+            to: to.regime,
+            side: to.side,
+            spring: self.spring,
+            velocity: self.system.velocity(y),
+        });
+    }
+}
+
+impl Observer<Phase, STATE> for Account<'_> {
+    fn on_switch(&mut self, event: &SwitchEvent<Phase, STATE>) {
+        if event.guard == END {
+            return;
+        }
+        self.flatness = self.flatness.max(event.flatness);
+        self.switch(event.from, event.to, &event.before);
+    }
+}
+
+/// The account of a run, and another observer of the same run.
+pub struct Observed<'a, O> {
+    pub account: Account<'a>,
+    pub course: &'a mut O,
+}
+
+impl<O: Observer<Phase, STATE>> Observer<Phase, STATE> for Observed<'_, O> {
+    const WANTS_SEGMENTS: bool = O::WANTS_SEGMENTS;
+
+    fn on_segment(&mut self, phase: Phase, step: &Dense<STATE>) {
+        self.course.on_segment(phase, step);
+    }
+
+    fn on_switch(&mut self, event: &SwitchEvent<Phase, STATE>) {
+        self.account.on_switch(event);
+        self.course.on_switch(event);
+    }
+}

@@ -1,0 +1,15 @@
+//! What must hold of the repository as a whole: the arrows between crates, licences of dependencies,
+//! what packages carry, the schema of the files that `impact` reads, and the docs.
+
+mod architecture;
+mod dependencies;
+mod docs;
+mod impact_files;
+mod packages;
+
+use std::path::{Path, PathBuf};
+
+/// The repository.
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}

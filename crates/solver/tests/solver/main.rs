@@ -1,0 +1,23 @@
+//! Tests of the solver.
+//!
+//! | module | content |
+//! |---|---|
+//! | `methods` | order conditions of both pairs, and orders observed in steps |
+//! | `smooth_problems` | published results, the DETEST problems, work counters |
+//! | `event_battery` | guards with known zeros, and systems with known switches |
+//! | `planted_roots` | random polynomials with planted roots as guards |
+//! | `guard_rounding` | guards whose signs are lost in their own rounding |
+//! | `margins` | margins with a closed form |
+//! | `properties` | what holds of random systems; `checks` says it, for the fuzz targets too |
+//! | `serialization` | the JSON of results |
+
+mod checks;
+mod event_battery;
+mod guard_rounding;
+mod margins;
+mod methods;
+mod planted_roots;
+mod properties;
+#[cfg(feature = "serde")]
+mod serialization;
+mod smooth_problems;

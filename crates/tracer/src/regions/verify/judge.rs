@@ -1,0 +1,158 @@
+//! The comparison of the labels of runs with those of regions, and its statistics.
+
+use crate::regions::region::Side;
+use crate::regions::subdivision::Subdivision;
+use crate::regions::verify::report::{
+    Checkpoint, Mismatch, Origin, Reason, Unverified, Verification,
+};
+use crate::window::Point;
+
+/// Compares the labels of runs with those of regions, one after the other.
+pub struct Judge<'a, Label, Margin, Error> {
+    plane: &'a Subdivision<Label, Margin>,
+    /// The labels of the regions.
+    expected: Vec<Option<Label>>,
+    /// The number of compared labels in every region.
+    tried: Vec<usize>,
+    /// Whether a region has a mismatch.
+    wrong: Vec<bool>,
+    /// The points of every region that have its label.
+    agreeing: Vec<Vec<Point>>,
+    mismatches: Vec<Mismatch<Label>>,
+    unverified: Vec<Unverified<Error>>,
+    /// Whether a label was compared on the left and on the right of every curve.
+    beside: Vec<[bool; 2]>,
+    /// The number of random points of the window.
+    random: u64,
+    /// The number of those that have another label than their region.
+    wrong_random: u64,
+}
+
+impl<'a, Label: Clone + Ord, Margin, Error> Judge<'a, Label, Margin, Error> {
+    pub fn new(plane: &'a Subdivision<Label, Margin>, unverified: Vec<Unverified<Error>>) -> Self {
+        let count = plane.regions().len();
+        Self {
+            plane,
+            expected: plane.regions().iter().map(|region| region.label.clone()).collect(),
+            tried: vec![0; count],
+            wrong: vec![false; count],
+            agreeing: vec![Vec::new(); count],
+            mismatches: Vec::new(),
+            unverified,
+            beside: vec![[false; 2]; plane.curves().len()],
+            random: 0,
+            wrong_random: 0,
+        }
+    }
+
+    /// Compares the label of a run in a region.
+    pub fn consider(&mut self, checkpoint: Checkpoint, region: usize, label: Result<Label, Error>) {
+        let found = match label {
+            Ok(found) => found,
+            Err(error) => {
+                self.unverified.push(Unverified { checkpoint, reason: Reason::Run(error) });
+                return;
+            }
+        };
+        if checkpoint.origin == Origin::Sample && self.expected[region].is_none() {
+            self.expected[region] = Some(found.clone());
+        }
+        let Some(expected) = self.expected[region].clone() else {
+            self.unverified.push(Unverified { checkpoint, reason: Reason::NoLabel { region } });
+            return;
+        };
+        let right = found == expected;
+        self.tried[region] += 1;
+        match checkpoint.origin {
+            Origin::Sample => {}
+            Origin::Random => {
+                self.random += 1;
+                self.wrong_random += u64::from(!right);
+            }
+            Origin::Near { curve, side, .. } => {
+                self.beside[curve][usize::from(side == Side::Right)] = true;
+            }
+        }
+        if right {
+            self.agreeing[region].push(checkpoint.point);
+        } else {
+            self.wrong[region] = true;
+            self.mismatches.push(Mismatch { checkpoint, region, expected, found, agreeing: None });
+        }
+    }
+
+    /// The result of the comparison.
+    pub fn finish(mut self) -> Verification<Label, Error> {
+        for mismatch in &mut self.mismatches {
+            let distance = |point: &Point| (point - mismatch.checkpoint.point).norm_squared();
+            mismatch.agreeing = self.agreeing[mismatch.region]
+                .iter()
+                .copied()
+                .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        }
+        let tried_area: f64 = self
+            .plane
+            .regions()
+            .iter()
+            .zip(self.tried.iter().zip(&self.wrong))
+            .filter(|&(_, (&tried, &wrong))| tried > 0 && !wrong)
+            .map(|(region, _)| region.area)
+            .sum();
+        Verification {
+            euler: self.plane.euler(),
+            findings: self.plane.findings().len(),
+            tried: self.tried,
+            mismatches: self.mismatches,
+            unverified: self.unverified,
+            untried_curves: (0..self.beside.len())
+                .filter(|&curve| self.beside[curve].contains(&false))
+                .collect(),
+            tried_area: tried_area / self.plane.window().area(),
+            wrong_area_bound: upper_limit(self.random, self.wrong_random),
+        }
+    }
+}
+
+/// The probability p of a wrong point with which at most `wrong` of `tried` points are wrong with a
+/// probability of 5 %.
+fn upper_limit(tried: u64, wrong: u64) -> f64 {
+    if wrong >= tried {
+        return 1.0;
+    }
+    let (n, m) = (tried as f64, wrong as f64);
+    let choose: f64 = (0..wrong).map(|i| ((n - i as f64) / (i as f64 + 1.0)).ln()).sum();
+    let at_most = |p: f64| {
+        let mut term = (choose + m * p.ln() + (n - m) * (-p).ln_1p()).exp();
+        let mut sum = term;
+        for k in (0..wrong).rev() {
+            term *= (k as f64 + 1.0) * (1.0 - p) / ((n - k as f64) * p);
+            sum += term;
+        }
+        sum
+    };
+    let (mut low, mut high) = (m / n, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if at_most(middle) > 0.05 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    high
+}
+
+#[cfg(test)]
+mod tests {
+    use super::upper_limit;
+
+    #[test]
+    fn limits_are_those_of_tables() {
+        assert_eq!(upper_limit(0, 0), 1.0);
+        assert!((upper_limit(100, 0) - (1.0 - 0.05_f64.powf(0.01))).abs() < 1e-12);
+        // One-sided 95 % limits for 1 of 10, and for n − 1 of n, where 1 − pⁿ = 0.05.
+        assert!((upper_limit(10, 1) - 0.394163).abs() < 1e-6);
+        assert!((upper_limit(10, 9) - 0.95_f64.powf(0.1)).abs() < 1e-12);
+        assert!(upper_limit(100_000, 5_000) < 0.052);
+    }
+}

@@ -1,0 +1,139 @@
+//! What a verification finds, and its error.
+
+use crate::regions::finding::{Euler, SubdivisionError};
+use crate::regions::locate::Location;
+use crate::regions::region::Side;
+use crate::window::Point;
+
+/// A point at which a label was computed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Checkpoint {
+    /// The point.
+    pub point: Point,
+    /// Why this point was chosen.
+    pub origin: Origin,
+}
+
+/// Why a point was chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Origin {
+    /// The sample point of a region.
+    Sample,
+    /// A random point of the window.
+    Random,
+    /// A random point beside a curve.
+    Near {
+        /// The index of the curve.
+        curve: usize,
+        /// The side of the curve.
+        side: Side,
+        /// The distance from the curve.
+        distance: f64,
+    },
+}
+
+/// A point at which the label is not that of its region.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mismatch<Label> {
+    /// The point.
+    pub checkpoint: Checkpoint,
+    /// The index of the region in which the point lies.
+    pub region: usize,
+    /// The label of the region.
+    pub expected: Label,
+    /// The label of the run.
+    pub found: Label,
+    /// The nearest point of the same region at which the label was as expected. Between the two
+    /// points passes a boundary that is missing or misplaced, so that tracing can start there.
+    pub agreeing: Option<Point>,
+}
+
+/// A point that could not be verified.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unverified<Error> {
+    /// The point.
+    pub checkpoint: Checkpoint,
+    /// Why the point could not be verified.
+    pub reason: Reason<Error>,
+}
+
+/// Why a point could not be verified.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reason<Error> {
+    /// The point is closer to a curve than the tolerance, or in no region.
+    Location(Location),
+    /// The region has no label, because no curve bounds it and the run at its sample point failed.
+    NoLabel {
+        /// The index of the region.
+        region: usize,
+    },
+    /// The run failed.
+    Run(Error),
+}
+
+/// What a verification found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verification<Label, Error> {
+    /// The counts of Euler's formula.
+    pub euler: Euler,
+    /// The number of findings of the subdivision.
+    pub findings: usize,
+    /// The number of points in each region at which a label was compared.
+    pub tried: Vec<usize>,
+    /// The points with another label, in the order in which the points were chosen.
+    pub mismatches: Vec<Mismatch<Label>>,
+    /// The points that could not be verified.
+    pub unverified: Vec<Unverified<Error>>,
+    /// The indices of curves without a compared label on at least one side.
+    pub untried_curves: Vec<usize>,
+    /// The fraction of the window's area in regions with compared labels and without a mismatch.
+    pub tried_area: f64,
+    /// With 95 % confidence, the fraction of the window's area with another label is below this
+    /// value. It is the upper limit of Clopper and Pearson (1934) for the random points.
+    pub wrong_area_bound: f64,
+}
+
+impl<Label, Error> Verification<Label, Error> {
+    /// Pairs of points in one region, the first with the label of the region and the second with
+    /// another one. Between them passes a boundary, which
+    /// [`Tracer::look_between`](crate::Tracer::look_between) can find.
+    #[must_use]
+    pub fn brackets(&self) -> Vec<[Point; 2]> {
+        let bracket = |mismatch: &Mismatch<Label>| {
+            mismatch.agreeing.map(|agreeing| [agreeing, mismatch.checkpoint.point])
+        };
+        self.mismatches.iter().filter_map(bracket).collect()
+    }
+
+    /// Whether there is no evidence against the subdivision.
+    #[must_use]
+    pub fn agrees(&self) -> bool {
+        self.findings == 0 && self.euler.holds() && self.mismatches.is_empty()
+    }
+}
+
+/// Why a subdivision cannot be verified.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum VerifyError {
+    /// The curves do not make a subdivision.
+    #[error(transparent)]
+    Subdivision(#[from] SubdivisionError),
+    /// The distances from curves are not finite, not above 0, or not in order.
+    #[error(
+        "distances from {nearest:e} to {farthest:e}, expected finite values above 0 in ascending order"
+    )]
+    Distances {
+        /// The least distance.
+        nearest: f64,
+        /// The greatest distance.
+        farthest: f64,
+    },
+    /// The numbers of labels and of points differ.
+    #[error("{labels} labels for {points} points, expected one for each")]
+    Labels {
+        /// The number of points.
+        points: usize,
+        /// The number of labels.
+        labels: usize,
+    },
+}

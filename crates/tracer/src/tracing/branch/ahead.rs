@@ -1,0 +1,154 @@
+//! What lies ahead of a branch: known vertices, its own start, and the piece before its end.
+
+use crate::cubic::Cubic;
+use crate::curve::Node;
+use crate::family::Family;
+use crate::tracing::branch::end::{SHORTEST, Stop};
+use crate::tracing::branch::track::{FootholdOf, Track};
+use crate::tracing::corrector::correct;
+use crate::tracing::runs::Traced;
+use crate::window::Point;
+
+impl<F: Family> Track<'_, '_, F> {
+    /// The index of the first known vertex on `arc`.
+    pub(crate) fn passed_stop(&self, arc: &Cubic) -> Option<usize> {
+        let [low, high] = arc.bounds();
+        let passed = |stop: &Stop| {
+            let near = stop.uncertainty + SHORTEST * self.runs.scale;
+            let inside = (0..2).all(|axis| {
+                stop.point[axis] > low[axis] - near && stop.point[axis] < high[axis] + near
+            });
+            let (theta, distance) = if inside { arc.closest(&stop.point) } else { return None };
+            (distance < near && (self.taken > 0 || theta > 0.0)).then_some(theta)
+        };
+        let thetas = self.stops.iter().enumerate().filter_map(|(i, stop)| Some((passed(stop)?, i)));
+        thetas.min_by(|one, two| one.0.total_cmp(&two.0)).map(|(_, index)| index)
+    }
+
+    /// The index of the known vertex that the branch reaches within a failed step of length `h`,
+    /// without another special point before it.
+    pub(crate) fn aim(&self, from: &FootholdOf<F>, h: f64) -> Traced<Option<usize>, F> {
+        let runs = self.runs;
+        for (index, stop) in self.stops.iter().enumerate() {
+            let chord = stop.point - from.node.point;
+            let length = chord.norm();
+            let angle = chord.angle(&from.node.tangent);
+            let ahead = length > SHORTEST * runs.scale
+                && length <= 2.0 * h
+                && angle <= 0.5 * runs.options.max_angle;
+            if !ahead {
+                continue;
+            }
+            let end = Node { point: stop.point, tangent: mirrored(&from.node.tangent, &chord) };
+            let arc = Cubic::between(&from.node, &end);
+            let mut runs_in = true;
+            for theta in [0.3, 0.7] {
+                let value = runs.margin(&arc.at(theta), &self.margin)?;
+                runs_in &= value.is_some_and(|value| {
+                    value.abs() <= runs.options.interpolation * from.gradient.norm()
+                });
+            }
+            if !runs_in {
+                continue;
+            }
+            runs_in = runs_in && self.is_clear(from, &arc)?;
+            if runs_in {
+                return Ok(Some(index));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Whether the branch keeps its labels on `arc`, which ends at a vertex. They are computed at
+    /// three places and close to the vertex.
+    pub(crate) fn is_clear(&self, from: &FootholdOf<F>, arc: &Cubic) -> Traced<bool, F> {
+        /// The distance of the last place from the vertex, as a fraction of the window's shorter
+        /// extent. If two curves touch at the vertex with a curvature of 1, the region between them
+        /// is still wider there than the error of margins.
+        const CLOSE: f64 = 3e-5;
+        let chord = arc.chord();
+        for theta in [0.5, 0.9, 0.99] {
+            if !self.holds(from, &arc.at(theta), 0.3 * chord)? {
+                return Ok(false);
+            }
+        }
+        let close = CLOSE * self.runs.scale / chord;
+        Ok(close > 0.5 || self.holds_closely(from, &arc.at(1.0 - close), 0.3 * chord)?)
+    }
+
+    /// Whether the branch passes close to `guess` and has its labels at the least distance that
+    /// margins resolve, so that not even a thin region lies beside it.
+    pub(crate) fn holds_closely(
+        &self,
+        from: &FootholdOf<F>,
+        guess: &Point,
+        reach: f64,
+    ) -> Traced<bool, F> {
+        let runs = self.runs;
+        let Some(found) = correct(runs, &self.margin, guess, &from.gradient, reach)? else {
+            return Ok(false);
+        };
+        let tangent = &from.node.tangent;
+        let gradient = runs.gradient(&found.point, &self.margin, tangent, self.radius)?;
+        let Some(gradient) = gradient else { return Ok(false) };
+        let slope = gradient.norm();
+        let left = gradient * (10.0 * self.orientation * runs.resolution(slope) / slope);
+        Ok(runs.label(&(found.point + left))? == self.sides[0]
+            && runs.label(&(found.point - left))? == self.sides[1])
+    }
+
+    /// Whether the branch passes close to `guess` and has its labels there.
+    pub(crate) fn holds(&self, from: &FootholdOf<F>, guess: &Point, reach: f64) -> Traced<bool, F> {
+        let runs = self.runs;
+        let reach = reach + 100.0 * runs.options.tolerance;
+        let Some(found) = correct(runs, &self.margin, guess, &from.gradient, reach)? else {
+            return Ok(false);
+        };
+        let tangent = &from.node.tangent;
+        let gradient = runs.gradient(&found.point, &self.margin, tangent, self.radius)?;
+        Ok(match gradient {
+            Some(gradient) => self.foothold(&found.point, &gradient)?.is_ok(),
+            None => false,
+        })
+    }
+
+    /// Whether `arc` passes through the start of the branch, in the direction of the branch there.
+    pub(crate) fn passes_origin(&self, arc: &Cubic) -> bool {
+        let (theta, distance) = arc.closest(&self.origin.point);
+        distance < 1e-8 * self.runs.scale && theta > 0.0 && {
+            arc.tangent(theta).dot(&self.origin.tangent) > 0.5
+        }
+    }
+
+    /// The node at `point`, where the branch ends.
+    pub(crate) fn end_node(&self, last: &Node, point: &Point) -> Traced<Node, F> {
+        // A chord comparable to the tolerance has no meaningful direction.
+        let tangent = if (point - last.point).norm() < SHORTEST * self.runs.scale {
+            last.tangent
+        } else {
+            self.end_tangent(last, point)?
+        };
+        Ok(Node { point: *point, tangent })
+    }
+
+    /// The tangent at `point`, where the branch ends: normal to the gradient if there is one, else
+    /// that of the circle through the last node.
+    fn end_tangent(&self, last: &Node, point: &Point) -> Traced<Point, F> {
+        let chord = point - last.point;
+        let mirrored = mirrored(&last.tangent, &chord);
+        if let Some(gradient) = self.runs.gradient(point, &self.margin, &mirrored, self.radius)? {
+            let tangent = self.tangent(&gradient);
+            let turn = tangent.angle(&mirrored);
+            if turn < 0.1 * last.tangent.angle(&chord) + 1e-6 {
+                return Ok(tangent);
+            }
+        }
+        Ok(mirrored)
+    }
+}
+
+/// The tangent at the end of a circular arc that starts with `tangent`.
+fn mirrored(tangent: &Point, chord: &Point) -> Point {
+    let chord = chord.normalize();
+    chord * (2.0 * chord.dot(tangent)) - tangent
+}

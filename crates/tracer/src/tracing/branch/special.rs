@@ -1,0 +1,219 @@
+//! The special points that steps run into, where a branch must end.
+
+use crate::cubic::Cubic;
+use crate::curve::{Node, VertexKind};
+use crate::family::Family;
+use crate::tracing::branch::end::Special;
+use crate::tracing::branch::touch::{graze, narrow};
+use crate::tracing::branch::track::{FootholdOf, Track};
+use crate::tracing::corrector::{correct, crossing, stationary};
+use crate::tracing::runs::{Runs, Traced};
+use crate::tracing::seed::{bisect, identify};
+use crate::window::Point;
+
+/// Crossings with a larger uncertainty, as a fraction of the window's shorter extent, are also
+/// tried as touches. The values of margins tell the place of a touch only to half the digits.
+const TANGENTIAL: f64 = 1e-9;
+
+/// The special point of a branch after `from`, within a failed step of length `h`; `None` if the
+/// step is too long to find it. `beyond` is the place that the step reached, if only its labels
+/// were wrong.
+pub(crate) fn locate<F: Family>(
+    track: &Track<'_, '_, F>,
+    from: &FootholdOf<F>,
+    beyond: Option<&FootholdOf<F>>,
+    h: f64,
+) -> Traced<Option<Special<F::Margin>>, F> {
+    let mut found = Vec::new();
+    let mut margins = track.rivals(from, beyond);
+    if let Some(beyond) = beyond {
+        margins.extend(wedge(track, beyond)?);
+    }
+    for margin in margins {
+        let met = match meet(track, from, beyond, &margin, h)? {
+            None if narrow::<F>(from, beyond, &margin, h) => {
+                graze(track, from, beyond, &margin, h)?.map(|point| (point, 0.0))
+            }
+            met => met,
+        };
+        if let Some((point, off)) = met {
+            let progress = (point - from.node.point).dot(&from.node.tangent);
+            found.push((progress, point, off, margin));
+        }
+    }
+    found.sort_by(|(one, ..), (two, ..)| one.total_cmp(two));
+    for (_, point, off, margin) in found {
+        if is_last(track, from, &point)? {
+            let (mut point, mut off) = (point, off);
+            if off > TANGENTIAL * track.runs.scale
+                && let Some(touch) = graze(track, from, beyond, &margin, h)?
+                && (touch - point).norm() <= 10.0 * off
+            {
+                (point, off) = (touch, 0.3 * off);
+            }
+            return Ok(Some(Special {
+                point,
+                kind: VertexKind::Crossing,
+                margins: vec![track.margin.clone(), margin],
+                uncertainty: off,
+                solved: true,
+            }));
+        }
+    }
+    let guess = from.node.point + from.node.tangent * (0.5 * h);
+    if let Some(point) = stationary(track.runs, &track.margin, &guess, 0.5 * h, 3.0 * h)?
+        && track.runs.margin(&point, &track.margin)?.is_some_and(|value| {
+            value.abs() <= (1e-3 * h * from.gradient.norm()).max(track.runs.options.noise)
+        })
+        && (point - from.node.point).dot(&from.node.tangent) > -1e-9 * track.runs.scale
+    {
+        return Ok(Some(degenerate(track, point, 0.0, true)));
+    }
+    Ok(None)
+}
+
+/// The end of a branch on which even the shortest step fails: the place within a thousandth of the
+/// window where its margin ceases to exist. If there is none, the result is `from`, unsolved.
+pub(crate) fn give_up<F: Family>(
+    track: &Track<'_, '_, F>,
+    from: &FootholdOf<F>,
+    h: f64,
+) -> Traced<Special<F::Margin>, F> {
+    let scale = track.runs.scale;
+    let place = |length: f64| -> Traced<Option<Point>, F> {
+        let guess = track.predict(&from.node, length);
+        let reach = 0.3 * length + 100.0 * track.runs.options.tolerance;
+        Ok(correct(track.runs, &track.margin, &guess, &from.gradient, reach)?
+            .map(|found| found.point))
+    };
+    let (mut exists, mut point) = (0.0, from.node.point);
+    let mut length = h;
+    while length < 1e-3 * scale {
+        match place(length)? {
+            Some(next) => (exists, point) = (length, next),
+            None => break,
+        }
+        length *= 4.0;
+    }
+    if length >= 1e-3 * scale {
+        return Ok(degenerate(track, from.node.point, 1e-6 * scale, false));
+    }
+    while length - exists > track.runs.options.tolerance {
+        let middle = 0.5 * (exists + length);
+        match place(middle)? {
+            Some(next) => (exists, point) = (middle, next),
+            None => length = middle,
+        }
+    }
+    Ok(degenerate(track, point, 1e-7 * scale, true))
+}
+
+fn degenerate<F: Family>(
+    track: &Track<'_, '_, F>,
+    point: Point,
+    uncertainty: f64,
+    solved: bool,
+) -> Special<F::Margin> {
+    let margins = vec![track.margin.clone()];
+    Special { point, kind: VertexKind::Degenerate, margins, uncertainty, solved }
+}
+
+/// The special point at which a boundary leaves the window.
+pub(crate) fn edge<F: Family>(
+    runs: &Runs<'_, F>,
+    point: &Point,
+    margin: &F::Margin,
+) -> Special<F::Margin> {
+    let window = &runs.window;
+    let nearest = |axis: usize| {
+        let (low, high) = (window.low[axis], window.high[axis]);
+        if point[axis] - low < high - point[axis] { low } else { high }
+    };
+    let corner = Point::new(nearest(0), nearest(1));
+    let at_corner = (point - corner).norm() < 1e-9 * runs.scale;
+    Special {
+        point: if at_corner { corner } else { *point },
+        kind: if at_corner { VertexKind::WindowCorner } else { VertexKind::WindowEdge },
+        margins: vec![margin.clone()],
+        uncertainty: 0.0,
+        solved: true,
+    }
+}
+
+/// The place between `from` and the end of the step where the boundary meets that of `margin`, and
+/// the largest error of this place. The boundaries cross or touch there.
+fn meet<F: Family>(
+    track: &Track<'_, '_, F>,
+    from: &FootholdOf<F>,
+    beyond: Option<&FootholdOf<F>>,
+    margin: &F::Margin,
+    h: f64,
+) -> Traced<Option<(Point, f64)>, F> {
+    let runs = track.runs;
+    let start = from.node.point;
+    let end = beyond.map_or_else(|| track.predict(&from.node, h), |foothold| foothold.node.point);
+    let (first, second) = (runs.margin(&start, margin)?, runs.margin(&end, margin)?);
+    let guess = match (first, second) {
+        (Some(first), Some(second)) if (first < 0.0) != (second < 0.0) => {
+            start.lerp(&end, first / (first - second))
+        }
+        (Some(_), None) => start,
+        (None, Some(_)) => end,
+        _ => return Ok(None),
+    };
+    let Some((point, off)) =
+        crossing(runs, [&track.margin, margin], &guess, &from.node.tangent, track.radius, 2.0 * h)?
+    else {
+        return Ok(None);
+    };
+    let progress = (point - start).dot(&from.node.tangent);
+    let slack = 1e-9 * runs.scale;
+    Ok((progress > -slack && progress < h + slack).then_some((point, off)))
+}
+
+/// Whether the branch has its labels up to `point` and not beyond it.
+fn is_last<F: Family>(
+    track: &Track<'_, '_, F>,
+    from: &FootholdOf<F>,
+    point: &Point,
+) -> Traced<bool, F> {
+    let runs = track.runs;
+    let Some(gradient) = runs.gradient(point, &track.margin, &from.node.tangent, track.radius)?
+    else {
+        return Ok(true);
+    };
+    let node = Node { point: *point, tangent: track.tangent(&gradient) };
+    let length = (point - from.node.point).norm();
+    if length > 1e-6 * runs.scale && !track.is_clear(from, &Cubic::between(&from.node, &node))? {
+        return Ok(false);
+    }
+    let after = point + node.tangent * (0.03 * length).max(1e-6 * runs.scale);
+    Ok(!track.holds_closely(from, &after, 0.3 * length + 1e-6 * runs.scale)?)
+}
+
+/// The margins that separate a thin region beside `place` from the region with the branch's label
+/// on that side.
+fn wedge<F: Family>(track: &Track<'_, '_, F>, place: &FootholdOf<F>) -> Traced<Vec<F::Margin>, F> {
+    let runs = track.runs;
+    let left = Point::new(-place.node.tangent.y, place.node.tangent.x);
+    let mut margins = Vec::new();
+    for (side, normal) in [left, -left].into_iter().enumerate() {
+        if place.sides[side].label == track.sides[side] {
+            continue;
+        }
+        let mut offset = 4.0 * runs.options.offset;
+        while offset < 1e-3 * runs.scale {
+            let segment = [0.25 * offset, offset].map(|offset| place.node.point + normal * offset);
+            let labels = [runs.label(&segment[0])?, runs.label(&segment[1])?];
+            if labels[1] == track.sides[side] && labels[0] != labels[1] {
+                let change = bisect(runs, &segment, [0.0, 1.0], labels)?;
+                let places = change.places.map(|part| segment[0].lerp(&segment[1], part));
+                margins.extend(identify(runs, &places, &change.labels)?.map(|seed| seed.margin));
+                break;
+            }
+            offset *= 4.0;
+        }
+    }
+    margins.retain(|margin| *margin != track.margin);
+    Ok(margins)
+}

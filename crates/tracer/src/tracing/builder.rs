@@ -1,0 +1,273 @@
+//! A network that grows while it is traced, with an index of its pieces by place.
+
+use crate::cubic::Cubic;
+use crate::curve::{Curve, Node, Vertex};
+use crate::tracing::branch::end::{SHORTEST, Special, Stop};
+use crate::tracing::network::{Network, TraceStatistics, Unresolved};
+use crate::window::{Point, Window};
+
+/// A place where a segment crosses a curve.
+#[derive(Clone, Debug)]
+pub(crate) struct Passage<Label> {
+    /// The place on the segment, from 0 to 1.
+    pub place: f64,
+    /// The labels on the segment before and after this place.
+    pub labels: [Label; 2],
+}
+
+/// A network that grows, with an index of its pieces by place.
+pub(crate) struct Builder<Label, Margin> {
+    pub network: Network<Label, Margin>,
+    pub stops: Vec<Stop>,
+    /// The parts of divided curves, whose labels must be checked again.
+    pub suspects: Vec<usize>,
+    scale: f64,
+    /// The pieces (curve, node) in every cell of the window.
+    cells: Vec<Vec<(usize, usize)>>,
+}
+
+/// The number of cells of the index along each axis.
+const CELLS: usize = 64;
+
+impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
+    pub fn new(window: Window) -> Self {
+        let network = Network {
+            window,
+            curves: Vec::new(),
+            vertices: Vec::new(),
+            statistics: TraceStatistics::default(),
+            unresolved: Vec::new(),
+        };
+        let scale = window.extent().min();
+        let cells = vec![Vec::new(); CELLS * CELLS];
+        Self { network, stops: Vec::new(), suspects: Vec::new(), scale, cells }
+    }
+
+    /// Adds a vertex, unless it is known, and returns its index. A new vertex divides the curves
+    /// that pass through it, and their parts become [suspects](Self::suspects).
+    pub fn add_vertex(&mut self, special: &Special<Margin>) -> usize {
+        let near = special.uncertainty + SHORTEST * self.scale;
+        let known = self
+            .stops
+            .iter()
+            .position(|stop| (stop.point - special.point).norm() <= stop.uncertainty + near);
+        if let Some(index) = known {
+            let margins = &mut self.network.vertices[index].margins;
+            margins.extend(special.margins.iter().cloned());
+            margins.sort();
+            margins.dedup();
+            if special.improves(&self.stops[index]) {
+                self.move_vertex(index, special);
+            }
+            return index;
+        }
+        let mut margins = special.margins.clone();
+        margins.sort();
+        margins.dedup();
+        let index = self.stops.len();
+        self.stops.push(Stop { point: special.point, uncertainty: special.uncertainty });
+        self.network.vertices.push(Vertex { point: special.point, kind: special.kind, margins });
+        if !special.solved {
+            self.network.unresolved.push(Unresolved::Stalled { vertex: index });
+        }
+        self.divide_curves(index);
+        index
+    }
+
+    /// The margins of the curves that end at a vertex, with the nodes next to these ends.
+    pub fn arrivals(&self, vertex: usize) -> Vec<(Node, Margin)> {
+        let mut found = Vec::new();
+        for curve in &self.network.curves {
+            let Some([start, end]) = curve.ends else { continue };
+            let before_last = curve.nodes.len() - 2;
+            for (node, at) in [(1, start), (before_last, end)] {
+                if at == vertex {
+                    found.push((curve.nodes[node], curve.margin.clone()));
+                }
+            }
+        }
+        found
+    }
+
+    /// Moves a vertex, and the curves that end there, to a more accurate place.
+    pub fn move_vertex(&mut self, index: usize, special: &Special<Margin>) {
+        self.stops[index] = Stop { point: special.point, uncertainty: special.uncertainty };
+        self.network.vertices[index].point = special.point;
+        self.network.vertices[index].kind = special.kind;
+        for curve in &mut self.network.curves {
+            let Some([start, end]) = curve.ends else { continue };
+            let last = curve.nodes.len() - 1;
+            for (node, vertex) in [(0, start), (last, end)] {
+                if vertex == index {
+                    curve.nodes[node].point = special.point;
+                }
+            }
+        }
+        self.rebuild_index();
+    }
+
+    /// Adds a curve. Of nodes that nearly coincide one is kept, preferably the end of the curve.
+    pub fn add_curve(&mut self, mut curve: Curve<Label, Margin>) -> Option<usize> {
+        let shortest = SHORTEST * self.scale;
+        let last = curve.nodes.len().checked_sub(1)?;
+        let end = curve.nodes[last];
+        let mut nodes: Vec<Node> = Vec::with_capacity(curve.nodes.len());
+        for node in &curve.nodes[..last] {
+            if nodes.last().is_none_or(|kept| (kept.point - node.point).norm() > shortest) {
+                nodes.push(*node);
+            }
+        }
+        while nodes.len() > 1
+            && nodes.last().is_some_and(|kept| (kept.point - end.point).norm() <= shortest)
+        {
+            nodes.pop();
+        }
+        nodes.push(end);
+        if nodes.len() == 2 && (nodes[0].point - nodes[1].point).norm() <= shortest {
+            return None;
+        }
+        curve.nodes = nodes;
+        let index = self.network.curves.len();
+        for piece in 0..curve.nodes.len() - 1 {
+            self.enter(index, piece, &Cubic::between(&curve.nodes[piece], &curve.nodes[piece + 1]));
+        }
+        self.network.curves.push(curve);
+        Some(index)
+    }
+
+    /// Whether a place on a boundary with these labels on its sides lies on a known curve, whatever
+    /// the margin of this curve is.
+    pub fn covers(&self, point: &Point, labels: &[Label; 2]) -> bool {
+        let near = 1e-8 * self.scale;
+        self.near(&[*point, *point]).into_iter().any(|(curve, piece)| {
+            let sides = &self.network.curves[curve].sides;
+            (sides == labels || (sides[0] == labels[1] && sides[1] == labels[0]))
+                && self.arc(curve, piece).closest(point).1 < near
+        })
+    }
+
+    /// The places where the segment from `a` to `b` crosses curves, in order.
+    pub fn passages(&self, a: &Point, b: &Point) -> Vec<Passage<Label>> {
+        let mut found = Vec::new();
+        for (curve, piece) in self.near(&[a.inf(b), a.sup(b)]) {
+            let arc = self.arc(curve, piece);
+            for [theta, place] in arc.crossings(a, b) {
+                let [left, right] = self.network.curves[curve].sides.clone();
+                let from_left = arc.derivative(theta).perp(&(b - a)) < 0.0;
+                let labels = if from_left { [left, right] } else { [right, left] };
+                found.push(Passage { place, labels });
+            }
+        }
+        found.sort_by(|one, two| one.place.total_cmp(&two.place));
+        found
+    }
+
+    fn arc(&self, curve: usize, piece: usize) -> Cubic {
+        let nodes = &self.network.curves[curve].nodes;
+        Cubic::between(&nodes[piece], &nodes[piece + 1])
+    }
+
+    fn cell_range(&self, bounds: &[Point; 2]) -> [[usize; 2]; 2] {
+        let extent = self.network.window.extent();
+        [0, 1].map(|axis| {
+            [0, 1].map(|end| {
+                let sign = if end == 0 { -1.0 } else { 1.0 };
+                // Places at the edge of a cell belong to its neighbour too.
+                let place = bounds[end][axis] + sign * 1e-7 * self.scale;
+                let part = (place - self.network.window.low[axis]) / extent[axis];
+                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+                let cell = (part * CELLS as f64).clamp(0.0, CELLS as f64 - 1.0) as usize;
+                cell
+            })
+        })
+    }
+
+    /// Enters a piece into the index.
+    fn enter(&mut self, curve: usize, piece: usize, arc: &Cubic) {
+        let [columns, rows] = self.cell_range(&arc.bounds());
+        for column in columns[0]..=columns[1] {
+            for row in rows[0]..=rows[1] {
+                self.cells[column * CELLS + row].push((curve, piece));
+            }
+        }
+    }
+
+    /// The pieces that may reach into a box, in order.
+    fn near(&self, bounds: &[Point; 2]) -> Vec<(usize, usize)> {
+        let [columns, rows] = self.cell_range(bounds);
+        let mut pieces = Vec::new();
+        for column in columns[0]..=columns[1] {
+            for row in rows[0]..=rows[1] {
+                pieces.extend_from_slice(&self.cells[column * CELLS + row]);
+            }
+        }
+        pieces.sort_unstable();
+        pieces.dedup();
+        pieces
+    }
+
+    /// Divides the curves that pass through a vertex.
+    fn divide_curves(&mut self, vertex: usize) {
+        let Stop { point, uncertainty } = self.stops[vertex];
+        let near = uncertainty + SHORTEST * self.scale;
+        let mut hits: Vec<(usize, usize, f64)> = Vec::new();
+        for (curve, piece) in self.near(&[point, point]) {
+            let (theta, distance) = self.arc(curve, piece).closest(&point);
+            let nodes = &self.network.curves[curve].nodes;
+            let ends = self.network.curves[curve].ends.is_some()
+                && [nodes[0], nodes[nodes.len() - 1]]
+                    .iter()
+                    .any(|end| (end.point - point).norm() <= near);
+            // If two adjacent pieces of a curve pass through the vertex, the first one counts.
+            if distance <= near && !ends && hits.last().is_none_or(|hit| hit.0 != curve) {
+                hits.push((curve, piece, theta));
+            }
+        }
+        if hits.is_empty() {
+            return;
+        }
+        for (curve, piece, theta) in hits {
+            let tangent = self.arc(curve, piece).tangent(theta);
+            let here = Node { point, tangent };
+            self.suspects.push(curve);
+            let own = &mut self.network.curves[curve];
+            let after: Vec<Node> =
+                std::iter::once(here).chain(own.nodes[piece + 1..].iter().copied()).collect();
+            own.nodes.truncate(piece + 1);
+            own.nodes.push(here);
+            if let Some([start, end]) = own.ends {
+                own.ends = Some([start, vertex]);
+                let rest = Curve { nodes: after, ends: Some([vertex, end]), ..own.clone() };
+                self.suspects.push(self.network.curves.len());
+                self.network.curves.push(rest);
+            } else {
+                // A closed curve stays whole and starts at the vertex.
+                let mut nodes = after;
+                nodes.extend_from_slice(&own.nodes[1..]);
+                own.nodes = nodes;
+                own.ends = Some([vertex, vertex]);
+            }
+        }
+        self.rebuild_index();
+    }
+
+    /// Removes curves.
+    pub fn remove_curves(&mut self, removed: &[usize]) {
+        let mut index = 0;
+        self.network.curves.retain(|_| {
+            index += 1;
+            !removed.contains(&(index - 1))
+        });
+        self.rebuild_index();
+    }
+
+    fn rebuild_index(&mut self) {
+        self.cells.iter_mut().for_each(Vec::clear);
+        for curve in 0..self.network.curves.len() {
+            for piece in 0..self.network.curves[curve].nodes.len() - 1 {
+                let arc = self.arc(curve, piece);
+                self.enter(curve, piece, &arc);
+            }
+        }
+    }
+}

@@ -1,0 +1,9 @@
+//! Traces and subdivisions with known answers.
+
+mod extrema;
+mod guards;
+mod known_curves;
+mod leaving_minimum;
+mod random_circles;
+mod subdivision;
+mod vertex_kinds;
