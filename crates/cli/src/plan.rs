@@ -3,9 +3,9 @@
 mod locate;
 mod map;
 mod reproduce;
-mod rows;
 mod studies;
 mod trace;
+mod window;
 
 use std::fs;
 use std::path::{Path, PathBuf};

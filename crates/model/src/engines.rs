@@ -133,6 +133,34 @@ impl Engine {
         Ok((collision, statistics))
     }
 
+    /// The collision of `contact` with its course. An integrator computes both with one run; the
+    /// course of the exact solution is that of [`Self::history`].
+    ///
+    /// The collision is bit for bit that of [`Self::collide`]. The integrator's work is that of the
+    /// run that keeps the course, which repeats some steps.
+    ///
+    /// # Errors
+    /// As [`Self::collide`]; or the run takes more than [`History::MOST_STEPS`] steps.
+    pub fn followed(
+        &self,
+        contact: Contact,
+    ) -> Result<(Collision, Option<Statistics>, History), EngineError> {
+        let (collision, statistics, history) = match self.resolved(&contact) {
+            Self::Dop853(Tolerances { rtol, atol }) => {
+                Collider::with_tolerances(Dop853, rtol, atol).followed(contact)?
+            }
+            Self::Dopri5(Tolerances { rtol, atol }) => {
+                Collider::with_tolerances(Dopri5, rtol, atol).followed(contact)?
+            }
+            Self::Exact | Self::Auto => {
+                let (collision, statistics) = self.collide(contact)?;
+                return Ok((collision, statistics, self.history(contact)?));
+            }
+        };
+        collision.require_finite()?;
+        Ok((collision, Some(statistics), history))
+    }
+
     /// The course of the collision of `contact` in time. For [`Self::Exact`] and [`Self::Auto`],
     /// Dormand–Prince 8(5,3) integrates it at its default tolerances.
     ///

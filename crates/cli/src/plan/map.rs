@@ -12,7 +12,7 @@ use crate::input::bodies::read_pair;
 use crate::input::recipe::RecipeError;
 use crate::output::picture::PictureFile;
 use crate::plan::explain;
-use crate::plan::rows::Rows;
+use crate::plan::window::Rows;
 
 /// A map to be computed.
 #[derive(Clone, Debug, PartialEq)]

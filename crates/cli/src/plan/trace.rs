@@ -10,7 +10,7 @@ use crate::error::Failure;
 use crate::input::recipe::RecipeError;
 use crate::output::picture::PictureFile;
 use crate::plan::explain;
-use crate::plan::rows::Rows;
+use crate::plan::window::Rows;
 
 /// An atlas to be traced.
 #[derive(Clone, Debug, PartialEq)]

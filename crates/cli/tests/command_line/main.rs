@@ -10,6 +10,7 @@ mod atlas;
 mod audit;
 mod batch;
 mod batch_failures;
+mod collide;
 mod completions;
 mod converge;
 mod impact;
@@ -21,7 +22,7 @@ mod map_failures;
 mod map_interrupted;
 mod notebooks_data;
 mod pictures;
-mod point;
+
 mod reproduce;
 mod usage;
 mod version;

@@ -90,17 +90,23 @@ impl History {
     /// Without damping, κ = 1e9 takes 200 000 steps at the default tolerances.
     pub const MOST_STEPS: usize = 300_000;
 
+    /// The course of `contact` before its run, which fills it as an observer.
+    pub(crate) fn before(contact: Contact) -> Self {
+        let system = Regularized::new(contact);
+        let (phase, begin) = (Phase::first(&contact), system.start());
+        let first = PhaseRecord { phase, since: 0.0, begin, end: begin, steps: 0..0 };
+        Self { system, steps: Vec::new(), phases: vec![first] }
+    }
+
     /// Integrates the collision of `contact` and keeps its trajectory.
     pub(crate) fn record<M: Method>(
         method: M,
         options: &Options,
         contact: Contact,
     ) -> Result<(Self, Outcome), RunError> {
-        let system = Regularized::new(contact);
-        let (phase, begin) = (Phase::first(&contact), system.start());
-        let first = PhaseRecord { phase, since: 0.0, begin, end: begin, steps: 0..0 };
-        let mut history = Self { system, steps: Vec::new(), phases: vec![first] };
-        let start = Start { mode: phase, s: 0.0, state: begin };
+        let mut history = Self::before(contact);
+        let system = history.system;
+        let start = Start { mode: Phase::first(&contact), s: 0.0, state: system.start() };
         let run = run(method, &system, start, f64::INFINITY, options, &mut history)?;
         Ok((history, run.outcome))
     }
@@ -249,10 +255,10 @@ impl Observer<Phase, STATE> for History {
 
 #[cfg(test)]
 mod tests {
-    use stickslip_solver::Dop853;
+    use stickslip_solver::{Dop853, Statistics};
 
     use super::*;
-    use crate::{Collider, CollisionError};
+    use crate::{Collider, CollisionError, Engine, Tolerances};
 
     fn history(kappa: f64, psi: f64, damping: f64) -> History {
         Collider::default().history(Contact::new(kappa, psi, damping).unwrap()).unwrap()
@@ -324,6 +330,41 @@ mod tests {
             let last = history.at(history.duration()).unwrap();
             assert!((last.velocity - collision.final_velocity).abs() < 1e-11);
         }
+    }
+
+    #[test]
+    fn a_collision_with_its_course_is_the_same_collision() {
+        let mut random = fastrand::Rng::with_seed(17);
+        let mut refined = 0;
+        for case in 0..1500 {
+            let mut uniform = |low: f64, high: f64| low + (high - low) * random.f64();
+            let kappa = 10.0_f64.powf(uniform(-2.0, if case % 50 == 0 { 5.0 } else { 3.0 }));
+            let psi = [uniform(0.0, 3.0), 10.0_f64.powf(uniform(-6.0, 2.0))][case % 2];
+            let damping = [0.0, 0.0, 10.0_f64.powf(uniform(-6.0, 1.0))][case % 3];
+            let contact = Contact::new(kappa, psi, damping).unwrap();
+            let integrator = Engine::Dop853(Tolerances::DOP853);
+            for engine in [integrator, Engine::Dopri5(Tolerances::DOPRI5)] {
+                let (alone, work) = engine.collide(contact).unwrap();
+                let (collision, work_with_course, history) = engine.followed(contact).unwrap();
+                // All digits, and the signs of zeros.
+                assert_eq!(format!("{collision:?}"), format!("{alone:?}"));
+                let (work, more) = (work.unwrap(), work_with_course.unwrap());
+                // The course ends at every switch, to which the step is repeated.
+                assert!(more.resteps >= work.resteps && more.field >= work.field);
+                let Statistics { resteps, field, .. } = work;
+                assert_eq!(Statistics { resteps, field, ..more }, work);
+                if case % 100 == 0 {
+                    let course = engine.history(contact).unwrap();
+                    assert_eq!(format!("{history:?}"), format!("{course:?}"));
+                }
+            }
+            let options = Collider::default().options_for(&contact).unwrap();
+            let plain = Collider::unrefined(Dop853, options).collide(contact).ok();
+            let collision = Collider::default().collide(contact).ok();
+            refined += usize::from(format!("{plain:?}") != format!("{collision:?}"));
+        }
+        // Near grazes the same switches are computed once more.
+        assert!(refined > 15, "{refined}");
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! A collision integrated from first touch to separation: start reading here.
 
-use stickslip_solver::{Dop853, Method, Options, Outcome, RunError, Start, Statistics, run};
+use stickslip_solver::{
+    Dop853, Method, Observer, Options, Outcome, RunError, Start, Statistics, run,
+};
 
 mod account;
 mod last_slip;
@@ -12,9 +14,9 @@ use super::history::History;
 use crate::contact::Contact;
 use crate::laws::phase::{END, Phase, Regime};
 use crate::laws::regularized::Regularized;
-use crate::laws::regularized::components::{DAMPING, T, U, V};
+use crate::laws::regularized::components::{DAMPING, STATE, T, U, V};
 use crate::result::{Collision, EnergyLedger};
-use account::Account;
+use account::{Account, Observed};
 
 /// Flatness of a switch, in s, above which its time would be clearly less accurate than the state.
 /// Such a collision is refined.
@@ -109,12 +111,43 @@ impl<M: Method> Collider<M> {
         collision: &mut Collision,
     ) -> Result<Statistics, CollisionError> {
         let options = self.options_for(&contact)?;
+        self.observe(contact, &options, collision, &mut ())
+    }
+
+    /// Integrates one collision and keeps its course in time, both with one run.
+    ///
+    /// The collision is bit for bit that of [`Self::collide`], and the course that of
+    /// [`Self::history`], with its limit of steps. The statistics are those of this run, which
+    /// repeats the step to every switch so that the course ends exactly there.
+    ///
+    /// # Errors
+    /// As [`Self::collide`].
+    pub fn followed(
+        &self,
+        contact: Contact,
+    ) -> Result<(Collision, Statistics, History), CollisionError> {
+        let options = self.recorded_options(&contact)?;
+        let (mut collision, mut history) = (Collision::before(contact), History::before(contact));
+        let statistics = self.observe(contact, &options, &mut collision, &mut history)?;
+        Ok((collision, statistics, history))
+    }
+
+    /// Integrates one collision into `collision`, while `course` observes the run too.
+    fn observe<O: Observer<Phase, STATE>>(
+        &self,
+        contact: Contact,
+        options: &Options,
+        collision: &mut Collision,
+        course: &mut O,
+    ) -> Result<Statistics, CollisionError> {
         let system = Regularized::new(contact);
         collision.reset(contact);
         let phase = Phase::first(&contact);
         let start = Start { mode: phase, s: 0.0, state: system.start() };
-        let mut account = Account::new(system, collision, start.state);
-        let run = run(self.method, &system, start, f64::INFINITY, &options, &mut account)?;
+        let account = Account::new(system, collision, start.state);
+        let mut observed = Observed { account, course };
+        let run = run(self.method, &system, start, f64::INFINITY, options, &mut observed)?;
+        let mut account = observed.account;
         if run.outcome != (Outcome::EndedByGuard { guard: END }) {
             let time = account.elapsed + run.state[T];
             return Err(CollisionError::Unfinished { outcome: run.outcome, time });
@@ -142,7 +175,7 @@ impl<M: Method> Collider<M> {
             compression_left: 0.4 * compression,
         };
         if self.refined && flatness > FLAT && run.mode.regime == Regime::Slip {
-            refine::refine(self.method, &options, collision);
+            refine::refine(self.method, options, collision);
         }
         Ok(run.statistics)
     }
@@ -157,13 +190,18 @@ impl<M: Method> Collider<M> {
     /// # Errors
     /// As [`Self::collide`].
     pub fn history(&self, contact: Contact) -> Result<History, CollisionError> {
-        let max_steps = self.options.max_steps.min(History::MOST_STEPS);
-        let options = Options { max_steps, ..self.options_for(&contact)? };
+        let options = self.recorded_options(&contact)?;
         let (history, outcome) = History::record(self.method, &options, contact)?;
         if outcome == (Outcome::EndedByGuard { guard: END }) {
             return Ok(history);
         }
         Err(CollisionError::Unfinished { outcome, time: history.duration() })
+    }
+
+    /// The options for `contact` where its course is kept.
+    fn recorded_options(&self, contact: &Contact) -> Result<Options, OutOfDomain> {
+        let options = self.options_for(contact)?;
+        Ok(Options { max_steps: options.max_steps.min(History::MOST_STEPS), ..options })
     }
 
     /// The options for `contact`, if it can be integrated.

@@ -1,6 +1,6 @@
 //! The account of a run while it goes on: switches, reversals and the work of sliding.
 
-use stickslip_solver::{Observer, State, SwitchEvent};
+use stickslip_solver::{Dense, Observer, State, SwitchEvent};
 
 use super::{last_slip, reversals};
 use crate::laws::phase::{END, Phase, Regime};
@@ -99,5 +99,24 @@ impl Observer<Phase, STATE> for Account<'_> {
         }
         self.flatness = self.flatness.max(event.flatness);
         self.switch(event.from, event.to, &event.before);
+    }
+}
+
+/// The account of a run, and another observer of the same run.
+pub struct Observed<'a, O> {
+    pub account: Account<'a>,
+    pub course: &'a mut O,
+}
+
+impl<O: Observer<Phase, STATE>> Observer<Phase, STATE> for Observed<'_, O> {
+    const WANTS_SEGMENTS: bool = O::WANTS_SEGMENTS;
+
+    fn on_segment(&mut self, phase: Phase, step: &Dense<STATE>) {
+        self.course.on_segment(phase, step);
+    }
+
+    fn on_switch(&mut self, event: &SwitchEvent<Phase, STATE>) {
+        self.account.on_switch(event);
+        self.course.on_switch(event);
     }
 }
