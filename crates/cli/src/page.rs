@@ -28,6 +28,9 @@ pub const INTRODUCTION: [&str; 2] = [
      ways, as κ of (24) and as ακ; both are shown.",
 ];
 
+/// The most columns of a table that a narrow screen shows side by side.
+const MOST_NARROW: usize = 7;
+
 #[derive(Template)]
 #[template(path = "page.html")]
 struct Page<'a> {
