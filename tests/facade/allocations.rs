@@ -3,8 +3,8 @@
 use std::error::Error;
 use std::hint::black_box;
 
-use allocation_counter::measure;
 use crate::common::cases;
+use allocation_counter::measure;
 use stickslip::model::regularized::{END, Phase, Regularized};
 use stickslip::model::{
     Collider, Collision, Contact, Encounter, FEW_SWITCHES, Material, Motion, Sphere, Surface,

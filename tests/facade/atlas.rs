@@ -177,8 +177,10 @@ fn reference_boundaries_lie_on_traced_curves() {
     let plane = &*ATLAS;
     let mut largest = 0.0_f64;
     let mut count = 0;
-    for boundary in crate::common::file("boundaries")["boundaries"].as_array().expect("boundaries") {
-        let (kappa, psi) = (crate::common::number(&boundary["kappa"]), crate::common::number(&boundary["psi"]));
+    for boundary in crate::common::file("boundaries")["boundaries"].as_array().expect("boundaries")
+    {
+        let (kappa, psi) =
+            (crate::common::number(&boundary["kappa"]), crate::common::number(&boundary["psi"]));
         let point = CollisionPlane::point(kappa, psi);
         if !plane.window().contains(&point) {
             continue;

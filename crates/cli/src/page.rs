@@ -73,9 +73,9 @@ fn escaped(text: &str) -> String {
     escape(text, Html).map(|escaped| escaped.to_string()).unwrap_or_default()
 }
 
-/// The tables of a section that stand on the page.
+/// The tables of a section that stand on the page; an audit is shown statement by statement instead.
 fn shown(section: &Section) -> Vec<&Table> {
-    let tables = section.study.tables.iter();
+    let tables = section.study.tables.iter().filter(|_| section.audit.is_none());
     tables.filter(|table| section.shown.contains(&table.name)).collect()
 }
 
@@ -91,7 +91,7 @@ fn labelled<'a>(row: &'a [Cell], table: &'a Table) -> Vec<(&'a Cell, &'a Column)
 }
 
 /// The class of a verdict and a mark that tells it apart without its colour.
-fn verdict(verdict: Verdict) -> (&'static str, char) {
+fn verdict(verdict: &Verdict) -> (&'static str, char) {
     match verdict {
         Verdict::Holds => ("holds", '✓'),
         Verdict::HoldsWithACondition => ("condition", '◐'),

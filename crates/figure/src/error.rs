@@ -1,12 +1,25 @@
-//! What can go wrong with a picture.
+//! Errors of pictures.
 
-/// Why a picture cannot be made.
+/// The reason why a picture cannot be made.
 #[derive(Debug, thiserror::Error)]
 pub enum FigureError {
-    /// An image has no pixels, or more than PNG allows.
-    #[error("an image of {pixels} pixels in a row or column; expected 1 to 4294967295")]
+    /// A map has no cells, or not one value for each.
+    #[error(
+        "a map of {columns} × {rows} cells with {values} values; expected at least one cell, and one \
+         value for each"
+    )]
+    Cells {
+        /// Number of cells in a row.
+        columns: usize,
+        /// Number of rows.
+        rows: usize,
+        /// Number of values.
+        values: usize,
+    },
+    /// An image has more pixels than PNG allows.
+    #[error("an image of {pixels} pixels in a row or column; expected up to 4294967295")]
     TooLarge {
-        /// Pixels in a row or a column.
+        /// Number of pixels in a row or a column.
         pixels: usize,
     },
     /// An image cannot be written as PNG.

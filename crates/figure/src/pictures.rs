@@ -1,4 +1,7 @@
 //! Whole pictures, each drawn from data.
+//!
+//! Start reading in [`course`] and [`collision`]. Then [`gallery`] (many collisions), [`chart`] (series
+//! of points), [`map`] and [`grid`] (quantities on a plane), [`atlas`] (boundaries on a plane).
 
 pub mod atlas;
 pub mod chart;

@@ -1,10 +1,16 @@
 //! Atlases: every boundary in a window on which the switches of a collision change, and the regions
 //! between them.
 //!
-//! Start reading in [`trace()`](fn@trace); then, in this order: `frame` (the window and its coordinates),
-//! `boundary` (what the tracer's curves mean), `regions` (the atlas itself), `verification` (an atlas
-//! against collisions), `traced` (how it is made), `locate` and `crossings` (how it is looked up),
-//! `polyline`, `geojson` and `document` (how it is handed on and read back).
+//! Start reading in [`trace()`](fn@trace), which makes an [`Atlas`] and verifies it. The files in
+//! reading order:
+//!
+//! - `frame`: the window of an atlas
+//! - `boundary`: what the tracer's guards and margins mean for a collision
+//! - `regions`: the atlas itself
+//! - `tracing`: how an atlas is made
+//! - `verification`: how it is compared with collisions
+//! - `locate` and `crossings`: how points and lines are looked up in it
+//! - `polyline`, `geojson` and `document`: how it is drawn, exported, written and read back
 
 mod boundary;
 mod crossings;
@@ -15,22 +21,20 @@ mod frame;
 mod geojson;
 mod locate;
 mod polyline;
-#[cfg(feature = "serde")]
-mod read;
 mod regions;
-mod traced;
+mod tracing;
 mod verification;
 
-pub use boundary::Kind;
+pub use boundary::BoundaryKind;
 #[cfg(feature = "serde")]
-pub use document::{Document, SCHEMA};
-pub use frame::{Frame, RatioRange, Tolerances, TooNarrow, scaled, traced};
+pub use document::{
+    BoundaryEnd, BoundaryFields, Document, DocumentError, ExtremalParameter, ExtremumFields,
+    Meeting, RegionFields, SCHEMA, Switching, VertexFields, WindowFields,
+};
+pub use frame::{Frame, RatioRange, ToleranceRange, TooNarrow};
 #[cfg(feature = "geojson")]
 pub use geojson::geojson;
 pub use locate::{Located, Unlocated};
-pub use polyline::polyline;
-#[cfg(feature = "serde")]
-pub use read::DocumentError;
 pub use regions::{Atlas, Regions, switch_count};
-pub use traced::{AtlasError, VerifiedAtlas, trace};
-pub use verification::{LabelError, VerificationReport};
+pub use tracing::{AtlasError, VerifiedAtlas, trace};
+pub use verification::{EulerFields, LabelError, MismatchFields, VerificationReport};

@@ -1,4 +1,4 @@
-//! Collisions in the (κ, ψ) plane as what the tracer follows.
+//! Collisions over the (κ, ψ) plane, as a family that the tracer can follow.
 
 use stickslip_model::exact::{self, ExactError};
 use stickslip_model::regularized::{GUARDS, OTHER_SIDE, Phase, Regularized, SAME_SIDE, STATE};
@@ -8,7 +8,8 @@ use stickslip_tracer::{Family, FamilyError, FreeRun, HybridFamily, Point, Proble
 
 /// Collisions with κ and ψ in a window and one scaled damping.
 ///
-/// They are traced in x = ln κ and y = ln(1 + ψ), in which their boundaries bend evenly.
+/// They are traced in x = ln κ and y = ln(1 + ψ), in which their boundaries bend evenly. These are
+/// the traced coordinates; [`Self::point`] and [`Self::parameters`] convert.
 ///
 /// ```
 /// use stickslip_plane::CollisionPlane;
@@ -32,22 +33,22 @@ pub struct CollisionPlane {
     high: Contact,
 }
 
-/// Collisions as a family of runs: labels are the guards that fired.
+/// Collisions as a family of runs. The label of a run is the list of the guards that fired.
 #[derive(Clone, Copy, Debug)]
 pub enum CollisionFamily {
-    /// By the exact solution, without damping.
+    /// Computed by the exact solution, without damping.
     Exact(CollisionPlane),
-    /// By integration.
+    /// Computed by integration.
     Integrated(HybridFamily<CollisionPlane, Dop853, STATE, GUARDS>),
 }
 
 /// A collision of a family cannot be computed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum CollisionFamilyError {
-    /// By the exact solution.
+    /// The exact solution failed.
     #[error(transparent)]
     Exact(#[from] ExactError),
-    /// By integration.
+    /// The integration failed.
     #[error("{}", .0.kind)]
     Integrated(#[from] FamilyError),
 }
@@ -56,7 +57,7 @@ impl CollisionPlane {
     /// Collisions with κ and ψ between two values each.
     ///
     /// # Errors
-    /// A value that no collision can have.
+    /// [`InvalidParameter`]: a value that no collision can have.
     pub fn new(kappa: (f64, f64), psi: (f64, f64), damping: f64) -> Result<Self, InvalidParameter> {
         Ok(Self {
             low: Contact::new(kappa.0, psi.0, damping)?,
@@ -64,13 +65,13 @@ impl CollisionPlane {
         })
     }
 
-    /// The traced point of κ and ψ.
+    /// The point (ln κ, ln(1 + ψ)) of the traced coordinates.
     #[must_use]
     pub fn point(kappa: f64, psi: f64) -> Point {
         Point::new(kappa.ln(), psi.ln_1p())
     }
 
-    /// κ and ψ of a traced point.
+    /// κ and ψ of a traced point: the inverse of [`Self::point`].
     #[must_use]
     pub fn parameters(point: &Point) -> [f64; 2] {
         [point.x.exp(), point.y.exp_m1()]
@@ -83,18 +84,20 @@ impl CollisionPlane {
         Window { low: corner(&self.low), high: corner(&self.high) }
     }
 
-    /// The collision at a traced point. Tracing asks for places a little outside of the window,
-    /// where ψ may not be above 0; it is kept there.
+    /// The collision at a traced point.
+    ///
+    /// The tracer also asks for places a little outside the window, where ψ could fall to 0 or
+    /// below. There ψ is kept at half of the window's lower end.
     ///
     /// # Errors
-    /// κ has left the range of numbers.
+    /// [`InvalidParameter`]: κ has left the range of numbers.
     pub fn contact(&self, point: &Point) -> Result<Contact, InvalidParameter> {
         let [kappa, psi] = Self::parameters(point);
         Contact::new(kappa, psi.max(0.5 * self.low.psi()), self.low.damping())
     }
 
-    /// The collisions to trace: without damping by the exact solution, with which a trace takes a
-    /// tenth of the time, else by integration.
+    /// The collisions as a family: by the exact solution if there is no damping, which makes a
+    /// trace ten times as fast, and by integration otherwise.
     #[must_use]
     pub fn family(self) -> CollisionFamily {
         match Engine::Auto.resolved(&self.low) {
@@ -103,7 +106,7 @@ impl CollisionPlane {
         }
     }
 
-    /// The same by integration throughout, with margins to about 1e-14.
+    /// The collisions as a family that is always integrated. Margins are accurate to about 1e-14.
     #[must_use]
     pub fn integrated(self) -> CollisionFamily {
         let options = Options {
@@ -117,13 +120,13 @@ impl CollisionPlane {
         CollisionFamily::Integrated(HybridFamily { problem: self, method, options, end })
     }
 
-    /// The contact at a traced point; where κ is no number there is nothing to find, and any
+    /// The contact at a traced point. Where κ is not a number there is nothing to find, and any
     /// contact will do.
     fn contact_or_any(&self, point: &Point) -> Contact {
         self.contact(point).unwrap_or(self.low)
     }
 
-    /// The label of a collision, by whatever engine.
+    /// The label of a collision, whichever engine computed it.
     #[must_use]
     pub fn label(collision: &Collision) -> Vec<usize> {
         let mut side = Side::Positive;

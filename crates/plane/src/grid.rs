@@ -1,5 +1,4 @@
-//! A window divided into cells: which collision belongs to which cell, and what its coordinates are
-//! called.
+//! Windows divided into cells: the collision of each cell, and the names of its coordinates.
 
 use std::fmt;
 
@@ -12,32 +11,34 @@ use crate::range::Range;
 pub struct GridAxis {
     /// The interval.
     pub range: Range,
-    /// Number of cells.
+    /// Number of cells, at least 1.
     pub cells: usize,
 }
 
 impl GridAxis {
-    /// Centre of cell `index`: LO + (HI − LO)·((index + ½)/cells).
+    /// Centre of cell `index`: low + (high − low)·((index + ½)/cells).
     ///
-    /// Centres let an interval begin at 0, where there is no collision.
+    /// Collisions are computed at centres, so that an interval may begin at 0, where there is no
+    /// collision.
+    #[must_use]
     pub fn centre(&self, index: usize) -> f64 {
         let Range { low, high } = self.range;
         low + (high - low) * ((index as f64 + 0.5) / self.cells as f64)
     }
 }
 
-/// A window divided into cells, and what its axes mean.
+/// A window divided into cells, with a collision at the centre of each.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     /// The axis along a row.
     pub columns: GridAxis,
     /// The axis along a column.
     pub rows: GridAxis,
-    /// What both mean.
+    /// What the two axes mean.
     pub coordinates: Coordinates,
 }
 
-/// What the axes of a plane mean.
+/// What the axes of a grid mean: columns first, rows second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Coordinates {
     /// κ and ψ.
@@ -54,12 +55,12 @@ pub enum Coordinates {
     },
     /// Normal and tangential velocity of the surfaces at the contact.
     Velocities {
-        /// The bodies.
+        /// The two bodies that collide.
         pair: Pair,
     },
 }
 
-/// A coordinate or parameter that is stored with the results.
+/// A coordinate or parameter of a collision, which is stored with its results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// Scaled stiffness κ.
@@ -76,29 +77,32 @@ pub enum Quantity {
     Damping,
 }
 
-/// On what a quantity depends.
+/// The part of a grid over which a quantity varies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
-    /// On the column alone.
+    /// It depends on the column alone.
     Columns,
-    /// On the row alone.
+    /// It depends on the row alone.
     Rows,
-    /// On both.
+    /// It depends on both, and has a value for each point.
     Points,
 }
 
 impl Grid {
-    /// Number of points.
+    /// Number of points, one for each cell.
+    #[must_use]
     pub fn points(&self) -> usize {
         self.columns.cells * self.rows.cells
     }
 
-    /// Column and row of a point; points are counted row by row.
+    /// Column and row of a point. Points are counted row by row.
+    #[must_use]
     pub fn cell(&self, point: usize) -> (usize, usize) {
         (point % self.columns.cells, point / self.columns.cells)
     }
 
     /// The point of a cell: the inverse of [`Self::cell`].
+    #[must_use]
     pub fn point(&self, column: usize, row: usize) -> usize {
         row * self.columns.cells + column
     }
@@ -112,7 +116,8 @@ impl Grid {
         Contact::new(kappa, psi, damping)
     }
 
-    /// What the axes mean: along a row, along a column.
+    /// The quantities along a row and along a column.
+    #[must_use]
     pub fn axes(&self) -> [Quantity; 2] {
         match self.coordinates {
             Coordinates::Psi { .. } => [Quantity::Kappa, Quantity::Psi],
@@ -121,7 +126,8 @@ impl Grid {
         }
     }
 
-    /// What is stored with the results, in this order.
+    /// The quantities that are stored with the results, in this order.
+    #[must_use]
     pub fn quantities(&self) -> &'static [Quantity] {
         use Quantity::{Damping, Kappa, Normal, Psi, Ratio, Tangential};
         match self.coordinates {
@@ -132,6 +138,7 @@ impl Grid {
     }
 
     /// The value of `quantity` at the centre of a cell; NaN where there is no collision.
+    #[must_use]
     pub fn value(&self, quantity: Quantity, column: usize, row: usize) -> f64 {
         let parameter = |index: usize| self.parameters(column, row).map_or(f64::NAN, |p| p[index]);
         match quantity {
@@ -143,7 +150,8 @@ impl Grid {
         }
     }
 
-    /// On what `quantity` depends.
+    /// The part of the grid over which `quantity` varies.
+    #[must_use]
     pub fn extent(&self, quantity: Quantity) -> Extent {
         match (quantity, self.coordinates) {
             (Quantity::Psi, Coordinates::Velocities { .. }) => Extent::Points,
@@ -152,7 +160,8 @@ impl Grid {
         }
     }
 
-    /// κ where it is largest, as far as it can be computed.
+    /// The largest κ in the grid, as far as it can be computed.
+    #[must_use]
     pub fn largest_stiffness(&self) -> f64 {
         let corners = [(0, 0), (self.columns.cells - 1, self.rows.cells - 1)];
         corners
@@ -175,7 +184,7 @@ impl Grid {
     }
 }
 
-/// One fact a line, with all digits: planes that differ read differently.
+/// One fact per line, with all digits, so that grids that differ read differently.
 impl fmt::Display for Grid {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [x, y] = self.axes().map(Quantity::name);
@@ -195,7 +204,8 @@ impl fmt::Display for Grid {
 }
 
 impl Quantity {
-    /// Name of the array or column.
+    /// The name of the quantity's array or column in a file.
+    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Kappa => "kappa",

@@ -1,13 +1,20 @@
 //! What collisions of frictional spheres do over a plane of parameters.
 //!
-//! Two numbers decide the switching of an undamped collision, the scaled stiffness κ and the impact
-//! ratio ψ. This crate asks what happens over the plane of both: a [`CollisionPlane`] is the family
-//! that the tracer follows, a [`Grid`] is a window divided into cells whose collisions [`sweep`]
-//! computes, and an [`Atlas`](atlas::Atlas) holds every boundary on which the switches change, with
-//! the regions between them.
+//! The stiffness κ, the impact ratio ψ and the damping, all scaled, decide how a collision switches
+//! between stick and slip. This crate asks what happens over a plane of two parameters:
 //!
-//! Start reading in [`family`]; then, in this order: [`range`], [`grid`], [`tile`] and [`sweep`] (maps
-//! on a grid), [`atlas`] (boundaries and regions, verified), [`progress`].
+//! - A [`CollisionPlane`] is the family of collisions over (κ, ψ) that the tracer can follow.
+//! - A [`Grid`] is a window divided into cells, whose collisions [`sweep`] computes.
+//! - An [`Atlas`](atlas::Atlas) holds every boundary on which the switches change, and the regions
+//!   between the boundaries.
+//!
+//! Start reading in [`family`]. The modules in reading order:
+//!
+//! - [`family`]: collisions as a family for the tracer
+//! - [`mod@range`] and [`grid`]: windows, and windows divided into cells
+//! - [`tile`] and [`sweep`]: the results of a grid, and how they are computed
+//! - [`progress`]: reports of how far a long computation has come
+//! - [`atlas`]: boundaries and regions, traced and verified
 //!
 //! ```
 //! use stickslip_plane::atlas::{Frame, trace};
@@ -23,7 +30,7 @@
 //! # Ok::<(), stickslip_plane::atlas::AtlasError>(())
 //! ```
 //!
-//! Parallel loops run on the rayon pool of the caller. Each point depends on itself alone, so that
+//! Parallel loops run on the rayon pool of the caller. Each point is computed for itself, so that
 //! results do not depend on the number of threads.
 
 pub mod atlas;

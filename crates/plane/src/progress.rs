@@ -1,16 +1,16 @@
-//! How far a long computation has come.
+//! Reports of how far a long computation has come.
 
 /// What a computation reports while it runs, from any thread and in any order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
-    /// So many steps are ahead.
+    /// A stage of the computation begins.
     Begin {
-        /// The number of steps.
+        /// The number of steps that it takes.
         steps: usize,
     },
-    /// So many steps more are done.
+    /// Steps of the stage are done.
     Advance {
-        /// The number of steps.
+        /// The number of steps since the last report.
         steps: usize,
     },
 }

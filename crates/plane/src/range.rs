@@ -1,6 +1,6 @@
 //! Intervals of parameters.
 
-/// An interval of a positive quantity, given by its ends.
+/// An interval of a quantity that is never negative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     /// Lower end, 0 or above.

@@ -1,4 +1,4 @@
-//! The collisions of a grid, computed.
+//! The collisions of a grid, computed in parallel.
 
 use std::ops;
 
@@ -17,7 +17,7 @@ pub enum PointError {
     /// The collision cannot be computed.
     #[error(transparent)]
     Engine(#[from] EngineError),
-    /// The number of switches does not fit into the map.
+    /// The number of switches does not fit into a [`Tile`].
     #[error("{count} switches; a map holds up to 2147483647")]
     Count {
         /// The number of switches.
@@ -25,11 +25,11 @@ pub enum PointError {
     },
 }
 
-/// Points of a map without a result.
+/// The points of a map that have no result.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("kappa = {kappa:?}, psi = {psi:?}: {error}")]
 pub struct Failed {
-    /// How many points have no result.
+    /// The number of points without a result.
     pub points: usize,
     /// κ at the first of them.
     pub kappa: f64,
@@ -39,9 +39,10 @@ pub struct Failed {
     pub error: PointError,
 }
 
-/// Computes successive points of `grid` on the threads of the current pool.
+/// Computes successive points of `grid` on the threads of the current rayon pool.
 ///
-/// Points that cannot be computed are [`NO_EPS_T`] and [`NO_COUNT`].
+/// The results are the same with any number of threads. A point that cannot be computed gets
+/// [`NO_EPS_T`] and [`NO_COUNT`]; [`point()`] says why, and [`FailureCount`] counts such points.
 #[must_use]
 pub fn compute(grid: &Grid, engine: Engine, points: ops::Range<usize>) -> Tile {
     let mut tile = Tile { eps_t: Vec::new(), switch_count: Vec::new() };
@@ -52,10 +53,10 @@ pub fn compute(grid: &Grid, engine: Engine, points: ops::Range<usize>) -> Tile {
     tile
 }
 
-/// The tangential restitution and the number of switches at a point.
+/// The tangential restitution and the number of switches at a point of `grid`.
 ///
 /// # Errors
-/// [`PointError`] says why there are none.
+/// [`PointError`] says why the point has no result.
 pub fn point(grid: &Grid, engine: Engine, index: usize) -> Result<(f64, i32), PointError> {
     let (column, row) = grid.cell(index);
     let (collision, _) = engine.collide(grid.contact(column, row)?)?;
@@ -64,7 +65,9 @@ pub fn point(grid: &Grid, engine: Engine, index: usize) -> Result<(f64, i32), Po
     Ok((collision.eps_t(), switch_count))
 }
 
-/// Counts the points without a result, of which results keep no reason.
+/// Counts the points without a result while tiles arrive.
+///
+/// Tiles do not keep the reasons. [`Self::failed`] finds the reason of the first such point.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FailureCount {
     points: usize,
@@ -72,7 +75,7 @@ pub struct FailureCount {
 }
 
 impl FailureCount {
-    /// Looks at the results of successive points, the first of which is `start`.
+    /// Looks at the results of successive points; `start` is the first one.
     pub fn add(&mut self, start: usize, tile: &Tile) {
         for (point, count) in (start..).zip(&tile.switch_count) {
             if *count == NO_COUNT {
@@ -82,7 +85,8 @@ impl FailureCount {
         }
     }
 
-    /// What was found; the first point without a result is computed once more for its reason.
+    /// The points without a result, if there are any. The first one is computed again, to learn the
+    /// reason.
     #[must_use]
     pub fn failed(&self, grid: &Grid, engine: Engine) -> Option<Failed> {
         let first = self.first?;

@@ -1,25 +1,26 @@
-//! The results of one tile of a map, and the bytes in which they are kept.
+//! Tiles: the results of successive points of a map, and the bytes in which they are kept.
 
 use twox_hash::XxHash3_128;
 
 /// Tangential restitution and number of switches at successive points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tile {
-    /// ε_t; NaN where it could not be computed.
+    /// Tangential restitution ε_t of each point; [`NO_EPS_T`] where it could not be computed.
     pub eps_t: Vec<f64>,
-    /// Number of switches; −1 where it could not be computed.
+    /// Number of switches at each point; [`NO_COUNT`] where it could not be computed.
     pub switch_count: Vec<i32>,
 }
 
-/// What stands for ε_t where it could not be computed: always the same bits.
+/// Stands for ε_t where it could not be computed: a NaN that always has the same bits.
 pub const NO_EPS_T: f64 = f64::NAN;
-/// What stands for the number of switches where it could not be computed.
+/// Stands for the number of switches where it could not be computed.
 pub const NO_COUNT: i32 = -1;
 
 impl Tile {
     /// The tile as bytes: `label`, all ε_t, all counts, and a checksum over everything before it.
     ///
-    /// Numbers are little-endian. The label says of which map and at which place the tile is.
+    /// Numbers are little-endian. The label names the map and the place of the tile in it.
+    #[must_use]
     pub fn to_bytes(&self, label: &str) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(length(label, self.eps_t.len()));
         bytes.extend_from_slice(label.as_bytes());
@@ -29,8 +30,9 @@ impl Tile {
         bytes
     }
 
-    /// Reads a tile of `points` points; `None` if `bytes` are anything but what [`Self::to_bytes`]
-    /// wrote with the same label.
+    /// Reads a tile of `points` points. It is `None` unless [`Self::to_bytes`] wrote `bytes` with
+    /// the same label.
+    #[must_use]
     pub fn from_bytes(bytes: &[u8], label: &str, points: usize) -> Option<Self> {
         if bytes.len() != length(label, points) {
             return None;
@@ -50,7 +52,7 @@ impl Tile {
     }
 }
 
-/// Number of bytes of a tile.
+/// Number of bytes of a tile with `points` points.
 fn length(label: &str, points: usize) -> usize {
     label.len() + points * (8 + 4) + 16
 }

@@ -68,8 +68,8 @@ pub enum RunError {
     /// A guard has more structure than any step can resolve. Either it is not smooth there, or it
     /// does not start from the zero that [`Guard::from_zero`](crate::Guard::from_zero) declares.
     #[error(
-        "guard {guard} cannot be resolved near s = {s} by a step of {h:e}: either it is not smooth, \
-         or it does not start from the zero that was declared for it"
+        "guard {guard} cannot be resolved near s = {s} by a step of {h:e}: either it is not \
+         smooth, or it does not start from the zero that was declared for it"
     )]
     GuardUnresolved {
         /// The guard's index.

@@ -5,11 +5,10 @@ use std::sync::Arc;
 use stickslip_figure::FigureError;
 use stickslip_model::{CollisionError, Contact, EngineError, InvalidParameter};
 use stickslip_plane::atlas::AtlasError;
-use stickslip_plane::family::CollisionFamilyError;
-use stickslip_solver::{Outcome, RunError};
-use stickslip_tracer::TraceError;
+use stickslip_solver::Outcome;
 
 use crate::convergence::InvalidConvergence;
+use crate::search::SearchError;
 use crate::stiff_springs::InvalidStiffSprings;
 use crate::stiff_springs::limit::StiffError;
 
@@ -22,22 +21,28 @@ pub enum StudyError {
     /// The settings of a study of stiff springs are out of range.
     #[error(transparent)]
     StiffSprings(#[from] InvalidStiffSprings),
-    /// A collision cannot be computed.
-    #[error(transparent)]
-    Collision(#[from] CollisionFailure),
     /// No collision has these parameters.
     #[error(transparent)]
     Parameter(#[from] InvalidParameter),
-    /// A contact with Coulomb friction alone cannot be integrated.
-    #[error("pure sliding: {0}")]
-    Sliding(#[from] CollisionError),
-    /// A run that is not a collision failed.
+    /// A collision cannot be computed.
     #[error(transparent)]
-    Run(#[from] RunError),
+    Collision(#[from] CollisionFailure),
+    /// A contact with Coulomb friction alone cannot be integrated.
+    #[error("pure sliding at psi = {psi:?}: {source}")]
+    Sliding {
+        /// The reduced impact ratio.
+        psi: f64,
+        /// What the integrator reports.
+        source: CollisionError,
+    },
     /// A contact does not end.
-    #[error("a contact does not end: {outcome:?}")]
+    #[error("kappa = {kappa:?}, psi = {psi:?}: the contact does not end: {outcome:?}")]
     Unended {
-        /// How the run ended.
+        /// The stiffness κ.
+        kappa: f64,
+        /// The reduced impact ratio ψ.
+        psi: f64,
+        /// How its integration ended.
         outcome: Outcome,
     },
     /// The limit of stiff springs cannot be studied.
@@ -46,46 +51,28 @@ pub enum StudyError {
     /// Boundaries cannot be traced.
     #[error("the boundaries cannot be traced: {0}")]
     Atlas(#[from] AtlasError),
-    /// The boundaries near a line of one stiffness cannot be traced.
-    #[error("the boundaries cannot be traced: {0}")]
-    Trace(#[from] TraceError<CollisionFamilyError>),
-    /// A margin cannot be computed.
-    #[error("the boundaries cannot be traced: {0}")]
-    Margin(#[from] CollisionFamilyError),
-    /// A line of one stiffness crosses another number of regions than the paper has points.
+    /// The points of Figure 4 cannot be named: their line crosses another number of regions than
+    /// the paper has points.
     #[error("the line at κ = {kappa} crosses {found} regions; expected {expected}")]
     Regions {
-        /// The stiffness.
+        /// The stiffness κ of the line.
         kappa: f64,
-        /// The number of regions.
+        /// The number of regions that were found.
         found: usize,
-        /// The number of points.
+        /// The number of points, with the one that has no letter.
         expected: usize,
     },
-    /// A collision has no phase on its spring, whose elongation was asked for.
-    #[error("no spring at κ = {kappa:?}, ψ = {psi:?}")]
-    NoSpring {
-        /// The stiffness.
+    /// The largest elongation of the spring has no closed form.
+    #[error("kappa = {kappa:?}, psi = {psi:?}: the largest elongation has no closed form")]
+    NoElongation {
+        /// The stiffness κ.
         kappa: f64,
-        /// The impact ratio.
+        /// The reduced impact ratio ψ.
         psi: f64,
     },
-    /// There are switches above the boundary of pure sliding.
-    #[error("κ = {kappa}: switches at ψ = {psi} above {boundary}, where they had ended")]
-    SwitchesAbove {
-        /// The stiffness.
-        kappa: f64,
-        /// The impact ratio with switches.
-        psi: f64,
-        /// The boundary that was found.
-        boundary: f64,
-    },
-    /// A search for an extremum has no place to start from.
-    #[error("a search for an extremum has no places")]
-    NoPlaces,
-    /// A search for an extremum failed.
-    #[error("a search for an extremum failed: {0}")]
-    Search(#[from] argmin::core::Error),
+    /// A search for an extremum has no result.
+    #[error(transparent)]
+    Search(#[from] SearchError),
     /// A computation failed that several statements need.
     #[error(transparent)]
     Shared(Arc<StudyError>),

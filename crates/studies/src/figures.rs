@@ -1,8 +1,9 @@
 //! The figures of the paper computed anew, and all parts of the reproduction.
 //!
-//! Start reading in [`Reproduction`]; then, in this order: [`Section`] (what a part results in),
-//! `figure1` to `figure6`, `boundaries` and `studies` (the parts), `points` (where the points a to o
-//! of Figure 4 are), `sweep` and `course` (what several figures need).
+//! Start reading in [`Part`]; then, in this order: [`Section`] (the result of a part),
+//! [`Reproduction`] (what parts share), `figure1` to `figure6`, `boundaries` and `studies` (the
+//! parts), `points` (where the points a to o of Figure 4 are), `stiffness_map`, [`Sweep`] and
+//! `course` (what several figures need).
 
 mod boundaries;
 mod course;
@@ -12,12 +13,15 @@ mod figure3;
 mod figure4;
 mod figure5;
 mod figure6;
+mod parts;
 mod points;
 mod reproduction;
 mod section;
+mod stiffness_map;
 mod studies;
 mod sweep;
 
-pub use reproduction::{Part, Reproduction};
-pub use section::{Content, DataFile, Objection, Section};
+pub use parts::Part;
+pub use reproduction::Reproduction;
+pub use section::{Content, DataFile, Objection, Section, headlines};
 pub use sweep::Sweep;

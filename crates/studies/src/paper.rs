@@ -1,21 +1,48 @@
-//! What the paper's figures mean: their friction and inertia, and the two readings of the axis that
-//! they call κ.
+//! Facts of the paper: friction, inertia and axes of its figures, and the two readings of the axis
+//! that they call κ.
+//!
+//! No other module has a number of its own for them.
 
-use stickslip_model::Reduction;
+use stickslip_model::{Material, Reduction};
 
 /// Friction and inertia of all figures: μ = 0.4, homogeneous spheres.
 pub const REDUCTION: Reduction = Reduction::HOMOGENEOUS;
-/// Coefficient of friction of all figures.
+/// Coefficient of friction μ of all figures.
 pub const MU: f64 = REDUCTION.mu;
-/// Tangential inertia of all figures.
+/// Tangential inertia α of all figures.
 pub const ALPHA: f64 = REDUCTION.alpha;
-/// The stiffness of Figures 4 and 5, as their axis shows it.
+
+/// The value on the axis of stiffness where the points a to o of Figure 4 stand, which is that of
+/// Figure 5.
 pub const STIFFNESS: f64 = 18.0;
+/// The number of switches there as g_t/g_n falls, counted in the panels of Figure 5.
+pub const SWITCHES: &str = "0 2 4 6 8 6 8 6 4 6 4 2 4 2 4 2";
+/// The largest of these numbers.
+pub const MOST_SWITCHES: usize = 8;
+/// The end of the axis of stiffness in Figures 3 and 4.
+pub const MOST_STIFFNESS: f64 = 20.0;
+/// The largest g_t/g_n in Figure 3.
+pub const MOST_RATIO_3: f64 = 3.5;
+/// The largest g_t/g_n in Figure 4.
+pub const MOST_RATIO_4: f64 = 4.0;
+/// The value on the axis of stiffness in Figure 6.
+pub const STIFFNESS_6: f64 = 100.0;
+/// The g_t/g_n of Figure 6.
+pub const RATIO_6: f64 = 0.3;
+
+/// The material of the steel spheres of Figure 2 and of footnote 2, whose Y = 210 MPa is a misprint
+/// for GPa.
+pub const STEEL: Material =
+    Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
+/// The radius of these spheres.
+pub const STEEL_RADIUS_M: f64 = 0.02;
+/// Their tangential stiffness k_t.
+pub const STEEL_STIFFNESS_KG_PER_S2: f64 = 1e12;
 
 /// What the axis of stiffness of Figures 3 to 6 shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reading {
-    /// κ of equation (24), as it is called.
+    /// κ of equation (24), as the axis is called.
     Printed,
     /// ακ, the reading with which the figures agree.
     Axis,
@@ -25,7 +52,7 @@ impl Reading {
     /// Both readings.
     pub const ALL: [Self; 2] = [Self::Printed, Self::Axis];
 
-    /// What tells its files from those of the other.
+    /// The name of the reading in the names of files.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -34,7 +61,7 @@ impl Reading {
         }
     }
 
-    /// What the axis is called.
+    /// The quantity that the axis shows.
     #[must_use]
     pub fn axis(self) -> &'static str {
         match self {
@@ -43,7 +70,7 @@ impl Reading {
         }
     }
 
-    /// In words.
+    /// The reading in words.
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {
@@ -59,6 +86,12 @@ impl Reading {
             Self::Printed => value,
             Self::Axis => value / ALPHA,
         }
+    }
+
+    /// κ of equation (24) where the axis shows `value`, in both readings.
+    #[must_use]
+    pub fn kappas(value: f64) -> [f64; 2] {
+        Self::ALL.map(|reading| reading.kappa(value))
     }
 }
 

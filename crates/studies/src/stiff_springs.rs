@@ -1,15 +1,16 @@
-//! A study of the limit of stiff springs: how ε_t tends to 0, and why as κ^{−5/4}.
+//! The study of the limit of stiff springs: how ε_t tends to 0, and why as κ^{−5/4}.
 //!
-//! Start reading here; then, in this order: [`limit`] (maxima of full collisions), `points` (what is measured of full collisions),
-//! `profile` (the inner problem beside them), `fit` (exponent and constant), `findings`, `tables`
-//! and `pictures`.
+//! Start reading here; then, in this order: `settings` (which stiffnesses and impact ratios),
+//! [`limit`] (maxima of full collisions), `maxima` (what is measured of them), `profile` (the inner
+//! problem beside them), `fit` (exponent and constant), `findings`, `tables` and `pictures`.
 
 mod findings;
 mod fit;
 pub mod limit;
+mod maxima;
 mod pictures;
-mod points;
 mod profile;
+mod settings;
 mod tables;
 
 use rayon::prelude::*;
@@ -22,108 +23,34 @@ use crate::error::StudyError;
 use crate::study::Study;
 use fit::Fits;
 use limit::{BOUND_FACTOR, Excess};
-use points::{Lowest, Measured, Restitution};
+use maxima::{LargestRestitution, LargestVelocity, RangeStart};
 use profile::Profile;
+
+pub use settings::{InvalidStiffSprings, Settings};
 
 /// The name of the layout of the JSON, with its version.
 pub const SCHEMA: &str = "stickslip.asymptote/1";
+/// The title of the study.
+pub const TITLE: &str = "The limit of stiff springs";
 
-/// The stiffnesses of a study: from about 2 on all oscillations are alike, and at 10¹⁰ a collision
-/// has 100 000 switches.
-const STIFFNESS: Range = Range { low: 3.0, high: 1e10 };
-
-/// Most impact ratios: lines of a picture that can be told apart.
-const MOST_PSI: usize = 4;
-
-/// What is studied.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Settings {
-    /// Interval of the scaled stiffness, within 3 to 10¹⁰.
-    pub kappa: Range,
-    /// Reduced impact ratios, each above 0 and below 2; one to four.
-    pub psi: Vec<f64>,
-}
-
-/// Settings are out of range.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum InvalidStiffSprings {
-    /// The interval of the stiffness.
-    #[error(
-        "kappa {low:?}:{high:?} is out of range; expected LO:HI with {:?} <= LO < HI <= {:?}",
-        STIFFNESS.low, STIFFNESS.high
-    )]
-    Kappa {
-        /// Its lower end.
-        low: f64,
-        /// Its upper end.
-        high: f64,
-    },
-    /// The number of impact ratios.
-    #[error("psi has {count} values; expected 1 to {MOST_PSI}")]
-    PsiCount {
-        /// How many there are.
-        count: usize,
-    },
-    /// An impact ratio.
-    #[error(
-        "psi {psi:?} is out of range; expected numbers above 0 and below 2, from where on there is no \
-         switch"
-    )]
-    Psi {
-        /// Its value.
-        psi: f64,
-    },
-    /// An impact ratio that is given twice.
-    #[error("psi has {psi:?} twice; expected each value once")]
-    PsiTwice {
-        /// Its value.
-        psi: f64,
-    },
-}
-
-impl Default for Settings {
-    /// κ from 10 to 10⁸, ψ = 0.3, 1 and 1.7.
-    fn default() -> Self {
-        Self { kappa: Range { low: 10.0, high: 1e8 }, psi: vec![0.3, 1.0, 1.7] }
-    }
-}
-
-impl Settings {
-    fn validate(&self) -> Result<(), InvalidStiffSprings> {
-        let Range { low, high } = self.kappa;
-        if !(STIFFNESS.low <= low && low < high && high <= STIFFNESS.high) {
-            return Err(InvalidStiffSprings::Kappa { low, high });
-        }
-        let count = self.psi.len();
-        if !(1..=MOST_PSI).contains(&count) {
-            return Err(InvalidStiffSprings::PsiCount { count });
-        }
-        for (index, &psi) in self.psi.iter().enumerate() {
-            if !(psi > 0.0 && psi < 2.0) {
-                return Err(InvalidStiffSprings::Psi { psi });
-            }
-            if self.psi[..index].contains(&psi) {
-                return Err(InvalidStiffSprings::PsiTwice { psi });
-            }
-        }
-        Ok(())
-    }
-}
-
-/// Stiffnesses in a decade.
-const A_DECADE: f64 = 4.0;
+/// Stiffnesses per decade.
+const PER_DECADE: f64 = 4.0;
 
 /// All that is measured.
 struct Measurement {
     kappas: Vec<f64>,
     /// For each ψ, by κ.
-    points: Vec<Vec<Measured>>,
+    velocities: Vec<Vec<LargestVelocity>>,
     /// For each range of ψ, by κ.
-    restitutions: Vec<Vec<Restitution>>,
+    restitutions: Vec<Vec<LargestRestitution>>,
+    /// The ψ of `single`.
+    single_psi: f64,
+    /// κ and |w_final| at one ψ, as far as single oscillations can be told apart.
+    single: Vec<(f64, f64)>,
     profile: Profile,
     peak: Peak,
     excess: Excess,
-    /// None with too few stiff collisions.
+    /// `None` if too few collisions are stiff.
     fits: Option<Fits>,
 }
 
@@ -134,24 +61,35 @@ struct Measurement {
 pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Study, StudyError> {
     settings.validate()?;
     let kappas = stiffnesses(settings.kappa);
-    progress(Progress::Begin { steps: kappas.len() * (settings.psi.len() + Lowest::ALL.len()) });
-    let points = at_each(&kappas, &settings.psi, progress, Measured::measure)?;
-    let restitutions = at_each(&kappas, &Lowest::ALL, progress, Restitution::measure)?;
-    let profile = Profile::measure(settings)?;
-    let fits = Fits::new(&points);
-    let (peak, excess) = (inner::peak(), limit::excess()?);
-    Ok(Measurement { kappas, points, restitutions, profile, peak, excess, fits }.study())
+    progress(Progress::Begin {
+        steps: kappas.len() * (settings.psi.len() + RangeStart::ALL.len()),
+    });
+    let velocities = at_each(&kappas, &settings.psi, progress, LargestVelocity::measure)?;
+    let restitutions = at_each(&kappas, &RangeStart::ALL, progress, LargestRestitution::measure)?;
+    let single_psi = settings.psi[settings.psi.len() / 2];
+    let measurement = Measurement {
+        single_psi,
+        single: maxima::single(settings.kappa, single_psi)?,
+        profile: Profile::measure(settings)?,
+        peak: inner::peak(),
+        excess: limit::excess()?,
+        fits: Fits::new(&velocities),
+        kappas,
+        velocities,
+        restitutions,
+    };
+    Ok(measurement.study())
 }
 
-/// Stiffnesses evenly spread over the logarithm of the interval, with both its ends.
+/// Stiffnesses evenly spread over the logarithm of the interval, both ends included.
 fn stiffnesses(Range { low, high }: Range) -> Vec<f64> {
-    let steps = (A_DECADE * (high / low).log10()).ceil().max(1.0);
+    let steps = (PER_DECADE * (high / low).log10()).ceil().max(1.0);
     let inside = (1..).map(f64::from).take_while(|step| *step < steps);
     let inside = inside.map(|step| low * (high / low).powf(step / steps));
     std::iter::once(low).chain(inside).chain([high]).collect()
 }
 
-/// Measures something for each of `values` at each stiffness; each depends on itself alone.
+/// Measures something for each of `values` at each stiffness. Each result depends on itself alone.
 fn at_each<V: Copy + Sync, T: Send>(
     kappas: &[f64],
     values: &[V],
@@ -174,7 +112,7 @@ fn at_each<V: Copy + Sync, T: Send>(
 
 impl Measurement {
     fn study(&self) -> Study {
-        let (findings, tables) = (self.findings(), self.tables());
+        let tables = self.tables();
         let mut json = json!({
             "schema": SCHEMA,
             "inner_problem": {
@@ -184,7 +122,7 @@ impl Measurement {
                 "phase": self.profile.peak_phase,
                 "correction": self.peak.correction,
             },
-            "fits": self.fits.as_ref().map(Fits::json),
+            "fits": self.fits,
             "bound": {
                 "factor": BOUND_FACTOR,
                 "largest": self.excess.ratio,
@@ -199,8 +137,9 @@ impl Measurement {
         }
         Study {
             name: "asymptote",
-            title: "The limit of stiff springs",
-            findings,
+            title: TITLE,
+            headlines: self.headlines(),
+            findings: self.findings(),
             json,
             tables,
             pictures: self.pictures(),

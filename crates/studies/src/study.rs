@@ -1,56 +1,64 @@
-//! What a study results in: numbers for programs, tables for spreadsheets, pictures and sentences for
+//! The result of a study: numbers for programs, tables for spreadsheets, pictures and sentences for
 //! people.
+//!
+//! All texts are written in the markup of [`stickslip_figure::markup`].
 
-use serde_json::Value;
+use serde::Serialize;
+use serde_json::{Value, json};
 use stickslip_figure::Svg;
 
 /// The result of a study.
 #[derive(Debug)]
 pub struct Study {
-    /// The stem of its JSON file.
+    /// The stem of the name of its JSON file.
     pub name: &'static str,
-    /// What it is about.
+    /// The title of the study.
     pub title: &'static str,
-    /// What was found, a sentence with its numbers each.
+    /// The main results, in sentences that stand alone: for the opening of a page on which there
+    /// are several studies.
+    pub headlines: Vec<String>,
+    /// All results, in sentences with their numbers.
     pub findings: Vec<String>,
-    /// All numbers, in an object; its file has the title, the findings and what the other files
-    /// hold besides.
+    /// All numbers, as an object. Its file also holds the title, the findings and the meaning of
+    /// the other files.
     pub json: Value,
-    /// The same as tables.
+    /// The same numbers as tables.
     pub tables: Vec<Table>,
-    /// The same as pictures.
+    /// The same numbers as pictures.
     pub pictures: Vec<Picture>,
 }
 
 /// Rows of values.
 #[derive(Clone, Debug)]
 pub struct Table {
-    /// The stem of its CSV file.
+    /// The stem of the name of its CSV file.
     pub name: &'static str,
-    /// What it shows.
+    /// What the table shows.
     pub title: String,
-    /// Its columns.
+    /// The columns.
     pub columns: Vec<Column>,
-    /// Its rows, with a value for each column.
+    /// The rows, each with a value for every column.
     pub rows: Vec<Vec<Cell>>,
 }
 
 /// A column of a table.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Column {
-    /// Its name in the header.
+    /// The name of the column in the header of a file.
     pub name: &'static str,
-    /// What it holds, with the unit.
+    /// What the column holds, with the unit.
     pub meaning: &'static str,
+    heading: Option<&'static str>,
 }
 
 /// A value of a table.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
 pub enum Cell {
-    /// A number; NaN is written as nothing.
+    /// A number. NaN is an empty cell, and null in JSON.
     Number(f64),
     /// A count.
-    Count(u64),
+    Count(usize),
     /// Words.
     Text(String),
 }
@@ -58,26 +66,40 @@ pub enum Cell {
 /// A picture with what a reader needs to understand it.
 #[derive(Debug)]
 pub struct Picture {
-    /// The stem of its file.
+    /// The stem of the name of its file.
     pub name: &'static str,
-    /// What it shows.
+    /// What the picture shows.
     pub caption: String,
     /// The picture itself.
     pub svg: Svg,
 }
 
-impl Cell {
-    /// As it stands in JSON; NaN becomes null.
+impl Column {
+    /// A column for files.
     #[must_use]
-    pub fn json(&self) -> Value {
-        match self {
-            Self::Number(value) => Value::from(*value),
-            Self::Count(count) => Value::from(*count),
-            Self::Text(text) => Value::from(text.as_str()),
-        }
+    pub const fn new(name: &'static str, meaning: &'static str) -> Self {
+        Self { name, meaning, heading: None }
     }
 
-    /// As it stands in a file: numbers in the shortest form that reads back exactly.
+    /// A column of a table that is also shown on a page, with a heading of one to three words.
+    #[must_use]
+    pub const fn headed(name: &'static str, heading: &'static str, meaning: &'static str) -> Self {
+        Self { name, meaning, heading: Some(heading) }
+    }
+
+    /// The heading of the column on a page: short, with the unit, in markup. Columns of tables that
+    /// no page shows have only their name.
+    #[must_use]
+    pub const fn heading(&self) -> &'static str {
+        match self.heading {
+            Some(heading) => heading,
+            None => self.name,
+        }
+    }
+}
+
+impl Cell {
+    /// The value as it stands in a file. A number has the shortest form that reads back exactly.
     #[must_use]
     pub fn text(&self) -> String {
         match self {
@@ -89,14 +111,36 @@ impl Cell {
     }
 }
 
+impl From<f64> for Cell {
+    fn from(value: f64) -> Self {
+        Self::Number(value)
+    }
+}
+
+impl From<usize> for Cell {
+    fn from(count: usize) -> Self {
+        Self::Count(count)
+    }
+}
+
+impl From<String> for Cell {
+    fn from(text: String) -> Self {
+        Self::Text(text)
+    }
+}
+
+impl From<&str> for Cell {
+    fn from(text: &str) -> Self {
+        Self::Text(text.to_owned())
+    }
+}
+
 impl Table {
-    /// The table as JSON: an object a row, with the names of the columns.
+    /// The table as JSON: an object for each row, with the names of the columns.
     #[must_use]
     pub fn json(&self) -> Value {
-        let object = |row: &Vec<Cell>| {
-            let names = self.columns.iter().map(|column| column.name.to_owned());
-            Value::Object(names.zip(row.iter().map(Cell::json)).collect())
-        };
-        self.rows.iter().map(object).collect()
+        let names = || self.columns.iter().map(|column| column.name.to_owned());
+        let values = |row: &Vec<Cell>| row.iter().map(|cell| json!(cell)).collect::<Vec<_>>();
+        self.rows.iter().map(|row| Value::Object(names().zip(values(row)).collect())).collect()
     }
 }

@@ -1,4 +1,4 @@
-//! Images of few colours as PNG: small, and with no colour that is not in the palette.
+//! Images of few colours as PNG, which are small and have no colour outside their palette.
 
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
@@ -7,16 +7,16 @@ use png::{BitDepth, ColorType, Compression, Encoder, Filter};
 
 use crate::error::FigureError;
 
-/// Colours by number, row by row from the top.
+/// An image whose pixels are indices into a palette.
 #[derive(Debug)]
 pub struct Bitmap {
-    /// Pixels in a row.
+    /// Number of pixels in a row.
     pub columns: usize,
-    /// Rows.
+    /// Number of rows.
     pub rows: usize,
-    /// The number of each pixel's colour.
+    /// The colour of each pixel as an index, row by row from the top.
     pub pixels: Vec<u8>,
-    /// The colours.
+    /// The colours, at most 256.
     pub palette: Vec<Color>,
 }
 
@@ -24,7 +24,7 @@ impl Bitmap {
     /// The image as a PNG file in base 64.
     ///
     /// # Errors
-    /// The image is empty, or larger than the format allows.
+    /// [`FigureError`]: the image is larger than the format allows.
     pub fn base64(&self) -> Result<String, FigureError> {
         let side =
             |pixels: usize| u32::try_from(pixels).map_err(|_| FigureError::TooLarge { pixels });
@@ -36,7 +36,7 @@ impl Bitmap {
             self.palette.iter().flat_map(|&Color { r, g, b }| [r, g, b]).collect::<Vec<_>>(),
         );
         encoder.set_compression(Compression::High);
-        // Differences of colour numbers mean nothing to a filter.
+        // Filters compare neighbours, and differences between indices mean nothing.
         encoder.set_filter(Filter::NoFilter);
         let mut writer = encoder.write_header()?;
         writer.write_image_data(&self.pixels)?;

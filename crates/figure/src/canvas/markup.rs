@@ -1,8 +1,8 @@
 //! The markup of all texts: subscripts, superscripts and code.
 //!
-//! After `_` stands what is lowered and after `^` what is raised: a word of letters and digits, or
-//! what braces or parentheses enclose, without them. Code stands between back quotes. Captions on a
-//! page and words in a picture are written alike.
+//! A subscript follows `_` and a superscript follows `^`. Either is a word of letters and digits, or a
+//! text in braces or parentheses, which are not shown. Code stands between back quotes. Captions on a
+//! page and words in a picture use the same markup.
 
 use std::fmt::{self, Write};
 
@@ -11,9 +11,9 @@ use super::shape::Px;
 /// A piece of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Piece<'a> {
-    /// Its characters.
+    /// The characters of the piece.
     pub text: &'a str,
-    /// How they are set.
+    /// How the characters are set.
     pub style: PieceStyle,
 }
 
@@ -53,12 +53,13 @@ pub fn pieces(markup: &str) -> Vec<Piece<'_>> {
     pieces
 }
 
-/// The characters of `markup` alone.
+/// The characters of `markup` without its marks.
 #[must_use]
 pub fn plain(markup: &str) -> String {
     pieces(markup).iter().map(|piece| piece.text).collect()
 }
 
+/// Adds the pieces of `rest`, which has no code.
 fn heights<'a>(pieces: &mut Vec<Piece<'a>>, mut rest: &'a str) {
     while let Some(place) = rest.find(['_', '^']) {
         let lowered = rest[place..].starts_with('_');
@@ -103,12 +104,12 @@ pub(crate) fn spans(markup: &str, size: f64) -> String {
     spans
 }
 
-/// `text` with the characters escaped that mean something in XML.
+/// `text` with escapes for the characters that have a meaning in XML.
 pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;")
 }
 
-/// Appends to a string.
+/// Appends formatted text to a string.
 pub(crate) fn append(to: &mut String, text: fmt::Arguments<'_>) {
     // Writing to a string cannot fail.
     let _ = to.write_fmt(text);
@@ -128,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn words_and_what_is_enclosed_are_lowered_and_raised() {
+    fn words_and_enclosed_texts_are_lowered_and_raised() {
         let set = |markup| {
             let piece = |piece: Piece<'_>| match piece.style {
                 PieceStyle::Plain => piece.text.to_owned(),

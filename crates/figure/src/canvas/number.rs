@@ -1,6 +1,8 @@
-//! Numbers as people write them.
+//! Numbers in texts of pictures.
 
 /// `value` with at most `digits` significant digits, as [markup](super::markup).
+///
+/// Very large and very small numbers get a power of ten.
 ///
 /// ```
 /// use stickslip_figure::number;
@@ -21,7 +23,7 @@ pub fn number(value: f64, digits: usize) -> String {
     minus(&format!("{mantissa}×10^{{{exponent}}}"))
 }
 
-/// `number` with the sign that is as wide as a plus.
+/// `number` with minus signs, which are as wide as plus signs, for hyphens.
 pub(crate) fn minus(number: &str) -> String {
     number.replace('-', "−")
 }
@@ -31,7 +33,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_as_people_write_them() {
+    fn numbers_have_no_trailing_zeros_and_powers_where_they_are_long() {
         for (value, expected) in [
             (63.0, "63"),
             (0.5, "0.5"),

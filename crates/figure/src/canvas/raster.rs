@@ -1,4 +1,4 @@
-//! SVG to PNG.
+//! Pictures as PNG.
 
 use std::sync::Arc;
 
@@ -9,16 +9,16 @@ use resvg::usvg::{Options, Tree};
 use super::svg::Svg;
 use crate::error::FigureError;
 
-/// Pixels of the PNG for one of the SVG.
+/// The PNG has so many pixels for one pixel of the SVG, in each direction.
 const SCALE: f32 = 2.0;
 
-/// DejaVu Sans, so that no machine needs a font; see `assets/README.md`.
+/// The font DejaVu Sans, so that no font needs to be installed; see `assets/README.md`.
 const FONT_FILE: &[u8] = include_bytes!("../../assets/DejaVuSans-subset.ttf");
 
-/// The picture as a PNG file.
+/// The picture as a PNG file, with two pixels for each pixel of the SVG.
 ///
 /// # Errors
-/// [`FigureError`]: the picture is too large for memory.
+/// [`FigureError::Memory`]: the picture is too large for memory.
 pub fn png(svg: &Svg) -> Result<Vec<u8>, FigureError> {
     let mut fonts = Database::new();
     fonts.load_font_data(FONT_FILE.to_vec());

@@ -2,26 +2,28 @@
 
 use std::fmt::{self, Display};
 
-/// An upright rectangle.
+/// An upright rectangle, in pixels; y points down.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rectangle {
-    /// Its left edge.
+    /// x of the left edge.
     pub left: f64,
-    /// Its upper edge.
+    /// y of the upper edge.
     pub top: f64,
-    /// Its width.
+    /// Distance from the left to the right edge.
     pub width: f64,
-    /// Its height.
+    /// Distance from the upper to the lower edge.
     pub height: f64,
 }
 
 impl Rectangle {
-    /// Its right edge.
+    /// x of the right edge.
+    #[must_use]
     pub fn right(&self) -> f64 {
         self.left + self.width
     }
 
-    /// Its lower edge.
+    /// y of the lower edge.
+    #[must_use]
     pub fn bottom(&self) -> f64 {
         self.top + self.height
     }
@@ -30,9 +32,9 @@ impl Rectangle {
 /// How a line is drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct Stroke {
-    /// Its colour.
+    /// Colour of the line.
     pub colour: &'static str,
-    /// Its width.
+    /// Width of the line.
     pub width: f64,
     /// Lengths of dashes and gaps; empty for a full line.
     pub dashes: &'static str,
@@ -40,6 +42,7 @@ pub struct Stroke {
 
 impl Stroke {
     /// A full line.
+    #[must_use]
     pub const fn full(colour: &'static str, width: f64) -> Self {
         Self { colour, width, dashes: "" }
     }
@@ -55,7 +58,7 @@ impl Display for Stroke {
     }
 }
 
-/// A length, to a hundredth of a pixel.
+/// A length in pixels, written to a hundredth.
 #[derive(Clone, Copy, Debug)]
 pub struct Px(pub f64);
 

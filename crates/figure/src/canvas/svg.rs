@@ -1,4 +1,7 @@
-//! Shapes and words as SVG.
+//! Pictures as SVG: shapes, images and words.
+//!
+//! A picture has a white ground of its own, and every shape and text names its colour. It looks the
+//! same on a dark page.
 
 use std::fmt::{self, Display};
 
@@ -6,8 +9,8 @@ use super::markup;
 use super::shape::{Px, Rectangle, Stroke};
 use super::style::{FONT, INK};
 
-/// A picture under construction; what is added later lies on top. Lengths are in pixels, y points
-/// down.
+/// A picture to which shapes and words are added. Later ones lie on top. Lengths are in pixels, and y
+/// points down.
 #[derive(Debug)]
 pub struct Svg {
     width: f64,
@@ -16,52 +19,55 @@ pub struct Svg {
     body: String,
 }
 
-/// Which point of a text its position means.
+/// The point of a text that is at its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// Where it starts.
+    /// The start of the text.
     Start,
-    /// Its middle.
+    /// The middle of the text.
     Middle,
-    /// Where it ends.
+    /// The end of the text.
     End,
 }
 
-/// Words at a place.
+/// A text on one line.
 #[derive(Clone, Copy, Debug)]
 pub struct Words<'a> {
-    /// The words, with `_` and `^` before what is lowered and raised: a character, or several in
-    /// braces.
+    /// The text, as [markup].
     pub text: &'a str,
-    /// Font size.
+    /// Font size in pixels.
     pub size: f64,
-    /// What the position means.
+    /// The point of the text that is at its position.
     pub anchor: Anchor,
-    /// Their colour.
+    /// Colour of the text.
     pub colour: &'a str,
-    /// Whether they run upwards.
+    /// Whether the text runs upwards.
     pub upwards: bool,
 }
 
 impl<'a> Words<'a> {
-    /// Words of the usual colour and direction.
+    /// A text of the usual colour and direction.
+    #[must_use]
     pub fn new(text: &'a str, size: f64, anchor: Anchor) -> Self {
         Self { text, size, anchor, colour: INK, upwards: false }
     }
 }
 
 impl Svg {
-    /// An empty picture, with the title that assistive programs and browsers show.
+    /// An empty picture. Browsers and assistive programs show its title.
+    #[must_use]
     pub fn new(width: f64, height: f64, title: &str) -> Self {
         Self { width, height, title: markup::escaped(&markup::plain(title)), body: String::new() }
     }
 
-    /// Its width.
+    /// The width of the picture.
+    #[must_use]
     pub fn width(&self) -> f64 {
         self.width
     }
 
-    /// The whole document.
+    /// The picture as an SVG document.
+    #[must_use]
     pub fn document(&self) -> String {
         let Self { width, height, title, body } = self;
         // Some viewers drop blanks at the ends of lowered and raised words unless told to preserve
@@ -75,23 +81,23 @@ impl Svg {
         )
     }
 
-    /// What follows belongs to the group `class`, until [`Self::end_group`].
+    /// Begins a group of a class, which lasts until [`Self::end_group`].
     pub fn begin_group(&mut self, class: &str) {
         self.element(format_args!(r#"<g class="{class}">"#));
     }
 
-    /// Ends the group begun last.
+    /// Ends the last group that was begun.
     pub fn end_group(&mut self) {
         self.element(format_args!("</g>"));
     }
 
-    /// Of what follows only the part inside of a rectangle is shown, until [`Self::end_inside`].
+    /// Shows only the part inside a rectangle of what is added until [`Self::end_inside`].
     pub fn begin_inside(&mut self, at: Rectangle) {
         let [x, y, width, height] = [at.left, at.top, at.width, at.height].map(Px);
         // Unlike a clip path it needs no name, which would have to be unique on a page of pictures.
         self.element(format_args!(
             r#"<svg {} viewBox="{x} {y} {width} {height}" overflow="hidden">"#,
-            Place(at)
+            Sides(at)
         ));
     }
 
@@ -100,35 +106,35 @@ impl Svg {
         self.element(format_args!("</svg>"));
     }
 
-    /// A filled rectangle.
+    /// Adds a filled rectangle.
     pub fn fill(&mut self, at: Rectangle, colour: &str) {
-        self.element(format_args!(r#"<rect {} fill="{colour}"/>"#, Place(at)));
+        self.element(format_args!(r#"<rect {} fill="{colour}"/>"#, Sides(at)));
     }
 
-    /// The edge of a rectangle.
+    /// Adds the edge of a rectangle.
     pub fn outline(&mut self, at: Rectangle, stroke: Stroke) {
-        self.element(format_args!(r#"<rect {} fill="none" {stroke}/>"#, Place(at)));
+        self.element(format_args!(r#"<rect {} fill="none" {stroke}/>"#, Sides(at)));
     }
 
-    /// A filled circle.
+    /// Adds a filled circle.
     pub fn disc(&mut self, centre: (f64, f64), radius: f64, colour: &str) {
         let [x, y, r] = [centre.0, centre.1, radius].map(Px);
         self.element(format_args!(r#"<circle cx="{x}" cy="{y}" r="{r}" fill="{colour}"/>"#));
     }
 
-    /// A circle.
+    /// Adds a circle filled with white.
     pub fn ring(&mut self, centre: (f64, f64), radius: f64, stroke: Stroke) {
         let [x, y, r] = [centre.0, centre.1, radius].map(Px);
         self.element(format_args!(r#"<circle cx="{x}" cy="{y}" r="{r}" fill="white" {stroke}/>"#));
     }
 
-    /// A straight line.
+    /// Adds a straight line.
     pub fn line(&mut self, (x1, y1): (f64, f64), (x2, y2): (f64, f64), stroke: Stroke) {
         let [x1, y1, x2, y2] = [x1, y1, x2, y2].map(Px);
         self.element(format_args!(r#"<line x1="{x1}" y1="{y1}" x2="{x2}" y2="{y2}" {stroke}/>"#));
     }
 
-    /// A line through points; points that cannot be told apart are left out.
+    /// Adds a line through points. Points too close to be told apart are left out.
     pub fn polyline(&mut self, points: impl IntoIterator<Item = (f64, f64)>, stroke: Stroke) {
         /// No eye and no usual magnification tells points apart that are closer.
         const APART: f64 = 0.1;
@@ -154,7 +160,7 @@ impl Svg {
         ));
     }
 
-    /// A filled polygon.
+    /// Adds a filled polygon.
     pub fn area(&mut self, corners: impl IntoIterator<Item = (f64, f64)>, colour: &str) {
         let corners: Vec<String> =
             corners.into_iter().map(|(x, y)| format!("{},{}", Px(x), Px(y))).collect();
@@ -162,16 +168,16 @@ impl Svg {
         self.element(format_args!(r#"<polygon points="{list}" fill="{colour}"/>"#));
     }
 
-    /// An image of which every pixel becomes a sharp rectangle; `png` is its file in base 64.
+    /// Adds an image, each pixel of which becomes a sharp rectangle. `png` is its file in base 64.
     pub fn image(&mut self, at: Rectangle, png: &str) {
         // The attribute is for viewers that do not know the newer word in the style.
         self.element(format_args!(
             r#"<image {} preserveAspectRatio="none" image-rendering="optimizeSpeed" style="image-rendering:pixelated" href="data:image/png;base64,{png}"/>"#,
-            Place(at)
+            Sides(at)
         ));
     }
 
-    /// Words on a line, at the middle of their height.
+    /// Adds a text; its position is at the middle of its height.
     pub fn words(&mut self, (x, y): (f64, f64), words: Words<'_>) {
         let Words { text, size, anchor, colour, upwards } = words;
         let anchor = match anchor {
@@ -200,10 +206,10 @@ impl Svg {
     }
 }
 
-/// A rectangle as attributes.
-struct Place(Rectangle);
+/// The attributes of a rectangle.
+struct Sides(Rectangle);
 
-impl Display for Place {
+impl Display for Sides {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [x, y, width, height] = [self.0.left, self.0.top, self.0.width, self.0.height].map(Px);
         f.write_fmt(format_args!(r#"x="{x}" y="{y}" width="{width}" height="{height}""#))

@@ -1,86 +1,92 @@
-//! Curves and points against two axes, with a legend: the picture of a study.
+//! Charts: curves and points against two axes, with a legend.
 
 use crate::canvas::panel::{Edge, Panel, Scale};
 use crate::canvas::shape::{Rectangle, Stroke};
 use crate::canvas::style::{SMALL, TITLE};
 use crate::canvas::svg::{Anchor, Svg, Words};
 
-/// A picture of some series.
+/// A chart of some series.
 #[derive(Clone, Debug)]
 pub struct Chart<'a> {
-    /// What holds for all of it.
+    /// The title of the chart.
     pub title: &'a str,
     /// The lower axis.
     pub x: ChartAxis<'a>,
     /// The left axis.
     pub y: ChartAxis<'a>,
-    /// What is drawn, in the order of the legend; what comes later lies on top.
+    /// The series, in the order of the legend. Later ones lie on top.
     pub series: Vec<Series>,
 }
 
-/// An axis.
+/// An axis of a chart.
 #[derive(Clone, Copy, Debug)]
 pub struct ChartAxis<'a> {
-    /// Its name, with the unit.
+    /// The name of the axis, with the unit.
     pub name: &'a str,
-    /// From where to where.
+    /// The values at the ends of the axis.
     pub range: (f64, f64),
     /// How values lie along it.
     pub scale: Scale,
 }
 
-/// Points that belong together; those outside the axes or without a value are left out.
+/// Points that belong together. Points outside the axes or without a value are not drawn.
 #[derive(Clone, Debug)]
 pub struct Series {
-    /// Its name in the legend; without one it is not there.
+    /// The name in the legend. A series without a name, or without a visible point, is not in the
+    /// legend.
     pub name: String,
-    /// Its points.
+    /// The points.
     pub points: Vec<(f64, f64)>,
-    /// The line through them, if there is one.
+    /// The line through the points, if there is one.
     pub line: Option<Stroke>,
-    /// What marks each of them, if something does.
+    /// The mark of each point, if there is one.
     pub mark: Option<Mark>,
 }
 
-/// What marks a point.
+/// The mark of a point.
 #[derive(Clone, Copy, Debug)]
 pub struct Mark {
-    /// Its shape.
+    /// Shape of the mark.
     pub shape: Shape,
-    /// Its colour.
+    /// Colour of the mark.
     pub colour: &'static str,
 }
 
-/// Shapes that can be told apart without their colour.
+/// Shapes of marks, which can be told apart without their colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
-    /// ●
+    /// A filled circle ●.
     Disc,
-    /// ○
+    /// A circle ○.
     Ring,
-    /// ■
+    /// A filled square ■.
     Square,
-    /// ×
+    /// A cross ×.
     Cross,
 }
 
 const WIDTH: f64 = 900.0;
-const TOP: f64 = 40.0;
+const TOP: f64 = 44.0;
 const LEFT: f64 = 84.0;
 const LINE: f64 = 18.0;
 const COLUMN: f64 = 400.0;
 const FRAME_HEIGHT: f64 = 440.0;
+/// Half the size of a mark.
 const SIZE: f64 = 3.5;
 
 /// Draws `chart`.
+#[must_use]
 pub fn draw(chart: &Chart<'_>) -> Svg {
-    let named = || chart.series.iter().filter(|series| !series.name.is_empty());
+    let (x, y) = (&chart.x, &chart.y);
+    let named = || {
+        let named = chart.series.iter().filter(|series| !series.name.is_empty());
+        named.filter(|series| series.is_visible(x.range, y.range))
+    };
     let lines = named().count().div_ceil(2) as f64;
     let top = TOP + LINE * lines + 10.0;
     let mut svg = Svg::new(WIDTH, top + FRAME_HEIGHT + 56.0, chart.title);
     svg.words((LEFT, 22.0), Words::new(chart.title, TITLE, Anchor::Start));
     let frame = Rectangle { left: LEFT, top, width: WIDTH - LEFT - 20.0, height: FRAME_HEIGHT };
-    let (x, y) = (&chart.x, &chart.y);
     let panel = Panel { frame, x: x.range, y: y.range, scales: (x.scale, y.scale) };
     for (index, series) in named().enumerate() {
         let left = LEFT + COLUMN * (index % 2) as f64;
@@ -100,25 +106,37 @@ pub fn draw(chart: &Chart<'_>) -> Svg {
     svg
 }
 
-/// Whether `value` lies on `axis`.
-fn on(axis: (f64, f64), value: f64) -> bool {
-    (axis.0..=axis.1).contains(&value)
+impl Series {
+    /// Whether something of the series is inside the axes.
+    fn is_visible(&self, x: (f64, f64), y: (f64, f64)) -> bool {
+        let lines = self.line.is_some() && self.runs(x, y).any(|run| run.len() > 1);
+        let marks = self.mark.is_some() && self.runs(x, y).any(|run| !run.is_empty());
+        lines || marks
+    }
+
+    /// The longest pieces of the series that lie inside the axes.
+    fn runs(&self, x: (f64, f64), y: (f64, f64)) -> impl Iterator<Item = &[(f64, f64)]> {
+        let on = |(low, high): (f64, f64), value: f64| (low..=high).contains(&value);
+        self.points.split(move |point| !(on(x, point.0) && on(y, point.1)))
+    }
 }
 
+/// Draws the lines and marks of a series.
 fn curves(svg: &mut Svg, panel: &Panel, series: &Series) {
-    let visible = |&(x, y): &(f64, f64)| on(panel.x, x) && on(panel.y, y);
+    let runs = || series.runs(panel.x, panel.y);
     if let Some(stroke) = series.line {
-        for run in series.points.split(|point| !visible(point)).filter(|run| run.len() > 1) {
+        for run in runs().filter(|run| run.len() > 1) {
             panel.curve(svg, run.iter().copied(), stroke);
         }
     }
     if let Some(mark) = series.mark {
-        for &point in series.points.iter().filter(|point| visible(point)) {
+        for &point in runs().flatten() {
             mark.draw(svg, panel.place(point));
         }
     }
 }
 
+/// Draws an entry of the legend.
 fn legend(svg: &mut Svg, (left, y): (f64, f64), series: &Series) {
     if let Some(stroke) = series.line {
         svg.line((left, y), (left + 30.0, y), stroke);
@@ -130,7 +148,7 @@ fn legend(svg: &mut Svg, (left, y): (f64, f64), series: &Series) {
 }
 
 impl Mark {
-    /// Draws it at a place in the picture.
+    /// Draws the mark at a place in the picture.
     fn draw(self, svg: &mut Svg, (x, y): (f64, f64)) {
         let stroke = Stroke::full(self.colour, 1.6);
         match self.shape {

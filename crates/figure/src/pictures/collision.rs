@@ -9,14 +9,13 @@ use crate::canvas::shape::Rectangle;
 use crate::canvas::style::TITLE;
 use crate::canvas::svg::{Anchor, Svg, Words};
 
-/// Pixels from the start of contact to its end, about.
+/// About the number of pixels from the start of contact to its end.
 pub const PANEL_WIDTH: f64 = 664.0;
 
 const WIDTH: f64 = 760.0;
 const HEIGHT: f64 = 560.0;
 const FORCES: Rectangle = Rectangle { left: 80.0, top: 70.0, width: PANEL_WIDTH, height: 270.0 };
 const VELOCITY: Rectangle = Rectangle { top: 352.0, height: 156.0, ..FORCES };
-/// Where the title and the legend are.
 const TITLE_AT: (f64, f64) = (80.0, 22.0);
 const LEGEND_AT: (f64, f64) = (80.0, 50.0);
 
@@ -26,13 +25,14 @@ pub const FORCE: &str = "force in units of m β^{2/5} g_n^{6/5}";
 pub const TIME: &str = "time t in units of β^{−2/5} g_n^{−1/5}";
 
 /// Draws `collision`, whose course is `history`.
+#[must_use]
 pub fn draw(collision: &Collision, history: &History) -> Svg {
     let title = title(collision);
     let mut svg = Svg::new(WIDTH, HEIGHT, &title);
     svg.words(TITLE_AT, Words::new(&title, TITLE, Anchor::Start));
-    course::legend(&mut svg, LEGEND_AT, "F_t/μ, w");
-
     let course = Course::new(collision, history, FORCES.width);
+    course::legend(&mut svg, LEGEND_AT, std::slice::from_ref(&course), "F_t/μ, w");
+
     let forces = course.forces(&mut svg, FORCES, course.largest_force());
     forces.ticks(&mut svg, Edge::Left, true);
     forces.ticks(&mut svg, Edge::Bottom, false);
@@ -46,6 +46,7 @@ pub fn draw(collision: &Collision, history: &History) -> Svg {
     svg
 }
 
+/// The parameters and results of a collision in a line.
 fn title(collision: &Collision) -> String {
     let contact = &collision.contact;
     let [kappa, psi, damping] =

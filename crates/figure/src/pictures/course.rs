@@ -4,16 +4,19 @@ use std::f64::consts::TAU;
 
 use stickslip_model::{Collision, History, PhaseHistory, Regime, Side, Snapshot};
 
+use crate::canvas::Legend;
 use crate::canvas::panel::{LINEAR, Panel};
 use crate::canvas::shape::Rectangle;
 use crate::canvas::style::{
-    FRAME, NORMAL, NORMAL_MIRRORED, RULE, SLIP_NEGATIVE, SLIP_POSITIVE, STICK, TANGENTIAL, TEXT,
+    FRAME, NORMAL, NORMAL_MIRRORED, RULE, SLIP_NEGATIVE, SLIP_POSITIVE, STICK, TANGENTIAL,
 };
-use crate::canvas::svg::{Anchor, Svg, Words};
+use crate::canvas::svg::Svg;
 
 /// Length of the mark of a switch.
 const MARK: f64 = 9.0;
-/// Most moments of a phase that are drawn.
+/// Width of a key in the legend.
+const KEY: f64 = 24.0;
+/// The largest number of moments of a phase that are drawn.
 const MOST_SAMPLES: f64 = 20_000.0;
 
 /// A collision at the moments that are drawn.
@@ -24,24 +27,28 @@ pub struct Course<'a> {
 }
 
 impl<'a> Course<'a> {
-    /// The course `history` of `collision`, for a panel of so many pixels.
+    /// The course `history` of `collision`, for a panel `width` pixels wide.
+    #[must_use]
     pub fn new(collision: &Collision, history: &'a History, width: f64) -> Self {
         let phases = history.phases();
         let samples = phases.flat_map(|phase| samples(collision, history, phase, width)).collect();
         Self { history, samples }
     }
 
-    /// Its moments; at a switch there are two.
+    /// The moments that are drawn; at a switch there are two.
+    #[must_use]
     pub fn samples(&self) -> &[Snapshot] {
         &self.samples
     }
 
     /// The largest normal force.
+    #[must_use]
     pub fn largest_force(&self) -> f64 {
         self.samples.iter().fold(0.0_f64, |most, sample| most.max(sample.normal_force))
     }
 
-    /// Draws the forces into `frame`, with `largest` near its upper and lower edges.
+    /// Draws the forces into `frame`. A force of `largest` is near its upper edge, and of −`largest`
+    /// near its lower one.
     pub fn forces(&self, svg: &mut Svg, frame: Rectangle, largest: f64) -> Panel {
         let panel = self.panel(svg, frame, (-largest, largest));
         panel.curve(svg, self.curve(|sample| sample.normal_force), NORMAL);
@@ -51,7 +58,7 @@ impl<'a> Course<'a> {
         panel
     }
 
-    /// Draws the velocity into `frame`.
+    /// Draws the tangential velocity into `frame`.
     pub fn velocity(&self, svg: &mut Svg, frame: Rectangle) -> Panel {
         let range = self.samples.iter().fold((0.0_f64, 0.0_f64), |(low, high), sample| {
             (low.min(sample.velocity), high.max(sample.velocity))
@@ -66,7 +73,7 @@ impl<'a> Course<'a> {
         self.samples.iter().map(move |sample| (sample.time, of(sample)))
     }
 
-    /// Phases, switches and the line of zero.
+    /// Draws the phases, the switches and the line of zero.
     fn panel(&self, svg: &mut Svg, frame: Rectangle, range: (f64, f64)) -> Panel {
         let duration = self.history.duration();
         let time = (-0.012 * duration, 1.012 * duration);
@@ -92,8 +99,8 @@ impl<'a> Course<'a> {
     }
 }
 
-/// Enough moments of a phase for a smooth line, its ends among them: one a pixel, and 25 to each
-/// swing of the spring.
+/// Enough moments of a phase for a smooth line, from its begin to its end: at least one per pixel,
+/// and 25 per swing of the spring.
 fn samples(
     collision: &Collision,
     history: &History,
@@ -112,36 +119,44 @@ fn samples(
     phase.samples(12 + intervals).collect()
 }
 
+/// The range with a margin on both sides.
 fn padded((low, high): (f64, f64)) -> (f64, f64) {
     let pad = 0.06 * (high - low);
     (low - pad, high + pad)
 }
 
-/// What colours and lines mean, beside each other from a place on; `tangential` is what the
-/// tangential lines are.
-pub fn legend(svg: &mut Svg, (mut left, y): (f64, f64), tangential: &str) {
-    let mut entry = |svg: &mut Svg, text: &str, width: f64, key: &dyn Fn(&mut Svg, Rectangle)| {
-        key(svg, Rectangle { left, top: y - 6.0, width: 24.0, height: 12.0 });
-        svg.words((left + 30.0, y), Words::new(text, TEXT, Anchor::Start));
-        left += width;
-    };
-    for (text, colour) in [("slip +", SLIP_POSITIVE), ("stick", STICK), ("slip −", SLIP_NEGATIVE)]
-    {
-        entry(svg, text, 90.0, &|svg, at| {
-            svg.fill(at, colour);
-            svg.outline(at, RULE);
+/// Draws the legend of `courses` at a place; `tangential` names the tangential lines.
+///
+/// It names the phases that occur, and switches if there are any.
+pub fn legend(svg: &mut Svg, at: (f64, f64), courses: &[Course<'_>], tangential: &str) {
+    let mut legend = Legend::new(at);
+    let phases = || courses.iter().flat_map(|course| course.history.phases());
+    for (text, regime, side, colour) in [
+        ("slip +", Regime::Slip, Some(Side::Positive), SLIP_POSITIVE),
+        ("stick", Regime::Stick, None, STICK),
+        ("slip −", Regime::Slip, Some(Side::Negative), SLIP_NEGATIVE),
+    ] {
+        let is_shown = |phase: PhaseHistory<'_>| {
+            phase.regime() == regime && side.is_none_or(|side| phase.side() == side)
+        };
+        if phases().any(is_shown) {
+            legend.entry(svg, KEY, text, |svg, key| {
+                svg.fill(key, colour);
+                svg.outline(key, RULE);
+            });
+        }
+    }
+    if courses.iter().any(|course| course.history.phases().count() > 1) {
+        legend.entry(svg, KEY, "switch", |svg, key| {
+            let x = key.left + 0.5 * key.width;
+            let y = key.top + 0.5 * key.height;
+            svg.line((x, y - 0.5 * MARK), (x, y + 0.5 * MARK), FRAME);
         });
     }
-    entry(svg, "switch", 92.0, &|svg, at| {
-        let x = at.left + 0.5 * at.width;
-        svg.line((x, at.top), (x, at.top + MARK), FRAME);
-    });
-    for (text, width, stroke) in
-        [("±F_n, limits of F_t/μ", 188.0, NORMAL), (tangential, 0.0, TANGENTIAL)]
-    {
-        entry(svg, text, width, &|svg, at| {
-            let y = at.top + 0.5 * at.height;
-            svg.line((at.left, y), (at.right(), y), stroke);
+    for (text, stroke) in [("F_n", NORMAL), ("−F_n", NORMAL_MIRRORED), (tangential, TANGENTIAL)] {
+        legend.entry(svg, KEY, text, |svg, key| {
+            let y = key.top + 0.5 * key.height;
+            svg.line((key.left, y), (key.right(), y), stroke);
         });
     }
 }

@@ -9,20 +9,20 @@ use crate::canvas::shape::Rectangle;
 use crate::canvas::style::{SMALL, TEXT, TITLE};
 use crate::canvas::svg::{Anchor, Svg, Words};
 
-/// A collision with what stands above its panel.
+/// A collision with the texts above its panel.
 #[derive(Clone, Debug)]
 pub struct Exhibit {
-    /// To the left.
+    /// The text to the left.
     pub name: String,
-    /// To the right.
+    /// The text to the right.
     pub remark: String,
     /// The collision.
     pub collision: Collision,
-    /// Its course.
+    /// The course of the collision.
     pub history: History,
 }
 
-/// Pixels from the start of contact to its end, about.
+/// About the number of pixels from the start of contact to its end.
 pub const PANEL_WIDTH: f64 = 224.0;
 
 const COLUMNS: usize = 4;
@@ -34,15 +34,16 @@ const TITLE_AT: (f64, f64) = (72.0, 22.0);
 const LEGEND_AT: (f64, f64) = (72.0, 50.0);
 
 /// Draws `exhibits` row by row; all panels have the same axes.
+#[must_use]
 pub fn draw(title: &str, exhibits: &[Exhibit]) -> Svg {
     let rows = exhibits.len().div_ceil(COLUMNS) as f64;
     let mut svg = Svg::new(WIDTH, FIRST.top + STEP.1 * rows + 16.0, title);
     svg.words(TITLE_AT, Words::new(title, TITLE, Anchor::Start));
-    course::legend(&mut svg, LEGEND_AT, "F_t/μ");
     let courses: Vec<Course<'_>> = exhibits
         .iter()
         .map(|exhibit| Course::new(&exhibit.collision, &exhibit.history, FIRST.width))
         .collect();
+    course::legend(&mut svg, LEGEND_AT, &courses, "F_t/μ");
     let largest = courses.iter().map(Course::largest_force).fold(0.0, f64::max);
     for (index, (exhibit, course)) in exhibits.iter().zip(&courses).enumerate() {
         let (column, row) = (index % COLUMNS, index / COLUMNS);

@@ -8,11 +8,13 @@ use crate::canvas::number::number;
 use crate::canvas::svg::Svg;
 use crate::error::FigureError;
 
-/// Draws the map of `grid`, of which `results` shows (columns, rows) pixels, row by row from the
-/// lower edge; all cells, or fewer of a large map.
+/// Draws the map of `grid`.
+///
+/// `results` has `size.0` columns and `size.1` rows, row by row from the lower edge: all cells of the
+/// grid, or fewer of a large one.
 ///
 /// # Errors
-/// [`FigureError`]: there are no pixels, or too many.
+/// [`FigureError`]: `results` has no values, too many, or not as many as `size` says.
 pub fn draw(grid: &Grid, size: (usize, usize), results: &Tile) -> Result<Svg, FigureError> {
     let cells = format!("{} × {} collisions", grid.columns.cells, grid.rows.cells);
     let title = std::iter::once(cells)
@@ -32,7 +34,8 @@ pub fn draw(grid: &Grid, size: (usize, usize), results: &Tile) -> Result<Svg, Fi
     )
 }
 
-/// `values`, given in so many columns and rows of the grid, as a panel of a picture.
+/// A panel with `values` in so many columns and rows over the window of `grid`.
+#[must_use]
 pub fn panel<'a>(
     grid: &Grid,
     heading: &'a str,
@@ -53,7 +56,7 @@ pub fn panel<'a>(
     }
 }
 
-/// What all collisions have in common, with symbols and units.
+/// The symbols, with units, and values of the parameters that all collisions have in common.
 fn parameters(grid: &Grid) -> Vec<(&'static str, f64)> {
     match grid.coordinates {
         Coordinates::Psi { damping } => vec![("a", damping)],
@@ -69,7 +72,7 @@ fn parameters(grid: &Grid) -> Vec<(&'static str, f64)> {
     }
 }
 
-/// The name of an axis.
+/// The name of the axis of a quantity.
 fn name(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Kappa => "scaled stiffness κ",

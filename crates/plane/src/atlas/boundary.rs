@@ -8,7 +8,7 @@ use stickslip_solver::{Margin, Place};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
-pub enum Kind {
+pub enum BoundaryKind {
     /// A switch falls on the end of contact.
     EndOfContact,
     /// While sticking, the force touches its limit.
@@ -17,7 +17,7 @@ pub enum Kind {
     SlipGraze,
 }
 
-impl Kind {
+impl BoundaryKind {
     /// The kind of a boundary on which `margin` vanishes.
     #[must_use]
     pub fn of(contact: &Contact, margin: &Margin) -> Self {
@@ -30,8 +30,8 @@ impl Kind {
     }
 }
 
-/// One character a phase, for the guards that fired.
-pub fn itinerary(contact: &Contact, guards: &[usize]) -> String {
+/// The itinerary of a collision in which `guards` fired: one character per phase.
+pub(super) fn itinerary(contact: &Contact, guards: &[usize]) -> String {
     let character = |phase: Phase| match (phase.regime, phase.side) {
         (Regime::Stick, _) => 'o',
         (Regime::Slip, Side::Positive) => '+',
@@ -40,6 +40,7 @@ pub fn itinerary(contact: &Contact, guards: &[usize]) -> String {
     phases(contact, guards.iter().copied()).map(character).collect()
 }
 
+/// The first phase of a collision, and the phase after each guard that fired.
 fn phases(contact: &Contact, guards: impl Iterator<Item = usize>) -> impl Iterator<Item = Phase> {
     let first = Phase::first(contact);
     let later = guards.scan(first, |phase, guard| {

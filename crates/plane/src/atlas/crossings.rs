@@ -5,7 +5,7 @@ use stickslip_tracer::Cubic;
 use super::regions::Atlas;
 
 impl Atlas {
-    /// ψ of all boundaries at `kappa`, in ascending order, as accurate as the boundaries.
+    /// ψ of all boundaries at `kappa`, in ascending order. They are as accurate as the boundaries.
     #[must_use]
     pub fn boundaries_at(&self, kappa: f64) -> Vec<f64> {
         let x = kappa.ln();
@@ -27,7 +27,7 @@ impl Atlas {
     }
 }
 
-/// Where `right` changes between `from` and `to`, to the last bits.
+/// The place between `from` and `to` at which `right` changes, by bisection to the last bit.
 fn crossing(mut from: f64, mut to: f64, right: impl Fn(f64) -> bool) -> f64 {
     let at_start = right(from);
     loop {

@@ -1,7 +1,7 @@
-//! The window of an atlas, and the coordinates in which it is traced.
+//! The window of an atlas, and the accuracy that boundaries can have in it.
 
 use stickslip_model::{InvalidParameter, Reduction};
-use stickslip_tracer::{Point, Window};
+use stickslip_tracer::Window;
 
 use crate::family::CollisionPlane;
 use crate::range::Range;
@@ -13,7 +13,7 @@ pub struct Frame {
     pub kappa: Range,
     /// Reduced impact ratio ψ; the lower end is above 0.
     pub psi: Range,
-    /// The impact ratios from which ψ was reduced, if it was.
+    /// The impact ratios from which ψ was reduced, if the window was given in impact ratios.
     pub ratio: Option<RatioRange>,
     /// Scaled damping.
     pub damping: f64,
@@ -22,15 +22,15 @@ pub struct Frame {
 /// An interval of impact ratios.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RatioRange {
-    /// g_t/g_n.
+    /// The interval of g_t/g_n.
     pub range: Range,
-    /// Friction and inertia, which reduce it to ψ.
+    /// Friction and inertia, which reduce the ratio to ψ.
     pub reduction: Reduction,
 }
 
-/// Accuracies of boundaries in ψ that are possible in a window.
+/// The accuracies in ψ that boundaries can have in a window.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tolerances {
+pub struct ToleranceRange {
     /// The finest: margins are known to some 1e-13.
     pub finest: f64,
     /// The usual one.
@@ -46,64 +46,52 @@ pub struct Tolerances {
      {NARROWEST} each"
 )]
 pub struct TooNarrow {
-    /// Its width in ln κ.
+    /// The width of the window in ln κ.
     pub width: f64,
-    /// Its height in ln(1 + ψ).
+    /// The height of the window in ln(1 + ψ).
     pub height: f64,
 }
 
 /// The least width and height of a window in traced coordinates.
 const NARROWEST: f64 = 0.01;
 
-/// The coordinates (ln κ, ln(1 + ψ)), in which boundaries bend evenly.
-#[must_use]
-pub fn traced([kappa, psi]: [f64; 2]) -> Point {
-    CollisionPlane::point(kappa, psi)
-}
-
-/// κ and ψ of a traced point.
-#[must_use]
-pub fn scaled(point: &Point) -> [f64; 2] {
-    CollisionPlane::parameters(point)
-}
-
 impl Frame {
-    /// The window in traced coordinates.
+    /// The window in the traced coordinates of [`CollisionPlane`].
     #[must_use]
     pub fn window(&self) -> Window {
         Window {
-            low: traced([self.kappa.low, self.psi.low]),
-            high: traced([self.kappa.high, self.psi.high]),
+            low: CollisionPlane::point(self.kappa.low, self.psi.low),
+            high: CollisionPlane::point(self.kappa.high, self.psi.high),
         }
     }
 
-    /// Distance from its boundary, in traced coordinates, of a curve that is accurate to
+    /// The distance in traced coordinates between a boundary and a curve that is accurate to
     /// `tolerance` in ψ.
     #[must_use]
     pub fn interpolation(&self, tolerance: f64) -> f64 {
         tolerance / (1.0 + self.psi.high)
     }
 
-    /// Distance within which the side of a curve is left open: ten times its error, and where
-    /// vertices are known less well.
+    /// The distance from a curve within which the side of a point is left open. It is ten times the
+    /// curve's error, and at least 1e-9, since vertices are known less well.
     #[must_use]
     pub fn resolution(&self, tolerance: f64) -> f64 {
         (10.0 * self.interpolation(tolerance)).max(1e-9)
     }
 
-    /// The accuracies in ψ that boundaries may have.
+    /// The accuracies in ψ that boundaries can have.
     #[must_use]
-    pub fn tolerances(&self) -> Tolerances {
+    pub fn tolerances(&self) -> ToleranceRange {
         let shorter = self.window().extent().min().min(1.0);
         let [finest, usual, coarsest] = [1e-11, (1e-10 * shorter).max(1e-11), 1e-9 * shorter]
             .map(|part| part * (1.0 + self.psi.high));
-        Tolerances { finest, usual, coarsest }
+        ToleranceRange { finest, usual, coarsest }
     }
 
     /// Refuses a window that is too narrow for the accuracy of its boundaries.
     ///
     /// # Errors
-    /// [`TooNarrow`] has its size.
+    /// [`TooNarrow`] has the size of the window.
     pub fn require_wide(&self) -> Result<(), TooNarrow> {
         let extent = self.window().extent();
         if extent.min() >= NARROWEST {
@@ -112,7 +100,7 @@ impl Frame {
         Err(TooNarrow { width: extent.x, height: extent.y })
     }
 
-    /// (κ, ψ), moved onto an edge of the window where it differs from it by rounding alone.
+    /// (κ, ψ), moved onto an edge of the window if it differs from the edge by rounding alone.
     #[must_use]
     pub fn snapped(&self, [kappa, psi]: [f64; 2]) -> [f64; 2] {
         let snap = |value: f64, Range { low, high }: Range| {
@@ -125,7 +113,7 @@ impl Frame {
     /// The collisions in the window.
     ///
     /// # Errors
-    /// No collision has these values.
+    /// [`InvalidParameter`]: no collision has these values.
     pub fn plane(&self) -> Result<CollisionPlane, InvalidParameter> {
         let Self { kappa, psi, damping, .. } = *self;
         CollisionPlane::new((kappa.low, kappa.high), (psi.low, psi.high), damping)

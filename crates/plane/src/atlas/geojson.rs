@@ -5,19 +5,20 @@ use serde_json::json;
 use stickslip_tracer::{Side, Stretch};
 
 use super::document::Document;
-use super::frame::scaled;
-use super::polyline::polyline;
 use super::regions::Regions;
-use super::traced::VerifiedAtlas;
+use super::tracing::VerifiedAtlas;
+use crate::family::CollisionPlane;
 
+/// A closed line of points (κ, ψ), or a piece of one.
 type Ring = Vec<[f64; 2]>;
 
-/// The regions, boundaries and vertices of an atlas, in this order, with coordinates (κ, ψ).
+/// An atlas as GeoJSON: its regions, its boundaries and its vertices, in this order.
+///
+/// The coordinates are (κ, ψ).
 #[must_use]
 pub fn geojson(verified: &VerifiedAtlas) -> FeatureCollection {
-    let (map, document) = (&verified.atlas.regions, Document::new(verified));
-    let extent = map.window().extent();
-    let lines: Vec<Ring> = map.curves().iter().map(|curve| polyline(curve, &extent)).collect();
+    let (atlas, document) = (&verified.atlas, Document::new(verified));
+    let lines = atlas.polylines();
     let regions = document.regions.iter().map(|region| {
         let properties = json!({
             "feature": "region",
@@ -26,7 +27,7 @@ pub fn geojson(verified: &VerifiedAtlas) -> FeatureCollection {
             "itinerary": region.switching.itinerary,
             "area_share": region.area_share,
         });
-        feature(polygons(map, &lines, region.id), properties)
+        feature(polygons(&atlas.regions, &lines, region.id), properties)
     });
     let boundaries = document.boundaries.iter().zip(&lines).map(|(boundary, line)| {
         let properties = json!({
@@ -55,9 +56,9 @@ fn feature(geometry: Geometry, properties: serde_json::Value) -> Feature {
     Feature { geometry: Some(geometry), properties: Some(properties), ..Feature::default() }
 }
 
-/// A region as one polygon with holes, or as several that touch at vertices.
-fn polygons(map: &Regions, lines: &[Ring], region: usize) -> Geometry {
-    let rings = map.outlines(region).into_iter().map(|outline| ring(lines, &outline));
+/// A region as one polygon with holes, or as several polygons that touch at vertices.
+fn polygons(regions: &Regions, lines: &[Ring], region: usize) -> Geometry {
+    let rings = regions.outlines(region).into_iter().map(|outline| ring(lines, &outline));
     let (around, holes): (Vec<Ring>, Vec<Ring>) = rings.partition(|ring| area(ring) > 0.0);
     let single = around.len() == 1;
     let mut polygons: Vec<Vec<Ring>> = around.into_iter().map(|ring| vec![ring]).collect();
@@ -79,12 +80,12 @@ fn polygons(map: &Regions, lines: &[Ring], region: usize) -> Geometry {
 fn ring(lines: &[Ring], outline: &[Stretch]) -> Ring {
     let mut points = Ring::new();
     for stretch in outline {
-        // Each begins where the one before ended.
+        // Each stretch begins with the last point of the one before.
         points.pop();
         match *stretch {
             Stretch::Curve(curve, Side::Left) => points.extend(&lines[curve]),
             Stretch::Curve(curve, Side::Right) => points.extend(lines[curve].iter().rev()),
-            Stretch::Window(ends) => points.extend(ends.iter().map(scaled)),
+            Stretch::Window(ends) => points.extend(ends.iter().map(CollisionPlane::parameters)),
         }
     }
     points.pop();
@@ -92,7 +93,7 @@ fn ring(lines: &[Ring], outline: &[Stretch]) -> Ring {
     points
 }
 
-/// The area, positive if the ring runs counterclockwise.
+/// The area of a ring, positive if the ring runs counterclockwise.
 fn area(ring: &[[f64; 2]]) -> f64 {
     let origin = ring[0];
     let from_origin = |point: [f64; 2]| [point[0] - origin[0], point[1] - origin[1]];
@@ -103,7 +104,8 @@ fn area(ring: &[[f64; 2]]) -> f64 {
     ring.windows(2).map(triangle).sum()
 }
 
-/// Whether a ray to the right crosses the ring an odd number of times.
+/// Whether a point is inside a ring: a ray to the right then crosses the ring an odd number of
+/// times.
 fn contains(ring: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     let crosses = |pair: &&[[f64; 2]]| {
         let [[a, b], [c, d]] = [pair[0], pair[1]];

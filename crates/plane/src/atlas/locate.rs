@@ -3,22 +3,22 @@
 use stickslip_model::Contact;
 use stickslip_tracer::Location;
 
-use super::frame::traced;
 use super::regions::Atlas;
+use crate::family::CollisionPlane;
 
-/// Where a point lies.
+/// The place of a collision in an atlas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Located {
-    /// The region, or why it is not known.
+    /// The index of the region, or the reason why the region is not known.
     pub region: Result<usize, Unlocated>,
-    /// Distance in ψ to the nearest boundary at the same κ; none without such a boundary.
+    /// Distance in ψ to the nearest boundary at the same κ; `None` if there is no such boundary.
     pub distance: Option<f64>,
 }
 
 /// A point has no known region.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Unlocated {
-    /// It is so close to a boundary that the boundary's error leaves the side open.
+    /// The point is so close to a boundary that the boundary's error leaves the side open.
     #[error("kappa = {kappa:?}, psi = {psi:?} is on boundary {boundary} within its error")]
     OnBoundary {
         /// κ of the point.
@@ -28,7 +28,7 @@ pub enum Unlocated {
         /// The index of the boundary.
         boundary: usize,
     },
-    /// It is outside the window.
+    /// The point is outside the window.
     #[error(
         "kappa = {kappa:?}, psi = {psi:?} is outside the window of the atlas, kappa {:?} to {:?}, \
          psi {:?} to {:?}",
@@ -39,17 +39,18 @@ pub enum Unlocated {
         kappa: f64,
         /// ψ of the point.
         psi: f64,
-        /// The intervals of κ and of ψ that the atlas has.
+        /// The window of the atlas: the ends of κ, and the ends of ψ.
         window: [[f64; 2]; 2],
     },
 }
 
 impl Atlas {
-    /// Looks up a collision, whatever its damping, by its κ and ψ.
+    /// Looks up a collision by its κ and ψ. The damping of `contact` is not compared with that of
+    /// the atlas.
     #[must_use]
     pub fn locate(&self, contact: &Contact) -> Located {
         let (kappa, psi) = (contact.kappa(), contact.psi());
-        let point = traced([kappa, psi]);
+        let point = CollisionPlane::point(kappa, psi);
         let region = match self.regions.locate(&point) {
             Location::Region(region) => Ok(region),
             Location::OnBoundary { curve: boundary, .. } => {

@@ -1,26 +1,34 @@
 //! Boundaries as straight lines.
 
-use stickslip_tracer::{Cubic, Curve, Point};
+use stickslip_tracer::Cubic;
 
-use super::frame::scaled;
+use super::regions::Atlas;
+use crate::family::CollisionPlane;
 
-/// Most straight lines for the piece between two points.
+/// The largest number of straight lines between two points of a boundary.
 const MOST_LINES: f64 = 16.0;
-/// Straight lines for a piece as long as the window is high.
+/// The number of straight lines for a piece of a boundary as long as the window is high.
 const LINES: f64 = 60.0;
 
-/// Points (κ, ψ) of a curve, close enough for straight lines between them in a window of this
-/// extent.
-#[must_use]
-pub fn polyline<Label, Margin>(curve: &Curve<Label, Margin>, extent: &Point) -> Vec<[f64; 2]> {
-    let mut points = vec![scaled(&curve.nodes[0].point)];
-    for nodes in curve.nodes.windows(2) {
-        let cubic = Cubic::between(&nodes[0], &nodes[1]);
-        let length = (nodes[1].point - nodes[0].point).component_div(extent).norm();
-        let lines = (LINES * length).ceil().clamp(1.0, MOST_LINES);
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        let count = lines as u32;
-        points.extend((1..=count).map(|i| scaled(&cubic.at(f64::from(i) / lines))));
+impl Atlas {
+    /// The points (κ, ψ) of each boundary, in the order of the boundaries. They are so close that
+    /// straight lines between them look smooth in a picture of the window.
+    #[must_use]
+    pub fn polylines(&self) -> Vec<Vec<[f64; 2]>> {
+        let extent = self.regions.window().extent();
+        let polyline = |curve: &stickslip_tracer::Curve<_, _>| {
+            let mut points = vec![CollisionPlane::parameters(&curve.nodes[0].point)];
+            for nodes in curve.nodes.windows(2) {
+                let cubic = Cubic::between(&nodes[0], &nodes[1]);
+                let length = (nodes[1].point - nodes[0].point).component_div(&extent).norm();
+                let lines = (LINES * length).ceil().clamp(1.0, MOST_LINES);
+                #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+                let count = lines as u32;
+                let parts = (1..=count).map(|line| f64::from(line) / lines);
+                points.extend(parts.map(|part| CollisionPlane::parameters(&cubic.at(part))));
+            }
+            points
+        };
+        self.regions.curves().iter().map(polyline).collect()
     }
-    points
 }

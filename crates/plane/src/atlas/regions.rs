@@ -1,14 +1,14 @@
-//! The atlas itself.
+//! The atlas itself: a window, its boundaries, and the regions between them.
 
 use std::collections::BTreeMap;
 
 use stickslip_tracer::Subdivision;
 
-use super::boundary::Kind;
+use super::boundary::BoundaryKind;
 use super::frame::Frame;
 
 /// A window divided by its boundaries into regions, which are labelled by itineraries.
-pub type Regions = Subdivision<String, Kind>;
+pub type Regions = Subdivision<String, BoundaryKind>;
 
 /// Every boundary in a window, and the regions between them.
 #[derive(Clone, Debug)]
@@ -19,12 +19,15 @@ pub struct Atlas {
     pub tolerance: f64,
     /// Boundaries, vertices and regions.
     pub regions: Regions,
-    /// Itineraries of regions without a boundary, by index.
+    /// Itineraries of the regions that no boundary touches, by the index of the region.
     pub unbounded: BTreeMap<usize, String>,
 }
 
 impl Atlas {
-    /// The itinerary of a region: one character a phase, `+` and `-` for slip, `o` for stick.
+    /// The itinerary of a region: one character per phase, `+` and `-` for slip, `o` for stick.
+    ///
+    /// # Panics
+    /// If there is no region with this index.
     #[must_use]
     pub fn itinerary(&self, region: usize) -> &str {
         let own = self.regions.regions()[region].label.as_ref();
@@ -32,7 +35,11 @@ impl Atlas {
     }
 }
 
-/// The number of switches of an itinerary, which has a character for each phase.
+/// The number of switches of an itinerary, which has one character per phase.
+///
+/// ```
+/// assert_eq!(stickslip_plane::atlas::switch_count("+o-"), 2);
+/// ```
 #[must_use]
 pub fn switch_count(itinerary: &str) -> usize {
     itinerary.len().saturating_sub(1)

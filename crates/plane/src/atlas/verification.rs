@@ -1,4 +1,4 @@
-//! Collisions against an atlas, and what is said of it.
+//! The verification of an atlas: collisions are compared with its regions.
 
 use rayon::prelude::*;
 use stickslip_model::{Collider, CollisionError, InvalidParameter};
@@ -7,38 +7,39 @@ use stickslip_tracer::{
     verify_with,
 };
 
-use super::frame::{Frame, scaled};
+use super::frame::Frame;
 use super::regions::Atlas;
+use crate::family::CollisionPlane;
 
-/// What the verification of an atlas found, as it is written.
+/// What the verification of an atlas found, in the layout of the atlas file.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct VerificationReport {
     /// Whether nothing speaks against the atlas and nothing is unresolved.
     pub agrees: bool,
-    /// What computed the collisions.
+    /// The method that computed the collisions.
     pub method: String,
     /// The counts of Euler's formula.
     pub euler: EulerFields,
-    /// Random points of the window.
+    /// Number of random points in the window.
     pub random_points: usize,
-    /// Points on each side of each boundary.
+    /// Number of points on each side of each boundary.
     pub near_points: usize,
-    /// How many points were tried in all, a sample of each region among them.
+    /// Number of points that were tried in all, with a sample of each region among them.
     pub tried: usize,
-    /// Points within the error of a boundary, which may lie on either side.
+    /// Number of points within the error of a boundary, which may lie on either side.
     pub undecided: usize,
     /// Collisions that have other switches than their region.
     pub mismatches: Vec<MismatchFields>,
-    /// What the tracer saw and could not explain, and collisions that failed.
+    /// What the tracer saw and could not explain, and collisions that failed, in sentences.
     pub unresolved: Vec<String>,
-    /// What is inconsistent in the boundaries.
+    /// Contradictions between boundaries, in sentences.
     pub findings: Vec<String>,
-    /// Boundaries beside which no point could be tried on one side at least.
+    /// Boundaries that have a side on which no point could be tried.
     pub untried_boundaries: Vec<usize>,
-    /// Part of the window's area in regions that were tried without a mismatch.
+    /// The share of the window's area in regions that were tried and have no mismatch.
     pub share_tried: f64,
-    /// With 95 % confidence the part of the window that is wrong is below this.
+    /// With 95 % confidence, a smaller share of the window than this is wrong.
     pub share_wrong_bound: f64,
 }
 
@@ -50,7 +51,7 @@ pub struct EulerFields {
     pub vertices: usize,
     /// Number of edges.
     pub edges: usize,
-    /// Number of faces, the outside of the window not among them.
+    /// Number of faces inside the window.
     pub faces: usize,
     /// Number of connected components.
     pub components: usize,
@@ -62,26 +63,28 @@ pub struct EulerFields {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MismatchFields {
-    /// Its κ.
+    /// κ of the collision.
     pub kappa: f64,
-    /// Its ψ.
+    /// ψ of the collision.
     pub psi: f64,
-    /// The region that it lies in.
+    /// The region in which the collision lies.
     pub region: usize,
     /// The itinerary of that region.
     pub expected: String,
     /// The itinerary of the collision.
     pub found: String,
-    /// Whether the point was put beside a boundary, and not at random.
+    /// Whether the point was chosen beside a boundary, and not at random.
     pub near_boundary: bool,
 }
 
-/// Tries the regions of `atlas`, in parallel, at the points of a round; `unresolved` is what is
-/// known to be open. Also returns pairs of places between which a boundary is missing.
+/// Compares the regions of `atlas` with collisions at the points of a round, in parallel.
+///
+/// `unresolved` is what the tracer left open. Besides the report, the result has pairs of places
+/// between which a boundary is missing.
 ///
 /// # Errors
-/// The distances from boundaries are not in order, which is a defect.
-pub fn verify(
+/// [`VerifyError`]: the distances from boundaries are not in order, which is a defect.
+pub(super) fn verify(
     atlas: &Atlas,
     mut unresolved: Vec<String>,
     round: u64,
@@ -96,7 +99,7 @@ pub fn verify(
     })?;
     let mut undecided = 0;
     for open in &verification.unverified {
-        let [kappa, psi] = scaled(&open.checkpoint.point);
+        let [kappa, psi] = CollisionPlane::parameters(&open.checkpoint.point);
         let what = match &open.reason {
             Reason::Location(Location::OnBoundary { .. }) => {
                 undecided += 1;
@@ -112,7 +115,7 @@ pub fn verify(
     let agrees = verification.agrees() && unresolved.is_empty();
     let Verification { euler, mismatches, tried, untried_curves, .. } = verification;
     let mismatches = mismatches.into_iter().map(|mismatch| {
-        let [kappa, psi] = scaled(&mismatch.checkpoint.point);
+        let [kappa, psi] = CollisionPlane::parameters(&mismatch.checkpoint.point);
         MismatchFields {
             kappa,
             psi,
@@ -147,7 +150,7 @@ pub fn verify(
 }
 
 impl VerificationReport {
-    /// What speaks against the atlas, in a line.
+    /// A line that says what speaks against the atlas; `None` if nothing does.
     #[must_use]
     pub fn objection(&self) -> Option<String> {
         if self.agrees {
@@ -179,20 +182,22 @@ pub enum LabelError {
     Collision(#[from] CollisionError),
 }
 
-/// The switches of the collision at a traced point, by integration: without damping, integration
-/// shares nothing with the margins by which boundaries are traced.
+/// The itinerary of the collision at a traced point, by integration.
+///
+/// Without damping, boundaries are traced by the exact solution, with which integration has
+/// nothing in common.
 ///
 /// # Errors
-/// [`LabelError`] says why it cannot be computed.
-pub fn itinerary(frame: &Frame, point: &Point) -> Result<String, LabelError> {
+/// [`LabelError`] says why the collision cannot be computed.
+pub(super) fn itinerary(frame: &Frame, point: &Point) -> Result<String, LabelError> {
     let contact = frame.plane()?.contact(point)?;
     Ok(Collider::default().collide(contact)?.itinerary())
 }
 
-/// What `network` says that it could not explain.
-pub fn unresolved<Label, Margin>(network: &Network<Label, Margin>) -> Vec<String> {
+/// What the tracer saw and could not explain, in sentences.
+pub(super) fn unresolved<Label, Margin>(network: &Network<Label, Margin>) -> Vec<String> {
     let at = |point: &Point| {
-        let [kappa, psi] = scaled(point);
+        let [kappa, psi] = CollisionPlane::parameters(point);
         format!("kappa = {kappa:?}, psi = {psi:?}")
     };
     let describe = |open: &Unresolved<Label>| match open {

@@ -1,27 +1,27 @@
 //! Each collision as `collide` computes it, with its errors.
 
-use super::measure::Approximation;
 use serde_json::{Value, json};
 use stickslip_model::{Collision, Engine, EngineError, Tolerances};
 
+use super::measure::Approximation;
 use super::series::MethodPair;
 use crate::error::CollisionFailure;
 
-/// The errors of both pairs at their usual tolerances.
+/// The errors of both pairs at their usual tolerances, in one collision.
 #[derive(Clone, Debug)]
 pub struct Accuracy {
     /// The collision as it should be.
     pub reference: Collision,
-    /// In the order of [`MethodPair::BOTH`].
+    /// The errors of the pairs, in the order of [`MethodPair::BOTH`].
     pub pairs: [PairAccuracy; 2],
 }
 
 /// The errors of one pair.
 #[derive(Clone, Copy, Debug)]
 pub struct PairAccuracy {
-    /// Of the final velocity.
+    /// The error of the final velocity.
     pub velocity: f64,
-    /// The largest of a switch time; `None` if the switches are others.
+    /// The largest error of a switch time; `None` if the switches are others.
     pub switch_time: Option<f64>,
     /// Evaluations of the right-hand side.
     pub right_hand_sides: usize,
@@ -63,7 +63,7 @@ impl Accuracy {
     }
 }
 
-/// The engine that `--method` means.
+/// The engine of a pair, at its usual tolerances.
 pub fn engine(pair: MethodPair) -> Engine {
     match pair {
         MethodPair::Dopri5 => Engine::Dopri5(Tolerances::DOPRI5),
@@ -77,12 +77,12 @@ impl PairAccuracy {
         let statistics = statistics.unwrap_or_default();
         let switches = collision.switches.iter().map(|s| (s.time, s.to, s.side)).collect();
         let final_velocity = collision.final_velocity;
-        let error = Approximation { final_velocity, switches, statistics }.error(reference);
+        let approximation = Approximation { final_velocity, switches, statistics };
+        let deviation = approximation.deviation(reference);
+        let largest = |times: Vec<f64>| times.into_iter().fold(0.0, f64::max);
         Ok(Self {
-            velocity: error.velocity,
-            switch_time: error
-                .switch_times
-                .map(|times| times.into_iter().fold(0.0, |most: f64, time| most.max(time))),
+            velocity: deviation.velocity,
+            switch_time: deviation.switch_times.map(largest),
             right_hand_sides: statistics.field,
         })
     }

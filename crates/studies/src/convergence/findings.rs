@@ -1,23 +1,25 @@
-//! What the measurements say, a sentence with its numbers each.
+//! What the measurements say, in sentences with their numbers.
 
-use super::measure::Coordinates;
 use stickslip_solver::Order;
 
 use super::Measurement;
 use super::collisions::engine;
-use super::series::{Control, MethodPair, Row, Scheme, Series, Switches};
+use super::measure::Coordinates;
+use super::series::{Control, ErrorRow, ErrorSeries, MethodPair, Scheme, SwitchHandling};
 
 /// Accuracies whose work is told.
 const TARGETS: [f64; 2] = [1e-6, 1e-10];
 /// Steps in a contact that a simulation of many particles may afford.
 const FEW_STEPS: f64 = 50.0;
+/// A method keeps its order if the fitted order is closer to it than this.
+const KEPT: f64 = 0.5;
 
 impl Measurement {
     pub fn findings(&self) -> Vec<String> {
-        let mut findings = vec![self.measured()];
-        for switches in [Switches::Located, Switches::AtStepEnds] {
-            for variables in [Coordinates::Regularized, Coordinates::PlainTime] {
-                findings.push(self.orders_in(switches, variables));
+        let mut findings = vec![self.result(), self.measured()];
+        for switches in [SwitchHandling::Located, SwitchHandling::AtStepEnds] {
+            for coordinates in [Coordinates::Regularized, Coordinates::PlainTime] {
+                findings.push(self.orders_in(switches, coordinates));
             }
         }
         findings.extend(self.few_steps());
@@ -25,6 +27,43 @@ impl Measurement {
         findings.extend(TARGETS.map(|target| self.cost(target)));
         findings.extend([0, 1].map(|pair| self.usual_accuracy(pair)));
         findings
+    }
+
+    /// The main result.
+    pub fn result(&self) -> String {
+        let smooth = (Control::Step, SwitchHandling::Located, Coordinates::Regularized);
+        let fitted = self.both(smooth.0, smooth.1, smooth.2).map(|series| series.velocity);
+        let [Some(dopri5), Some(dop853)] = fitted else {
+            return "There is no range of steps over which an order can be fitted.".to_owned();
+        };
+        let orders = MethodPair::BOTH.map(MethodPair::order);
+        let kept = [dopri5, dop853]
+            .iter()
+            .zip(orders)
+            .all(|(fitted, order)| (fitted.order - order as f64).abs() < KEPT);
+        let [five, eight] = orders;
+        let located = format!(
+            "With switches located, in regularised coordinates, both methods {} their orders, {five} \
+             and {eight} (fitted: {:.3} and {:.3})",
+            if kept { "keep" } else { "do not quite keep" },
+            dopri5.order,
+            dop853.order
+        );
+        let over = [Coordinates::Regularized, Coordinates::PlainTime]
+            .map(|coordinates| self.both(Control::Step, SwitchHandling::AtStepEnds, coordinates));
+        let over = over.as_flattened().iter();
+        let over = over.flat_map(|series| [series.velocity, series.switch_time]).flatten();
+        let range = over.map(|fit| fit.order).fold(None, |range: Option<(f64, f64)>, order| {
+            let (low, high) = range.unwrap_or((order, order));
+            Some((low.min(order), high.max(order)))
+        });
+        match range {
+            Some((low, high)) => format!(
+                "{located}; steps that run over switches leave order {low:.0} to {high:.0} for any \
+                 method (fitted: {low:.2} to {high:.2})."
+            ),
+            None => format!("{located}."),
+        }
     }
 
     fn measured(&self) -> String {
@@ -45,12 +84,13 @@ impl Measurement {
 
     /// How closely the reference is met, where it is a calculation of the same kind.
     fn agreement(&self) -> String {
-        let error = |row: &Row| row.errors.velocity.root_mean_square;
-        let [_, dop853] = self.both(Control::Step, Switches::Located, Coordinates::Regularized);
+        let error = |row: &ErrorRow| row.errors.velocity.root_mean_square;
+        let [_, dop853] =
+            self.both(Control::Step, SwitchHandling::Located, Coordinates::Regularized);
         let rows = dop853.rows.iter().filter(|row| row.errors.comparable());
         let closest = rows.min_by(|a, b| error(a).total_cmp(&error(b)));
         match closest {
-            Some(Row { value, errors, .. }) if self.is_damped() => format!(
+            Some(ErrorRow { value, errors, .. }) if self.is_damped() => format!(
                 ", from which dop853 in fixed steps of {value:.4} differs by {:.1e} in the final \
                  velocity and {:.1e} in switch times",
                 errors.velocity.root_mean_square, errors.switch_time.root_mean_square
@@ -60,12 +100,12 @@ impl Measurement {
     }
 
     /// Both pairs in fixed steps.
-    fn orders_in(&self, switches: Switches, variables: Coordinates) -> String {
+    fn orders_in(&self, switches: SwitchHandling, coordinates: Coordinates) -> String {
         let ways = match switches {
-            Switches::Located => "with switches located",
-            Switches::AtStepEnds => "with steps that run over switches",
+            SwitchHandling::Located => "with switches located",
+            SwitchHandling::AtStepEnds => "with steps that run over switches",
         };
-        let found = self.both(Control::Step, switches, variables).map(|series| {
+        let fitted = self.both(Control::Step, switches, coordinates).map(|series| {
             format!(
                 "{} {} in the final velocity and {} in switch times",
                 series.scheme.pair.name(),
@@ -73,45 +113,47 @@ impl Measurement {
                 order(series.switch_time.as_ref())
             )
         });
-        let expected = match (switches, variables) {
-            (Switches::Located, Coordinates::Regularized) => {
-                "expected are the 5 and 8 of the methods: everything is smooth between switches, \
-                 and these end steps"
+        let expected = match (switches, coordinates) {
+            (SwitchHandling::Located, Coordinates::Regularized) => {
+                "The methods have orders 5 and 8: everything is smooth between switches, and steps \
+                 end at switches"
             }
-            (Switches::Located, Coordinates::PlainTime) if self.is_damped() => {
-                "expected is 3/2 of both once steps are shorter than the stick phase with which \
-                 contact starts: the force grows as √t there, so that the first step errs by \
+            (SwitchHandling::Located, Coordinates::PlainTime) if self.is_damped() => {
+                "Both are expected to have order 3/2 once steps are shorter than the stick phase with \
+                 which contact starts: the force grows as √t there, and the first step errs by \
                  h^(3/2)"
             }
-            (Switches::Located, Coordinates::PlainTime) => {
-                "expected is 5/2 of both: the force x^(3/2) goes as t^(3/2) at both ends of \
-                 contact, and steps there err by h^(5/2)"
+            (SwitchHandling::Located, Coordinates::PlainTime) => {
+                "Both are expected to have order 5/2: the force x^(3/2) goes as t^(3/2) at both ends \
+                 of contact, and steps there err by h^(5/2)"
             }
-            (Switches::AtStepEnds, _) => {
-                "expected are at most 2 and 1 of any method: a switch takes effect up to a step h late, \
-                 and the force, which is continuous there, is then wrong by O(h) for a time O(h)"
+            (SwitchHandling::AtStepEnds, _) => {
+                "No method is expected to have more than 2 and 1: a switch takes effect up to a step \
+                 h late, and the force, which is continuous there, is then wrong by O(h) for a time \
+                 O(h)"
             }
         };
         format!(
-            "In {} {ways} the orders are: {}; {expected}.",
-            match variables {
+            "In {} {ways} the fitted orders are: {}. {expected}.",
+            match coordinates {
                 Coordinates::Regularized => "regularised coordinates",
                 Coordinates::PlainTime => "plain time",
             },
-            found.join("; "),
+            fitted.join("; "),
         )
     }
 
     /// Steps over switches that are not very short.
     fn few_steps(&self) -> Option<String> {
         let contact_time = self.references.first()?.contact_time;
-        let [_, series] = self.both(Control::Step, Switches::AtStepEnds, Coordinates::PlainTime);
-        let Row { value, errors, .. } =
+        let [_, series] =
+            self.both(Control::Step, SwitchHandling::AtStepEnds, Coordinates::PlainTime);
+        let ErrorRow { value, errors, .. } =
             series.rows.iter().find(|row| row.value <= contact_time / FEW_STEPS)?;
         Some(format!(
-            "With {:.0} steps of {} a contact that run over switches in plain time, {} of {} collisions \
-             have other switches than they should, and the final velocity is off by {:.1e}, at \
-             worst {:.1e}.",
+            "With {:.0} steps of {} per contact that run over switches in plain time, {} of {} \
+             collisions have other switches than they should. The final velocity is off by {:.1e}, \
+             and by {:.1e} at worst.",
             contact_time / value,
             series.scheme.pair.name(),
             errors.other_switches + errors.failed,
@@ -123,10 +165,10 @@ impl Measurement {
 
     /// Error against tolerance.
     fn tolerances(&self) -> String {
-        let all = [Coordinates::Regularized, Coordinates::PlainTime].map(|variables| {
-            self.both(Control::Tolerance, Switches::Located, variables).map(|series| {
+        let all = [Coordinates::Regularized, Coordinates::PlainTime].map(|coordinates| {
+            self.both(Control::Tolerance, SwitchHandling::Located, coordinates).map(|series| {
                 let Some(fit) = series.velocity else {
-                    return format!("{} no range to fit", name(series));
+                    return format!("{} without a range to fit", name(series));
                 };
                 let range = fit.finest * (1.0 - 1e-9)..=fit.coarsest * (1.0 + 1e-9);
                 let fitted = series.rows.iter().filter(|row| range.contains(&row.value));
@@ -145,26 +187,28 @@ impl Measurement {
                 )
             })
         });
-        let all: Vec<_> = all.into_iter().flatten().collect();
-        format!("At a tolerance the final velocity is off by: {}.", all.join("; "))
+        format!(
+            "In adaptive steps at a tolerance the final velocity is off by: {}.",
+            all.as_flattened().join("; ")
+        )
     }
 
     /// Work for an accuracy.
     fn cost(&self, target: f64) -> String {
         let ways = [
-            (Control::Tolerance, Switches::Located, Coordinates::Regularized),
-            (Control::Tolerance, Switches::Located, Coordinates::PlainTime),
-            (Control::Step, Switches::AtStepEnds, Coordinates::PlainTime),
+            (Control::Tolerance, SwitchHandling::Located, Coordinates::Regularized),
+            (Control::Tolerance, SwitchHandling::Located, Coordinates::PlainTime),
+            (Control::Step, SwitchHandling::AtStepEnds, Coordinates::PlainTime),
         ];
-        let costs = ways.into_iter().flat_map(|(control, switches, variables)| {
-            self.both(control, switches, variables).map(|series| {
+        let costs = ways.map(|(control, switches, coordinates)| {
+            self.both(control, switches, coordinates).map(|series| {
                 let enough = series.rows.iter().filter(|row| {
                     row.errors.comparable() && row.errors.velocity.root_mean_square <= target
                 });
                 let least = enough.map(|row| self.work(&row.errors)).min_by(f64::total_cmp);
                 let over = match switches {
-                    Switches::Located => "",
-                    Switches::AtStepEnds => " over switches",
+                    SwitchHandling::Located => "",
+                    SwitchHandling::AtStepEnds => " over switches",
                 };
                 match least {
                     Some(work) => format!("{}{over} {work:.0}", name(series)),
@@ -173,44 +217,47 @@ impl Measurement {
             })
         });
         format!(
-            "For a final velocity to {target:.0e}, right-hand sides a collision: {}.",
-            costs.collect::<Vec<_>>().join("; ")
+            "A final velocity to {target:.0e} takes so many evaluations of the right-hand side per \
+             collision: {}.",
+            costs.as_flattened().join("; ")
         )
     }
 
     /// A pair as `collide` uses it.
     fn usual_accuracy(&self, pair: usize) -> String {
-        let errors = self.accuracies.iter().map(|accuracy| accuracy.pairs[pair]);
-        let eps_t = self
-            .accuracies
-            .iter()
-            .map(|accuracy| accuracy.pairs[pair].velocity / accuracy.reference.contact.psi());
-        let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
-        let others = errors.clone().filter(|errors| errors.switch_time.is_none()).count();
+        let errors = || self.accuracies.iter().map(|accuracy| accuracy.pairs[pair]);
+        let psi = self.accuracies.iter().map(|accuracy| accuracy.reference.contact.psi());
+        let eps_t =
+            errors().zip(psi).map(|(errors, psi)| errors.velocity / psi).fold(0.0, f64::max);
+        let velocity = errors().map(|errors| errors.velocity).fold(0.0, f64::max);
+        let switch_time = errors().filter_map(|errors| errors.switch_time).fold(0.0, f64::max);
+        let others = errors().filter(|errors| errors.switch_time.is_none()).count();
         let tolerance = engine(MethodPair::BOTH[pair]).tolerances().map_or(0.0, |t| t.rtol);
         format!(
-            "`collide --method {}`, tolerance {tolerance:e}: largest error of ε_t {:.1e}, of the final \
-             velocity {:.1e}, of a switch time {:.1e}; {others} of {} collisions with other switches.",
+            "The largest errors of `collide --method {}`, tolerance {tolerance:e}, are {eps_t:.1e} in \
+             ε_t, {velocity:.1e} in the final velocity and {switch_time:.1e} in a switch time; \
+             {others} of {} collisions have other switches.",
             MethodPair::BOTH[pair].name(),
-            largest(&mut eps_t.into_iter()),
-            largest(&mut errors.clone().map(|errors| errors.velocity)),
-            largest(&mut errors.filter_map(|errors| errors.switch_time)),
             self.accuracies.len()
         )
     }
 
     /// The series of both pairs.
-    fn both(&self, control: Control, switches: Switches, variables: Coordinates) -> [&Series; 2] {
-        let of = |pair| {
-            let scheme = Scheme { pair, coordinates: variables, switches, control };
+    fn both(
+        &self,
+        control: Control,
+        switches: SwitchHandling,
+        coordinates: Coordinates,
+    ) -> [&ErrorSeries; 2] {
+        MethodPair::BOTH.map(|pair| {
+            let scheme = Scheme { pair, coordinates, switches, control };
             // All schemes are measured.
             self.series.iter().find(|series| series.scheme == scheme).unwrap()
-        };
-        MethodPair::BOTH.map(of)
+        })
     }
 }
 
-fn name(series: &Series) -> String {
+fn name(series: &ErrorSeries) -> String {
     let [pair, coordinates, _] = series.scheme.names();
     format!("{pair} {coordinates}")
 }

@@ -1,39 +1,39 @@
-//! One collision integrated in ways that lose accuracy or keep it: what studies of convergence
-//! compare.
+//! One collision, integrated in ways that keep accuracy or lose it, and its errors.
 //!
-//! [`integrate`] takes the coordinates and whether switches are located; [`Approximation::error`]
-//! compares with a [`reference()`], and [`measure`] does so for several collisions at once, whose
-//! errors together show the order, where that of a single one passes through zero now and then.
+//! [`integrate`] takes the coordinates and whether switches are located.
+//! [`Approximation::deviation`] compares with a [`reference()`]. [`measure`] does so for several
+//! collisions at once: their errors together show the order, while the error of a single one passes
+//! through zero now and then.
 
+use serde::Serialize;
+use stickslip_model::exact::{self, ExactError};
+use stickslip_model::regularized::{self, Phase, Regularized};
+use stickslip_model::{Collider, Collision, CollisionError, Contact, Regime, Side};
 use stickslip_solver::{
     Dop853, HybridSystem, Method, Observer, Options, Outcome, Run, RunError, Start, Statistics,
     SwitchEvent, run, run_over_switches,
 };
 
 use super::plain_time::{self, PlainTime};
-use stickslip_model::exact::{self, ExactError};
-use stickslip_model::regularized::{self, Phase, Regularized};
-use stickslip_model::{Collider, CollisionError};
-use stickslip_model::{Collision, Contact, Regime, Side};
 
 /// Variables in which a collision is integrated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coordinates {
-    /// Those of [`stickslip_model::regularized`], in which everything is smooth.
+    /// The coordinates of [`stickslip_model::regularized`], in which everything is smooth.
     Regularized,
-    /// Those of [`super::plain_time`], in which the ends of contact are not.
+    /// The coordinates of [`super::plain_time`], in which the ends of contact are not smooth.
     PlainTime,
 }
 
-/// How switches are dealt with.
+/// How an integration treats switches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Switching {
-    /// Each ends a step: [`run`].
+    /// Each switch ends a step: [`run`].
     Located {
         /// Step sizes or tolerances.
         options: Options,
     },
-    /// They take effect where a step happens to end, as in codes without event location:
+    /// Switches take effect where a step happens to end, as in codes without event location:
     /// [`run_over_switches`].
     AtStepEnds {
         /// The size of the steps, in the independent variable of the coordinates.
@@ -43,49 +43,46 @@ pub enum Switching {
     },
 }
 
-/// A collision as one way of integrating it gives it.
+/// The result of one way to integrate a collision.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Approximation {
     /// Reduced tangential velocity w at the end of contact.
     pub final_velocity: f64,
-    /// Every switch: its time, and the regime and side that follow as in [`stickslip_model::Switch`].
+    /// Every switch: its time, and the regime and side that follow, as in
+    /// [`stickslip_model::Switch`].
     pub switches: Vec<(f64, Regime, Side)>,
-    /// The work.
+    /// The work of the integration.
     pub statistics: Statistics,
 }
 
-/// How far an [`Approximation`] is off.
+/// The absolute errors of an [`Approximation`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct Error {
-    /// Of the final velocity w; of ε_t, it is this over ψ.
+pub struct Deviation {
+    /// The error of the final velocity w. The error of ε_t is this over ψ.
     pub velocity: f64,
-    /// Of the time of each switch; `None` if the switches are others, so that their times have
-    /// nothing to compare with.
+    /// The error of the time of each switch; `None` if the switches are others, so that their
+    /// times have nothing to compare with.
     pub switch_times: Option<Vec<f64>>,
 }
 
 impl Approximation {
-    /// Its absolute errors, with `reference` for the truth.
+    /// The absolute errors, with `reference` for the truth.
     #[must_use]
-    pub fn error(&self, reference: &Collision) -> Error {
+    pub fn deviation(&self, reference: &Collision) -> Deviation {
         let velocity = (self.final_velocity - reference.final_velocity).abs();
+        let pairs = || self.switches.iter().zip(&reference.switches);
         let same = self.switches.len() == reference.switches.len()
-            && self
-                .switches
-                .iter()
-                .zip(&reference.switches)
-                .all(|(found, expected)| (found.1, found.2) == (expected.to, expected.side));
-        let pairs = self.switches.iter().zip(&reference.switches);
-        let times = pairs.map(|(found, expected)| (found.0 - expected.time).abs());
-        Error { velocity, switch_times: same.then(|| times.collect()) }
+            && pairs().all(|(found, expected)| (found.1, found.2) == (expected.to, expected.side));
+        let times = pairs().map(|(found, expected)| (found.0 - expected.time).abs());
+        Deviation { velocity, switch_times: same.then(|| times.collect()) }
     }
 }
 
-/// The collision to compare with: the exact solution without damping; with it, Dormand–Prince
+/// The collision to compare with: without damping the exact solution, with damping Dormand–Prince
 /// 8(5,3) at a tolerance of 1e-15.
 ///
 /// # Errors
-/// What the exact solution or the integrator reports.
+/// [`ReferenceError`]: the exact solution or the integrator fails.
 pub fn reference(contact: Contact) -> Result<Collision, ReferenceError> {
     if contact.damping() > 0.0 {
         Ok(Collider::with_tolerances(Dop853, 1e-15, 1e-15).collide(contact)?)
@@ -115,8 +112,8 @@ pub enum ReferenceError {
 /// let contact = Contact::new(63.0, 0.5, 0.0)?;
 /// let coarse = Switching::AtStepEnds { step_size: 1e-3, max_steps: 10_000 };
 /// let found = integrate(Dop853, contact, Coordinates::PlainTime, &coarse)?;
-/// let error = found.error(&reference(contact)?);
-/// // A switch is late by up to a step, of whatever order the method is.
+/// let error = found.deviation(&reference(contact)?);
+/// // A switch is late by up to a step, whatever the order of the method.
 /// assert!(error.switch_times.is_some_and(|times| times.iter().any(|time| *time > 3e-4)));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -130,7 +127,7 @@ pub fn integrate<M: Method>(
     switching: &Switching,
 ) -> Result<Approximation, CollisionError> {
     let phase = Phase::first(&contact);
-    let mut switches = Switches { found: Vec::new(), clock: coordinates, elapsed: 0.0 };
+    let mut switches = SwitchRecord { found: Vec::new(), clock: coordinates, elapsed: 0.0 };
     let (outcome, final_velocity, statistics) = match coordinates {
         Coordinates::Regularized => {
             let system = Regularized::new(contact);
@@ -152,25 +149,25 @@ pub fn integrate<M: Method>(
     Ok(Approximation { final_velocity, switches: switches.found, statistics })
 }
 
-/// A root mean square and the largest of the absolute values; NaN of none.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// How large several values are; NaN if there are none.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
     /// The root mean square.
     pub root_mean_square: f64,
-    /// The largest.
+    /// The largest absolute value.
     pub largest: f64,
 }
 
 /// Errors over several collisions, and the work.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Errors {
-    /// Collisions that could not be integrated, and are in nothing else.
+    /// Collisions that could not be integrated. The other fields leave them out.
     pub failed: usize,
     /// Collisions with other switches than the truth.
     pub other_switches: usize,
-    /// Of the final velocities w.
+    /// The errors of the final velocities w.
     pub velocity: Spread,
-    /// Of all switch times of the collisions that have the right switches.
+    /// The errors of all switch times of the collisions that have the right switches.
     pub switch_time: Spread,
     /// Evaluations of the right-hand side, all collisions together.
     pub right_hand_sides: usize,
@@ -184,7 +181,7 @@ impl Errors {
     }
 }
 
-/// The errors of a way of integrating over the collisions of `references`.
+/// The errors of one way to integrate, over the collisions of `references`.
 ///
 /// ```
 /// use stickslip_model::Contact;
@@ -203,6 +200,7 @@ impl Errors {
 /// assert!((ratio.log2() - 8.0).abs() < 0.5);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[must_use]
 pub fn measure<M: Method>(
     method: M,
     references: &[Collision],
@@ -216,7 +214,7 @@ pub fn measure<M: Method>(
             failed += 1;
             continue;
         };
-        let error = found.error(reference);
+        let error = found.deviation(reference);
         right_hand_sides += found.statistics.field;
         velocities.push(error.velocity);
         other_switches += usize::from(error.switch_times.is_none());
@@ -239,12 +237,12 @@ fn follow<M, S, const N: usize, const G: usize>(
     system: &S,
     start: Start<Phase, N>,
     switching: &Switching,
-    switches: &mut Switches,
+    switches: &mut SwitchRecord,
 ) -> Result<Run<Phase, N>, RunError>
 where
     M: Method,
     S: HybridSystem<N, G, Mode = Phase>,
-    Switches: Observer<Phase, N>,
+    SwitchRecord: Observer<Phase, N>,
 {
     match *switching {
         Switching::Located { options } => {
@@ -256,15 +254,15 @@ where
     }
 }
 
-/// Takes down switches with their times.
-struct Switches {
+/// Records switches with their times.
+struct SwitchRecord {
     found: Vec<(f64, Regime, Side)>,
     clock: Coordinates,
-    /// Time of the last switch.
+    /// The time of the last switch.
     elapsed: f64,
 }
 
-impl<const N: usize> Observer<Phase, N> for Switches {
+impl<const N: usize> Observer<Phase, N> for SwitchRecord {
     fn on_switch(&mut self, event: &SwitchEvent<Phase, N>) {
         match self.clock {
             // Time runs from 0 in every phase.
@@ -305,7 +303,7 @@ mod tests {
             let located = Switching::Located { options: FIXED };
             let found = integrate(Dopri5, contact, Coordinates::Regularized, &located).unwrap();
             let expected = Collider::unrefined(Dopri5, FIXED).collide(contact).unwrap();
-            let error = found.error(&expected);
+            let error = found.deviation(&expected);
             assert_eq!((error.velocity, error.switch_times.unwrap().iter().sum()), (0.0, 0.0));
         }
     }
@@ -322,7 +320,7 @@ mod tests {
                 (Coordinates::Regularized, &coarse, 5e-6, 1.1e-3),
             ] {
                 let found = integrate(Dop853, contact, coordinates, switching).unwrap();
-                let error = found.error(&truth);
+                let error = found.deviation(&truth);
                 assert!(error.velocity < velocity, "{contact:?} {coordinates:?} {error:?}");
                 let times = error.switch_times.unwrap();
                 assert!(times.iter().all(|t| *t < time), "{contact:?} {coordinates:?} {times:?}");

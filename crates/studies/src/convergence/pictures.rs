@@ -1,33 +1,33 @@
 //! The study as pictures.
 
-use super::measure::{Coordinates, Errors, Spread};
-use stickslip_solver::Order;
-
-use super::Measurement;
-use super::series::{Control, MethodPair, Row, Scheme, Series, Switches};
-use crate::study::Picture;
 use stickslip_figure::Svg;
 use stickslip_figure::canvas::panel::Scale;
 use stickslip_figure::canvas::shape::Stroke;
 use stickslip_figure::pictures::chart::{self, Chart, ChartAxis, Mark, Shape};
+use stickslip_solver::Order;
+
+use super::Measurement;
+use super::measure::{Coordinates, Errors, Spread};
+use super::series::{Control, ErrorRow, ErrorSeries, MethodPair, Scheme, SwitchHandling};
+use crate::study::Picture;
 
 /// An error that is drawn.
-struct Quantity {
+struct DrawnError {
     name: &'static str,
     error: fn(&Errors) -> Spread,
-    /// Whether there is one in all collisions.
+    /// Whether all collisions have this error.
     complete: fn(&Errors) -> bool,
-    order: fn(&Series) -> Option<Order>,
+    order: fn(&ErrorSeries) -> Option<Order>,
 }
 
-const VELOCITY: Quantity = Quantity {
+const VELOCITY: DrawnError = DrawnError {
     name: "error of the final velocity w, root mean square",
     error: |errors| errors.velocity,
     complete: |errors| errors.failed == 0,
     order: |series| series.velocity,
 };
 
-const SWITCH_TIME: Quantity = Quantity {
+const SWITCH_TIME: DrawnError = DrawnError {
     name: "error of switch times, root mean square",
     error: |errors| errors.switch_time,
     complete: Errors::comparable,
@@ -36,57 +36,54 @@ const SWITCH_TIME: Quantity = Quantity {
 
 impl Measurement {
     pub fn pictures(&self) -> Vec<Picture> {
-        let steps = |quantity: &Quantity| {
+        let steps = |error: &DrawnError| {
             let axis = "step, in s (regularised) or scaled time (plain time)";
-            self.picture("Errors in fixed steps, and fitted orders", axis, Control::Step, quantity)
+            self.picture("Errors in fixed steps, and fitted orders", axis, Control::Step, error)
         };
-        let tolerances = |quantity: &Quantity| {
-            let axis = "tolerance, relative and absolute";
-            self.picture(
-                "Errors at tolerances, and fitted exponents",
-                axis,
-                Control::Tolerance,
-                quantity,
-            )
+        let tolerances = |error: &DrawnError| {
+            let (title, axis) =
+                ("Errors at tolerances, and fitted exponents", "tolerance, relative and absolute");
+            self.picture(title, axis, Control::Tolerance, error)
         };
-        let fitted = "Thick where the order in the legend was fitted.";
-        let same = "With steps over switches, both methods have the same errors.";
+        let fitted = "Lines are thick where the order in the legend was fitted.";
+        let same = "Where steps run over switches, both methods have the same errors.";
+        let picture = |name, caption, svg| Picture { name, caption, svg };
         vec![
-            Picture {
-                name: "convergence_steps_velocity",
-                caption: format!("Error of the final velocity against the step. {fitted} {same}"),
-                svg: steps(&VELOCITY),
-            },
-            Picture {
-                name: "convergence_steps_switches",
-                caption: format!("Error of switch times against the step. {fitted} {same}"),
-                svg: steps(&SWITCH_TIME),
-            },
-            Picture {
-                name: "convergence_tolerances_velocity",
-                caption: format!("Error of the final velocity against the tolerance. {fitted}"),
-                svg: tolerances(&VELOCITY),
-            },
-            Picture {
-                name: "convergence_tolerances_switches",
-                caption: format!("Error of switch times against the tolerance. {fitted}"),
-                svg: tolerances(&SWITCH_TIME),
-            },
-            Picture {
-                name: "convergence_work",
-                caption: "Error of the final velocity against evaluations of the right-hand side: \
-                          adaptive steps with switches located, and fixed steps over switches."
+            picture(
+                "convergence_steps_velocity",
+                format!("Error of the final velocity against the step. {fitted} {same}"),
+                steps(&VELOCITY),
+            ),
+            picture(
+                "convergence_steps_switches",
+                format!("Error of switch times against the step. {fitted} {same}"),
+                steps(&SWITCH_TIME),
+            ),
+            picture(
+                "convergence_tolerances_velocity",
+                format!("Error of the final velocity against the tolerance. {fitted}"),
+                tolerances(&VELOCITY),
+            ),
+            picture(
+                "convergence_tolerances_switches",
+                format!("Error of switch times against the tolerance. {fitted}"),
+                tolerances(&SWITCH_TIME),
+            ),
+            picture(
+                "convergence_work",
+                "Error of the final velocity against evaluations of the right-hand side: adaptive \
+                 steps with switches located, and fixed steps that run over switches."
                     .to_owned(),
-                svg: self.work_picture(),
-            },
+                self.work_picture(),
+            ),
         ]
     }
 
-    fn picture(&self, title: &str, axis: &str, control: Control, quantity: &Quantity) -> Svg {
+    fn picture(&self, title: &str, axis: &str, control: Control, drawn: &DrawnError) -> Svg {
         let mut lines = Vec::new();
         for series in self.series.iter().filter(|series| series.scheme.control == control) {
-            let points = points(series, |row| row.value, quantity);
-            let order = (quantity.order)(series);
+            let points = points(series, |row| row.value, drawn);
+            let order = (drawn.order)(series);
             if let Some(Order { coarsest, finest, .. }) = order {
                 let range = finest * (1.0 - 1e-9)..=coarsest * (1.0 + 1e-9);
                 let fitted = points.iter().copied().filter(|(value, _)| range.contains(value));
@@ -97,16 +94,16 @@ impl Measurement {
             let order = order.map_or("no fit".to_owned(), |order| {
                 format!("{:.3} ± {:.3}", order.order, order.standard_error)
             });
-            lines.push(drawn(series.scheme, &order, points));
+            lines.push(marked_line(series.scheme, &order, points));
         }
-        draw(title, axis, quantity, lines)
+        draw(title, axis, drawn, lines)
     }
 
     fn work_picture(&self) -> Svg {
         let shown = |scheme: &Scheme| {
             scheme.control == Control::Tolerance
                 || (scheme.switches, scheme.coordinates)
-                    == (Switches::AtStepEnds, Coordinates::PlainTime)
+                    == (SwitchHandling::AtStepEnds, Coordinates::PlainTime)
         };
         let lines = self.series.iter().filter(|series| shown(&series.scheme)).map(|series| {
             let points = points(series, |row| self.work(&row.errors), &VELOCITY);
@@ -114,7 +111,7 @@ impl Measurement {
                 Control::Step => "fixed steps",
                 Control::Tolerance => "adaptive",
             };
-            drawn(series.scheme, control, points)
+            marked_line(series.scheme, control, points)
         });
         let axis = "evaluations of the right-hand side a collision";
         draw("Work and precision", axis, &VELOCITY, lines.collect())
@@ -122,21 +119,25 @@ impl Measurement {
 }
 
 /// The points of a series at which all collisions have an error.
-fn points(series: &Series, x: impl Fn(&Row) -> f64, quantity: &Quantity) -> Vec<(f64, f64)> {
-    let rows = series.rows.iter().filter(|row| (quantity.complete)(&row.errors));
-    rows.map(|row| (x(row), (quantity.error)(&row.errors).root_mean_square))
+fn points(
+    series: &ErrorSeries,
+    x: impl Fn(&ErrorRow) -> f64,
+    drawn: &DrawnError,
+) -> Vec<(f64, f64)> {
+    let rows = series.rows.iter().filter(|row| (drawn.complete)(&row.errors));
+    rows.map(|row| (x(row), (drawn.error)(&row.errors).root_mean_square))
         .filter(|(_, error)| *error > 0.0)
         .collect()
 }
 
-/// A line with marks, by name.
-fn drawn(scheme: Scheme, remark: &str, points: Vec<(f64, f64)>) -> chart::Series {
+/// A line with marks, and its name in the legend.
+fn marked_line(scheme: Scheme, remark: &str, points: Vec<(f64, f64)>) -> chart::Series {
     let stroke = stroke(scheme);
     let shape = match (scheme.switches, scheme.coordinates) {
-        (Switches::Located, Coordinates::Regularized) => Shape::Disc,
-        (Switches::Located, Coordinates::PlainTime) => Shape::Ring,
-        (Switches::AtStepEnds, Coordinates::Regularized) => Shape::Square,
-        (Switches::AtStepEnds, Coordinates::PlainTime) => Shape::Cross,
+        (SwitchHandling::Located, Coordinates::Regularized) => Shape::Disc,
+        (SwitchHandling::Located, Coordinates::PlainTime) => Shape::Ring,
+        (SwitchHandling::AtStepEnds, Coordinates::Regularized) => Shape::Square,
+        (SwitchHandling::AtStepEnds, Coordinates::PlainTime) => Shape::Cross,
     };
     let [pair, variables, switches] = scheme.names();
     let name = format!("{pair}, {variables}, {switches}: {remark}");
@@ -144,7 +145,7 @@ fn drawn(scheme: Scheme, remark: &str, points: Vec<(f64, f64)>) -> chart::Series
     chart::Series { name, points, line: Some(stroke), mark }
 }
 
-/// Dashes let the other pair's line show where both coincide.
+/// The stroke of a pair. Its dashes let the line of the other pair show where both coincide.
 fn stroke(scheme: Scheme) -> Stroke {
     match scheme.pair {
         MethodPair::Dopri5 => Stroke::full("#0072B2", 1.4),
@@ -152,7 +153,7 @@ fn stroke(scheme: Scheme) -> Stroke {
     }
 }
 
-fn draw(title: &str, axis: &str, quantity: &Quantity, series: Vec<chart::Series>) -> Svg {
+fn draw(title: &str, axis: &str, drawn: &DrawnError, series: Vec<chart::Series>) -> Svg {
     let points = || series.iter().flat_map(|series| &series.points);
     let range = |of: fn(&(f64, f64)) -> f64| {
         let values = points().map(of);
@@ -162,10 +163,10 @@ fn draw(title: &str, axis: &str, quantity: &Quantity, series: Vec<chart::Series>
     };
     let (x, y) = (range(|point| point.0), range(|point| point.1));
     let axes = |name, (low, high): (f64, f64)| {
-        // Marks at the edge are whole; where there is nothing to draw, any range does.
+        // Marks at the edge shall be whole. Where there is nothing to draw, any range does.
         let room = (high / low).powf(0.02);
         let range = if low < high { (low / room, high * room) } else { (0.1, 1.0) };
         ChartAxis { name, range, scale: Scale::Logarithmic }
     };
-    chart::draw(&Chart { title, x: axes(axis, x), y: axes(quantity.name, y), series })
+    chart::draw(&Chart { title, x: axes(axis, x), y: axes(drawn.name, y), series })
 }

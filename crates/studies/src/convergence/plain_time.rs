@@ -1,29 +1,28 @@
-//! The collision in plain time: the law as the paper writes it, for convergence studies.
+//! The collision in plain time: the law as the paper writes it, for studies of convergence.
 //!
 //! ```text
 //! ẋ = v     v̇ = −F     stick: ẏ = w, ẇ = −κ y     slip: ẇ = −s F, y = s F/κ     F = x^{3/2} + a √x v
 //! ```
 //!
-//! F is not smooth where x = 0. Without damping that is both ends of contact, F ~ t^{3/2}, and a
-//! method of order 5 or 8 converges with order about 2.5 here; with damping it is the start alone,
-//! as contact ends at F = 0 with x > 0, but F ~ a√t, and the order is about 1.5.
-//! [`stickslip_model::regularized`] is the same collision without that defect; nothing but the
-//! studies ([`super::measure`]) should use this one.
-
-use stickslip_solver::{Direction, Guard, HybridSystem, State};
+//! F is not smooth where x = 0. Without damping this is so at both ends of contact: F ~ t^{3/2},
+//! and a method of order 5 or 8 converges with order about 2.5 here. With damping only the start
+//! has x = 0, since contact ends at F = 0 with x > 0; but there F ~ a√t, and the order is about
+//! 1.5. [`stickslip_model::regularized`] is the same collision without that defect. Only studies of
+//! convergence ([`super::measure()`]) should use this one.
 
 use stickslip_model::regularized::{Phase, Progress};
 use stickslip_model::{Contact, Regime};
+use stickslip_solver::{Direction, Guard, HybridSystem, State};
 
-/// Components: x, v, y, w.
+/// The number of components: x, v, y, w.
 pub const STATE: usize = 4;
 const X: usize = 0;
 const V: usize = 1;
 const Y: usize = 2;
-/// Reduced tangential velocity.
+/// Index of the reduced tangential velocity.
 pub const W: usize = 3;
 
-/// Guard of the end of contact.
+/// Index of the guard of the end of contact.
 pub const END: usize = 0;
 const OTHER_SIDE: usize = 2;
 

@@ -1,26 +1,27 @@
-//! Errors of a way to integrate, over steps or tolerances.
+//! The errors of each way to integrate, over steps or tolerances.
 
 use std::time::{Duration, Instant};
 
-use super::measure::{Coordinates, Errors, Spread, Switching, measure};
 use serde_json::{Value, json};
 use stickslip_model::Collision;
-use stickslip_solver::{Dop853, Dopri5, Options, Order, StepSize, fit_order};
+use stickslip_solver::{Dop853, Dopri5, Method, Options, Order, StepSize, fit_order};
+
+use super::measure::{Coordinates, Errors, Spread, Switching, measure};
 
 /// Steps in an octave.
 const PER_OCTAVE: i32 = 4;
 /// Tolerances in a decade.
 const PER_DECADE: i32 = 4;
-/// The coarsest step for collisions up to a stiffness of 64, in whose swings the same number of
-/// steps fits beyond.
+/// The coarsest step for collisions up to a stiffness of 64. For stiffer ones it is shorter, so
+/// that about as many steps fit into a swing.
 const COARSEST: f64 = 0.25;
-/// A contact lasts 3.22 in scaled time and 2.62 in s without damping, and less with it. One that
-/// has not ended by this time, because steps are too coarse, has failed.
+/// The time after which a contact has failed, because steps are too coarse for its end. Without
+/// damping a contact lasts 3.22 in scaled time and 2.62 in s, and less with damping.
 const LONGEST: f64 = 16.0;
 /// Steps after which a contact in adaptive steps has failed, for collisions up to a stiffness of
 /// 64; they take up to 2500.
 const MOST_STEPS: f64 = 20_000.0;
-/// Quick measurements are repeated for this long, at most three times, and the shortest counts.
+/// Quick measurements are repeated for this long, at most three times; the shortest time counts.
 const QUICK: Duration = Duration::from_millis(5);
 
 /// A Dormand–Prince pair.
@@ -30,9 +31,9 @@ pub enum MethodPair {
     Dop853,
 }
 
-/// Whether switches end steps.
+/// Whether switches are located, which ends steps there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Switches {
+pub enum SwitchHandling {
     Located,
     AtStepEnds,
 }
@@ -49,29 +50,29 @@ pub enum Control {
 pub struct Scheme {
     pub pair: MethodPair,
     pub coordinates: Coordinates,
-    pub switches: Switches,
+    pub switches: SwitchHandling,
     pub control: Control,
 }
 
 /// The errors of a scheme at one step or tolerance.
 #[derive(Clone, Copy, Debug)]
-pub struct Row {
+pub struct ErrorRow {
     /// The step, in s or t, or the tolerance, relative and absolute.
     pub value: f64,
     /// The errors over all collisions.
     pub errors: Errors,
-    /// Measured time a collision.
+    /// The measured time per collision.
     pub microseconds: f64,
 }
 
 /// The errors of a scheme from coarse to fine.
 #[derive(Clone, Debug)]
-pub struct Series {
+pub struct ErrorSeries {
     pub scheme: Scheme,
-    pub rows: Vec<Row>,
-    /// The order of the final velocity, where there is a range to fit.
+    pub rows: Vec<ErrorRow>,
+    /// The order of the error of the final velocity, where there is a range to fit.
     pub velocity: Option<Order>,
-    /// The order of the switch times.
+    /// The order of the error of switch times, where there is a range to fit.
     pub switch_time: Option<Order>,
 }
 
@@ -82,6 +83,14 @@ impl MethodPair {
         match self {
             Self::Dopri5 => "dopri5",
             Self::Dop853 => "dop853",
+        }
+    }
+
+    /// The order of the method on smooth problems.
+    pub fn order(self) -> usize {
+        match self {
+            Self::Dopri5 => Dopri5::ORDER,
+            Self::Dop853 => Dop853::ORDER,
         }
     }
 }
@@ -96,12 +105,13 @@ impl Control {
 }
 
 impl Scheme {
-    /// All that are compared. Without located switches there is no error estimate to go by.
+    /// All schemes that are compared. Without located switches no error estimate could control the
+    /// steps.
     pub fn all() -> Vec<Self> {
         let ways = [
-            (Control::Step, Switches::Located),
-            (Control::Step, Switches::AtStepEnds),
-            (Control::Tolerance, Switches::Located),
+            (Control::Step, SwitchHandling::Located),
+            (Control::Step, SwitchHandling::AtStepEnds),
+            (Control::Tolerance, SwitchHandling::Located),
         ];
         let mut schemes = Vec::new();
         for (control, switches) in ways {
@@ -113,27 +123,28 @@ impl Scheme {
         schemes
     }
 
-    /// The names of its method, its coordinates and what it does with switches.
+    /// The names of the method, of the coordinates and of what happens to switches.
     pub fn names(self) -> [&'static str; 3] {
         let coordinates = match self.coordinates {
             Coordinates::Regularized => "regularised",
             Coordinates::PlainTime => "plain time",
         };
         let switches = match self.switches {
-            Switches::Located => "located",
-            Switches::AtStepEnds => "at step ends",
+            SwitchHandling::Located => "located",
+            SwitchHandling::AtStepEnds => "at step ends",
         };
         [self.pair.name(), coordinates, switches]
     }
 
-    /// Its steps or tolerances, from coarse to fine.
+    /// The steps or tolerances, from coarse to fine.
     pub fn values(self, references: &[Collision]) -> Vec<f64> {
         if self.control == Control::Tolerance {
             let powers = PER_DECADE..=15 * PER_DECADE;
             return powers.map(|i| 0.1_f64.powf(f64::from(i) / f64::from(PER_DECADE))).collect();
         }
         let coarsest = coarsest(references);
-        let at_rounding_early = (MethodPair::Dop853, Coordinates::Regularized, Switches::Located);
+        let at_rounding_early =
+            (MethodPair::Dop853, Coordinates::Regularized, SwitchHandling::Located);
         let early = (self.pair, self.coordinates, self.switches) == at_rounding_early;
         let octaves = if early { 6 } else { 10 };
         (0..=octaves * PER_OCTAVE)
@@ -142,24 +153,26 @@ impl Scheme {
     }
 
     fn switching(self, value: f64, coarsest: f64) -> Switching {
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "up to 1e9")]
         let max_steps = match self.control {
             Control::Step => LONGEST / value,
             Control::Tolerance => MOST_STEPS * COARSEST / coarsest,
         } as usize;
         let options = Options { max_steps, ..Options::default() };
         match (self.switches, self.control) {
-            (Switches::AtStepEnds, _) => Switching::AtStepEnds { step_size: value, max_steps },
-            (Switches::Located, Control::Step) => Switching::Located {
+            (SwitchHandling::AtStepEnds, _) => {
+                Switching::AtStepEnds { step_size: value, max_steps }
+            }
+            (SwitchHandling::Located, Control::Step) => Switching::Located {
                 options: Options { step_size: StepSize::Fixed(value), ..options },
             },
-            (Switches::Located, Control::Tolerance) => Switching::Located {
+            (SwitchHandling::Located, Control::Tolerance) => Switching::Located {
                 options: Options { rtol: value, atol: value, first_step: Some(0.1), ..options },
             },
         }
     }
 
-    /// The least factor that steps or tolerances of a fit span.
+    /// The least factor that the steps or tolerances of a fit span.
     fn span(self) -> f64 {
         match self.control {
             Control::Step => 4.0,
@@ -178,7 +191,7 @@ fn coarsest(references: &[Collision]) -> f64 {
     coarsest
 }
 
-impl Row {
+impl ErrorRow {
     pub fn measure(scheme: Scheme, value: f64, references: &[Collision]) -> Self {
         let switching = scheme.switching(value, coarsest(references));
         let once = || match scheme.pair {
@@ -201,22 +214,21 @@ impl Row {
 
     fn json(&self, control: Control) -> Value {
         let Self { value, errors, .. } = self;
-        let spread = |spread: &Spread| json!({ "root_mean_square": spread.root_mean_square, "largest": spread.largest });
         json!({
             (control.name()): value,
             "failed": errors.failed,
             "other_switches": errors.other_switches,
-            "velocity_error": spread(&errors.velocity),
-            "switch_time_error": spread(&errors.switch_time),
+            "velocity_error": errors.velocity,
+            "switch_time_error": errors.switch_time,
             "right_hand_sides": errors.right_hand_sides,
         })
     }
 }
 
-impl Series {
-    pub fn new(scheme: Scheme, rows: Vec<Row>) -> Self {
+impl ErrorSeries {
+    pub fn new(scheme: Scheme, rows: Vec<ErrorRow>) -> Self {
         let fit = |error: fn(&Errors) -> Spread| {
-            let errors = rows.iter().map(|Row { value, errors, .. }| {
+            let errors = rows.iter().map(|ErrorRow { value, errors, .. }| {
                 let error = error(errors).root_mean_square;
                 (*value, if errors.comparable() { error } else { f64::NAN })
             });

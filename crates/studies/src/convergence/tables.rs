@@ -1,10 +1,8 @@
 //! The study as tables.
 
-use super::measure::Errors;
-use stickslip_solver::Order;
-
 use super::Measurement;
-use super::series::{Control, MethodPair, Row, Scheme, Series};
+use super::measure::Errors;
+use super::series::{Control, ErrorRow, ErrorSeries, MethodPair, Scheme};
 use crate::study::{Cell, Column, Table};
 
 /// The table of fitted orders.
@@ -23,40 +21,30 @@ impl Measurement {
         ]
     }
 
-    fn of(&self, control: Control) -> impl Iterator<Item = &Series> {
+    fn of(&self, control: Control) -> impl Iterator<Item = &ErrorSeries> {
         self.series.iter().filter(move |series| series.scheme.control == control)
     }
 
     fn orders(&self) -> Table {
-        let rows = self.series.iter().flat_map(|series| {
-            let of = |quantity: &str, order: &Option<Order>| {
-                order.map(|order| {
-                    let mut row = scheme(series.scheme);
-                    row.push(Cell::Text(series.scheme.control.name().to_owned()));
-                    row.push(Cell::Text(quantity.to_owned()));
-                    row.extend([order.order, order.standard_error, order.drift].map(Cell::Number));
-                    row.extend([order.coarsest, order.finest].map(Cell::Number));
-                    row.push(Cell::Count(order.points as u64));
-                    row
-                })
-            };
-            [of("final velocity", &series.velocity), of("switch times", &series.switch_time)]
-        });
-        let columns = [
-            ("control", "what is made finer: the step, or the tolerance"),
-            ("quantity", "whose root mean square error is fitted"),
-            ("order", "slope of ln error against ln step or ln tolerance"),
-            ("standard_error", "of the order, from the scatter about the line"),
-            ("drift", "order over the finer half of the points less that over the coarser half"),
-            ("coarsest", "step in s or t, or tolerance, at which the fit begins"),
-            ("finest", "where it ends"),
-            ("points", "how many are fitted"),
-        ];
+        let mut rows = Vec::new();
+        for series in &self.series {
+            let orders =
+                [("final velocity", series.velocity), ("switch times", series.switch_time)];
+            for (quantity, order) in orders {
+                let Some(order) = order else { continue };
+                let mut row = scheme(series.scheme);
+                row.extend([series.scheme.control.name(), quantity].map(Cell::from));
+                row.extend([order.order, order.standard_error, order.drift].map(Cell::Number));
+                row.extend([order.coarsest, order.finest].map(Cell::Number));
+                row.push(order.points.into());
+                rows.push(row);
+            }
+        }
         Table {
             name: ORDERS,
             title: "Fitted orders".to_owned(),
-            columns: with_scheme(&columns),
-            rows: rows.flatten().collect(),
+            columns: [&SCHEME[..], &FITTED].concat(),
+            rows,
         }
     }
 
@@ -64,31 +52,24 @@ impl Measurement {
         let (name, value, title) = match control {
             Control::Step => (
                 "convergence_steps",
-                ("step", "of s in regularised coordinates, of scaled time in plain time"),
+                Column::new(
+                    "step",
+                    "of s in regularised coordinates, of scaled time in plain time",
+                ),
                 "Errors and work in fixed steps",
             ),
             Control::Tolerance => (
                 "convergence_tolerances",
-                ("tolerance", "relative and absolute"),
+                Column::new("tolerance", "relative and absolute"),
                 "Errors and work at tolerances",
             ),
         };
-        let columns = [
-            value,
-            ("failed", "collisions that could not be integrated"),
-            ("other_switches", "collisions with other switches than the reference"),
-            ("velocity_error", "root mean square error of the final reduced velocity w"),
-            ("velocity_error_largest", "the largest"),
-            ("switch_time_error", "root mean square error of switch times, in scaled time"),
-            ("switch_time_error_largest", "the largest"),
-            ("right_hand_sides", "evaluations of the right-hand side a collision"),
-        ];
         let rows = self.of(control).flat_map(|series| {
-            series.rows.iter().map(|Row { value, errors, .. }| {
+            series.rows.iter().map(|ErrorRow { value, errors, .. }| {
                 let Errors { failed, other_switches, velocity, switch_time, .. } = errors;
                 let mut row = scheme(series.scheme);
                 row.push(Cell::Number(*value));
-                row.extend([*failed, *other_switches].map(|count| Cell::Count(count as u64)));
+                row.extend([*failed, *other_switches].map(Cell::Count));
                 for spread in [velocity, switch_time] {
                     row.extend([spread.root_mean_square, spread.largest].map(Cell::Number));
                 }
@@ -99,7 +80,7 @@ impl Measurement {
         Table {
             name,
             title: title.to_owned(),
-            columns: with_scheme(&columns),
+            columns: [&SCHEME[..], &[value], &ERRORS].concat(),
             rows: rows.collect(),
         }
     }
@@ -110,56 +91,34 @@ impl Measurement {
     }
 
     fn collisions(&self) -> Table {
-        let columns = [
-            ("kappa", "scaled stiffness"),
-            ("psi", "reduced impact ratio"),
-            ("damping", "scaled damping"),
-            ("eps_t", "tangential restitution"),
-            ("switch_count", "number of switches"),
-            ("itinerary", "one character a phase"),
-            ("method", "Dormand–Prince pair at its usual tolerance"),
-            ("eps_t_error", "error of the tangential restitution"),
-            ("velocity_error", "error of the final reduced velocity w"),
-            (
-                "switch_time_error",
-                "largest error of a switch time; empty if the switches are others",
-            ),
-            ("right_hand_sides", "evaluations of the right-hand side"),
-        ];
         let rows = self.accuracies.iter().flat_map(|accuracy| {
             let (collision, psi) = (&accuracy.reference, accuracy.reference.contact.psi());
             MethodPair::BOTH.iter().zip(&accuracy.pairs).map(move |(pair, errors)| {
                 let contact = &collision.contact;
                 let numbers = [contact.kappa(), psi, contact.damping(), collision.eps_t()];
                 let mut row: Vec<_> = numbers.map(Cell::Number).into();
-                row.push(Cell::Count(collision.switches.len() as u64));
-                row.push(Cell::Text(collision.itinerary()));
-                row.push(Cell::Text(pair.name().to_owned()));
+                row.push(collision.switches.len().into());
+                row.push(collision.itinerary().into());
+                row.push(pair.name().into());
                 let time = errors.switch_time.unwrap_or(f64::NAN);
                 row.extend([errors.velocity / psi, errors.velocity, time].map(Cell::Number));
-                row.push(Cell::Count(errors.right_hand_sides as u64));
+                row.push(errors.right_hand_sides.into());
                 row
             })
         });
         Table {
             name: "convergence_collisions",
             title: "Each collision as `collide` computes it".to_owned(),
-            columns: columns.map(column).into(),
+            columns: COLLISIONS.to_vec(),
             rows: rows.collect(),
         }
     }
 
     fn times(&self) -> Table {
-        let columns = [
-            ("control", "what is made finer"),
-            ("value", "the step or the tolerance"),
-            ("velocity_error", "root mean square error of the final reduced velocity w"),
-            ("microseconds", "measured time a collision in µs; not the same in another run"),
-        ];
         let rows = self.series.iter().flat_map(|series| {
             series.rows.iter().map(|row| {
                 let mut cells = scheme(series.scheme);
-                cells.push(Cell::Text(series.scheme.control.name().to_owned()));
+                cells.push(series.scheme.control.name().into());
                 let error = row.errors.velocity.root_mean_square;
                 cells.extend([row.value, error, row.microseconds].map(Cell::Number));
                 cells
@@ -168,25 +127,76 @@ impl Measurement {
         Table {
             name: TIMES,
             title: "Measured times, not the same in another run".to_owned(),
-            columns: with_scheme(&columns),
+            columns: [&SCHEME[..], &MEASURED_TIME].concat(),
             rows: rows.collect(),
         }
     }
 }
 
-fn column((name, meaning): (&'static str, &'static str)) -> Column {
-    Column { name, meaning }
-}
-
-fn with_scheme(columns: &[(&'static str, &'static str)]) -> Vec<Column> {
-    let scheme = [
-        ("method", "Dormand–Prince pair"),
-        ("coordinates", "in which the equations are integrated"),
-        ("switches", "located, or taking effect where steps happen to end"),
-    ];
-    scheme.iter().chain(columns).copied().map(column).collect()
-}
+/// The columns of [`scheme`].
+const SCHEME: [Column; 3] = [
+    Column::headed("method", "method", "Dormand–Prince pair"),
+    Column::headed(
+        "coordinates",
+        "coordinates",
+        "coordinates in which the equations are integrated",
+    ),
+    Column::headed("switches", "switches", "located, or taking effect where steps happen to end"),
+];
 
 fn scheme(scheme: Scheme) -> Vec<Cell> {
-    scheme.names().map(|name| Cell::Text(name.to_owned())).into()
+    scheme.names().map(Cell::from).into()
 }
+
+const FITTED: [Column; 8] = [
+    Column::headed("control", "made finer", "what is made finer: the step, or the tolerance"),
+    Column::headed("quantity", "error of", "the quantity whose root mean square error is fitted"),
+    Column::headed("order", "order", "slope of ln error against ln step or ln tolerance"),
+    Column::headed(
+        "standard_error",
+        "std. error",
+        "standard error of the order, from the scatter about the line",
+    ),
+    Column::headed(
+        "drift",
+        "drift",
+        "order over the finer half of the points minus that over the coarser half",
+    ),
+    Column::headed("coarsest", "coarsest", "step in s or t, or tolerance, at which the fit begins"),
+    Column::headed("finest", "finest", "step in s or t, or tolerance, at which the fit ends"),
+    Column::headed("points", "points", "number of fitted points"),
+];
+
+const ERRORS: [Column; 7] = [
+    Column::new("failed", "collisions that could not be integrated"),
+    Column::new("other_switches", "collisions with other switches than the reference"),
+    Column::new("velocity_error", "root mean square error of the final reduced velocity w"),
+    Column::new("velocity_error_largest", "largest error of the final reduced velocity w"),
+    Column::new("switch_time_error", "root mean square error of switch times, in scaled time"),
+    Column::new("switch_time_error_largest", "largest error of a switch time"),
+    Column::new("right_hand_sides", "evaluations of the right-hand side per collision"),
+];
+
+const COLLISIONS: [Column; 11] = [
+    Column::new("kappa", "scaled stiffness"),
+    Column::new("psi", "reduced impact ratio"),
+    Column::new("damping", "scaled damping"),
+    Column::new("eps_t", "tangential restitution"),
+    Column::new("switch_count", "number of switches"),
+    Column::new("itinerary", "the phases, one character for each"),
+    Column::new("method", "Dormand–Prince pair at its usual tolerance"),
+    Column::new("eps_t_error", "error of the tangential restitution"),
+    Column::new("velocity_error", "error of the final reduced velocity w"),
+    Column::new(
+        "switch_time_error",
+        "largest error of a switch time; empty if the switches are others",
+    ),
+    Column::new("right_hand_sides", "evaluations of the right-hand side"),
+];
+
+const MEASURED_TIME: [Column; 4] = [
+    Column::new("control", "what is made finer: the step, or the tolerance"),
+    Column::new("value", "the step or the tolerance"),
+    Column::new("velocity_error", "root mean square error of the final reduced velocity w"),
+    Column::new("microseconds", "measured time per collision in µs; not the same in another run"),
+];

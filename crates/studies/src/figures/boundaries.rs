@@ -1,45 +1,47 @@
 //! All boundaries of the switching in a large window.
 
-use serde_json::json;
 use std::sync::Arc;
 
+use serde_json::json;
 use stickslip_figure::{number, pictures};
 use stickslip_model::exact;
+use stickslip_plane::CollisionPlane;
 use stickslip_plane::Range;
-use stickslip_plane::atlas::{Atlas, Frame, scaled, trace};
+use stickslip_plane::atlas::{Atlas, Frame, VerifiedAtlas, trace};
 use stickslip_plane::progress::SILENT;
 
-use super::reproduction::{Reproduction, summary};
-use super::section::{DataFile, Section};
+use super::reproduction::Reproduction;
+use super::section::Section;
 use crate::error::StudyError;
 use crate::study::{Picture, Study};
 
-/// What it is about.
+/// The title of the part.
 pub const TITLE: &str = "All boundaries of the switching";
 
 const KAPPA: Range = Range { low: 0.05, high: 100.0 };
 const PSI: Range = Range { low: 0.01, high: 3.0 };
 
-/// Computes it.
+/// Computes the part.
 ///
 /// # Errors
 /// The boundaries cannot be traced.
 pub fn run(_: &Reproduction) -> Result<Section, StudyError> {
     let frame = Frame { kappa: KAPPA, psi: PSI, ratio: None, damping: 0.0 };
     let tolerance = frame.tolerances().usual;
-    let made = Arc::new(trace(frame, tolerance, SILENT)?);
+    let verified = Arc::new(trace(frame, tolerance, SILENT)?);
 
-    let distance = distance_from_closed_form(&made.atlas);
-    let report = &made.report;
-    let map = &made.atlas.regions;
+    let distance = distance_from_closed_form(&verified.atlas);
+    let report = &verified.report;
+    let map = &verified.atlas.regions;
     let study = Study {
         name: "boundaries",
         title: TITLE,
+        headlines: vec![headline(&verified)],
         findings: vec![
-            summary(&made),
+            summary(&verified),
             format!(
-                "The uppermost boundary, above which the contact only slides, lies within {} in ψ of its closed form: \
-                 ψ = {} for larger κ, {} at κ = {}.",
+                "Above the uppermost boundary the contact only slides. It lies within {} in ψ of its \
+                 closed form: ψ = {} for larger κ, and ψ = {} at κ = {}.",
                 number(distance, 2),
                 number(exact::top_boundary(KAPPA.high), 4),
                 number(exact::top_boundary(KAPPA.low), 4),
@@ -60,27 +62,63 @@ pub fn run(_: &Reproduction) -> Result<Section, StudyError> {
         pictures: vec![Picture {
             name: "boundaries",
             caption: format!(
-                "Every boundary on which the switches of an undamped collision change, for κ from {} to {} and ψ from {} to {}, \
-                 which is enough for every μ and α. Beneath the uppermost boundary its closed form; below, the stiffness at which \
-                 boundaries end as ψ vanishes.",
+                "Every boundary on which the switches of an undamped collision change, for κ from {} \
+                 to {} and ψ from {} to {}, which is enough for every μ and α. The closed form of the \
+                 uppermost boundary is drawn beneath it. The marks at the bottom are the stiffnesses at \
+                 which boundaries end as ψ vanishes.",
                 number(KAPPA.low, 4),
                 number(KAPPA.high, 4),
                 number(PSI.low, 4),
                 number(PSI.high, 4)
             ),
-            svg: pictures::atlas::draw(&made.atlas),
+            svg: pictures::atlas::draw(&verified.atlas),
         }],
     };
-    let (file, objection) = DataFile::atlas("atlas.json", "the atlas, for stickslip locate", &made);
-    Ok(Section { files: vec![file], objections: objection.into_iter().collect(), ..study.into() })
+    let title = "the atlas, for stickslip locate";
+    Ok(Section::from(study).with_atlas("atlas.json", title, &verified))
+}
+
+fn headline(verified: &VerifiedAtlas) -> String {
+    let (map, report) = (&verified.atlas.regions, &verified.report);
+    let wrong = match report.mismatches.len() {
+        0 => format!("none of {} collisions has other switches than its region", report.tried),
+        wrong => {
+            format!("{wrong} of {} collisions have other switches than their region", report.tried)
+        }
+    };
+    format!(
+        "Without damping, the plane of stiffness up to κ = {} and impact ratio up to ψ = {} has {} \
+         regions, each with its own switches; {wrong}.",
+        number(KAPPA.high, 4),
+        number(PSI.high, 4),
+        map.regions().len(),
+    )
+}
+
+/// What is in an atlas and how it was verified, in sentences.
+pub fn summary(verified: &VerifiedAtlas) -> String {
+    let (map, report) = (&verified.atlas.regions, &verified.report);
+    let agree = if report.agrees { "all agree with them" } else { "not all agree with them" };
+    format!(
+        "{} boundaries, {} vertices and {} regions were traced. Of {} collisions computed at random \
+         points and beside boundaries {agree}; with 95 % confidence less than {} of the plane is \
+         wrong.",
+        map.curves().len(),
+        map.vertices().len(),
+        map.regions().len(),
+        report.tried,
+        number(report.share_wrong_bound, 2)
+    )
 }
 
 /// The largest distance in ψ between the points of the traced uppermost boundary and its closed
 /// form.
 fn distance_from_closed_form(atlas: &Atlas) -> f64 {
     let curves = atlas.regions.curves().iter();
-    // Its upper side has one phase.
+    // The label of its upper side has one phase.
     let uppermost = curves.filter(|curve| curve.sides.iter().any(|side| side.len() == 1));
-    let points = uppermost.flat_map(|curve| &curve.nodes).map(|node| scaled(&node.point));
+    let points = uppermost
+        .flat_map(|curve| &curve.nodes)
+        .map(|node| CollisionPlane::parameters(&node.point));
     points.fold(0.0, |most, [kappa, psi]| f64::max(most, (psi - exact::top_boundary(kappa)).abs()))
 }

@@ -1,7 +1,7 @@
 //! Single collisions and their course in time.
 
 use stickslip_figure::pictures::course::Course;
-use stickslip_model::{Collision, Engine, History};
+use stickslip_model::{Collision, Engine, History, Snapshot};
 
 use crate::error::{CollisionFailure, StudyError};
 use crate::paper::{Reading, psi};
@@ -16,7 +16,7 @@ pub fn collide(kappa: f64, psi: f64) -> Result<Collision, StudyError> {
     Spring::Reset.collide(kappa, psi, 0.0)
 }
 
-/// The same where the axis of stiffness shows `value`, at an impact ratio, with its course by
+/// The collision where the axis of stiffness shows `value`, at an impact ratio, and its course by
 /// Dormand–Prince 8(5,3).
 ///
 /// # Errors
@@ -33,30 +33,31 @@ pub fn followed(
     Ok((collision, history))
 }
 
-/// Times of the first and the last switch; NaN if there is none.
+/// The times of the first and the last switch; NaN if there is none.
 pub fn first_and_last(collision: &Collision) -> [f64; 2] {
     let switches = &collision.switches;
     [switches.first(), switches.last()].map(|switch| switch.map_or(f64::NAN, |switch| switch.time))
 }
 
-/// The time of the largest compression; without damping the contact is symmetric.
+/// The time of the largest compression. Without damping the contact is symmetric.
 pub fn largest_compression(collision: &Collision) -> f64 {
     0.5 * collision.contact_time
 }
 
-/// Columns of [`rows`].
+/// The columns of [`rows`].
 pub const COLUMNS: [Column; 4] = [
-    Column { name: "time", meaning: "scaled time" },
-    Column { name: "normal_force", meaning: "F_n in units of m β^{2/5} g_n^{6/5}" },
-    Column { name: "tangential_force", meaning: "F_t/μ in the same units" },
-    Column { name: "velocity", meaning: "w = (α/μ) g_t/g_n" },
+    Column::new("time", "scaled time"),
+    Column::new("normal_force", "F_n in units of m β^{2/5} g_n^{6/5}"),
+    Column::new("tangential_force", "F_t/μ in the same units"),
+    Column::new("velocity", "w = (α/μ) g_t/g_n"),
 ];
 
-/// A course as it is drawn in a panel `width` pixels wide; at a switch there are two rows.
+/// A course as it is drawn in a panel `width` pixels wide. At a switch there are two rows.
 pub fn rows(collision: &Collision, history: &History, width: f64) -> Vec<Vec<Cell>> {
     let course = Course::new(collision, history, width);
-    let row = |s: &stickslip_model::Snapshot| {
-        [s.time, s.normal_force, s.tangential_force, s.velocity].map(Cell::Number).to_vec()
+    let row = |moment: &Snapshot| {
+        let Snapshot { time, normal_force, tangential_force, velocity, .. } = *moment;
+        [time, normal_force, tangential_force, velocity].map(Cell::Number).to_vec()
     };
     course.samples().iter().map(row).collect()
 }

@@ -1,31 +1,36 @@
 //! Figure 1: pure Coulomb sliding.
 
 use serde_json::json;
+use stickslip_figure::canvas::style::FRAME;
+use stickslip_figure::number;
+use stickslip_figure::pictures::map::{self, MapAxis, MapPanel, Values};
 use stickslip_model::coulomb;
+use stickslip_plane::{GridAxis, Range};
 
 use super::reproduction::Reproduction;
 use super::section::Section;
 use crate::error::StudyError;
 use crate::paper::{ALPHA, MU, psi, ratio};
 use crate::study::{Cell, Column, Picture, Study, Table};
-use stickslip_figure::canvas::style::FRAME;
-use stickslip_figure::number;
-use stickslip_figure::pictures::map::{self, MapAxis, MapPanel, Values};
-use stickslip_plane::GridAxis;
-use stickslip_plane::Range;
 
-/// What it is about.
+/// The title of the part.
 pub const TITLE: &str = "Figure 1: pure Coulomb sliding";
 
-/// Both velocities, in m/s.
+/// The range of both velocities, in m/s.
 const VELOCITY: Range = Range { low: 0.0, high: 2.0 };
-/// Impact velocities along an axis.
+/// The largest number of velocities along an axis.
 const MOST_CELLS: usize = 200;
 
-/// Computes it.
+const COLUMNS: [Column; 3] = [
+    Column::new("normal_m_per_s", "g_n in m/s"),
+    Column::new("tangential_m_per_s", "g_t in m/s"),
+    Column::new("eps_t", "ε_t"),
+];
+
+/// Computes the part.
 ///
 /// # Errors
-/// It cannot be drawn.
+/// The picture cannot be drawn.
 pub fn run(reproduction: &Reproduction) -> Result<Section, StudyError> {
     let axis = GridAxis { range: VELOCITY, cells: reproduction.cells.min(MOST_CELLS) };
     let velocities: Vec<f64> = (0..axis.cells).map(|index| axis.centre(index)).collect();
@@ -41,29 +46,25 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, StudyError> {
     let limit = ratio(2.0);
 
     let title = format!("pure Coulomb sliding, μ = {}, α = {}", number(MU, 4), number(ALPHA, 4));
-    let svg = map::draw(
-        &title,
-        &[MapPanel {
-            heading: "tangential restitution ε_t",
-            horizontal: MapAxis { name: "normal velocity g_n in m/s", range: (0.0, VELOCITY.high) },
-            vertical: MapAxis {
-                name: "tangential velocity g_t in m/s",
-                range: (0.0, VELOCITY.high),
-            },
-            columns: axis.cells,
-            rows: axis.cells,
-            values: Values::Restitution(&eps_t),
-            lines: vec![(FRAME, limit_line(VELOCITY.high))],
-            points: Vec::new(),
-        }],
-    );
-    let column = |name, meaning| Column { name, meaning };
+    let axis_named = |name| MapAxis { name, range: (0.0, VELOCITY.high) };
+    let panel = MapPanel {
+        heading: "tangential restitution ε_t",
+        horizontal: axis_named("normal velocity g_n in m/s"),
+        vertical: axis_named("tangential velocity g_t in m/s"),
+        columns: axis.cells,
+        rows: axis.cells,
+        values: Values::Restitution(&eps_t),
+        lines: vec![(FRAME, limit_line(VELOCITY.high))],
+        points: Vec::new(),
+    };
+    let svg = map::draw(&title, &[panel])?;
     Ok(Section::from(Study {
         name: "figure1",
         title: TITLE,
+        headlines: Vec::new(),
         findings: vec![format!(
-            "Sliding comes to rest, ε_t = 0, in all collisions with g_t/g_n up to 2μ/α = {}: {} % of this plane. ε_t of pure \
-             sliding is never negative.",
+            "Sliding comes to rest, ε_t = 0, in all collisions with g_t/g_n up to 2μ/α = {}. These are \
+             {} % of this plane. ε_t of pure sliding is never negative.",
             number(limit, 6),
             number(100.0 * share, 3)
         )],
@@ -71,21 +72,17 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, StudyError> {
         tables: vec![Table {
             name: "figure1",
             title: "ε_t of pure Coulomb sliding at the centres of the cells".to_owned(),
-            columns: vec![
-                column("normal_m_per_s", "g_n in m/s"),
-                column("tangential_m_per_s", "g_t in m/s"),
-                column("eps_t", "ε_t"),
-            ],
+            columns: COLUMNS.to_vec(),
             rows: points.iter().map(|point| point.map(Cell::Number).to_vec()).collect(),
         }],
         pictures: vec![Picture {
             name: "figure1",
             caption: format!(
-                "ε_t^C = max(0, 1 − (1 + ε_n)(μ/α) g_n/g_t) of (15) and (16) with ε_n = 1, over the normal and the tangential \
-                 impact velocity. Below the line, g_t/g_n = {}, it is 0.",
+                "ε_t^C = max(0, 1 − (1 + ε_n)(μ/α) g_n/g_t) of (15) and (16) with ε_n = 1, over the \
+                 normal and the tangential impact velocity. Below the line, g_t/g_n = {}, ε_t^C is 0.",
                 number(limit, 6)
             ),
-            svg: svg?,
+            svg,
         }],
     }))
 }

@@ -1,23 +1,38 @@
-//! Figure 5: the forces at the points a…o.
+//! Figure 5: the forces at the points a to o.
 
 use serde_json::json;
+use stickslip_figure::number;
+use stickslip_figure::pictures::gallery::{self, Exhibit, PANEL_WIDTH};
 use stickslip_model::Collision;
 
-use super::course::{COLUMNS, first_and_last, followed, largest_compression, rows};
-use super::figure3::title;
+use super::course::{self, first_and_last, followed, largest_compression, rows};
 use super::points::{LetteredPoint, intervals, points};
 use super::reproduction::Reproduction;
 use super::section::Section;
+use super::stiffness_map::title;
 use crate::error::StudyError;
 use crate::paper::{ALPHA, MU, Reading, STIFFNESS};
 use crate::study::{Cell, Column, Picture, Study, Table};
-use stickslip_figure::number;
-use stickslip_figure::pictures::gallery::{self, Exhibit, PANEL_WIDTH};
 
-/// What it is about.
+/// The title of the part.
 pub const TITLE: &str = "Figure 5: forces at the points a to o";
 
-/// Computes it.
+const POINT: Column = Column::headed("point", "point", "point of Figure 4");
+
+const COLUMNS: [Column; 10] = [
+    Column::headed("axis", "axis", "what the axis of stiffness is read as"),
+    POINT,
+    Column::headed("kappa", "κ", "κ of (24)"),
+    Column::headed("ratio", "g_t/g_n", "impact ratio g_t/g_n"),
+    Column::headed("switch_count", "switches", "number of switches"),
+    Column::headed("itinerary", "phases", "the phases, one character for each"),
+    Column::headed("first_switch", "first switch", "scaled time of the first switch"),
+    Column::headed("last_switch", "last switch", "scaled time of the last switch"),
+    Column::headed("reversals", "reversals", "number of reversals of the motion"),
+    Column::headed("eps_t", "ε_t", "tangential restitution ε_t"),
+];
+
+/// Computes the part.
 ///
 /// # Errors
 /// Boundaries cannot be traced, or a collision cannot be computed.
@@ -35,27 +50,17 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, StudyError> {
         tables.push(courses(reading, &exhibits));
         pictures.push(picture(reading, &exhibits));
     }
-    let column = |name, meaning| Column { name, meaning };
     let table = Table {
         name: "figure5",
-        title: "the collisions at the points".to_owned(),
-        columns: vec![
-            column("axis", "axis"),
-            column("point", "point"),
-            column("kappa", "κ of (24)"),
-            column("ratio", "g_t/g_n"),
-            column("switch_count", "switches"),
-            column("itinerary", "phases"),
-            column("first_switch", "first at"),
-            column("last_switch", "last at"),
-            column("reversals", "reversals"),
-            column("eps_t", "ε_t"),
-        ],
+        title: "The collisions at the points".to_owned(),
+        columns: COLUMNS.to_vec(),
         rows: summary,
     };
     let json = json!({ "mu": MU, "alpha": ALPHA, "axis": STIFFNESS, "points": table.json() });
     tables.insert(0, table);
-    let study = Study { name: "figure5", title: TITLE, findings, json, tables, pictures };
+    let headlines = Vec::new();
+    let study =
+        Study { name: "figure5", title: TITLE, headlines, findings, json, tables, pictures };
     Ok(Section { shown: vec!["figure5"], ..study.into() })
 }
 
@@ -69,16 +74,16 @@ fn exhibit(reading: Reading, point: &LetteredPoint) -> Result<Exhibit, StudyErro
 fn row(reading: Reading, point: &LetteredPoint, collision: &Collision) -> Vec<Cell> {
     let [first, last] = first_and_last(collision);
     vec![
-        Cell::Text(reading.axis().to_owned()),
-        Cell::Text(point.name.to_owned()),
-        Cell::Number(collision.contact.kappa()),
-        Cell::Number(point.ratio),
-        Cell::Count(collision.switches.len() as u64),
-        Cell::Text(collision.itinerary()),
-        Cell::Number(first),
-        Cell::Number(last),
-        Cell::Count(collision.reversals as u64),
-        Cell::Number(collision.eps_t()),
+        reading.axis().into(),
+        point.name.into(),
+        collision.contact.kappa().into(),
+        point.ratio.into(),
+        collision.switches.len().into(),
+        collision.itinerary().into(),
+        first.into(),
+        last.into(),
+        collision.reversals.into(),
+        collision.eps_t().into(),
     ]
 }
 
@@ -99,7 +104,8 @@ fn findings(reading: Reading, exhibits: &[Exhibit]) -> Vec<String> {
     if let Some(Exhibit { name, collision, .. }) = exhibits.iter().find(early) {
         let (first, middle) = (first_and_last(collision)[0], largest_compression(collision));
         findings.push(format!(
-            "At {name}, the first point of which that is not so, the first switch is at t = {}, {} before the largest compression.",
+            "At {name}, the first point where this is not so, the first switch is at t = {}, {} before \
+             the largest compression.",
             number(first, 4),
             number(middle - first, 2)
         ));
@@ -107,14 +113,15 @@ fn findings(reading: Reading, exhibits: &[Exhibit]) -> Vec<String> {
     let half =
         |exhibit: &&Exhibit| 2 * exhibit.collision.reversals == exhibit.collision.switches.len();
     findings.push(format!(
-        "With the {reading}, the motion reverses half as often as the regime switches at {}, and not at the others.",
+        "With the {reading}, the motion reverses half as often as the regime switches at {}, and not \
+         at the others.",
         names(exhibits.iter().filter(half).collect())
     ));
     findings
 }
 
-/// The names of tables and pictures must live as long as the program.
-fn names(reading: Reading) -> &'static str {
+/// The name of the table and of the picture of a reading.
+fn name(reading: Reading) -> &'static str {
     match reading {
         Reading::Printed => "figure5_printed",
         Reading::Axis => "figure5_axis",
@@ -122,25 +129,27 @@ fn names(reading: Reading) -> &'static str {
 }
 
 fn courses(reading: Reading, exhibits: &[Exhibit]) -> Table {
-    let mut columns = vec![Column { name: "point", meaning: "point" }];
-    columns.extend(COLUMNS);
     let rows = exhibits.iter().flat_map(|Exhibit { name, collision, history, .. }| {
-        let name = Cell::Text(name.clone());
         let moments = rows(collision, history, PANEL_WIDTH).into_iter();
-        moments.map(move |moment| [vec![name.clone()], moment].concat())
+        moments.map(move |moment| [vec![name.as_str().into()], moment].concat())
     });
-    let title = format!("forces and velocity against time at the points, {}", reading.words());
-    Table { name: names(reading), title, columns, rows: rows.collect() }
+    Table {
+        name: name(reading),
+        title: format!("Forces and velocity against time at the points, {}", reading.words()),
+        columns: [&[POINT], &course::COLUMNS[..]].concat(),
+        rows: rows.collect(),
+    }
 }
 
 fn picture(reading: Reading, exhibits: &[Exhibit]) -> Picture {
     let kappa = number(reading.kappa(STIFFNESS), 4);
     let svg = gallery::draw(&title(&format!("κ = {kappa}")), exhibits);
     let caption = format!(
-        "The tangential force F_t/μ (blue) and its limits ±F_n (black, dashed) at the points of Figure 4 for κ = {kappa}, the {}. \
-         While sliding, the force is at one of the limits. The contact lasts t_c = {}, the largest compression is in the middle.",
+        "The tangential force F_t/μ (blue) at the points of Figure 4, and its limits F_n (black, full) \
+         and −F_n (black, dashed), for κ = {kappa}, the {}. While sliding, the force is at one of the \
+         limits. The contact lasts t_c = {}; the largest compression is in the middle.",
         reading.words(),
         number(exhibits.first().map_or(f64::NAN, |exhibit| exhibit.collision.contact_time), 5)
     );
-    Picture { name: names(reading), caption, svg }
+    Picture { name: name(reading), caption, svg }
 }

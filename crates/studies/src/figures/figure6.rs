@@ -1,26 +1,32 @@
 //! Figure 6: forces and velocity with a stiff spring.
 
 use serde_json::json;
-use stickslip_model::{Collision, History};
-
-use super::course::{COLUMNS, followed, rows};
-use super::reproduction::Reproduction;
-use super::section::Section;
-use crate::error::StudyError;
-use crate::paper::{ALPHA, MU, Reading};
-use crate::study::{Cell, Column, Picture, Study, Table};
 use stickslip_figure::number;
 use stickslip_figure::pictures::collision::{self, PANEL_WIDTH};
 use stickslip_figure::pictures::course::Course;
+use stickslip_model::{Collision, History};
 
-/// What it is about.
+use super::course::{self, followed, rows};
+use super::reproduction::Reproduction;
+use super::section::Section;
+use crate::error::StudyError;
+use crate::paper::{ALPHA, MU, RATIO_6, Reading, STIFFNESS_6};
+use crate::study::{Column, Picture, Study, Table};
+
+/// The title of the part.
 pub const TITLE: &str = "Figure 6: a stiff spring";
 
-/// The value on the axis of stiffness, and g_t/g_n.
-const STIFFNESS: f64 = 100.0;
-const RATIO: f64 = 0.3;
+const COLUMNS: [Column; 7] = [
+    Column::headed("axis", "axis", "what the axis of stiffness is read as"),
+    Column::headed("kappa", "κ", "κ of (24)"),
+    Column::headed("ratio", "g_t/g_n", "impact ratio g_t/g_n"),
+    Column::headed("switch_count", "switches", "number of switches"),
+    Column::headed("itinerary", "phases", "the phases, one character for each"),
+    Column::headed("first_minimum", "first minimum", "scaled time of the velocity's first minimum"),
+    Column::headed("eps_t", "ε_t", "tangential restitution ε_t"),
+];
 
-/// Computes it.
+/// Computes the part.
 ///
 /// # Errors
 /// A collision cannot be computed.
@@ -33,73 +39,68 @@ pub fn run(_: &Reproduction) -> Result<Section, StudyError> {
             Reading::Printed => "figure6_printed",
             Reading::Axis => "figure6_axis",
         };
-        let (collision, history) = followed(reading, STIFFNESS, RATIO)?;
+        let (collision, history) = followed(reading, STIFFNESS_6, RATIO_6)?;
         let kappa = number(collision.contact.kappa(), 4);
         let minimum = first_minimum(&collision, &history);
         minima.extend(minimum);
         let switches = collision.switches.len();
         findings.push(format!(
-            "κ = {kappa}, the {}: {switches} switches, {} sliding episodes, and the first minimum of the velocity at t = {}.",
+            "At κ = {kappa}, the {}, there are {switches} switches and {} sliding episodes, and the \
+             velocity has its first minimum at t = {}.",
             reading.words(),
             switches / 2 + 1,
             minimum.map_or_else(|| "no time".to_owned(), |time| number(time, 3))
         ));
         summary.push(vec![
-            Cell::Text(reading.axis().to_owned()),
-            Cell::Number(collision.contact.kappa()),
-            Cell::Number(RATIO),
-            Cell::Count(switches as u64),
-            Cell::Text(collision.itinerary()),
-            Cell::Number(minimum.unwrap_or(f64::NAN)),
-            Cell::Number(collision.eps_t()),
+            reading.axis().into(),
+            collision.contact.kappa().into(),
+            RATIO_6.into(),
+            switches.into(),
+            collision.itinerary().into(),
+            minimum.unwrap_or(f64::NAN).into(),
+            collision.eps_t().into(),
         ]);
         tables.push(Table {
             name,
-            title: format!("forces and velocity against time, κ = {kappa}"),
-            columns: COLUMNS.to_vec(),
+            title: format!("Forces and velocity against time, κ = {kappa}"),
+            columns: course::COLUMNS.to_vec(),
             rows: rows(&collision, &history, PANEL_WIDTH),
         });
         pictures.push(Picture {
             name,
             caption: format!(
                 "Forces and velocity at g_t/g_n = {} and κ = {kappa}, the {}.",
-                number(RATIO, 4),
+                number(RATIO_6, 4),
                 reading.words()
             ),
             svg: collision::draw(&collision, &history),
         });
     }
     let late = match minima.iter().filter(|time| **time > 1.0).count() {
-        0 => "neither reading has",
-        1 => "one of the readings has",
-        _ => "both readings have",
+        0 => "In neither reading is this minimum",
+        1 => "In one of the readings this minimum is",
+        _ => "In both readings this minimum is",
     };
     findings.push(format!(
-        "The paper has many sliding episodes, and the first minimum shortly after t = 1; {late} it after t = 1."
+        "The paper has many sliding episodes, and the first minimum shortly after t = 1. {late} after \
+         t = 1."
     ));
-    let column = |name, meaning| Column { name, meaning };
     let table = Table {
         name: "figure6",
-        title: "the collisions".to_owned(),
-        columns: vec![
-            column("axis", "axis"),
-            column("kappa", "κ of (24)"),
-            column("ratio", "g_t/g_n"),
-            column("switch_count", "switches"),
-            column("itinerary", "phases"),
-            column("first_minimum", "first minimum at"),
-            column("eps_t", "ε_t"),
-        ],
+        title: "The collisions".to_owned(),
+        columns: COLUMNS.to_vec(),
         rows: summary,
     };
-    let json = json!({ "mu": MU, "alpha": ALPHA, "axis": STIFFNESS, "collisions": table.json() });
+    let json = json!({ "mu": MU, "alpha": ALPHA, "axis": STIFFNESS_6, "collisions": table.json() });
     tables.insert(0, table);
-    let study = Study { name: "figure6", title: TITLE, findings, json, tables, pictures };
+    let headlines = Vec::new();
+    let study =
+        Study { name: "figure6", title: TITLE, headlines, findings, json, tables, pictures };
     Ok(Section { shown: vec!["figure6"], ..study.into() })
 }
 
-/// When the force on the motion first turns from braking to driving forward: there the velocity is
-/// least.
+/// The first moment at which the force on the motion turns from braking to driving. There the
+/// velocity is least.
 fn first_minimum(collision: &Collision, history: &History) -> Option<f64> {
     let course = Course::new(collision, history, PANEL_WIDTH);
     let turn = course

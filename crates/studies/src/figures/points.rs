@@ -1,18 +1,22 @@
-//! The points a…o of Figure 4.
+//! The points a to o of Figure 4.
+//!
+//! They stand between the boundaries on a line of one stiffness, which are read off the atlas of
+//! the whole plane of Figure 4. The tests of the statements compute the same boundaries in another
+//! way (`statements::line`). This is an independent check: a test holds that both agree.
 
 use stickslip_model::Collision;
 
 use super::course::collide;
-use super::reproduction::{MOST_RATIO, Reproduction};
+use super::reproduction::Reproduction;
 use crate::error::StudyError;
-use crate::paper::{Reading, STIFFNESS, psi, ratio};
+use crate::paper::{MOST_RATIO_4, Reading, STIFFNESS, psi, ratio};
 
 /// Names of the intervals on the line of the points, from large to small ratios; n' is one that has
 /// no letter in the paper.
 const NAMES: [&str; 16] =
     ["a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k", "l", "m", "n", "n'", "o"];
 
-/// What lies between two boundaries on a line of one stiffness.
+/// An interval between two boundaries on a line of one stiffness.
 #[derive(Clone, Debug)]
 pub struct Interval {
     /// g_t/g_n at its lower and upper end.
@@ -24,17 +28,10 @@ pub struct Interval {
 /// A point of Figure 4.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LetteredPoint {
-    /// Its letter.
+    /// The letter of the point.
     pub name: &'static str,
-    /// g_t/g_n, the middle of an interval.
+    /// g_t/g_n in the middle of an interval.
     pub ratio: f64,
-}
-
-impl Interval {
-    /// Its middle, in g_t/g_n.
-    pub fn middle(&self) -> f64 {
-        f64::midpoint(self.ratios[0], self.ratios[1])
-    }
 }
 
 /// The intervals on the line of the points, from the upper edge of Figure 4 down to 0.
@@ -48,10 +45,10 @@ pub fn intervals(
     let kappa = reading.kappa(STIFFNESS);
     let mut ends = vec![0.0];
     ends.extend(reproduction.boundaries()?.atlas.boundaries_at(kappa).into_iter().map(ratio));
-    ends.push(MOST_RATIO);
+    ends.push(MOST_RATIO_4);
     let interval = |ends: &[f64]| {
         let ratios = [ends[0], ends[1]];
-        Ok(Interval { ratios, collision: collide(kappa, psi(f64::midpoint(ends[0], ends[1])))? })
+        Ok(Interval { ratios, collision: collide(kappa, psi(middle(ratios)))? })
     };
     ends.windows(2).rev().map(interval).collect()
 }
@@ -66,5 +63,11 @@ pub fn points(intervals: &[Interval]) -> Result<Vec<LetteredPoint>, StudyError> 
         return Err(StudyError::Regions { kappa: Reading::Axis.kappa(STIFFNESS), found, expected });
     }
     let named = NAMES.into_iter().zip(intervals);
-    Ok(named.map(|(name, interval)| LetteredPoint { name, ratio: interval.middle() }).collect())
+    let point =
+        |(name, interval): (_, &Interval)| LetteredPoint { name, ratio: middle(interval.ratios) };
+    Ok(named.map(point).collect())
+}
+
+fn middle([low, high]: [f64; 2]) -> f64 {
+    f64::midpoint(low, high)
 }

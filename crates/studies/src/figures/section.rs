@@ -1,20 +1,24 @@
-//! A part of the reproduction.
+//! A part of the reproduction with its data.
 
 use std::sync::Arc;
 
+use stickslip_model::Engine;
 use stickslip_plane::atlas::VerifiedAtlas;
-use stickslip_plane::sweep::Failed;
+use stickslip_plane::sweep::{Failed, FailureCount};
 
 use super::sweep::Sweep;
+use crate::statements::Audit;
 use crate::study::Study;
 
-/// A study with what else belongs to it.
+/// A study with everything else that belongs to it.
 #[derive(Debug)]
 pub struct Section {
     /// What was computed.
     pub study: Study,
-    /// The names of its tables that a page shows.
+    /// The names of those of its tables that a page shows.
     pub shown: Vec<&'static str>,
+    /// The statements of the paper with their verdicts, in the part that tests them.
+    pub audit: Option<Audit>,
     /// Data beside those of the study.
     pub files: Vec<DataFile>,
     /// What speaks against its results.
@@ -24,11 +28,11 @@ pub struct Section {
 /// Data for a file.
 #[derive(Clone, Debug)]
 pub struct DataFile {
-    /// The file's name.
+    /// The name of the file.
     pub name: String,
-    /// What it holds.
+    /// What the file holds.
     pub title: String,
-    /// Its content.
+    /// The content of the file.
     pub content: Content,
 }
 
@@ -49,7 +53,7 @@ pub enum Objection {
     Points {
         /// The file of the map.
         file: String,
-        /// Its number of points.
+        /// The number of its points.
         points: usize,
         /// The points without a result.
         failed: Failed,
@@ -64,9 +68,16 @@ pub enum Objection {
     },
 }
 
+/// The main results of all `sections`, a sentence each: the opening of a page that shows them.
+#[must_use]
+pub fn headlines(sections: &[Section]) -> Vec<String> {
+    sections.iter().flat_map(|section| &section.study.headlines).cloned().collect()
+}
+
 impl From<Study> for Section {
     fn from(study: Study) -> Self {
-        Self { study, shown: Vec::new(), files: Vec::new(), objections: Vec::new() }
+        let (shown, files, objections) = (Vec::new(), Vec::new(), Vec::new());
+        Self { study, shown, audit: None, files, objections }
     }
 }
 
@@ -79,18 +90,34 @@ impl Section {
         let files = self.files.iter().map(|file| (file.name.clone(), file.title.as_str()));
         tables.chain(files).collect()
     }
-}
 
-impl DataFile {
-    /// The file of an atlas, and what speaks against it.
-    pub(super) fn atlas(
+    /// The section with a map as `name`.npz, and with what speaks against the map.
+    #[must_use]
+    pub(super) fn with_map(mut self, name: &str, title: String, sweep: &Arc<Sweep>) -> Self {
+        let name = format!("{name}.npz");
+        let mut count = FailureCount::default();
+        count.add(0, &sweep.results);
+        if let Some(failed) = count.failed(&sweep.grid, Engine::Exact) {
+            let (file, points) = (name.clone(), sweep.grid.points());
+            self.objections.push(Objection::Points { file, points, failed });
+        }
+        self.files.push(DataFile { name, title, content: Content::Map(Arc::clone(sweep)) });
+        self
+    }
+
+    /// The section with an atlas as `name`, and with what speaks against the atlas.
+    #[must_use]
+    pub(super) fn with_atlas(
+        mut self,
         name: &str,
         title: &str,
         atlas: &Arc<VerifiedAtlas>,
-    ) -> (Self, Option<Objection>) {
-        let (file, title) = (name.to_owned(), title.to_owned());
-        let objection = atlas.report.objection();
-        let objection = objection.map(|reason| Objection::Doubtful { file: file.clone(), reason });
-        (Self { name: file, title, content: Content::Atlas(Arc::clone(atlas)) }, objection)
+    ) -> Self {
+        let (name, title) = (name.to_owned(), title.to_owned());
+        if let Some(reason) = atlas.report.objection() {
+            self.objections.push(Objection::Doubtful { file: name.clone(), reason });
+        }
+        self.files.push(DataFile { name, title, content: Content::Atlas(Arc::clone(atlas)) });
+        self
     }
 }

@@ -1,4 +1,4 @@
-//! Studies of their own, as parts of the reproduction.
+//! The studies as parts of the reproduction.
 
 use stickslip_plane::progress::SILENT;
 
@@ -7,14 +7,7 @@ use super::section::Section;
 use crate::error::StudyError;
 use crate::{convergence, statements, stiff_springs};
 
-/// Title of [`convergence`](fn@convergence).
-pub const CONVERGENCE: &str = "Convergence of the integrators";
-/// Title of [`stiff`].
-pub const STIFF: &str = "The limit of stiff springs";
-/// Title of [`statements`](fn@statements).
-pub const STATEMENTS: &str = "Statements of the paper";
-
-/// The study of convergence, without what differs from run to run.
+/// The study of convergence, without the times, which differ from run to run.
 pub fn convergence(_: &Reproduction) -> Result<Section, StudyError> {
     let mut study = convergence::run(&convergence::Settings::usual(0.0)?, SILENT)?;
     study.tables.retain(|table| table.name != convergence::TIMES);
@@ -22,14 +15,15 @@ pub fn convergence(_: &Reproduction) -> Result<Section, StudyError> {
 }
 
 /// The study of stiff springs.
-pub fn stiff(_: &Reproduction) -> Result<Section, StudyError> {
+pub fn stiff_springs(_: &Reproduction) -> Result<Section, StudyError> {
     Ok(stiff_springs::run(&stiff_springs::Settings::default(), SILENT)?.into())
 }
 
 /// The statements of the paper, each with its verdict.
 pub fn statements(reproduction: &Reproduction) -> Result<Section, StudyError> {
     let numbers: Vec<u8> = (1..=statements::COUNT).collect();
-    let study = statements::run(reproduction.spring, &numbers, SILENT)?.study();
+    let audit = statements::run(reproduction.spring, &numbers, SILENT)?;
+    let study = audit.study();
     let shown = study.tables.iter().map(|table| table.name).collect();
-    Ok(Section { shown, ..study.into() })
+    Ok(Section { shown, audit: Some(audit), ..study.into() })
 }

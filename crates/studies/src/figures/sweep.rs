@@ -1,14 +1,9 @@
 //! Maps in memory.
 
-use std::sync::Arc;
-
 use stickslip_figure::pictures::grid;
 use stickslip_figure::pictures::map::{MapPanel, Values};
 use stickslip_model::{Engine, coulomb};
-use stickslip_plane::sweep::{self, FailureCount};
-use stickslip_plane::{Grid, Quantity, Tile};
-
-use super::section::{Content, DataFile, Objection};
+use stickslip_plane::{Grid, Quantity, Tile, sweep};
 
 /// A grid with its collisions, by the exact solution.
 #[derive(Clone, Debug)]
@@ -50,16 +45,16 @@ impl Sweep {
         self.grid.value(quantity, column, row)
     }
 
-    /// The point with the largest `value`, and that.
+    /// The point where `value` is largest, and the value there.
     #[must_use]
     pub fn largest(&self, value: impl Fn(usize) -> f64) -> (usize, f64) {
         let values = (0..self.grid.points()).map(|point| (point, value(point)));
         values.fold((0, f64::NEG_INFINITY), |most, next| if next.1 > most.1 { next } else { most })
     }
 
-    /// By how much ε_t differs from that of pure Coulomb sliding.
+    /// ε_t minus that of pure Coulomb sliding.
     #[must_use]
-    pub fn excess(&self, point: usize) -> f64 {
+    pub fn above_sliding(&self, point: usize) -> f64 {
         let sliding = coulomb::restitution(self.value(Quantity::Psi, point), 1.0);
         self.results.eps_t[point] - sliding
     }
@@ -68,21 +63,5 @@ impl Sweep {
     #[must_use]
     pub fn most_switches(&self) -> i32 {
         self.results.switch_count.iter().copied().max().unwrap_or(0)
-    }
-
-    /// The file `name`.npz, and what speaks against it.
-    pub(super) fn data(
-        self: &Arc<Self>,
-        name: &str,
-        title: String,
-    ) -> (DataFile, Option<Objection>) {
-        let file = format!("{name}.npz");
-        let mut count = FailureCount::default();
-        count.add(0, &self.results);
-        let failed = count.failed(&self.grid, Engine::Exact);
-        let points = self.grid.points();
-        let objection =
-            failed.map(|failed| Objection::Points { file: file.clone(), points, failed });
-        (DataFile { name: file, title, content: Content::Map(Arc::clone(self)) }, objection)
     }
 }

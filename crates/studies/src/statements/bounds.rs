@@ -6,11 +6,11 @@ use rayon::prelude::*;
 use stickslip_model::{coulomb, exact, largest};
 
 use super::sampling::{each, geometric};
-use super::search::{Extremum, maximum, maximum_near};
 use super::statement::{Evidence, Finding, Stop, Verdict};
 use super::subject::Subject;
 use crate::error::StudyError;
-use crate::paper::{ALPHA, MU};
+use crate::paper::{MOST_RATIO_3, MOST_STIFFNESS, Reading, psi};
+use crate::search::{Extremum, maximum, maximum_near};
 
 /// 12: the spring's elongation is at most μ/(ακ) (25), so that |ε_t| ≤ (g_n/g_t) μ/(α√κ) (26, 27).
 pub fn largest(subject: &Subject) -> Result<Finding, Stop> {
@@ -19,7 +19,7 @@ pub fn largest(subject: &Subject) -> Result<Finding, Stop> {
         |[kappa, psi]: [f64; 2]| Ok(kappa * subject.spring.largest_elongation(kappa, psi)?);
     let velocity = |[kappa, psi]: [f64; 2]| {
         let collision = subject.collide(kappa, psi, 0.0)?;
-        // Before a reversal the motion is what sliding has left, of which (26) says nothing.
+        // Without a reversal sliding alone has slowed the motion, of which (26) says nothing.
         let bounded = if collision.reversals > 0 { collision.final_velocity.abs() } else { 0.0 };
         Ok(kappa.sqrt() * bounded)
     };
@@ -39,11 +39,12 @@ pub fn largest(subject: &Subject) -> Result<Finding, Stop> {
         .count("switches there", still_sliding.switches.len())
         .count("reversals there", still_sliding.reversals);
     let explanation = format!(
-        "In units of μ/(ακ) the elongation reaches {:.6}: while sliding it is the scaled force x^(3/2), which is (5/4)^(3/5) = \
-         {:.6} at the largest compression. |ε_t| reaches {:.6} times (27) at κ = {:.4}, ψ = {:.4} (the best of 60 x 60 places in \
-         κ from 0.01 to 1e4 and ψ from 0.01 to 3, then Nelder and Mead), {} the bound with that factor. Where the motion \
-         does not reverse, small κ exceeds both: {unreversed:.3} at κ = 0.1, ψ = 10. The bounds count as kept up to \
-         1 + {CLOSE:e}.",
+        "In units of μ/(ακ) the elongation reaches {:.6}: while sliding it is the scaled force \
+         x^(3/2), which is (5/4)^(3/5) = {:.6} at the largest compression. |ε_t| reaches {:.6} times \
+         (27) at κ = {:.4}, ψ = {:.4} (the best of 60 x 60 places in κ from 0.01 to 1e4 and ψ from \
+         0.01 to 3, then Nelder and Mead), {} the bound with that factor. Where the motion does not \
+         reverse, small κ exceeds both: {unreversed:.3} at κ = 0.1, ψ = 10. The bounds count as kept \
+         up to 1 + {CLOSE:e}.",
         spring.value,
         largest::FORCE,
         speed.value,
@@ -81,8 +82,7 @@ pub fn stiff(subject: &Subject) -> Result<Finding, Stop> {
     let mut evidence = Evidence::default();
     let mut largest = Vec::new();
     for kappa in DECADES {
-        // A turn of the spring's phase √κ t_c, at ψ between the two ends of the range in which
-        // there are switches.
+        // Over one turn of the spring's phase √κ t_c, at ψ inside the range that has switches.
         let turn = 2.0 * PI / exact::CONTACT_TIME;
         let tried: Vec<_> = (0..EACH * EACH)
             .map(|i| {
@@ -105,9 +105,10 @@ pub fn stiff(subject: &Subject) -> Result<Finding, Stop> {
         .count("collisions at each κ", EACH * EACH)
         .number("exponent between the last two", exponent);
     let explanation = format!(
-        "The largest w at the end, ψ ε_t, of {} collisions with ψ from 0.3 to 1.7 over a turn of the spring's phase falls from \
-         {:.2e} at κ = 100 to {:.2e} at 1e5, with the exponent {exponent:.3} over the last decade: (27) has -1/2. It counts as \
-         vanishing if it falls from each decade to the next and ends below {SMALL}.",
+        "The largest w at the end, ψ ε_t, of {} collisions with ψ from 0.3 to 1.7 over a turn of the \
+         spring's phase falls from {:.2e} at κ = 100 to {:.2e} at 1e5. Over the last decade the \
+         exponent is {exponent:.3}, where (27) has -1/2. The largest w counts as vanishing if it falls \
+         from each decade to the next and ends below {SMALL}.",
         EACH * EACH,
         largest[0],
         largest[3]
@@ -127,7 +128,7 @@ pub fn close_to_zero(subject: &Subject) -> Result<Finding, Stop> {
     let mut largest = Vec::new();
     for &kappa in &kappas {
         let low = MUCH / kappa.sqrt();
-        let size = |psi: f64| Ok(subject.collide(kappa, psi, 0.0)?.eps_t().abs());
+        let size = |psi| Ok::<_, StudyError>(subject.collide(kappa, psi, 0.0)?.eps_t().abs());
         let psis: Vec<f64> = geometric(low, 2.0, PLACES).collect();
         let most = maximum(&psis, size)?.value;
         evidence = evidence.number(format!("largest |ε_t| at κ = {kappa:.3}"), most);
@@ -135,9 +136,10 @@ pub fn close_to_zero(subject: &Subject) -> Result<Finding, Stop> {
     }
     let close = largest.iter().rposition(|&most| most > CLOSE).map_or(0, |last| last + 1);
     let explanation = format!(
-        "(30) is taken as the range in which (27) is small and pure sliding has not begun, μ/(α√κ) ≪ g_t/g_n < 2μ/α, \
-         with {MUCH} for ≪: ψ from {MUCH}/√κ to 2. The largest |ε_t| there, of {PLACES} ψ and golden section around the \
-         best, is {:.3} at κ = {:.1} and {:.4} at {:.0}. Close to zero is taken as up to {CLOSE}.",
+        "(30) is taken as the range in which (27) is small and pure sliding has not begun, μ/(α√κ) ≪ \
+         g_t/g_n < 2μ/α, with {MUCH} for ≪: ψ from {MUCH}/√κ to 2. The largest |ε_t| there, of \
+         {PLACES} ψ and golden section around the best, is {:.3} at κ = {:.1} and {:.4} at {:.0}. \
+         Close to zero is taken as up to {CLOSE}.",
         largest[0],
         kappas[0],
         largest[kappas.len() - 1],
@@ -158,17 +160,16 @@ pub fn close_to_zero(subject: &Subject) -> Result<Finding, Stop> {
 pub fn pragmatic(subject: &Subject) -> Result<Finding, Stop> {
     const COLUMNS: usize = 200;
     const ROWS: usize = 175;
-    const RATIO: f64 = 3.5;
-    /// What another choice must gain to be sensible.
+    /// The gain that makes another choice sensible.
     const GAIN: f64 = 0.05;
     let mut evidence = Evidence::default();
     let mut sensible = [false; 2];
     let mut sentences = Vec::new();
-    for (kappa, sensible) in [20.0, 20.0 / ALPHA].into_iter().zip(&mut sensible) {
+    for (kappa, sensible) in Reading::kappas(MOST_STIFFNESS).into_iter().zip(&mut sensible) {
         let cell = |i: usize| {
             let part = |place: usize, of: usize| (place as f64 + 0.5) / of as f64;
-            let psi = RATIO * part(i / COLUMNS, ROWS) * ALPHA / MU;
-            [kappa * part(i % COLUMNS, COLUMNS), psi, 0.0]
+            let ratio = MOST_RATIO_3 * part(i / COLUMNS, ROWS);
+            [kappa * part(i % COLUMNS, COLUMNS), psi(ratio), 0.0]
         };
         let cells: Vec<_> = (0..COLUMNS * ROWS).map(cell).collect();
         let eps_t = each(&cells, |&[k, psi, _]| Ok(subject.collide(k, psi, 0.0)?.eps_t()))?;
@@ -186,7 +187,7 @@ pub fn pragmatic(subject: &Subject) -> Result<Finding, Stop> {
         let (zero, zero_most) = (mean_square(0.0), most(0.0));
         let constants: Vec<f64> =
             (-100..=50).map(|hundredth| 0.01 * f64::from(hundredth)).collect();
-        let best = maximum(&constants, |constant| Ok(-mean_square(constant)))?;
+        let best = maximum(&constants, |constant| Ok::<_, StudyError>(-mean_square(constant)))?;
         evidence = evidence
             .number(format!("root mean square error of 0 for κ up to {kappa}"), zero)
             .number(format!("largest error of 0 for κ up to {kappa}"), zero_most)
@@ -195,23 +196,18 @@ pub fn pragmatic(subject: &Subject) -> Result<Finding, Stop> {
             .number(format!("its largest error for κ up to {kappa}"), most(best.at));
         *sensible = zero <= -best.value * (1.0 + GAIN);
         sentences.push(format!(
-            "Over κ up to {kappa} and g_t/g_n up to {RATIO} the constant 0 has a root mean square error of {zero:.4} and is off by \
-             {zero_most:.3} at most; the best constant, {:.4}, has {:.4}. ",
+            "Over κ up to {kappa} and g_t/g_n up to {MOST_RATIO_3} the constant 0 has a root mean \
+             square error of {zero:.4} and is off by {zero_most:.3} at most; the best constant, {:.4}, \
+             has {:.4}. ",
             best.at, -best.value
         ));
     }
     let explanation = format!(
-        "{}Each is over {COLUMNS} x {ROWS} cells at μ = 0.4, α = 2/7. The statement counts as true if the best constant \
-         has an error less than {:.0} % smaller than 0 has.",
+        "{}Each is over {COLUMNS} x {ROWS} cells at μ = 0.4, α = 2/7. The statement counts as true if \
+         the error of the best constant is less than {:.0} % smaller than that of 0.",
         sentences.concat(),
         100.0 * GAIN
     );
-    Ok(match sensible {
-        [true, true] => Finding::new(Verdict::Holds, evidence, explanation),
-        [false, true] => {
-            let condition = "if the figures' κ is α times that of (24)".to_owned();
-            Finding::under(condition, evidence, explanation)
-        }
-        _ => Finding::new(Verdict::DoesNotHold, evidence, explanation),
-    })
+    let [printed, axis] = sensible;
+    Ok(Finding::by_reading([printed && axis, axis], evidence, explanation))
 }

@@ -5,10 +5,10 @@ use super::subject::Subject;
 use super::{bounds, counts, course, parameters, regimes, sliding};
 use crate::error::StudyError;
 
-/// How many there are.
+/// The number of statements.
 pub const COUNT: u8 = 24;
 
-/// What it says, where, and what tests it.
+/// A statement in other words, its place in the paper, and its test.
 struct Entry(&'static str, &'static str, fn(&Subject) -> Result<Finding, Stop>);
 
 #[rustfmt::skip]
@@ -44,12 +44,11 @@ const ENTRIES: [Entry; COUNT as usize] = [
 ];
 
 /// Tests statement `number`, from 1 to [`COUNT`].
+///
+/// # Errors
+/// A collision cannot be computed.
 pub fn test(number: u8, subject: &Subject) -> Result<Statement, StudyError> {
     let Entry(paraphrase, place, test) = &ENTRIES[usize::from(number) - 1];
-    let finding = match test(subject) {
-        Ok(finding) => finding,
-        Err(Stop::Open(reason)) => Finding::open(reason),
-        Err(Stop::Failed(error)) => return Err(StudyError::Shared(error)),
-    };
+    let finding = Stop::into_finding(test(subject))?;
     Ok(Statement { number, paraphrase, place, finding })
 }

@@ -2,26 +2,22 @@
 
 use stickslip_model::exact;
 
-use super::line::{Line, Part};
+use super::line::{Line, Span};
 use super::sampling::{each, random};
-use super::search::change;
 use super::statement::{Evidence, Finding, Stop, Verdict};
 use super::subject::Subject;
 use crate::error::StudyError;
-use crate::paper::{STIFFNESS, ratio};
-
-/// The counts of Fig. 5 as g_t/g_n falls.
-const FIGURE: &str = "0 2 4 6 8 6 8 6 4 6 4 2 4 2 4 2";
+use crate::paper::{MOST_SWITCHES, STIFFNESS, SWITCHES, ratio};
+use crate::search::change;
 
 /// 6: at κ = 18 up to eight switches.
 pub fn eight(subject: &Subject) -> Result<Finding, Stop> {
-    const MOST: usize = 8;
     let [printed, read] = subject.lines()?;
     let mut evidence = Evidence::default();
     for line in [printed, read] {
         evidence = evidence
             .count(format!("most switches at κ = {}", line.kappa), line.most())
-            .text(format!("switches as ψ falls at κ = {}", line.kappa), line.falling_text());
+            .text(format!("switches as ψ falls at κ = {}", line.kappa), line.falling());
         for (index, pair) in line.stretches.windows(2).enumerate() {
             let (below, above) = (&pair[0].itinerary, &pair[1].itinerary);
             let name =
@@ -29,41 +25,35 @@ pub fn eight(subject: &Subject) -> Result<Finding, Stop> {
             evidence = evidence.number(name, pair[0].high);
         }
     }
-    let [at_printed, at_read] = [printed, read].map(Line::falling_text);
+    let [at_printed, at_read] = [printed, read].map(Line::falling);
     let explanation = format!(
-        "Every boundary at both stiffnesses was {}. As ψ falls, the counts are {at_printed} at κ = {STIFFNESS} of (24), and {at_read} at \
-         18/α = {}; those of the figures are {FIGURE}{}.",
+        "Every boundary at both stiffnesses was {}. As ψ falls, the counts are {at_printed} at κ = \
+         {STIFFNESS} of (24), and {at_read} at {STIFFNESS}/α = {}. Those of the figures are \
+         {SWITCHES}{}.",
         printed.method,
         read.kappa,
-        if at_read == FIGURE { ", as if ακ were plotted" } else { "" }
+        if at_read == SWITCHES { ", as if ακ were plotted" } else { "" }
     );
-    Ok(match (printed.most() == MOST, read.most() == MOST) {
-        (true, _) => Finding::new(Verdict::Holds, evidence, explanation),
-        (false, true) => {
-            let condition = "if the figures' κ is α times that of (24)".to_owned();
-            Finding::under(condition, evidence, explanation)
-        }
-        _ => Finding::new(Verdict::DoesNotHold, evidence, explanation),
-    })
+    let holds = [printed, read].map(|line| line.most() == MOST_SWITCHES);
+    Ok(Finding::by_reading(holds, evidence, explanation))
 }
 
 /// 7: there are half as many reversals as switches.
 pub fn reversals(subject: &Subject) -> Result<Finding, Stop> {
     let lines = subject.lines()?;
-    let differs = |part: &&Part| 2 * part.reversals != part.switch_count;
+    let differs = |span: &&Span| 2 * span.reversals != span.switch_count;
     let share = |line: &Line| {
-        let below = |part: &Part| part.high.min(2.0) - part.low.min(2.0);
-        line.parts().filter(differs).map(below).sum::<f64>() / 2.0
+        let below = |span: &Span| span.high.min(2.0) - span.low.min(2.0);
+        line.spans().filter(differs).map(below).sum::<f64>() / 2.0
     };
-    let intervals: Vec<_> = lines.iter().flat_map(|line| line.parts().filter(differs)).collect();
-    let more = intervals.iter().filter(|part| 2 * part.reversals > part.switch_count).count();
+    let intervals: Vec<_> = lines.iter().flat_map(|line| line.spans().filter(differs)).collect();
+    let more = intervals.iter().filter(|span| 2 * span.reversals > span.switch_count).count();
     let shares = lines.map(share);
     let mut evidence = Evidence::default();
     for (line, share) in lines.into_iter().zip(shares) {
         let name = format!("share of ψ in (0, 2) where it is false at κ = {}", line.kappa);
         evidence = evidence.number(name, share);
-        for part in line.parts().filter(differs) {
-            let Part { low, high, switch_count, reversals } = part;
+        for Span { low, high, switch_count, reversals } in line.spans().filter(differs) {
             let name = format!("κ = {}, ψ from {low:.6} to {high:.6}", line.kappa);
             evidence =
                 evidence.text(name, format!("{switch_count} switches, {reversals} reversals"));
@@ -71,12 +61,15 @@ pub fn reversals(subject: &Subject) -> Result<Finding, Stop> {
     }
     let [printed, read] = shares;
     let explanation = format!(
-        "Reversals and switches were counted between all boundaries, which were {}: both numbers change nowhere else. Half the \
-         switches are not the reversals in {:.2} % of ψ from 0 to 2 at κ = 18, in {:.2} % at 18/α = 63. In {more} of the {} \
-         intervals in which this is so there are more reversals: a spring that sticks turns the motion round and back without a switch.",
+        "Reversals and switches were counted between all boundaries, which were {}: both numbers \
+         change nowhere else. Half the number of switches is not the number of reversals in {:.2} % \
+         of ψ from 0 to 2 at κ = {STIFFNESS}, and in {:.2} % at {STIFFNESS}/α = {}. In {more} of the \
+         {} intervals in which this is so there are more reversals: a spring that sticks turns the \
+         motion round and back without a switch.",
         lines[0].method,
         100.0 * printed,
         100.0 * read,
+        lines[1].kappa,
         intervals.len()
     );
     Ok(Finding::new(Verdict::of(printed.max(read) == 0.0), evidence, explanation))
@@ -90,33 +83,29 @@ pub fn rises(subject: &Subject) -> Result<Finding, Stop> {
     for (line, holds) in lines.into_iter().zip(&mut true_at) {
         let Rises { number, by_two, share } = Rises::of(line);
         evidence = evidence
-            .text(format!("switches as ψ falls at κ = {}", line.kappa), line.falling_text())
+            .text(format!("switches as ψ falls at κ = {}", line.kappa), line.falling())
             .count(format!("rises after the maximum at κ = {}", line.kappa), number)
             .number(format!("part of ψ below the maximum on a rise, {}", line.kappa), share);
         *holds = number > 0 && by_two && share < 0.5;
     }
     let explanation = format!(
-        "A stretch is on a rise if it has more switches than one at a larger ψ below the first maximum; rises are brief if they take \
-         less than half of ψ there. At 18 the sequence is {}, at 18/α {}.",
-        lines[0].falling_text(),
-        lines[1].falling_text()
+        "A stretch is on a rise if it has more switches than one at a larger ψ below the first \
+         maximum. Rises are brief if they take less than half of ψ there. At {STIFFNESS} the sequence \
+         is {}, and at {STIFFNESS}/α it is {}.",
+        lines[0].falling(),
+        lines[1].falling()
     );
     Ok(match true_at {
-        [true, true] => Finding::new(Verdict::Holds, evidence, explanation),
-        [false, true] => {
-            let condition = "if the figures' κ is α times that of (24)".to_owned();
-            Finding::under(condition, evidence, explanation)
-        }
-        [true, false] => Finding::under("at κ = 18".to_owned(), evidence, explanation),
-        [false, false] => Finding::new(Verdict::DoesNotHold, evidence, explanation),
+        [true, false] => Finding::under(format!("at κ = {STIFFNESS}"), evidence, explanation),
+        both => Finding::by_reading(both, evidence, explanation),
     })
 }
 
-/// What the count does below its first maximum as ψ falls.
+/// The rises of the count below its first maximum as ψ falls.
 struct Rises {
     number: usize,
     by_two: bool,
-    /// Part of ψ on a rise.
+    /// The part of ψ on a rise.
     share: f64,
 }
 
@@ -154,7 +143,7 @@ pub fn decompression(subject: &Subject) -> Result<Finding, Stop> {
     };
     let falling: Vec<_> = read.stretches.iter().rev().collect();
     let counts: Vec<_> = falling.iter().map(|stretch| stretch.switch_count).collect();
-    let [_, b, c, d, e, ..] = falling.as_slice() else {
+    let [_, b, c, d, e, ..] = falling[..] else {
         let reason = format!("at κ = {kappa} the counts are {counts:?}: there is no e");
         return Err(Stop::Open(reason));
     };
@@ -162,7 +151,7 @@ pub fn decompression(subject: &Subject) -> Result<Finding, Stop> {
         let reason = format!("at κ = {kappa} the counts are {counts:?}, not those of the figure");
         return Err(Stop::Open(reason));
     }
-    let before = |psi| Ok(first(psi)? < middle);
+    let before = |psi| Ok::<_, StudyError>(first(psi)? < middle);
     let (low, high) = (e.low * (1.0 + 1e-9), b.high * (1.0 - 1e-9));
     let passes = if before(low)? && !before(high)? { change(low, high, before)? } else { low };
     let samples: Vec<f64> =
@@ -182,9 +171,10 @@ pub fn decompression(subject: &Subject) -> Result<Finding, Stop> {
         .count("of 1000 ψ in b, c, d, those with a first switch before", early)
         .number("part of e in which the first switch comes before", early_part);
     let explanation = format!(
-        "At κ = 18/α the first switch passes the largest compression, t = {middle:.4}, at ψ = {passes:.9}. The regions with 2, 4 and 6 \
-         switches reach down to ψ = {:.6}, {} that. In the one with 8, down to ψ = {:.6}, the first switch comes before in {:.1} % of \
-         ψ, at t = {earliest:.4} at its lower end.",
+        "At κ = {STIFFNESS}/α the first switch passes the largest compression, t = {middle:.4}, at ψ = \
+         {passes:.9}. The regions with 2, 4 and 6 switches reach down to ψ = {:.6}, {} that. In the \
+         region with 8, down to ψ = {:.6}, the first switch comes before in {:.1} % of ψ, and at its \
+         lower end at t = {earliest:.4}.",
         d.low,
         if passes <= d.low { "above" } else { "below" },
         e.low,
@@ -220,9 +210,9 @@ pub fn signs(subject: &Subject) -> Result<Finding, Stop> {
         .count("random collisions with damping", TRIED / 5)
         .count("of them with the other sign (damped)", damped);
     let explanation = format!(
-        "{undamped} of {TRIED} random collisions without damping and {damped} of {} with a from 0.001 to 1 have the other sign. Nothing \
-         else is possible where reversals are the changes of sign of the velocity; they are counted phase by phase, the sign is that at \
-         the end.",
+        "{undamped} of {TRIED} random collisions without damping and {damped} of {} with a from 0.001 \
+         to 1 have the other sign. Nothing else is possible where reversals are the changes of sign \
+         of the velocity. They are counted phase by phase; the sign is that at the end.",
         TRIED / 5
     );
     Ok(Finding::new(Verdict::of(undamped + damped == 0), evidence, explanation))
@@ -247,7 +237,8 @@ pub fn small_ratio(subject: &Subject) -> Result<Finding, Stop> {
         evidence = evidence.count(name, here);
         let beyond = 0.5 * (mark(n + 1) + mark(n + 2));
         if count(beyond)? != here {
-            let place = change(middle, beyond, |kappa| Ok(count(kappa)? == here))?;
+            let same = |kappa| Ok::<_, StudyError>(count(kappa)? == here);
+            let place = change(middle, beyond, same)?;
             changes += 1;
             farthest = farthest.max((place / mark(n + 1) - 1.0).abs());
         }
@@ -257,8 +248,8 @@ pub fn small_ratio(subject: &Subject) -> Result<Finding, Stop> {
         .number("largest relative distance of a change from κ_n", farthest);
     let text = counts.iter().map(usize::to_string).collect::<Vec<_>>().join(" ");
     let explanation = format!(
-        "At ψ = {PSI:e} the counts between κ = 0 and the first {INTERVALS} of κ_n = (nπ/(2t_c))² are {text}; their {changes} \
-         changes were bisected, and lie within {farthest:.1e} of κ_n."
+        "At ψ = {PSI:e} the counts between κ = 0 and the first {INTERVALS} of κ_n = (nπ/(2t_c))² are \
+         {text}. Their {changes} changes were bisected, and lie within {farthest:.1e} of κ_n."
     );
     let two: Vec<_> =
         (0..).zip(&counts).filter(|(_, count)| **count == 2).map(|(n, _)| n).collect();

@@ -5,25 +5,23 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use stickslip_model::{Collision, Regime};
 
 use super::sampling::{each, geometric};
-use super::search::maximum;
 use super::statement::{Evidence, Finding, Stop, Verdict};
 use super::subject::Subject;
 use crate::error::StudyError;
-use crate::paper::{self, ALPHA, Reading, STIFFNESS, ratio};
+use crate::paper::{RATIO_6, Reading, STIFFNESS, STIFFNESS_6, psi, ratio};
+use crate::search::maximum;
 
-/// 19: Fig. 6.
+/// 19: the course of Fig. 6.
 pub fn figure_6(subject: &Subject) -> Result<Finding, Stop> {
-    const RATIO: f64 = 0.3;
-    const KAPPA: f64 = 100.0;
     /// What counts as many, and as shortly after 1.
     const MANY: usize = 5;
     const SHORTLY: f64 = 1.1;
-    let psi = paper::psi(RATIO);
+    let kappas = Reading::kappas(STIFFNESS_6);
     let mut evidence = Evidence::default();
     let mut matches = [false; 2];
     let mut sentences = Vec::new();
-    for (kappa, matches) in [KAPPA, KAPPA / ALPHA].into_iter().zip(&mut matches) {
-        let collision = subject.collide(kappa, psi, 0.0)?;
+    for (kappa, matches) in kappas.into_iter().zip(&mut matches) {
+        let collision = subject.collide(kappa, psi(RATIO_6), 0.0)?;
         let sliding = collision.itinerary().bytes().filter(|&phase| phase != b'o').count();
         let minimum = first_minimum(&collision).unwrap_or(f64::NAN);
         let switches = collision.switches.len();
@@ -33,27 +31,21 @@ pub fn figure_6(subject: &Subject) -> Result<Finding, Stop> {
             .number(format!("time of the first minimum of the velocity at {kappa}"), minimum);
         *matches = sliding >= MANY && minimum > 1.0 && minimum < SHORTLY;
         sentences.push(format!(
-            "At κ = {kappa} there are {switches} switches, {sliding} sliding episodes, and the velocity has its first minimum at \
-             t = {minimum:.4}. "
+            "At κ = {kappa} there are {switches} switches, {sliding} sliding episodes, and the \
+             velocity has its first minimum at t = {minimum:.4}. "
         ));
     }
     let explanation = format!(
-        "{}Many is taken as {MANY} episodes or more, shortly after 1 as up to {SHORTLY}; at 100/α = 350 the figure's axis is \
-         read as ακ.",
-        sentences.concat()
+        "{}Many is taken as {MANY} episodes or more, and shortly after 1 as up to {SHORTLY}. At \
+         {STIFFNESS_6}/α = {} the axis of the figure is read as ακ.",
+        sentences.concat(),
+        kappas[1]
     );
-    Ok(match matches {
-        [true, _] => Finding::new(Verdict::Holds, evidence, explanation),
-        [false, true] => {
-            let condition = "if the figure's κ is α times that of (24)".to_owned();
-            Finding::under(condition, evidence, explanation)
-        }
-        _ => Finding::new(Verdict::DoesNotHold, evidence, explanation),
-    })
+    Ok(Finding::by_reading(matches, evidence, explanation))
 }
 
-/// The first moment at which the tangential force turns from braking to driving: y falls through 0,
-/// which it can while sticking only.
+/// The first moment at which the tangential force turns from braking to driving. There y falls
+/// through 0, which is possible only while sticking.
 fn first_minimum(collision: &Collision) -> Option<f64> {
     let omega = collision.contact.kappa().sqrt();
     collision.switches.windows(2).find_map(|pair| {
@@ -73,7 +65,7 @@ pub fn first_elongation(subject: &Subject) -> Result<Finding, Stop> {
     let mut evidence = Evidence::default();
     let mut places = Vec::new();
     let mut exceptions = 0;
-    for kappa in Reading::ALL.map(|reading| reading.kappa(STIFFNESS)) {
+    for kappa in Reading::kappas(STIFFNESS) {
         let force = |psi: f64| -> Result<f64, StudyError> {
             let collision = subject.collide(kappa, psi, 0.0)?;
             Ok(collision.switches.first().map_or(0.0, |first| kappa * first.spring.abs()))
@@ -82,7 +74,7 @@ pub fn first_elongation(subject: &Subject) -> Result<Finding, Stop> {
         let peak = maximum(&samples, force)?;
         let forces = each(&samples, |&psi| force(psi))?;
         let grows = |i: usize| forces[i] >= forces[i + 1];
-        // A pair of samples that straddles the peak may do either.
+        // Two samples on both sides of the peak may do either.
         let expected = |i: usize| match (samples[i] >= peak.at, samples[i + 1] <= peak.at) {
             (true, _) => grows(i),
             (_, true) => !grows(i),
@@ -100,9 +92,10 @@ pub fn first_elongation(subject: &Subject) -> Result<Finding, Stop> {
     let lowest = places.iter().copied().fold(f64::INFINITY, f64::min);
     let highest = places.iter().copied().fold(0.0, f64::max);
     let explanation = format!(
-        "As ψ falls, the elongation at the first switch grows down to ψ = {:.7} at κ = 18 and {:.7} at 18/α, where the first \
-         switch comes at the largest compression, and shrinks below: of {SAMPLES} ψ from {LOWEST} to {HIGHEST} at each, {exceptions} \
-         neighbours say otherwise.",
+        "As ψ falls, the elongation at the first switch grows down to ψ = {:.7} at κ = {STIFFNESS} and \
+         {:.7} at {STIFFNESS}/α, where the first switch comes at the largest compression, and shrinks \
+         below. Of {SAMPLES} ψ from {LOWEST} to {HIGHEST} at each κ, {exceptions} neighbours say \
+         otherwise.",
         places[0], places[1]
     );
     if exceptions > 0 {

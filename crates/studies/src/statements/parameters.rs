@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 use stickslip_model::regularized::{END, OTHER_SIDE, Phase, Progress};
-use stickslip_model::{Material, Pair, Regime, Side, Surface, regularized};
+use stickslip_model::{CollisionError, Material, Pair, Regime, Side, Surface, regularized};
 use stickslip_solver::{
     Direction, Dop853, Guard, HybridSystem, Options, Outcome, Start, State, run,
 };
@@ -11,9 +11,9 @@ use super::sampling::{each, random};
 use super::spring::Spring;
 use super::statement::{Evidence, Finding, Stop, Verdict};
 use super::subject::Subject;
-use crate::error::StudyError;
+use crate::error::{CollisionFailure, StudyError};
 
-/// 2: three independent parameters, which are κ, g_t/g_n and μ/α.
+/// 2: three independent parameters; these are κ, g_t/g_n and μ/α.
 pub fn three(subject: &Subject) -> Result<Finding, Stop> {
     const CLOSE: f64 = 1e-9;
     let mut draw = Rng::with_seed(2);
@@ -25,7 +25,7 @@ pub fn three(subject: &Subject) -> Result<Finding, Stop> {
     let differences = each(&cases, |&[kappa, psi, friction]| {
         let reference = subject.collide(kappa, psi, 0.0)?.eps_t();
         let system = ThreeParameters { spring: subject.spring, kappa, friction };
-        Ok((system.eps_t(psi * friction)? - reference).abs() * psi)
+        Ok((system.eps_t(psi)? - reference).abs() * psi)
     })?;
     let largest = differences.into_iter().fold(0.0, f64::max);
 
@@ -34,7 +34,7 @@ pub fn three(subject: &Subject) -> Result<Finding, Stop> {
         let (target_kappa, target_psi) = scaled_back(&mut draw, kappa, psi)?;
         in_si = in_si.max((target_kappa / kappa - 1.0).abs()).max((target_psi / psi - 1.0).abs());
     }
-    // Neither of the two can be spared.
+    // Both of them are needed.
     let spread = |cases: &[[f64; 3]]| -> Result<f64, StudyError> {
         let eps_t = each(cases, |&[k, p, _]| Ok(subject.collide(k, p, 0.0)?.eps_t()))?;
         let [low, high] = eps_t
@@ -51,10 +51,11 @@ pub fn three(subject: &Subject) -> Result<Finding, Stop> {
         .number("spread of ε_t over κ at ψ = 0.5", over_kappa)
         .number("spread of ε_t over ψ at κ = 5", over_psi);
     let explanation = format!(
-        "The scaled equations with κ, g_t/g_n and μ/α were integrated for {} random triples, and differ in w at the end, in \
-         units of μ/α, by {largest:.1e} at most from those with κ and ψ = (g_t/g_n) α/μ alone: spring and velocity \
-         may be measured in units of μ/α. Two parameters suffice if that is below {CLOSE:e}; both are needed, since ε_t varies \
-         by {over_kappa:.2} with κ and by {over_psi:.2} with ψ. Damping adds one.",
+        "The scaled equations with κ, g_t/g_n and μ/α were integrated for {} random triples. Their w at \
+         the end, in units of μ/α, differs by {largest:.1e} at most from that with κ and ψ = (g_t/g_n) \
+         α/μ alone: spring and velocity may be measured in units of μ/α. Two parameters suffice if \
+         this difference is below {CLOSE:e}. Both are needed, since ε_t varies by {over_kappa:.2} with \
+         κ and by {over_psi:.2} with ψ. Damping adds one.",
         cases.len()
     );
     let two = largest < CLOSE && in_si < CLOSE && over_kappa.min(over_psi) > 0.01;
@@ -91,20 +92,25 @@ struct ThreeParameters {
     friction: f64,
 }
 
-/// u, v, y, w in the coordinates of `regularized`.
+/// The number of components: u, v, y, w in the coordinates of `regularized`.
 const STATE: usize = 4;
 
 impl ThreeParameters {
-    fn eps_t(&self, ratio: f64) -> Result<f64, StudyError> {
+    fn eps_t(&self, psi: f64) -> Result<f64, StudyError> {
+        let (kappa, ratio) = (self.kappa, psi * self.friction);
         let size = ratio.min(1.0) * 1e-14;
         let options = Options { rtol: 1e-14, atol: size, max_step: 0.1, ..Options::default() };
         let (regime, side, progress) = (Regime::Slip, Side::Positive, Progress::Touched);
         let mode = Phase { regime, side, progress };
         let start = Start { mode, s: 0.0, state: State::from([0.0, 1.0, 0.0, ratio]) };
-        let end = run(Dop853, self, start, f64::INFINITY, &options, &mut ())?;
+        let end = run(Dop853, self, start, f64::INFINITY, &options, &mut ());
+        let end = end.map_err(|error| {
+            let source = CollisionError::from(error).into();
+            CollisionFailure { kappa, psi, damping: 0.0, source }
+        })?;
         match end.outcome {
             Outcome::EndedByGuard { guard: END } => Ok(end.state[3] / ratio),
-            outcome => Err(StudyError::Unended { outcome }),
+            outcome => Err(StudyError::Unended { kappa, psi, outcome }),
         }
     }
 }

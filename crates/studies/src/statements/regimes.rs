@@ -7,7 +7,7 @@ use super::statement::{Evidence, Finding, Stop, Verdict};
 use super::subject::Subject;
 use crate::error::StudyError;
 
-/// Random collisions of a search.
+/// The number of random collisions that are tried.
 const TRIED: usize = 10_000;
 
 /// 3: the contact starts with sliding.
@@ -30,9 +30,9 @@ pub fn start(subject: &Subject) -> Result<Finding, Stop> {
         .count("of them with the spring above the limit at first (damped)", damped)
         .count("integrated so (damped)", damped_found);
     let explanation = format!(
-        "As t falls to 0, the spring's pull κψ t was compared with the limit t^(3/2) + a t^(1/2): its share of the limit grows \
-         without end in {undamped} of {TRIED} random collisions without damping, and vanishes in {} of {TRIED} with a from 0.001 to 1, \
-         which start with the spring.",
+        "As t falls to 0, the spring's pull κψ t was compared with the limit t^(3/2) + a t^(1/2). Its \
+         share of the limit grows without end in {undamped} of {TRIED} random collisions without \
+         damping. It vanishes in {} of {TRIED} with a from 0.001 to 1, which start with the spring.",
         TRIED - damped
     );
     if undamped != undamped_found || damped != damped_found {
@@ -66,8 +66,9 @@ pub fn end(subject: &Subject) -> Result<Finding, Stop> {
         .count("of them ending with the spring", sticking)
         .number("shortest last sliding, scaled time", shortest);
     let explanation = format!(
-        "{sticking} of {TRIED} random collisions end with the spring. The limit falls to 0 at the end, so that only a spring which is \
-         at rest with no elongation, as with g_t = 0, stays below it; the shortest last sliding took {shortest:.1e}."
+        "{sticking} of {TRIED} random collisions end with the spring. The limit falls to 0 at the end. \
+         Only a spring at rest with no elongation, as with g_t = 0, stays below it. The shortest last \
+         sliding took {shortest:.1e}."
     );
     Ok(Finding::new(Verdict::of(sticking == 0), evidence, explanation))
 }
@@ -87,8 +88,9 @@ pub fn parity(subject: &Subject) -> Result<Finding, Stop> {
         .count("random collisions with damping", TRIED)
         .count("of them with an odd number of switches (damped)", damped);
     let explanation = format!(
-        "{undamped} of {TRIED} random collisions without damping and {damped} of {TRIED} with a from 0.001 to 1 have an odd number of \
-         switches: with damping the contact starts with the spring and ends with sliding."
+        "{undamped} of {TRIED} random collisions without damping and {damped} of {TRIED} with a from \
+         0.001 to 1 have an odd number of switches: with damping the contact starts with the spring \
+         and ends with sliding."
     );
     Ok(match (undamped, damped) {
         (0, 0) => Finding::new(Verdict::Holds, evidence, explanation),
@@ -116,9 +118,10 @@ pub fn damped_end(subject: &Subject) -> Result<Finding, Stop> {
         .number("shortest last sliding, scaled time", shortest)
         .number("slowest fall of the limit force at the end, scaled", slowest);
     let explanation = format!(
-        "{sticking} of {} random collisions with a from 0.001 to 1 end with the spring. The limit falls to 0 at a finite rate (x^(1/2) \
-         |v|, {slowest:.1e} at least), so that the spring would have to come to elongation 0 at that very moment: this happens on \
-         curves in the plane of κ and ψ only, which random collisions do not meet.",
+        "{sticking} of {} random collisions with a from 0.001 to 1 end with the spring. The limit falls \
+         to 0 at a finite rate (x^(1/2) |v|, {slowest:.1e} at least), so that the spring would have to \
+         come to elongation 0 at that very moment. This happens only on curves in the plane of κ and \
+         ψ, which random collisions do not meet.",
         tried.len()
     );
     Ok(Finding::new(Verdict::of(sticking > 0), evidence, explanation))
@@ -143,9 +146,9 @@ pub fn damping(subject: &Subject) -> Result<Finding, Stop> {
         .count("of them whose numbers of switches differ by an odd number", parities)
         .number("largest change of w at the end", largest);
     let explanation = format!(
-        "With a = {SMALL:e} in place of 0, {starts} of {} random collisions start in another regime and {parities} have a number of \
-         switches that differs by an odd number, while w changes by {largest:.1e} at most: quantities change little, but how the \
-         contact starts is another.",
+        "With a = {SMALL:e} instead of 0, {starts} of {} random collisions start in another regime and \
+         {parities} have a number of switches that differs by an odd number, while w changes by \
+         {largest:.1e} at most. Quantities change little, but the contact starts in another way.",
         tried.len()
     );
     Ok(Finding::new(Verdict::of(starts + parities == 0), evidence, explanation))
@@ -176,8 +179,9 @@ pub fn energy(subject: &Subject) -> Result<Finding, Stop> {
         .number("smallest part of the energy taken by sliding", least)
         .number("largest part of the energy taken by sliding", largest(2));
     let explanation = format!(
-        "In {TRIED} random collisions kinetic energy and spring together change by {sticking:.1e} of the energy at impact at most \
-         while the spring acts, and what sliding takes explains the loss to {unbalanced:.1e}; both count as nothing up to {CLOSE:e}."
+        "In {TRIED} random collisions kinetic energy and spring together change by at most \
+         {sticking:.1e} of the energy at impact while the spring acts. What sliding takes explains the \
+         loss to {unbalanced:.1e}. Both count as nothing up to {CLOSE:e}."
     );
     Ok(Finding::new(Verdict::of(sticking.max(unbalanced) < CLOSE), evidence, explanation))
 }

@@ -2,73 +2,106 @@
 
 use serde_json::{Value, json};
 
-use super::{Audit, Statement};
+use super::Audit;
+use super::spring::Spring;
+use super::statement::{Statement, Verdict};
 use crate::study::{Cell, Column, Study, Table};
 
 /// The name of the layout of the JSON, with its version.
 pub const SCHEMA: &str = "stickslip.audit/1";
+/// The title of the study.
+pub const TITLE: &str = "Statements of the paper";
+
+const VERDICTS: [Column; 7] = [
+    Column::headed("number", "#", "number of the statement"),
+    Column::headed("statement", "statement", "the statement in other words"),
+    Column::headed("place", "in the paper", "place of the statement in the paper"),
+    Column::headed("verdict", "verdict", "whether the statement is true"),
+    Column::headed("condition", "condition", "the condition under which it is true"),
+    Column::headed("explanation", "explanation", "the reason for the verdict"),
+    Column::headed("command", "command", "the command that tests this statement alone"),
+];
+
+const EVIDENCE: [Column; 3] = [
+    Column::headed("number", "#", "number of the statement"),
+    Column::headed("name", "evidence", "name of the value"),
+    Column::headed("value", "value", "the value, in scaled units where no others are named"),
+];
 
 impl Audit {
+    /// The number of statements with a verdict.
+    #[must_use]
+    pub fn count(&self, verdict: Verdict) -> usize {
+        self.statements.iter().filter(|statement| statement.finding.verdict == verdict).count()
+    }
+
     /// The tables `audit` and `audit_evidence`, and all of it as JSON.
     #[must_use]
     pub fn study(&self) -> Study {
         let verdicts = self.statements.iter().map(|statement| {
             let Statement { number, paraphrase, place, finding } = statement;
             vec![
-                Cell::Count(u64::from(*number)),
-                Cell::Text((*paraphrase).to_owned()),
-                Cell::Text((*place).to_owned()),
-                Cell::Text(finding.verdict.to_string()),
-                Cell::Text(finding.condition.clone().unwrap_or_default()),
-                Cell::Text(finding.explanation.clone()),
-                Cell::Text(statement.command()),
+                usize::from(*number).into(),
+                (*paraphrase).into(),
+                (*place).into(),
+                finding.verdict.to_string().into(),
+                finding.condition.clone().unwrap_or_default().into(),
+                finding.explanation.clone().into(),
+                statement.command().into(),
             ]
         });
-        let evidence = self.statements.iter().flat_map(|statement| {
-            let number = Cell::Count(u64::from(statement.number));
-            let row = move |(name, value): &(String, Cell)| {
-                vec![number.clone(), Cell::Text(name.clone()), value.clone()]
+        let evidence = self.statements.iter().flat_map(|Statement { number, finding, .. }| {
+            let row = |(name, value): &(String, Cell)| {
+                vec![usize::from(*number).into(), name.as_str().into(), value.clone()]
             };
-            statement.finding.evidence.iter().map(row)
+            finding.evidence.iter().map(row)
         });
-        let column = |(name, meaning)| Column { name, meaning };
         Study {
             name: "audit",
-            title: "Statements of the paper",
+            title: TITLE,
+            headlines: vec![self.headline()],
             findings: self.statements.iter().map(Statement::sentence).collect(),
             json: self.json(),
             tables: vec![
                 Table {
                     name: "audit",
                     title: "Verdicts".to_owned(),
-                    columns: [
-                        ("number", "of the statement"),
-                        ("statement", "what it says"),
-                        ("place", "where in the paper"),
-                        ("verdict", "whether it is true"),
-                        ("condition", "under which it is"),
-                        ("explanation", "why"),
-                        ("command", "that tests it alone"),
-                    ]
-                    .map(column)
-                    .to_vec(),
+                    columns: VERDICTS.to_vec(),
                     rows: verdicts.collect(),
                 },
                 Table {
                     name: "audit_evidence",
                     title: "Numbers from which the verdicts follow".to_owned(),
-                    columns: [
-                        ("number", "of the statement"),
-                        ("name", "of the value"),
-                        ("value", "in scaled units where no others are named"),
-                    ]
-                    .map(column)
-                    .to_vec(),
+                    columns: EVIDENCE.to_vec(),
                     rows: evidence.collect(),
                 },
             ],
             pictures: Vec::new(),
         }
+    }
+
+    /// The numbers of statements with each verdict.
+    fn headline(&self) -> String {
+        let verdicts = [
+            (Verdict::Holds, "holds", "hold"),
+            (Verdict::HoldsWithACondition, "holds under a condition", "hold under a condition"),
+            (Verdict::DoesNotHold, "does not hold", "do not hold"),
+            (Verdict::CannotBeDecided, "cannot be decided", "cannot be decided"),
+        ];
+        let parts = verdicts.map(|(verdict, one, several)| match self.count(verdict) {
+            1 => format!("1 {one}"),
+            count => format!("{count} {several}"),
+        });
+        let found = verdicts.iter().zip(parts).filter(|(verdict, _)| self.count(verdict.0) > 0);
+        let mut parts: Vec<_> = found.map(|(_, part)| part).collect();
+        let last = parts.pop().unwrap_or_default();
+        let and = if parts.is_empty() { "" } else { " and " };
+        let of = match self.spring {
+            Spring::Reset => "Of",
+            Spring::Unreset => "With a spring that is not reset while sliding, of",
+        };
+        let count = self.statements.len();
+        format!("{of} {count} statements of the paper {}{and}{last}.", parts.join(", "))
     }
 
     fn json(&self) -> Value {
@@ -77,7 +110,7 @@ impl Audit {
             let evidence = finding
                 .evidence
                 .iter()
-                .map(|(name, value)| json!({ "name": name, "value": value.json() }));
+                .map(|(name, value)| json!({ "name": name, "value": value }));
             json!({
                 "number": number,
                 "statement": paraphrase,
@@ -107,8 +140,8 @@ impl Statement {
         }
     }
 
-    /// Number, statement and verdict in a line.
+    /// The number, the statement and the verdict in a line.
     fn sentence(&self) -> String {
-        format!("{} {} {}", self.number, self.paraphrase, self.verdict())
+        format!("Statement {}: {} Verdict: {}.", self.number, self.paraphrase, self.verdict())
     }
 }

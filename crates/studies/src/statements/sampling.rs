@@ -1,14 +1,14 @@
-//! Which collisions are tried, and how: at random, along a line, one by one in parallel.
+//! Which collisions are tried, and how: at random, along a line, in parallel.
 
 use fastrand::Rng;
 use rayon::prelude::*;
 
 use crate::error::StudyError;
 
-/// `of` each of `inputs`, in their order; in parallel.
+/// `of` each of `inputs`, in their order, on the threads of the current pool.
 ///
 /// # Errors
-/// The first in that order.
+/// The first error in that order, whatever the number of threads.
 pub fn each<T: Sync, U: Send>(
     inputs: &[T],
     of: impl Fn(&T) -> Result<U, StudyError> + Send + Sync,
@@ -17,8 +17,8 @@ pub fn each<T: Sync, U: Send>(
     results.into_iter().collect()
 }
 
-/// Random collisions [κ, ψ, a]: κ from 0.05 to 1000 and, if damped, a from 0.001 to 1, evenly in the
-/// logarithm; ψ from 0.01 to 3.
+/// Random collisions [κ, ψ, a]: κ from 0.05 to 1000 and, if damped, a from 0.001 to 1, evenly in
+/// the logarithm; ψ from 0.01 to 3.
 pub fn random(count: usize, seed: u64, damped: bool) -> Vec<[f64; 3]> {
     let mut random = Rng::with_seed(seed);
     let mut draw = || {

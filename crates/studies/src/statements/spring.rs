@@ -1,6 +1,6 @@
-//! Models of the spring, and the collisions that they make.
+//! Models of the spring, and the collisions with each.
 
-use stickslip_model::{Collider, Collision, Contact, Engine, largest};
+use stickslip_model::{Collider, Collision, Contact, Engine, EngineError, largest};
 
 use super::unreset;
 use crate::error::{CollisionFailure, StudyError};
@@ -8,9 +8,9 @@ use crate::error::{CollisionFailure, StudyError};
 /// A model of the spring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spring {
-    /// The paper's: reset to the limit as long as that is active.
+    /// The paper's model: the spring is reset to the limit as long as that is active.
     Reset,
-    /// Never reset.
+    /// The spring is never reset.
     Unreset,
 }
 
@@ -25,39 +25,52 @@ impl Spring {
     }
 
     /// The collision, by the exact solution where there is one.
+    ///
+    /// # Errors
+    /// [`StudyError`]: the collision cannot be computed.
     pub fn collide(self, kappa: f64, psi: f64, damping: f64) -> Result<Collision, StudyError> {
         let contact = Contact::new(kappa, psi, damping)?;
         match self {
             Self::Reset => {
-                let collided = Engine::Auto.collide(contact);
-                let failed = |source| CollisionFailure::new(&contact, source);
-                Ok(collided.map(|(collision, _)| collision).map_err(failed)?)
+                let collided = Engine::Auto.collide(contact).map(|(collision, _)| collision);
+                computed(&contact, collided)
             }
             Self::Unreset => self.integrate(kappa, psi, damping),
         }
     }
 
     /// The collision, integrated.
+    ///
+    /// # Errors
+    /// [`StudyError`]: the collision cannot be computed.
     pub fn integrate(self, kappa: f64, psi: f64, damping: f64) -> Result<Collision, StudyError> {
         let contact = Contact::new(kappa, psi, damping)?;
-        let collision = match self {
-            Self::Reset => Collider::default().collide(contact),
-            Self::Unreset => unreset::collide(contact).map(|unreset| unreset.collision),
-        };
-        Ok(collision.map_err(|source| CollisionFailure::new(&contact, source))?)
+        match self {
+            Self::Reset => computed(&contact, Collider::default().collide(contact)),
+            Self::Unreset => Ok(computed(&contact, unreset::collide(contact))?.collision),
+        }
     }
 
     /// The largest elongation of the spring without damping.
+    ///
+    /// # Errors
+    /// [`StudyError`]: the collision cannot be computed.
     pub fn largest_elongation(self, kappa: f64, psi: f64) -> Result<f64, StudyError> {
         match self {
             Self::Reset => largest::spring(&self.collide(kappa, psi, 0.0)?)
-                .ok_or(StudyError::NoSpring { kappa, psi }),
+                .ok_or(StudyError::NoElongation { kappa, psi }),
             Self::Unreset => {
                 let contact = Contact::new(kappa, psi, 0.0)?;
-                let collided = unreset::collide(contact);
-                let failed = |source| CollisionFailure::new(&contact, source);
-                Ok(collided.map(|unreset| unreset.largest_spring).map_err(failed)?)
+                Ok(computed(&contact, unreset::collide(contact))?.largest_spring)
             }
         }
     }
+}
+
+/// `result`, with its contact named if it is a failure.
+fn computed<T>(
+    contact: &Contact,
+    result: Result<T, impl Into<EngineError>>,
+) -> Result<T, StudyError> {
+    Ok(result.map_err(|source| CollisionFailure::new(contact, source))?)
 }

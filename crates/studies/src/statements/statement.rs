@@ -1,4 +1,4 @@
-//! A statement of the paper and what was found of it.
+//! A statement of the paper, and what was found of it.
 
 use std::fmt;
 use std::sync::Arc;
@@ -9,22 +9,22 @@ use crate::study::Cell;
 /// A statement of the paper, tested.
 #[derive(Debug)]
 pub struct Statement {
-    /// From 1.
+    /// The number of the statement, from 1.
     pub number: u8,
-    /// What it says, in other words.
+    /// The statement in other words.
     pub paraphrase: &'static str,
-    /// Where it stands in the paper.
+    /// The place of the statement in the paper.
     pub place: &'static str,
-    /// What was found.
+    /// What was found of it.
     pub finding: Finding,
 }
 
 /// What was found of a statement.
 #[derive(Debug)]
 pub struct Finding {
-    /// Whether it is true, by the rule that the explanation names.
+    /// Whether the statement is true, by the rule that the explanation names.
     pub verdict: Verdict,
-    /// Under which condition, if it holds under one.
+    /// The condition under which it holds, if there is one.
     pub condition: Option<String>,
     /// The numbers from which the verdict follows.
     pub evidence: Evidence,
@@ -35,22 +35,22 @@ pub struct Finding {
 /// Whether a statement is true.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// It is true.
+    /// The statement is true.
     Holds,
-    /// It is true under a condition.
+    /// The statement is true under a condition.
     HoldsWithACondition,
-    /// It is not true.
+    /// The statement is not true.
     DoesNotHold,
-    /// The numbers leave it open.
+    /// The numbers leave the statement open.
     CannotBeDecided,
 }
 
-/// Why there is no finding.
+/// Why a test ends early.
 #[derive(Clone, Debug)]
 pub enum Stop {
-    /// A collision cannot be computed.
+    /// A collision cannot be computed. This is an error of the audit.
     Failed(Arc<StudyError>),
-    /// The numbers leave it open, and how.
+    /// The numbers leave the statement open, for this reason. This is a verdict.
     Open(String),
 }
 
@@ -59,7 +59,7 @@ pub enum Stop {
 pub struct Evidence(Vec<(String, Cell)>);
 
 impl Statement {
-    /// The command that tests it alone.
+    /// The command that tests this statement alone.
     #[must_use]
     pub fn command(&self) -> String {
         format!("stickslip reproduce --statement {}", self.number)
@@ -73,22 +73,33 @@ impl Finding {
         Self { verdict, condition: None, evidence, explanation }
     }
 
-    /// One that holds under `condition`.
+    /// The finding that a statement holds under `condition`.
     #[must_use]
     pub fn under(condition: String, evidence: Evidence, explanation: String) -> Self {
         let verdict = Verdict::HoldsWithACondition;
         Self { verdict, condition: Some(condition), evidence, explanation }
     }
 
-    /// One that is open, and why.
-    #[must_use]
-    pub fn open(reason: String) -> Self {
-        Self::new(Verdict::CannotBeDecided, Evidence::default(), reason)
+    /// The finding of a statement that is true or not in both readings of the axis of stiffness:
+    /// as κ of (24), and as ακ.
+    pub(super) fn by_reading(
+        [printed, axis]: [bool; 2],
+        evidence: Evidence,
+        explanation: String,
+    ) -> Self {
+        match (printed, axis) {
+            (true, _) => Self::new(Verdict::Holds, evidence, explanation),
+            (false, true) => {
+                let condition = "if the figures' κ is α times that of (24)".to_owned();
+                Self::under(condition, evidence, explanation)
+            }
+            (false, false) => Self::new(Verdict::DoesNotHold, evidence, explanation),
+        }
     }
 }
 
 impl Verdict {
-    /// That of a statement which is true or not.
+    /// The verdict on a statement that is either true or not.
     #[must_use]
     pub fn of(holds: bool) -> Self {
         if holds { Self::Holds } else { Self::DoesNotHold }
@@ -106,6 +117,24 @@ impl fmt::Display for Verdict {
     }
 }
 
+impl Stop {
+    /// The finding of a test, which a reason to leave the statement open is too.
+    ///
+    /// # Errors
+    /// [`StudyError`]: a collision cannot be computed.
+    pub fn into_finding(tested: Result<Finding, Self>) -> Result<Finding, StudyError> {
+        match tested {
+            Ok(finding) => Ok(finding),
+            Err(Self::Open(reason)) => {
+                Ok(Finding::new(Verdict::CannotBeDecided, Evidence::default(), reason))
+            }
+            Err(Self::Failed(error)) => {
+                Err(Arc::try_unwrap(error).unwrap_or_else(StudyError::Shared))
+            }
+        }
+    }
+}
+
 impl<E: Into<StudyError>> From<E> for Stop {
     fn from(error: E) -> Self {
         Self::Failed(Arc::new(error.into()))
@@ -113,21 +142,21 @@ impl<E: Into<StudyError>> From<E> for Stop {
 }
 
 impl Evidence {
-    /// With a number.
+    /// The evidence with a further number.
     #[must_use]
     pub fn number(mut self, name: impl Into<String>, value: f64) -> Self {
-        self.0.push((name.into(), Cell::Number(value)));
+        self.0.push((name.into(), value.into()));
         self
     }
 
-    /// With a count.
+    /// The evidence with a further count.
     #[must_use]
     pub fn count(mut self, name: impl Into<String>, value: usize) -> Self {
-        self.0.push((name.into(), Cell::Count(value as u64)));
+        self.0.push((name.into(), value.into()));
         self
     }
 
-    /// With words.
+    /// The evidence with further words.
     #[must_use]
     pub fn text(mut self, name: impl Into<String>, value: impl Into<String>) -> Self {
         self.0.push((name.into(), Cell::Text(value.into())));

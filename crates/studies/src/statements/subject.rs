@@ -22,6 +22,12 @@ impl Subject {
         Self { spring, lines: Default::default() }
     }
 
+    /// A subject whose lines are these.
+    #[cfg(test)]
+    pub fn with_lines(spring: Spring, lines: [Result<Line, Stop>; 2]) -> Self {
+        Self { spring, lines: lines.map(OnceLock::from) }
+    }
+
     /// The collision, by the exact solution where there is one.
     pub fn collide(&self, kappa: f64, psi: f64, damping: f64) -> Result<Collision, StudyError> {
         self.spring.collide(kappa, psi, damping)
@@ -34,13 +40,13 @@ impl Subject {
 
     /// The switches over ψ at the stiffness of the figures, in both readings.
     ///
-    /// The first who asks makes them, on that thread alone: who waits for it may be part of the same
-    /// pool.
+    /// The first test that asks makes a line, on its thread alone: other threads that wait for the
+    /// line may be part of the same pool.
     ///
     /// # Errors
     /// [`Stop::Open`]: the boundaries are in doubt. [`Stop::Failed`]: a collision cannot be computed.
     pub fn lines(&self) -> Result<[&Line; 2], Stop> {
-        let [printed, axis] = Reading::ALL.map(|reading| reading.kappa(STIFFNESS));
+        let [printed, axis] = Reading::kappas(STIFFNESS);
         Ok([self.line(0, printed)?, self.line(1, axis)?])
     }
 

@@ -2,31 +2,28 @@
 //!
 //! Equations (9) and (10) of Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008), say that
 //! the spring follows the motion, ẏ = w, and that its force is cut off at the limit. The text after
-//! (18) adds that the spring is reset to the limit as long as the limit is active, which is the
-//! model of all other modules. Here that sentence is left out:
+//! (18) adds that the spring is reset to the limit as long as the limit is active. That is the
+//! model of all other modules. Here the sentence is left out:
 //!
 //! ```text
 //! stick: ẏ = w, ẇ = −κ y     while κ|y| < F
 //! slip:  ẏ = w, ẇ = −s F     while s κ y > F
 //! ```
 //!
-//! The spring may then grow without limit, and the motion is turned round by a force that should
-//! only brake it: at κ = 18 and ψ = 1, ε_t is −1.000 instead of 0.105. The coordinates are those of
+//! The spring may then grow without limit, and a force that should only brake the motion turns it
+//! round: at κ = 18 and ψ = 1, ε_t is −1.000 instead of 0.105. The coordinates are those of
 //! [`stickslip_model::regularized`].
 
+use stickslip_model::regularized::{END, OTHER_SIDE, Phase, Progress, SAME_SIDE};
+use stickslip_model::{Collider, Collision, CollisionError, Contact, EnergyLedger, Regime, Switch};
 use stickslip_solver::{
     Direction, Dop853, Guard, HybridSystem, Observer, Options, Outcome, Start, State, SwitchEvent,
     run,
 };
 
-use stickslip_model::EnergyLedger;
-use stickslip_model::regularized::{END, OTHER_SIDE, Phase, Progress, SAME_SIDE};
-use stickslip_model::{Collider, CollisionError};
-use stickslip_model::{Collision, Contact, Regime, Switch};
-
-/// Components of the state.
+/// The number of components of the state.
 const STATE: usize = 6;
-/// Guards of a phase.
+/// The number of guards of a phase.
 const GUARDS: usize = 4;
 
 const U: usize = 0;
@@ -36,7 +33,7 @@ const SPRING: usize = 2;
 /// w/σ.
 const W: usize = 3;
 const T: usize = 4;
-/// Normal energy taken by damping.
+/// The normal energy taken by damping.
 const DAMPING: usize = 5;
 
 /// Guard of the motion's reversals, after those of [`stickslip_model::regularized`].
@@ -45,8 +42,8 @@ const TURN: usize = 3;
 /// A collision with a spring that is not reset.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnresetCollision {
-    /// The outcome. Its energy counts what the spring holds beyond the limit as taken by sliding,
-    /// which may give it back.
+    /// The collision. Its energy counts what the spring holds beyond the limit as taken by
+    /// sliding; sliding may give it back.
     pub collision: Collision,
     /// The largest |y|.
     pub largest_spring: f64,
@@ -66,7 +63,7 @@ pub struct UnresetCollision {
 /// ```
 ///
 /// # Errors
-/// As [`Collider::collide`].
+/// [`CollisionError`]: the integration fails, or the contact does not end.
 pub fn collide(contact: Contact) -> Result<UnresetCollision, CollisionError> {
     let system = UnresetSpring::new(contact);
     let (rtol, atol) = (Collider::<Dop853>::RTOL, Collider::<Dop853>::ATOL);
@@ -180,7 +177,7 @@ impl HybridSystem<STATE, GUARDS> for UnresetSpring {
         let leave = Guard::new(Direction::Below);
         let turn = Guard::new(Direction::Either);
         match (phase.regime, phase.progress) {
-            // It goes on after a reversal.
+            // A phase goes on after a reversal.
             (Regime::Slip, Progress::Settled) => [end, leave, Guard::OFF, turn.from_zero(1)],
             (Regime::Stick, Progress::Settled) => [end, leave, leave, turn.from_zero(1)],
             // Without damping the contact starts at u = 0, where the spring grows as u² and the
@@ -219,14 +216,14 @@ impl HybridSystem<STATE, GUARDS> for UnresetSpring {
     }
 }
 
-/// Keeps account of a run while it goes on.
+/// Records a run while it goes on.
 struct Account {
     system: UnresetSpring,
     collision: Collision,
     largest_spring: f64,
-    /// State when the phase began.
+    /// The state at the start of the phase.
     entered: State<STATE>,
-    /// Energy taken by sliding before that.
+    /// The energy taken by sliding before that.
     sliding: f64,
 }
 
@@ -277,8 +274,8 @@ mod tests {
         collide(Contact::new(kappa, psi, damping).unwrap()).unwrap()
     }
 
-    /// Fixed small steps of the classical Runge–Kutta method in plain time through the law as (9)
-    /// and (10) have it.
+    /// The law of (9) and (10) in plain time, integrated by the classical Runge–Kutta method in
+    /// small fixed steps.
     fn in_plain_time(kappa: f64, psi: f64, damping: f64) -> (f64, f64, usize) {
         let force = |x: f64, v: f64| (x.max(0.0).sqrt() * (x.max(0.0) + damping * v)).max(0.0);
         let field = |[x, v, y, w]: [f64; 4]| {
@@ -307,7 +304,8 @@ mod tests {
         }
     }
 
-    /// Largest differences: 3e-11 in w, and 6e-6, part of a step at the end, in y.
+    /// The largest differences are 3e-11 in w and 6e-6 in y; the latter is part of a step at the
+    /// end.
     #[test]
     fn obeys_the_law_in_plain_time() {
         for (kappa, psi, damping) in
@@ -327,7 +325,7 @@ mod tests {
     fn the_spring_is_at_the_limit_where_it_switches_and_beyond_it_in_slip() {
         let UnresetCollision { collision, largest_spring } = collision(18.0, 0.3, 0.0);
         assert!(collision.switches.len() >= 2, "{}", collision.itinerary());
-        let limit = crate::largest::FORCE / 18.0;
+        let limit = stickslip_model::largest::FORCE / 18.0;
         assert!(collision.switches.iter().all(|switch| switch.spring.abs() <= limit));
         assert!(largest_spring < 0.3 * collision.contact_time);
         assert!(self::collision(18.0, 1.5, 0.0).largest_spring > 10.0 * limit);

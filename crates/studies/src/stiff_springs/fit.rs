@@ -1,53 +1,58 @@
 //! Exponent and constant of the decay, from full collisions alone.
 
 use nalgebra::{DMatrix, DVector};
-use serde_json::{Value, json};
+use serde::Serialize;
 
-use super::points::Measured;
+use super::maxima::LargestVelocity;
 
-/// From here on the terms left out, of order κ^{−15/4}, are below 1e-7.
+/// The stiffness from which on the terms left out, of order κ^{−15/4}, are below 1e-7.
 const STIFF: f64 = 1e3;
 
-/// Fewest stiffnesses for a fit.
+/// The fewest stiffnesses for a fit.
 const FEWEST: usize = 7;
 
 /// What is fitted.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Fits {
+    /// The number of fitted stiffnesses.
+    #[serde(rename = "stiffnesses")]
+    pub count: usize,
     /// p of |w_final| = C κ^{−p}.
+    #[serde(rename = "exponent_plain")]
     pub plain_exponent: Estimate,
     /// p of |w_final| = C κ^{−p} exp(b κ^{−5/4} + c κ^{−5/2}).
     pub exponent: Estimate,
     /// C of κ^{5/4}|w_final| = C + b κ^{−5/4} + c κ^{−5/2}.
     pub constant: Estimate,
-    /// b of the same.
+    /// b of the same fit.
     pub correction: Estimate,
     /// q of κ^{5/4}|w_final| = C + b κ^{−q}, from three stiffnesses at a time.
+    #[serde(rename = "power_of_correction")]
     pub power: Estimate,
     /// The largest relative difference of |w_final| between values of ψ.
+    #[serde(rename = "relative_spread_over_psi")]
     pub spread: f64,
-    /// How many stiffnesses were fitted.
-    pub count: usize,
 }
 
 /// A value with its uncertainty.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct Estimate {
     pub value: f64,
     pub uncertainty: f64,
 }
 
 impl Fits {
-    /// The fits to the highest of the tops at each stiffness; `points` are by ψ, then by κ.
-    pub fn new(points: &[Vec<Measured>]) -> Option<Self> {
+    /// The fits to the highest of the tops at each stiffness; `velocities` are by ψ, then by κ.
+    pub fn new(velocities: &[Vec<LargestVelocity>]) -> Option<Self> {
         let mut tops: Vec<(f64, f64)> = Vec::new();
         let mut spread = 0.0_f64;
-        for (index, point) in points.first()?.iter().enumerate() {
-            let velocities = points.iter().map(|by_kappa| by_kappa[index].crest.velocity);
+        for (index, LargestVelocity { kappa, .. }) in velocities.first()?.iter().enumerate() {
             let (low, high) = velocities
+                .iter()
+                .map(|by_kappa| by_kappa[index].crest.velocity)
                 .fold((f64::INFINITY, 0.0), |(low, high), v| (f64::min(low, v), f64::max(high, v)));
-            if point.kappa >= STIFF {
-                tops.push((point.kappa, high));
+            if *kappa >= STIFF {
+                tops.push((*kappa, high));
                 spread = spread.max(high / low - 1.0);
             }
         }
@@ -66,35 +71,22 @@ impl Fits {
             })
             .collect();
         Some(Self {
+            count: tops.len(),
             plain_exponent: estimate(&tops, logarithm, &[one, log], 1)?,
             exponent: estimate(&tops, logarithm, &[one, log, first, second], 1)?,
             constant: estimate(&tops, scaled, &[one, first, second], 0)?,
             correction: estimate(&tops, scaled, &[one, first, second], 1)?,
             power: middle(powers)?,
             spread,
-            count: tops.len(),
-        })
-    }
-
-    pub fn json(&self) -> Value {
-        let pair = |Estimate { value, uncertainty }: Estimate| json!({ "value": value, "uncertainty": uncertainty });
-        json!({
-            "stiffnesses": self.count,
-            "exponent_plain": pair(self.plain_exponent),
-            "exponent": pair(self.exponent),
-            "constant": pair(self.constant),
-            "correction": pair(self.correction),
-            "power_of_correction": pair(self.power),
-            "relative_spread_over_psi": self.spread,
         })
     }
 }
 
-/// A function of κ that a fit has a coefficient for.
+/// A function of κ; a fit has a coefficient for each.
 type Term = fn(f64) -> f64;
 
-/// Coefficient `index` of the least squares. Its uncertainty is its standard error, or its change
-/// when only the stiffer half is fitted, if that is larger.
+/// Coefficient `index` of the least squares. Its uncertainty is the standard error or, if that is
+/// larger, the change when only the stiffer half is fitted.
 fn estimate(
     tops: &[(f64, f64)],
     value: impl Fn((f64, f64)) -> f64,
@@ -107,7 +99,7 @@ fn estimate(
     Some(Estimate { uncertainty: all.uncertainty.max(change), ..all })
 }
 
-/// Coefficient `index` with its standard error; none without more points than terms.
+/// Coefficient `index` with its standard error; `None` without more points than terms.
 fn least_squares(
     tops: &[(f64, f64)],
     value: impl Fn((f64, f64)) -> f64,
@@ -116,7 +108,7 @@ fn least_squares(
 ) -> Option<Estimate> {
     let freedom = tops.len().checked_sub(terms.len()).filter(|freedom| *freedom > 0)?;
     let matrix = DMatrix::from_fn(tops.len(), terms.len(), |i, j| terms[j](tops[i].0));
-    // Columns of very different size are brought to one.
+    // Columns of very different size are scaled to length 1.
     let sizes: Vec<f64> = matrix.column_iter().map(|column| column.norm()).collect();
     let matrix = DMatrix::from_fn(tops.len(), terms.len(), |i, j| matrix[(i, j)] / sizes[j]);
     let values = DVector::from_iterator(tops.len(), tops.iter().map(|top| value(*top)));
@@ -132,7 +124,7 @@ fn least_squares(
     })
 }
 
-/// The median, and the distance from it to the end of the middle half that is farther.
+/// The median, and its distance from the farther end of the middle half.
 fn middle(mut values: Vec<f64>) -> Option<Estimate> {
     values.retain(|value| value.is_finite());
     values.sort_by(f64::total_cmp);

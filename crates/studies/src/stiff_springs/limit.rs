@@ -1,37 +1,36 @@
 //! The limit of stiff springs, ε_t → 0, from full collisions without damping.
 //!
 //! At fixed κ the final velocity oscillates with ψ, between zeros where a switch falls on the end
-//! of contact. The height of these oscillations is the [`envelope`], which tends to κ^{−5/4} times
-//! [`inner::peak`](stickslip_model::inner::peak) and does not depend on which of them is taken. All maxima
-//! are found by Brent's method from a bracket, on collisions of the exact engine.
+//! of contact. The height of these oscillations is the [`envelope`]. It tends to κ^{−5/4} times
+//! [`inner::peak`](stickslip_model::inner::peak), and is the same for all of them. All maxima are
+//! found by Brent's method from a bracket, on collisions of the exact engine.
 
 use std::f64::consts::PI;
 
-use argmin::core::{CostFunction, Executor, IterState, Solver, State};
-use argmin::solver::brent::{BrentOpt, BrentRoot};
-
 use stickslip_model::exact::{self, ExactError};
-use stickslip_model::{Collision, Contact, InvalidParameter};
+use stickslip_model::{Collision, Contact, InvalidParameter, largest};
 
-/// (5/4)^{3/5}, the largest value of x^{3/2}: what the bound (27) of Schwager, Becker and Pöschel
-/// (2008) lacks.
+use crate::search::{SearchError, highest, root};
+
+/// (5/4)^{3/5}, the largest value of x^{3/2}: the factor that the bound (27) of Schwager, Becker
+/// and Pöschel (2008) lacks.
 ///
-/// The spring's limit reaches (5/4)^{3/5}/κ; with 1/κ instead, as printed in (25), the velocity of
-/// a spring let go from there is 1/√κ, and |ε_t| ≤ 1/(ψ√κ).
-pub const BOUND_FACTOR: f64 = 1.14326262981831586601;
+/// The spring's limit reaches (5/4)^{3/5}/κ. With 1/κ instead, as printed in (25), a spring that is
+/// let go from its limit reaches the velocity 1/√κ, and |ε_t| ≤ 1/(ψ√κ).
+pub const BOUND_FACTOR: f64 = largest::FORCE;
 
-/// The highest of the final velocities beside a point.
+/// The largest of the final velocities around a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crest {
     /// Scaled stiffness κ.
     pub kappa: f64,
-    /// The impact ratio ψ at which it is reached.
+    /// The impact ratio ψ of the maximum.
     pub psi: f64,
     /// |w_final|.
     pub velocity: f64,
-    /// √κ · (time left) where the last stick phase starts; NaN without one.
+    /// √κ · (time left) where the last stick phase starts; NaN if there is none.
     pub last_onset: f64,
-    /// √κ · (duration of the last stick phase); NaN without one.
+    /// √κ · (duration of the last stick phase); NaN if there is none.
     pub last_stick: f64,
     /// Number of switches.
     pub switch_count: usize,
@@ -46,24 +45,25 @@ pub enum StiffError {
     /// The exact engine refuses a collision.
     #[error(transparent)]
     Exact(#[from] ExactError),
-    /// Brent's method failed.
-    #[error("the search for an extremum failed: {0}")]
-    Search(String),
+    /// The search for a maximum failed.
+    #[error(transparent)]
+    Search(#[from] SearchError),
 }
 
 /// The largest |w_final| between the two zeros of w_final(ψ) around `psi`, at stiffness `kappa`
 /// without damping.
 ///
-/// Only a local maximum is found, the next one uphill from `psi`; from about κ = 2 on there is but
-/// one between two zeros. |w_final| is then good to about 1e-14 of itself, ψ to half as many digits.
+/// Only a local maximum is found, the next one uphill from `psi`. From about κ = 2 on there is only
+/// one between two zeros. |w_final| then has a relative error of about 1e-14, and ψ has half as
+/// many correct digits.
 ///
 /// Cost: about 25 collisions.
 ///
 /// ```
 /// use stickslip_model::inner;
-/// use stickslip_studies::stiff_springs::limit as stiff;
+/// use stickslip_studies::stiff_springs::limit;
 ///
-/// let [high, low] = [0.5, 1.5].map(|psi| stiff::envelope(1e6, psi).unwrap().velocity);
+/// let [high, low] = [0.5, 1.5].map(|psi| limit::envelope(1e6, psi).unwrap().velocity);
 /// assert!((high / low - 1.0).abs() < 1e-12);
 /// assert!((high * 1e6_f64.powf(1.25) / inner::peak().velocity - 1.0).abs() < 2e-7);
 /// ```
@@ -78,45 +78,45 @@ pub fn envelope(kappa: f64, psi: f64) -> Result<Crest, StiffError> {
 fn envelope_within(kappa: f64, psi: f64, tolerance: f64) -> Result<Crest, StiffError> {
     let start = collide(kappa, require_inside(psi)?)?;
     let side = 1.0_f64.copysign(start.final_velocity);
-    let height = |psi: f64| Ok(side * collide(kappa, psi)?.final_velocity);
-    let bracket = climb(kappa, psi, &height)?;
-    crest(kappa, highest(bracket, tolerance, &height)?)
+    let height = |psi| collide(kappa, psi).map(|collision| side * collision.final_velocity);
+    let bracket = climb(kappa, psi, height)?;
+    crest(kappa, highest(bracket, tolerance, height)?)
 }
 
 /// The distance in ψ between two zeros of w_final around `psi` for a stiff spring, π x^{3/2}/√κ at
 /// the first switch.
 ///
-/// The first stick phase starts where v = 1 − ψ, that moves by dψ/x^{3/2} with ψ, and half a swing
-/// lasts π/√κ.
+/// The first stick phase starts where v = 1 − ψ. This moment moves by dψ/x^{3/2} with ψ, and half a
+/// swing lasts π/√κ.
 #[must_use]
 pub fn oscillation(kappa: f64, psi: f64) -> f64 {
     PI * (1.25 * psi * (2.0 - psi)).powf(0.6) / kappa.sqrt()
 }
 
-/// The largest |ε_t| of all ψ from `lowest` to 2 at stiffness `kappa`, from about 2 on, without
-/// damping.
+/// The largest |ε_t| of all ψ from `lowest` to 2 at stiffness `kappa`, which is at least about 2,
+/// without damping.
 ///
-/// The oscillations of |w_final| are equally high, but for lower ones next to ψ = 0, so that those
-/// of |ε_t| = |w_final|/ψ fall with ψ: maxima are looked for from `lowest` on until none can be
-/// higher. Cost: about 30 collisions.
+/// The oscillations of |w_final| are equally high, except for lower ones next to ψ = 0. Those of
+/// |ε_t| = |w_final|/ψ therefore fall with ψ, and maxima are looked for from `lowest` on until none
+/// can be higher. Cost: about 30 collisions.
 ///
 /// # Errors
 /// As [`envelope`].
 pub fn largest_restitution(kappa: f64, lowest: f64) -> Result<Crest, StiffError> {
     let lowest = require_inside(lowest)?;
-    let height = |psi: f64| Ok(collide(kappa, psi)?.eps_t().abs());
-    // No oscillation is higher than the uppermost, which lasts to ψ = 2, has two switches and costs
-    // next to nothing; its top is 12.5 κ^{−5/4} from there.
-    let uppermost = (2.0 - 12.5 * kappa.powf(-1.25)).max(1.0);
-    let ceiling = 1.001 * envelope(kappa, uppermost)?.velocity;
+    let height = |psi| collide(kappa, psi).map(|collision| collision.eps_t().abs());
+    // No oscillation is higher than the last one, which lasts to ψ = 2, has two switches and costs
+    // next to nothing. Its top is 12.5 κ^{−5/4} below ψ = 2.
+    let last = (2.0 - 12.5 * kappa.powf(-1.25)).max(1.0);
+    let ceiling = 1.001 * envelope(kappa, last)?.velocity;
     let mut best = (lowest, height(lowest)?);
     let (mut before, mut here) = (best, best);
     while here.0 < 2.0 && ceiling > best.1 * here.0 {
         let psi = (here.0 + eighth(kappa, here.0)).min(2.0);
         let next = (psi, height(psi)?);
-        // At first, before and here are one: a maximum just above the lowest ψ.
+        // `before` and `here` are equal at first, which finds a maximum just above the lowest ψ.
         if here.1 >= before.1.max(next.1) {
-            let psi = highest((before.0, next.0), SMOOTH, &height)?;
+            let psi = highest((before.0, next.0), SMOOTH, height)?;
             let found = (psi, height(psi)?);
             best = if found.1 > best.1 { found } else { best };
         }
@@ -125,18 +125,18 @@ pub fn largest_restitution(kappa: f64, lowest: f64) -> Result<Crest, StiffError>
     crest(kappa, best.0)
 }
 
-/// How the bound (27) fails as printed.
+/// By how much collisions exceed the bound (27) as it is printed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Excess {
-    /// Where √κ|w_final|, at most 1 by the printed bound, is largest.
+    /// The collision with the largest √κ|w_final|, which is at most 1 by the printed bound.
     pub worst: Crest,
-    /// The largest value.
+    /// This largest √κ|w_final|.
     pub ratio: f64,
     /// The stiffnesses between which some ψ exceeds the bound.
     pub kappa: (f64, f64),
 }
 
-/// Where √κ|w_final| exceeds 1, on the oscillation of ψ around 1.
+/// How far √κ|w_final| exceeds 1, and where, on the oscillation of ψ around 1.
 ///
 /// The maximum lies where the spring touches its limit without sliding (κ = 1.52, ψ = 1.00):
 /// w_final(ψ) has a kink there.
@@ -144,13 +144,13 @@ pub struct Excess {
 /// # Errors
 /// As [`envelope`].
 pub fn excess() -> Result<Excess, StiffError> {
-    // The maximum and the two places are known to lie between these; in ln κ.
+    // The maximum and the two ends are known to lie between these values of ln κ.
     let [low, middle, high] = [1.0_f64, 1.5, 3.0].map(f64::ln);
     let top = |log: f64| envelope_within(log.exp(), 1.0, SHARP);
-    let ratio = |log: f64| Ok((0.5 * log).exp() * top(log)?.velocity);
-    let log = highest((low, high), SMOOTH, &ratio)?;
-    let above = |log: f64| Ok(ratio(log)? - 1.0);
-    let kappa = (root((low, middle), &above)?.exp(), root((middle, high), &above)?.exp());
+    let ratio = |log: f64| top(log).map(|crest| (0.5 * log).exp() * crest.velocity);
+    let log = highest((low, high), SMOOTH, ratio)?;
+    let above = |log| ratio(log).map(|ratio| ratio - 1.0);
+    let kappa = (root((low, middle), above)?.exp(), root((middle, high), above)?.exp());
     Ok(Excess { worst: top(log)?, ratio: ratio(log)?, kappa })
 }
 
@@ -162,8 +162,13 @@ fn require_inside(psi: f64) -> Result<f64, StiffError> {
     Err(InvalidParameter { name: "psi", value: psi, expected }.into())
 }
 
+/// The contact without damping.
+pub(super) fn contact(kappa: f64, psi: f64) -> Result<Contact, StiffError> {
+    Ok(Contact::new(kappa, psi, 0.0)?)
+}
+
 fn collide(kappa: f64, psi: f64) -> Result<Collision, StiffError> {
-    Ok(exact::collide(Contact::new(kappa, psi, 0.0)?)?)
+    Ok(exact::collide(contact(kappa, psi)?)?)
 }
 
 fn crest(kappa: f64, psi: f64) -> Result<Crest, StiffError> {
@@ -190,7 +195,11 @@ fn eighth(kappa: f64, psi: f64) -> f64 {
 
 /// An interval with a maximum of `height` inside, reached from `psi` uphill in steps of an eighth
 /// of an oscillation.
-fn climb(kappa: f64, psi: f64, height: &Height<'_>) -> Result<(f64, f64), StiffError> {
+fn climb(
+    kappa: f64,
+    psi: f64,
+    height: impl Fn(f64) -> Result<f64, StiffError>,
+) -> Result<(f64, f64), StiffError> {
     let above = |psi: f64| (psi + eighth(kappa, psi)).min(2.0);
     let below = |psi: f64| (psi - eighth(kappa, psi)).max(0.5 * psi);
     let start = height(psi)?;
@@ -210,68 +219,11 @@ fn climb(kappa: f64, psi: f64, height: &Height<'_>) -> Result<(f64, f64), StiffE
     }
 }
 
-/// What is made large, or zero, as a function of one variable.
-type Height<'a> = dyn Fn(f64) -> Result<f64, StiffError> + 'a;
-
-/// Something to be made small, on an interval that is 0 to 1 to the search, so that its tolerances
-/// fit.
-struct Depth<'a> {
-    interval: (f64, f64),
-    height: &'a Height<'a>,
-    sign: f64,
-}
-
-impl Depth<'_> {
-    fn place(&self, part: f64) -> f64 {
-        self.interval.0 + part * (self.interval.1 - self.interval.0)
-    }
-}
-
-impl CostFunction for Depth<'_> {
-    type Param = f64;
-    type Output = f64;
-
-    fn cost(&self, part: &f64) -> Result<f64, argmin::core::Error> {
-        Ok(self.sign * (self.height)(self.place(*part))?)
-    }
-}
-
-/// Of the interval: where a maximum is smooth, the height has all its digits this close to it.
+/// The tolerance of a search, in parts of its interval, where a maximum is smooth: the height has
+/// all its digits this close to it.
 const SMOOTH: f64 = 1e-8;
-/// The same where it is a kink.
+/// The tolerance where the maximum is a kink.
 const SHARP: f64 = 1e-14;
-
-/// The place of the one maximum of `height` in `interval`, to a `tolerance` in parts of it.
-fn highest(interval: (f64, f64), tolerance: f64, height: &Height<'_>) -> Result<f64, StiffError> {
-    let depth = Depth { interval, height, sign: -1.0 };
-    let solver = BrentOpt::new(0.0, 1.0).set_tolerance(tolerance, tolerance);
-    search(depth, solver)
-}
-
-/// The place of the one zero of `height` in `interval`, to 1e-14 of it.
-fn root(interval: (f64, f64), height: &Height<'_>) -> Result<f64, StiffError> {
-    let depth = Depth { interval, height, sign: 1.0 };
-    search(depth, BrentRoot::new(0.0, 1.0, 1e-14))
-}
-
-fn search<'a, S>(depth: Depth<'a>, solver: S) -> Result<f64, StiffError>
-where
-    S: Solver<Depth<'a>, IterState<f64, (), (), (), (), f64>>,
-{
-    let failed = |error: argmin::core::Error| {
-        let text = error.to_string();
-        error.downcast().unwrap_or(StiffError::Search(text))
-    };
-    let done =
-        Executor::new(depth, solver).timer(false).configure(|state| state.max_iters(200)).run();
-    let mut done = done.map_err(failed)?;
-    let best = done.state().get_best_param().copied();
-    let depth = done.problem.take_problem();
-    match (best, depth) {
-        (Some(part), Some(depth)) => Ok(depth.place(part)),
-        _ => Err(StiffError::Search("no value was tried".to_owned())),
-    }
-}
 
 #[cfg(test)]
 mod tests {
@@ -351,7 +303,7 @@ mod tests {
             (found.kappa.0 - 1.190122603).abs() < 1e-8
                 && (found.kappa.1 - 2.941721294).abs() < 1e-8
         );
-        // Over the plane, where there is a switch.
+        // All collisions of the plane that have a switch.
         let mut largest = 0.0_f64;
         for i in 0..400 {
             let kappa = 0.05 * 1.03_f64.powi(i);

@@ -1,14 +1,14 @@
 //! The study as pictures.
 
-use super::limit::BOUND_FACTOR;
-use stickslip_model::{Contact, exact};
-
-use super::Measurement;
-use crate::study::Picture;
 use stickslip_figure::canvas::panel::Scale;
 use stickslip_figure::canvas::shape::Stroke;
 use stickslip_figure::pictures::chart::{self, Chart, ChartAxis, Mark, Series, Shape};
 use stickslip_figure::{Svg, number};
+
+use super::Measurement;
+use super::limit::BOUND_FACTOR;
+use super::maxima::{LargestVelocity, MOST_RESOLVED};
+use crate::study::Picture;
 
 /// Colours of Okabe and Ito, and shapes that tell series apart without them.
 const MARKS: [Mark; 4] = [
@@ -21,43 +21,51 @@ const MARKS: [Mark; 4] = [
 const THEORY: Stroke = Stroke::full("#222222", 1.4);
 const PRINTED: Stroke = Stroke { colour: "#D55E00", width: 1.6, dashes: "7 4" };
 const CORRECTED: Stroke = Stroke { colour: "#CC79A7", width: 1.6, dashes: "2 3" };
-const COURSE: Stroke = Stroke::full("#56B4E9", 0.9);
-
-/// Up to here single oscillations can be told apart in a picture.
-const MOST_RESOLVED: f64 = 3e3;
-/// Points of an oscillation.
-const FINE: f64 = 40.0;
+const SINGLE: Stroke = Stroke::full("#56B4E9", 0.9);
 
 impl Measurement {
     pub fn pictures(&self) -> Vec<Picture> {
+        let picture = |name, caption: &str, svg| Picture { name, caption: caption.to_owned(), svg };
         vec![
             Picture {
                 name: "asymptote_envelope",
-                caption: "The largest |w_final| of the oscillation around each ψ, the limit Fκ^{−5/4} of the inner \
-                          problem, and the bound (27) with and without its factor."
-                    .to_owned(),
+                caption: self.envelope_caption(),
                 svg: self.envelope(),
             },
-            Picture {
-                name: "asymptote_correction",
-                caption: "What κ^{5/4}|w_final| lacks to the constant of the inner problem, and the next order's coefficient \
-                          times κ^{−5/4}."
-                    .to_owned(),
-                svg: self.correction(),
-            },
-            Picture {
-                name: "asymptote_profile",
-                caption: "F(phase) of the inner problem, and full collisions over one oscillation.".to_owned(),
-                svg: self.profile(),
-            },
-            Picture {
-                name: "asymptote_counts",
-                caption: "The number of switches over √κ t_c/π, and 2 min(t₁, t_c − t₁)/t_c from the time t₁ of the \
-                          first switch."
-                    .to_owned(),
-                svg: self.counts(),
-            },
+            picture(
+                "asymptote_correction",
+                "The distance of κ^{5/4}|w_final| from the constant of the inner problem, and the \
+                 coefficient of the next order times κ^{−5/4}.",
+                self.correction(),
+            ),
+            picture(
+                "asymptote_profile",
+                "F(phase) of the inner problem, and full collisions over one oscillation.",
+                self.profile(),
+            ),
+            picture(
+                "asymptote_counts",
+                "The number of switches over √κ t_c/π, and 2 min(t₁, t_c − t₁)/t_c from the time t₁ \
+                 of the first switch.",
+                self.counts(),
+            ),
         ]
+    }
+
+    fn envelope_caption(&self) -> String {
+        let (low, high) = self.kappas();
+        let stops = if low < MOST_RESOLVED && MOST_RESOLVED < high {
+            format!(
+                " The curve of |w_final| at one ψ ends at κ = {MOST_RESOLVED}: beyond, its single \
+                 oscillations cannot be told apart, and only their tops are shown."
+            )
+        } else {
+            String::new()
+        };
+        format!(
+            "The largest |w_final| of the oscillation around each ψ, the limit Fκ^{{−5/4}} of the \
+             inner problem, and the bound (27) with and without its factor.{stops}"
+        )
     }
 
     fn kappas(&self) -> (f64, f64) {
@@ -74,18 +82,14 @@ impl Measurement {
             let points = self.kappas.iter().map(|kappa| (*kappa, factor * kappa.powf(power)));
             line(name, points.collect(), stroke)
         };
-        let (course_psi, course) = self.course();
-        let f = format!("limit {} κ^{{−5/4}}", number(self.peak.velocity, 7));
+        let limit = format!("limit {} κ^{{−5/4}}", number(self.peak.velocity, 7));
         let mut series = vec![
-            line(&format!("|w_{{final}}| at ψ = {course_psi}"), course, COURSE),
+            line(&format!("|w_{{final}}| at ψ = {}", self.single_psi), self.single.clone(), SINGLE),
             power("bound (27) as printed, 1/√κ", 1.0, -0.5, PRINTED),
             power("bound with its factor, (5/4)^{3/5}/√κ", BOUND_FACTOR, -0.5, CORRECTED),
-            power(&f, self.peak.velocity, -1.25, THEORY),
+            power(&limit, self.peak.velocity, -1.25, THEORY),
         ];
-        for (points, mark) in self.points.iter().zip(MARKS) {
-            let name = format!("largest around ψ = {}", points[0].psi);
-            series.push(marks(&name, points.iter().map(|p| (p.kappa, p.crest.velocity)), mark));
-        }
+        series.extend(self.around_each_psi(|largest| largest.crest.velocity));
         chart::draw(&Chart {
             title: "Final velocity and its bounds for stiff springs",
             x: self.kappa_axis(),
@@ -104,13 +108,9 @@ impl Measurement {
         let points = self.kappas.iter().map(|kappa| (*kappa, law(*kappa)));
         let name = format!("next order, {} κ^{{−5/4}}", number(-self.peak.correction, 6));
         let mut series = vec![line(&name, points.collect(), THEORY)];
-        for (points, mark) in self.points.iter().zip(MARKS) {
-            let name = format!("largest around ψ = {}", points[0].psi);
-            let lacking = points.iter().map(|p| (p.kappa, self.peak.velocity - p.scaled()));
-            series.push(marks(&name, lacking, mark));
-        }
+        series.extend(self.around_each_psi(|largest| self.peak.velocity - largest.scaled()));
         chart::draw(&Chart {
-            title: "What the largest final velocity lacks to its limit",
+            title: "Distance of the largest final velocity from its limit",
             x: self.kappa_axis(),
             y: ChartAxis {
                 name: "F − κ^{5/4} |w_{final}|",
@@ -121,25 +121,19 @@ impl Measurement {
         })
     }
 
-    /// |w_final| at the middle ψ as far as single oscillations can be told apart.
-    fn course(&self) -> (f64, Vec<(f64, f64)>) {
-        let psi = self.points[self.points.len() / 2][0].psi;
-        let (low, high) = self.kappas();
-        let (from, to) = (low.sqrt(), high.min(MOST_RESOLVED).sqrt());
-        // A half swing is π/√κ, and a contact lasts 3.2: an oscillation is no shorter than 1 in √κ.
-        let steps = ((to - from) * FINE).max(0.0).ceil();
-        let places = (0..).map(f64::from).take_while(|step| *step <= steps);
-        let points = places.filter_map(|step| {
-            let kappa = (from + (to - from) * step / steps.max(1.0)).powi(2);
-            let collision = exact::collide(Contact::new(kappa, psi, 0.0).ok()?).ok()?;
-            Some((kappa, collision.final_velocity.abs()))
-        });
-        (psi, points.collect())
+    /// Marks at `value` over κ, for each ψ.
+    fn around_each_psi(&self, value: impl Fn(&LargestVelocity) -> f64) -> Vec<Series> {
+        let all = self.velocities.iter().zip(MARKS);
+        all.map(|(by_kappa, mark)| {
+            let name = format!("largest around ψ = {}", by_kappa[0].psi);
+            marks(&name, by_kappa.iter().map(|largest| (largest.kappa, value(largest))), mark)
+        })
+        .collect()
     }
 
     fn profile(&self) -> Svg {
         let profile = &self.profile;
-        let curve = profile.curve.iter().map(|place| (place.phase, place.velocity));
+        let curve = profile.curve.iter().map(|point| (point.phase, point.velocity));
         let mut series = vec![line("inner problem", curve.collect(), THEORY)];
         for (collisions, mark) in profile.compared.iter().zip(MARKS) {
             let Some(first) = collisions.first() else { continue };
@@ -147,7 +141,7 @@ impl Measurement {
             series.push(marks(&name, collisions.iter().map(|c| (c.phase, c.velocity)), mark));
         }
         chart::draw(&Chart {
-            title: "F(phase): what is left of a stiff collision",
+            title: "F(phase): the scaled final velocity of stiff collisions",
             x: ChartAxis {
                 name: "phase φ of the last onset, in half swings",
                 range: (profile.zero_phase - 1.0, profile.zero_phase),
@@ -164,14 +158,15 @@ impl Measurement {
 
     fn counts(&self) -> Svg {
         let mut series = Vec::new();
-        for (points, mark) in self.points.iter().zip(MARKS) {
-            let expected = points.iter().map(|p| (p.kappa, p.count_expected)).collect();
+        for (by_kappa, mark) in self.velocities.iter().zip(MARKS) {
+            let expected = by_kappa.iter().map(|found| (found.kappa, found.count_expected));
             let stroke = Stroke { colour: mark.colour, width: 1.2, dashes: "6 4" };
-            series.push(line("", expected, stroke));
-            let name = format!("ψ = {}", points[0].psi);
-            series.push(marks(&name, points.iter().map(|p| (p.kappa, p.count_ratio)), mark));
+            series.push(line("", expected.collect(), stroke));
+            let counts = by_kappa.iter().map(|found| (found.kappa, found.count_ratio));
+            series.push(marks(&format!("ψ = {}", by_kappa[0].psi), counts, mark));
         }
-        let highest = self.points.iter().flatten().map(|p| p.count_ratio).fold(1.0, f64::max);
+        let ratios = self.velocities.iter().flatten().map(|found| found.count_ratio);
+        let highest = ratios.fold(1.0, f64::max);
         chart::draw(&Chart {
             title: "Number of switches over √κ t_c/π; dashed: 2 min(t_1, t_c − t_1)/t_c",
             x: self.kappa_axis(),

@@ -2,40 +2,38 @@
 
 use std::f64::consts::PI;
 
-use super::Settings;
-use super::limit::{self as stiff, StiffError};
-use stickslip_model::{Contact, exact, inner};
+use stickslip_model::{exact, inner};
 
-use crate::error::StudyError;
+use super::limit::{self, StiffError, contact};
+use super::settings::Settings;
 
-/// Stiffnesses at which collisions are compared, those of them that are within the study's
-/// interval.
+/// Stiffnesses at which collisions are compared, if they are within the interval of the study.
 const COMPARED: [f64; 3] = [1e4, 1e6, 1e8];
 /// Collisions over one oscillation.
 const COLLISIONS: u32 = 48;
 /// Points of the curve.
 const CURVE: u32 = 256;
-/// Places at which convergence is measured.
-const PLACES: u32 = 16;
+/// Phases at which convergence is measured.
+const PHASES: u32 = 16;
 
-/// What belongs to the phase.
+/// F over the phase, with everything that it is compared with.
 #[derive(Clone, Debug)]
 pub struct Profile {
-    /// The phase at which F is largest, between that at which F is 0 and 1 less.
+    /// The phase at which F is largest, between the one at which F is 0 and 1 less.
     pub peak_phase: f64,
     /// The phase at which F is 0.
     pub zero_phase: f64,
-    pub curve: Vec<Place>,
-    /// By stiffness.
-    pub compared: Vec<Vec<Compared>>,
-    /// The ψ around which they are.
+    pub curve: Vec<CurvePoint>,
+    /// Full collisions, by stiffness.
+    pub compared: Vec<Vec<ComparedCollision>>,
+    /// The ψ around which these collisions are.
     pub compared_psi: f64,
-    pub convergence: Vec<Converged>,
+    pub convergence: Vec<OtherStart>,
 }
 
-/// A place of the curve.
+/// A point of the curve F(phase).
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct CurvePoint {
     pub phase: f64,
     /// σ where the last stick phase starts.
     pub last_onset: f64,
@@ -43,12 +41,12 @@ pub struct Place {
     pub velocity: f64,
 }
 
-/// A full collision.
+/// A full collision beside the curve.
 #[derive(Clone, Copy, Debug)]
-pub struct Compared {
+pub struct ComparedCollision {
     pub kappa: f64,
     pub psi: f64,
-    /// The phase of its last onset, as of the curve.
+    /// The phase of its last onset, in the range of the curve.
     pub phase: f64,
     /// κ^{5/4} |w_final|.
     pub velocity: f64,
@@ -59,9 +57,9 @@ pub struct Compared {
     pub ahead: f64,
 }
 
-/// F from another start.
+/// F computed from another start, or with fewer coefficients.
 #[derive(Clone, Copy, Debug)]
-pub struct Converged {
+pub struct OtherStart {
     pub start: f64,
     pub coefficients: usize,
     /// The largest difference from F.
@@ -71,8 +69,8 @@ pub struct Converged {
 impl Profile {
     /// # Errors
     /// A collision cannot be computed.
-    pub fn measure(settings: &Settings) -> Result<Self, StudyError> {
-        // An onset at the end itself is none; so close to it F is 1e-13.
+    pub fn measure(settings: &Settings) -> Result<Self, StiffError> {
+        // An onset at the end itself is not one; this close to the end F is 1e-13.
         let zero_phase = within(inner::phase(1e-30), 1.0);
         let nearest =
             settings.psi.iter().min_by(|a, b| (*a - 1.0).abs().total_cmp(&(*b - 1.0).abs()));
@@ -83,7 +81,7 @@ impl Profile {
         Ok(Self {
             peak_phase: within(inner::phase(inner::peak().onset), zero_phase),
             zero_phase,
-            curve: (0..=CURVE).map(|i| place(zero_phase - 1.0 + spaced(i, CURVE))).collect(),
+            curve: (0..=CURVE).map(|i| point(zero_phase - 1.0 + spaced(i, CURVE))).collect(),
             compared: compared.collect::<Result<_, _>>()?,
             compared_psi,
             convergence: convergence(),
@@ -91,7 +89,7 @@ impl Profile {
     }
 }
 
-/// What is left after taking whole numbers from `phase`: above `top` − 1, at most `top`.
+/// `phase` shifted by a whole number: above `top` − 1, at most `top`.
 fn within(phase: f64, top: f64) -> f64 {
     phase - (phase - top).ceil()
 }
@@ -100,42 +98,49 @@ fn spaced(index: u32, count: u32) -> f64 {
     f64::from(index) / f64::from(count)
 }
 
-fn place(phase: f64) -> Place {
+fn point(phase: f64) -> CurvePoint {
     let last = inner::last_half_swing(phase);
-    Place { phase, last_onset: last.onset, velocity: last.final_velocity().unwrap_or(f64::NAN) }
+    CurvePoint {
+        phase,
+        last_onset: last.onset,
+        velocity: last.final_velocity().unwrap_or(f64::NAN),
+    }
 }
 
-/// Collisions over one oscillation around `psi`.
-fn oscillation(kappa: f64, psi: f64, zero_phase: f64) -> Result<Vec<Compared>, StudyError> {
-    let width = stiff::oscillation(kappa, psi);
+/// Collisions evenly spread over one oscillation around `psi`.
+fn oscillation(
+    kappa: f64,
+    psi: f64,
+    zero_phase: f64,
+) -> Result<Vec<ComparedCollision>, StiffError> {
+    let width = limit::oscillation(kappa, psi);
     let across = (0..COLLISIONS).map(|i| psi + width * (spaced(i, COLLISIONS) - 0.5));
     let inside = across.filter(|psi| *psi > 0.0 && *psi < 2.0);
     let collisions = inside.map(|psi| {
-        let contact = Contact::new(kappa, psi, 0.0).map_err(StiffError::from)?;
-        let collision = exact::collide(contact).map_err(StiffError::from)?;
+        let collision = exact::collide(contact(kappa, psi)?)?;
         let [first, .., stick, _] = &collision.switches[..] else { return Ok(None) };
         let onset = kappa.sqrt() * stick.time_left;
         let phase = inner::phase(onset);
         let ahead = phase - kappa.sqrt() * first.time_left / PI;
-        let inner = place(phase).velocity;
+        let inner = point(phase).velocity;
         let velocity = collision.final_velocity.abs() * kappa.powf(1.25);
-        let ahead = ahead - ahead.round();
-        Ok(Some(Compared { kappa, psi, phase: within(phase, zero_phase), velocity, inner, ahead }))
+        let (phase, ahead) = (within(phase, zero_phase), ahead - ahead.round());
+        Ok(Some(ComparedCollision { kappa, psi, phase, velocity, inner, ahead }))
     });
     collisions.filter_map(Result::transpose).collect()
 }
 
-fn convergence() -> Vec<Converged> {
+fn convergence() -> Vec<OtherStart> {
     let starts = [10.0, 20.0, 30.0, 50.0, 70.0, 200.0, 500.0, 1000.0];
     let coefficients = [1, 3, 7, 15];
     let all = coefficients.iter().flat_map(|count| starts.map(|start| (*count, start)));
     all.map(|(coefficients, start)| {
-        let differences = (0..PLACES).map(|i| {
-            let phase = spaced(i, PLACES);
+        let differences = (0..PHASES).map(|i| {
+            let phase = spaced(i, PHASES);
             let from = inner::last_half_swing_from(phase, start, coefficients);
-            (from.final_velocity().unwrap_or(f64::NAN) - place(phase).velocity).abs()
+            (from.final_velocity().unwrap_or(f64::NAN) - point(phase).velocity).abs()
         });
-        Converged { start, coefficients, difference: differences.fold(0.0, f64::max) }
+        OtherStart { start, coefficients, difference: differences.fold(0.0, f64::max) }
     })
     .collect()
 }

@@ -2,80 +2,80 @@
 
 use super::Measurement;
 use super::limit::BOUND_FACTOR;
-use super::points::{Measured, Restitution};
-use super::profile::{Compared, Converged, Place};
-use crate::study::Cell::{Count, Number, Text};
+use super::maxima::{LargestRestitution, LargestVelocity};
+use super::profile::{ComparedCollision, CurvePoint, OtherStart};
+use crate::study::Cell::Number;
 use crate::study::{Cell, Column, Table};
 
 impl Measurement {
     pub fn tables(&self) -> Vec<Table> {
-        let points = || self.points.iter().flatten();
+        let velocities = || self.velocities.iter().flatten();
         let peak = self.peak.velocity;
         let Self { profile, restitutions, .. } = self;
+        let table = |name, title: &str, columns: &[Column], rows| {
+            let (title, columns) = (title.to_owned(), columns.to_vec());
+            Table { name, title, columns, rows }
+        };
         vec![
-            Table {
-                name: "asymptote_envelope",
-                title: "The largest |w_final| of the oscillation around each ψ".to_owned(),
-                columns: ENVELOPE.to_vec(),
-                rows: points().map(|point| envelope(point, peak)).collect(),
-            },
-            Table {
-                name: "asymptote_restitution",
-                title: "The largest |ε_t| from some ψ up to 2".to_owned(),
-                columns: RESTITUTION.to_vec(),
-                rows: restitutions.iter().flatten().map(restitution).collect(),
-            },
-            Table {
-                name: "asymptote_counts",
-                title: "The number of switches".to_owned(),
-                columns: COUNTS.to_vec(),
-                rows: points().map(counts).collect(),
-            },
-            Table {
-                name: "asymptote_profile",
-                title: "F(phase) of the inner problem".to_owned(),
-                columns: PROFILE.to_vec(),
-                rows: profile.curve.iter().map(place).collect(),
-            },
-            Table {
-                name: "asymptote_collisions",
-                title: "Full collisions over one oscillation beside F(phase)".to_owned(),
-                columns: COLLISIONS.to_vec(),
-                rows: profile.compared.iter().flatten().map(compared).collect(),
-            },
-            Table {
-                name: "asymptote_convergence",
-                title: "How F(phase) converges with the start and the coefficients of the phase"
-                    .to_owned(),
-                columns: CONVERGENCE.to_vec(),
-                rows: profile.convergence.iter().map(converged).collect(),
-            },
+            table(
+                "asymptote_envelope",
+                "The largest |w_final| of the oscillation around each ψ",
+                &ENVELOPE,
+                velocities().map(|largest| envelope(largest, peak)).collect(),
+            ),
+            table(
+                "asymptote_restitution",
+                "The largest |ε_t| from some ψ up to 2",
+                &RESTITUTION,
+                restitutions.iter().flatten().map(restitution).collect(),
+            ),
+            table(
+                "asymptote_counts",
+                "The number of switches",
+                &COUNTS,
+                velocities().map(counts).collect(),
+            ),
+            table(
+                "asymptote_profile",
+                "F(phase) of the inner problem",
+                &PROFILE,
+                profile.curve.iter().map(curve_point).collect(),
+            ),
+            table(
+                "asymptote_collisions",
+                "Full collisions over one oscillation beside F(phase)",
+                &COLLISIONS,
+                profile.compared.iter().flatten().map(compared).collect(),
+            ),
+            table(
+                "asymptote_convergence",
+                "How F(phase) converges with the start and the coefficients of the phase",
+                &CONVERGENCE,
+                profile.convergence.iter().map(other_start).collect(),
+            ),
         ]
     }
 }
 
-const fn column(name: &'static str, meaning: &'static str) -> Column {
-    Column { name, meaning }
-}
-
-const KAPPA: Column = column("kappa", "scaled stiffness κ");
+const KAPPA: Column = Column::new("kappa", "scaled stiffness κ");
+const PSI: Column = Column::new("psi", "impact ratio ψ");
 
 const ENVELOPE: [Column; 11] = [
     KAPPA,
-    column("psi", "impact ratio ψ that was asked for"),
-    column("psi_largest", "ψ of the top of the oscillation around it"),
-    column("w_final", "|w_final| there"),
-    column("w_integrated", "the same by dop853"),
-    column("w_scaled", "κ^{5/4} |w_final|"),
-    column("w_theory", "F κ^{−5/4} with the largest F of the inner problem"),
-    column("bound_printed", "1/√κ, the bound (27) as printed"),
-    column("bound_corrected", "(5/4)^{3/5}/√κ"),
-    column("last_onset", "√κ · (time left where the last stick phase starts)"),
-    column("switch_count", "number of switches"),
+    Column::new("psi", "impact ratio ψ that was asked for"),
+    Column::new("psi_largest", "ψ of the top of the oscillation around it"),
+    Column::new("w_final", "|w_final| at this top"),
+    Column::new("w_integrated", "the same by dop853"),
+    Column::new("w_scaled", "κ^{5/4} |w_final|"),
+    Column::new("w_theory", "F κ^{−5/4} with the largest F of the inner problem"),
+    Column::new("bound_printed", "1/√κ, the bound (27) as printed"),
+    Column::new("bound_corrected", "(5/4)^{3/5}/√κ"),
+    Column::new("last_onset", "√κ · (time left where the last stick phase starts)"),
+    Column::new("switch_count", "number of switches"),
 ];
 
-fn envelope(point: &Measured, peak: f64) -> Vec<Cell> {
-    let Measured { kappa, psi, crest, integrated, .. } = point;
+fn envelope(largest: &LargestVelocity, peak: f64) -> Vec<Cell> {
+    let LargestVelocity { kappa, psi, crest, integrated, .. } = largest;
     let bound = kappa.sqrt().recip();
     let numbers = [
         *kappa,
@@ -83,88 +83,85 @@ fn envelope(point: &Measured, peak: f64) -> Vec<Cell> {
         crest.psi,
         crest.velocity,
         *integrated,
-        point.scaled(),
+        largest.scaled(),
         peak * kappa.powf(-1.25),
         bound,
         BOUND_FACTOR * bound,
         crest.last_onset,
     ];
-    let count = Count(crest.switch_count as u64);
-    numbers.into_iter().map(Number).chain([count]).collect()
+    numbers.into_iter().map(Number).chain([crest.switch_count.into()]).collect()
 }
 
 const RESTITUTION: [Column; 6] = [
     KAPPA,
-    column("range", "where the range of ψ starts, in words"),
-    column("psi_lowest", "where it starts"),
-    column("psi_largest", "ψ of the largest |ε_t|"),
-    column("eps_t", "the largest |ε_t|"),
-    column("bound_printed", "1/(ψ√κ) where the range starts, the bound (27) as printed"),
+    Column::new("range", "where the range of ψ starts, as a formula"),
+    Column::new("psi_lowest", "ψ at which the range starts"),
+    Column::new("psi_largest", "ψ of the largest |ε_t|"),
+    Column::new("eps_t", "the largest |ε_t|"),
+    Column::new("bound_printed", "1/(ψ√κ) where the range starts, the bound (27) as printed"),
 ];
 
-fn restitution(found: &Restitution) -> Vec<Cell> {
-    let Restitution { kappa, from, lowest, largest } = found;
-    let place = largest.map_or(f64::NAN, |crest| crest.psi);
+fn restitution(found: &LargestRestitution) -> Vec<Cell> {
+    let LargestRestitution { kappa, start, lowest, largest } = found;
+    let psi = largest.map_or(f64::NAN, |crest| crest.psi);
     let bound = 1.0 / (lowest * kappa.sqrt());
-    let [eps_t, place, bound] = [found.eps_t(), place, bound].map(Number);
-    vec![Number(*kappa), Text(from.name()), Number(*lowest), place, eps_t, bound]
+    let [psi, eps_t, bound] = [psi, found.eps_t(), bound].map(Number);
+    vec![Number(*kappa), start.name().into(), Number(*lowest), psi, eps_t, bound]
 }
 
 const COUNTS: [Column; 5] = [
     KAPPA,
-    column("psi", "impact ratio ψ"),
-    column("switch_count", "number of switches"),
-    column("ratio", "that number over √κ t_c/π"),
-    column("ratio_expected", "2 min(t₁, t_c − t₁)/t_c, where t₁ is the time of the first switch"),
+    PSI,
+    Column::new("switch_count", "number of switches"),
+    Column::new("ratio", "this number over √κ t_c/π"),
+    Column::new(
+        "ratio_expected",
+        "2 min(t₁, t_c − t₁)/t_c, where t₁ is the time of the first switch",
+    ),
 ];
 
-fn counts(point: &Measured) -> Vec<Cell> {
-    vec![
-        Number(point.kappa),
-        Number(point.psi),
-        Count(point.switch_count as u64),
-        Number(point.count_ratio),
-        Number(point.count_expected),
-    ]
+fn counts(point: &LargestVelocity) -> Vec<Cell> {
+    let LargestVelocity { kappa, psi, switch_count, count_ratio, count_expected, .. } = *point;
+    vec![kappa.into(), psi.into(), switch_count.into(), count_ratio.into(), count_expected.into()]
 }
 
 const PROFILE: [Column; 3] = [
-    column("phase", "phase of the onsets, in half swings"),
-    column("last_onset", "σ where the last stick phase starts"),
-    column("f", "F, the final velocity"),
+    Column::new("phase", "phase of the onsets, in half swings"),
+    Column::new("last_onset", "σ where the last stick phase starts"),
+    Column::new("f", "F, the final velocity"),
 ];
 
-fn place(place: &Place) -> Vec<Cell> {
-    [place.phase, place.last_onset, place.velocity].map(Number).to_vec()
+fn curve_point(point: &CurvePoint) -> Vec<Cell> {
+    [point.phase, point.last_onset, point.velocity].map(Number).to_vec()
 }
 
 const COLLISIONS: [Column; 6] = [
     KAPPA,
-    column("psi", "impact ratio ψ"),
-    column("phase", "phase of the last onset"),
-    column("w_scaled", "κ^{5/4} |w_final|"),
-    column("f", "F of the inner problem at that phase"),
-    column(
+    PSI,
+    Column::new("phase", "phase of the last onset"),
+    Column::new("w_scaled", "κ^{5/4} |w_final|"),
+    Column::new("f", "F of the inner problem at this phase"),
+    Column::new(
         "phase_ahead",
-        "phase less √κ/π · (time left at the first switch), to the nearest whole number",
+        "phase minus √κ/π · (time left at the first switch), to the nearest whole number",
     ),
 ];
 
-fn compared(compared: &Compared) -> Vec<Cell> {
-    let Compared { kappa, psi, phase, velocity, inner, ahead } = *compared;
+fn compared(compared: &ComparedCollision) -> Vec<Cell> {
+    let ComparedCollision { kappa, psi, phase, velocity, inner, ahead } = *compared;
     [kappa, psi, phase, velocity, inner, ahead].map(Number).to_vec()
 }
 
 const CONVERGENCE: [Column; 3] = [
-    column("start", "σ at which orbits start"),
-    column("coefficients", "coefficients of the phase's series"),
-    column(
+    Column::new("start", "σ at which orbits start"),
+    Column::new("coefficients", "coefficients of the series of the phase"),
+    Column::new(
         "difference",
-        "largest difference of F at 16 phases from that with start 100 and 15 coefficients",
+        "largest difference of F at 16 phases from F with start 100 and 15 coefficients",
     ),
 ];
 
-fn converged(converged: &Converged) -> Vec<Cell> {
-    let Converged { start, coefficients, difference } = *converged;
-    vec![Number(start), Count(coefficients as u64), Number(difference)]
+fn other_start(other: &OtherStart) -> Vec<Cell> {
+    let OtherStart { start, coefficients, difference } = *other;
+    vec![start.into(), coefficients.into(), difference.into()]
 }

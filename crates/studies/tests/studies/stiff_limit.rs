@@ -1,7 +1,8 @@
 //! The limit of stiff springs: full collisions against the inner problem and against 40-digit
 //! references.
 
-use stickslip::model::{Contact, exact, inner, stiff};
+use stickslip_model::{Contact, exact, inner};
+use stickslip_studies::stiff_springs::limit;
 
 /// F, computed with 50 digits in mpmath as the largest final velocity of the map of onsets, its
 /// derivative solved for 0 by secants; the closed form is not used.
@@ -9,18 +10,18 @@ const CONSTANT: f64 = 4.4848423519475425884;
 
 /// κ^{5/4} times the largest |w_final| at κ.
 fn scaled(kappa: f64, psi: f64) -> f64 {
-    stiff::envelope(kappa, psi).unwrap().velocity * kappa.powf(1.25)
+    limit::envelope(kappa, psi).unwrap().velocity * kappa.powf(1.25)
 }
 
 #[test]
 fn the_velocity_falls_with_the_power_of_five_quarters() {
     for psi in [0.3, 1.0, 1.7] {
-        let velocity = |kappa| stiff::envelope(kappa, psi).unwrap().velocity;
+        let velocity = |kappa| limit::envelope(kappa, psi).unwrap().velocity;
         for kappa in [1e4, 1e5, 1e6, 1e7] {
             let exponent = (velocity(kappa) / velocity(10.0 * kappa)).log10();
             // F₁ κ^{−5/4}/F on a decade; measured: 2.5e-5, 1.4e-6, 7.9e-8, 4.5e-9.
-            let limit = 5e-5 * (kappa / 1e4).powf(-1.25);
-            assert!((exponent - 1.25).abs() < limit, "{kappa} {psi}: {exponent}");
+            let tolerance = 5e-5 * (kappa / 1e4).powf(-1.25);
+            assert!((exponent - 1.25).abs() < tolerance, "{kappa} {psi}: {exponent}");
         }
     }
 }
@@ -39,7 +40,7 @@ fn full_collisions_and_the_inner_problem_have_the_same_constant() {
         // Measured: 8.4e-11, which is the next order, and 2.6e-3.
         assert!((constant - CONSTANT).abs() < 2e-10, "{psi}: {constant}");
         assert!((correction - peak.correction).abs() < 6e-3, "{psi}: {correction}");
-        // At κ = 1e8 the next order is 3e-18: what is left is the exact engine's error.
+        // At κ = 1e8 the next order is 3e-18: the rest is the exact engine's error.
         let rest = scaled(1e8, psi) - peak.velocity - peak.correction * 1e-10;
         assert!(rest.abs() < 1e-13, "{psi}: {rest}");
     }
@@ -64,9 +65,9 @@ fn the_exact_engine_is_right_where_springs_are_stiff() {
         let last = kappa.sqrt() * collision.switches[count - 2].time_left;
         // Rounding of √κ t; measured: up to 1.0e-10 and 1.3e-10 at κ = 1e8, and 1e-14 of w at the
         // top of an oscillation.
-        let limit = 3e-14 * kappa.sqrt();
-        assert!((last / onset - 1.0).abs() < limit, "{kappa} {psi}: {last}");
+        let tolerance = 3e-14 * kappa.sqrt();
+        assert!((last / onset - 1.0).abs() < tolerance, "{kappa} {psi}: {last}");
         let off = (collision.final_velocity / velocity - 1.0).abs();
-        assert!(off < limit, "{kappa} {psi}: {off:e}");
+        assert!(off < tolerance, "{kappa} {psi}: {off:e}");
     }
 }

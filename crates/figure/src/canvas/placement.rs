@@ -1,32 +1,33 @@
-//! Where the labels of the regions of a map go.
+//! Places of labels in the regions of a map.
 
-/// Cells with values, row by row.
+/// A map of cells, each with the value of its region.
 #[derive(Clone, Copy, Debug)]
 pub struct Cells<'a> {
-    /// Cells in a row.
+    /// Number of cells in a row.
     pub columns: usize,
-    /// Their values.
+    /// The values of the cells, row by row.
     pub values: &'a [i32],
 }
 
 /// A label in the widest part of a region.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Label {
-    /// The region's value.
+    /// The value of the region.
     pub value: i32,
-    /// Column of the cell at the label's middle.
+    /// Column of the cell in the middle of the label.
     pub column: usize,
-    /// Its row.
+    /// Row of the cell in the middle of the label.
     pub row: usize,
 }
 
 /// One label for each connected region of equal values that has room for it.
 ///
-/// `half_size` is half the width and height that the label of a value needs, in cells. A label lies
-/// within its region, at the place that leaves most room around it, in units of its own size. Cells
-/// connect through edges, not through corners, and not through a neck narrower than a quarter of a
-/// label: where two boundaries cross, cells join what meets in a point only. Labels on both sides
-/// of a neck come as close as to overlap by a quarter at most.
+/// `half_size` is half the width and half the height of a value's label, in cells. A label lies
+/// within its region, at the place with the most room around it, in units of its own size.
+///
+/// Cells connect through edges, not through corners, and not through a neck narrower than a quarter
+/// of a label: where two boundaries cross, such a neck joins regions that meet in a point only.
+/// Labels on both sides of a neck overlap by a quarter at most.
 pub fn place(cells: Cells<'_>, half_size: impl Fn(i32) -> (f64, f64)) -> Vec<Label> {
     /// Half the width of the narrowest neck, in half sizes of a label.
     const NECK: f64 = 0.25;
@@ -45,7 +46,7 @@ pub fn place(cells: Cells<'_>, half_size: impl Fn(i32) -> (f64, f64)) -> Vec<Lab
         .collect();
     let wide: Vec<bool> = rooms.iter().map(|(width, height)| width.min(*height) >= NECK).collect();
     let (regions, count) = regions(cells, &wide);
-    // The most room so far with what decides between equals, and where that is.
+    // The most room in each region so far, the room that decides between equals, and the place.
     let mut best = vec![((1.0, 0.0), None); count];
     for place in 0..values.len() {
         let (width, height) = rooms[place];
@@ -102,7 +103,7 @@ fn clearance(
     clearance
 }
 
-/// The number of the connected region of every cell that is `wide`, and how many there are.
+/// The index of the connected region of every cell that is `wide`, and the number of regions.
 fn regions(Cells { columns, values }: Cells<'_>, wide: &[bool]) -> (Vec<Option<usize>>, usize) {
     let mut regions = vec![None; values.len()];
     let mut count = 0;

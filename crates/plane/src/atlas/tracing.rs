@@ -1,4 +1,4 @@
-//! An atlas made: boundaries traced, regions verified.
+//! How an atlas is made: boundaries are traced, and regions are verified.
 
 use std::collections::BTreeMap;
 
@@ -9,25 +9,25 @@ use stickslip_tracer::{
     Tracer, VerifyError, Vertex,
 };
 
-use super::boundary::{Kind, itinerary};
-use super::frame::{Frame, TooNarrow, scaled, traced};
+use super::boundary::{BoundaryKind, itinerary};
+use super::frame::{Frame, TooNarrow};
 use super::regions::{Atlas, Regions};
 use super::verification::{self, LabelError, VerificationReport};
-use crate::family::CollisionFamilyError;
+use crate::family::{CollisionFamilyError, CollisionPlane};
 use crate::progress::{Progress, Report};
 
-/// An atlas, and what its verification found.
+/// An atlas with the result of its verification.
 #[derive(Clone, Debug)]
 pub struct VerifiedAtlas {
     /// The atlas.
     pub atlas: Atlas,
-    /// Where boundaries turn back in κ or ψ.
+    /// The points at which boundaries turn back in κ or ψ.
     pub extrema: Vec<Extremum>,
     /// What the verification found.
     pub report: VerificationReport,
 }
 
-/// Why there is no atlas.
+/// The reason why a window has no atlas.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AtlasError {
     /// No collision has the parameters of the window.
@@ -36,7 +36,7 @@ pub enum AtlasError {
     /// The window is too narrow.
     #[error(transparent)]
     Narrow(#[from] TooNarrow),
-    /// The accuracy is not possible in the window.
+    /// The boundaries cannot have this accuracy in the window.
     #[error(
         "the tolerance {tolerance:?} is out of range; expected {finest:e} to {coarsest:e} in this window"
     )]
@@ -55,10 +55,10 @@ pub enum AtlasError {
         kappa: f64,
         /// ψ of the run.
         psi: f64,
-        /// What happened.
+        /// The error of the run.
         source: CollisionFamilyError,
     },
-    /// The tracer failed otherwise.
+    /// The tracer failed for another reason than a run.
     #[error(transparent)]
     Trace(TraceError<CollisionFamilyError>),
     /// The curves do not make regions.
@@ -72,14 +72,14 @@ pub enum AtlasError {
     Label(#[from] LabelError),
 }
 
-/// How often a verification may send the tracer back.
+/// The largest number of rounds, each with a trace and a verification.
 const ROUNDS: u64 = 8;
 
-/// Traces the boundaries in `frame`, accurate to `tolerance` in ψ, and verifies the regions on the
-/// threads of the current pool. As long as this finds other switches than the atlas has, the tracer
-/// looks again there.
+/// Traces the boundaries in `frame`, accurate to `tolerance` in ψ, and verifies the regions.
 ///
-/// `progress` hears of each round of tracing and verification; there are up to eight.
+/// The verification computes collisions on the threads of the current rayon pool. If it finds
+/// other switches than the atlas has, the tracer looks again there, in up to eight rounds.
+/// `progress` is told when a round begins and ends.
 ///
 /// # Errors
 /// [`AtlasError`]: the window or the tolerance is not possible, a run fails, or the curves do not
@@ -126,7 +126,7 @@ impl From<TraceError<CollisionFamilyError>> for AtlasError {
     fn from(error: TraceError<CollisionFamilyError>) -> Self {
         match error {
             TraceError::Run { point, source } => {
-                let [kappa, psi] = scaled(&point);
+                let [kappa, psi] = CollisionPlane::parameters(&point);
                 Self::Run { kappa, psi, source }
             }
             error => Self::Trace(error),
@@ -134,7 +134,7 @@ impl From<TraceError<CollisionFamilyError>> for AtlasError {
     }
 }
 
-/// The atlas of a network.
+/// The atlas that the traced curves make.
 fn atlas(
     frame: Frame,
     tolerance: f64,
@@ -152,17 +152,22 @@ fn atlas(
     Ok(Atlas { frame, tolerance, regions, unbounded })
 }
 
-/// The regions that the traced curves make. Points go through (κ, ψ), as they are written, so that
-/// a file makes the same regions bit for bit.
+/// The regions that the traced curves make.
+///
+/// Points are converted to (κ, ψ) and back, because a file holds κ and ψ. A file then makes the
+/// same regions, bit for bit.
 fn regions(
     frame: &Frame,
     tolerance: f64,
     network: Network<Vec<usize>, Margin>,
     any: &Contact,
 ) -> Result<Regions, AtlasError> {
-    let written = |point: &Point| traced(frame.snapped(scaled(point)));
+    let written = |point: &Point| {
+        let [kappa, psi] = frame.snapped(CollisionPlane::parameters(point));
+        CollisionPlane::point(kappa, psi)
+    };
     let curves = network.curves.into_iter().map(|curve| Curve {
-        margin: Kind::of(any, &curve.margin),
+        margin: BoundaryKind::of(any, &curve.margin),
         sides: curve.sides.map(|guards| itinerary(any, &guards)),
         nodes: curve
             .nodes

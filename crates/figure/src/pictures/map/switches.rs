@@ -1,0 +1,86 @@
+//! The colours of the numbers of switches, their labels in the regions, and their key.
+
+use std::collections::BTreeSet;
+
+use super::panel::{MapPanel, Values};
+use crate::canvas::panel::{LINEAR, Panel};
+use crate::canvas::shape::Rectangle;
+use crate::canvas::style::{self, SMALL};
+use crate::canvas::svg::{Anchor, Svg, Words};
+use crate::canvas::{Cells, place};
+use crate::error::FigureError;
+
+/// The largest number of labels beside the key.
+const MOST_NUMBERS: usize = 16;
+
+/// All numbers of switches that occur in `maps`, so that each number has one colour in all panels.
+pub fn counts(maps: &[MapPanel<'_>]) -> Vec<i32> {
+    let values = maps.iter().flat_map(|map| match map.values {
+        Values::Switches(values) => values,
+        Values::Restitution(_) => &[],
+    });
+    let counts: BTreeSet<i32> = values.copied().filter(|&count| count >= 0).collect();
+    counts.into_iter().collect()
+}
+
+/// Draws the map of the numbers of switches into `panel`, with its key; `counts` are all numbers that
+/// have a colour.
+pub fn draw(
+    svg: &mut Svg,
+    map: &MapPanel<'_>,
+    panel: &Panel,
+    values: &[i32],
+    counts: &[i32],
+) -> Result<(), FigureError> {
+    // If there are more numbers than colours, neighbours share a colour.
+    let colours = counts.len().min(usize::from(u8::MAX));
+    let shade = |count: i32| {
+        let rank = counts.binary_search(&count).ok()?;
+        u8::try_from(rank * colours / counts.len()).ok()
+    };
+    let mut palette: Vec<_> = (0..colours).map(|i| style::ordered(i, colours)).collect();
+    palette.push(style::MISSING);
+    let missing = u8::try_from(colours).unwrap_or(u8::MAX);
+    let colour = |count: i32| palette[usize::from(shade(count).unwrap_or(missing))];
+    let pixel = |cell: usize| shade(values[cell]).unwrap_or(missing);
+    svg.image(panel.frame, &map.bitmap(pixel, palette.clone()).base64()?);
+    map.over(svg, panel);
+
+    svg.begin_group("regions");
+    let values = map.free_of_points(panel, values);
+    let cells = Cells { columns: map.columns, values: &values };
+    let cell_width = panel.frame.width / map.columns as f64;
+    let cell_height = panel.frame.height / map.rows as f64;
+    let half_size = |count: i32| {
+        // Figures are 0.64 of the font size wide and 0.73 high.
+        let digits = count.to_string().len() as f64;
+        ((0.32 * SMALL * digits + 2.0) / cell_width, (0.365 * SMALL + 2.0) / cell_height)
+    };
+    for label in place(cells, half_size).into_iter().filter(|label| label.value >= 0) {
+        let x = panel.frame.left + (label.column as f64 + 0.5) * cell_width;
+        let y = panel.frame.bottom() - (label.row as f64 + 0.5) * cell_height;
+        let text = label.value.to_string();
+        let words = Words::new(&text, SMALL, Anchor::Middle);
+        svg.words((x, y), Words { colour: style::readable_on(colour(label.value)), ..words });
+    }
+    svg.end_group();
+    map.axes(svg, panel, map.heading);
+
+    let frame = map.beside(panel);
+    let key = Panel { frame, x: (0.0, 1.0), y: (0.0, counts.len().max(1) as f64), scales: LINEAR };
+    // Each colour reaches down to the bottom, under the colours that follow, so that no seams show.
+    for (rank, count) in counts.iter().enumerate().rev() {
+        let (left, top) = key.place((0.0, rank as f64 + 1.0));
+        let height = key.frame.bottom() - top;
+        svg.fill(Rectangle { left, top, height, ..key.frame }, &style::hex(colour(*count)));
+    }
+    let apart = counts.len().div_ceil(MOST_NUMBERS).max(1);
+    svg.begin_group("counts");
+    for (rank, count) in counts.iter().enumerate().step_by(apart) {
+        let (x, y) = key.place((1.0, rank as f64 + 0.5));
+        svg.words((x + 8.0, y), Words::new(&count.to_string(), SMALL, Anchor::Start));
+    }
+    svg.end_group();
+    key.border(svg);
+    Ok(())
+}

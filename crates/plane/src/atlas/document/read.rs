@@ -1,0 +1,151 @@
+//! How an atlas is read back from its document.
+
+use std::collections::BTreeMap;
+
+use stickslip_tracer::{Curve, Location, Node, Point, Subdivision, Vertex};
+
+use super::error::DocumentError;
+use super::layout::{
+    BoundaryFields, Document, RegionFields, SCHEMA, Switching, VertexFields, WindowFields, in_order,
+};
+use crate::atlas::boundary::BoundaryKind;
+use crate::atlas::frame::Frame;
+use crate::atlas::regions::{Atlas, Regions, switch_count};
+use crate::family::CollisionPlane;
+use crate::range::Range;
+
+impl TryFrom<Document> for Atlas {
+    type Error = DocumentError;
+
+    /// Reads an atlas back. The regions are made from the boundaries, as when the atlas was traced.
+    /// The impact ratios of the window are not kept.
+    ///
+    /// # Errors
+    /// [`DocumentError`]: the document contradicts itself, or its verification found something that
+    /// speaks against it.
+    fn try_from(document: Document) -> Result<Self, DocumentError> {
+        if document.schema != SCHEMA {
+            return Err(DocumentError::Schema { found: document.schema });
+        }
+        if let Some(objection) = document.verification.objection() {
+            return Err(DocumentError::Doubtful { objection });
+        }
+        let (frame, tolerance) = (frame(&document.window)?, document.tolerance);
+        if !(tolerance > 0.0 && tolerance <= 1e-6) {
+            return Err(DocumentError::Tolerance { tolerance });
+        }
+        frame.require_wide()?;
+        let curves = document.boundaries.iter().enumerate();
+        let curves = curves.map(|(index, boundary)| curve(index, boundary));
+        let curves = curves.collect::<Result<Vec<_>, _>>()?;
+        let vertices = document.vertices.iter().enumerate();
+        let vertices = vertices.map(|(index, fields)| vertex(index, fields));
+        let vertices = vertices.collect::<Result<Vec<_>, _>>()?;
+        let resolution = frame.resolution(tolerance);
+        let regions = Subdivision::new(frame.window(), curves, vertices, resolution)?;
+        if let Some(finding) = regions.findings().first() {
+            return Err(DocumentError::Finding(finding.clone()));
+        }
+        let unbounded = unbounded(&regions, document.regions)?;
+        Ok(Self { frame, tolerance, regions, unbounded })
+    }
+}
+
+/// The window; impact ratios are not read.
+fn frame(window: &WindowFields) -> Result<Frame, DocumentError> {
+    let range = |name, [low, high]: [f64; 2]| {
+        if low > 0.0 && low < high && high.is_finite() {
+            return Ok(Range { low, high });
+        }
+        Err(DocumentError::Window { name, low, high })
+    };
+    if !(0.0..f64::INFINITY).contains(&window.damping) {
+        return Err(DocumentError::Damping { damping: window.damping });
+    }
+    let (kappa, psi) = (range("kappa", window.kappa)?, range("psi", window.psi)?);
+    Ok(Frame { kappa, psi, ratio: None, damping: window.damping })
+}
+
+/// The curve of a boundary in traced coordinates.
+fn curve(
+    index: usize,
+    boundary: &BoundaryFields,
+) -> Result<Curve<String, BoundaryKind>, DocumentError> {
+    require_id("boundaries", index, boundary.id)?;
+    let (points, tangents) = (&boundary.points, &boundary.tangents);
+    if points.len() < 2 || points.len() != tangents.len() {
+        let (points, tangents) = (points.len(), tangents.len());
+        return Err(DocumentError::Tangents { boundary: index, points, tangents });
+    }
+    let mut nodes = Vec::with_capacity(points.len());
+    for (place, (point, tangent)) in points.iter().zip(tangents).enumerate() {
+        let point = positive(*point, || format!("boundaries[{index}].points[{place}]"))?;
+        nodes.push(Node { point, tangent: Point::from(*tangent) });
+    }
+    let below = checked(boundary.below.clone(), || format!("boundaries[{index}].below"))?;
+    let above = checked(boundary.above.clone(), || format!("boundaries[{index}].above"))?;
+    let sides = in_order(&nodes, [below, above]);
+    Ok(Curve { margin: boundary.kind, sides, nodes, ends: boundary.vertices })
+}
+
+/// The vertex in traced coordinates.
+fn vertex(index: usize, vertex: &VertexFields) -> Result<Vertex<BoundaryKind>, DocumentError> {
+    require_id("vertices", index, vertex.id)?;
+    let point = positive([vertex.kappa, vertex.psi], || format!("vertices[{index}]"))?;
+    Ok(Vertex { point, kind: vertex.kind.into(), margins: Vec::new() })
+}
+
+/// Compares the regions that the boundaries make with those that the document lists. The result has
+/// the itineraries of the regions that no boundary touches.
+fn unbounded(
+    regions: &Regions,
+    listed: Vec<RegionFields>,
+) -> Result<BTreeMap<usize, String>, DocumentError> {
+    if listed.len() != regions.regions().len() {
+        let (listed, made) = (listed.len(), regions.regions().len());
+        return Err(DocumentError::Regions { listed, made });
+    }
+    let mut unbounded = BTreeMap::new();
+    for (index, region) in listed.into_iter().enumerate() {
+        require_id("regions", index, region.id)?;
+        let itinerary = checked(region.switching, || format!("regions[{index}]"))?;
+        let sample = positive(region.sample, || format!("regions[{index}].sample"))?;
+        let around = &regions.regions()[index].label;
+        let fits = around.as_ref().is_none_or(|around| *around == itinerary);
+        if !fits || regions.locate(&sample) != Location::Region(index) {
+            return Err(DocumentError::Region { region: index });
+        }
+        if around.is_none() {
+            unbounded.insert(index, itinerary);
+        }
+    }
+    Ok(unbounded)
+}
+
+/// The itinerary, if it is one and has as many switches as the count says.
+fn checked(switching: Switching, place: impl Fn() -> String) -> Result<String, DocumentError> {
+    let Switching { switch_count: count, itinerary } = switching;
+    let phases = itinerary.as_bytes();
+    let known = !phases.is_empty() && phases.iter().all(|phase| b"+o-".contains(phase));
+    let alternating = phases.windows(2).all(|pair| (pair[0] == b'o') != (pair[1] == b'o'));
+    if known && alternating && switch_count(&itinerary) == count {
+        return Ok(itinerary);
+    }
+    Err(DocumentError::Switching { place: place(), switch_count: count, itinerary })
+}
+
+/// A point (κ, ψ) in traced coordinates.
+fn positive([kappa, psi]: [f64; 2], place: impl Fn() -> String) -> Result<Point, DocumentError> {
+    if kappa > 0.0 && psi > 0.0 {
+        return Ok(CollisionPlane::point(kappa, psi));
+    }
+    Err(DocumentError::Point { place: place(), kappa, psi })
+}
+
+/// Refuses an entry whose `id` is not its index.
+fn require_id(list: &'static str, index: usize, id: usize) -> Result<(), DocumentError> {
+    if id == index {
+        return Ok(());
+    }
+    Err(DocumentError::Id { list, index, id })
+}

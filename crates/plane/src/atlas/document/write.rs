@@ -1,0 +1,121 @@
+//! How the document of an atlas is made.
+
+use stickslip_tracer::{Curve, Extremum, Node};
+
+use super::layout::{
+    BoundaryEnd, BoundaryFields, Document, ExtremalParameter, ExtremumFields, Meeting,
+    RegionFields, SCHEMA, Switching, VertexFields, WindowFields, in_order,
+};
+use crate::atlas::boundary::BoundaryKind;
+use crate::atlas::frame::Frame;
+use crate::atlas::regions::{Atlas, Regions, switch_count};
+use crate::atlas::tracing::VerifiedAtlas;
+use crate::family::CollisionPlane;
+
+impl Document {
+    /// The document of an atlas, with the result of its verification.
+    #[must_use]
+    pub fn new(verified: &VerifiedAtlas) -> Self {
+        let VerifiedAtlas { atlas, extrema, report } = verified;
+        let Atlas { frame, tolerance, regions, .. } = atlas;
+        let boundaries = regions.curves().iter().enumerate();
+        Self {
+            schema: SCHEMA.to_owned(),
+            window: WindowFields::new(frame),
+            tolerance: *tolerance,
+            boundaries: boundaries
+                .map(|(id, curve)| BoundaryFields::new(atlas, id, curve))
+                .collect(),
+            vertices: vertices(frame, regions),
+            extrema: extrema.iter().map(ExtremumFields::new).collect(),
+            regions: (0..regions.regions().len()).map(|id| RegionFields::new(atlas, id)).collect(),
+            verification: report.clone(),
+        }
+    }
+}
+
+impl WindowFields {
+    fn new(frame: &Frame) -> Self {
+        Self {
+            kappa: [frame.kappa.low, frame.kappa.high],
+            psi: [frame.psi.low, frame.psi.high],
+            damping: frame.damping,
+            ratio: frame.ratio.map(|ratio| [ratio.range.low, ratio.range.high]),
+            mu: frame.ratio.map(|ratio| ratio.reduction.mu),
+            alpha: frame.ratio.map(|ratio| ratio.reduction.alpha),
+        }
+    }
+}
+
+impl BoundaryFields {
+    fn new(atlas: &Atlas, id: usize, curve: &Curve<String, BoundaryKind>) -> Self {
+        let [below, above] = in_order(&curve.nodes, curve.sides.each_ref());
+        let kind = |vertex: usize| Meeting::from(atlas.regions.vertices()[vertex].kind);
+        let place = |end: usize| match curve.ends.map(|ends| kind(ends[end])) {
+            None => BoundaryEnd::Closed,
+            Some(Meeting::WindowEdge | Meeting::WindowCorner) => BoundaryEnd::Window,
+            Some(_) => BoundaryEnd::Vertex,
+        };
+        let point = |node: &Node| atlas.frame.snapped(CollisionPlane::parameters(&node.point));
+        Self {
+            id,
+            kind: curve.margin,
+            below: Switching::new(below),
+            above: Switching::new(above),
+            points: curve.nodes.iter().map(point).collect(),
+            tangents: curve.nodes.iter().map(|node| node.tangent.into()).collect(),
+            start: place(0),
+            end: place(1),
+            vertices: curve.ends,
+        }
+    }
+}
+
+/// All vertices, each with the boundaries that start or end there.
+fn vertices(frame: &Frame, regions: &Regions) -> Vec<VertexFields> {
+    let mut ending = vec![Vec::new(); regions.vertices().len()];
+    for (id, curve) in regions.curves().iter().enumerate() {
+        for vertex in curve.ends.into_iter().flatten() {
+            if ending[vertex].last() != Some(&id) {
+                ending[vertex].push(id);
+            }
+        }
+    }
+    let vertices = regions.vertices().iter().zip(ending).enumerate();
+    vertices
+        .map(|(id, (vertex, boundaries))| {
+            let [kappa, psi] = frame.snapped(CollisionPlane::parameters(&vertex.point));
+            VertexFields { id, kind: vertex.kind.into(), kappa, psi, boundaries }
+        })
+        .collect()
+}
+
+impl ExtremumFields {
+    fn new(extremum: &Extremum) -> Self {
+        let [kappa, psi] = CollisionPlane::parameters(&extremum.point);
+        let of = if extremum.axis == 0 { ExtremalParameter::Kappa } else { ExtremalParameter::Psi };
+        Self { boundary: extremum.curve, of, kappa, psi }
+    }
+}
+
+impl RegionFields {
+    fn new(atlas: &Atlas, id: usize) -> Self {
+        let region = &atlas.regions.regions()[id];
+        let mut boundaries: Vec<usize> = region.boundary.iter().map(|side| side.0).collect();
+        boundaries.sort_unstable();
+        boundaries.dedup();
+        Self {
+            id,
+            switching: Switching::new(atlas.itinerary(id)),
+            sample: CollisionPlane::parameters(&region.sample),
+            area_share: region.area / atlas.regions.window().area(),
+            boundaries,
+        }
+    }
+}
+
+impl Switching {
+    fn new(itinerary: &str) -> Self {
+        Self { switch_count: switch_count(itinerary), itinerary: itinerary.to_owned() }
+    }
+}

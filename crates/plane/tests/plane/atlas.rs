@@ -1,0 +1,182 @@
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use stickslip_model::{Contact, exact};
+use stickslip_plane::atlas::{AtlasError, BoundaryKind, Frame, Unlocated, switch_count, trace};
+use stickslip_plane::progress::{Progress, SILENT};
+use stickslip_plane::{CollisionPlane, Range};
+
+use crate::windows::{crossing, empty, frame, traced};
+
+fn contact(kappa: f64, psi: f64) -> Contact {
+    Contact::new(kappa, psi, 0.0).unwrap()
+}
+
+#[test]
+fn a_window_too_narrow_is_refused_with_its_size() {
+    let narrow = frame((5.0, 20.0), (0.2, 0.205));
+    let AtlasError::Narrow(size) = trace(narrow, 1e-10, SILENT).unwrap_err() else {
+        panic!("not too narrow")
+    };
+    assert!((size.width - 4.0_f64.ln()).abs() < 1e-15);
+    assert!((size.height - (1.205_f64 / 1.2).ln()).abs() < 1e-15);
+    let text = size.to_string();
+    assert!(text.contains("too narrow") && text.contains("expected from 0.01 each"), "{text}");
+    // In the other direction, too; a window just wide enough is traced.
+    assert!(frame((5.0, 5.04), (0.2, 2.0)).require_wide().is_err());
+    assert!(frame((5.0, 5.06), (0.2, 2.0)).require_wide().is_ok());
+}
+
+#[test]
+fn a_tolerance_out_of_range_is_refused_with_the_range() {
+    let frame = frame((18.0, 21.0), (0.55, 0.65));
+    let range = frame.tolerances();
+    assert!(range.finest <= range.usual && range.usual < range.coarsest);
+    for asked in [0.99 * range.finest, 1.01 * range.coarsest, -range.usual, f64::NAN] {
+        let AtlasError::Tolerance { tolerance, finest, coarsest } =
+            trace(frame, asked, SILENT).unwrap_err()
+        else {
+            panic!("{asked} is not refused")
+        };
+        assert_eq!(tolerance.to_bits(), asked.to_bits());
+        assert_eq!((finest, coarsest), (range.finest, range.coarsest));
+    }
+    let error = trace(frame, 1.0, SILENT).unwrap_err().to_string();
+    let expected = format!("expected {:e} to {:e} in this window", range.finest, range.coarsest);
+    assert_eq!(error, format!("the tolerance 1.0 is out of range; {expected}"));
+}
+
+#[test]
+fn a_window_without_collisions_is_refused() {
+    for frame in
+        [frame((0.0, 20.0), (0.2, 2.0)), Frame { damping: -1.0, ..frame((5.0, 20.0), (0.2, 2.0)) }]
+    {
+        let error = trace(frame, 1e-10, SILENT).unwrap_err();
+        assert!(matches!(error, AtlasError::Parameter(_)), "{error}");
+    }
+}
+
+#[test]
+fn regions_have_the_switches_of_their_collisions() {
+    let verified = crossing();
+    assert!(verified.report.agrees, "{:?}", verified.report);
+    assert_eq!(verified.report.objection(), None);
+    let atlas = &verified.atlas;
+    assert_eq!(atlas.regions.regions().len(), 4);
+    let mut seen = [false; 4];
+    for step in 0..100 {
+        let (column, row) = (step % 10, step / 10);
+        let (kappa, psi) = (18.15 + 0.3 * f64::from(column), 0.555 + 0.01 * f64::from(row));
+        let located = atlas.locate(&contact(kappa, psi));
+        let region = located.region.unwrap();
+        seen[region] = true;
+        let collision = exact::collide(contact(kappa, psi)).unwrap();
+        assert_eq!(atlas.itinerary(region), collision.itinerary(), "{kappa}, {psi}");
+        assert_eq!(switch_count(atlas.itinerary(region)), collision.switches.len());
+        let boundaries = atlas.boundaries_at(kappa).into_iter();
+        let nearest = boundaries.map(|boundary| (boundary - psi).abs()).reduce(f64::min);
+        assert!((located.distance.unwrap() - nearest.unwrap()).abs() < 1e-9);
+    }
+    assert_eq!(seen, [true; 4]);
+}
+
+#[test]
+fn a_region_that_no_boundary_touches_has_an_itinerary() {
+    let atlas = &empty().atlas;
+    assert_eq!((atlas.regions.curves().len(), atlas.regions.regions().len()), (0, 1));
+    assert_eq!(atlas.itinerary(0), "+");
+    let located = atlas.locate(&contact(5.5, 2.75));
+    assert_eq!((located.region, located.distance), (Ok(0), None));
+    assert!(atlas.boundaries_at(5.5).is_empty() && atlas.polylines().is_empty());
+}
+
+#[test]
+fn a_point_outside_the_window_is_refused_with_the_window() {
+    for (kappa, psi) in [(17.9, 0.6), (21.1, 0.6), (19.0, 0.54), (19.0, 0.66)] {
+        let located = crossing().atlas.locate(&contact(kappa, psi));
+        let window = [[18.0, 21.0], [0.55, 0.65]];
+        let expected = Unlocated::Outside { kappa, psi, window };
+        assert_eq!(located.region, Err(expected));
+        assert_eq!(
+            expected.to_string(),
+            format!(
+                "kappa = {kappa:?}, psi = {psi:?} is outside the window of the atlas, kappa 18.0 to \
+                 21.0, psi 0.55 to 0.65"
+            )
+        );
+    }
+}
+
+#[test]
+fn a_point_on_a_boundary_is_refused_with_the_boundary() {
+    let atlas = &crossing().atlas;
+    for psi in atlas.boundaries_at(20.0) {
+        let located = atlas.locate(&contact(20.0, psi));
+        let Err(Unlocated::OnBoundary { kappa: 20.0, psi: found, boundary }) = located.region
+        else {
+            panic!("{:?}", located.region)
+        };
+        assert_eq!(found, psi);
+        assert!(located.distance.unwrap() < 1e-12);
+        // On either side the point is decided, by two regions of the boundary.
+        let [below, above] = [psi - 1e-6, psi + 1e-6]
+            .map(|psi| atlas.itinerary(atlas.locate(&contact(20.0, psi)).region.unwrap()));
+        let mut sides = atlas.regions.curves()[boundary].sides.each_ref().map(String::as_str);
+        let mut found = [below, above];
+        sides.sort_unstable();
+        found.sort_unstable();
+        assert_eq!(found, sides);
+    }
+    assert_eq!(atlas.boundaries_at(20.0).len(), 2);
+}
+
+#[test]
+fn boundaries_have_kinds_and_lines_through_their_points() {
+    let atlas = &crossing().atlas;
+    let lines = atlas.polylines();
+    assert_eq!(lines.len(), atlas.regions.curves().len());
+    for (curve, line) in atlas.regions.curves().iter().zip(&lines) {
+        assert!(matches!(curve.margin, BoundaryKind::EndOfContact | BoundaryKind::StickGraze));
+        for node in &curve.nodes {
+            let [kappa, psi] = CollisionPlane::parameters(&node.point);
+            let near = |point: &[f64; 2]| (point[0] - kappa).hypot(point[1] - psi) < 1e-12;
+            assert!(line.iter().any(near));
+        }
+        // Straight lines do not leave the boundary by more than a picture shows.
+        for pair in line.windows(2) {
+            let [kappa, psi] = [0, 1].map(|i| f64::midpoint(pair[0][i], pair[1][i]));
+            let boundaries = atlas.boundaries_at(kappa).into_iter();
+            let distance = boundaries.map(|boundary| (boundary - psi).abs()).reduce(f64::min);
+            assert!(distance.is_none_or(|distance| distance < 1e-4), "{distance:?}");
+        }
+    }
+}
+
+#[test]
+fn progress_tells_of_as_many_steps_as_it_announced() {
+    let (announced, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let frame = frame((5.0, 6.0), (2.5, 3.0));
+    trace(frame, frame.tolerances().usual, &|progress| {
+        let (counter, steps) = match progress {
+            Progress::Begin { steps } => (&announced, steps),
+            Progress::Advance { steps } => (&done, steps),
+        };
+        counter.fetch_add(steps, Ordering::Relaxed);
+    })
+    .unwrap();
+    assert!(announced.load(Ordering::Relaxed) >= 1);
+    assert_eq!(announced.into_inner(), done.into_inner());
+}
+
+#[test]
+fn a_damped_window_is_traced_by_integration() {
+    let frame = Frame {
+        kappa: Range { low: 10.0, high: 11.0 },
+        psi: Range { low: 0.9, high: 1.0 },
+        ratio: None,
+        damping: 0.05,
+    };
+    let verified = traced(frame);
+    assert!(verified.report.agrees, "{:?}", verified.report);
+    let itinerary = verified.atlas.itinerary(0);
+    assert_eq!(switch_count(itinerary) % 2, 1, "a damped contact begins in stick: {itinerary}");
+}

@@ -1,0 +1,10 @@
+//! Grids, sweeps and atlases of the crate, through its public interface.
+
+mod atlas;
+#[cfg(feature = "serde")]
+mod document;
+#[cfg(feature = "geojson")]
+mod geojson;
+mod grid;
+mod sweep;
+mod windows;

@@ -1,0 +1,47 @@
+//! What a study of convergence is about.
+
+use stickslip_model::{Contact, InvalidParameter};
+
+use crate::paper::{Reading, STIFFNESS};
+
+/// The largest stiffness of a study, which takes seconds at it. Work grows as √κ.
+pub const MOST_STIFFNESS: f64 = 1e6;
+
+/// The collisions of a study.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// The collisions whose errors are measured; κ is at most [`MOST_STIFFNESS`].
+    pub contacts: Vec<Contact>,
+}
+
+/// A collision is too stiff for a study.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("kappa = {kappa:?} is out of range; expected a number above 0, at most {MOST_STIFFNESS:?}")]
+pub struct InvalidConvergence {
+    /// The stiffness of the collision.
+    pub kappa: f64,
+}
+
+impl Settings {
+    /// The usual study: collisions with two to eight switches without damping, κ = 18 and 63, ψ =
+    /// 0.1, 0.2, … 1.9.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`]: the damping is out of its range.
+    pub fn usual(damping: f64) -> Result<Self, InvalidParameter> {
+        let points = Reading::kappas(STIFFNESS)
+            .into_iter()
+            .flat_map(|kappa| (1..20).map(move |tenths| (kappa, f64::from(tenths) / 10.0)));
+        let contacts = points.map(|(kappa, psi)| Contact::new(kappa, psi, damping));
+        Ok(Self { contacts: contacts.collect::<Result<_, _>>()? })
+    }
+
+    /// # Errors
+    /// A collision is too stiff.
+    pub(super) fn validate(&self) -> Result<(), InvalidConvergence> {
+        match self.contacts.iter().find(|contact| contact.kappa() > MOST_STIFFNESS) {
+            Some(stiff) => Err(InvalidConvergence { kappa: stiff.kappa() }),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! Searches for maxima, zeros and changes; the solvers are those of argmin.
+
+use std::cell::RefCell;
+use std::marker::PhantomData;
+use std::ops::Neg;
+
+use argmin::core::{CostFunction, Error, Executor, IterState, Solver, State};
+use argmin::solver::brent::{BrentOpt, BrentRoot};
+use argmin::solver::goldensectionsearch::GoldenSectionSearch;
+use argmin::solver::neldermead::NelderMead;
+use rayon::prelude::*;
+
+/// Why a search has no result.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SearchError {
+    /// There is no place to start from.
+    #[error("a search for an extremum has no places")]
+    NoPlaces,
+    /// The solver failed.
+    #[error("a search for an extremum failed: {0}")]
+    Solver(String),
+}
+
+/// A place and the value there.
+#[derive(Clone, Copy, Debug)]
+pub struct Extremum<T> {
+    pub at: T,
+    pub value: f64,
+}
+
+/// The maximum of `value`: the best of `places`, which are in order, improved by golden section
+/// between its neighbours, to 1e-9 of their distance.
+pub fn maximum<E: From<SearchError> + Send>(
+    places: &[f64],
+    value: impl Fn(f64) -> Result<f64, E> + Send + Sync,
+) -> Result<Extremum<f64>, E> {
+    let values: Vec<_> = places.par_iter().map(|&at| value(at)).collect();
+    let values: Vec<f64> = values.into_iter().collect::<Result<_, _>>()?;
+    let Some(best) = (0..values.len()).max_by(|&a, &b| values[a].total_cmp(&values[b])) else {
+        return Err(SearchError::NoPlaces.into());
+    };
+    let (low, high) = (places[best.saturating_sub(1)], places[(best + 1).min(places.len() - 1)]);
+    let solver = GoldenSectionSearch::new(low, high)
+        .and_then(|solver| solver.with_tolerance(1e-9 * (high - low)));
+    let start = 0.5 * (low + high);
+    let found =
+        least(|at| value(*at).map(f64::neg), solver, |state| state.param(start).max_iters(200))?;
+    Ok(if -found.value > values[best] {
+        Extremum { at: found.at, value: -found.value }
+    } else {
+        Extremum { at: places[best], value: values[best] }
+    })
+}
+
+/// The maximum of `value` near `start`, by the simplex method of Nelder and Mead from a triangle of
+/// size `step`.
+pub fn maximum_near<E: From<SearchError>>(
+    start: [f64; 2],
+    step: [f64; 2],
+    value: impl Fn([f64; 2]) -> Result<f64, E>,
+) -> Result<Extremum<[f64; 2]>, E> {
+    let [x, y] = start;
+    let corners = vec![vec![x, y], vec![x + step[0], y], vec![x, y + step[1]]];
+    let depth = |at: &Vec<f64>| value([at[0], at[1]]).map(f64::neg);
+    let solver = NelderMead::new(corners).with_sd_tolerance(1e-14);
+    let found = least(depth, solver, |state| state.max_iters(400))?;
+    Ok(Extremum { at: [found.at[0], found.at[1]], value: -found.value })
+}
+
+/// The place of the one maximum of `height` in `interval`, by Brent's method, to a `tolerance` in
+/// parts of the interval.
+pub fn highest<E: From<SearchError>>(
+    interval: (f64, f64),
+    tolerance: f64,
+    height: impl Fn(f64) -> Result<f64, E>,
+) -> Result<f64, E> {
+    let solver = BrentOpt::new(0.0, 1.0).set_tolerance(tolerance, tolerance);
+    let depth = |part: &f64| height(inside(interval, *part)).map(f64::neg);
+    Ok(inside(interval, least(depth, Ok(solver), |state| state.max_iters(200))?.at))
+}
+
+/// The place of the one zero of `height` in `interval`, by Brent's method, to 1e-14 of the
+/// interval.
+pub fn root<E: From<SearchError>>(
+    interval: (f64, f64),
+    height: impl Fn(f64) -> Result<f64, E>,
+) -> Result<f64, E> {
+    let solver = BrentRoot::new(0.0, 1.0, 1e-14);
+    let height = |part: &f64| height(inside(interval, *part));
+    Ok(inside(interval, least(height, Ok(solver), |state| state.max_iters(200))?.at))
+}
+
+/// The place between `from` and `to` where `holds`, true at `from` and false at `to`, changes; by
+/// bisection, to rounding.
+pub fn change<E>(
+    mut from: f64,
+    mut to: f64,
+    holds: impl Fn(f64) -> Result<bool, E>,
+) -> Result<f64, E> {
+    loop {
+        let middle = 0.5 * (from + to);
+        if middle == from || middle == to {
+            return Ok(middle);
+        }
+        if holds(middle)? { from = middle } else { to = middle }
+    }
+}
+
+/// The place at a part of `interval`: to the solver it is 0 to 1, so that tolerances fit.
+fn inside((low, high): (f64, f64), part: f64) -> f64 {
+    low + part * (high - low)
+}
+
+/// The state of a solver over places `P`.
+type Progress<P> = IterState<P, (), (), (), (), f64>;
+
+/// The place where `solver` finds `cost` least, or zero if it looks for a zero.
+fn least<P, F, E, S>(
+    cost: F,
+    solver: Result<S, Error>,
+    start: impl FnOnce(Progress<P>) -> Progress<P>,
+) -> Result<Extremum<P>, E>
+where
+    P: Clone,
+    F: Fn(&P) -> Result<f64, E>,
+    E: From<SearchError>,
+    S: for<'a> Solver<&'a Cost<P, F, E>, Progress<P>>,
+{
+    let cost = Cost { value: cost, failed: RefCell::default(), place: PhantomData };
+    let solved =
+        solver.and_then(|solver| Executor::new(&cost, solver).timer(false).configure(start).run());
+    if let Some(failure) = cost.failed.take() {
+        return Err(failure);
+    }
+    let solved = solved.map_err(|error| SearchError::Solver(error.to_string()))?;
+    let state = solved.state();
+    let best = state.get_best_param().map(|at| (at.clone(), state.get_best_cost()));
+    let (at, value) = best.ok_or(SearchError::NoPlaces)?;
+    Ok(Extremum { at, value })
+}
+
+/// A function whose minimum or zero is looked for, and its first failure. After a failure the
+/// solver goes on with an infinite cost, since argmin panics where a cost fails at the start.
+struct Cost<P, F, E> {
+    value: F,
+    failed: RefCell<Option<E>>,
+    place: PhantomData<P>,
+}
+
+impl<P, F: Fn(&P) -> Result<f64, E>, E> CostFunction for &Cost<P, F, E> {
+    type Param = P;
+    type Output = f64;
+
+    fn cost(&self, at: &P) -> Result<f64, Error> {
+        Ok((self.value)(at).unwrap_or_else(|failure| {
+            self.failed.borrow_mut().get_or_insert(failure);
+            f64::INFINITY
+        }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Debug, PartialEq)]
+    enum Failure {
+        Search(SearchError),
+        Broken,
+    }
+
+    impl From<SearchError> for Failure {
+        fn from(error: SearchError) -> Self {
+            Self::Search(error)
+        }
+    }
+
+    #[test]
+    fn maxima_between_and_at_the_places() {
+        let wave = |x: f64| Ok::<_, Failure>((x - 0.3).cos() + 0.1 * x);
+        let places: Vec<f64> = (0..20).map(|i| 0.2 * f64::from(i) - 1.0).collect();
+        let found = maximum(&places, wave).unwrap();
+        assert!((found.at - (0.3 + 0.1_f64.asin())).abs() < 1e-7);
+        let end = maximum(&places, Ok::<_, Failure>).unwrap();
+        assert_eq!(end.at, places[19]);
+        let none = maximum(&[], Ok::<_, Failure>).unwrap_err();
+        assert_eq!(none, Failure::Search(SearchError::NoPlaces));
+    }
+
+    #[test]
+    fn a_maximum_of_two_variables() {
+        let hill = |[x, y]: [f64; 2]| {
+            Ok::<_, Failure>(-(x - 1.0).powi(2) - 3.0 * (y + 0.5).powi(2) - x * y)
+        };
+        let found = maximum_near([0.0, 0.0], [0.1, 0.1], hill).unwrap();
+        // Where 2(x − 1) + y = 0 and 6(y + 1/2) + x = 0.
+        assert!(
+            (found.at[0] - 15.0 / 11.0).abs() < 1e-6 && (found.at[1] + 8.0 / 11.0).abs() < 1e-6
+        );
+    }
+
+    #[test]
+    fn maxima_and_zeros_by_brent_s_method() {
+        let top = highest((1.0, 3.0), 1e-8, |x| Ok::<_, Failure>(-(x - 1.7).powi(2))).unwrap();
+        assert!((top - 1.7).abs() < 1e-7);
+        let zero = root((1.0, 3.0), |x| Ok::<_, Failure>(x * x - 2.0)).unwrap();
+        assert!((zero - 2.0_f64.sqrt()).abs() < 1e-13);
+    }
+
+    #[test]
+    fn a_change_is_found_to_rounding() {
+        let root = change(1.0, 2.0, |x| Ok::<_, Failure>(x * x < 2.0)).unwrap();
+        assert!((root - 2.0_f64.sqrt()).abs() <= f64::EPSILON);
+    }
+
+    #[test]
+    fn failures_come_through() {
+        let broken = |_| Err(Failure::Broken);
+        assert_eq!(maximum(&[0.0, 1.0], broken).unwrap_err(), Failure::Broken);
+        let near = maximum_near([0.0, 0.0], [0.1, 0.1], |_| Err(Failure::Broken));
+        assert_eq!(near.unwrap_err(), Failure::Broken);
+        assert_eq!(highest((0.0, 1.0), 1e-8, broken), Err(Failure::Broken));
+        assert_eq!(root((0.0, 1.0), broken), Err(Failure::Broken));
+        assert_eq!(change(0.0, 1.0, |_| Err(Failure::Broken)), Err(Failure::Broken));
+    }
+}
