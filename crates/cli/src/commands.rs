@@ -1,4 +1,5 @@
-//! What each command does.
+//! What each command does. One file for each; `collide` with a file of collisions is `batch`, and
+//! `reproduce` with statements alone is `statements`.
 
 pub mod batch;
 pub mod collide;

@@ -11,10 +11,10 @@ use stickslip_plane::sweep::Failed;
 use stickslip_studies::StudyError;
 use stickslip_studies::figures::Objection;
 
-/// Why the program did not do what it was asked.
+/// The reason why the program did not do what it was asked.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
-    /// The options contradict each other.
+    /// An option is out of range, or the options contradict each other.
     #[error("{0}")]
     Usage(String),
     /// An input file cannot be used.
@@ -25,7 +25,7 @@ pub enum Failure {
         /// What is wrong with it, and what is expected.
         reason: String,
     },
-    /// The point cannot be computed.
+    /// A collision cannot be computed.
     #[error("kappa = {kappa:?}, psi = {psi:?}, damping = {damping:?}: {source}")]
     Computation {
         /// Scaled stiffness of the contact.
@@ -43,9 +43,9 @@ pub enum Failure {
          the column status of {} says why", path.display()
     )]
     Rows {
-        /// Rows without a result.
+        /// The number of rows without a result.
         failed: u64,
-        /// All rows.
+        /// The number of all rows.
         rows: u64,
         /// The output file.
         path: PathBuf,
@@ -58,7 +58,7 @@ pub enum Failure {
     Points {
         /// The points without a result.
         failed: Failed,
-        /// All points.
+        /// The number of all points.
         points: usize,
         /// The output file.
         path: PathBuf,
@@ -80,22 +80,22 @@ pub enum Failure {
         /// What speaks against it.
         reason: String,
     },
-    /// Some points have no place in an atlas.
+    /// Some points could not be located in an atlas.
     #[error(
         "{failed} of {rows} points could not be located and have no switches in {}; \
          the first, {first}", path.display()
     )]
     Unlocated {
-        /// Points without a place.
+        /// The number of points that could not be located.
         failed: u64,
-        /// All points.
+        /// The number of all points.
         rows: u64,
         /// The output file.
         path: PathBuf,
         /// The first of them, and why it could not be located.
         first: String,
     },
-    /// Another process is at work.
+    /// Another process makes the same map.
     #[error("{}: another process is making this map", .0.display())]
     Busy(PathBuf),
     /// An output file cannot be written.
@@ -123,7 +123,7 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// A point that cannot be computed.
+    /// A collision that cannot be computed.
     #[must_use]
     pub fn computation(contact: &Contact, source: EngineError) -> Self {
         let (kappa, psi, damping) = (contact.kappa(), contact.psi(), contact.damping());
@@ -140,9 +140,9 @@ impl Failure {
         }
     }
 
-    /// An unusable input file.
+    /// An input file that cannot be used.
     pub fn input(path: &Path, reason: impl Display) -> Self {
-        // What the reason quotes of the file may not break the line.
+        // The reason may quote the file, and what it quotes must not break the line.
         let mut shown = String::new();
         for character in reason.to_string().chars() {
             if character.is_control() {
@@ -159,33 +159,12 @@ impl Failure {
         Self::Output { path: path.to_owned(), source: source.into() }
     }
 
-    /// The outcome of writing to standard output: a reader that has gone away has seen enough.
-    ///
-    /// # Errors
-    /// Any other failure to write.
-    pub fn unless_written(written: io::Result<()>) -> Result<(), Self> {
-        match written {
-            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Self::Stdout(error)),
-            _ => Ok(()),
-        }
-    }
-
     /// The exit code: 2 for bad usage or input, 1 for everything that fails later.
     #[must_use]
     pub fn code(&self) -> u8 {
         match self {
             Self::Usage(_) | Self::Input { .. } => 2,
             _ => 1,
-        }
-    }
-
-    /// Says on standard error what went wrong.
-    pub fn report(&self) {
-        use io::Write;
-        // If standard error is closed, the exit code still tells.
-        let _ = writeln!(io::stderr(), "error: {self}");
-        if let Self::Usage(_) = self {
-            let _ = writeln!(io::stderr(), "\nFor more information, try '--help'.");
         }
     }
 }

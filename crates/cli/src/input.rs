@@ -1,5 +1,10 @@
-//! What is read: numbers and ranges, columns of a file, JSON files of bodies.
+//! What is read: texts of options, and files.
+//!
+//! Start reading in `number`; then, in this order: `range` (intervals and sizes), `parameter` (the
+//! parameters of a collision), `recipe` (from options and columns to a collision), `rows` (CSV
+//! files of collisions), `json`, `bodies` and `atlas` (JSON files).
 
+pub mod atlas;
 pub mod bodies;
 pub mod json;
 pub mod number;

@@ -1,12 +1,14 @@
-//! The `stickslip` program: arguments become a plan, the plan is carried out, the outcome becomes
-//! an exit code.
+//! The program `stickslip`: arguments become a plan, a command carries the plan out, and the result
+//! becomes an exit code.
 //!
-//! A library only so that tests and fuzz targets can carry out command lines without starting a
-//! process for each.
+//! It is a library only so that tests and fuzz targets can carry out command lines without starting
+//! a process for each.
 //!
-//! Start reading here; then, in this order: `args` (what may be typed), `plan` (what it means),
-//! `commands` (doing it), `input` (what is read), `output` (what is written), `page` (the page of
-//! `reproduce`), `schema` and `version` (the program about itself), `error` (exit codes).
+//! Start reading here; then, in this order: `args` (what may be typed), `plan` (what the options
+//! mean together), `commands` (what each command does), `input` (what is read), `output` (what is
+//! written), `page` (the page of `reproduce`), `threads` (on how many threads the work runs),
+//! `version` and `schema` (the program about itself), `error` (what can go wrong, and the exit
+//! codes).
 
 mod args;
 mod commands;
@@ -16,6 +18,7 @@ mod output;
 mod page;
 mod plan;
 mod schema;
+mod threads;
 mod version;
 
 use std::ffi::OsString;
@@ -26,18 +29,17 @@ use stickslip_studies::{convergence, stiff_springs};
 
 use args::{Arguments, Command};
 pub use error::Failure;
-use plan::{CollidePlan, LocatePlan, MapPlan, ReproducePlan, TracePlan};
+use output::console::say;
+use plan::{CollidePlan, ImpactPlan, LocatePlan, MapPlan, ReproducePlan, StudyPlan, TracePlan};
+use version::NAME;
 
-/// The program's name.
-const NAME: &str = "stickslip";
-
-/// Carries out the command line of this process, and reports what went wrong.
+/// Carries out the command line of this process and reports what went wrong.
 #[must_use]
 pub fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(reply) => {
-            // The reader of a help text may be gone already; that is no failure.
+            // Nobody may read the help text any more. That is not a failure.
             let _ = reply.print();
             return ExitCode::from(u8::try_from(reply.exit_code()).unwrap_or(2));
         }
@@ -45,7 +47,10 @@ pub fn main() -> ExitCode {
     match carry_out(&arguments) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            failure.report();
+            say(format_args!("error: {failure}"));
+            if let Failure::Usage(_) = failure {
+                say("\nFor more information, try '--help'.");
+            }
             ExitCode::from(failure.code())
         }
     }
@@ -66,29 +71,23 @@ pub fn run(
 fn carry_out(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.command {
         Command::Collide(arguments) => match CollidePlan::new(arguments)? {
-            CollidePlan::Single(collision) => commands::collide::run(&collision),
-            CollidePlan::Batch(batch) => commands::batch::run(&batch),
+            CollidePlan::Single(plan) => commands::collide::run(&plan),
+            CollidePlan::Batch(plan) => commands::batch::run(&plan),
         },
-        Command::Impact(arguments) => commands::impact::run(arguments),
+        Command::Impact(arguments) => commands::impact::run(&ImpactPlan::new(arguments)?),
         Command::Map(arguments) => commands::map::run(&MapPlan::new(arguments)?),
         Command::Trace(arguments) => commands::trace::run(&TracePlan::new(arguments)?),
         Command::Locate(arguments) => commands::locate::run(&LocatePlan::new(arguments)?),
-        Command::Converge(arguments) => {
-            let settings = plan::convergence(arguments)?;
-            commands::studies::run(&arguments.out, arguments.threads, |progress| {
-                convergence::run(&settings, progress)
-            })
-        }
-        Command::Asymptote(arguments) => {
-            let settings = plan::stiff_springs(arguments);
-            commands::studies::run(&arguments.out, arguments.threads, |progress| {
-                stiff_springs::run(&settings, progress)
-            })
-        }
         Command::Reproduce(arguments) => match ReproducePlan::new(arguments) {
             ReproducePlan::Page(plan) => commands::reproduce::run(&plan),
             ReproducePlan::Statements(plan) => commands::statements::run(&plan),
         },
+        Command::Asymptote(arguments) => {
+            commands::studies::run(&StudyPlan::stiff_springs(arguments), stiff_springs::run)
+        }
+        Command::Converge(arguments) => {
+            commands::studies::run(&StudyPlan::convergence(arguments)?, convergence::run)
+        }
         Command::Completions(arguments) => commands::completions::run(*arguments),
         Command::Man(arguments) => commands::man::run(arguments),
     }

@@ -1,4 +1,4 @@
-//! The `stickslip` program: see the library of the same crate.
+//! The program `stickslip`. All of it is in the library of the same crate.
 
 use std::process::ExitCode;
 

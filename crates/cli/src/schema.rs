@@ -1,17 +1,17 @@
-//! The layouts of the JSON that the program writes. A number rises when a field goes or changes its
-//! meaning.
+//! The names of the layouts of JSON that the program writes. The number at the end rises when a
+//! field disappears or changes its meaning.
 
 use stickslip_plane::atlas;
 use stickslip_studies::{convergence, statements, stiff_springs};
 
-/// A collision.
+/// The layout of a collision.
 pub const COLLISION: &str = "stickslip.collision/1";
-/// An impact in SI units.
+/// The layout of an impact in SI units.
 pub const IMPACT: &str = "stickslip.impact/1";
-/// Everything that `reproduce` computes.
+/// The layout of the report that `reproduce` writes.
 pub const REPORT: &str = "stickslip.report/1";
 
-/// All of them.
+/// All layouts, those of the libraries included.
 pub const ALL: [&str; 7] = [
     COLLISION,
     IMPACT,

@@ -1,4 +1,4 @@
-//! What a report about the program should contain: what it was made from and for.
+//! The program about itself: its name, its version, and what it was built from and for.
 
 use std::sync::LazyLock;
 use std::thread;
@@ -7,18 +7,21 @@ use stickslip_solver::method::FUSED_PRODUCTS;
 
 use crate::schema;
 
-/// What results depend on besides the version, in a line.
+/// The program's name.
+pub const NAME: &str = "stickslip";
+
+/// What results depend on besides the version, on one line.
 pub fn build() -> String {
     let products = if FUSED_PRODUCTS { "fused" } else { "rounded" };
     format!("{}, {products} products", env!("STICKSLIP_TARGET"))
 }
 
-/// The program with what its results depend on, in a line.
+/// The program with what its results depend on, on one line.
 pub fn program() -> String {
-    format!("{} {}, {}", crate::NAME, env!("CARGO_PKG_VERSION"), build())
+    format!("{NAME} {}, {}", env!("CARGO_PKG_VERSION"), build())
 }
 
-/// What `--version` says.
+/// The text of `--version`: what a report about the program should contain.
 pub fn long() -> &'static str {
     static TEXT: LazyLock<String> = LazyLock::new(text);
     &TEXT

@@ -5,8 +5,7 @@ use std::path::PathBuf;
 use stickslip_plane::Range;
 
 use super::shared;
-use crate::input::parameter::Parameter;
-use crate::input::range;
+use crate::input::{number, range};
 
 /// Options of `asymptote`.
 #[derive(Debug, clap::Args)]
@@ -16,13 +15,13 @@ pub struct AsymptoteArguments {
     #[arg(value_parser = range::parse, default_value = "10:1e8")]
     pub kappa: Range,
 
-    /// Reduced impact ratios ψ = (g_t/g_n)·α/μ, with commas between them; above 0 and below 2
+    /// One to four reduced impact ratios ψ = (g_t/g_n)·α/μ, separated by commas; above 0, below 2
     #[arg(long, value_name = "P,…", help_heading = "Collisions", allow_hyphen_values = true)]
-    #[arg(value_parser = |text: &str| Parameter::Psi.parse(text))]
+    #[arg(value_parser = number::parse_option)]
     #[arg(value_delimiter = ',', default_value = "0.3,1,1.7")]
     pub psi: Vec<f64>,
 
-    /// Directory for the files of the study, made if it is missing
+    /// Directory for the files of the study; created if it is missing
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub out: PathBuf,
 
@@ -32,28 +31,28 @@ pub struct AsymptoteArguments {
     pub threads: Option<u16>,
 }
 
-/// Text of `asymptote --help`.
+/// What `asymptote --help` says first.
 pub const ABOUT: &str = "\
-Measure how ε_t tends to 0 for stiff springs, without damping: at each κ, the largest |w_final| of the \
-oscillation around each ψ, the exponent and the constant of its decay, the same constant and the course of \
-an oscillation from the problem of the last instants alone, the bound |ε_t| ≤ 1/(ψ√κ) and its missing factor, \
-the largest |ε_t| from some ψ on, and the number of switches.
+Measure how ε_t tends to 0 for stiff springs, without damping: the largest |w_final| of the \
+oscillation around each ψ at each κ, the exponent and the constant of its decay, the same constant \
+and the course of an oscillation from the problem of the last instants alone, the bound \
+|ε_t| ≤ 1/(ψ√κ) and its missing factor, the largest |ε_t| above several ψ, and the number of switches.
 
-Exponent and constant are fitted from κ = 1000 on and need a decade and a half of it.";
+Exponent and constant are fitted to κ from 1000 on, which must span at least a decade and a half.";
 
-/// What follows it.
+/// What `asymptote --help` says last.
 pub const EXAMPLES: &str = "\
 Files in DIR:
   asymptote.json                everything below
   asymptote_envelope.csv        largest |w_final| at each κ, around each ψ, with theory and bounds
-  asymptote_restitution.csv     largest |ε_t| from some ψ on
+  asymptote_restitution.csv     largest |ε_t| above several ψ
   asymptote_counts.csv          number of switches
   asymptote_profile.csv         F(phase) of the inner problem
   asymptote_collisions.csv      collisions over one oscillation at 10⁴, 10⁶ and 10⁸ beside F(phase)
   asymptote_convergence.csv     how F(phase) converges
   asymptote_*.svg               pictures
 
-What was found is printed, a line each.
+Each finding is printed on a line.
 
 Examples:
   stickslip asymptote --out asymptote

@@ -1,11 +1,11 @@
-//! Options of `completions`.
+//! The options of `completions`.
 
 use clap_complete::Shell;
 
 /// Options of `completions`.
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub struct CompletionsArguments {
-    /// The shell that reads it
+    /// The shell that reads the script
     #[arg(value_enum, value_name = "SHELL")]
     pub shell: Shell,
 }

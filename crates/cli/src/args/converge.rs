@@ -13,21 +13,21 @@ pub struct ConvergeArguments {
     #[arg(value_parser = |text: &str| Parameter::Kappa.parse(text))]
     pub kappa: Option<f64>,
 
-    /// Its impact ratio g_t/g_n; above 0; gives ψ = G·α/μ
+    /// Impact ratio g_t/g_n of that collision; above 0; gives ψ = G·α/μ
     #[arg(long, value_name = "G", help_heading = "Collision", allow_hyphen_values = true)]
     #[arg(value_parser = |text: &str| Parameter::Ratio.parse(text))]
     pub ratio: Option<f64>,
 
-    /// Its reduced impact ratio ψ = (g_t/g_n)·α/μ, instead of --ratio; above 0
+    /// Reduced impact ratio ψ = (g_t/g_n)·α/μ of that collision, instead of --ratio; above 0
     #[arg(long, value_name = "P", help_heading = "Collision", allow_hyphen_values = true)]
     #[arg(value_parser = |text: &str| Parameter::Psi.parse(text))]
     pub psi: Option<f64>,
 
-    /// What the collision has beside κ and ψ; damping is also that of the usual ones.
+    /// The parameters beside κ and ψ. The damping is also that of the usual collisions.
     #[command(flatten, next_help_heading = "Collision")]
     pub collision: CollisionArguments,
 
-    /// Directory for the files of the study, made if it is missing
+    /// Directory for the files of the study; created if it is missing
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub out: PathBuf,
 
@@ -38,20 +38,22 @@ pub struct ConvergeArguments {
     pub threads: Option<u16>,
 }
 
-/// Text of `converge --help`.
+/// What `converge --help` says first.
 pub const ABOUT: &str = "\
-Measure how accurate the integrators are: the order with which errors fall in fixed steps, the errors \
-at a tolerance, and the work that an accuracy takes; for both Dormand–Prince pairs, in regularised \
-coordinates and in plain time, with switches located and with steps that run over them.
+Measure how accurate the integrators are: the order with which errors fall in fixed steps, the \
+errors at a tolerance, and the work that an accuracy takes. This is done for both Dormand–Prince \
+pairs, in regularised coordinates and in plain time, with switches located and with steps that run \
+over them.
 
-Errors are those of the final tangential velocity and of all switch times, against the exact solution or, \
-with damping, against dop853 at a tolerance of 1e-15. Without --kappa they are root mean squares over 38 \
-collisions: κ = 18 and 63, ψ = 0.1, 0.2, … 1.9, with two to eight switches; --damping is then that of all.";
+Errors are those of the final tangential velocity and of all switch times. The reference is the \
+exact solution or, with damping, dop853 at a tolerance of 1e-15. Without --kappa, errors are root \
+mean squares over 38 collisions with κ = 18 and 63 and ψ = 0.1, 0.2, … 1.9, which have two to eight \
+switches; --damping is then the damping of all of them.";
 
-/// What follows it.
+/// What `converge --help` says last.
 pub const EXAMPLES: &str = "\
 Files in DIR:
-  convergence.json              everything below but times
+  convergence.json              everything below except times
   convergence_orders.csv        fitted orders with their standard errors
   convergence_steps.csv         errors and work in fixed steps
   convergence_tolerances.csv    errors and work at tolerances
@@ -59,7 +61,7 @@ Files in DIR:
   convergence_time.csv          measured times, the only file that differs from run to run
   convergence_*.svg             pictures
 
-What was found is printed, a line each.
+Each finding is printed on a line.
 
 Examples:
   stickslip converge --out convergence

@@ -1,13 +1,14 @@
-//! Options of `impact`.
+//! The options of `impact`.
 
 use std::path::PathBuf;
 
-use super::{Format, MethodArguments};
+use super::method::MethodArguments;
+use super::shared::Format;
 
 /// Options of `impact`.
 #[derive(Debug, clap::Args)]
 pub struct ImpactArguments {
-    /// JSON file of two spheres, or a sphere and a wall, with their motion; - for standard input
+    /// JSON file of two spheres, or a sphere and a wall, with their motions; - for standard input
     #[arg(value_name = "FILE.json")]
     pub file: PathBuf,
 
@@ -26,9 +27,9 @@ Compute the impact of two spheres, or of a sphere and a wall, in three dimension
 and spins after it, the coefficients of restitution, the switches between sticking and sliding in seconds, \
 and where the energy went.
 
-The bodies touch and approach each other. The file names every quantity with its unit.";
+The bodies touch and approach each other. In the file every quantity is named with its unit.";
 
-/// What it says last.
+/// What `impact --help` says last.
 pub const EXAMPLES: &str = "\
 File, for two spheres (a wall instead of the second: {\"spheres\": [one], \"wall\": {…}, \"surface\": {…}}):
   {
@@ -41,7 +42,7 @@ File, for two spheres (a wall instead of the second: {\"spheres\": [one], \"wall
           \"position_m\": [0, 0, 0.04], \"velocity_m_per_s\": [4, 0, -20], \"spin_rad_per_s\": [0, 0, 0]
         }
       },
-      { the other one }
+      { the second sphere }
     ],
     \"surface\": {\"friction\": 0.4, \"tangential_stiffness_kg_per_s2\": 1e12, \"damping_time_s\": 0}
   }

@@ -5,30 +5,30 @@ use std::path::PathBuf;
 /// Options of `locate`.
 #[derive(Debug, clap::Args)]
 pub struct LocateArguments {
-    /// Atlas that trace has made
+    /// Atlas that the command trace has written
     #[arg(long, value_name = "ATLAS.json", help_heading = "Input")]
     pub atlas: PathBuf,
 
-    /// CSV file with a header row that names kappa and psi, and one point a row
+    /// CSV file with a header row that names kappa and psi, and one point per row
     #[arg(long, value_name = "POINTS.csv", help_heading = "Input")]
     pub batch: PathBuf,
 
-    /// CSV file for the results, one row a point in the order of the input
+    /// CSV file for the results, one row per point in the order of the input
     #[arg(long, value_name = "OUT.csv", help_heading = "Output")]
     pub out: PathBuf,
 }
 
-/// Text of `locate --help`.
+/// What `locate --help` says first.
 pub const ABOUT: &str = "\
 Look up the switches of collisions in an atlas, without computing a collision.
 
-POINTS.csv has the columns kappa and psi; others pass through. OUT.csv has the input's columns \
-followed by switch_count, itinerary, region and distance: that to the nearest boundary of the atlas \
-at the same κ, in ψ. A point outside the window, or so close to a boundary that the boundary's error \
-leaves the side open, has no count, itinerary and region; it is named on standard error, and the \
-exit code is 1.";
+POINTS.csv has the columns kappa and psi; other columns pass through. OUT.csv has the columns of the \
+input followed by switch_count, itinerary, region and distance. The distance, in ψ, is that to the \
+nearest boundary of the atlas at the same κ. A point has no count, itinerary and region if it lies \
+outside the window, or so close to a boundary that the boundary's error leaves its side open. The \
+first such point is named on standard error, and the exit code is 1.";
 
-/// What follows it.
+/// What `locate --help` says last.
 pub const EXAMPLES: &str = "\
 Examples:
   stickslip locate --atlas atlas.json --batch POINTS.csv --out OUT.csv

@@ -1,11 +1,11 @@
-//! Options of `man`.
+//! The options of `man`.
 
 use std::path::PathBuf;
 
 /// Options of `man`.
 #[derive(Debug, clap::Args)]
 pub struct ManArguments {
-    /// Directory for a page for each command, made if it is missing
+    /// Directory for one page for each command; created if it is missing
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     pub out: Option<PathBuf>,
 }

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use stickslip_plane::Range;
 
-use crate::args::{CollisionArguments, MethodArguments, shared};
+use super::method::MethodArguments;
+use super::shared::{self, CollisionArguments};
 use crate::input::range::{self, Size};
 use crate::output::picture::PictureFile;
 
@@ -26,7 +27,7 @@ pub struct MapArguments {
     #[arg(value_parser = range::parse)]
     pub ratio: Option<Range>,
 
-    /// JSON file of two bodies, as for impact; --normal and --tangential are the axes then
+    /// JSON file of two bodies, as for impact; the axes are then --normal and --tangential
     #[arg(long, value_name = "FILE.json", help_heading = "Window in SI units")]
     #[arg(conflicts_with_all = ["kappa", "psi", "ratio", "mu", "alpha", "damping"])]
     pub bodies: Option<PathBuf>,
@@ -46,7 +47,7 @@ pub struct MapArguments {
     #[arg(value_parser = Size::parse)]
     pub size: Size,
 
-    /// What the collisions have beside κ and ψ.
+    /// The parameters beside κ and ψ.
     #[command(flatten, next_help_heading = "Collisions")]
     pub collisions: CollisionArguments,
 
@@ -58,7 +59,7 @@ pub struct MapArguments {
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub out: PathBuf,
 
-    /// Picture of both: ε_t in colours, and the regions of equal numbers of switches
+    /// Picture of ε_t in colours, and of the regions with equal numbers of switches
     #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
     #[arg(value_parser = shared::picture())]
     pub plot: Option<PictureFile>,
@@ -69,27 +70,29 @@ pub struct MapArguments {
     pub threads: Option<u16>,
 }
 
-/// Text of `map --help`.
+/// What `map --help` says first.
 pub const ABOUT: &str = "\
 Compute the tangential restitution ε_t and the number of switches on a plane, with all cores.
 
-The window LO:HI of each axis is cut into equal cells, W along κ and H along ψ, and the collision at \
-the centre of each cell is computed: κ_i = LO + (HI − LO)·((i + ½)/W) for i = 0 … W − 1, and the \
-same for ψ with H. A window may therefore begin at 0, where there is no collision.
+The interval LO:HI of each axis is divided into equal cells, W along κ and H along ψ, and the \
+collision at the centre of each cell is computed: κ_i = LO + (HI − LO)·((i + ½)/W) for i = 0 … W − 1, \
+and the same for ψ with H. An interval may therefore begin at 0, where there is no collision.
 
-The axes are --kappa and --psi or --ratio, or, for two bodies in SI units, --normal and --tangential: the velocities of the surfaces at the contact.";
+The axes are --kappa and one of --psi and --ratio. For two bodies in SI units they are --normal and \
+--tangential, the velocities of the surfaces at the contact.";
 
-/// What follows it.
+/// What `map --help` says last.
 pub const EXAMPLES: &str = "\
 Results:
   FILE.npz has the arrays kappa (W), psi (H), with --ratio also ratio (H), and eps_t and
   switch_count (H x W: one row for each psi). With --bodies they are normal_m_per_s (W),
-  tangential_m_per_s (H), kappa (W), psi (H x W), damping (W), eps_t and switch_count. FILE.csv has
-  the same names as columns and one row a point. A point that cannot be computed is NaN and -1, and
-  the exit code is 1.
+  tangential_m_per_s (H), kappa (W), psi (H x W), damping (W), eps_t and switch_count. Arrays
+  without dimensions say what made the map: damping, with --ratio mu and alpha, or the quantities
+  of the bodies; rtol and atol; method and version. FILE.csv has the same names as columns and one
+  row per point. A point that cannot be computed is NaN and -1, and the exit code is 1.
 
-  Finished parts are kept in FILE.npz.tiles until the map is complete: after an interruption the
-  same command goes on where it stopped, and the result is the same, bit for bit.
+  Finished parts are kept in FILE.npz.tiles until the map is complete. After an interruption the
+  same command continues where it stopped, and the result is the same, bit for bit.
 
 Examples:
   stickslip map --kappa 0:70 --psi 0:2.9 --size 1000x1000 --out map.npz --plot map.svg

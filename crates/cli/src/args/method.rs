@@ -1,10 +1,9 @@
-//! The options that say what computes a collision, the same for every command.
+//! The options that choose what computes a collision. They are the same for every command.
 
 use clap::ValueEnum;
-use stickslip_model::{Engine, Tolerances};
+use stickslip_model::Tolerances;
 use stickslip_solver::{InvalidOption, Options};
 
-use crate::error::Failure;
 use crate::input::number;
 
 /// What computes a collision, and with which tolerances.
@@ -34,40 +33,8 @@ pub enum Method {
     Dopri5,
     /// Dormand–Prince 8(5,3)
     Dop853,
-    /// The exact solution; without damping only
+    /// The exact solution, only without damping
     Exact,
-}
-
-impl MethodArguments {
-    /// The engine that the options choose for collisions with `damping`, if that is known.
-    ///
-    /// # Errors
-    /// [`Failure::Usage`]: a tolerance that would have no effect, or damping with the exact solution.
-    pub fn engine(&self, damping: Option<f64>) -> Result<Engine, Failure> {
-        let tolerances = |default: Tolerances| Tolerances {
-            rtol: self.rtol.unwrap_or(default.rtol),
-            atol: self.atol.unwrap_or(default.atol),
-        };
-        match self.method {
-            Method::Dop853 => return Ok(Engine::Dop853(tolerances(Tolerances::DOP853))),
-            Method::Dopri5 => return Ok(Engine::Dopri5(tolerances(Tolerances::DOPRI5))),
-            Method::Exact => {}
-        }
-        let unused = [("--rtol", self.rtol), ("--atol", self.atol)];
-        if let Some((option, Some(value))) = unused.into_iter().find(|(_, value)| value.is_some()) {
-            return Err(Failure::Usage(format!(
-                "{option} {value:?} has no effect with --method exact, which has no tolerances; \
-                 accepted with dop853 and dopri5"
-            )));
-        }
-        match damping {
-            Some(damping) if damping != 0.0 => Err(Failure::Usage(format!(
-                "--damping {damping:?} cannot be used with --method exact, which holds without \
-                 damping; expected 0, or --method dop853 or dopri5"
-            ))),
-            _ => Ok(Engine::Exact),
-        }
-    }
 }
 
 fn tolerance_help(name: &str, range: &str, tolerance: fn(&Tolerances) -> f64) -> String {
@@ -87,7 +54,7 @@ fn atol(text: &str) -> Result<f64, String> {
     parse(text, |atol| Options { atol, ..Options::default() })
 }
 
-/// The number in `text`, if `options` made with it are valid.
+/// The number in `text`, if the solver accepts the options that `options` makes with it.
 fn parse(text: &str, options: impl Fn(f64) -> Options) -> Result<f64, String> {
     let expected = |value: f64| match options(value).validate() {
         Ok(()) => None,

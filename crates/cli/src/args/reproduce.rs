@@ -9,12 +9,12 @@ use super::shared;
 /// Options of `reproduce`.
 #[derive(Debug, clap::Args)]
 pub struct ReproduceArguments {
-    /// Directory for the page, the pictures and the data; created where it is missing
+    /// Directory for the page, the pictures and the data; created if it is missing
     #[arg(long, value_name = "DIR", help_heading = "Output")]
     #[arg(required_unless_present = "statement", conflicts_with = "statement")]
     pub out: Option<PathBuf>,
 
-    /// Statements of the paper to be tested and printed instead, by number from 1 to 24
+    /// Numbers of statements of the paper, from 1 to 24, that are tested and printed instead
     #[arg(long, value_name = "N", help_heading = "Audit", num_args = 1..)]
     #[arg(allow_negative_numbers = true)]
     #[arg(value_parser = clap::value_parser!(u8).range(1..=i64::from(COUNT)))]
@@ -25,7 +25,7 @@ pub struct ReproduceArguments {
     #[arg(conflicts_with = "out")]
     pub format: AuditFormat,
 
-    /// The model of the spring
+    /// Model of the spring
     #[arg(long, value_enum, default_value_t = SpringModel::Reset, hide = true)]
     pub model: SpringModel,
 
@@ -34,16 +34,16 @@ pub struct ReproduceArguments {
     #[arg(value_parser = shared::threads())]
     pub threads: Option<u16>,
 
-    /// Columns and rows of a map, for trials in a hurry
+    /// Number of columns and rows of each map, fewer for quick trials
     #[arg(long, value_name = "N", hide = true, default_value_t = 400)]
     #[arg(value_parser = clap::value_parser!(u16).range(2..=2000))]
     pub cells: u16,
 }
 
-/// The model of the spring of which statements are tested.
+/// The model of the spring for which statements are tested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum SpringModel {
-    /// The paper's: reset to the limit as long as that is active
+    /// Reset to its limit as long as the limit is active, as in the paper
     Reset,
     /// Never reset
     UnresetSpring,
@@ -70,20 +70,20 @@ pub enum AuditFormat {
     Markdown,
 }
 
-/// Text of `reproduce --help`.
+/// What `reproduce --help` says first.
 pub const ABOUT: &str = "\
-Compute the figures of Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008), anew, all \
-boundaries of the switching, the studies of convergence and of stiff springs, test the statements of \
-the paper, and show everything on one page.
+Compute the figures of Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008), anew. Compute \
+all boundaries of the switching and the studies of convergence and of stiff springs, test the \
+statements of the paper, and show everything on one page.
 
-DIR/index.html is the page: it holds its pictures, needs no network, and can be printed. \
-DIR/report.md and DIR/report.json say the same to other readers. Each picture lies beside them, \
-with its data.
+DIR/index.html is the page. It contains its pictures, needs no network, and can be printed. \
+DIR/report.md and DIR/report.json say the same as text and for programs. Each picture is also a \
+file, and so are its data.
 
-With --statement, statements of the paper are tested alone and printed. A verdict follows from the \
-printed numbers: holds, holds with a condition, does not hold, or cannot be decided.";
+With --statement, only these statements of the paper are tested, and printed. A verdict follows from \
+the printed numbers: holds, holds with a condition, does not hold, or cannot be decided.";
 
-/// What follows it.
+/// What `reproduce --help` says last.
 pub const EXAMPLES: &str = "\
 Examples:
   stickslip reproduce --out out

@@ -1,11 +1,12 @@
 //! Options that several commands have.
 
+use clap::ValueEnum;
 use clap::builder::{PathBufValueParser, RangedI64ValueParser, TypedValueParser};
 
 use crate::input::parameter::Parameter;
 use crate::output::picture::PictureFile;
 
-/// What collisions have in common beside κ and ψ. Commands place it under a heading of their own.
+/// The parameters of collisions beside κ and ψ. Each command shows them under a heading of its own.
 #[derive(Clone, Copy, Debug, clap::Args)]
 pub struct CollisionArguments {
     /// Coefficient of friction μ, with --ratio; above 0 [default: 0.4]
@@ -24,12 +25,21 @@ pub struct CollisionArguments {
     pub damping: Option<f64>,
 }
 
-/// A picture's file, by which its format is known.
+/// How one result is printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// A readable table
+    Table,
+    /// One JSON object
+    Json,
+}
+
+/// Reads the file of a picture, whose name tells its format.
 pub fn picture() -> impl TypedValueParser<Value = PictureFile> {
     PathBufValueParser::new().try_map(PictureFile::new)
 }
 
-/// A number of threads.
+/// Reads a number of threads.
 pub fn threads() -> RangedI64ValueParser<u16> {
     clap::value_parser!(u16).range(1..=1024)
 }

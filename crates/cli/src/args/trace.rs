@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use stickslip_plane::Range;
 
-use crate::args::{CollisionArguments, shared};
-use crate::input::number;
-use crate::input::range;
+use super::shared::{self, CollisionArguments};
+use crate::input::parameter::Parameter;
+use crate::input::{number, range};
 use crate::output::picture::PictureFile;
 
 /// Options of `trace`.
@@ -14,27 +14,27 @@ use crate::output::picture::PictureFile;
 pub struct TraceArguments {
     /// Interval of the scaled stiffness κ = k_t/(α m β^⅘ g_n^⅖), above 0
     #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
-    #[arg(value_parser = range::parse)]
+    #[arg(value_parser = |text: &str| range::parse_for(Parameter::Kappa, text))]
     pub kappa: Option<Range>,
 
     /// Interval of the reduced impact ratio ψ = (g_t/g_n)·α/μ, above 0
     #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
-    #[arg(value_parser = range::parse)]
+    #[arg(value_parser = |text: &str| range::parse_for(Parameter::Psi, text))]
     pub psi: Option<Range>,
 
     /// Interval of the impact ratio g_t/g_n, instead of --psi; above 0
     #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
-    #[arg(value_parser = range::parse)]
+    #[arg(value_parser = |text: &str| range::parse_for(Parameter::Ratio, text))]
     pub ratio: Option<Range>,
 
-    /// What the collisions have beside κ and ψ.
+    /// The parameters beside κ and ψ.
     #[command(flatten, next_help_heading = "Collisions")]
     pub collisions: CollisionArguments,
 
-    /// Accuracy of boundaries in ψ, between their points too; with HI of ψ, from 1e-11·(1 + HI) to
-    /// 1e-9·(1 + HI), less in narrow windows [default: 1e-10·(1 + HI)]
+    /// Accuracy of boundaries in ψ, also between their points; from 1e-11·(1 + HI) to 1e-9·(1 + HI)
+    /// with HI of ψ, and less in narrow windows [default: 1e-10·(1 + HI)]
     #[arg(long, value_name = "T", help_heading = "Collisions", allow_hyphen_values = true)]
-    #[arg(value_parser = number::parse)]
+    #[arg(value_parser = number::parse_option)]
     pub tolerance: Option<f64>,
 
     /// JSON file for the atlas
@@ -50,23 +50,24 @@ pub struct TraceArguments {
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub geojson: Option<PathBuf>,
 
-    /// Threads that verify; 1 to 1024 [default: one for each core]; results do not depend on it
+    /// Threads for the verification; 1 to 1024 [default: one for each core]; results do not depend
+    /// on it
     #[arg(long, value_name = "N", help_heading = "Output", allow_hyphen_values = true)]
     #[arg(value_parser = shared::threads())]
     pub threads: Option<u16>,
 }
 
-/// Text of `trace --help`.
+/// What `trace --help` says first.
 pub const ABOUT: &str = "\
-Trace every boundary in a window of the (κ, ψ) plane on which the switches of a collision change, \
-where boundaries meet or turn into others (crossing, degenerate, graze-at-end, vanishing-phase), \
-where they are extremal in κ or ψ, and the regions between them.
+Trace every boundary in a window of the (κ, ψ) plane on which the switches of a collision change. \
+Find where boundaries meet or turn into others (crossing, degenerate, graze-at-end, \
+vanishing-phase), where they are extremal in κ or ψ, and the regions between them.
 
-The regions are verified: collisions at 20 000 random points of the window, and at 40 beside each \
-boundary, must have the switches of their region. If one has not, or something remained open, the \
-atlas is written all the same and says so, and the exit code is 1.";
+The regions are verified: collisions at 20 000 random points of the window, and at 40 points beside \
+each boundary, must have the switches of their region. If one of them has others, or if a question \
+remained open, the atlas is written and says so, and the exit code is 1.";
 
-/// What follows it.
+/// What `trace --help` says last.
 pub const EXAMPLES: &str = "\
 Examples:
   stickslip trace --kappa 5:100 --psi 0.05:3 --out atlas.json --plot atlas.svg

@@ -1,27 +1,28 @@
-//! A file of collisions: read in portions, computed in parallel, written in the order of the input.
+//! A file of collisions, which is read in portions, computed in parallel, and written in the order of
+//! the input.
 
 use rayon::prelude::*;
-use stickslip_model::Switch;
+use stickslip_model::{Engine, Switch};
 
 use crate::error::Failure;
 use crate::input::rows::{Columns, Input, Row};
 use crate::output::csv::CsvFile;
 use crate::output::file::publish;
-use crate::output::progress::{Bar, threads};
+use crate::output::progress::Bar;
 use crate::output::rows::{self, EVENTS, Summary};
-use crate::plan::Batch;
-use stickslip_model::Engine;
+use crate::plan::BatchPlan;
+use crate::threads;
 
 /// Computes every row of the input.
 ///
 /// # Errors
-/// The input cannot be used, an output cannot be written, or some rows have no result; in the last
+/// The input cannot be used, an output cannot be written, or some rows have no result. In the last
 /// case the outputs are complete.
-pub fn run(batch: &Batch) -> Result<(), Failure> {
-    let mut input = Input::open(&batch.input, &batch.given, &Columns::COLLISIONS)?;
-    let pool = threads(batch.threads)?;
-    let mut results = CsvFile::create(&batch.out)?;
-    let mut events = batch.events.as_deref().map(CsvFile::create).transpose()?;
+pub fn run(plan: &BatchPlan) -> Result<(), Failure> {
+    let mut input = Input::open(&plan.input, &plan.given, &Columns::COLLISIONS)?;
+    let pool = threads::pool(plan.threads)?;
+    let mut results = CsvFile::create(&plan.out)?;
+    let mut events = plan.events.as_deref().map(CsvFile::create).transpose()?;
     results.write(|out| rows::write_header(out, input.header()))?;
     if let Some(events) = &mut events {
         events.write(|out| out.write_record(EVENTS))?;
@@ -35,7 +36,7 @@ pub fn run(batch: &Batch) -> Result<(), Failure> {
         if portion.is_empty() {
             break;
         }
-        pool.install(|| compute(batch.engine, &portion, events.is_some(), &mut computed));
+        pool.install(|| compute(plan.engine, &portion, events.is_some(), &mut computed));
         for (row, result) in portion.iter().zip(&computed) {
             let summary = result.as_ref().map(|(summary, _)| summary);
             results
@@ -48,20 +49,21 @@ pub fn run(batch: &Batch) -> Result<(), Failure> {
         }
         bar.reach(input.progress().1);
     }
-    bar.finish();
+    drop(bar);
 
     let stored = [Some(results), events].into_iter().flatten().map(CsvFile::store);
     publish(stored.collect::<Result<Vec<_>, _>>()?)?;
     if failed > 0 {
-        return Err(Failure::Rows { failed, rows: count, path: batch.out.clone() });
+        return Err(Failure::Rows { failed, rows: count, path: plan.out.clone() });
     }
     Ok(())
 }
 
-/// A row's results and, where wanted, its switches; or why there are none.
+/// The results of a row with its switches, if they are wanted, or the reason why it has none.
 type Computed = Result<(Summary, Vec<Switch>), String>;
 
-/// Computes a portion. Each row depends on itself alone, so that the order of work does not show.
+/// Computes a portion. Rows do not depend on each other, and so results do not depend on the order
+/// of the work.
 fn compute(engine: Engine, portion: &[Row], with_switches: bool, computed: &mut Vec<Computed>) {
     portion
         .par_iter()

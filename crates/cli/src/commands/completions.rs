@@ -1,11 +1,11 @@
 //! Scripts that complete commands and options in a shell.
 
-use std::io::{self, Write};
-
 use clap::CommandFactory;
 
 use crate::args::{Arguments, CompletionsArguments};
 use crate::error::Failure;
+use crate::output::console::print;
+use crate::version::NAME;
 
 /// Prints the script for a shell.
 ///
@@ -13,7 +13,6 @@ use crate::error::Failure;
 /// Standard output cannot be written.
 pub fn run(arguments: CompletionsArguments) -> Result<(), Failure> {
     let mut script = Vec::new();
-    let name = crate::NAME;
-    clap_complete::generate(arguments.shell, &mut Arguments::command(), name, &mut script);
-    Failure::unless_written(io::stdout().lock().write_all(&script))
+    clap_complete::generate(arguments.shell, &mut Arguments::command(), NAME, &mut script);
+    print(|out| out.write_all(&script))
 }

@@ -1,26 +1,23 @@
-//! Points looked up in an atlas.
+//! Points, looked up in an atlas.
 
-use std::fs;
-use std::path::Path;
-
-use stickslip_plane::atlas::{Atlas, Document, SCHEMA, switch_count};
+use stickslip_plane::atlas::switch_count;
 
 use crate::error::Failure;
-use crate::input::json;
+use crate::input::atlas;
 use crate::input::recipe::Given;
 use crate::input::rows::{Columns, Input};
-use crate::output::csv::CsvFile;
+use crate::output::csv::{CsvFile, number};
 use crate::output::file::publish;
-use crate::output::rows::{LOCATED, number, write_fields};
+use crate::output::rows::{LOCATED, write_fields};
 use crate::plan::LocatePlan;
 
 /// Locates every point of the input.
 ///
 /// # Errors
-/// The atlas or the input cannot be used, the output cannot be written, or some points have no
-/// place; in the last case the output is complete.
+/// The atlas or the input cannot be used, the output cannot be written, or some points cannot be
+/// located. In the last case the output is complete.
 pub fn run(plan: &LocatePlan) -> Result<(), Failure> {
-    let atlas = read(&plan.atlas)?;
+    let atlas = atlas::read(&plan.atlas)?;
     let mut input = Input::open(&plan.input, &Given::default(), &Columns::POINTS)?;
     let mut table = CsvFile::create(&plan.out)?;
     table.write(|out| write_fields(out, input.header(), LOCATED))?;
@@ -59,26 +56,4 @@ pub fn run(plan: &LocatePlan) -> Result<(), Failure> {
         Some(first) => Err(Failure::Unlocated { failed, rows, path: plan.out.clone(), first }),
         None => Ok(()),
     }
-}
-
-/// Reads an atlas.
-///
-/// # Errors
-/// [`Failure::Input`]: the file cannot be read, is not an atlas, or one that does not fit together.
-fn read(path: &Path) -> Result<Atlas, Failure> {
-    /// What is read before the rest.
-    #[derive(serde::Deserialize)]
-    struct Schema {
-        schema: String,
-    }
-    let unusable = |reason: String| Failure::input(path, reason);
-    let text = fs::read(path).map_err(|error| unusable(format!("cannot be read: {error}")))?;
-    let Schema { schema } = json::parse(&text).map_err(unusable)?;
-    if schema != SCHEMA {
-        return Err(unusable(format!(
-            "schema is {schema:?}; expected {SCHEMA:?}, which stickslip trace writes"
-        )));
-    }
-    let document: Document = json::parse(&text).map_err(unusable)?;
-    Atlas::try_from(document).map_err(|error| unusable(error.to_string()))
 }

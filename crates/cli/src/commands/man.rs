@@ -1,6 +1,6 @@
-//! Manual pages, made from what the help texts are made from.
+//! Manual pages. They have the same source as the help texts.
 
-use std::io::{self, Write};
+use std::io;
 
 use clap::{Command, CommandFactory};
 use clap_mangen::Man;
@@ -8,29 +8,31 @@ use clap_mangen::roff::{Roff, roman};
 
 use crate::args::{Arguments, ManArguments};
 use crate::error::Failure;
-use crate::output::study;
+use crate::output::console::print;
+use crate::output::{directory, file};
+use crate::version::NAME;
 
 /// Prints one page with all commands, or writes a page for each of them.
 ///
 /// # Errors
-/// They cannot be written.
+/// The pages cannot be written.
 pub fn run(arguments: &ManArguments) -> Result<(), Failure> {
     let mut program = Arguments::command().disable_help_subcommand(true);
     program.build();
-    let Some(directory) = &arguments.out else {
+    let Some(out) = &arguments.out else {
         let page = all_commands(&program).map_err(Failure::Stdout)?;
-        return Failure::unless_written(io::stdout().lock().write_all(page.as_bytes()));
+        return print(|out| out.write_all(page.as_bytes()));
     };
-    study::prepare(directory)?;
+    directory::prepare(out)?;
     for command in [&program].into_iter().chain(program.get_subcommands()) {
-        let path = directory.join(Man::new(command.clone()).get_filename());
+        let path = out.join(Man::new(command.clone()).get_filename());
         let page = page(command, true).map_err(|error| Failure::output(&path, error))?;
-        study::write(&path, page.as_bytes())?;
+        file::write(&path, page.as_bytes())?;
     }
     Ok(())
 }
 
-/// The program, with each command as a section.
+/// One page for the program, with each command as a section.
 fn all_commands(program: &Command) -> io::Result<String> {
     let mut text = page(program, false)?;
     for command in program.get_subcommands() {
@@ -43,13 +45,13 @@ fn all_commands(program: &Command) -> io::Result<String> {
     Ok(text)
 }
 
-/// A command as a page of its own, with a list of its commands if `listed`.
+/// A page for one command, with a list of its own commands if `listed`.
 fn page(command: &Command, listed: bool) -> io::Result<String> {
     let manual = Man::new(command.clone());
     let name = command.get_display_name().unwrap_or(command.get_name());
-    // Without a date, which would change from build to build; `Man` would leave out the empty
+    // There is no date, because it would change from build to build. `Man` would leave out the empty
     // quotes.
-    let title = format!(".TH {name} 1 \"\" \"{} {}\"\n", crate::NAME, env!("CARGO_PKG_VERSION"));
+    let title = format!(".TH {name} 1 \"\" \"{NAME} {}\"\n", env!("CARGO_PKG_VERSION"));
     let mut page = title.into_bytes();
     manual.render_name_section(&mut page)?;
     let mut text = text(page)? + &sections(command)?;
@@ -70,7 +72,7 @@ fn sections(command: &Command) -> io::Result<String> {
     manual.render_options_section(&mut page)?;
     if let Some(notes) = command.get_after_long_help().or_else(|| command.get_after_help()) {
         let mut roff = Roff::default();
-        // As they stand: files, tables and commands, a line each.
+        // The notes keep their lines, which are files, tables and commands.
         roff.control("SH", ["NOTES"]).control("nf", []);
         for line in notes.to_string().lines() {
             roff.text([roman(line)]);

@@ -1,8 +1,8 @@
-//! A map of collisions: computed tile by tile, kept tile by tile, and put together at the end.
+//! A map of collisions. It is computed and stored tile by tile, and put together at the end.
 //!
-//! Start reading here; then, in this order: `tiles` and `results` (what is kept, and where),
-//! `provenance` (what a map says of itself), `npz` and `csv` (the finished map), `thumbnail` (some of
-//! it, to be drawn).
+//! Start reading here; then, in this order: `tiles` and `results` (what is stored, and where),
+//! `provenance` (what a map says about itself), `npz` and `csv` (the finished map), `thumbnail` (the
+//! part of it that is drawn).
 
 mod csv;
 mod npz;
@@ -11,34 +11,35 @@ mod results;
 mod thumbnail;
 mod tiles;
 
-use std::io::{self, Write};
+use std::io;
 
 use stickslip_figure::pictures::grid;
 use stickslip_plane::sweep::{self, FailureCount};
 
 use crate::error::Failure;
+use crate::output::console::say;
 use crate::output::file::{OutputFile, StoredFile, publish};
 use crate::output::picture::PictureFile;
-use crate::output::progress::{Bar, threads};
+use crate::output::progress::Bar;
 use crate::plan::{MapFormat, MapPlan};
-use crate::version;
+use crate::{threads, version};
 use provenance::Provenance;
 use results::Results;
 use tiles::{Found, Task, Tiles};
 
 pub use npz::archive;
 
-/// Most columns and rows of the picture.
+/// Largest number of columns, and of rows, in the picture.
 const MOST_PIXELS: usize = 1000;
 
 /// Computes the map, or the rest of one that was begun before.
 ///
 /// # Errors
-/// Files cannot be written, another process makes the same map, or some points have no result; in
+/// Files cannot be written, another process makes the same map, or some points have no result. In
 /// the last case the map is complete.
 pub fn run(plan: &MapPlan) -> Result<(), Failure> {
     plan.plot.as_ref().map(PictureFile::probe).transpose()?;
-    let pool = threads(plan.threads)?;
+    let pool = threads::pool(plan.threads)?;
     let tiles = Tiles::open(&plan.out, task(plan))?;
     let mut file = OutputFile::create_in(tiles.directory(), &plan.out)?;
 
@@ -51,7 +52,7 @@ pub fn run(plan: &MapPlan) -> Result<(), Failure> {
         tiles.keep(index, &tile)?;
         bar.advance(tile.eps_t.len());
     }
-    bar.finish();
+    drop(bar);
 
     let provenance = Provenance::new(&plan.grid, &plan.engine);
     let written = match plan.format {
@@ -79,14 +80,14 @@ pub fn run(plan: &MapPlan) -> Result<(), Failure> {
 
 fn task(plan: &MapPlan) -> Task {
     let grid = &plan.grid;
-    // Up to κ = 64 a tile is 0.3 s of work for one core; beyond, work grows as √κ.
+    // Up to κ = 64 a tile takes one core 0.3 s. Beyond, work grows as √κ.
     let halvings = (0..9).filter(|n| grid.largest_stiffness() > 64.0 * 4.0_f64.powi(*n));
     let tile_points = 32768 >> halvings.count();
     let method = match plan.engine.tolerances() {
         Some(tolerances) => format!(", rtol {:?}, atol {:?}", tolerances.rtol, tolerances.atol),
         None => String::new(),
     };
-    // Digits that read back as the same numbers are as good as their bits.
+    // The digits read back as the same numbers, so that equal texts mean equal tasks.
     let description = format!(
         "program: {}, tiles 1\n{grid}method: {}{method}\npoints a tile: {tile_points}\n",
         version::program(),
@@ -99,14 +100,14 @@ fn unreadable(tiles: &Tiles, error: &io::Error) -> Failure {
     Failure::input(tiles.directory(), format!("cannot be read: {error}"))
 }
 
-/// Writes the picture, but for its name.
+/// Writes the picture completely, except for the name of its file.
 fn draw(plan: &MapPlan, tiles: &Tiles, plot: &PictureFile) -> Result<StoredFile, Failure> {
     let thumbnail = thumbnail::read(&plan.grid, tiles, MOST_PIXELS);
     let (size, results) = thumbnail.map_err(|error| unreadable(tiles, &error))?;
     plot.write(grid::draw(&plan.grid, size, &results))
 }
 
-/// Says on standard error what was found of a map that was begun before.
+/// Says on standard error which tiles were found, if the map was begun before.
 fn report(tiles: &Tiles, found: &Found) {
     let Found { kept, damaged, .. } = found;
     if kept + damaged == 0 {
@@ -118,6 +119,5 @@ fn report(tiles: &Tiles, found: &Found) {
         0 => String::new(),
         _ => format!(", {damaged} damaged and made again"),
     };
-    // If standard error is closed, nobody wants to know.
-    let _ = writeln!(io::stderr(), "{directory}: going on with {kept} of {tiles} tiles{damaged}");
+    say(format_args!("{directory}: going on with {kept} of {tiles} tiles{damaged}"));
 }

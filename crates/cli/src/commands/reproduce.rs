@@ -1,6 +1,5 @@
 //! Everything computed anew, and a page that shows it.
 
-use std::io::{self, Write};
 use std::path::Path;
 
 use stickslip_model::Engine;
@@ -9,24 +8,28 @@ use stickslip_studies::figures::{Content, DataFile, Reproduction, Section};
 
 use super::map::archive;
 use crate::error::Failure;
-use crate::output::progress::threads;
-use crate::output::study::{prepare, write, write_study};
+use crate::output::console::say;
+use crate::output::directory::prepare;
+use crate::output::file::write;
+use crate::output::json;
+use crate::output::study::write_study;
 use crate::page;
 use crate::plan::PagePlan;
+use crate::threads;
 
-/// Computes all parts, writes each when it is done, and the page at the end.
+/// Computes all parts, writes the files of each part as soon as it is done, and the page at the end.
 ///
 /// # Errors
-/// Files cannot be written, a part fails, or something speaks against a result; in the last case
+/// Files cannot be written, a part fails, or something speaks against a result. In the last case
 /// the page is complete and says so.
 pub fn run(plan: &PagePlan) -> Result<(), Failure> {
     prepare(&plan.out)?;
-    let pool = threads(plan.threads)?;
+    let pool = threads::pool(plan.threads)?;
     let reproduction = Reproduction::new(plan.cells, plan.spring);
     let parts = Reproduction::parts();
     let mut sections = Vec::with_capacity(parts.len());
     for (index, part) in parts.iter().enumerate() {
-        say(&format!("{} of {}: {}", index + 1, parts.len(), part.title));
+        say(format_args!("{} of {}: {}", index + 1, parts.len(), part.title));
         let section = pool.install(|| part.run(&reproduction))?;
         write_section(&section, &plan.out)?;
         sections.push(section);
@@ -35,28 +38,20 @@ pub fn run(plan: &PagePlan) -> Result<(), Failure> {
     write(&plan.out.join("report.json"), page::report::json(&sections).as_bytes())?;
     write(&plan.out.join("report.md"), page::report::markdown(&sections).as_bytes())?;
     write(&page, page::html(&sections).as_bytes())?;
-    say(&format!("everything is on {}", page.display()));
+    say(format_args!("everything is on {}", page.display()));
     let objection = sections.into_iter().flat_map(|section| section.objections).next();
     objection.map_or(Ok(()), |objection| Err(objection.into()))
 }
 
-/// Writes all files of a part into `directory`, each at once or not at all.
+/// Writes all files of a part into `directory`, each of them at once or not at all.
 fn write_section(section: &Section, directory: &Path) -> Result<(), Failure> {
     for DataFile { name, content, .. } in &section.files {
         let path = directory.join(name);
         let bytes = match content {
             Content::Map(sweep) => archive(&sweep.grid, &Engine::Exact, &sweep.results),
-            Content::Atlas(atlas) => serde_json::to_vec(&Document::new(atlas))
-                .map_err(io::Error::from)
-                .map(|json| [&json[..], b"\n"].concat()),
+            Content::Atlas(atlas) => json::line(&Document::new(atlas)),
         };
         write(&path, &bytes.map_err(|error| Failure::output(&path, error))?)?;
     }
     write_study(&section.study, directory)
-}
-
-/// Tells on standard error how far the work is.
-fn say(line: &str) {
-    // If standard error is closed, nobody wants to know.
-    let _ = writeln!(io::stderr(), "{line}");
 }

@@ -1,22 +1,22 @@
 //! Statements of the paper, tested and printed.
 
-use std::io::{self, Write};
-
 use stickslip_plane::progress::SILENT;
 use stickslip_studies::Cell;
 use stickslip_studies::statements::{Statement, run as test};
 
 use crate::args::AuditFormat;
 use crate::error::Failure;
-use crate::output::progress::threads;
+use crate::output::console::print;
 use crate::plan::StatementsPlan;
+use crate::threads;
 
 /// Tests statements and prints them.
 ///
 /// # Errors
 /// A collision cannot be computed, or standard output cannot be written.
 pub fn run(plan: &StatementsPlan) -> Result<(), Failure> {
-    let audit = threads(plan.threads)?.install(|| test(plan.spring, &plan.statements, SILENT))?;
+    let pool = threads::pool(plan.threads)?;
+    let audit = pool.install(|| test(plan.spring, &plan.statements, SILENT))?;
     let text = match plan.format {
         AuditFormat::Text => {
             audit.statements.iter().map(statement_in_text).collect::<Vec<_>>().join("\n")
@@ -24,10 +24,10 @@ pub fn run(plan: &StatementsPlan) -> Result<(), Failure> {
         AuditFormat::Json => format!("{:#}\n", audit.study().json),
         AuditFormat::Markdown => markdown(&audit.statements),
     };
-    Failure::unless_written(io::stdout().lock().write_all(text.as_bytes()))
+    print(|out| out.write_all(text.as_bytes()))
 }
 
-/// A table of verdicts, and all statements below it.
+/// A table of verdicts, followed by all statements.
 fn markdown(statements: &[Statement]) -> String {
     let row = |statement: &Statement| {
         let Statement { number, paraphrase, place, .. } = statement;
@@ -73,12 +73,12 @@ fn statement_in_markdown(statement: &Statement) -> String {
     )
 }
 
-/// `text` in a cell of a Markdown table.
+/// `text` for a cell of a Markdown table.
 fn cell(text: &str) -> String {
     text.replace('|', "\\|")
 }
 
-/// `text` in lines for a terminal.
+/// `text`, divided into lines for a terminal.
 fn wrapped(text: &str) -> String {
     const WIDTH: usize = 96;
     let mut out = String::new();

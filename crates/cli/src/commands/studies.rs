@@ -1,31 +1,30 @@
-//! Studies, each computed, written into a directory, and summed up on standard output.
-
-use std::io::{self, Write};
-use std::path::Path;
+//! A study, computed, written into a directory, and summarised on standard output.
 
 use stickslip_plane::progress::Report;
 use stickslip_studies::{Study, StudyError};
 
 use crate::error::Failure;
-use crate::output::progress::{Bar, threads};
-use crate::output::study::{prepare, write_study};
+use crate::output::console::print;
+use crate::output::directory::prepare;
+use crate::output::progress::Bar;
+use crate::output::study::write_study;
+use crate::plan::StudyPlan;
+use crate::threads;
 
-/// Makes a study on `count` threads, `None` being one for each core, writes its files into
-/// `directory` and prints its findings.
+/// Makes a study of the settings of `plan`, writes its files and prints its findings.
 ///
 /// # Errors
 /// Files cannot be written, which is tried first, or `make` fails.
-pub fn run(
-    directory: &Path,
-    count: Option<u16>,
-    make: impl FnOnce(Report<'_>) -> Result<Study, StudyError> + Send,
+pub fn run<S: Sync>(
+    plan: &StudyPlan<S>,
+    make: impl FnOnce(&S, Report<'_>) -> Result<Study, StudyError> + Send,
 ) -> Result<(), Failure> {
-    prepare(directory)?;
+    prepare(&plan.out)?;
+    let pool = threads::pool(plan.threads)?;
     let bar = Bar::steps();
-    let study = threads(count)?.install(|| make(&|progress| bar.report(progress)));
-    bar.finish();
+    let study = pool.install(|| make(&plan.settings, &|progress| bar.report(progress)));
+    drop(bar);
     let study = study.map_err(Failure::of_settings)?;
-    write_study(&study, directory)?;
-    let mut out = io::stdout().lock();
-    Failure::unless_written(study.findings.iter().try_for_each(|line| writeln!(out, "{line}")))
+    write_study(&study, &plan.out)?;
+    print(|out| study.findings.iter().try_for_each(|line| writeln!(out, "{line}")))
 }

@@ -1,6 +1,4 @@
-//! An atlas traced, verified and written.
-
-use std::io::Write;
+//! An atlas, traced, verified and written.
 
 use serde::Serialize;
 use stickslip_figure::pictures;
@@ -8,25 +6,27 @@ use stickslip_plane::atlas::{self, Document, geojson};
 
 use crate::error::Failure;
 use crate::output::file::{OutputFile, StoredFile, publish};
+use crate::output::json;
 use crate::output::picture::PictureFile;
-use crate::output::progress::{Bar, threads};
+use crate::output::progress::Bar;
 use crate::plan::TracePlan;
+use crate::threads;
 
 /// Traces the boundaries of the window and writes its atlas.
 ///
 /// # Errors
-/// A run fails, files cannot be written, or something speaks against the atlas; in the last case it
-/// is complete and says so.
+/// A run fails, files cannot be written, or something speaks against the atlas. In the last case the
+/// atlas is complete and says so.
 pub fn run(plan: &TracePlan) -> Result<(), Failure> {
     plan.plot.as_ref().map(PictureFile::probe).transpose()?;
-    let pool = threads(plan.threads)?;
+    let pool = threads::pool(plan.threads)?;
     let file = OutputFile::create(&plan.out)?;
     let geography = plan.geojson.as_deref().map(OutputFile::create).transpose()?;
 
     let bar = Bar::steps();
     let report = |progress| bar.report(progress);
     let verified = pool.install(|| atlas::trace(plan.frame, plan.tolerance, &report));
-    bar.finish();
+    drop(bar);
     let verified = verified?;
     let mut stored = vec![write_json(file, &Document::new(&verified))?];
     if let Some(file) = geography {
@@ -42,9 +42,8 @@ pub fn run(plan: &TracePlan) -> Result<(), Failure> {
     }
 }
 
-/// Writes `content` in one line.
-fn write_json(mut file: OutputFile, content: &impl Serialize) -> Result<StoredFile, Failure> {
-    let bytes = serde_json::to_vec(content).map_err(|error| file.failure(error))?;
-    file.write_all(&bytes).and_then(|()| file.write_all(b"\n")).map_err(|e| file.failure(e))?;
-    file.store()
+/// Writes `content` on one line, completely except for the name of the file.
+fn write_json(file: OutputFile, content: &impl Serialize) -> Result<StoredFile, Failure> {
+    let line = json::line(content).map_err(|error| file.failure(error))?;
+    file.finish(&line)
 }

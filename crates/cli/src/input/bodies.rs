@@ -1,5 +1,8 @@
-//! JSON files of two bodies and their surfaces, with their motion or without:
+//! JSON files of two bodies and their surfaces, with or without their motions. The layout is that of
 //! docs/impact.schema.json.
+//!
+//! Start reading here; then, in this order: `file` (what the fields mean) and `field` (numbers and
+//! vectors in them).
 
 mod field;
 mod file;
@@ -8,30 +11,18 @@ use std::fs;
 use std::io::{self, Read};
 use std::path::Path;
 
-use stickslip_model::{Body, Encounter, Motion, Pair, Sphere, Surface, Wall, WallMotion};
+use stickslip_model::{Body, Encounter, Pair};
 
 use crate::error::Failure;
+use file::{Bodies, Other};
 
-/// What a file describes; motions that it does not have are `None`.
-pub struct Bodies {
-    sphere: (Sphere, Option<Motion>),
-    other: Other,
-    surface: Surface,
-}
-
-/// What the first sphere hits.
-enum Other {
-    Sphere(Sphere, Option<Motion>),
-    Wall(Wall, Option<WallMotion>),
-}
-
-/// The two bodies in the file at `path`, `-` for standard input, as their contact feels them.
+/// The two bodies in the file at `path`, reduced to what their contact feels; `-` is standard input.
 ///
-/// Motions may be in the file; they do not matter here.
+/// Motions may be in the file, but they are not used.
 ///
 /// # Errors
-/// [`Failure::Input`]: the file cannot be read, is not JSON, or does not describe two bodies. It
-/// names the line or the field, and what is expected there.
+/// [`Failure::Input`]: the file cannot be read, is not JSON, or does not describe two bodies. The
+/// message names the line or the field, and what is expected there.
 pub fn read_pair(path: &Path) -> Result<Pair, Failure> {
     read(path, |Bodies { sphere: (sphere, _), other, surface }| {
         let other = match other {
@@ -42,7 +33,7 @@ pub fn read_pair(path: &Path) -> Result<Pair, Failure> {
     })
 }
 
-/// The two bodies in the file at `path`, `-` for standard input, about to touch.
+/// The two bodies in the file at `path` at the moment when they touch; `-` is standard input.
 ///
 /// # Errors
 /// [`Failure::Input`]: as [`read_pair`], or a motion is missing, or the bodies do not collide.
@@ -54,32 +45,40 @@ pub fn read_encounter(path: &Path) -> Result<Encounter, Failure> {
                 let motion = field::required("spheres[1].motion", *motion)?;
                 Encounter::of_spheres(first, (other, &motion), &surface)
             }
-            Other::Wall(wall, plane) => {
-                let plane = field::required("wall.motion", *plane)?;
-                Encounter::with_wall(first, (wall, &plane), &surface)
+            Other::Wall(wall, motion) => {
+                let motion = field::required("wall.motion", *motion)?;
+                Encounter::with_wall(first, (wall, &motion), &surface)
             }
         };
         encounter.map_err(|error| error.to_string())
     })
 }
 
+/// The name of the file at `path` in messages.
+pub fn shown(path: &Path) -> &Path {
+    if is_standard_input(path) { Path::new("standard input") } else { path }
+}
+
+fn is_standard_input(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
 fn read<T>(path: &Path, make: impl FnOnce(Bodies) -> Result<T, String>) -> Result<T, Failure> {
-    let standard = path == Path::new("-");
-    let shown = if standard { Path::new("standard input") } else { path };
+    let unusable = |reason: String| Failure::input(shown(path), reason);
     let mut text = Vec::new();
-    let read = if standard {
+    let read = if is_standard_input(path) {
         io::stdin().lock().read_to_end(&mut text)
     } else {
         fs::File::open(path).and_then(|mut file| file.read_to_end(&mut text))
     };
-    read.map_err(|error| Failure::input(shown, format!("cannot be read: {error}")))?;
-    Bodies::parse(&text).and_then(make).map_err(|reason| Failure::input(shown, reason))
+    read.map_err(|error| unusable(format!("cannot be read: {error}")))?;
+    Bodies::parse(&text).and_then(make).map_err(unusable)
 }
 
 #[cfg(test)]
 mod tests {
     use serde_json::{Value, json};
-    use stickslip_model::Material;
+    use stickslip_model::{Material, Surface};
 
     use super::*;
 
@@ -96,7 +95,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pair_is_the_same_with_and_without_motion() {
+    fn two_bodies_are_the_same_with_and_without_motions() {
         let steel =
             Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
         let surface =

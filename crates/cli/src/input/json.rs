@@ -1,11 +1,11 @@
-//! JSON files read, with the field at which something is wrong.
+//! JSON, read so that a message names the field in which something is wrong.
 
 use serde::de::DeserializeOwned;
 
-/// The value that all of `text` describes.
+/// The value that the whole of `text` describes.
 ///
 /// # Errors
-/// What is wrong and where; broken JSON has a line and a column only.
+/// What is wrong and where. For text that is not JSON there is only a line and a column.
 pub fn parse<T: DeserializeOwned>(text: &[u8]) -> Result<T, String> {
     let mut reader = serde_json::Deserializer::from_slice(text);
     let value = serde_path_to_error::deserialize(&mut reader).map_err(located)?;

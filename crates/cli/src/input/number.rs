@@ -1,8 +1,20 @@
 //! The syntax of numbers: `18`, `1.5e3`, `2/7`.
 
-/// Reads a finite number: decimal, with an exponent if need be, or a quotient of two such.
+/// How numbers are written, for messages.
+pub const SYNTAX: &str = "written like 18, 1.5e3 or 2/7";
+
+/// Reads the value of an option whose range is checked later, by what it is for.
 ///
-/// Blanks around the number and around the slash do not count.
+/// # Errors
+/// What is wrong, and what is expected.
+pub fn parse_option(text: &str) -> Result<f64, String> {
+    parse(text).map_err(|problem| format!("{problem}; expected a finite number, {SYNTAX}"))
+}
+
+/// Reads a finite number: a decimal number, with or without an exponent, or a quotient of two of
+/// them.
+///
+/// Blanks around a number are ignored.
 ///
 /// # Errors
 /// [`NotANumber`] says what is wrong.
@@ -20,19 +32,19 @@ pub fn parse(text: &str) -> Result<f64, NotANumber> {
     if value.is_finite() { Ok(value) } else { Err(NotANumber::Infinite) }
 }
 
-/// Why a text is not a number that can be computed with.
+/// The reason why a text is not a finite number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NotANumber {
-    /// Nothing is written there.
+    /// The text, or a part of a quotient, is empty.
     #[error("empty")]
     Empty,
-    /// The syntax is another one.
+    /// The text is not written like a number.
     #[error("not a number")]
     Syntax,
-    /// A quotient's denominator is zero.
+    /// The denominator of a quotient is zero.
     #[error("division by 0")]
     ZeroDenominator,
-    /// Infinite, or above the largest double.
+    /// The number is infinite, or above the largest double.
     #[error("not finite")]
     Infinite,
 }
@@ -54,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn reads_integers_decimals_exponents_and_quotients() {
+    fn integers_decimals_exponents_and_quotients_are_numbers() {
         for (text, expected) in [
             ("18", 18.0),
             ("1.5e3", 1500.0),
@@ -69,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn rejects_everything_else() {
+    fn everything_else_is_refused() {
         for (text, expected) in [
             ("", NotANumber::Empty),
             ("  ", NotANumber::Empty),

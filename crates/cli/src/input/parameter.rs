@@ -1,8 +1,8 @@
-//! The parameters of a collision as they are named and bounded on the command line and in files.
+//! The parameters of a collision: their names and ranges on the command line and in files.
 
-use stickslip_model::Contact;
+use stickslip_model::{Contact, quantity};
 
-use crate::input::number::{self, NotANumber};
+use crate::input::number::{self, NotANumber, SYNTAX};
 
 /// A parameter that an option or a column may give.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,7 +22,7 @@ pub enum Parameter {
 }
 
 impl Parameter {
-    /// Name of the column; the option is `--` and the same.
+    /// The name of the column. The name of the option is the same after `--`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Kappa => "kappa",
@@ -37,51 +37,54 @@ impl Parameter {
     /// The value in `text`.
     ///
     /// # Errors
-    /// [`Unacceptable`]: not a number, or out of the parameter's range.
-    pub fn parse(self, text: &str) -> Result<f64, Unacceptable> {
+    /// [`BadValue`]: not a number, or out of the parameter's range.
+    pub fn parse(self, text: &str) -> Result<f64, BadValue> {
         let value = number::parse(text)
-            .map_err(|problem| Unacceptable::Number { problem, expected: self.expected() })?;
-        match self.objection(value) {
-            None => Ok(value),
-            Some(expected) => Err(Unacceptable::Range { expected }),
-        }
+            .map_err(|problem| BadValue::Number { problem, expected: self.expected() })?;
+        self.check(value).map_err(|expected| BadValue::Range { expected })
     }
 
+    /// `value`, if it is in the parameter's range. The model decides on the ranges that it knows.
+    ///
+    /// # Errors
     /// What is expected.
-    fn expected(self) -> &'static str {
-        // No parameter accepts NaN, so that every range answers here.
-        self.objection(f64::NAN).unwrap_or("a finite number")
-    }
-
-    /// What is expected, if `value` is not. The model's own ranges come from the model.
-    fn objection(self, value: f64) -> Option<&'static str> {
-        let positive =
-            |value: f64| (!(value > 0.0 && value.is_finite())).then_some("a finite number above 0");
+    pub fn check(self, value: f64) -> Result<f64, &'static str> {
         let contact = match self {
-            Self::Ratio | Self::Mu => return positive(value),
-            Self::Alpha => {
-                return (!(value > 0.0 && value <= 1.0)).then_some("a number above 0, at most 1");
-            }
             Self::Kappa => Contact::new(value, 1.0, 0.0),
             Self::Psi => Contact::new(1.0, value, 0.0),
             Self::Damping => Contact::new(1.0, 1.0, value),
+            Self::Mu => return quantity::FRICTION.check(value).map_err(|error| error.expected),
+            Self::Ratio => {
+                let ok = value > 0.0 && value.is_finite();
+                return if ok { Ok(value) } else { Err("a finite number above 0") };
+            }
+            Self::Alpha => {
+                let ok = value > 0.0 && value <= 1.0;
+                return if ok { Ok(value) } else { Err("a number above 0, at most 1") };
+            }
         };
-        contact.err().map(|invalid| invalid.expected)
+        contact.map(|_| value).map_err(|invalid| invalid.expected)
+    }
+
+    /// The range, for messages.
+    fn expected(self) -> &'static str {
+        // NaN is in no range, so that each parameter answers here.
+        self.check(f64::NAN).err().unwrap_or("a finite number")
     }
 }
 
-/// Why a text is not expected as a value.
+/// The reason why a text is not the value of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Unacceptable {
-    /// Not a number.
-    #[error("{problem}; expected {expected}, written like 18, 1.5e3 or 2/7")]
+pub enum BadValue {
+    /// The text is not a number.
+    #[error("{problem}; expected {expected}, {SYNTAX}")]
     Number {
-        /// What is wrong with it.
+        /// What is wrong with the text.
         problem: NotANumber,
         /// What is expected.
         expected: &'static str,
     },
-    /// A number out of range.
+    /// The number is out of range.
     #[error("out of range; expected {expected}")]
     Range {
         /// What is expected.
@@ -91,17 +94,16 @@ pub enum Unacceptable {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::Parameter::{Alpha, Damping, Kappa, Mu, Psi, Ratio};
 
     #[test]
     fn every_parameter_has_a_range() {
-        use Parameter::{Alpha, Damping, Kappa, Mu, Psi, Ratio};
         for parameter in [Kappa, Psi, Ratio, Mu, Alpha, Damping] {
-            assert!(parameter.objection(f64::NAN).is_some(), "{parameter:?}");
+            assert!(parameter.check(f64::NAN).is_err(), "{parameter:?}");
             assert!(parameter.parse("-1").is_err(), "{parameter:?}");
             assert!(parameter.parse("1").is_ok(), "{parameter:?}");
-            assert_eq!(parameter.parse("0").is_ok(), parameter == Parameter::Damping);
+            assert_eq!(parameter.parse("0").is_ok(), parameter == Damping);
         }
-        assert!(Parameter::Alpha.parse("1.0000001").is_err());
+        assert!(Alpha.parse("1.0000001").is_err());
     }
 }

@@ -3,8 +3,21 @@
 use stickslip_plane::Range;
 
 use crate::input::number::{self, NotANumber};
+use crate::input::parameter::Parameter;
 
-/// Reads `LO:HI`.
+/// Reads an interval `LO:HI` of `parameter`, both ends of which are in its range.
+///
+/// # Errors
+/// [`NotARange`] says what is wrong and what is expected.
+pub fn parse_for(parameter: Parameter, text: &str) -> Result<Range, NotARange> {
+    let Range { low, high } = parse(text)?;
+    match (parameter.check(low), parameter.check(high)) {
+        (Ok(low), Ok(high)) => Ok(Range { low, high }),
+        _ => Err(NotARange::Zero),
+    }
+}
+
+/// Reads an interval `LO:HI`, which may begin at 0.
 ///
 /// # Errors
 /// [`NotARange`] says what is wrong and what is expected.
@@ -12,7 +25,7 @@ pub fn parse(text: &str) -> Result<Range, NotARange> {
     let (low, high) = text.split_once(':').ok_or(NotARange::Syntax)?;
     let low = number::parse(low).map_err(|problem| NotARange::Low { problem })?;
     let high = number::parse(high).map_err(|problem| NotARange::High { problem })?;
-    // A lower end of −0 would be the same interval written differently.
+    // −0 and 0 are the same lower end.
     if low >= 0.0 && low < high {
         Ok(Range { low: low.abs(), high })
     } else {
@@ -20,49 +33,55 @@ pub fn parse(text: &str) -> Result<Range, NotARange> {
     }
 }
 
-/// Why a text is not an interval.
+/// The reason why a text is not an interval.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NotARange {
-    /// There are no two ends.
-    #[error("not a range; {ACCEPTED_RANGE}")]
+    /// The text does not have two ends.
+    #[error("not a range; {EXPECTED}")]
     Syntax,
-    /// The lower end is no number.
-    #[error("the lower end is {problem}; {ACCEPTED_RANGE}")]
+    /// The lower end is not a number.
+    #[error("the lower end is {problem}; {EXPECTED}")]
     Low {
         /// What is wrong with it.
         problem: NotANumber,
     },
-    /// The upper end is no number.
-    #[error("the upper end is {problem}; {ACCEPTED_RANGE}")]
+    /// The upper end is not a number.
+    #[error("the upper end is {problem}; {EXPECTED}")]
     High {
         /// What is wrong with it.
         problem: NotANumber,
     },
-    /// Negative, empty or reversed.
-    #[error("out of range; {ACCEPTED_RANGE}")]
+    /// The lower end is negative, or not below the upper end.
+    #[error("out of range; {EXPECTED}")]
     Order,
+    /// The lower end is 0 where both ends have to be collisions.
+    #[error(
+        "there is no collision at 0, and the boundaries near it have no end; expected LO:HI with \
+         LO > 0"
+    )]
+    Zero,
 }
 
-const ACCEPTED_RANGE: &str =
+const EXPECTED: &str =
     "expected LO:HI with finite numbers 0 <= LO < HI, written like 0:70 or 2/7:1.5e3";
 
-/// Numbers of columns and rows.
+/// The numbers of columns and rows of a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Size {
-    /// Columns.
+    /// The number of columns.
     pub columns: usize,
-    /// Rows.
+    /// The number of rows.
     pub rows: usize,
 }
 
 impl Size {
-    /// Most points, 10¹⁰: with these, the larger of the two arrays of results has 80 GB.
+    /// Most points, 10¹⁰. The larger of the two arrays of results then takes 80 GB.
     pub const MOST: usize = 10_usize.saturating_pow(10);
 
     /// Reads `WxH`.
     ///
     /// # Errors
-    /// What is wrong with it and what is expected.
+    /// What is wrong and what is expected.
     pub fn parse(text: &str) -> Result<Self, String> {
         let expected = format!(
             "expected WxH, two whole numbers from 1 whose product is at most {}, \
@@ -87,7 +106,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ranges() {
+    fn intervals() {
         assert_eq!(parse("0:70"), Ok(Range { low: 0.0, high: 70.0 }));
         assert_eq!(parse(" 2/7 : 1.5e3 "), Ok(Range { low: 2.0 / 7.0, high: 1500.0 }));
         assert!(parse("-0:1").unwrap().low.is_sign_positive());
@@ -106,6 +125,15 @@ mod tests {
         ] {
             assert_eq!(parse(text), Err(expected), "{text}");
         }
+    }
+
+    #[test]
+    fn intervals_of_a_parameter_do_not_begin_at_0() {
+        let kappa = |text| parse_for(Parameter::Kappa, text);
+        assert_eq!(kappa("2/7:70"), Ok(Range { low: 2.0 / 7.0, high: 70.0 }));
+        assert_eq!(kappa("0:70"), Err(NotARange::Zero));
+        assert_eq!(kappa("-0:70"), Err(NotARange::Zero));
+        assert_eq!(kappa("2:1"), Err(NotARange::Order));
     }
 
     #[test]

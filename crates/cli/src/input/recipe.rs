@@ -1,8 +1,8 @@
-//! Where the parameters of a contact come from: options, or columns of a file.
+//! The sources of the parameters of a contact: options, or columns of a file.
 
-use stickslip_model::{Contact, Reduction};
+use stickslip_model::{Contact, InvalidParameter, Reduction};
 
-use crate::input::parameter::{Parameter, Unacceptable};
+use crate::input::parameter::{BadValue, Parameter};
 
 /// Values given as options.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -34,18 +34,24 @@ impl Given {
     }
 }
 
-/// How to make a contact: one source for each parameter that it takes.
+/// How to make a contact: one source for each parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Recipe {
     kappa: Source,
-    impact: Impact,
+    impact: ImpactParameter<Source>,
+    /// Used with the impact ratio only, and so is `alpha`.
+    mu: Source,
+    alpha: Source,
     damping: Source,
 }
 
+/// The parameter that gives the impact ratio, in either of two forms.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Impact {
-    Psi(Source),
-    Ratio { ratio: Source, mu: Source, alpha: Source },
+pub enum ImpactParameter<T> {
+    /// The reduced impact ratio ψ.
+    Psi(T),
+    /// The impact ratio g_t/g_n, which μ and α reduce to ψ.
+    Ratio(T),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,13 +60,37 @@ enum Source {
     Column { parameter: Parameter, index: usize },
 }
 
+impl<T> ImpactParameter<T> {
+    /// The one of ψ and the ratio that is given, where options give μ and α.
+    ///
+    /// # Errors
+    /// [`RecipeError`]: none of them is given, or both are, or μ or α would not be used.
+    pub fn new(
+        (psi, ratio): (Option<T>, Option<T>),
+        (mu, alpha): (Option<f64>, Option<f64>),
+    ) -> Result<Self, RecipeError> {
+        match (psi, ratio) {
+            (Some(_), Some(_)) => Err(RecipeError::PsiAndRatio),
+            (None, None) => Err(RecipeError::NoImpact),
+            (Some(_), None) if mu.is_some() => {
+                Err(RecipeError::Unused { name: Parameter::Mu.name() })
+            }
+            (Some(_), None) if alpha.is_some() => {
+                Err(RecipeError::Unused { name: Parameter::Alpha.name() })
+            }
+            (Some(psi), None) => Ok(Self::Psi(psi)),
+            (None, Some(ratio)) => Ok(Self::Ratio(ratio)),
+        }
+    }
+}
+
 impl Recipe {
-    /// The recipe that options make, together with the columns of a file: `column` tells the place
+    /// The recipe that options make together with the columns of a file. `column` gives the index
     /// of a parameter's column.
     ///
     /// # Errors
-    /// [`RecipeError`]: κ is missing, ψ or the ratio is missing or given twice, a value is given
-    /// twice or would not be used.
+    /// [`RecipeError`]: κ is missing, exactly one of ψ and the ratio is not given, or a value is
+    /// given twice or would not be used.
     pub fn new(
         given: &Given,
         column: impl Fn(Parameter) -> Option<usize>,
@@ -72,29 +102,16 @@ impl Recipe {
             (None, None) => Ok(None),
         };
         let kappa = source(Parameter::Kappa)?.ok_or(RecipeError::NoKappa)?;
-        let impact = match (source(Parameter::Psi)?, source(Parameter::Ratio)?) {
-            (Some(_), Some(_)) => return Err(RecipeError::PsiAndRatio),
-            (None, None) => return Err(RecipeError::NoImpact),
-            (Some(psi), None) => {
-                for parameter in [Parameter::Mu, Parameter::Alpha] {
-                    if given.get(parameter).is_some() {
-                        return Err(RecipeError::Unused { name: parameter.name() });
-                    }
-                }
-                Impact::Psi(psi)
-            }
-            (None, Some(ratio)) => Impact::Ratio {
-                ratio,
-                mu: source(Parameter::Mu)?.unwrap_or(Source::Value(Reduction::default().mu)),
-                alpha: source(Parameter::Alpha)?
-                    .unwrap_or(Source::Value(Reduction::default().alpha)),
-            },
-        };
+        let forms = (source(Parameter::Psi)?, source(Parameter::Ratio)?);
+        let impact = ImpactParameter::new(forms, (given.mu, given.alpha))?;
+        let usual = Reduction::default();
+        let mu = source(Parameter::Mu)?.unwrap_or(Source::Value(usual.mu));
+        let alpha = source(Parameter::Alpha)?.unwrap_or(Source::Value(usual.alpha));
         let damping = source(Parameter::Damping)?.unwrap_or(Source::Value(0.0));
-        Ok(Self { kappa, impact, damping })
+        Ok(Self { kappa, impact, mu, alpha, damping })
     }
 
-    /// The contact, with `field` giving the text in a column.
+    /// The contact. `field` gives the text in a column.
     ///
     /// # Errors
     /// [`ValueError`] names the parameter and its text or value.
@@ -111,64 +128,75 @@ impl Recipe {
             }
         };
         let psi = match self.impact {
-            Impact::Psi(psi) => value(psi)?,
-            Impact::Ratio { ratio, mu, alpha } => {
+            ImpactParameter::Psi(psi) => value(psi)?,
+            ImpactParameter::Ratio(ratio) => {
                 let ratio = value(ratio)?;
-                let (alpha, mu) = (value(alpha)?, value(mu)?);
-                Reduction { mu, alpha }.psi(ratio)
+                let (alpha, mu) = (value(self.alpha)?, value(self.mu)?);
+                reduced(&Reduction { mu, alpha }, ratio)?
             }
         };
         let contact = Contact::new(value(self.kappa)?, psi, value(self.damping)?);
-        // Every single value is in its range by now; what is left is ψ made from three of them.
-        contact.map_err(|invalid| ValueError::Psi { psi, expected: invalid.expected })
+        contact.map_err(ValueError::Contact)
     }
 }
 
-/// Options, or options and columns, do not make a recipe.
+/// ψ at the impact ratio `ratio`.
+///
+/// # Errors
+/// [`ValueError::Psi`]: ψ is out of its range, although the ratio, μ and α are in theirs.
+pub fn reduced(reduction: &Reduction, ratio: f64) -> Result<f64, ValueError> {
+    let psi = reduction.psi(ratio);
+    Parameter::Psi.check(psi).map_err(|expected| ValueError::Psi { psi, expected })
+}
+
+/// The reason why options, or options and columns, do not make a recipe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecipeError {
-    /// Nothing gives κ.
+    /// κ is not given.
     NoKappa,
-    /// Nothing gives ψ or the ratio.
+    /// Neither ψ nor the ratio is given.
     NoImpact,
-    /// Both are given.
+    /// ψ and the ratio are both given.
     PsiAndRatio,
-    /// An option repeats a column.
+    /// An option and a column give the same parameter.
     GivenTwice {
-        /// The parameter.
+        /// The name of the parameter.
         name: &'static str,
     },
     /// An option has no effect.
     Unused {
-        /// The parameter.
+        /// The name of the parameter.
         name: &'static str,
     },
 }
 
-/// A value from which no contact can be made.
+/// The reason why values do not make a contact.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ValueError {
-    /// A field of a file is not expected.
+    /// A field of a file is not the value of its parameter.
     #[error("{name} = {text}: {problem}")]
     Field {
-        /// The column.
+        /// The name of the column.
         name: &'static str,
-        /// What it holds.
+        /// The text in the field.
         text: String,
-        /// Why that is not expected.
-        problem: Unacceptable,
+        /// What is wrong with it.
+        problem: BadValue,
     },
-    /// Ratio, α and μ are each expected, but not the ψ that they make.
+    /// The ratio, α and μ are in their ranges, but the ψ that they make is not.
     #[error("psi = ratio·alpha/mu = {psi:?} is out of range; expected {expected}")]
     Psi {
-        /// The value.
+        /// The value of ψ.
         psi: f64,
         /// What is expected.
         expected: &'static str,
     },
+    /// Options give a value that is out of its range.
+    #[error(transparent)]
+    Contact(InvalidParameter),
 }
 
-/// `text` such that it can be shown on a line of its own.
+/// `text` as it is shown in messages: in quotation marks, on one line, and not too long.
 fn quoted(text: &str) -> String {
     const LONGEST: usize = 40;
     let mut shown: String = text.chars().take(LONGEST).flat_map(char::escape_debug).collect();

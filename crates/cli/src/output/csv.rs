@@ -1,4 +1,4 @@
-//! CSV files.
+//! CSV files, and numbers in them.
 
 use std::path::Path;
 
@@ -7,6 +7,11 @@ use csv::{Writer, WriterBuilder};
 use super::file::{OutputFile, StoredFile};
 use crate::error::Failure;
 
+/// The shortest digits that read back as `value`.
+pub fn number(value: f64) -> String {
+    format!("{value:?}")
+}
+
 /// A CSV file that is being written.
 pub struct CsvFile(Writer<OutputFile>);
 
@@ -14,7 +19,7 @@ impl CsvFile {
     /// Starts to write `path`.
     ///
     /// # Errors
-    /// [`Failure::Output`]: it cannot be created.
+    /// [`Failure::Output`]: the file cannot be created.
     pub fn create(path: &Path) -> Result<Self, Failure> {
         let file = OutputFile::create(path)?;
         Ok(Self(WriterBuilder::new().flexible(true).from_writer(file)))
@@ -35,7 +40,7 @@ impl CsvFile {
     /// The file with all rows.
     ///
     /// # Errors
-    /// [`Failure::Output`]: it cannot be stored.
+    /// [`Failure::Output`]: the file cannot be stored.
     pub fn store(mut self) -> Result<StoredFile, Failure> {
         if let Err(error) = self.0.flush() {
             return Err(self.0.get_ref().failure(error));

@@ -11,8 +11,8 @@ use crate::error::Failure;
 /// How the name of an incomplete file ends.
 pub const PARTIAL: &str = ".partial";
 
-/// The file that is replaced when `path` is written: behind a symbolic link, the one it points to
-/// and not the link. A device or a pipe has its own name.
+/// The file that is replaced when `path` is written. If `path` is a symbolic link, this is the file
+/// to which the link points. A device or a pipe has its own name.
 pub fn target(path: &Path) -> PathBuf {
     match fs::canonicalize(path) {
         Ok(target) if path.is_symlink() && !is_stream(path) => target,
@@ -22,11 +22,11 @@ pub fn target(path: &Path) -> PathBuf {
 
 /// A file that is written beside its target and gets the target's name when it is complete.
 ///
-/// Dropped before [`publish`], it disappears and the target stays as it was. A device or a pipe is
-/// written directly: there is nothing to replace.
+/// If it is dropped before [`publish`], it disappears and the target stays as it was. A device or a
+/// pipe is written directly, because there is nothing to replace.
 #[derive(Debug)]
 pub struct OutputFile {
-    /// The name by which the user knows it.
+    /// The path that the user gave.
     path: PathBuf,
     destination: Destination,
 }
@@ -56,7 +56,8 @@ impl OutputFile {
         Self::create_in(directory, path)
     }
 
-    /// The same with the incomplete file in `directory`, on the file system of the target.
+    /// Starts to write `path`. The incomplete file is in `directory`, on the file system of the
+    /// target.
     ///
     /// # Errors
     /// [`Failure::Output`]: `directory` is missing or cannot be written, or `path` is a directory.
@@ -66,25 +67,16 @@ impl OutputFile {
         Ok(Self { path: path.to_owned(), destination })
     }
 
-    /// Starts to write `path` with all of `content`.
+    /// Writes `content` and stores the file.
     ///
     /// # Errors
     /// [`Failure::Output`]: it cannot be written.
-    pub fn complete(path: &Path, content: &[u8]) -> Result<StoredFile, Failure> {
-        let mut file = Self::create(path)?;
-        file.write_all(content).map_err(|error| Failure::output(path, error))?;
-        file.store()
+    pub fn finish(mut self, content: &[u8]) -> Result<StoredFile, Failure> {
+        self.write_all(content).map_err(|error| self.failure(error))?;
+        self.store()
     }
 
-    /// Makes sure that `path` can be written, before there is work to lose.
-    ///
-    /// # Errors
-    /// [`Failure::Output`]: it cannot be created.
-    pub fn probe(path: &Path) -> Result<(), Failure> {
-        Self::create(path).map(drop)
-    }
-
-    /// Makes sure that everything has been stored.
+    /// Makes sure that everything is stored on the disk.
     ///
     /// # Errors
     /// [`Failure::Output`]: the disk is full or fails.
@@ -105,10 +97,10 @@ impl OutputFile {
     }
 }
 
-/// Gives files their names, which are all complete by now.
+/// Gives files their names. All of them are complete by now.
 ///
 /// # Errors
-/// [`Failure::Output`]: one cannot be renamed; it and those after it are removed.
+/// [`Failure::Output`]: a file cannot be renamed. It is removed, and so are the files after it.
 pub fn publish(files: impl IntoIterator<Item = StoredFile>) -> Result<(), Failure> {
     files.into_iter().try_for_each(|StoredFile(OutputFile { path, destination })| match destination
     {
@@ -120,10 +112,29 @@ pub fn publish(files: impl IntoIterator<Item = StoredFile>) -> Result<(), Failur
     })
 }
 
+/// Writes a file at once or not at all.
+///
+/// # Errors
+/// [`Failure::Output`]: the file cannot be written.
+pub fn write(path: &Path, content: &[u8]) -> Result<(), Failure> {
+    publish([OutputFile::create(path)?.finish(content)?])
+}
+
+/// Writes a file at once or not at all, unless the power fails: it is not stored on the disk before
+/// it gets its name.
+///
+/// # Errors
+/// [`Failure::Output`]: the file cannot be written.
+pub fn write_unsynchronised(path: &Path, content: &[u8]) -> Result<(), Failure> {
+    let mut file = OutputFile::create(path)?;
+    file.write_all(content).map_err(|error| file.failure(error))?;
+    publish([StoredFile(file)])
+}
+
 impl Destination {
     fn new(directory: &Path, path: &Path) -> io::Result<Self> {
         if is_stream(path) {
-            // At the end of whatever it leads to: another program may have written before.
+            // Bytes are appended, because another program may have written before.
             return Ok(Self::Direct(OpenOptions::new().append(true).open(path)?));
         }
         if path.is_dir() {
@@ -137,7 +148,7 @@ impl Destination {
         builder.prefix(&prefix).suffix(PARTIAL);
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        // The whole error would show the temporary name, which means nothing to the user.
+        // The whole error would show the temporary name, which the user does not know.
         let partial = builder.tempfile_in(directory).map_err(|error| error.kind())?;
         Ok(Self::Beside { partial, target })
     }
@@ -146,7 +157,7 @@ impl Destination {
 impl Write for OutputFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match &mut self.destination {
-            // The error of the file itself: `NamedTempFile` would add the temporary name to it.
+            // Writing to the `NamedTempFile` itself would add the temporary name to the error.
             Destination::Beside { partial, .. } => partial.as_file_mut().write(bytes),
             Destination::Direct(device) => device.write(bytes),
         }
@@ -160,8 +171,8 @@ impl Write for OutputFile {
     }
 }
 
-/// Whether `path` leads to a device, a pipe or a stream of the process itself, which a file of the
-/// same name must not replace.
+/// Whether `path` leads to a device, a pipe or a stream of the process. A file must not replace
+/// these.
 fn is_stream(path: &Path) -> bool {
     let own = ["/dev/stdout", "/dev/stderr", "/dev/fd", "/proc/self/fd"];
     own.iter().any(|stream| path.starts_with(stream))
@@ -181,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn appears_when_published_and_not_before() {
+    fn a_file_appears_when_it_is_published_and_not_before() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("out.csv");
         let mut file = OutputFile::create(&path).unwrap();
@@ -193,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn dropped_unpublished_it_leaves_what_was_there() {
+    fn a_dropped_file_leaves_what_was_there() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("out.csv");
         fs::write(&path, "old").unwrap();
@@ -206,7 +217,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn replaces_what_a_link_points_to_and_keeps_the_link() {
+    fn behind_a_link_the_target_is_replaced_and_the_link_stays() {
         let directory = tempfile::tempdir().unwrap();
         let (target, link) = (directory.path().join("target"), directory.path().join("link"));
         fs::write(&target, "old").unwrap();

@@ -1,4 +1,4 @@
-//! Results as JSON on standard output.
+//! Results as JSON.
 
 use std::io::{self, Write};
 
@@ -7,13 +7,14 @@ use serde_json::{Map, Value, json, to_value};
 use stickslip_model::Engine;
 use stickslip_solver::Statistics;
 
-/// Writes `result` as one JSON object of layout `schema` and a line end, with what computed it: the
-/// engine, and the integrator's work, which is an empty object for the exact solution.
+/// Writes `result` as one JSON object with the layout `schema`, and ends the line. The object also
+/// says what computed the result: the engine after the parameters, and the integrator's work at the
+/// end, which is an empty object for the exact solution.
 ///
 /// # Errors
 /// `out` cannot be written.
 pub fn write(
-    out: &mut impl Write,
+    out: &mut dyn Write,
     schema: &str,
     result: &impl Serialize,
     engine: &Engine,
@@ -34,4 +35,14 @@ pub fn write(
     object.insert("statistics".to_owned(), statistics);
     serde_json::to_writer_pretty(&mut *out, &object)?;
     writeln!(out)
+}
+
+/// `value` as JSON on one line, which is ended.
+///
+/// # Errors
+/// `value` cannot be JSON.
+pub fn line(value: &impl Serialize) -> io::Result<Vec<u8>> {
+    let mut line = serde_json::to_vec(value)?;
+    line.push(b'\n');
+    Ok(line)
 }

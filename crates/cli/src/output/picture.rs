@@ -1,6 +1,6 @@
 //! Files of pictures.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use stickslip_figure::{FigureError, Svg, png};
 
@@ -11,11 +11,11 @@ use crate::error::Failure;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PictureFile {
     path: PathBuf,
-    format: Format,
+    format: PictureFormat,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
+enum PictureFormat {
     Svg,
     Png,
 }
@@ -29,8 +29,8 @@ impl PictureFile {
         let is =
             |name: &str| path.extension().is_some_and(|given| given.eq_ignore_ascii_case(name));
         let format = match (is("svg"), is("png")) {
-            (true, _) => Format::Svg,
-            (_, true) => Format::Png,
+            (true, _) => PictureFormat::Svg,
+            (_, true) => PictureFormat::Png,
             _ => {
                 return Err("not a picture; expected a name that ends in .svg or .png".to_owned());
             }
@@ -38,25 +38,31 @@ impl PictureFile {
         Ok(Self { path, format })
     }
 
+    /// The path of the file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Makes sure that the file can be written, before there is work to lose.
     ///
     /// # Errors
     /// [`Failure::Output`]: the file cannot be created.
     pub fn probe(&self) -> Result<(), Failure> {
-        OutputFile::probe(&self.path)
+        OutputFile::create(&self.path).map(drop)
     }
 
-    /// Writes `picture` beside the file.
+    /// Writes `picture` completely, except for the name of the file.
     ///
     /// # Errors
     /// [`Failure::Picture`]: it cannot be drawn. [`Failure::Output`]: it cannot be written.
     pub fn write(&self, picture: Result<Svg, FigureError>) -> Result<StoredFile, Failure> {
         let bytes = picture.and_then(|picture| match self.format {
-            Format::Svg => Ok(picture.document().into_bytes()),
-            Format::Png => png(&picture),
+            PictureFormat::Svg => Ok(picture.document().into_bytes()),
+            PictureFormat::Png => png(&picture),
         });
         let failed = |source| Failure::Picture { path: self.path.clone(), source };
-        OutputFile::complete(&self.path, &bytes.map_err(failed)?)
+        let bytes = bytes.map_err(failed)?;
+        OutputFile::create(&self.path)?.finish(&bytes)
     }
 }
 
@@ -67,8 +73,8 @@ mod tests {
     #[test]
     fn the_name_tells_the_format() {
         let format = |name: &str| PictureFile::new(name.into()).map(|file| file.format);
-        assert_eq!(format("a/b.svg"), Ok(Format::Svg));
-        assert_eq!(format("b.c.PNG"), Ok(Format::Png));
+        assert_eq!(format("a/b.svg"), Ok(PictureFormat::Svg));
+        assert_eq!(format("b.c.PNG"), Ok(PictureFormat::Png));
         for name in ["svg", ".png", "a.pdf", "a.svg.", ""] {
             assert!(format(name).is_err(), "{name}");
         }

@@ -1,23 +1,12 @@
-//! Progress bars, which show themselves on a terminal only, and threads.
+//! Progress bars, which are shown on a terminal only.
 
 use std::fmt;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
-use rayon::{ThreadPool, ThreadPoolBuilder};
 use stickslip_plane::progress::Progress;
 
-use crate::error::Failure;
-
-/// Threads for the work: as many as `count`, or one for each core.
-///
-/// # Errors
-/// [`Failure::Threads`]: they cannot be started.
-pub fn threads(count: Option<u16>) -> Result<ThreadPool, Failure> {
-    Ok(ThreadPoolBuilder::new().num_threads(count.map_or(0, usize::from)).build()?)
-}
-
-/// A progress bar on standard error.
-#[derive(Clone, Debug)]
+/// A progress bar on standard error. It disappears when it is dropped.
+#[derive(Debug)]
 pub struct Bar(ProgressBar);
 
 impl Bar {
@@ -31,7 +20,7 @@ impl Bar {
         Self::new(Some(length), "{bar:40} {percent}% of {total_bytes}, {eta} left")
     }
 
-    /// A bar that counts the points of a map of which `points` are left to do.
+    /// A bar that counts the points of a map, of which `points` are still missing.
     pub fn points(points: usize) -> Self {
         const TEMPLATE: &str = "{bar:25} {percent}% of {human_len} points, {rate}/s, {eta} left";
         Self::new(Some(points as u64), TEMPLATE)
@@ -48,12 +37,12 @@ impl Bar {
         Self(bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())))
     }
 
-    /// Shows that so many more are done.
+    /// Shows that `count` more are done.
     pub fn advance(&self, count: usize) {
         self.0.inc(count as u64);
     }
 
-    /// Shows that the input has been read up to a byte.
+    /// Shows that the input has been read up to `byte`.
     pub fn reach(&self, byte: u64) {
         self.0.set_position(byte);
     }
@@ -67,9 +56,10 @@ impl Bar {
             Progress::Advance { steps } => self.advance(steps),
         }
     }
+}
 
-    /// Removes the bar.
-    pub fn finish(&self) {
+impl Drop for Bar {
+    fn drop(&mut self) {
         self.0.finish_and_clear();
     }
 }

@@ -1,22 +1,24 @@
-//! The rows of a batch's results and of its switches.
+//! The rows of results and of switches in the CSV files of a batch.
 
 use std::io::Write;
 
 use csv::{ByteRecord, Writer};
 use stickslip_model::{Collision, Side, Switch};
 
-/// Columns that follow those of the input.
+use super::csv::number;
+
+/// The columns of results, which follow the columns of the input.
 pub const RESULTS: [&str; 7] =
     ["eps_n", "eps_t", "switch_count", "itinerary", "contact_time", "reversals", "status"];
 
-/// Columns that follow those of the input where points are located in an atlas.
+/// The columns of results where points are located in an atlas.
 pub const LOCATED: [&str; 4] = ["switch_count", "itinerary", "region", "distance"];
 
-/// Columns of the file of switches.
+/// The columns of the file of switches.
 pub const EVENTS: [&str; 8] =
     ["case", "index", "time", "time_left", "to", "side", "spring", "velocity"];
 
-/// What a row of a batch says of its collision.
+/// What a row of a batch says about its collision.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
     eps_n: f64,
@@ -40,7 +42,7 @@ impl From<&Collision> for Summary {
     }
 }
 
-/// Writes the header: the input's columns and the results'.
+/// Writes the header: the columns of the input and of the results.
 ///
 /// # Errors
 /// `out` cannot be written.
@@ -48,7 +50,7 @@ pub fn write_header<W: Write>(out: &mut Writer<W>, input: &ByteRecord) -> csv::R
     write_fields(out, input, RESULTS)
 }
 
-/// Writes a row: the input's fields, then the results or the reason why there are none.
+/// Writes a row: the fields of the input, then the results or the reason why there are none.
 ///
 /// # Errors
 /// `out` cannot be written.
@@ -94,12 +96,7 @@ pub fn write_switches<W: Write>(
     Ok(())
 }
 
-/// The shortest digits that read back as `value`.
-pub fn number(value: f64) -> String {
-    format!("{value:?}")
-}
-
-/// Writes a row: the input's fields, then the results'.
+/// Writes a row: the fields of the input, then those of the results.
 ///
 /// # Errors
 /// `out` cannot be written.
@@ -114,6 +111,6 @@ pub fn write_fields<'a, W: Write>(
     for field in results {
         out.write_field(field)?;
     }
-    // Ends the row.
+    // This ends the row.
     out.write_record(None::<&[u8]>)
 }

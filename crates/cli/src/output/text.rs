@@ -1,21 +1,19 @@
-//! One collision as a readable table.
+//! A collision as tables for readers, and the parts of which such tables are made.
 
 use std::io::{self, Write};
 
-use stickslip_model::{Collision, Switch};
+use stickslip_model::{Collision, Engine, Switch};
 use stickslip_solver::Statistics;
 
-use stickslip_model::Engine;
-
-/// Digits shown; `--format json` has them all.
+/// The number of digits that are shown. `--format json` shows all of them.
 const DIGITS: usize = 10;
 
-/// Writes `collision` for a reader.
+/// Writes `collision` as tables.
 ///
 /// # Errors
 /// `out` cannot be written.
 pub fn write(
-    out: &mut impl Write,
+    out: &mut dyn Write,
     engine: &Engine,
     collision: &Collision,
     statistics: Option<&Statistics>,
@@ -57,7 +55,7 @@ pub fn write(
     Ok(())
 }
 
-/// The method with its tolerances.
+/// The method of `engine` with its tolerances.
 pub fn describe(engine: &Engine) -> String {
     match engine.tolerances() {
         Some(tolerances) => {
@@ -79,7 +77,7 @@ fn row(index: usize, switch: &Switch) -> [String; 7] {
     ]
 }
 
-fn energy(out: &mut impl Write, collision: &Collision) -> io::Result<()> {
+fn energy(out: &mut dyn Write, collision: &Collision) -> io::Result<()> {
     let ledger = &collision.energy;
     writeln!(out)?;
     aligned(
@@ -99,11 +97,11 @@ fn entry(name: &str, tangential: f64, normal: f64) -> [String; 3] {
     [name.to_owned(), number(tangential), number(normal)]
 }
 
-/// What the integrator did, after a blank line.
+/// Writes a blank line and the work of the integrator.
 ///
 /// # Errors
 /// `out` cannot be written.
-pub fn work(out: &mut impl Write, statistics: &Statistics) -> io::Result<()> {
+pub fn work(out: &mut dyn Write, statistics: &Statistics) -> io::Result<()> {
     writeln!(out)?;
     pairs(
         out,
@@ -120,20 +118,20 @@ pub fn work(out: &mut impl Write, statistics: &Statistics) -> io::Result<()> {
     )
 }
 
-/// Names to the left, values after them.
+/// Writes names on the left, with their values after them.
 ///
 /// # Errors
 /// `out` cannot be written.
-pub fn pairs(out: &mut impl Write, lines: &[(&str, String)]) -> io::Result<()> {
+pub fn pairs(out: &mut dyn Write, lines: &[(&str, String)]) -> io::Result<()> {
     let width = lines.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
     lines.iter().try_for_each(|(name, value)| writeln!(out, "{name:<width$}  {value}"))
 }
 
-/// Columns: the first to the left, the others to the right.
+/// Writes columns: the first is aligned to the left, the others to the right.
 ///
 /// # Errors
 /// `out` cannot be written.
-pub fn aligned<const N: usize>(out: &mut impl Write, rows: &[[String; N]]) -> io::Result<()> {
+pub fn aligned<const N: usize>(out: &mut dyn Write, rows: &[[String; N]]) -> io::Result<()> {
     let width =
         |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let widths: [usize; N] = std::array::from_fn(width);
@@ -147,10 +145,10 @@ pub fn aligned<const N: usize>(out: &mut impl Write, rows: &[[String; N]]) -> io
     Ok(())
 }
 
-/// `value` with [`DIGITS`] significant digits, with an exponent if it is very small or large.
+/// `value` with [`DIGITS`] significant digits, and with an exponent if it is very small or large.
 pub fn number(value: f64) -> String {
     let rounded = format!("{value:.*e}", DIGITS - 1);
-    // The exponent of the rounded number: 9.9999999999 has one digit more than it seems.
+    // The exponent is that of the rounded number: 9.9999999999 is shown as 10.00000000.
     let exponent: i32 =
         rounded.split_once('e').and_then(|(_, exponent)| exponent.parse().ok()).unwrap_or(0);
     match usize::try_from(9 - exponent) {

@@ -2,18 +2,18 @@
 
 use std::path::PathBuf;
 
+use super::files::require_different;
 use crate::args::LocateArguments;
 use crate::error::Failure;
-use crate::plan::require_different;
 
-/// Points to be located.
+/// Points to be located in an atlas.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LocatePlan {
-    /// The atlas.
+    /// The file of the atlas.
     pub atlas: PathBuf,
-    /// Where the points are.
+    /// The file of the points.
     pub input: PathBuf,
-    /// Where the results go.
+    /// The file for the results.
     pub out: PathBuf,
 }
 

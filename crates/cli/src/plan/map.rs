@@ -6,32 +6,31 @@ use stickslip_model::Engine;
 use stickslip_plane::atlas::RatioRange;
 use stickslip_plane::{Coordinates, Grid, GridAxis, Range};
 
-use crate::args::{MapArguments, Method};
+use super::engine::{engine, engine_for_bodies};
+use super::window::{ImpactRange, KappaWindow};
+use crate::args::MapArguments;
 use crate::error::Failure;
-use crate::input::bodies::read_pair;
-use crate::input::recipe::RecipeError;
+use crate::input::bodies;
 use crate::output::picture::PictureFile;
-use crate::plan::explain;
-use crate::plan::window::Rows;
 
 /// A map to be computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MapPlan {
-    /// Its window and cells.
+    /// The cells of the map.
     pub grid: Grid,
     /// What computes the collisions.
     pub engine: Engine,
-    /// Where it goes.
+    /// The file of the map.
     pub out: PathBuf,
-    /// How it is written.
+    /// The format of that file.
     pub format: MapFormat,
-    /// Where it is drawn, if it is.
+    /// The file of a picture, if the map is drawn.
     pub plot: Option<PictureFile>,
-    /// Number of threads; `None` is one for each core.
+    /// The number of threads; `None` is one for each core.
     pub threads: Option<u16>,
 }
 
-/// How a map is written.
+/// The format of a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MapFormat {
     /// NumPy arrays.
@@ -44,12 +43,13 @@ impl MapPlan {
     /// The plan that `arguments` make.
     ///
     /// # Errors
-    /// [`Failure::Usage`] says which options do not go together.
+    /// [`Failure::Usage`] says which options contradict each other. [`Failure::Input`]: the file of
+    /// the bodies cannot be used.
     pub fn new(arguments: &MapArguments) -> Result<Self, Failure> {
-        let MapArguments { size, .. } = *arguments;
-        let (columns, rows, coordinates) = match &arguments.bodies {
-            Some(bodies) => velocities(arguments, bodies)?,
-            None => scaled(arguments)?,
+        let MapArguments { size, out, .. } = arguments;
+        let MapAxes { columns, rows, coordinates, engine } = match &arguments.bodies {
+            Some(file) => MapAxes::of_bodies(arguments, file)?,
+            None => MapAxes::scaled(arguments)?,
         };
         Ok(Self {
             grid: Grid {
@@ -57,51 +57,53 @@ impl MapPlan {
                 rows: GridAxis { range: rows, cells: size.rows },
                 coordinates,
             },
-            engine: arguments.method.engine(arguments.collisions.damping)?,
-            out: arguments.out.clone(),
-            format: format(&arguments.out)?,
+            engine,
+            out: out.clone(),
+            format: format(out)?,
             plot: arguments.plot.clone(),
             threads: arguments.threads,
         })
     }
 }
 
-/// The axes κ and ψ, or κ and g_t/g_n.
-fn scaled(arguments: &MapArguments) -> Result<(Range, Range, Coordinates), Failure> {
-    let MapArguments { kappa, psi, ratio, collisions, .. } = *arguments;
-    let kappa = kappa.ok_or_else(|| Failure::Usage(explain(RecipeError::NoKappa)))?;
-    let damping = collisions.damping.unwrap_or(0.0);
-    Ok(match Rows::new(psi, ratio, collisions)? {
-        Rows::Psi(psi) => (kappa, psi, Coordinates::Psi { damping }),
-        Rows::Ratio(RatioRange { range, reduction }) => {
-            (kappa, range, Coordinates::Ratio { reduction, damping })
-        }
-    })
+/// The axes of a map, what they mean, and what computes the collisions.
+struct MapAxes {
+    columns: Range,
+    rows: Range,
+    coordinates: Coordinates,
+    engine: Engine,
 }
 
-/// The axes g_n and g_t of the bodies in a file.
-fn velocities(
-    arguments: &MapArguments,
-    bodies: &Path,
-) -> Result<(Range, Range, Coordinates), Failure> {
-    let (Some(normal), Some(tangential)) = (arguments.normal, arguments.tangential) else {
-        let message = "--normal or --tangential is missing; expected --bodies with both";
-        return Err(Failure::Usage(message.to_owned()));
-    };
-    let pair = read_pair(bodies)?;
-    let damping_time_s = pair.surface.damping_time_s;
-    if arguments.method.method == Method::Exact && damping_time_s != 0.0 {
-        return Err(Failure::input(
-            bodies,
-            format!(
-                "surface.damping_time_s is {damping_time_s:?}, and --method exact holds without \
-                 damping; expected 0, or --method dop853 or dopri5"
-            ),
-        ));
+impl MapAxes {
+    /// The axes κ and ψ, or κ and g_t/g_n.
+    fn scaled(arguments: &MapArguments) -> Result<Self, Failure> {
+        let MapArguments { kappa, psi, ratio, collisions, ref method, .. } = *arguments;
+        let window = KappaWindow::new(kappa, psi, ratio, collisions)?;
+        let engine = engine(method, collisions.damping)?;
+        let damping = collisions.damping.unwrap_or(0.0);
+        let (rows, coordinates) = match window.impact {
+            ImpactRange::Psi(psi) => (psi, Coordinates::Psi { damping }),
+            ImpactRange::Ratio(RatioRange { range, reduction }) => {
+                (range, Coordinates::Ratio { reduction, damping })
+            }
+        };
+        Ok(Self { columns: window.kappa, rows, coordinates, engine })
     }
-    Ok((normal, tangential, Coordinates::Velocities { pair }))
+
+    /// The axes g_n and g_t of the bodies in `file`.
+    fn of_bodies(arguments: &MapArguments, file: &Path) -> Result<Self, Failure> {
+        let (Some(columns), Some(rows)) = (arguments.normal, arguments.tangential) else {
+            let message = "--normal or --tangential is missing; expected --bodies with both";
+            return Err(Failure::Usage(message.to_owned()));
+        };
+        let pair = bodies::read_pair(file)?;
+        let damping_time_s = pair.surface.damping_time_s;
+        let engine = engine_for_bodies(&arguments.method, bodies::shown(file), damping_time_s)?;
+        Ok(Self { columns, rows, coordinates: Coordinates::Velocities { pair }, engine })
+    }
 }
 
+/// The format that the name of the file tells.
 fn format(out: &Path) -> Result<MapFormat, Failure> {
     match out.extension().and_then(|extension| extension.to_str()) {
         Some("npz") => Ok(MapFormat::Npz),

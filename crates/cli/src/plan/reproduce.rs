@@ -6,38 +6,38 @@ use stickslip_studies::statements::Spring;
 
 use crate::args::{AuditFormat, ReproduceArguments};
 
-/// Everything, or statements alone.
+/// The plan of `reproduce`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ReproducePlan {
-    /// A page.
+    /// Everything is computed and shown on a page.
     Page(PagePlan),
-    /// Standard output.
+    /// Statements alone are tested and printed.
     Statements(StatementsPlan),
 }
 
-/// Everything to be computed anew.
+/// A page with everything.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PagePlan {
     /// The directory of the files.
     pub out: PathBuf,
-    /// The model of the spring of which the statements are tested.
+    /// The model of the spring for which the statements are tested.
     pub spring: Spring,
-    /// Number of threads; `None` is one for each core.
+    /// The number of threads; `None` is one for each core.
     pub threads: Option<u16>,
-    /// Columns and rows of a map.
+    /// The number of columns and rows of each map.
     pub cells: usize,
 }
 
 /// Statements to be tested.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StatementsPlan {
-    /// Their numbers.
+    /// The numbers of the statements.
     pub statements: Vec<u8>,
     /// How they are printed.
     pub format: AuditFormat,
     /// The model of the spring.
     pub spring: Spring,
-    /// Number of threads; `None` is one for each core.
+    /// The number of threads; `None` is one for each core.
     pub threads: Option<u16>,
 }
 

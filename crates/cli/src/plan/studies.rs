@@ -1,30 +1,49 @@
-//! What the studies are to do.
+//! What `converge` and `asymptote` are to do.
+
+use std::path::PathBuf;
 
 use stickslip_studies::{convergence, stiff_springs};
 
+use super::collision::contact;
 use crate::args::{AsymptoteArguments, CollisionArguments, ConvergeArguments};
 use crate::error::Failure;
-use crate::input::recipe::{Given, Recipe};
-use crate::plan::explain;
+use crate::input::recipe::Given;
 
-/// The study of convergence that `arguments` make.
-///
-/// # Errors
-/// [`Failure::Usage`] says which options do not go together.
-pub fn convergence(arguments: &ConvergeArguments) -> Result<convergence::Settings, Failure> {
-    let ConvergeArguments { kappa, psi, ratio, collision, .. } = *arguments;
-    let CollisionArguments { mu, alpha, damping } = collision;
-    if [kappa, psi, ratio, mu, alpha].iter().all(Option::is_none) {
-        let usual = convergence::Settings::usual(damping.unwrap_or(0.0));
-        return usual.map_err(|invalid| Failure::Usage(invalid.to_string()));
-    }
-    let given = Given { kappa, psi, ratio, mu, alpha, damping };
-    let recipe = Recipe::new(&given, |_| None).map_err(|e| Failure::Usage(explain(e)))?;
-    let contact = recipe.contact(|_| &[]).map_err(|e| Failure::Usage(e.to_string()))?;
-    Ok(convergence::Settings { contacts: vec![contact] })
+/// A study to be made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StudyPlan<S> {
+    /// What is studied.
+    pub settings: S,
+    /// The directory of the files.
+    pub out: PathBuf,
+    /// The number of threads; `None` is one for each core.
+    pub threads: Option<u16>,
 }
 
-/// The study of stiff springs that `arguments` make.
-pub fn stiff_springs(arguments: &AsymptoteArguments) -> stiff_springs::Settings {
-    stiff_springs::Settings { kappa: arguments.kappa, psi: arguments.psi.clone() }
+impl StudyPlan<convergence::Settings> {
+    /// The study of convergence that `arguments` make.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] says which options contradict each other.
+    pub fn convergence(arguments: &ConvergeArguments) -> Result<Self, Failure> {
+        let ConvergeArguments { kappa, psi, ratio, collision, ref out, threads, .. } = *arguments;
+        let CollisionArguments { mu, alpha, damping } = collision;
+        let settings = if [kappa, psi, ratio, mu, alpha].iter().all(Option::is_none) {
+            let usual = convergence::Settings::usual(damping.unwrap_or(0.0));
+            usual.map_err(|invalid| Failure::Usage(invalid.to_string()))?
+        } else {
+            let contact = contact(&Given { kappa, psi, ratio, mu, alpha, damping })?;
+            convergence::Settings { contacts: vec![contact] }
+        };
+        Ok(Self { settings, out: out.clone(), threads })
+    }
+}
+
+impl StudyPlan<stiff_springs::Settings> {
+    /// The study of stiff springs that `arguments` make.
+    pub fn stiff_springs(arguments: &AsymptoteArguments) -> Self {
+        let AsymptoteArguments { kappa, psi, out, threads } = arguments;
+        let settings = stiff_springs::Settings { kappa: *kappa, psi: psi.clone() };
+        Self { settings, out: out.clone(), threads: *threads }
+    }
 }

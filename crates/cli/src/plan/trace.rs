@@ -3,29 +3,29 @@
 use std::path::PathBuf;
 
 use stickslip_plane::Range;
-use stickslip_plane::atlas::{Frame, RatioRange};
+use stickslip_plane::atlas::Frame;
 
+use super::files::require_different;
+use super::window::{ImpactRange, KappaWindow};
 use crate::args::TraceArguments;
 use crate::error::Failure;
-use crate::input::recipe::RecipeError;
+use crate::input::recipe::reduced;
 use crate::output::picture::PictureFile;
-use crate::plan::explain;
-use crate::plan::window::Rows;
 
 /// An atlas to be traced.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TracePlan {
-    /// Its window.
+    /// The window of the atlas.
     pub frame: Frame,
-    /// Accuracy of boundaries in ψ.
+    /// The accuracy of the boundaries in ψ.
     pub tolerance: f64,
-    /// Where it goes.
+    /// The file of the atlas.
     pub out: PathBuf,
-    /// Where it is drawn, if it is.
+    /// The file of a picture, if the atlas is drawn.
     pub plot: Option<PictureFile>,
-    /// Where it goes as GeoJSON, if it does.
+    /// The file for GeoJSON, if that is wanted.
     pub geojson: Option<PathBuf>,
-    /// Number of threads; `None` is one for each core.
+    /// The number of threads; `None` is one for each core.
     pub threads: Option<u16>,
 }
 
@@ -33,22 +33,26 @@ impl TracePlan {
     /// The plan that `arguments` make.
     ///
     /// # Errors
-    /// [`Failure::Usage`] says which options do not go together.
+    /// [`Failure::Usage`] says which options contradict each other.
     pub fn new(arguments: &TraceArguments) -> Result<Self, Failure> {
+        let TraceArguments { out, plot, geojson, .. } = arguments;
         let frame = frame(arguments)?;
         let tolerance = arguments.tolerance.unwrap_or_else(|| frame.tolerances().usual);
-        if arguments.geojson.as_ref() == Some(&arguments.out) {
-            return Err(Failure::Usage(format!(
-                "--geojson {} is --out as well; expected two files",
-                arguments.out.display()
-            )));
+        if let Some(geojson) = geojson {
+            require_different(("--geojson", geojson), ("--out", out))?;
+        }
+        if let Some(plot) = plot {
+            require_different(("--plot", plot.path()), ("--out", out))?;
+            if let Some(geojson) = geojson {
+                require_different(("--plot", plot.path()), ("--geojson", geojson))?;
+            }
         }
         Ok(Self {
             frame,
             tolerance,
-            out: arguments.out.clone(),
-            plot: arguments.plot.clone(),
-            geojson: arguments.geojson.clone(),
+            out: out.clone(),
+            plot: plot.clone(),
+            geojson: geojson.clone(),
             threads: arguments.threads,
         })
     }
@@ -56,34 +60,16 @@ impl TracePlan {
 
 fn frame(arguments: &TraceArguments) -> Result<Frame, Failure> {
     let TraceArguments { kappa, psi, ratio, collisions, .. } = *arguments;
-    let kappa = kappa.ok_or_else(|| Failure::Usage(explain(RecipeError::NoKappa)))?;
-    let kappa = positive("--kappa", kappa)?;
-    let (psi, ratio) = match Rows::new(psi, ratio, collisions)? {
-        Rows::Psi(psi) => (positive("--psi", psi)?, None),
-        Rows::Ratio(ratio) => {
-            let RatioRange { range, reduction } = ratio;
-            let Range { low, high } = positive("--ratio", range)?;
-            let [low, high] = [low, high].map(|ratio| reduction.psi(ratio));
-            if !(low > 0.0 && low < high && high.is_finite()) {
-                return Err(Failure::Usage(format!(
-                    "psi = ratio·alpha/mu from {low:?} to {high:?} is out of range; expected \
-                     finite numbers 0 < LO < HI"
-                )));
-            }
-            (Range { low, high }, Some(ratio))
+    let KappaWindow { kappa, impact } = KappaWindow::new(kappa, psi, ratio, collisions)?;
+    let (psi, ratio) = match impact {
+        ImpactRange::Psi(psi) => (psi, None),
+        ImpactRange::Ratio(ratio) => {
+            let psi = |end| {
+                reduced(&ratio.reduction, end).map_err(|error| Failure::Usage(error.to_string()))
+            };
+            let Range { low, high } = ratio.range;
+            (Range { low: psi(low)?, high: psi(high)? }, Some(ratio))
         }
     };
     Ok(Frame { kappa, psi, ratio, damping: collisions.damping.unwrap_or(0.0) })
-}
-
-/// `range`, unless it begins at 0, where there is no collision.
-fn positive(option: &str, range: Range) -> Result<Range, Failure> {
-    if range.low > 0.0 {
-        return Ok(range);
-    }
-    Err(Failure::Usage(format!(
-        "{option} {:?}:{:?}: there is no collision at 0, and the boundaries near it have no end; \
-         expected LO:HI with LO > 0",
-        range.low, range.high
-    )))
 }

@@ -1,4 +1,4 @@
-//! An impact as readable tables.
+//! An impact as tables for readers.
 
 use std::io::{self, Write};
 
@@ -7,12 +7,12 @@ use stickslip_solver::Statistics;
 
 use crate::output::text::{aligned, describe, number, pairs, work};
 
-/// Writes `impact` for a reader.
+/// Writes `impact` as tables.
 ///
 /// # Errors
 /// `out` cannot be written.
 pub fn write(
-    out: &mut impl Write,
+    out: &mut dyn Write,
     engine: &Engine,
     impact: &ImpactReport,
     statistics: Option<&Statistics>,
@@ -35,7 +35,7 @@ pub fn write(
     statistics.map_or(Ok(()), |statistics| work(out, statistics))
 }
 
-fn vectors(out: &mut impl Write, impact: &ImpactReport) -> io::Result<()> {
+fn vectors(out: &mut dyn Write, impact: &ImpactReport) -> io::Result<()> {
     let ImpactReport { encounter, outcome, .. } = impact;
     let row =
         |name: &str, v: &Vector3<f64>| [name.to_owned(), number(v.x), number(v.y), number(v.z)];
@@ -55,7 +55,7 @@ fn vectors(out: &mut impl Write, impact: &ImpactReport) -> io::Result<()> {
     writeln!(out)
 }
 
-fn switches(out: &mut impl Write, switches: &[ForceSwitch]) -> io::Result<()> {
+fn switches(out: &mut dyn Write, switches: &[ForceSwitch]) -> io::Result<()> {
     if switches.is_empty() {
         return writeln!(out, "No switch.\n");
     }
@@ -88,7 +88,7 @@ fn switches(out: &mut impl Write, switches: &[ForceSwitch]) -> io::Result<()> {
     writeln!(out)
 }
 
-fn results(out: &mut impl Write, impact: &ImpactReport) -> io::Result<()> {
+fn results(out: &mut dyn Write, impact: &ImpactReport) -> io::Result<()> {
     let ImpactReport { encounter, outcome, .. } = impact;
     pairs(
         out,
@@ -106,7 +106,7 @@ fn results(out: &mut impl Write, impact: &ImpactReport) -> io::Result<()> {
     writeln!(out)
 }
 
-fn energy(out: &mut impl Write, impact: &ImpactReport) -> io::Result<()> {
+fn energy(out: &mut dyn Write, impact: &ImpactReport) -> io::Result<()> {
     let energy = &impact.outcome.energy;
     pairs(
         out,
@@ -124,7 +124,7 @@ fn energy(out: &mut impl Write, impact: &ImpactReport) -> io::Result<()> {
     writeln!(out)
 }
 
-fn observed(out: &mut impl Write, impact: &ImpactReport) -> io::Result<()> {
+fn observed(out: &mut dyn Write, impact: &ImpactReport) -> io::Result<()> {
     let observed = &impact.outcome.observed;
     pairs(
         out,
@@ -143,7 +143,7 @@ fn observed(out: &mut impl Write, impact: &ImpactReport) -> io::Result<()> {
     writeln!(out)
 }
 
-fn comparison(out: &mut impl Write, impact: &ImpactReport) -> io::Result<()> {
+fn comparison(out: &mut dyn Write, impact: &ImpactReport) -> io::Result<()> {
     let comparison = &impact.comparison;
     pairs(
         out,

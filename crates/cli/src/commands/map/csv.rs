@@ -1,4 +1,4 @@
-//! A finished map as a table, one row a point.
+//! A finished map as a table with one row per point.
 
 use std::io::{self, Write};
 
@@ -7,12 +7,13 @@ use stickslip_plane::Grid;
 
 use super::provenance::{Fact, Provenance};
 use super::results::Results;
+use crate::output::csv::number;
 
-/// Writes the header and one row a point, row of the map by row; what all points have in common
-/// stands in each row.
+/// Writes the header and one row per point, in the order of the rows of the map. What all points
+/// have in common is repeated in each row.
 ///
 /// # Errors
-/// `out` cannot be written, or a piece of the results cannot be read.
+/// `out` cannot be written, or a part of the results cannot be read.
 pub fn write(
     out: impl Write,
     grid: &Grid,
@@ -25,7 +26,7 @@ pub fn write(
     let facts = provenance.0.iter().map(|(name, _)| *name);
     writer.write_record(names.chain(["eps_t", "switch_count"]).chain(facts))?;
     let facts = provenance.0.iter().map(|(_, fact)| match fact {
-        Fact::Number(value) => format!("{value:?}"),
+        Fact::Number(value) => number(*value),
         Fact::Text(text) => text.clone(),
     });
     let facts: Vec<String> = facts.collect();
@@ -33,9 +34,9 @@ pub fn write(
         for (point, (eps_t, count)) in points.zip(tile.eps_t.iter().zip(&tile.switch_count)) {
             let (column, row) = grid.cell(point);
             for quantity in quantities {
-                writer.write_field(format!("{:?}", grid.value(*quantity, column, row)))?;
+                writer.write_field(number(grid.value(*quantity, column, row)))?;
             }
-            writer.write_field(format!("{eps_t:?}"))?;
+            writer.write_field(number(*eps_t))?;
             writer.write_field(count.to_string())?;
             writer.write_record(&facts)?;
         }

@@ -1,7 +1,7 @@
 //! A finished map as an archive of NumPy arrays.
 //!
-//! Formats: .npy 1.0 as in numpy/lib/format.py, stored without compression in a ZIP archive whose
-//! entries carry no time, so that the same map is always the same bytes.
+//! The arrays have the format .npy 1.0 as in numpy/lib/format.py. They are stored without compression
+//! in a ZIP archive. Its entries have no time, so that the same map is always the same bytes.
 
 use std::io::{self, BufWriter, Write};
 
@@ -12,11 +12,11 @@ use stickslip_plane::{Extent, Grid, Tile};
 use super::provenance::{Fact, Provenance};
 use super::results::Results;
 
-/// Writes the coordinates, both arrays of results, of which one piece at a time is in memory, and
-/// what made them as arrays without dimensions.
+/// Writes the coordinates, both arrays of results, and, as arrays without dimensions, what made
+/// them. One part of the results at a time is in memory.
 ///
 /// # Errors
-/// `out` cannot be written, or a piece of the results cannot be read.
+/// `out` cannot be written, or a part of the results cannot be read.
 pub fn write(
     out: impl Write,
     grid: &Grid,
@@ -53,7 +53,7 @@ pub fn write(
             Fact::Number(value) => {
                 array(&mut archive, name, "<f8", "", |out| out.write_all(&value.to_le_bytes()))?;
             }
-            // NumPy's text has four bytes a character.
+            // In NumPy a character takes four bytes.
             Fact::Text(text) => {
                 let element = format!("<U{}", text.chars().count());
                 array(&mut archive, name, &element, "", |out| {
@@ -65,17 +65,17 @@ pub fn write(
     archive.finish().map_err(plain)?.flush()
 }
 
-/// The map of `grid` with all its `results` as an archive in memory.
+/// The map of `grid` with its `results`, which `engine` computed, as an archive in memory.
 ///
 /// # Errors
-/// It does not fit into memory.
+/// The archive cannot be made.
 pub fn archive(grid: &Grid, engine: &Engine, results: &Tile) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     write(&mut bytes, grid, &Provenance::new(grid, engine), results)?;
     Ok(bytes)
 }
 
-/// Writes the entry `name`.npy with the elements that `elements` writes.
+/// Writes the entry `name`.npy, whose content `elements` writes.
 fn array<W: Write>(
     archive: &mut ZipArchiveWriter<W>,
     name: &str,
@@ -93,19 +93,19 @@ fn array<W: Write>(
     Ok(())
 }
 
-/// The header of a .npy file: padded such that the elements begin at a multiple of 64 bytes.
+/// The header of a .npy file. It is padded so that the elements begin at a multiple of 64 bytes.
 fn header(element: &str, shape: &str) -> Vec<u8> {
     const FIXED: usize = 10;
     let mut text =
         format!("{{'descr': '{element}', 'fortran_order': False, 'shape': ({shape}), }}");
     let length = (FIXED + text.len() + 1).next_multiple_of(64) - FIXED;
     text = format!("{text:<width$}\n", width = length - 1);
-    // Two numbers of at most eleven digits: the length is far below 65536.
+    // The shape has at most two numbers of eleven digits, so that the length is far below 65536.
     let [low, high, ..] = length.to_le_bytes();
     [b"\x93NUMPY\x01\x00", &[low, high][..], text.as_bytes()].concat()
 }
 
-/// The error of the file, if it is one.
+/// The error of the file or, if the archive is wrong, an error that says so.
 fn plain(error: Error) -> io::Error {
     match error.into_kind() {
         ErrorKind::IO(error) => error,

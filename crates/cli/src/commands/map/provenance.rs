@@ -1,11 +1,11 @@
-//! What a map says of itself: everything that its results depend on besides its axes.
+//! What a map says about itself: everything besides its axes on which its results depend.
 
 use stickslip_model::Engine;
 use stickslip_plane::{Coordinates, Grid};
 
 use crate::version;
 
-/// Names with their values, in the order of the file.
+/// Facts with their names, in the order of the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Provenance(pub Vec<(&'static str, Fact)>);
 
@@ -14,19 +14,19 @@ pub struct Provenance(pub Vec<(&'static str, Fact)>);
 pub enum Fact {
     /// A number.
     Number(f64),
-    /// Words.
+    /// A text.
     Text(String),
 }
 
 impl Provenance {
-    /// What made a map of `grid` by `engine`.
+    /// The facts about a map of `grid` that `engine` computes.
     pub fn new(grid: &Grid, engine: &Engine) -> Self {
         let mut numbers = match grid.coordinates {
             Coordinates::Psi { damping } => vec![("damping", damping)],
             Coordinates::Ratio { reduction, damping } => {
                 vec![("mu", reduction.mu), ("alpha", reduction.alpha), ("damping", damping)]
             }
-            // Its scaled damping differs from column to column, and is an array of its own.
+            // The scaled damping differs from column to column, and is one of the quantities.
             Coordinates::Velocities { pair } => vec![
                 ("mu", pair.surface.friction),
                 ("alpha", pair.alpha),

@@ -1,4 +1,4 @@
-//! The results of a whole map, in pieces.
+//! The results of a whole map, in parts.
 
 use std::io;
 use std::ops::Range;
@@ -9,14 +9,14 @@ use super::tiles::Tiles;
 
 /// All results of a map.
 pub trait Results {
-    /// Hands every piece with its points to `take`, in order and one at a time.
+    /// Passes each part with its points to `take`, one after the other in order.
     ///
     /// # Errors
-    /// A piece cannot be read, or `take` fails.
+    /// A part cannot be read, or `take` fails.
     fn each(&self, take: impl FnMut(Range<usize>, &Tile) -> io::Result<()>) -> io::Result<()>;
 }
 
-/// Kept in files.
+/// The results are stored in files.
 impl Results for Tiles {
     fn each(&self, mut take: impl FnMut(Range<usize>, &Tile) -> io::Result<()>) -> io::Result<()> {
         let task = self.task();
@@ -24,7 +24,7 @@ impl Results for Tiles {
     }
 }
 
-/// All in memory.
+/// All results are in memory.
 impl Results for Tile {
     fn each(&self, mut take: impl FnMut(Range<usize>, &Tile) -> io::Result<()>) -> io::Result<()> {
         take(0..self.eps_t.len(), self)

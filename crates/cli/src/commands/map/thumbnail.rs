@@ -6,11 +6,11 @@ use stickslip_plane::{Grid, GridAxis, Tile};
 
 use super::tiles::Tiles;
 
-/// The size, columns and rows, of a picture of a map, and the results of its pixels, row by row
-/// from the lower edge.
+/// The size (columns and rows) of a picture of a map, and the results of its pixels, row by row from
+/// the lower edge.
 ///
-/// A pixel shows the cell at its centre; there are at most `most` × `most` pixels and never more
-/// than the map has cells. One tile at a time is in memory.
+/// A pixel shows the cell at its centre. There are at most `most` × `most` pixels, and not more than
+/// the map has cells. One tile at a time is in memory.
 ///
 /// # Errors
 /// A tile cannot be read.
@@ -34,7 +34,7 @@ pub fn read(grid: &Grid, tiles: &Tiles, most: usize) -> io::Result<((usize, usiz
     Ok((size, thumbnail))
 }
 
-/// The cells that hold the centres of at most `most` pixels of equal width.
+/// The cells that contain the centres of at most `most` pixels of equal width.
 fn centres(axis: GridAxis, most: usize) -> Vec<usize> {
     let pixels = axis.cells.min(most);
     (0..pixels).map(|pixel| (2 * pixel + 1) * axis.cells / (2 * pixels)).collect()
@@ -55,7 +55,7 @@ mod tests {
         assert_eq!(centres(axis(7), 3), [1, 3, 5]);
         assert_eq!(centres(axis(10_000_000_000), 1), [5_000_000_000]);
 
-        // The results of a point are its number; tiles end in the middle of rows.
+        // Both results of a point are its number. Tiles end in the middle of rows.
         let coordinates = Coordinates::Psi { damping: 0.0 };
         let grid = Grid { columns: axis(7), rows: axis(5), coordinates };
         let task = Task { description: String::new(), points: 35, tile_points: 4 };

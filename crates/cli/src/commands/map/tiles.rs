@@ -1,4 +1,4 @@
-//! The directory in which the finished tiles of a map are kept until the map is complete.
+//! The directory in which the finished tiles of a map are stored until the map is complete.
 
 use std::fs::{self, File, TryLockError};
 use std::io;
@@ -8,21 +8,21 @@ use std::path::{Path, PathBuf};
 use stickslip_plane::Tile;
 
 use crate::error::Failure;
-use crate::output::file as output;
+use crate::output::file;
 
-/// A map cut into tiles of successive points, row by row.
+/// A map, divided into tiles of successive points, row by row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Task {
-    /// Everything on which the results depend, one fact a line.
+    /// Everything on which the results depend, one fact per line.
     pub description: String,
-    /// Number of points.
+    /// The number of points.
     pub points: usize,
-    /// Points of each tile but the last, which may have fewer.
+    /// The number of points in each tile. The last tile may have fewer.
     pub tile_points: usize,
 }
 
 impl Task {
-    /// Number of tiles.
+    /// The number of tiles.
     pub fn tiles(&self) -> usize {
         self.points.div_ceil(self.tile_points)
     }
@@ -33,7 +33,7 @@ impl Task {
         start..(start + self.tile_points).min(self.points)
     }
 
-    /// The tile of a point, and the point's place in it.
+    /// The index of the tile that has `point`, and the point's index in it.
     pub fn place(&self, point: usize) -> (usize, usize) {
         (point / self.tile_points, point % self.tile_points)
     }
@@ -43,23 +43,23 @@ impl Task {
     }
 }
 
-/// The tiles of one task, which no other process makes at the same time.
+/// The tiles of one task. No other process makes them at the same time.
 #[derive(Debug)]
 pub struct Tiles {
     directory: PathBuf,
     task: Task,
-    /// Held until the directory is removed or the process ends, however it ends.
+    /// The lock is held until the directory is removed or the process ends, however it ends.
     lock: File,
 }
 
 /// What was found of a map that was begun before.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Found {
-    /// Number of finished tiles.
+    /// The number of finished tiles.
     pub kept: usize,
-    /// Number of tiles that were there but are not what was written.
+    /// The number of tiles that are not what was written.
     pub damaged: usize,
-    /// The tiles that have to be made, the damaged ones among them.
+    /// The tiles that have to be made, damaged tiles included.
     pub missing: Vec<usize>,
 }
 
@@ -67,15 +67,16 @@ impl Tiles {
     const LOCK: &str = "lock";
     const TASK: &str = "task";
 
-    /// Opens the directory of the tiles of `out`, `OUT.tiles`, or makes it.
+    /// Opens the directory of the tiles of `out`, `OUT.tiles`, and creates it if it is missing.
     ///
     /// # Errors
-    /// It cannot be made, another process works there, or its tiles are those of another task.
+    /// The directory cannot be created, another process works there, or its tiles are those of
+    /// another task.
     pub fn open(out: &Path, task: Task) -> Result<Self, Failure> {
         if out.is_dir() {
             return Err(Failure::output(out, io::ErrorKind::IsADirectory));
         }
-        let mut directory = output::target(out).into_os_string();
+        let mut directory = file::target(out).into_os_string();
         directory.push(".tiles");
         let directory = PathBuf::from(directory);
         match fs::create_dir(&directory) {
@@ -86,17 +87,15 @@ impl Tiles {
         }
         let unusable = |error: io::Error| Failure::output(&directory, error);
         let lock = File::create(directory.join(Self::LOCK)).map_err(unusable)?;
-        // Where files cannot be locked, two processes would do the same work twice, no more.
+        // Where files cannot be locked, two processes do the same work twice, which does no harm.
         if let Err(TryLockError::WouldBlock) = lock.try_lock() {
             return Err(Failure::Busy(directory));
         }
         match fs::read(directory.join(Self::TASK)) {
             Ok(kept) => require_same(&directory, &kept, &task.description)?,
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                write_whole(&directory, Self::TASK, task.description.as_bytes())?;
-                // A power cut must not spoil it: unlike a tile, it could not be made again.
-                let task = File::open(directory.join(Self::TASK));
-                task.and_then(|task| task.sync_all()).map_err(unusable)?;
+                // A power cut must not damage it: unlike a tile, it could not be made again.
+                file::write(&directory.join(Self::TASK), task.description.as_bytes())?;
             }
             Err(error) => return Err(unusable(error)),
         }
@@ -104,17 +103,17 @@ impl Tiles {
         Ok(Self { directory, task, lock })
     }
 
-    /// Where the tiles are.
+    /// The directory in which the tiles are.
     pub fn directory(&self) -> &Path {
         &self.directory
     }
 
-    /// What they are tiles of.
+    /// The task whose tiles these are.
     pub fn task(&self) -> &Task {
         &self.task
     }
 
-    /// Looks for finished tiles and checks every one.
+    /// Looks for finished tiles and checks each of them.
     ///
     /// # Errors
     /// A tile cannot be read.
@@ -134,19 +133,20 @@ impl Tiles {
         Ok(found)
     }
 
-    /// Keeps a finished tile.
+    /// Stores a finished tile.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The tile cannot be written.
     pub fn keep(&self, index: usize, tile: &Tile) -> Result<(), Failure> {
         let bytes = tile.to_bytes(&self.task.label(index));
-        write_whole(&self.directory, &name(index), &bytes)
+        // If a power cut leaves a tile incomplete, its checksum tells.
+        file::write_unsynchronised(&self.path(index), &bytes)
     }
 
     /// Reads a finished tile.
     ///
     /// # Errors
-    /// It cannot be read, or is not what was written.
+    /// The tile cannot be read, or is not what was written.
     pub fn read(&self, index: usize) -> io::Result<Tile> {
         let bytes = self.bytes(index)?.unwrap_or_default();
         self.decode(index, &bytes).ok_or_else(|| {
@@ -155,22 +155,22 @@ impl Tiles {
         })
     }
 
-    /// Removes the directory: the program's own files, and the rest only if that leaves nothing.
+    /// Removes the program's own files, and then the directory if it is empty.
     ///
-    /// What cannot be removed does no harm: the map is complete.
+    /// If something cannot be removed, that does no harm, because the map is complete.
     pub fn remove(self) {
         for index in 0..self.task.tiles() {
             let _ = fs::remove_file(self.path(index));
         }
         let _ = fs::remove_file(self.directory.join(Self::TASK));
-        // Some systems do not remove a file that is open.
+        // Some systems do not remove an open file.
         drop(self.lock);
         let _ = fs::remove_file(self.directory.join(Self::LOCK));
         let _ = fs::remove_dir(&self.directory);
     }
 
     fn path(&self, index: usize) -> PathBuf {
-        self.directory.join(name(index))
+        self.directory.join(format!("{index}.tile"))
     }
 
     fn bytes(&self, index: usize) -> io::Result<Option<Vec<u8>>> {
@@ -186,33 +186,18 @@ impl Tiles {
     }
 }
 
-fn name(index: usize) -> String {
-    format!("{index}.tile")
-}
-
-/// Writes a file beside its name and renames it.
-///
-/// It is not synchronised: a tile that a power cut leaves incomplete is found out by its checksum.
-fn write_whole(directory: &Path, name: &str, bytes: &[u8]) -> Result<(), Failure> {
-    let path = directory.join(name);
-    let partial = directory.join(format!("{name}{}", output::PARTIAL));
-    fs::write(&partial, bytes).and_then(|()| fs::rename(&partial, &path)).map_err(|error| {
-        let _ = fs::remove_file(&partial);
-        Failure::output(&path, error)
-    })
-}
-
-/// Removes what a killed process has left half written.
+/// Removes files that a killed process has left incomplete.
 fn remove_partial(directory: &Path) -> io::Result<()> {
     for entry in fs::read_dir(directory)? {
         let path = entry?.path();
-        if path.as_os_str().as_encoded_bytes().ends_with(output::PARTIAL.as_bytes()) {
+        if path.as_os_str().as_encoded_bytes().ends_with(file::PARTIAL.as_bytes()) {
             fs::remove_file(path)?;
         }
     }
     Ok(())
 }
 
+/// Refuses a directory whose task is `kept`, unless that is the task with `description`.
 fn require_same(directory: &Path, kept: &[u8], description: &str) -> Result<(), Failure> {
     if kept == description.as_bytes() {
         return Ok(());

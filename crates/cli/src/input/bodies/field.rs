@@ -10,7 +10,7 @@ use serde_json::Value;
 use stickslip_model::Vector3;
 use stickslip_model::quantity::Quantity;
 
-/// A struct that is written as an object; serde alone would take an array of its fields too.
+/// A struct that is written as an object. serde alone would also accept an array of its fields.
 pub struct Object<T>(pub T);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {
@@ -36,7 +36,7 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for ObjectVisitor<T> {
 /// The object at `place`.
 ///
 /// # Errors
-/// It is missing.
+/// The object is missing.
 pub fn required<T>(place: &str, object: Option<T>) -> Result<T, String> {
     object.ok_or_else(|| format!("{place} is missing; expected an object"))
 }
@@ -44,7 +44,7 @@ pub fn required<T>(place: &str, object: Option<T>) -> Result<T, String> {
 /// The number in the field of `quantity` in the object at `place`.
 ///
 /// # Errors
-/// It is missing, no number, or out of range.
+/// The number is missing or out of range, or the field holds something else.
 pub fn number(place: &str, quantity: &Quantity, value: Option<&Value>) -> Result<f64, String> {
     let Quantity { name, expected, .. } = quantity;
     let number = match value {
@@ -56,10 +56,10 @@ pub fn number(place: &str, quantity: &Quantity, value: Option<&Value>) -> Result
     quantity.check(number).map_err(|invalid| format!("{place}.{invalid}"))
 }
 
-/// The three numbers in the field `name`, which holds a vector in `unit`, of the object at `place`.
+/// The vector in the field `name` of the object at `place`, in `unit`.
 ///
 /// # Errors
-/// They are missing, or not three numbers.
+/// The vector is missing, or does not consist of three numbers.
 pub fn vector(
     place: &str,
     (name, unit): (&str, &str),
@@ -79,6 +79,7 @@ pub fn vector(
     Err(format!("{place}.{name} is {found}; expected three finite numbers, {unit}"))
 }
 
+/// What `value` is, for messages.
 fn kind(value: &Value) -> &'static str {
     match value {
         Value::Null => "null",

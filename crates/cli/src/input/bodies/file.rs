@@ -1,4 +1,4 @@
-//! The layout of the file: what is written, and what it means.
+//! The layout of the file: its fields, and what they mean.
 
 use serde::Deserialize;
 use serde_json::Value;
@@ -6,21 +6,38 @@ use stickslip_model::quantity;
 use stickslip_model::{Elasticity, Motion, Sphere, Surface, Wall, WallMotion};
 
 use super::field::{Object, number, required, vector};
-use super::{Bodies, Other};
 use crate::input::json;
+
+/// What a file describes. Motions that are not in the file are `None`.
+pub struct Bodies {
+    /// The first sphere.
+    pub sphere: (Sphere, Option<Motion>),
+    /// The second body.
+    pub other: Other,
+    /// The surfaces.
+    pub surface: Surface,
+}
+
+/// The body that the first sphere hits.
+pub enum Other {
+    /// Another sphere.
+    Sphere(Sphere, Option<Motion>),
+    /// A wall.
+    Wall(Wall, Option<WallMotion>),
+}
 
 impl Bodies {
     /// The bodies that `text` describes.
     ///
     /// # Errors
-    /// What is wrong and where, and what is expected.
+    /// What is wrong, where, and what is expected.
     pub fn parse(text: &[u8]) -> Result<Self, String> {
         let Object(file): Object<File> = json::parse(text)?;
         file.resolve()
     }
 }
 
-/// A file as it is written; what is missing is `None`.
+/// The file as it is written. A field that is missing is `None`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
@@ -52,7 +69,7 @@ struct WallFields {
     _comment: Option<String>,
     rigid: Option<bool>,
     material: Option<Object<MaterialFields>>,
-    motion: Option<Object<PlaneFields>>,
+    motion: Option<Object<WallMotionFields>>,
 }
 
 #[derive(Deserialize)]
@@ -77,7 +94,7 @@ struct MotionFields {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct PlaneFields {
+struct WallMotionFields {
     #[serde(rename = "comment")]
     _comment: Option<String>,
     point_m: Option<Value>,
@@ -107,7 +124,7 @@ impl File {
         let wall = self.wall.map(|Object(wall)| wall.resolve()).transpose()?;
         let (sphere, other) = match (&spheres[..], wall) {
             (&[first, (sphere, motion)], None) => (first, Other::Sphere(sphere, motion)),
-            (&[first], Some((wall, plane))) => (first, Other::Wall(wall, plane)),
+            (&[first], Some((wall, motion))) => (first, Other::Wall(wall, motion)),
             (_, wall) => {
                 return Err(format!(
                     "spheres has {} entries, and there is {} wall; expected two spheres, or one \
@@ -147,7 +164,7 @@ impl SphereFields {
             Some(_) if self.mass_kg.is_none() => {
                 return Err(format!(
                     "{place}.moment_of_inertia_kg_m2 contradicts a density, which makes the sphere \
-                     homogeneous; accepted beside mass_kg only"
+                     homogeneous; expected beside mass_kg only"
                 ));
             }
             moment => number(place, &quantity::MOMENT_OF_INERTIA, moment.as_ref())?,
@@ -169,7 +186,7 @@ impl WallFields {
             (Some(_), false) => {
                 return Err(
                     "wall.material.density_kg_per_m3 has no effect, since the mass of a wall \
-                            is infinite; accepted in spheres only"
+                            is infinite; expected in spheres only"
                         .to_owned(),
                 );
             }
@@ -180,8 +197,8 @@ impl WallFields {
                 ));
             }
         };
-        let plane = self.motion.as_ref().map(|Object(plane)| plane.resolve("wall.motion"));
-        Ok((Wall { elasticity }, plane.transpose()?))
+        let motion = self.motion.as_ref().map(|Object(motion)| motion.resolve("wall.motion"));
+        Ok((Wall { elasticity }, motion.transpose()?))
     }
 }
 
@@ -206,7 +223,7 @@ impl MotionFields {
     }
 }
 
-impl PlaneFields {
+impl WallMotionFields {
     fn resolve(&self, place: &str) -> Result<WallMotion, String> {
         let (point, normal) = (("point_m", POSITION), ("normal", "not all 0, without unit"));
         Ok(WallMotion {

@@ -1,0 +1,89 @@
+//! The options of `collide`.
+
+use std::path::PathBuf;
+
+use super::method::MethodArguments;
+use super::shared::{self, CollisionArguments, Format};
+use crate::input::parameter::Parameter;
+use crate::output::picture::PictureFile;
+
+/// Options of `collide`.
+#[derive(Debug, clap::Args)]
+pub struct CollideArguments {
+    /// Scaled stiffness κ = k_t/(α m β^⅘ g_n^⅖) of the tangential spring; above 0
+    #[arg(long, value_name = "K", help_heading = "Collision", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Kappa.parse(text))]
+    pub kappa: Option<f64>,
+
+    /// Impact ratio g_t/g_n of tangential and normal velocity; above 0; gives ψ = G·α/μ
+    #[arg(long, value_name = "G", help_heading = "Collision", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Ratio.parse(text))]
+    pub ratio: Option<f64>,
+
+    /// Reduced impact ratio ψ = (g_t/g_n)·α/μ, instead of --ratio; above 0
+    #[arg(long, value_name = "P", help_heading = "Collision", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| Parameter::Psi.parse(text))]
+    pub psi: Option<f64>,
+
+    /// The parameters beside κ and ψ.
+    #[command(flatten, next_help_heading = "Collision")]
+    pub collision: CollisionArguments,
+
+    /// What computes a collision.
+    #[command(flatten)]
+    pub method: MethodArguments,
+
+    /// How one collision is printed
+    #[arg(long, value_enum, default_value_t = Format::Table, help_heading = "Output")]
+    #[arg(conflicts_with = "batch")]
+    pub format: Format,
+
+    /// Picture of the forces and the velocity of one collision, which is printed as well
+    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output", conflicts_with = "batch")]
+    #[arg(value_parser = shared::picture())]
+    pub plot: Option<PictureFile>,
+
+    /// CSV file with a header row and one collision per row
+    #[arg(long, value_name = "IN.csv", help_heading = "Batch", requires = "out")]
+    pub batch: Option<PathBuf>,
+
+    /// CSV file for the results, one row per collision in the order of the input
+    #[arg(long, value_name = "OUT.csv", help_heading = "Batch", requires = "batch")]
+    pub out: Option<PathBuf>,
+
+    /// CSV file for every switch of every collision
+    #[arg(long, value_name = "EV.csv", help_heading = "Batch", requires = "batch")]
+    pub events: Option<PathBuf>,
+
+    /// Threads for a batch; 1 to 1024 [default: one for each core]; results do not depend on it
+    #[arg(long, value_name = "N", help_heading = "Batch", allow_hyphen_values = true)]
+    #[arg(value_parser = shared::threads())]
+    pub threads: Option<u16>,
+}
+
+/// What `collide --help` says first.
+pub const ABOUT: &str = "\
+Compute one collision, or a file of them: the coefficients of restitution, the switches between \
+sticking and sliding, and where the energy went.
+
+A collision is given by --kappa and exactly one of --psi and --ratio. All quantities are scaled: \
+time by β^(−2/5) g_n^(−1/5), length by g_n^(4/5) β^(−2/5), with β = ρ/m; the spring and the \
+tangential velocity are also divided by μ/α. Numbers are written like 18, 1.5e3 or 2/7.";
+
+/// What `collide --help` says last.
+pub const EXAMPLES: &str = "\
+Batch files:
+  The header of IN.csv names any of kappa, psi, ratio, mu, alpha, damping; the options of the same
+  names give what the file does not. Other columns pass through. OUT.csv has the columns of the input
+  followed by eps_n, eps_t, switch_count, itinerary, contact_time, reversals, status. A row that
+  cannot be computed has no results; its status says why, and the exit code is 1.
+
+Examples:
+  stickslip collide --kappa 63 --psi 0.5
+  stickslip collide --kappa 63 --psi 0.5 --plot collision.svg
+  stickslip collide --kappa 18 --ratio 1.4 --mu 0.4 --alpha 2/7 --method exact
+  stickslip collide --kappa 18 --psi 1 --damping 0.05 --format json
+  stickslip collide --batch IN.csv --out OUT.csv --events EV.csv --threads 4
+  stickslip collide --batch PSI.csv --kappa 18 --method exact --out OUT.csv
+
+Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

@@ -1,0 +1,95 @@
+//! The columns of a CSV file that have a meaning.
+
+use csv::ByteRecord;
+
+use crate::input::parameter::Parameter;
+use crate::input::recipe::{Given, Recipe, RecipeError};
+use crate::output::rows::{LOCATED, RESULTS};
+
+/// The columns that have a meaning.
+#[derive(Clone, Copy, Debug)]
+pub struct Columns {
+    /// The parameters that are read. Other columns pass through.
+    parameters: &'static [Parameter],
+    /// Whether options may give parameters too.
+    options: bool,
+    /// The names of the columns of results.
+    results: &'static [&'static str],
+}
+
+impl Columns {
+    /// The columns of a file of collisions.
+    pub const COLLISIONS: Self = Self {
+        parameters: &[
+            Parameter::Kappa,
+            Parameter::Psi,
+            Parameter::Ratio,
+            Parameter::Mu,
+            Parameter::Alpha,
+            Parameter::Damping,
+        ],
+        options: true,
+        results: &RESULTS,
+    };
+    /// The columns of a file of points (κ, ψ) that are located in an atlas.
+    pub const POINTS: Self =
+        Self { parameters: &[Parameter::Kappa, Parameter::Psi], options: false, results: &LOCATED };
+
+    /// The recipe that the columns of `header` make together with the values `given` as options.
+    ///
+    /// # Errors
+    /// What is wrong with the columns, and what is expected.
+    pub fn recipe(&self, header: &ByteRecord, given: &Given) -> Result<Recipe, String> {
+        if header.is_empty() {
+            return Err("is empty; expected a header row, for example kappa,psi".to_owned());
+        }
+        let names: Vec<&[u8]> = header.iter().map(<[u8]>::trim_ascii).collect();
+        for (index, name) in names.iter().enumerate() {
+            let shown = String::from_utf8_lossy(name);
+            if names[..index].contains(name) {
+                return Err(format!("two columns are named '{shown}'; expected different names"));
+            }
+            if self.results.iter().any(|result| result.as_bytes() == *name) {
+                return Err(format!(
+                    "column {shown} has the name of a result; expected names other than {}",
+                    self.results.join(", ")
+                ));
+            }
+        }
+        let column = |parameter: Parameter| {
+            let place = names.iter().position(|name| *name == parameter.name().as_bytes());
+            place.filter(|_| self.parameters.contains(&parameter))
+        };
+        Recipe::new(given, column).map_err(|error| {
+            let problem = if self.options {
+                explain(error)
+            } else {
+                "kappa or psi is missing; expected columns kappa and psi".to_owned()
+            };
+            let names = names.join(&b", "[..]);
+            format!("{problem}; the columns are: {}", String::from_utf8_lossy(&names))
+        })
+    }
+}
+
+/// What is wrong with the columns and options.
+fn explain(error: RecipeError) -> String {
+    match error {
+        RecipeError::NoKappa => "kappa is missing; expected a column kappa or --kappa".to_owned(),
+        RecipeError::NoImpact => {
+            "psi and ratio are missing; expected exactly one of them, as a column or an option"
+                .to_owned()
+        }
+        RecipeError::PsiAndRatio => {
+            "psi and ratio are both given; expected exactly one of them, as a column or an \
+             option"
+                .to_owned()
+        }
+        RecipeError::GivenTwice { name } => {
+            format!("the column {name} and --{name} are both given; expected one of them")
+        }
+        RecipeError::Unused { name } => {
+            format!("--{name} has no effect with psi; expected with ratio only")
+        }
+    }
+}

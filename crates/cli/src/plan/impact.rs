@@ -1,0 +1,34 @@
+//! What `impact` is to do.
+
+use stickslip_model::{Encounter, Engine};
+
+use super::engine::engine_for_bodies;
+use crate::args::{Format, ImpactArguments};
+use crate::error::Failure;
+use crate::input::bodies;
+
+/// An impact to be computed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImpactPlan {
+    /// The two bodies.
+    pub encounter: Encounter,
+    /// What computes their collision.
+    pub engine: Engine,
+    /// How the impact is printed.
+    pub format: Format,
+}
+
+impl ImpactPlan {
+    /// The plan that `arguments` make with the file that they name.
+    ///
+    /// # Errors
+    /// [`Failure::Input`]: the file cannot be used. [`Failure::Usage`]: options contradict each
+    /// other.
+    pub fn new(arguments: &ImpactArguments) -> Result<Self, Failure> {
+        let ImpactArguments { file, method, format } = arguments;
+        let encounter = bodies::read_encounter(file)?;
+        let damping_time_s = encounter.impact.pair.surface.damping_time_s;
+        let engine = engine_for_bodies(method, bodies::shown(file), damping_time_s)?;
+        Ok(Self { encounter, engine, format: *format })
+    }
+}
