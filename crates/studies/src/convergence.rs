@@ -25,8 +25,7 @@ use collisions::Accuracy;
 use series::{ErrorRow, ErrorSeries, Scheme};
 
 pub use measure::{
-    Approximation, Coordinates, Deviation, Errors, ReferenceError, Spread, Switching, integrate,
-    measure, reference,
+    Approximation, Coordinates, Deviation, Errors, Spread, Switching, integrate, measure, reference,
 };
 pub use settings::{InvalidConvergence, MOST_STIFFNESS, Settings};
 pub use tables::{ORDERS, TIMES};
@@ -54,10 +53,7 @@ struct Measurement {
 pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Study, StudyError> {
     settings.validate()?;
     let references = settings.contacts.iter().map(|contact| {
-        reference(*contact).map_err(|error| match error {
-            ReferenceError::Exact(error) => CollisionFailure::new(contact, error),
-            ReferenceError::Collision(error) => CollisionFailure::new(contact, error),
-        })
+        reference(*contact).map_err(|source| CollisionFailure::new(contact, source))
     });
     let references: Vec<_> = references.collect::<Result<_, _>>()?;
     let accuracies = references.iter().map(Accuracy::new).collect::<Result<_, _>>()?;

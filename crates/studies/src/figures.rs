@@ -2,10 +2,11 @@
 //!
 //! Start reading in [`Part`]; then, in this order: [`Section`] (the result of a part),
 //! [`Reproduction`] (what parts share), `figure1` to `figure6`, `boundaries` and `studies` (the
-//! parts), `points` (where the points a to o of Figure 4 are), `stiffness_map`, [`Sweep`] and
-//! `course` (what several figures need).
+//! parts), `points` (where the points a to o of Figure 4 are), `stiffness_map`, [`Sweep`], `course`
+//! and `columns` (what several figures need).
 
 mod boundaries;
+mod columns;
 mod course;
 mod figure1;
 mod figure2;

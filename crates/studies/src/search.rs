@@ -23,7 +23,7 @@ pub enum SearchError {
 
 /// A place and the value there.
 #[derive(Clone, Copy, Debug)]
-pub struct Extremum<T> {
+pub struct Optimum<T> {
     pub at: T,
     pub value: f64,
 }
@@ -33,7 +33,7 @@ pub struct Extremum<T> {
 pub fn maximum<E: From<SearchError> + Send>(
     places: &[f64],
     value: impl Fn(f64) -> Result<f64, E> + Send + Sync,
-) -> Result<Extremum<f64>, E> {
+) -> Result<Optimum<f64>, E> {
     let values: Vec<_> = places.par_iter().map(|&at| value(at)).collect();
     let values: Vec<f64> = values.into_iter().collect::<Result<_, _>>()?;
     let Some(best) = (0..values.len()).max_by(|&a, &b| values[a].total_cmp(&values[b])) else {
@@ -46,9 +46,9 @@ pub fn maximum<E: From<SearchError> + Send>(
     let found =
         least(|at| value(*at).map(f64::neg), solver, |state| state.param(start).max_iters(200))?;
     Ok(if -found.value > values[best] {
-        Extremum { at: found.at, value: -found.value }
+        Optimum { at: found.at, value: -found.value }
     } else {
-        Extremum { at: places[best], value: values[best] }
+        Optimum { at: places[best], value: values[best] }
     })
 }
 
@@ -58,13 +58,13 @@ pub fn maximum_near<E: From<SearchError>>(
     start: [f64; 2],
     step: [f64; 2],
     value: impl Fn([f64; 2]) -> Result<f64, E>,
-) -> Result<Extremum<[f64; 2]>, E> {
+) -> Result<Optimum<[f64; 2]>, E> {
     let [x, y] = start;
     let corners = vec![vec![x, y], vec![x + step[0], y], vec![x, y + step[1]]];
     let depth = |at: &Vec<f64>| value([at[0], at[1]]).map(f64::neg);
     let solver = NelderMead::new(corners).with_sd_tolerance(1e-14);
     let found = least(depth, solver, |state| state.max_iters(400))?;
-    Ok(Extremum { at: [found.at[0], found.at[1]], value: -found.value })
+    Ok(Optimum { at: [found.at[0], found.at[1]], value: -found.value })
 }
 
 /// The place of the one maximum of `height` in `interval`, by Brent's method, to a `tolerance` in
@@ -112,19 +112,19 @@ fn inside((low, high): (f64, f64), part: f64) -> f64 {
 }
 
 /// The state of a solver over places `P`.
-type Progress<P> = IterState<P, (), (), (), (), f64>;
+type SolverState<P> = IterState<P, (), (), (), (), f64>;
 
 /// The place where `solver` finds `cost` least, or zero if it looks for a zero.
 fn least<P, F, E, S>(
     cost: F,
     solver: Result<S, Error>,
-    start: impl FnOnce(Progress<P>) -> Progress<P>,
-) -> Result<Extremum<P>, E>
+    start: impl FnOnce(SolverState<P>) -> SolverState<P>,
+) -> Result<Optimum<P>, E>
 where
     P: Clone,
     F: Fn(&P) -> Result<f64, E>,
     E: From<SearchError>,
-    S: for<'a> Solver<&'a Cost<P, F, E>, Progress<P>>,
+    S: for<'a> Solver<&'a Cost<P, F, E>, SolverState<P>>,
 {
     let cost = Cost { value: cost, failed: RefCell::default(), place: PhantomData };
     let solved =
@@ -136,7 +136,7 @@ where
     let state = solved.state();
     let best = state.get_best_param().map(|at| (at.clone(), state.get_best_cost()));
     let (at, value) = best.ok_or(SearchError::NoPlaces)?;
-    Ok(Extremum { at, value })
+    Ok(Optimum { at, value })
 }
 
 /// A function whose minimum or zero is looked for, and its first failure. After a failure the

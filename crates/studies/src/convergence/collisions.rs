@@ -1,5 +1,6 @@
 //! Each collision as `collide` computes it, with its errors.
 
+use serde::Serialize;
 use serde_json::{Value, json};
 use stickslip_model::{Collision, Engine, EngineError, Tolerances};
 
@@ -17,11 +18,16 @@ pub struct Accuracy {
 }
 
 /// The errors of one pair.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct PairAccuracy {
+    /// The error of ε_t.
+    #[serde(rename = "eps_t_error")]
+    pub eps_t: f64,
     /// The error of the final velocity.
+    #[serde(rename = "velocity_error")]
     pub velocity: f64,
     /// The largest error of a switch time; `None` if the switches are others.
+    #[serde(rename = "switch_time_error")]
     pub switch_time: Option<f64>,
     /// Evaluations of the right-hand side.
     pub right_hand_sides: usize,
@@ -42,14 +48,6 @@ impl Accuracy {
     pub fn json(&self) -> Value {
         let Self { reference, pairs } = self;
         let contact = &reference.contact;
-        let pair = |accuracy: &PairAccuracy| {
-            json!({
-                "eps_t_error": accuracy.velocity / contact.psi(),
-                "velocity_error": accuracy.velocity,
-                "switch_time_error": accuracy.switch_time,
-                "right_hand_sides": accuracy.right_hand_sides,
-            })
-        };
         json!({
             "kappa": contact.kappa(),
             "psi": contact.psi(),
@@ -57,8 +55,8 @@ impl Accuracy {
             "eps_t": reference.eps_t(),
             "switch_count": reference.switches.len(),
             "itinerary": reference.itinerary(),
-            (MethodPair::BOTH[0].name()): pair(&pairs[0]),
-            (MethodPair::BOTH[1].name()): pair(&pairs[1]),
+            (MethodPair::BOTH[0].name()): pairs[0],
+            (MethodPair::BOTH[1].name()): pairs[1],
         })
     }
 }
@@ -81,6 +79,7 @@ impl PairAccuracy {
         let deviation = approximation.deviation(reference);
         let largest = |times: Vec<f64>| times.into_iter().fold(0.0, f64::max);
         Ok(Self {
+            eps_t: deviation.velocity / reference.contact.psi(),
             velocity: deviation.velocity,
             switch_time: deviation.switch_times.map(largest),
             right_hand_sides: statistics.field,

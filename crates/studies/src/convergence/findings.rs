@@ -226,9 +226,7 @@ impl Measurement {
     /// A pair as `collide` uses it.
     fn usual_accuracy(&self, pair: usize) -> String {
         let errors = || self.accuracies.iter().map(|accuracy| accuracy.pairs[pair]);
-        let psi = self.accuracies.iter().map(|accuracy| accuracy.reference.contact.psi());
-        let eps_t =
-            errors().zip(psi).map(|(errors, psi)| errors.velocity / psi).fold(0.0, f64::max);
+        let eps_t = errors().map(|errors| errors.eps_t).fold(0.0, f64::max);
         let velocity = errors().map(|errors| errors.velocity).fold(0.0, f64::max);
         let switch_time = errors().filter_map(|errors| errors.switch_time).fold(0.0, f64::max);
         let others = errors().filter(|errors| errors.switch_time.is_none()).count();

@@ -6,9 +6,9 @@
 //! through zero now and then.
 
 use serde::Serialize;
-use stickslip_model::exact::{self, ExactError};
+use stickslip_model::exact;
 use stickslip_model::regularized::{self, Phase, Regularized};
-use stickslip_model::{Collider, Collision, CollisionError, Contact, Regime, Side};
+use stickslip_model::{Collider, Collision, CollisionError, Contact, EngineError, Regime, Side};
 use stickslip_solver::{
     Dop853, HybridSystem, Method, Observer, Options, Outcome, Run, RunError, Start, Statistics,
     SwitchEvent, run, run_over_switches,
@@ -82,24 +82,13 @@ impl Approximation {
 /// 8(5,3) at a tolerance of 1e-15.
 ///
 /// # Errors
-/// [`ReferenceError`]: the exact solution or the integrator fails.
-pub fn reference(contact: Contact) -> Result<Collision, ReferenceError> {
+/// [`EngineError`]: the exact solution or the integrator fails.
+pub fn reference(contact: Contact) -> Result<Collision, EngineError> {
     if contact.damping() > 0.0 {
         Ok(Collider::with_tolerances(Dop853, 1e-15, 1e-15).collide(contact)?)
     } else {
         Ok(exact::collide(contact)?)
     }
-}
-
-/// There is no [`reference()`].
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum ReferenceError {
-    /// The exact solution does not take the contact.
-    #[error(transparent)]
-    Exact(#[from] ExactError),
-    /// The integration failed.
-    #[error(transparent)]
-    Collision(#[from] CollisionError),
 }
 
 /// Integrates the collision of `contact`.

@@ -22,8 +22,6 @@ const Y: usize = 2;
 /// Index of the reduced tangential velocity.
 pub const W: usize = 3;
 
-/// Index of the guard of the end of contact.
-pub const END: usize = 0;
 const OTHER_SIDE: usize = 2;
 
 /// The contact as a hybrid system in (x, v, y, w) and time.
@@ -37,12 +35,6 @@ impl PlainTime {
     #[must_use]
     pub fn new(contact: Contact) -> Self {
         Self { contact }
-    }
-
-    /// The first phase.
-    #[must_use]
-    pub fn first(&self) -> Phase {
-        Phase::first(&self.contact)
     }
 
     /// The state at the start of contact.

@@ -92,16 +92,17 @@ impl Measurement {
 
     fn collisions(&self) -> Table {
         let rows = self.accuracies.iter().flat_map(|accuracy| {
-            let (collision, psi) = (&accuracy.reference, accuracy.reference.contact.psi());
+            let collision = &accuracy.reference;
             MethodPair::BOTH.iter().zip(&accuracy.pairs).map(move |(pair, errors)| {
                 let contact = &collision.contact;
-                let numbers = [contact.kappa(), psi, contact.damping(), collision.eps_t()];
+                let numbers =
+                    [contact.kappa(), contact.psi(), contact.damping(), collision.eps_t()];
                 let mut row: Vec<_> = numbers.map(Cell::Number).into();
                 row.push(collision.switches.len().into());
                 row.push(collision.itinerary().into());
                 row.push(pair.name().into());
                 let time = errors.switch_time.unwrap_or(f64::NAN);
-                row.extend([errors.velocity / psi, errors.velocity, time].map(Cell::Number));
+                row.extend([errors.eps_t, errors.velocity, time].map(Cell::Number));
                 row.push(errors.right_hand_sides.into());
                 row
             })

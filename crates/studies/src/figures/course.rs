@@ -6,7 +6,7 @@ use stickslip_model::{Collision, Engine, History, Snapshot};
 use crate::error::{CollisionFailure, StudyError};
 use crate::paper::{Reading, psi};
 use crate::statements::Spring;
-use crate::study::{Cell, Column};
+use crate::study::Cell;
 
 /// The undamped collision at κ and ψ, by the exact solution.
 ///
@@ -44,15 +44,8 @@ pub fn largest_compression(collision: &Collision) -> f64 {
     0.5 * collision.contact_time
 }
 
-/// The columns of [`rows`].
-pub const COLUMNS: [Column; 4] = [
-    Column::new("time", "scaled time"),
-    Column::new("normal_force", "F_n in units of m β^{2/5} g_n^{6/5}"),
-    Column::new("tangential_force", "F_t/μ in the same units"),
-    Column::new("velocity", "w = (α/μ) g_t/g_n"),
-];
-
-/// A course as it is drawn in a panel `width` pixels wide. At a switch there are two rows.
+/// The rows of [`super::columns::COURSE`]: a course as it is drawn in a panel `width` pixels wide.
+/// At a switch there are two rows.
 pub fn rows(collision: &Collision, history: &History, width: f64) -> Vec<Vec<Cell>> {
     let course = Course::new(collision, history, width);
     let row = |moment: &Snapshot| {

@@ -8,6 +8,7 @@ use stickslip_figure::pictures::map::{self, MapPanel};
 use stickslip_plane::atlas::VerifiedAtlas;
 
 use super::boundaries::summary;
+use super::columns::{AXIS, KAPPA, PHASES, SWITCHES};
 use super::points::{Interval, LetteredPoint, intervals, points};
 use super::reproduction::Reproduction;
 use super::section::Section;
@@ -23,12 +24,12 @@ pub const TITLE: &str = "Figure 4: number of switches";
 const ATLAS: &str = "figure4_boundaries.json";
 
 const COLUMNS: [Column; 7] = [
-    Column::headed("axis", "axis", "what the axis of stiffness is read as"),
-    Column::headed("kappa", "κ", "κ of (24)"),
+    AXIS,
+    KAPPA,
     Column::headed("ratio_low", "g_t/g_n from", "g_t/g_n at the lower end of the interval"),
     Column::headed("ratio_high", "to", "g_t/g_n at the upper end of the interval"),
-    Column::headed("switch_count", "switches", "number of switches"),
-    Column::headed("itinerary", "phases", "the phases, one character for each"),
+    SWITCHES,
+    PHASES,
     Column::headed("points", "points", "the points of the figure inside the interval"),
 ];
 
@@ -97,10 +98,9 @@ fn headline(lines: &Lines) -> String {
         "The numbers of switches do not tell over which stiffness the figures of the paper are drawn"
     };
     format!(
-        "{conclusion}: at κ = {} there are up to {printed} switches, and at κ = {} up to {axis}, where \
-         the paper has up to {MOST_SWITCHES}.",
-        number(Reading::Printed.kappa(STIFFNESS), 4),
-        number(Reading::Axis.kappa(STIFFNESS), 4),
+        "{conclusion}. Where their axis shows {at} they have up to {MOST_SWITCHES} switches; there are \
+         up to {printed} at κ = {at} and up to {axis} at ακ = {at}.",
+        at = number(STIFFNESS, 4)
     )
 }
 

@@ -5,7 +5,8 @@ use stickslip_figure::number;
 use stickslip_figure::pictures::gallery::{self, Exhibit, PANEL_WIDTH};
 use stickslip_model::Collision;
 
-use super::course::{self, first_and_last, followed, largest_compression, rows};
+use super::columns::{AXIS, COURSE, EPS_T, KAPPA, PHASES, POINT, RATIO, SWITCHES};
+use super::course::{first_and_last, followed, largest_compression, rows};
 use super::points::{LetteredPoint, intervals, points};
 use super::reproduction::Reproduction;
 use super::section::Section;
@@ -17,19 +18,17 @@ use crate::study::{Cell, Column, Picture, Study, Table};
 /// The title of the part.
 pub const TITLE: &str = "Figure 5: forces at the points a to o";
 
-const POINT: Column = Column::headed("point", "point", "point of Figure 4");
-
 const COLUMNS: [Column; 10] = [
-    Column::headed("axis", "axis", "what the axis of stiffness is read as"),
+    AXIS,
     POINT,
-    Column::headed("kappa", "κ", "κ of (24)"),
-    Column::headed("ratio", "g_t/g_n", "impact ratio g_t/g_n"),
-    Column::headed("switch_count", "switches", "number of switches"),
-    Column::headed("itinerary", "phases", "the phases, one character for each"),
+    KAPPA,
+    RATIO,
+    SWITCHES,
+    PHASES,
     Column::headed("first_switch", "first switch", "scaled time of the first switch"),
     Column::headed("last_switch", "last switch", "scaled time of the last switch"),
     Column::headed("reversals", "reversals", "number of reversals of the motion"),
-    Column::headed("eps_t", "ε_t", "tangential restitution ε_t"),
+    EPS_T,
 ];
 
 /// Computes the part.
@@ -136,7 +135,7 @@ fn courses(reading: Reading, exhibits: &[Exhibit]) -> Table {
     Table {
         name: name(reading),
         title: format!("Forces and velocity against time at the points, {}", reading.words()),
-        columns: [&[POINT], &course::COLUMNS[..]].concat(),
+        columns: [&[POINT], &COURSE[..]].concat(),
         rows: rows.collect(),
     }
 }

@@ -6,7 +6,8 @@ use stickslip_figure::pictures::collision::{self, PANEL_WIDTH};
 use stickslip_figure::pictures::course::Course;
 use stickslip_model::{Collision, History};
 
-use super::course::{self, followed, rows};
+use super::columns::{AXIS, COURSE, EPS_T, KAPPA, PHASES, RATIO, SWITCHES};
+use super::course::{followed, rows};
 use super::reproduction::Reproduction;
 use super::section::Section;
 use crate::error::StudyError;
@@ -16,15 +17,9 @@ use crate::study::{Column, Picture, Study, Table};
 /// The title of the part.
 pub const TITLE: &str = "Figure 6: a stiff spring";
 
-const COLUMNS: [Column; 7] = [
-    Column::headed("axis", "axis", "what the axis of stiffness is read as"),
-    Column::headed("kappa", "κ", "κ of (24)"),
-    Column::headed("ratio", "g_t/g_n", "impact ratio g_t/g_n"),
-    Column::headed("switch_count", "switches", "number of switches"),
-    Column::headed("itinerary", "phases", "the phases, one character for each"),
-    Column::headed("first_minimum", "first minimum", "scaled time of the velocity's first minimum"),
-    Column::headed("eps_t", "ε_t", "tangential restitution ε_t"),
-];
+const FIRST_MINIMUM: Column =
+    Column::headed("first_minimum", "first minimum", "scaled time of the velocity's first minimum");
+const COLUMNS: [Column; 7] = [AXIS, KAPPA, RATIO, SWITCHES, PHASES, FIRST_MINIMUM, EPS_T];
 
 /// Computes the part.
 ///
@@ -63,7 +58,7 @@ pub fn run(_: &Reproduction) -> Result<Section, StudyError> {
         tables.push(Table {
             name,
             title: format!("Forces and velocity against time, κ = {kappa}"),
-            columns: course::COLUMNS.to_vec(),
+            columns: COURSE.to_vec(),
             rows: rows(&collision, &history, PANEL_WIDTH),
         });
         pictures.push(Picture {

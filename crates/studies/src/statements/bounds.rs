@@ -10,7 +10,7 @@ use super::statement::{Evidence, Finding, Stop, Verdict};
 use super::subject::Subject;
 use crate::error::StudyError;
 use crate::paper::{MOST_RATIO_3, MOST_STIFFNESS, Reading, psi};
-use crate::search::{Extremum, maximum, maximum_near};
+use crate::search::{Optimum, maximum, maximum_near};
 
 /// 12: the spring's elongation is at most μ/(ακ) (25), so that |ε_t| ≤ (g_n/g_t) μ/(α√κ) (26, 27).
 pub fn largest(subject: &Subject) -> Result<Finding, Stop> {
@@ -59,7 +59,7 @@ pub fn largest(subject: &Subject) -> Result<Finding, Stop> {
 /// The largest `value` over κ from 0.01 to 10⁴ and ψ from 0.01 to 3.
 fn worst(
     value: &(impl Fn([f64; 2]) -> Result<f64, StudyError> + Sync),
-) -> Result<Extremum<[f64; 2]>, StudyError> {
+) -> Result<Optimum<[f64; 2]>, StudyError> {
     const PLACES: usize = 60;
     let kappas = geometric(0.01, 1e4, PLACES);
     let psis = (1..=PLACES).map(|i| 3.0 * i as f64 / PLACES as f64);
@@ -71,7 +71,7 @@ fn worst(
     let inside =
         |[x, psi]: [f64; 2]| [x.clamp(0.01_f64.ln(), 1e4_f64.ln()).exp(), psi.clamp(0.01, 3.0)];
     let found = maximum_near(start, [0.1, 0.03], |at| value(inside(at)))?;
-    Ok(Extremum { at: inside(found.at), value: found.value })
+    Ok(Optimum { at: inside(found.at), value: found.value })
 }
 
 /// 13: ε_t vanishes as the spring becomes stiff.

@@ -17,7 +17,7 @@ const ENTRIES: [Entry; COUNT as usize] = [
         "(15), (16)", sliding::closed_form),
     Entry("Three independent parameters describe the collision.", "(21)-(24)", parameters::three),
     Entry("The motion always starts in the Coulomb regime.", "(9), (10)", regimes::start),
-    Entry("It ends in the Coulomb regime, unless g_t = 0.", "(9), (10)", regimes::end),
+    Entry("The motion ends in the Coulomb regime, unless g_t = 0.", "(9), (10)", regimes::end),
     Entry("The number of switches is even.", "(9), (10)", regimes::parity),
     Entry("At κ = 18, μ = 0.4, α = 2/7 there are up to eight switches.", "Figs. 4, 5", counts::eight),
     Entry("The motion reverses half as many times as there are switches.", "Fig. 5", counts::reversals),

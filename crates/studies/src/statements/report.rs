@@ -101,7 +101,7 @@ impl Audit {
             Spring::Unreset => "With a spring that is not reset while sliding, of",
         };
         let count = self.statements.len();
-        format!("{of} {count} statements of the paper {}{and}{last}.", parts.join(", "))
+        format!("{of} {count} statements of the paper, {}{and}{last}.", parts.join(", "))
     }
 
     fn json(&self) -> Value {

@@ -90,8 +90,8 @@ impl Measurement {
         [
             format!(
                 "The fit |w_final| = C κ^{{−p}} gives p = {}; with the terms κ^{{−5/4}} and κ^{{−5/2}} \
-                 beside it p = {}. It is over {} stiffnesses from 1000 on, at which values of ψ differ \
-                 by {:.0e}, relative.",
+                 beside it p = {}. It covers {} stiffnesses from 1000 on; between the values of ψ \
+                 |w_final| differs by {:.0e}, relative.",
                 shown(fits.plain_exponent),
                 shown(fits.exponent),
                 fits.count,

@@ -56,8 +56,9 @@ impl Measurement {
         let (low, high) = self.kappas();
         let stops = if low < MOST_RESOLVED && MOST_RESOLVED < high {
             format!(
-                " The curve of |w_final| at one ψ ends at κ = {MOST_RESOLVED}: beyond, its single \
-                 oscillations cannot be told apart, and only their tops are shown."
+                " The curve of |w_final| at ψ = {} ends at κ = {MOST_RESOLVED}: beyond, its single \
+                 oscillations cannot be told apart, and only their tops are shown.",
+                self.single_psi
             )
         } else {
             String::new()

@@ -94,7 +94,7 @@ fn columns_of_tables_on_a_page_have_short_headings() {
 fn headlines_say_what_was_found() {
     let headlines = headlines(&SECTIONS);
     for parts in [
-        &["drawn over ακ", "up to 4 switches", "κ = 63 up to 8"][..],
+        &["drawn over ακ", "up to 4 at κ = 18 and up to 8 at ακ = 18"][..],
         &["33 regions", "none of 21852"],
         &[
             "κ^{−5/4}",
@@ -129,7 +129,7 @@ fn the_headline_of_another_model_has_other_numbers() {
     let headline = &audit.study().headlines[0];
     assert_eq!(
         headline,
-        "With a spring that is not reset while sliding, of 3 statements of the paper 2 hold and 1 \
+        "With a spring that is not reset while sliding, of 3 statements of the paper, 2 hold and 1 \
          does not hold."
     );
     let open = |number| Statement {
@@ -140,5 +140,5 @@ fn the_headline_of_another_model_has_other_numbers() {
     };
     let audit = Audit { spring: Spring::Reset, statements: vec![open(1), open(2)] };
     let headline = &audit.study().headlines[0];
-    assert_eq!(headline, "Of 2 statements of the paper 2 cannot be decided.");
+    assert_eq!(headline, "Of 2 statements of the paper, 2 cannot be decided.");
 }
