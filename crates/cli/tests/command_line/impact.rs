@@ -8,7 +8,8 @@ use std::process::{Command, Stdio};
 use assert_cmd::cargo::cargo_bin;
 use serde_json::Value;
 use stickslip_model::{
-    Collider, Elasticity, Encounter, Material, Motion, Plane, Sphere, Surface, Vector3, Wall, exact,
+    Collider, Elasticity, Encounter, Material, Motion, Sphere, Surface, Vector3, Wall, WallMotion,
+    exact,
 };
 
 use crate::{Ran, Workspace, stickslip_in};
@@ -201,7 +202,7 @@ fn a_sphere_and_a_wall() {
         velocity_m_per_s: Vector3::new(0.8, 0.3, -1.2),
         spin_rad_per_s: Vector3::new(0.0, -400.0, 50.0),
     };
-    let plane = Plane {
+    let plane = WallMotion {
         point_m: Vector3::zeros(),
         normal: Vector3::z(),
         velocity_m_per_s: Vector3::new(0.0, 0.0, 0.1),
