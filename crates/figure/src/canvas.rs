@@ -1,9 +1,9 @@
 //! The parts of which pictures are made.
 //!
-//! Start reading in [`panel`] (axes, and what is drawn against them) and [`mod@svg`] (shapes and words).
-//! Then `ticks` (round values on axes), `legend` (keys and their meanings), `placement` (places of
-//! labels in regions), [`markup`] and [`mod@number`] (texts), [`shape`] and [`style`] (sizes and
-//! colours), `bitmap` (images in a picture) and [`raster`] (a picture as PNG).
+//! Start reading in [`panel`] (axes, and what is drawn against them) and [`mod@svg`] (shapes and
+//! words). Then `ticks` (round values on axes), `legend` (keys and their meanings), `placement`
+//! (places of labels in regions), [`markup`] and [`mod@number`] (texts), [`shape`] and [`style`]
+//! (sizes and colours), `bitmap` (images in a picture) and [`raster`] (a picture as PNG).
 
 mod bitmap;
 mod legend;

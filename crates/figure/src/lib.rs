@@ -1,13 +1,12 @@
 //! Pictures of collisions, maps and atlases, as SVG and PNG.
 //!
-//! A picture is drawn as [`Svg`]; [`png`] rasterises it, so that both look the same. [`pictures`] draws
-//! whole pictures from data: a [collision](pictures::collision), a [gallery](pictures::gallery) of
-//! several, a [map](pictures::map), an [atlas](pictures::atlas), a [chart](pictures::chart) of series.
-//! They are made of what [`canvas`] offers.
+//! The functions of [`pictures`] draw whole pictures from data: a [collision](pictures::collision),
+//! a [gallery](pictures::gallery) of many, a [map](pictures::map), a computed
+//! [grid](pictures::grid), an [atlas](pictures::atlas), a [chart](pictures::chart) of series. Each
+//! results in an [`Svg`], whose document is a file, and [`png()`] makes the same picture as PNG.
 //!
-//! Start reading in [`canvas::panel`] (axes and what is drawn against them), then
-//! [`pictures::course`] and [`pictures::collision`] (a picture); then [`canvas::svg`],
-//! [`canvas::markup`] and [`canvas::style`].
+//! Pictures are made of the parts in [`canvas`]. Start reading in [`canvas::panel`] (axes, and what
+//! is drawn against them), then [`pictures::course`] and [`pictures::collision`] (a picture).
 //!
 //! ```
 //! use stickslip_figure::{pictures, png};

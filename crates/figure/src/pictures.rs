@@ -1,7 +1,8 @@
 //! Whole pictures, each drawn from data.
 //!
-//! Start reading in [`course`] and [`collision`]. Then [`gallery`] (many collisions), [`chart`] (series
-//! of points), [`map`] and [`grid`] (quantities on a plane), [`atlas`] (boundaries on a plane).
+//! Start reading in [`course`] and [`collision`]. Then [`gallery`] (many collisions), [`chart`]
+//! (series of points), [`map`] and [`grid`] (quantities on a plane), [`atlas`] (boundaries on a
+//! plane).
 
 pub mod atlas;
 pub mod chart;

@@ -80,11 +80,11 @@ pub enum Quantity {
 /// The part of a grid over which a quantity varies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
-    /// It depends on the column alone.
+    /// The quantity depends on the column alone.
     Columns,
-    /// It depends on the row alone.
+    /// The quantity depends on the row alone.
     Rows,
-    /// It depends on both, and has a value for each point.
+    /// The quantity depends on both, and has a value for each point.
     Points,
 }
 

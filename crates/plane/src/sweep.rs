@@ -8,7 +8,7 @@ use stickslip_model::{Engine, EngineError, InvalidParameter};
 use crate::grid::{Grid, Quantity};
 use crate::tile::{NO_COUNT, NO_EPS_T, Tile};
 
-/// Why a point of a grid has no result.
+/// The reason why a point of a grid has no result.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum PointError {
     /// No collision has these parameters.
@@ -35,7 +35,7 @@ pub struct Failed {
     pub kappa: f64,
     /// ψ at the first of them.
     pub psi: f64,
-    /// Why the first has no result.
+    /// The reason why the first of them has no result.
     pub error: PointError,
 }
 

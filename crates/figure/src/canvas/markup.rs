@@ -1,8 +1,8 @@
 //! The markup of all texts: subscripts, superscripts and code.
 //!
-//! A subscript follows `_` and a superscript follows `^`. Either is a word of letters and digits, or a
-//! text in braces or parentheses, which are not shown. Code stands between back quotes. Captions on a
-//! page and words in a picture use the same markup.
+//! A subscript follows `_` and a superscript follows `^`. Either is a word of letters and digits,
+//! or a text in braces or parentheses, which are not shown. Code stands between back quotes.
+//! Captions on a page and words in a picture use the same markup.
 
 use std::fmt::{self, Write};
 

@@ -108,8 +108,8 @@ impl Panel {
         svg.outline(self.frame, FRAME);
     }
 
-    /// Draws ticks along an edge. Labels are in units of [`Self::power`]; without `labels` there are
-    /// ticks alone.
+    /// Draws ticks along an edge. Labels are in units of [`Self::power`]; without `labels` there
+    /// are ticks alone.
     pub fn ticks(&self, svg: &mut Svg, edge: Edge, labels: bool) {
         let (length, apart, closest) = match edge {
             Edge::Bottom => (self.frame.width, 70.0, 40.0),

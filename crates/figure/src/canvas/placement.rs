@@ -188,7 +188,7 @@ mod tests {
             labels.filter(|label| label.0 == 0).collect::<Vec<_>>()
         };
         assert_eq!(zeros((2.5, 2.5)), [(0, 2, 2), (0, 8, 2)]);
-        // For smaller labels it is no neck.
+        // For smaller labels it is not a neck.
         assert_eq!(zeros((1.5, 1.5)).len(), 1);
     }
 

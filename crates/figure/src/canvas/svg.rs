@@ -9,8 +9,8 @@ use super::markup;
 use super::shape::{Px, Rectangle, Stroke};
 use super::style::{FONT, INK};
 
-/// A picture to which shapes and words are added. Later ones lie on top. Lengths are in pixels, and y
-/// points down.
+/// A picture to which shapes and words are added. Later ones lie on top. Lengths are in pixels, and
+/// y points down.
 #[derive(Debug)]
 pub struct Svg {
     width: f64,

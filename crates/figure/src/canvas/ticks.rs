@@ -49,8 +49,8 @@ fn decimals(step: f64) -> usize {
     (0..17).find(whole).and_then(|digits| usize::try_from(digits).ok()).unwrap_or(17)
 }
 
-/// At most about `count` ticks of a logarithmic axis, all values above 0, at 1, 2 and 5 times powers
-/// of ten or at powers of ten alone.
+/// At most about `count` ticks of a logarithmic axis, all values above 0, at 1, 2 and 5 times
+/// powers of ten or at powers of ten alone.
 ///
 /// All labels of an axis are written alike: as decimals if all values are from 10^−3 to 10^4,
 /// otherwise as powers of ten.

@@ -25,7 +25,7 @@ pub struct ChartAxis<'a> {
     pub name: &'a str,
     /// The values at the ends of the axis.
     pub range: (f64, f64),
-    /// How values lie along it.
+    /// Whether the axis is linear or logarithmic.
     pub scale: Scale,
 }
 

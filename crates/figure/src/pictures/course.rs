@@ -47,8 +47,8 @@ impl<'a> Course<'a> {
         self.samples.iter().fold(0.0_f64, |most, sample| most.max(sample.normal_force))
     }
 
-    /// Draws the forces into `frame`. A force of `largest` is near its upper edge, and of −`largest`
-    /// near its lower one.
+    /// Draws the forces into `frame`. A force of `largest` is near its upper edge, and of
+    /// −`largest` near its lower one.
     pub fn forces(&self, svg: &mut Svg, frame: Rectangle, largest: f64) -> Panel {
         let panel = self.panel(svg, frame, (-largest, largest));
         panel.curve(svg, self.curve(|sample| sample.normal_force), NORMAL);

@@ -36,7 +36,7 @@ const LEGEND_AT: (f64, f64) = (72.0, 50.0);
 /// Draws `exhibits` row by row; all panels have the same axes.
 #[must_use]
 pub fn draw(title: &str, exhibits: &[Exhibit]) -> Svg {
-    let rows = exhibits.len().div_ceil(COLUMNS) as f64;
+    let rows = exhibits.len().div_ceil(COLUMNS).max(1) as f64;
     let mut svg = Svg::new(WIDTH, FIRST.top + STEP.1 * rows + 16.0, title);
     svg.words(TITLE_AT, Words::new(title, TITLE, Anchor::Start));
     let courses: Vec<Course<'_>> = exhibits

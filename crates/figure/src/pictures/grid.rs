@@ -10,8 +10,8 @@ use crate::error::FigureError;
 
 /// Draws the map of `grid`.
 ///
-/// `results` has `size.0` columns and `size.1` rows, row by row from the lower edge: all cells of the
-/// grid, or fewer of a large one.
+/// `results` has `size.0` columns and `size.1` rows, row by row from the lower edge: all cells of
+/// the grid, or fewer of a large one.
 ///
 /// # Errors
 /// [`FigureError`]: `results` has no values, too many, or not as many as `size` says.

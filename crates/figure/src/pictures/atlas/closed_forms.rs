@@ -1,5 +1,5 @@
-//! Closed forms in the picture of an atlas: the uppermost boundary, and the limits of boundaries for
-//! vanishing ψ.
+//! Closed forms in the picture of an atlas: the uppermost boundary, and the limits of boundaries
+//! for vanishing ψ.
 
 use stickslip_model::exact;
 use stickslip_plane::atlas::{BoundaryKind, Frame};

@@ -23,8 +23,8 @@ pub fn counts(maps: &[MapPanel<'_>]) -> Vec<i32> {
     counts.into_iter().collect()
 }
 
-/// Draws the map of the numbers of switches into `panel`, with its key; `counts` are all numbers that
-/// have a colour.
+/// Draws the map of the numbers of switches into `panel`, with its key; `counts` are all numbers
+/// that have a colour.
 pub fn draw(
     svg: &mut Svg,
     map: &MapPanel<'_>,

@@ -90,11 +90,11 @@ pub struct Switching {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BoundaryEnd {
-    /// It ends on the edge of the window.
+    /// The end is on the edge of the window.
     Window,
-    /// It ends at a vertex inside the window.
+    /// The end is at a vertex inside the window.
     Vertex,
-    /// It is closed: its last point is its first.
+    /// The boundary is closed: its last point is its first.
     Closed,
 }
 
@@ -198,8 +198,8 @@ impl From<Meeting> for VertexKind {
 
 /// Turns left and right of a curve into below and above, or the reverse, at its middle node.
 ///
-/// Below is the side with the smaller ψ; where the curve runs straight up, the side with the smaller
-/// κ. The rule is its own inverse.
+/// Below is the side with the smaller ψ; where the curve runs straight up, the side with the
+/// smaller κ. The rule is its own inverse.
 pub(super) fn in_order<T>(nodes: &[Node], [left, right]: [T; 2]) -> [T; 2] {
     let tangent = nodes[nodes.len() / 2].tangent;
     let left_is_above = tangent.x > 0.0 || tangent.x == 0.0 && tangent.y < 0.0;

@@ -1,0 +1,9 @@
+//! Pictures: each is XML, its texts lie inside and apart, and its legend names what it shows.
+
+mod atlases;
+mod charts;
+mod collisions;
+mod examples;
+mod layout;
+mod maps;
+mod svg;
