@@ -8,7 +8,8 @@ use std::process::{Command, Stdio};
 use assert_cmd::cargo::cargo_bin;
 use serde_json::Value;
 use stickslip_model::{
-    Collider, Elasticity, Encounter, Material, Motion, Plane, Sphere, Surface, Vector3, Wall, exact,
+    Collider, Elasticity, Encounter, Material, Motion, Sphere, Surface, Vector3, Wall, WallMotion,
+    exact,
 };
 
 use crate::{Ran, Workspace, stickslip_in};
@@ -69,8 +70,8 @@ fn json_has_the_documented_keys_in_order() {
         keys(&object),
         [
             "schema",
-            "method",
             "parameters",
+            "method",
             "contact",
             "eps_n",
             "eps_t",
@@ -201,7 +202,7 @@ fn a_sphere_and_a_wall() {
         velocity_m_per_s: Vector3::new(0.8, 0.3, -1.2),
         spin_rad_per_s: Vector3::new(0.0, -400.0, 50.0),
     };
-    let plane = Plane {
+    let wall_motion = WallMotion {
         point_m: Vector3::zeros(),
         normal: Vector3::z(),
         velocity_m_per_s: Vector3::new(0.0, 0.0, 0.1),
@@ -211,7 +212,8 @@ fn a_sphere_and_a_wall() {
         Surface { friction: 0.3, tangential_stiffness_kg_per_s2: 5e6, damping_time_s: 5e-8 };
     let sphere = Sphere::homogeneous(0.0015, &glass);
     let wall = Wall { elasticity: Some(steel) };
-    let encounter = Encounter::with_wall((&sphere, &motion), (&wall, &plane), &surface).unwrap();
+    let encounter =
+        Encounter::with_wall((&sphere, &motion), (&wall, &wall_motion), &surface).unwrap();
     let collision = Collider::default().collide(encounter.contact()).unwrap();
     let [after, _] = encounter.outcome(&collision).motions;
     let spheres = object["spheres"].as_array().unwrap();
@@ -281,7 +283,7 @@ fn the_table_shows_motions_switches_and_energy() {
         "tangential restitution ε_t ",
         "contact time [s] ",
         "work of the wall [J] ",
-        "patch: angle of rebound [°] ",
+        "patch: angle of rebound [rad] ",
         "Mindlin's stiffness [kg/s²] ",
         "steps accepted ",
     ] {

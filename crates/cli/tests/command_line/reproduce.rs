@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 
 use roxmltree::{Document, Node, ParsingOptions};
 
-use crate::{Workspace, npz, rows};
+use crate::{Workspace, npz, rows, version_in_maps};
 
 /// One run for all tests that only look.
 static RUN: LazyLock<Workspace> = LazyLock::new(|| {
@@ -280,7 +280,12 @@ fn data_are_what_the_other_commands_make() {
     }
     let arrays = npz(&RUN.path("out/figure4_axis.npz"));
     let names: Vec<&str> = arrays.iter().map(|(name, _)| name.as_str()).collect();
-    assert_eq!(names, ["kappa", "psi", "ratio", "eps_t", "switch_count"]);
+    let facts = ["mu", "alpha", "damping", "method", "version"];
+    assert_eq!(names[..5], ["kappa", "psi", "ratio", "eps_t", "switch_count"]);
+    assert_eq!(names[5..], facts);
+    let facts: Vec<_> = arrays[5..].iter().flat_map(|(_, array)| array.fields()).collect();
+    let alpha = format!("{:?}", 2.0 / 7.0);
+    assert_eq!(facts, ["0.4", &alpha, "0.0", "exact", &version_in_maps()]);
 
     let line = "trace --kappa 0.05:100 --psi 0.01:3 --out atlas.json --plot atlas.svg";
     assert_eq!(RUN.run(line).code, 0);
