@@ -1,7 +1,7 @@
 //! The program, run as a process and judged by its output and its exit code.
 //!
-//! The tests read data, examples and notebooks of the repository. In the published package there are
-//! no tests here.
+//! The tests read data, examples and notebooks of the repository. In the published package there
+//! are no tests here.
 
 #![cfg(in_repository)]
 
