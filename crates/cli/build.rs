@@ -7,10 +7,11 @@ use std::path::Path;
 use std::process::Command;
 
 /// The sources of the program, relative to this package in the repository.
-const SOURCES: [&str; 10] = [
+const SOURCES: [&str; 11] = [
     "src",
     "build.rs",
     "templates",
+    "../figure/assets",
     "../figure/src",
     "../model/src",
     "../plane/src",
