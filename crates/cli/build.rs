@@ -1,24 +1,23 @@
-//! Tells the program what it is made from and for; `--version` shows it. The same sources, target
-//! and compiler give the same text. Tells the process tests whether the data that they read are
-//! there.
+//! Tells the program what it is built from and for, which `--version` shows. The same sources, target
+//! and compiler give the same text. Also tells the tests whether the data that they read exist.
 
 use std::env;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-/// What decides the program, relative to this package in the repository.
+/// The sources of the program, relative to this package in the repository.
 const SOURCES: [&str; 11] = [
     "src",
     "build.rs",
     "templates",
+    "../figure/assets",
     "../figure/src",
     "../model/src",
     "../plane/src",
     "../studies/src",
     "../solver/src",
     "../tracer/src",
-    "../../src",
     "../../Cargo.lock",
 ];
 
@@ -41,24 +40,24 @@ fn main() {
     tell("PROFILE", &format!("{}, opt-level {}", variable("PROFILE"), variable("OPT_LEVEL")));
 }
 
+/// Gives the program a text under the name `STICKSLIP_{name}`.
 fn tell(name: &str, value: &str) {
     println!("cargo::rustc-env=STICKSLIP_{name}={value}");
 }
 
-/// The commit that `cargo package` wrote down.
+/// The commit that `cargo package` recorded.
 fn packaged_commit() -> Option<String> {
     let text = fs::read_to_string(".cargo_vcs_info.json").ok()?;
     let commit = text.split_once("\"sha1\": \"")?.1.split_once('"')?.0;
     Some(marked(commit, text.contains("\"dirty\": true")))
 }
 
-/// The commit of the repository, if this package is part of one and not unpacked in the midst of
-/// another.
+/// The commit of the repository, if this package is part of it and was not merely unpacked inside it.
 fn repository_commit() -> Option<String> {
     git(&["ls-files", "--error-unmatch", "Cargo.toml"])?;
     let commit = git(&["rev-parse", "HEAD"])?;
     let branch = git(&["rev-parse", "--symbolic-full-name", "HEAD"])?;
-    // A path that does not exist would have the script run every time.
+    // If a path does not exist, the script would run every time.
     let state = ["HEAD", "logs/HEAD", &branch];
     let state = state.into_iter().filter_map(|name| git(&["rev-parse", "--git-path", name]));
     for path in state.chain(SOURCES.map(str::to_owned)).filter(|path| Path::new(path).exists()) {
@@ -69,6 +68,7 @@ fn repository_commit() -> Option<String> {
     Some(marked(&commit, !changes.is_empty()))
 }
 
+/// `commit`, marked if the sources differ from it.
 fn marked(commit: &str, changed: bool) -> String {
     format!("{commit}{}", if changed { ", with changes" } else { "" })
 }
@@ -77,6 +77,7 @@ fn git(arguments: &[&str]) -> Option<String> {
     output("git", &[&["--no-optional-locks"], arguments].concat())
 }
 
+/// What `program` prints, if it succeeds.
 fn output(program: &str, arguments: &[&str]) -> Option<String> {
     let output = Command::new(program).args(arguments).output().ok()?;
     let text = String::from_utf8(output.stdout).ok()?;

@@ -57,7 +57,7 @@ pub enum Failure {
     )]
     Points {
         /// The points without a result.
-        failed: Failed,
+        failed: Box<Failed>,
         /// The number of all points.
         points: usize,
         /// The output file.
@@ -71,7 +71,7 @@ pub enum Failure {
     Study(#[from] StudyError),
     /// Something speaks against a result of `reproduce`.
     #[error(transparent)]
-    Objection(#[from] Objection),
+    Objection(Box<Objection>),
     /// Something speaks against an atlas.
     #[error("{}: the atlas is complete, but may be wrong: {reason}", path.display())]
     Doubtful {

@@ -31,8 +31,8 @@ pub struct TraceArguments {
     #[command(flatten, next_help_heading = "Collisions")]
     pub collisions: CollisionArguments,
 
-    /// Accuracy of boundaries in ψ, also between their points; from 1e-11·(1 + HI) to 1e-9·(1 + HI)
-    /// with HI of ψ, and less in narrow windows [default: 1e-10·(1 + HI)]
+    /// Accuracy of boundaries in ψ, also between their points; from 1e-11·(1 + HI) to 1e-9·(1 +
+    /// HI) with HI of ψ, and less in narrow windows [default: 1e-10·(1 + HI)]
     #[arg(long, value_name = "T", help_heading = "Collisions", allow_hyphen_values = true)]
     #[arg(value_parser = number::parse_option)]
     pub tolerance: Option<f64>,

@@ -1,5 +1,5 @@
-//! A file of collisions, which is read in portions, computed in parallel, and written in the order of
-//! the input.
+//! A file of collisions, which is read in portions, computed in parallel, and written in the order
+//! of the input.
 
 use rayon::prelude::*;
 use stickslip_model::{Engine, Switch};

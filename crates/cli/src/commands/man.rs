@@ -49,8 +49,8 @@ fn all_commands(program: &Command) -> io::Result<String> {
 fn page(command: &Command, listed: bool) -> io::Result<String> {
     let manual = Man::new(command.clone());
     let name = command.get_display_name().unwrap_or(command.get_name());
-    // There is no date, because it would change from build to build. `Man` would leave out the empty
-    // quotes.
+    // There is no date, because it would change from build to build. `Man` would leave out the
+    // empty quotes.
     let title = format!(".TH {name} 1 \"\" \"{NAME} {}\"\n", env!("CARGO_PKG_VERSION"));
     let mut page = title.into_bytes();
     manual.render_name_section(&mut page)?;

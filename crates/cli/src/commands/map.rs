@@ -1,8 +1,8 @@
 //! A map of collisions. It is computed and stored tile by tile, and put together at the end.
 //!
 //! Start reading here; then, in this order: `tiles` and `results` (what is stored, and where),
-//! `provenance` (what a map says about itself), `npz` and `csv` (the finished map), `thumbnail` (the
-//! part of it that is drawn).
+//! `provenance` (what a map says about itself), `npz` and `csv` (the finished map), `thumbnail`
+//! (the part of it that is drawn).
 
 mod csv;
 mod npz;
@@ -72,7 +72,7 @@ pub fn run(plan: &MapPlan) -> Result<(), Failure> {
     match count.failed(&plan.grid, plan.engine) {
         Some(failed) => {
             let (path, points) = (plan.out.clone(), plan.grid.points());
-            Err(Failure::Points { failed, points, path })
+            Err(Failure::Points { failed: Box::new(failed), points, path })
         }
         None => Ok(()),
     }

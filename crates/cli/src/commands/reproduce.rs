@@ -17,7 +17,8 @@ use crate::page;
 use crate::plan::PagePlan;
 use crate::threads;
 
-/// Computes all parts, writes the files of each part as soon as it is done, and the page at the end.
+/// Computes all parts, writes the files of each part as soon as it is done, and the page at the
+/// end.
 ///
 /// # Errors
 /// Files cannot be written, a part fails, or something speaks against a result. In the last case
@@ -40,7 +41,7 @@ pub fn run(plan: &PagePlan) -> Result<(), Failure> {
     write(&page, page::html(&sections).as_bytes())?;
     say(format_args!("everything is on {}", page.display()));
     let objection = sections.into_iter().flat_map(|section| section.objections).next();
-    objection.map_or(Ok(()), |objection| Err(objection.into()))
+    objection.map_or(Ok(()), |objection| Err(Failure::Objection(Box::new(objection))))
 }
 
 /// Writes all files of a part into `directory`, each of them at once or not at all.

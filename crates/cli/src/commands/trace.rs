@@ -15,8 +15,8 @@ use crate::threads;
 /// Traces the boundaries of the window and writes its atlas.
 ///
 /// # Errors
-/// A run fails, files cannot be written, or something speaks against the atlas. In the last case the
-/// atlas is complete and says so.
+/// A run fails, files cannot be written, or something speaks against the atlas. In the last case
+/// the atlas is complete and says so.
 pub fn run(plan: &TracePlan) -> Result<(), Failure> {
     plan.plot.as_ref().map(PictureFile::probe).transpose()?;
     let pool = threads::pool(plan.threads)?;

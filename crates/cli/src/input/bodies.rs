@@ -1,5 +1,5 @@
-//! JSON files of two bodies and their surfaces, with or without their motions. The layout is that of
-//! docs/impact.schema.json.
+//! JSON files of two bodies and their surfaces, with or without their motions. The layout is that
+//! of docs/impact.schema.json.
 //!
 //! Start reading here; then, in this order: `file` (what the fields mean) and `field` (numbers and
 //! vectors in them).
@@ -16,7 +16,8 @@ use stickslip_model::{Body, Encounter, Pair};
 use crate::error::Failure;
 use file::{Bodies, Other};
 
-/// The two bodies in the file at `path`, reduced to what their contact feels; `-` is standard input.
+/// The two bodies in the file at `path`, reduced to what their contact feels; `-` is standard
+/// input.
 ///
 /// Motions may be in the file, but they are not used.
 ///

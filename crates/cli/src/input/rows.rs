@@ -1,7 +1,7 @@
 //! A CSV file of collisions, read in portions.
 //!
-//! Start reading here; then, in this order: `columns` (which of them have a meaning) and `lines` (on
-//! which line a row begins).
+//! Start reading here; then, in this order: `columns` (which of them have a meaning) and `lines`
+//! (on which line a row begins).
 
 mod columns;
 mod lines;

@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use crate::{Workspace, rows, stickslip};
 
-/// The files of one study and what it printed, made once for all tests.
+/// The files of one study and what it printed, which all tests share.
 fn study() -> &'static (Workspace, String) {
     static STUDY: OnceLock<(Workspace, String)> = OnceLock::new();
     STUDY.get_or_init(|| {
@@ -89,7 +89,7 @@ fn tables_hold_what_is_claimed() {
         assert!((tables[1][i] / w - 1.0).abs() < 7.0 * kappa[i].powf(-1.25));
         assert!(*w < tables[2][i]);
     }
-    // F(phase) and collisions beside it.
+    // Collisions are close to F(phase).
     let (f, scaled) = (column("collisions", "f"), column("collisions", "w_scaled"));
     let stiffness = column("collisions", "kappa");
     assert_eq!(f.len(), 2 * 48);
@@ -99,7 +99,7 @@ fn tables_hold_what_is_claimed() {
     let profile = column("profile", "f");
     assert!(profile.iter().all(|f| (0.0..4.4848424).contains(f)));
     assert!(profile.iter().copied().fold(0.0, f64::max) > 4.484);
-    // Counts are within a few of the expected.
+    // Numbers of switches differ by less than four from the expected ones.
     let (kappa, ratio) = (column("counts", "kappa"), column("counts", "ratio"));
     for (i, expected) in column("counts", "ratio_expected").iter().enumerate() {
         let switches = kappa[i].sqrt() * 3.2180654597190 / std::f64::consts::PI;
@@ -119,7 +119,7 @@ fn findings_are_printed_and_kept() {
 }
 
 #[test]
-fn threads_do_not_show() {
+fn files_do_not_depend_on_the_number_of_threads() {
     let (workspace, printed) = study();
     let ran = workspace.run("asymptote --kappa 1e3:1e6 --psi 0.4,1.6 --threads 1 --out again");
     assert_eq!(ran.stdout, *printed);
@@ -142,7 +142,7 @@ fn few_stiffnesses_have_no_fit() {
 }
 
 #[test]
-fn what_is_not_accepted() {
+fn options_that_are_refused() {
     for (line, parts) in [
         ("--kappa 2:10", ["--kappa 2.0:10.0", "3.0 <= LO < HI <= 10000000000.0"]),
         ("--kappa 10:1e11", ["--kappa 10.0:100000000000.0", "3.0 <= LO"]),
@@ -162,7 +162,7 @@ fn what_is_not_accepted() {
 }
 
 #[test]
-fn a_directory_that_cannot_be_made() {
+fn a_directory_that_cannot_be_created() {
     let workspace = Workspace::with_input("");
     let ran = workspace.run("asymptote --out in.csv/out");
     assert_eq!(ran.code, 1);

@@ -1,4 +1,4 @@
-//! Atlases: traced, verified, read back.
+//! Atlases, traced, verified and read back.
 
 use std::fmt::Write;
 use std::sync::OnceLock;
@@ -11,7 +11,7 @@ use crate::{Workspace, decimal, rows};
 
 const WINDOW: &str = "trace --kappa 5:20 --psi 0.2:2.5";
 
-/// The atlas of one window and its picture, made once for all tests.
+/// The atlas of one window and its picture, which all tests share.
 fn atlas() -> &'static (String, String) {
     static ATLAS: OnceLock<(String, String)> = OnceLock::new();
     ATLAS.get_or_init(|| {
@@ -93,8 +93,8 @@ fn reference_boundaries_are_among_the_traced() {
     assert!(cases.len() >= 6, "{}", cases.len());
     let workspace = Workspace::new();
     workspace.write("a.json", &atlas().0);
-    // Just below and just above: the regions differ as they should, and the boundary is as far away
-    // as it should be.
+    // Just below and just above each boundary, the points are in the expected regions, and the
+    // boundary has the expected distance.
     let apart = 1e-7;
     let mut points = "kappa,psi\n".to_owned();
     for case in &cases {
@@ -156,10 +156,10 @@ fn located_points_are_computed_collisions() {
 }
 
 #[test]
-fn points_without_a_place_are_named() {
+fn points_that_cannot_be_located_are_named() {
     let workspace = Workspace::new();
     workspace.write("a.json", &atlas().0);
-    // Undamped, nothing sticks beyond ψ = 2.
+    // Without damping, no collision sticks above ψ = 2.
     workspace.write("p.csv", "kappa,psi\n6,0.5\n6,2\n4,1\n6,2.6\n6,x\n6\n");
     let ran = workspace.run("locate --atlas a.json --batch p.csv --out o.csv");
     assert_eq!(ran.code, 1);
@@ -208,13 +208,13 @@ fn special_points_have_names() {
     assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
     let atlas: Value = serde_json::from_str(&workspace.read("a.json")).unwrap();
     let [cusp] = of_kind(&atlas, "degenerate")[..] else { panic!("{}", atlas["vertices"]) };
-    // As accurate as a cusp is: 1e-7 of the window.
+    // A cusp is known to 1e-7 of the window.
     assert!((cusp["kappa"].as_f64().unwrap() - 1.568459328886909846).abs() < 1e-6, "{cusp}");
     assert!((cusp["psi"].as_f64().unwrap() - 1.0).abs() < 1e-6, "{cusp}");
     assert_eq!(list(&atlas, "extrema").len(), 0);
 
-    // The spring is at zero at the end of contact: a boundary that runs straight up to where a
-    // graze takes over.
+    // On one boundary the spring is at zero at the end of contact. It ends where a graze takes its
+    // place.
     let ran = workspace.run("trace --kappa 0.8:1.2 --psi 0.2:0.5 --damping 0.1 --out a.json");
     assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
     let atlas: Value = serde_json::from_str(&workspace.read("a.json")).unwrap();
@@ -236,8 +236,8 @@ fn boundaries_that_turn_back_have_extrema() {
     let boundary =
         &atlas["boundaries"][usize::try_from(extremum["boundary"].as_u64().unwrap()).unwrap()];
     let points: Vec<_> = list(boundary, "points").iter().map(pair).collect();
-    // No point of the boundary is beyond it, the nearest ones are a little on one side, and it lies
-    // among them.
+    // All points of the boundary are on one side of the extremum in κ, and they are on both sides
+    // of it in ψ.
     assert!(points.iter().all(|point| point[0] > place[0]), "{place:?} {points:?}");
     assert!(points.iter().any(|point| point[1] > place[1]));
     assert!(points.iter().any(|point| point[1] < place[1]));
@@ -274,8 +274,8 @@ fn geojson_holds_what_the_atlas_has() {
         assert_eq!(feature["properties"]["below_itinerary"], boundary["below"]["itinerary"]);
         assert!(list(&feature["geometry"], "coordinates").len() >= list(boundary, "points").len());
     }
-    // In the plane of ln κ and ln(1 + ψ) every polygon has its region's share of the window, and so
-    // all have its area.
+    // In the plane of ln κ and ln(1 + ψ) each polygon has the share of the window that its region
+    // has.
     let window = 4.0_f64.ln() * (3.5_f64 / 1.2).ln();
     for (feature, region) in regions.iter().zip(list(&atlas, "regions")) {
         assert_eq!(feature["properties"]["itinerary"], region["itinerary"]);
@@ -381,7 +381,7 @@ fn bad_windows_are_refused() {
 }
 
 #[test]
-fn spoilt_atlases_are_refused() {
+fn damaged_atlases_are_refused() {
     let workspace = Workspace::new();
     workspace.write("p.csv", "kappa,psi\n6,0.5\n");
     let refused = |text: &str, parts: &[&str]| {
@@ -397,13 +397,13 @@ fn spoilt_atlases_are_refused() {
     refused(&atlas().0[..5000], &["line 1 column 5000"]);
     refused("{}", &["schema"]);
     refused(r#"{"schema": "stickslip.atlas/2"}"#, &["stickslip.atlas/2", "stickslip.atlas/1"]);
-    let spoilt = |change: &dyn Fn(&mut Value), parts: &[&str]| {
+    let refused_with = |change: &dyn Fn(&mut Value), parts: &[&str]| {
         let mut atlas = parsed();
         change(&mut atlas);
         refused(&atlas.to_string(), parts);
     };
     for removed in 0..list(&parsed(), "boundaries").len() {
-        spoilt(
+        refused_with(
             &|atlas| {
                 let boundaries = atlas["boundaries"].as_array_mut().unwrap();
                 boundaries.remove(removed);
@@ -414,27 +414,27 @@ fn spoilt_atlases_are_refused() {
             &[],
         );
     }
-    spoilt(&|atlas| atlas["boundaries"][0]["id"] = 7.into(), &["boundaries[0].id = 7"]);
-    spoilt(&|atlas| atlas["boundaries"][0]["kind"] = "x".into(), &["boundaries[0].kind"]);
-    spoilt(
+    refused_with(&|atlas| atlas["boundaries"][0]["id"] = 7.into(), &["boundaries[0].id = 7"]);
+    refused_with(&|atlas| atlas["boundaries"][0]["kind"] = "x".into(), &["boundaries[0].kind"]);
+    refused_with(
         &|atlas| atlas["boundaries"][0]["points"][1][0] = Value::Null,
         &["boundaries[0].points[1]"],
     );
-    spoilt(
+    refused_with(
         &|atlas| atlas["boundaries"][0]["points"][1][0] = (-1).into(),
         &["boundaries[0].points[1]"],
     );
-    spoilt(&|atlas| atlas["boundaries"][0]["vertices"][1] = 9999.into(), &["9999"]);
-    spoilt(
+    refused_with(&|atlas| atlas["boundaries"][0]["vertices"][1] = 9999.into(), &["9999"]);
+    refused_with(
         &|atlas| atlas["boundaries"][0]["above"]["itinerary"] = "+oo".into(),
         &["boundaries[0].above"],
     );
-    spoilt(&|atlas| atlas["boundaries"][0]["tangents"][0][0] = 3.into(), &["tangent"]);
-    spoilt(&|atlas| atlas["window"]["psi"][0] = 0.into(), &["window.psi"]);
-    spoilt(&|atlas| atlas["tolerance"] = 0.into(), &["tolerance"]);
-    spoilt(&|atlas| atlas["verification"]["agrees"] = false.into(), &["verification"]);
-    spoilt(&|atlas| atlas["regions"].as_array_mut().unwrap().clear(), &["regions"]);
-    spoilt(
+    refused_with(&|atlas| atlas["boundaries"][0]["tangents"][0][0] = 3.into(), &["tangent"]);
+    refused_with(&|atlas| atlas["window"]["psi"][0] = 0.into(), &["window.psi"]);
+    refused_with(&|atlas| atlas["tolerance"] = 0.into(), &["tolerance"]);
+    refused_with(&|atlas| atlas["verification"]["agrees"] = false.into(), &["verification"]);
+    refused_with(&|atlas| atlas["regions"].as_array_mut().unwrap().clear(), &["regions"]);
+    refused_with(
         &|atlas| atlas["regions"][0]["sample"] = atlas["regions"][1]["sample"].clone(),
         &["regions[0]"],
     );
@@ -456,7 +456,7 @@ fn bad_points_are_refused() {
     }
     let ran = workspace.run("locate --atlas a.json --batch p.csv --out a.json");
     assert_eq!(ran.code, 2, "{}", ran.stderr);
-    // Parameters that an atlas does not ask for pass through.
+    // Columns of parameters that an atlas does not need pass through.
     workspace.write("p.csv", "kappa,psi,ratio,damping\n6,0.5,x,y\n");
     assert_eq!(workspace.run("locate --atlas a.json --batch p.csv --out o.csv").code, 0);
     assert!(workspace.read("o.csv").contains("6,0.5,x,y,4,"));

@@ -1,4 +1,5 @@
-//! `reproduce --statement`: the verdicts, the numbers behind them, and what another model changes.
+//! `reproduce --statement`: the verdicts, the numbers from which they follow, and what another
+//! model of the spring changes.
 
 use std::collections::BTreeSet;
 use std::sync::LazyLock;
@@ -7,7 +8,7 @@ use serde_json::Value;
 
 use crate::{decimal, reference, stickslip};
 
-/// All statements, as printed.
+/// All statements, as they are printed.
 fn audit(options: &str) -> Vec<Value> {
     let numbers: Vec<_> = (1..=24).map(|number: u8| number.to_string()).collect();
     let line = format!("reproduce --format json {options} --statement {}", numbers.join(" "));
@@ -33,12 +34,13 @@ fn evidence<'a>(audit: &'a [Value], number: usize, name: &str) -> &'a Value {
     &named[0]["value"]
 }
 
-/// That it is `expected` within `tolerance`.
+/// Checks that the evidence `name` of statement `number` is `expected` within `tolerance`.
 fn close(number: usize, name: &str, expected: f64, tolerance: f64) {
     let value = evidence(&RESET, number, name).as_f64().expect("a number");
     assert!((value - expected).abs() <= tolerance, "{number}: {name} is {value}, not {expected}");
 }
 
+/// Checks that the evidence `name` of statement `number` is the count `expected`.
 fn count(number: usize, name: &str, expected: u64) {
     assert_eq!(evidence(&RESET, number, name), expected, "{number}: {name}");
 }
@@ -73,8 +75,8 @@ fn sliding() {
     close(1, "largest difference of ε_t from the formula", 0.0, 1e-14);
     close(9, "κ below which there are switches at g_t/g_n = 3", 0.527_517_696_980, 1e-12);
     count(9, "of them with switches", 0);
-    // At κ = 63 a change of the last digit of ψ moves the pair of switches by less than time
-    // resolves.
+    // At κ = 63, the last digit of ψ moves the pair of switches by less than the last digit of
+    // time.
     close(10, "ψ of pure sliding at κ = 63", 2.0, 1e-14);
     close(10, "the same traced, κ = 63", 2.0, 2e-14);
     close(10, "ψ of pure sliding at κ = 0.3", 3.6107667429891, 1e-12);
@@ -110,7 +112,7 @@ fn counts() {
     assert_eq!(falling("18"), "0 2 4 2 4 2 4 2");
     assert_eq!(falling("63"), "0 2 4 6 8 6 8 6 4 6 4 2 4 2 4 2");
     for (kappa, share) in [(18, 0.5914249221675103), (63, 0.7760470741122345)] {
-        // Below one boundary of the reference data nothing else is true, above it nothing.
+        // It is false for all ψ below one boundary of the reference data, and for none above.
         let name = format!("share of ψ in (0, 2) where it is false at κ = {kappa}");
         close(7, &name, 0.5 * share, 1e-13);
     }
@@ -120,7 +122,7 @@ fn counts() {
     count(24, "changes bisected", 12);
 }
 
-/// All boundaries of the reference data at κ = 18 and 63 are among those of statement 6: the
+/// All boundaries of the reference data at κ = 18 and 63 are among those of statement 6. The
 /// largest difference is 7e-15.
 #[test]
 fn boundaries_are_those_of_the_reference() {
@@ -145,8 +147,8 @@ fn boundaries_are_those_of_the_reference() {
 #[test]
 fn bounds_and_courses() {
     close(12, "largest elongation over μ/(ακ)", 1.25_f64.powf(0.6), 1e-12);
-    // The exact map of κ from 1.4 to 1.7 and ψ from 0.9 to 1.1 with 1000 x 1000 cells has 1.119908
-    // at κ = 1.521, ψ = 0.9997.
+    // A map of the exact solution with 1000 × 1000 cells, κ from 1.4 to 1.7 and ψ from 0.9 to 1.1,
+    // has 1.119908 at κ = 1.521, ψ = 0.9997.
     close(12, "largest |ε_t| over the bound (27) after a reversal", 1.119_909, 1e-6);
     close(13, "exponent between the last two", -1.25, 2e-3);
     close(13, "the same times κ^(5/4), 1e4", 4.4846, 2e-3);
@@ -158,9 +160,9 @@ fn bounds_and_courses() {
     close(22, "ψ of the largest elongation at κ = 18", 1.0, 1e-6);
 }
 
-/// With a spring that is not reset, what concerns friction alone, the number of parameters, the
-/// first and the last regime and the energy stays; the switches, the limit of pure sliding and the
-/// size of ε_t do not.
+/// With a spring that is not reset, statements about friction alone, the number of parameters, the
+/// first and the last regime, and the energy keep their verdicts. Those about the switches, the
+/// limit of pure sliding and the size of ε_t do not.
 #[test]
 fn another_model_has_other_verdicts() {
     let changed: Vec<_> = RESET
@@ -210,7 +212,7 @@ fn as_markdown() {
             .starts_with("| # | statement | in the paper | verdict |\n|---|---|---|---|\n| 12 |")
     );
     let tables = ran.stdout.lines().filter(|line| line.starts_with('|'));
-    // Bars inside of cells are escaped.
+    // Bars inside cells are escaped.
     assert!(tables.clone().count() > 10);
     for row in tables {
         let cells = row.replace("\\|", "").matches('|').count() - 1;
@@ -219,7 +221,7 @@ fn as_markdown() {
 }
 
 #[test]
-fn a_statement_that_is_not_there() {
+fn a_statement_that_does_not_exist() {
     for number in ["0", "25", "256", "-1", "seven"] {
         let ran = stickslip(&format!("reproduce --statement {number}"));
         assert_eq!((ran.code, ran.stdout.as_str()), (2, ""), "{number}");
@@ -234,7 +236,7 @@ fn a_statement_that_is_not_there() {
 }
 
 #[test]
-fn the_other_model_is_no_part_of_the_help() {
+fn the_other_model_is_not_in_the_help() {
     let ran = stickslip("reproduce --help");
     assert_eq!(ran.code, 0);
     assert!(ran.stdout.contains("--statement") && !ran.stdout.contains("--model"));

@@ -9,7 +9,7 @@ use crate::{Workspace, decimal, reference, rows};
 
 const HEADER: &str = "eps_n,eps_t,switch_count,itinerary,contact_time,reversals,status";
 
-/// A file of `count` collisions over the plane, some of them damped.
+/// A file of `count` collisions all over the plane. Some of them are damped.
 fn plane(count: u32) -> String {
     let mut text = "kappa,psi,damping\n".to_owned();
     for i in 0..count {
@@ -82,7 +82,7 @@ fn events_say_the_same_as_json() {
 
 #[test]
 fn other_columns_pass_through_unchanged() {
-    // Names and fields with quotes, blanks, a line end, and bytes that are no UTF-8.
+    // Names and fields have quotes, blanks, a line end, and bytes that are not UTF-8.
     let header = b"id,\xE9tat, psi ,\"a, \"\"b\"\"\",kappa";
     let row = b" 007 ,\xFF,1,\"x\ny\",18";
     let workspace = Workspace::new();
@@ -97,7 +97,7 @@ fn other_columns_pass_through_unchanged() {
 
 #[test]
 fn results_do_not_depend_on_the_number_of_threads() {
-    // More rows than a portion has.
+    // There are more rows than a portion has.
     let workspace = Workspace::with_input(&plane(5000));
     let mut first = None;
     for threads in ["--threads 1", "--threads 2", "--threads 4", ""] {
@@ -150,7 +150,7 @@ fn options_give_what_the_file_does_not() {
         ("kappa,ratio,mu\n18,1.4,0.5\n", "--alpha 0.3", 18.0, 1.4 * 0.3 / 0.5),
         ("kappa,ratio,alpha,mu\n18,1.4,1/4,1/2\n", "--damping 0", 18.0, 1.4 * 0.25 / 0.5),
         ("mu\n0.5\n", "--kappa 18 --ratio 1.4", 18.0, 1.4 * (2.0 / 7.0) / 0.5),
-        // Beside psi, mu and alpha are columns like any other.
+        // Beside psi, the columns mu and alpha have no meaning.
         ("kappa,psi,mu,alpha\n18,0.5,?,\n", "", 18.0, 0.5),
     ] {
         let workspace = Workspace::with_input(input);
@@ -165,7 +165,8 @@ fn options_give_what_the_file_does_not() {
 
 #[test]
 fn blanks_and_line_ends() {
-    // A byte order mark, Windows line ends, blanks around names and numbers, blank lines, no end.
+    // The file has a byte order mark, Windows line ends, blanks around names and numbers, blank
+    // lines, and no line end at its end.
     let workspace = Workspace::with_input("\u{feff}kappa , psi\r\n\r\n 18, 1\r\n\r\n\r\n63,1");
     let ran = workspace.run("collide --batch in.csv --out out.csv");
     assert_eq!(ran.code, 0, "{}", ran.stderr);

@@ -4,7 +4,8 @@ use crate::{Workspace, rows};
 
 const BATCH: &str = "collide --batch in.csv --out out.csv";
 
-/// The file must be refused as a whole, with a message that contains all of `parts`.
+/// Runs a batch with the file `input`, which must be refused as a whole with a message that
+/// contains all of `parts`.
 fn refused(input: &str, options: &str, parts: &[&str]) {
     let workspace = Workspace::with_input(input);
     let ran = workspace.run(&format!("{BATCH} --events ev.csv {options}"));
@@ -16,7 +17,7 @@ fn refused(input: &str, options: &str, parts: &[&str]) {
 }
 
 #[test]
-fn headers_that_make_no_collision() {
+fn headers_that_do_not_make_a_collision() {
     refused("psi\n1\n", "", &["kappa", "--kappa", "columns are: psi"]);
     refused("Kappa,psi\n1,1\n", "", &["kappa is missing", "Kappa, psi"]);
     refused("kappa;psi\n1;1\n", "", &["kappa is missing", "kappa;psi"]);
@@ -119,7 +120,7 @@ fn a_row_that_cannot_be_computed_does_not_stop_the_others() {
         let results = &row[4..10];
         assert!(results.iter().all(|field| field.is_empty() == (status != "ok")), "{row:?}");
     }
-    // The events of the last row carry its number.
+    // The events of the last row have its number.
     let events = rows(&workspace.read("ev.csv"));
     let cases: Vec<_> = events[1..].iter().map(|event| event[0].as_str()).collect();
     assert_eq!(cases.iter().filter(|case| **case == "0").count(), 4);
@@ -130,7 +131,7 @@ fn a_row_that_cannot_be_computed_does_not_stop_the_others() {
 #[test]
 fn lines_are_counted_right_in_a_long_file() {
     for end in ["\n", "\r\n"] {
-        // Each row takes three lines, one of them blank.
+        // Each row takes three lines. One of them is blank.
         let row = format!("\"two{end}lines\",18,3{end}{end}");
         let input = format!("note,kappa,psi{end}{}last,18,?{end}", row.repeat(3000));
         let workspace = Workspace::with_input(&input);
@@ -142,7 +143,7 @@ fn lines_are_counted_right_in_a_long_file() {
 }
 
 #[test]
-fn a_row_that_the_method_does_not_take() {
+fn a_row_that_the_method_cannot_compute() {
     let workspace = Workspace::with_input("kappa,psi,damping\n18,1,0.1\n1e17,1,0\n18,1,0\n");
     let ran = workspace.run(&format!("{BATCH} --method exact"));
     assert_eq!(ran.code, 1, "{}", ran.stderr);
@@ -153,7 +154,7 @@ fn a_row_that_the_method_does_not_take() {
 }
 
 #[test]
-fn a_long_or_strange_text_is_shown_in_short() {
+fn a_long_or_strange_text_is_shown_shortened() {
     let workspace =
         Workspace::with_input(&format!("kappa,psi\n18,{}\n18,\t\u{7}\n", "9x".repeat(99)));
     assert_eq!(workspace.run(BATCH).code, 1);
@@ -185,7 +186,7 @@ fn outputs_that_cannot_be_made() {
     }
 }
 
-/// A disk that fills up while results are written: here, a limit on the size of files.
+/// A limit on the size of files stands for a disk that fills up while results are written.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_leaves_everything_as_it_was() {
@@ -198,7 +199,7 @@ fn a_full_disk_leaves_everything_as_it_was() {
     }
     let workspace = Workspace::with_input(&input);
     workspace.write("out.csv", "old");
-    // Signal 25, sent at the limit, is ignored, so that writing fails as on a full disk.
+    // Signal 25, which is sent at the limit, is ignored. Writing then fails as on a full disk.
     let script = format!(
         "trap '' 25; ulimit -f 16; exec '{}' {BATCH} --events ev.csv --method exact",
         assert_cmd::cargo::cargo_bin!("stickslip").display()

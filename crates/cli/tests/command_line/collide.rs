@@ -24,7 +24,7 @@ fn bits(value: &Value) -> u64 {
     value.as_f64().expect("a number").to_bits()
 }
 
-/// The object must say the same as `collision`, bit for bit.
+/// Checks that `object` says the same as `collision`, bit for bit.
 fn assert_same(object: &Value, collision: &Collision) {
     for (key, expected) in [
         ("eps_n", collision.eps_n),
@@ -183,7 +183,7 @@ fn the_table_shows_switches_results_energy_and_work() {
     assert!(line("reversals").ends_with(" 5"));
     assert!(line("unbalanced").contains("e-1"), "the ledger balances to rounding");
     assert!(line("evaluations of the right-hand side").ends_with(|c: char| c.is_ascii_digit()));
-    // A header and six rows of equal width.
+    // There are a header and six rows, all equally wide.
     let switches: Vec<_> = stdout.lines().skip(2).take_while(|line| !line.is_empty()).collect();
     assert_eq!(switches.len(), 7);
     assert!(switches.iter().all(|row| row.chars().count() == switches[0].chars().count()));
@@ -198,7 +198,7 @@ fn what_cannot_be_computed_fails_with_its_numbers() {
     assert_eq!((ran.code, ran.stdout.as_str()), (1, ""));
     assert!(ran.stderr.contains("kappa = 1e17"), "{}", ran.stderr);
 
-    // ψ²/2 would be beyond the range of doubles, and infinity is never printed.
+    // ψ²/2 would be beyond the range of doubles. Infinity is never printed.
     let ran = stickslip("collide --kappa 1 --psi 1e200 --method exact --format json");
     assert_eq!((ran.code, ran.stdout.as_str()), (1, ""));
     assert!(
@@ -211,7 +211,7 @@ fn what_cannot_be_computed_fails_with_its_numbers() {
 }
 
 #[test]
-fn a_reader_that_leaves_early_is_no_failure() {
+fn a_reader_that_leaves_early_is_not_a_failure() {
     let mut child = Command::new(cargo_bin!("stickslip"))
         .args("collide --kappa 1e8 --psi 1 --method exact".split(' '))
         .stdout(Stdio::piped())

@@ -1,4 +1,4 @@
-//! Scripts for shells: all commands are in them, and a shell that is here can read them.
+//! Scripts for shells. All commands are in them, and the shells that are installed can read them.
 
 use std::process::Command;
 
@@ -18,7 +18,7 @@ const COMMANDS: [&str; 10] = [
 ];
 
 #[test]
-fn every_shell_learns_every_command() {
+fn every_script_has_every_command() {
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
         let ran = stickslip(&format!("completions {shell}"));
         assert_eq!((ran.code, ran.stderr.as_str()), (0, ""), "{shell}");
@@ -29,7 +29,7 @@ fn every_shell_learns_every_command() {
 }
 
 #[test]
-fn shells_that_are_here_read_their_scripts() {
+fn installed_shells_read_their_scripts() {
     let workspace = Workspace::new();
     for shell in ["bash", "zsh", "fish"] {
         workspace.write("script", stickslip(&format!("completions {shell}")).stdout);
@@ -45,15 +45,15 @@ fn shells_that_are_here_read_their_scripts() {
     }
 }
 
-/// What bash offers for the last of `words`.
+/// What bash offers for the last of `words`, if it is installed.
 fn offered(words: &[&str]) -> Option<String> {
     let workspace = Workspace::new();
     let script = stickslip("completions bash").stdout;
-    let words_list = words.join(" ");
+    let line = words.join(" ");
     let last = words.len() - 1;
     let (word, before) = (words[last], words[last - 1]);
     let script = format!(
-        "{script}\nCOMP_WORDS=({words_list}); COMP_CWORD={last}\n\
+        "{script}\nCOMP_WORDS=({line}); COMP_CWORD={last}\n\
          _stickslip stickslip '{word}' '{before}'\necho \"${{COMPREPLY[@]}}\"\n"
     );
     workspace.write("script", script);

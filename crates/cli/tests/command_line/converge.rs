@@ -1,4 +1,4 @@
-//! The study of convergence: its files, its numbers, and that they do not depend on threads.
+//! The study of convergence: its files and its numbers, which do not depend on threads.
 
 use roxmltree::Document;
 use serde_json::Value;
@@ -24,7 +24,7 @@ fn json(workspace: &Workspace, name: &str) -> Value {
     serde_json::from_str(&workspace.read(name)).expect("JSON")
 }
 
-/// The orders of velocity and switch times of one series.
+/// The orders of the velocity and of the switch times in one series.
 fn orders(study: &Value, series: [&str; 4]) -> [f64; 2] {
     let keys = ["method", "coordinates", "switches", "control"];
     let all = study["series"].as_array().expect("series");
@@ -73,7 +73,7 @@ fn the_usual_collisions_have_the_orders_of_the_methods() {
 }
 
 #[test]
-fn one_collision_has_the_same_files_whatever_the_threads() {
+fn one_collision_has_the_same_files_with_any_number_of_threads() {
     let workspace = Workspace::new();
     for threads in [1, 2] {
         let line = format!("converge --kappa 63 --psi 0.5 --threads {threads} --out {threads}");
@@ -116,7 +116,7 @@ fn damped_collisions_have_a_reference_that_is_named() {
 }
 
 #[test]
-fn a_collision_without_switches_has_no_errors_of_them() {
+fn a_collision_without_switches_has_no_order_of_switch_times() {
     let workspace = Workspace::new();
     let ran = workspace.run("converge --kappa 18 --psi 2.5 --out none");
     assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));

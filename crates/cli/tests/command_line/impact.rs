@@ -19,7 +19,7 @@ pub fn example(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(name)
 }
 
-/// Its JSON value.
+/// The JSON value of a file of the examples.
 pub fn example_value(name: &str) -> Value {
     serde_json::from_str(&fs::read_to_string(example(name)).expect("an example")).expect("JSON")
 }
@@ -44,7 +44,7 @@ fn vector(value: &Value) -> Vector3<f64> {
     Vector3::from_column_slice(&numbers)
 }
 
-/// The steel spheres of the example, as the library has them.
+/// The steel spheres of the example, made with the library.
 fn steel() -> Encounter {
     let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
     let surface =
@@ -70,8 +70,8 @@ fn json_has_the_documented_keys_in_order() {
         keys(&object),
         [
             "schema",
-            "method",
             "parameters",
+            "method",
             "contact",
             "eps_n",
             "eps_t",
@@ -202,7 +202,7 @@ fn a_sphere_and_a_wall() {
         velocity_m_per_s: Vector3::new(0.8, 0.3, -1.2),
         spin_rad_per_s: Vector3::new(0.0, -400.0, 50.0),
     };
-    let plane = WallMotion {
+    let wall_motion = WallMotion {
         point_m: Vector3::zeros(),
         normal: Vector3::z(),
         velocity_m_per_s: Vector3::new(0.0, 0.0, 0.1),
@@ -212,7 +212,8 @@ fn a_sphere_and_a_wall() {
         Surface { friction: 0.3, tangential_stiffness_kg_per_s2: 5e6, damping_time_s: 5e-8 };
     let sphere = Sphere::homogeneous(0.0015, &glass);
     let wall = Wall { elasticity: Some(steel) };
-    let encounter = Encounter::with_wall((&sphere, &motion), (&wall, &plane), &surface).unwrap();
+    let encounter =
+        Encounter::with_wall((&sphere, &motion), (&wall, &wall_motion), &surface).unwrap();
     let collision = Collider::default().collide(encounter.contact()).unwrap();
     let [after, _] = encounter.outcome(&collision).motions;
     let spheres = object["spheres"].as_array().unwrap();
@@ -220,7 +221,7 @@ fn a_sphere_and_a_wall() {
     assert_eq!(vector(&spheres[0]["velocity_m_per_s"]), after.velocity_m_per_s);
     assert_eq!(vector(&spheres[0]["spin_rad_per_s"]), after.spin_rad_per_s);
 
-    // A rigid wall is another one.
+    // A rigid wall gives another elastic constant.
     let mut file = example_value("glass_on_wall.json");
     let fields = file["wall"].as_object_mut().unwrap();
     fields.remove("material");
@@ -234,7 +235,7 @@ fn a_sphere_and_a_wall() {
 }
 
 #[test]
-fn a_mass_and_a_moment_of_inertia_of_its_own() {
+fn a_sphere_with_its_own_mass_and_moment_of_inertia() {
     let mut file = example_value("steel_spheres.json");
     let sphere = file["spheres"][0].as_object_mut().unwrap();
     sphere["material"].as_object_mut().unwrap().remove("density_kg_per_m3");
@@ -282,7 +283,7 @@ fn the_table_shows_motions_switches_and_energy() {
         "tangential restitution ε_t ",
         "contact time [s] ",
         "work of the wall [J] ",
-        "patch: angle of rebound [°] ",
+        "patch: angle of rebound [rad] ",
         "Mindlin's stiffness [kg/s²] ",
         "steps accepted ",
     ] {
@@ -293,7 +294,7 @@ fn the_table_shows_motions_switches_and_energy() {
 }
 
 #[test]
-fn standard_input_is_a_file_too() {
+fn bodies_from_standard_input() {
     let mut child = Command::new(cargo_bin!("stickslip"))
         .args(["impact", "-", "--format", "json"])
         .stdin(Stdio::piped())

@@ -1,6 +1,6 @@
-//! Files that `impact` refuses: exit code 2, nothing on standard output, and a message with the
-//! field or the line, and with what is expected. What is wrong with single fields is tested where
-//! the schema of the files is.
+//! Files that `impact` refuses. The exit code is 2, nothing is on standard output, and the message
+//! names the field or the line and what is expected. Wrong values of single fields are tested
+//! together with the schema of the files.
 
 use serde_json::{Value, json};
 
@@ -13,7 +13,8 @@ fn run(text: impl AsRef<[u8]>) -> Ran {
     workspace.run("impact bodies.json")
 }
 
-/// `text` must be refused with a message that contains all of `parts`.
+/// Runs `impact` with a file of `text`, which must be refused with a message that contains all of
+/// `parts`.
 fn refused(text: impl AsRef<[u8]>, parts: &[&str]) {
     let ran = run(text);
     assert_eq!((ran.code, ran.stdout.as_str()), (2, ""), "{parts:?}: {}", ran.stderr);
@@ -31,7 +32,7 @@ fn with(file: &Value, path: &str, value: Value) -> Value {
 }
 
 #[test]
-fn numbers_beyond_all_measure() {
+fn numbers_beyond_the_range_of_doubles() {
     let pair = example_value("steel_spheres.json");
     let text = pair.to_string();
     assert!(text.contains("0.4"));
@@ -42,7 +43,7 @@ fn numbers_beyond_all_measure() {
     let stiff = with(&pair, "/surface/tangential_stiffness_kg_per_s2", json!(1e308));
     let light = with(&stiff, "/spheres/0/material/density_kg_per_m3", json!(1e-300));
     refused(light.to_string(), &["expected a finite number above 0"]);
-    // Accepted, but its energy is infinite.
+    // The file is accepted, but the energy is infinite.
     let fast = with(&pair, "/spheres/0/motion/velocity_m_per_s", json!([1e200, 0, -1e200]));
     let workspace = Workspace::new();
     workspace.write("fast.json", fast.to_string());

@@ -1,7 +1,7 @@
-//! The program as its users meet it: run as a process, judged by its output and exit code.
+//! The program, run as a process and judged by its output and its exit code.
 //!
-//! The tests read data, examples and notebooks of the repository; in the published package they are
-//! empty.
+//! The tests read data, examples and notebooks of the repository. In the published package there
+//! are no tests here.
 
 #![cfg(in_repository)]
 
@@ -34,7 +34,7 @@ use std::process::Output;
 use assert_cmd::cargo::cargo_bin_cmd;
 use tempfile::TempDir;
 
-/// What a run left behind.
+/// The exit code and the output of a run.
 struct Ran {
     code: i32,
     stdout: String,
@@ -57,7 +57,7 @@ fn stickslip(line: &str) -> Ran {
     stickslip_in(Path::new("."), line)
 }
 
-/// The same in a directory.
+/// Runs `stickslip` in a directory with the arguments in `line`, separated by blanks.
 fn stickslip_in(directory: &Path, line: &str) -> Ran {
     let output = cargo_bin_cmd!("stickslip")
         .current_dir(directory)
@@ -67,7 +67,7 @@ fn stickslip_in(directory: &Path, line: &str) -> Ran {
     Ran::from(output)
 }
 
-/// A directory for a batch.
+/// A temporary directory with the files of a test.
 struct Workspace(TempDir);
 
 impl Workspace {
@@ -75,7 +75,7 @@ impl Workspace {
         Self(tempfile::tempdir().expect("a temporary directory"))
     }
 
-    /// One with the file `in.csv`.
+    /// A directory with the file `in.csv`.
     fn with_input(content: &str) -> Self {
         let workspace = Self::new();
         workspace.write("in.csv", content);
@@ -98,12 +98,12 @@ impl Workspace {
         stickslip_in(self.0.path(), line)
     }
 
-    /// All names in the directory, hidden ones too.
+    /// All names in the directory, hidden names included.
     fn names(&self) -> Vec<String> {
         self.names_in(".")
     }
 
-    /// All names in a directory inside.
+    /// All names in a directory inside this one.
     fn names_in(&self, directory: &str) -> Vec<String> {
         let entries = fs::read_dir(self.path(directory)).expect("the directory is there");
         let name = |entry: std::io::Result<fs::DirEntry>| {
@@ -115,7 +115,7 @@ impl Workspace {
     }
 }
 
-/// The rows of a CSV text, header included.
+/// The rows of a CSV text, the header included.
 fn rows(csv: &str) -> Vec<Vec<String>> {
     csv::ReaderBuilder::new()
         .has_headers(false)
@@ -127,7 +127,7 @@ fn rows(csv: &str) -> Vec<Vec<String>> {
 
 /// An array of a .npz file.
 struct Array {
-    /// As NumPy writes it.
+    /// Shape and type of the elements, as NumPy writes them.
     shape: String,
     element: String,
     data: Vec<u8>,
@@ -143,6 +143,35 @@ impl Array {
         assert_eq!(self.element, "<i4");
         self.data.as_chunks().0.iter().map(|bytes| i32::from_le_bytes(*bytes)).collect()
     }
+
+    fn is_text(&self) -> bool {
+        self.element.starts_with("<U")
+    }
+
+    /// The text of an array without dimensions.
+    fn text(&self) -> String {
+        let characters = self.data.as_chunks().0.iter().map(|bytes| u32::from_le_bytes(*bytes));
+        let text: String = characters.map(|c| char::from_u32(c).expect("a character")).collect();
+        assert_eq!(self.element, format!("<U{}", text.chars().count()));
+        text
+    }
+
+    /// All elements, as a table shows them.
+    fn fields(&self) -> Vec<String> {
+        match self.element.as_str() {
+            "<f8" => self.doubles().iter().map(|value| format!("{value:?}")).collect(),
+            "<i4" => self.integers().iter().map(i32::to_string).collect(),
+            _ => vec![self.text()],
+        }
+    }
+}
+
+/// What a map says about the program that made it.
+fn version_in_maps() -> String {
+    let text = stickslip("--version").stdout;
+    let name = text.lines().next().expect("a name");
+    let build = text.lines().find_map(|line| line.strip_prefix("built for ")).expect("a build");
+    format!("{name}, {}", build.trim())
 }
 
 /// The arrays of a .npz file with their names, in order.

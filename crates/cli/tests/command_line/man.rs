@@ -1,4 +1,4 @@
-//! Manual pages: complete, and rendered without a warning where there is groff.
+//! Manual pages are complete, and groff renders them without a warning.
 
 use std::process::Command;
 
@@ -18,7 +18,7 @@ const PAGES: [&str; 11] = [
     "stickslip.1",
 ];
 
-/// The page as a terminal shows it, without attributes; `None` where there is no groff.
+/// The page as a terminal shows it, without attributes; `None` if groff is not installed.
 fn rendered(page: &std::path::Path) -> Option<String> {
     let arguments = ["-k", "-man", "-Tutf8", "-ww", "-P-cbou", "-rLL=110n"];
     let ran = Command::new("groff").args(arguments).arg(page).output();
@@ -65,7 +65,7 @@ fn a_directory_gets_a_page_for_each_command() {
 }
 
 #[test]
-fn a_file_in_the_place_of_the_directory_is_refused() {
+fn a_file_instead_of_the_directory_is_refused() {
     let workspace = Workspace::with_input("");
     let ran = workspace.run("man --out in.csv");
     assert_eq!((ran.code, ran.stdout.as_str()), (2, ""));

@@ -1,12 +1,12 @@
-//! Maps as they are when nothing goes wrong.
+//! Maps when nothing goes wrong.
 
 use std::fs;
 
 use stickslip_model::{Collider, Contact, Material, Pair, Surface, exact};
 
-use crate::{Workspace, npz, rows};
+use crate::{Workspace, npz, rows, version_in_maps};
 
-/// LO + (HI − LO)·((index + ½)/cells)
+/// The centre of a cell: LO + (HI − LO)·((index + ½)/cells).
 fn centre(low: f64, high: f64, index: u32, cells: u32) -> f64 {
     low + (high - low) * ((f64::from(index) + 0.5) / f64::from(cells))
 }
@@ -20,8 +20,20 @@ fn every_cell_is_the_collision_at_its_centre() {
     let map = npz(&workspace.path("m.npz"));
     let shapes: Vec<_> =
         map.iter().map(|(name, array)| (name.as_str(), array.shape.as_str())).collect();
-    let expected = [("kappa", "7,"), ("psi", "5,"), ("eps_t", "5, 7"), ("switch_count", "5, 7")];
+    let expected = [
+        ("kappa", "7,"),
+        ("psi", "5,"),
+        ("eps_t", "5, 7"),
+        ("switch_count", "5, 7"),
+        ("damping", ""),
+        ("rtol", ""),
+        ("atol", ""),
+        ("method", ""),
+        ("version", ""),
+    ];
     assert_eq!(shapes, expected);
+    let facts: Vec<_> = map[4..].iter().flat_map(|(_, array)| array.fields()).collect();
+    assert_eq!(facts, ["0.01", "4e-13", "4e-13", "dop853", &version_in_maps()]);
     let [kappa, psi, eps_t] = [0, 1, 2].map(|array| map[array].1.doubles());
     let switch_count = map[3].1.integers();
     for (row, psi) in (0..).zip(psi) {
@@ -40,8 +52,8 @@ fn every_cell_is_the_collision_at_its_centre() {
 #[test]
 fn a_table_says_the_same_as_arrays() {
     let workspace = Workspace::new();
-    for window in ["--psi 0:2", "--ratio 0:3.5 --mu 0.3 --alpha 1/3"] {
-        let line = format!("map --kappa 1:70 {window} --size 30x20 --method exact --out");
+    for window in ["--psi 0:2 --method exact", "--ratio 0:3.5 --mu 0.3 --alpha 1/3 --rtol 1e-11"] {
+        let line = format!("map --kappa 1:70 {window} --size 30x20 --out");
         for name in ["m.npz", "m.csv"] {
             let ran = workspace.run(&format!("{line} {name}"));
             assert_eq!((ran.code, ran.stderr.as_str()), (0, ""), "{line} {name}");
@@ -50,37 +62,45 @@ fn a_table_says_the_same_as_arrays() {
         let table = rows(&workspace.read("m.csv"));
         assert_eq!(table[0], map.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>());
         assert_eq!(table.len(), 601);
-        for (point, fields) in table[1..].iter().enumerate() {
-            for ((name, array), field) in map.iter().zip(fields) {
+        for (column, (name, array)) in map.iter().enumerate() {
+            let elements = array.fields();
+            for (point, fields) in table[1..].iter().enumerate() {
                 let index = match array.shape.as_str() {
                     "30," => point % 30,
                     "20," => point / 30,
+                    "" => 0,
                     _ => point,
                 };
-                if name == "switch_count" {
-                    assert_eq!(field, &array.integers()[index].to_string());
-                } else {
-                    assert_eq!(field, &format!("{:?}", array.doubles()[index]), "{name}");
-                }
+                assert_eq!(fields[column], elements[index], "{name}");
             }
         }
     }
 }
 
 #[test]
-fn a_ratio_is_made_into_psi_as_for_one_collision() {
+fn a_ratio_is_reduced_to_psi_as_for_one_collision() {
     let workspace = Workspace::new();
     let line = "map --kappa 17:19 --ratio 1:2 --size 1x1 --method exact --out m.csv";
     assert_eq!(workspace.run(line).code, 0);
     let line = "collide --kappa 18 --ratio 1.5 --method exact --format json";
     let point: serde_json::Value = serde_json::from_str(&workspace.run(line).stdout).unwrap();
-    let expected = format!(
-        "kappa,psi,ratio,eps_t,switch_count\n18.0,{:?},1.5,{:?},{}\n",
-        point["parameters"]["psi"].as_f64().unwrap(),
-        point["eps_t"].as_f64().unwrap(),
-        point["switch_count"]
-    );
-    assert_eq!(workspace.read("m.csv"), expected);
+    let number = |value: &serde_json::Value| format!("{:?}", value.as_f64().unwrap());
+    let expected = [
+        ("kappa", "18.0".to_owned()),
+        ("psi", number(&point["parameters"]["psi"])),
+        ("ratio", "1.5".to_owned()),
+        ("eps_t", number(&point["eps_t"])),
+        ("switch_count", point["switch_count"].to_string()),
+        ("mu", "0.4".to_owned()),
+        ("alpha", format!("{:?}", 2.0 / 7.0)),
+        ("damping", "0.0".to_owned()),
+        ("method", "exact".to_owned()),
+        ("version", version_in_maps()),
+    ];
+    let table = rows(&workspace.read("m.csv"));
+    assert_eq!(table.len(), 2);
+    assert_eq!(table[0], expected.each_ref().map(|(name, _)| (*name).to_owned()));
+    assert_eq!(table[1], expected.map(|(_, field)| field));
 }
 
 #[test]
@@ -93,14 +113,14 @@ fn both_engines_agree() {
     assert_eq!(one[3].1.integers(), two[3].1.integers());
     let psi = one[1].1.doubles();
     for (point, (one, two)) in one[2].1.doubles().iter().zip(two[2].1.doubles()).enumerate() {
-        // Measured: 2.2e-13 at 1000 × 1000 points.
+        // At 1000 × 1000 points 2.2e-13 was measured.
         assert!(psi[point / 60] * (one - two).abs() < 4e-13, "{point}: {one} {two}");
     }
 }
 
 #[test]
 fn results_do_not_depend_on_the_number_of_threads() {
-    // Several tiles, the last of them not full.
+    // There are several tiles, and the last is not full.
     for (options, extension) in [
         ("--size 70x61 --kappa 900:2000 --psi 0:3", "npz"),
         ("--size 301x203 --kappa 0:70 --ratio 0:4 --method exact", "csv"),
@@ -118,7 +138,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
 }
 
 #[test]
-fn a_map_without_width_or_height_is_a_line() {
+fn a_map_of_one_column_is_a_line() {
     let workspace = Workspace::new();
     let line = "map --kappa 18:18.000001 --psi 0:2 --size 1x5 --method exact --out m.npz";
     assert_eq!(workspace.run(line).code, 0);
@@ -132,7 +152,7 @@ fn a_map_without_width_or_height_is_a_line() {
 }
 
 #[test]
-fn two_bodies_on_the_plane_of_their_velocities() {
+fn a_map_of_two_bodies_in_the_plane_of_their_velocities() {
     let workspace = Workspace::new();
     let file = fs::read_to_string("../../examples/steel_pair.json").unwrap();
     workspace.write("pair.json", file.replace("\"damping_time_s\": 0", "\"damping_time_s\": 1e-7"));
@@ -144,23 +164,33 @@ fn two_bodies_on_the_plane_of_their_velocities() {
     let table = rows(&workspace.read("m.csv"));
     assert_eq!(
         table[0].join(","),
-        "normal_m_per_s,tangential_m_per_s,kappa,psi,damping,eps_t,switch_count"
+        "normal_m_per_s,tangential_m_per_s,kappa,psi,damping,eps_t,switch_count,\
+         mu,alpha,effective_mass_kg,elastic_constant_n_per_m1_5,tangential_stiffness_kg_per_s2,\
+         damping_time_s,rtol,atol,method,version"
     );
-    let shapes = npz(&workspace.path("m.npz")).into_iter().map(|(name, array)| {
-        let count =
-            if name == "switch_count" { array.integers().len() } else { array.doubles().len() };
-        (name, array.shape, count)
-    });
-    let shapes: Vec<_> = shapes.collect();
-    let expected = ["4,", "3,", "4,", "3, 4", "4,", "3, 4", "3, 4"];
-    assert_eq!(shapes.iter().map(|shape| shape.1.as_str()).collect::<Vec<_>>(), expected);
-    assert_eq!(shapes.iter().map(|shape| shape.2).collect::<Vec<_>>(), [4, 3, 4, 12, 4, 12, 12]);
-    assert_eq!(shapes.into_iter().map(|shape| shape.0).collect::<Vec<_>>(), table[0]);
+    let map = npz(&workspace.path("m.npz"));
+    let arrays: Vec<_> =
+        map.iter().map(|(_, array)| (array.shape.as_str(), array.fields().len())).collect();
+    let expected =
+        [("4,", 4), ("3,", 3), ("4,", 4), ("3, 4", 12), ("4,", 4), ("3, 4", 12), ("3, 4", 12)];
+    assert_eq!(arrays[..7], expected);
+    assert_eq!(arrays[7..], [("", 1); 10]);
+    assert_eq!(map.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>(), table[0]);
 
     let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
     let surface =
         Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e12, damping_time_s: 1e-7 };
     let pair = Pair::equal_spheres(0.02, &steel, &surface).unwrap();
+    let facts =
+        [0.4, pair.alpha, pair.effective_mass_kg, pair.elastic_constant, 1e12, 1e-7, 4e-13, 4e-13];
+    let facts = facts.map(|value| format!("{value:?}")).into_iter();
+    let facts: Vec<_> = facts.chain(["dop853".to_owned(), version_in_maps()]).collect();
+    for row in &table[1..] {
+        assert_eq!(row[7..], facts);
+    }
+    for ((_, array), fact) in map[7..].iter().zip(&facts) {
+        assert_eq!(array.fields(), std::slice::from_ref(fact));
+    }
     for (point, row) in (0..).zip(&table[1..]) {
         let (normal, tangential) =
             (centre(0.0, 200.0, point % 4, 4), centre(0.0, 100.0, point / 4, 3));

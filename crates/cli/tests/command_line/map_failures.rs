@@ -16,7 +16,7 @@ fn refused(line: &str, parts: &[&str]) {
 }
 
 #[test]
-fn windows_that_are_none() {
+fn windows_that_are_refused() {
     let expected = "expected LO:HI with finite numbers 0 <= LO < HI";
     for (range, problem) in [
         ("5", "not a range"),
@@ -38,7 +38,7 @@ fn windows_that_are_none() {
 }
 
 #[test]
-fn sizes_that_are_none() {
+fn sizes_that_are_refused() {
     let expected = "expected WxH, two whole numbers from 1 whose product is at most 10000000000";
     for (size, problem) in [
         ("10x", "not a size"),
@@ -99,7 +99,7 @@ fn damped_bodies_with_the_exact_solution() {
     let line = "map --bodies b.json --normal 0:1 --tangential 0:1 --size 3x3 --out m.npz";
     let ran = workspace.run(&format!("{line} --method exact"));
     assert_eq!(ran.code, 2);
-    for part in ["b.json", "surface.damping_time_s is 1e-7", "expected 0, or --method dop853"] {
+    for part in ["b.json", "surface.damping_time_s = 1e-7", "expected 0, or --method dop853"] {
         assert!(ran.stderr.contains(part), "{}", ran.stderr);
     }
     assert_eq!(workspace.names(), ["b.json"]);
@@ -107,8 +107,7 @@ fn damped_bodies_with_the_exact_solution() {
 
 #[test]
 fn points_that_cannot_be_computed() {
-    // ψ below the exact solution in the first row, κ beyond the exact solution in the second
-    // column.
+    // The exact solution does not take ψ in the first row, and κ in the second column.
     let workspace = Workspace::new();
     let line = "map --kappa 0:2e16 --psi 0:3e-100 --size 2x3 --method exact";
     for name in ["m.csv", "m.npz"] {
@@ -144,7 +143,7 @@ fn outputs_that_cannot_be_made() {
         assert!(ran.stderr.starts_with(&start), "{}", ran.stderr);
         assert_eq!(workspace.names(), ["d.npz", "in.csv"], "{out}");
     }
-    // A file where the directory of tiles belongs.
+    // A file has the name of the directory of tiles.
     workspace.write("m.npz.tiles", "");
     let ran = workspace.run(&format!("map {WINDOW} --size 3x3 --out m.npz"));
     assert_eq!(ran.code, 1);
@@ -152,8 +151,8 @@ fn outputs_that_cannot_be_made() {
     assert_eq!(workspace.read("m.npz.tiles"), "");
 }
 
-/// A disk that fills up: here, a limit on the size of files, first while the tiles are written and
-/// then while the map is.
+/// A limit on the size of files stands for a disk that fills up, first while the tiles are written
+/// and then while the map is written.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_leaves_the_old_map_and_the_finished_tiles() {
@@ -172,7 +171,7 @@ fn a_full_disk_leaves_the_old_map_and_the_finished_tiles() {
             "m.npz: cannot be written: File too large",
         ),
     ] {
-        // Signal 25, sent at the limit, is ignored, so that writing fails as on a full disk.
+        // Signal 25, which is sent at the limit, is ignored. Writing then fails as on a full disk.
         let script = format!(
             "trap '' 25; ulimit -f {blocks}; exec '{}' {line}",
             assert_cmd::cargo::cargo_bin!("stickslip").display()
@@ -208,7 +207,7 @@ fn devices_behind_links_stay_devices() {
         assert!(ran.stderr.contains(&format!("{name}: cannot be written: No space")));
     }
     assert_eq!(workspace.names(), ["m.csv", "m.csv.tiles", "m.npz", "m.npz.tiles"]);
-    // The tiles are of use for another attempt.
+    // The next attempt uses the tiles.
     std::fs::remove_file(workspace.path("m.csv")).unwrap();
     symlink("/dev/null", workspace.path("m.csv")).unwrap();
     let ran = workspace.run(&format!("map {WINDOW} --size 3x3 --out m.csv"));
@@ -228,5 +227,5 @@ fn behind_a_link_the_file_is_replaced() {
     assert_eq!(workspace.names(), ["far", "m.npz"]);
     assert_eq!(workspace.names_in("far"), ["away.npz"]);
     assert!(std::fs::symlink_metadata(workspace.path("m.npz")).unwrap().is_symlink());
-    assert_eq!(npz(&workspace.path("far/away.npz")).len(), 4);
+    assert_eq!(npz(&workspace.path("far/away.npz")).len(), 9);
 }

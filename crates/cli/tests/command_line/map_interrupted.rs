@@ -1,4 +1,4 @@
-//! Maps that are interrupted, continued, damaged and made twice at once.
+//! Maps that are interrupted, continued, damaged, or made by two processes at once.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -13,7 +13,7 @@ use assert_cmd::cargo::cargo_bin;
 
 use crate::Workspace;
 
-/// 79 tiles of 256 points; stiff collisions, so that each takes about 20 ms.
+/// A map with 79 tiles of 256 points. The collisions are stiff, so that a tile takes about 20 ms.
 const LINE: &str = "map --kappa 0:1e6 --psi 0:2.9 --size 100x200 --method exact --out m.npz";
 const TILES: usize = 79;
 const DIRECTORY: &str = "m.npz.tiles";
@@ -24,7 +24,7 @@ fn whole() -> &'static [u8] {
     MAP.get_or_init(|| made_with("2"))
 }
 
-/// The same, made with a number of threads.
+/// The map without interruption, made with a number of threads.
 fn made_with(threads: &str) -> Vec<u8> {
     let workspace = Workspace::new();
     let ran = workspace.run(&format!("{LINE} --threads {threads}"));
@@ -44,7 +44,7 @@ fn start(workspace: &Workspace, line: &str) -> Child {
         .unwrap()
 }
 
-/// The finished tiles: name, and what would change if one were written again.
+/// The finished tiles by name, with what would change if a tile were written again.
 fn tiles(workspace: &Workspace) -> BTreeMap<String, (u64, i64, i64)> {
     let Ok(entries) = fs::read_dir(workspace.path(DIRECTORY)) else { return BTreeMap::new() };
     let entries = entries.map(|entry| entry.unwrap());
@@ -58,8 +58,8 @@ fn tiles(workspace: &Workspace) -> BTreeMap<String, (u64, i64, i64)> {
         .collect()
 }
 
-/// Starts the map and ends it with `signal` after it has finished at least `more` further tiles
-/// and worked on for `longer`. It must have been at work when the signal came.
+/// Starts the map and ends it with `signal` after it has finished at least `more` further tiles and
+/// continued for the time `longer`. The map must not be finished when the signal comes.
 fn interrupt(workspace: &Workspace, more: usize, longer: Duration, signal: &str) {
     interrupt_line(workspace, LINE, more, longer, signal);
 }
@@ -76,7 +76,7 @@ fn interrupt_line(workspace: &Workspace, line: &str, more: usize, longer: Durati
     let killed = Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
     assert!(killed.success());
     let number = signal.trim_start_matches('-').parse().unwrap();
-    assert_eq!(child.wait().unwrap().signal(), Some(number), "it had ended before");
+    assert_eq!(child.wait().unwrap().signal(), Some(number), "the map was finished before");
     let found = tiles(workspace).len();
     assert!(found >= before + more && found < TILES, "{found} tiles");
     assert_eq!(workspace.names(), [DIRECTORY]);
@@ -99,7 +99,7 @@ fn ten_kills_leave_no_trace() {
         let longer = Duration::from_micros((random >> 33) % 30_000);
         interrupt(&workspace, 1, longer, "-9");
         let now = tiles(&workspace);
-        // What was finished before has not been made again.
+        // Tiles that were finished before have not been made again.
         assert!(kept.iter().all(|(name, file)| now.get(name) == Some(file)));
         kept = now;
     }
@@ -112,7 +112,7 @@ fn ten_kills_leave_no_trace() {
 }
 
 #[test]
-fn an_interrupt_from_the_keyboard_loses_nothing_either() {
+fn an_interrupt_from_the_keyboard_loses_nothing() {
     let workspace = Workspace::new();
     interrupt(&workspace, 2, Duration::ZERO, "-2");
     interrupt(&workspace, 2, Duration::ZERO, "-15");
@@ -135,12 +135,12 @@ fn tiles_that_are_not_what_was_written_are_made_again() {
     change(0, Vec::clear);
     change(1, |bytes| bytes.truncate(bytes.len() - 1));
     change(2, |bytes| bytes.push(0));
-    // In a result, and in the description of the map.
+    // A bit of a result, and a bit of the description of the map.
     change(3, |bytes| *bytes.iter_mut().rev().nth(2000).unwrap() ^= 1);
     change(4, |bytes| bytes[10] ^= 1);
-    // Intact, but of another place.
+    // This tile is intact, but it is another one.
     fs::copy(tile(6), tile(5)).unwrap();
-    // Intact, but of another map; only the last digit of its window differs.
+    // This tile is intact, but of another map. Only the last digit of the window differs.
     let other = Workspace::new();
     let line = LINE.replace("0:2.9", "0:2.9000000000000004");
     interrupt_line(&other, &line, 8, Duration::ZERO, "-9");
@@ -171,7 +171,7 @@ fn the_tiles_of_another_map_are_left_alone() {
 }
 
 #[test]
-fn a_second_process_is_sent_away() {
+fn a_second_process_is_refused() {
     let workspace = Workspace::new();
     let mut first = start(&workspace, LINE);
     while tiles(&workspace).len() < 2 {

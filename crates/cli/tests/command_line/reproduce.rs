@@ -1,4 +1,4 @@
-//! The page of everything: complete, independent of the rest of the world, and right.
+//! The page of `reproduce` is complete, needs nothing else, and is right.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -7,9 +7,9 @@ use std::sync::LazyLock;
 
 use roxmltree::{Document, Node, ParsingOptions};
 
-use crate::{Workspace, npz, rows};
+use crate::{Workspace, npz, rows, version_in_maps};
 
-/// One run for all tests that only look.
+/// One run, whose files several tests read.
 static RUN: LazyLock<Workspace> = LazyLock::new(|| {
     let workspace = Workspace::new();
     let ran = workspace.run("reproduce --out out --cells 24 --threads 2");
@@ -90,7 +90,7 @@ fn expected_names() -> Vec<String> {
     names
 }
 
-/// The rows of a table by the names of its columns.
+/// The rows of a table, each with its fields by the names of their columns.
 fn table(name: &str) -> Vec<BTreeMap<String, String>> {
     let rows = rows(&RUN.read(name));
     let row = |row: &Vec<String>| rows[0].iter().cloned().zip(row.iter().cloned()).collect();
@@ -124,7 +124,7 @@ fn the_page_is_complete_and_needs_nothing_else() {
         };
         assert!(there, "{}", &target[..target.len().min(60)]);
     }
-    // Each picture is on it once, and in a file of its own.
+    // Each picture is on the page once, and in a file of its own.
     let pictures: Vec<_> = page.descendants().filter(|node| node.has_tag_name("figure")).collect();
     assert_eq!(pictures.len(), PICTURES.len());
     for name in PICTURES {
@@ -153,7 +153,7 @@ fn all_forms_say_the_same() {
     };
     let on_page: Vec<String> =
         page(&html).descendants().filter(|node| node.has_tag_name("li")).map(text).collect();
-    // What follows `^` or `_` in parentheses loses them.
+    // Parentheses after `^` or `_` are not shown.
     let plain = |markup: &str| {
         let raised: Vec<&str> = markup.split(['^', '_']).collect();
         let unwrapped = raised[1..].iter().map(|part| match part.strip_prefix('(') {
@@ -194,12 +194,12 @@ fn the_line_of_the_points_has_the_known_numbers_of_switches() {
     };
     assert_eq!(counts("ακ").join(" "), "0 2 4 6 8 6 8 6 4 6 4 2 4 2 4 2");
     assert_eq!(counts("κ").join(" "), "0 2 4 2 4 2 4 2");
-    // Both lines are without gaps.
+    // Both lines have no gaps.
     let rows = table("out/figure4.csv");
     for pair in rows.windows(2).filter(|pair| pair[0]["axis"] == pair[1]["axis"]) {
         assert_eq!(pair[0]["ratio_low"], pair[1]["ratio_high"]);
     }
-    // An independent engine: the count changes across every end.
+    // With an independent engine, the count changes at every end.
     for row in rows.iter().filter(|row| row["ratio_low"] != "0.0") {
         let end: f64 = row["ratio_low"].parse().expect("a number");
         let counts = [1.0 - 1e-6, 1.0 + 1e-6].map(|factor| {
@@ -233,7 +233,7 @@ fn the_points_are_what_the_paper_says_of_them() {
     let [i, j, k] = ["i", "j", "k"].map(|name| number(name, "switch_count"));
     assert_eq!([j - i, j - k], [2.0, 2.0]);
     assert_eq!(number("o", "switch_count"), 2.0);
-    // The same ratios in both readings, and at most four switches with κ as printed.
+    // Both readings have the same ratios. With κ as printed there are at most four switches.
     let printed: Vec<_> = points.iter().filter(|row| row["axis"] == "κ").collect();
     assert_eq!(printed.len(), 16);
     for row in printed {
@@ -280,13 +280,18 @@ fn data_are_what_the_other_commands_make() {
     }
     let arrays = npz(&RUN.path("out/figure4_axis.npz"));
     let names: Vec<&str> = arrays.iter().map(|(name, _)| name.as_str()).collect();
-    assert_eq!(names, ["kappa", "psi", "ratio", "eps_t", "switch_count"]);
+    let facts = ["mu", "alpha", "damping", "method", "version"];
+    assert_eq!(names[..5], ["kappa", "psi", "ratio", "eps_t", "switch_count"]);
+    assert_eq!(names[5..], facts);
+    let facts: Vec<_> = arrays[5..].iter().flat_map(|(_, array)| array.fields()).collect();
+    let alpha = format!("{:?}", 2.0 / 7.0);
+    assert_eq!(facts, ["0.4", &alpha, "0.0", "exact", &version_in_maps()]);
 
     let line = "trace --kappa 0.05:100 --psi 0.01:3 --out atlas.json --plot atlas.svg";
     assert_eq!(RUN.run(line).code, 0);
     assert!(RUN.read("atlas.json") == RUN.read("out/atlas.json"));
     assert!(RUN.read("atlas.svg") == RUN.read("out/boundaries.svg"));
-    // The boundaries of Figure 4 are an atlas, too.
+    // The boundaries of Figure 4 are also an atlas.
     RUN.write("points.csv", "kappa,psi\n63,0.5\n");
     let line = "locate --atlas out/figure4_boundaries.json --batch points.csv --out located.csv";
     assert_eq!(RUN.run(line).code, 0);
@@ -307,7 +312,7 @@ fn the_same_bytes_with_one_thread() {
 }
 
 #[test]
-fn what_was_made_before_a_failure_stays() {
+fn files_that_were_made_before_a_failure_stay() {
     let workspace = Workspace::new();
     // A picture cannot take the name of a directory.
     fs::create_dir_all(workspace.path("out/figure3.svg")).expect("a directory");
@@ -315,8 +320,8 @@ fn what_was_made_before_a_failure_stays() {
     assert_eq!(ran.code, 1);
     let expected = "error: out/figure3.svg: cannot be written: is a directory\n";
     assert!(ran.stderr.ends_with(expected), "{}", ran.stderr);
-    // All of Figures 1 and 2, what of Figure 3 came before the picture, no page and nothing half
-    // written.
+    // There are all files of Figures 1 and 2, and those of Figure 3 that come before the picture.
+    // There is no page, and no file is incomplete.
     let mut names = expected_names();
     names.retain(|name| {
         ["figure1", "figure2"].iter().any(|figure| name.starts_with(figure))

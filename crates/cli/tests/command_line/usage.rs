@@ -44,20 +44,20 @@ fn every_parameter_out_of_range() {
 }
 
 #[test]
-fn words_where_an_option_has_a_list() {
+fn words_that_an_option_does_not_know() {
     refused("--kappa 1 --psi 1 --method euler", &["euler", "dopri5", "dop853", "exact"]);
     refused("--kappa 1 --psi 1 --format xml", &["xml", "table", "json"]);
     refused("--kappa 1 --psi 1 --threads two", &["--threads", "two"]);
 }
 
 #[test]
-fn psi_and_ratio_both_or_neither() {
+fn psi_and_ratio_given_both_or_not_at_all() {
     refused("--kappa 63 --psi 1 --ratio 2", &["--psi", "--ratio", "exactly one"]);
     refused("--kappa 63", &["--psi", "--ratio", "exactly one"]);
 }
 
 #[test]
-fn a_point_without_kappa() {
+fn a_collision_without_kappa() {
     refused("--psi 1", &["--kappa"]);
     refused("", &["--kappa"]);
 }
@@ -87,7 +87,7 @@ fn a_psi_that_overflows() {
 }
 
 #[test]
-fn a_batch_without_a_place_for_results() {
+fn a_batch_without_a_file_for_results() {
     refused("--batch x.csv", &["--out"]);
 }
 

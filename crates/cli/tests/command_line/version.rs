@@ -4,7 +4,7 @@ use std::process::Command;
 
 use crate::stickslip;
 
-/// The value of a line of `--version`.
+/// The value on the line `name` of `--version`.
 fn field<'a>(text: &'a str, name: &str) -> &'a str {
     let line = text.lines().find_map(|line| line.strip_prefix(name));
     line.unwrap_or_else(|| panic!("no {name} in {text}")).trim()
@@ -52,7 +52,7 @@ fn the_commit_is_that_of_the_repository() {
 }
 
 #[test]
-fn all_schemas_are_listed_that_the_program_writes() {
+fn all_schemas_are_listed() {
     let ran = stickslip("--version");
     let listed: Vec<_> = field(&ran.stdout, "schemas").split(' ').collect();
     assert_eq!(listed.len(), 7);

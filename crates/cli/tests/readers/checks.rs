@@ -1,4 +1,4 @@
-//! What holds of the program whatever is in the files that it reads.
+//! What holds for the program, whatever is in the files that it reads.
 
 use std::fs;
 
@@ -8,7 +8,8 @@ use tempfile::TempDir;
 /// Points that are looked up in an atlas.
 const POINTS: &str = "kappa,psi\n2.1,0.1\n2.2,0.05\n18,0.5\n0,1\n";
 
-/// Collides what `csv` describes: every row of the result has a collision or a reason.
+/// Computes the collisions that `csv` describes. Every row of the result has a collision or a
+/// reason why it has none.
 ///
 /// # Errors
 /// What does not hold.
@@ -16,7 +17,7 @@ pub fn batch(csv: &[u8]) -> Result<(), String> {
     read(csv, |path| format!("collide --batch {path} --out {path}.out --method exact --threads 1"))
 }
 
-/// Carries out the impact that `json` describes, whose result goes to standard output.
+/// Computes the impact that `json` describes. The result goes to standard output.
 ///
 /// # Errors
 /// What does not hold.
@@ -35,14 +36,14 @@ pub fn impact(json: &[u8]) -> Result<(), String> {
 pub fn atlas(json: &[u8]) -> Result<(), String> {
     read(json, |path| {
         let points = format!("{path}.points");
-        // A file that cannot be written is found missing.
+        // If the file cannot be written, the program says that it is missing.
         let _ = fs::write(&points, POINTS);
         format!("locate --atlas {path} --batch {points} --out {path}.out")
     })
 }
 
-/// Writes `bytes` to a file, carries out the command line that `line` makes for it, and holds that
-/// there is an output that is complete, or that the file is refused.
+/// Writes `bytes` to a file, carries out the command line that `line` makes for it, and checks that
+/// the output is complete or that the file is refused.
 fn read(bytes: &[u8], line: impl Fn(&str) -> String) -> Result<(), String> {
     let (_folder, path) = stored(bytes)?;
     let line = line(&path);
@@ -57,7 +58,7 @@ fn read(bytes: &[u8], line: impl Fn(&str) -> String) -> Result<(), String> {
     }
 }
 
-/// A file with `bytes` in a folder of its own.
+/// A file with `bytes` in its own folder.
 fn stored(bytes: &[u8]) -> Result<(TempDir, String), String> {
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
     let path = folder.path().join("in");
@@ -66,14 +67,14 @@ fn stored(bytes: &[u8]) -> Result<(TempDir, String), String> {
     Ok((folder, path))
 }
 
-/// Holds that the message names the file and says what is wrong with it, on one line.
+/// Checks that the message names the file and says what is wrong with it, on one line.
 fn refused(failure: &Failure, path: &str) -> Result<(), String> {
     let reason = failure.to_string();
     let said = reason.strip_prefix(path).is_some_and(|said| said.len() > 10);
     require(said && !reason.contains('\n'), || format!("{reason:?}"))
 }
 
-/// Holds that `csv` is a table of which each row has its status, or all numbers.
+/// Checks that each row of the table `csv` has its status, and that its results are numbers.
 fn complete(csv: &[u8], ok: bool) -> Result<(), String> {
     let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(csv);
     let header = reader.byte_headers().map_err(|error| error.to_string())?.clone();

@@ -1,5 +1,5 @@
-//! Files that are broken in a bounded number of random ways: each is read or refused, and nothing
-//! else happens. The fuzz targets (`fuzz/`) hold the same for as long as they run.
+//! Files that are damaged at random, a fixed number of times. Each is read or refused, and nothing
+//! else happens. The fuzz targets (`fuzz/`) check the same for as long as they run.
 
 #![cfg(in_repository)]
 
@@ -16,7 +16,7 @@ use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use proptest::test_runner::{RngAlgorithm, TestError, TestRng, TestRunner};
 
-/// What is put in: what numbers, CSV and JSON are made of.
+/// Texts that are inserted: parts of numbers, CSV and JSON.
 const TOKENS: [&str; 28] = [
     "0",
     "-",
@@ -100,7 +100,7 @@ fn edited(seed: &[u8], edits: &[Edit]) -> Vec<u8> {
     bytes
 }
 
-/// Holds `check` for `seed`, and for it with changes, the same ones every time.
+/// Checks `seed`, and `seed` with random changes, which are the same every time.
 fn hold(cases: u32, seed: &[u8], check: impl Fn(&[u8]) -> Result<(), String>) {
     check(seed).unwrap();
     let config = ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() };
@@ -118,7 +118,7 @@ fn repository(path: &str) -> Vec<u8> {
 
 #[test]
 fn batches() {
-    // Found by fuzzing: a name that would break the message that shows it.
+    // Fuzzing found this name, which would have broken the message that shows it.
     checks::batch(b"\"a\nb\",psi\n1,1\n").unwrap();
     hold(2000, &repository("fuzz/seeds/batch/quoted.csv"), checks::batch);
 }
@@ -128,7 +128,7 @@ fn atlases() {
     hold(1000, &repository("fuzz/seeds/atlas/small.json"), checks::atlas);
 }
 
-/// By processes: an impact is printed.
+/// An impact is printed, so that this test starts processes.
 #[test]
 fn impacts() {
     let folder = tempfile::tempdir().unwrap();

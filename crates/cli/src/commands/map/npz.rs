@@ -1,7 +1,8 @@
 //! A finished map as an archive of NumPy arrays.
 //!
-//! The arrays have the format .npy 1.0 as in numpy/lib/format.py. They are stored without compression
-//! in a ZIP archive. Its entries have no time, so that the same map is always the same bytes.
+//! The arrays have the format .npy 1.0 as in numpy/lib/format.py. They are stored without
+//! compression in a ZIP archive. Its entries have no time, so that the same map is always the same
+//! bytes.
 
 use std::io::{self, BufWriter, Write};
 

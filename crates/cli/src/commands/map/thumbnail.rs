@@ -6,11 +6,11 @@ use stickslip_plane::{Grid, GridAxis, Tile};
 
 use super::tiles::Tiles;
 
-/// The size (columns and rows) of a picture of a map, and the results of its pixels, row by row from
-/// the lower edge.
+/// The size (columns and rows) of a picture of a map, and the results of its pixels, row by row
+/// from the lower edge.
 ///
-/// A pixel shows the cell at its centre. There are at most `most` × `most` pixels, and not more than
-/// the map has cells. One tile at a time is in memory.
+/// A pixel shows the cell at its centre. There are at most `most` × `most` pixels, and not more
+/// than the map has cells. One tile at a time is in memory.
 ///
 /// # Errors
 /// A tile cannot be read.
