@@ -150,7 +150,7 @@ fn options_that_are_refused() {
         ("--psi 1,2", ["--psi 2.0", "below 2"]),
         ("--psi 1,0", ["--psi", "above 0"]),
         ("--psi 1,0.5,1", ["--psi has 1.0 twice", "once"]),
-        ("--psi 0.1,0.2,0.3,0.4,0.5", ["--psi has 5 values", "at most 4"]),
+        ("--psi 0.1,0.2,0.3,0.4,0.5", ["--psi has 5 values", "expected 1 to 4"]),
         ("--threads 0", ["--threads", "1..=1024"]),
     ] {
         let ran = stickslip(&format!("asymptote --out nowhere {line}"));
