@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use colorous::Color;
+
 use super::panel::{MapPanel, Values};
 use crate::canvas::panel::{LINEAR, Panel};
 use crate::canvas::shape::Rectangle;
@@ -66,21 +68,61 @@ pub fn draw(
     svg.end_group();
     map.axes(svg, panel, map.heading);
 
-    let frame = map.beside(panel);
-    let key = Panel { frame, x: (0.0, 1.0), y: (0.0, counts.len().max(1) as f64), scales: LINEAR };
+    key(svg, map.beside(panel), counts, colour);
+    Ok(())
+}
+
+/// The key: a field for each number of switches, or a scale from 0 to the largest number where the
+/// fields would be too many to be labelled.
+fn key(svg: &mut Svg, frame: Rectangle, counts: &[i32], colour: impl Fn(i32) -> Color) {
+    let few = counts.len() <= MOST_NUMBERS;
+    let largest = counts.last().copied().unwrap_or(0).max(1);
+    let top = if few { counts.len().max(1) as f64 } else { f64::from(largest) };
+    let key = Panel { frame, x: (0.0, 1.0), y: (0.0, top), scales: LINEAR };
     // Each colour reaches down to the bottom, under the colours that follow, so that no seams show.
     for (rank, count) in counts.iter().enumerate().rev() {
-        let (left, top) = key.place((0.0, rank as f64 + 1.0));
+        let upper = if few { rank as f64 + 1.0 } else { f64::from(*count) };
+        let (left, top) = key.place((0.0, upper));
         let height = key.frame.bottom() - top;
         svg.fill(Rectangle { left, top, height, ..key.frame }, &style::hex(colour(*count)));
     }
-    let apart = counts.len().div_ceil(MOST_NUMBERS).max(1);
     svg.begin_group("counts");
-    for (rank, count) in counts.iter().enumerate().step_by(apart) {
-        let (x, y) = key.place((1.0, rank as f64 + 0.5));
+    let mut label = |count: i32, height: f64| {
+        let (x, y) = key.place((1.0, height));
         svg.words((x + 8.0, y), Words::new(&count.to_string(), SMALL, Anchor::Start));
+    };
+    if few {
+        for (rank, count) in counts.iter().enumerate() {
+            label(*count, rank as f64 + 0.5);
+        }
+    } else {
+        let step = even_step(largest);
+        // The largest number is labelled in any case, and keeps its neighbour away.
+        let others = (0..largest).step_by(usize::try_from(step).unwrap_or(1));
+        others.filter(|count| largest - count > step / 2).for_each(|c| label(c, f64::from(c)));
+        label(largest, f64::from(largest));
     }
     svg.end_group();
     key.border(svg);
-    Ok(())
+}
+
+/// A round even number, of which at most [`MOST_NUMBERS`] multiples are below `largest`.
+fn even_step(largest: i32) -> i32 {
+    let steps = (0..9).flat_map(|power| [2, 4, 10].map(|digit| digit * 10_i32.pow(power)));
+    let fits = |step: &i32| largest / step < i32::try_from(MOST_NUMBERS).unwrap_or(i32::MAX);
+    steps.filter(|step| *step > 0).find(fits).unwrap_or(largest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::even_step;
+
+    #[test]
+    fn steps_of_the_key_are_even_and_few() {
+        for (largest, step) in
+            [(17, 2), (34, 4), (164, 20), (218, 20), (1000, 100), (i32::MAX, 200_000_000)]
+        {
+            assert_eq!(even_step(largest), step, "{largest}");
+        }
+    }
 }
