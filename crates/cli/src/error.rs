@@ -130,16 +130,6 @@ impl Failure {
         Self::Computation { kappa, psi, damping, source }
     }
 
-    /// The failure of a study whose settings come from options.
-    #[must_use]
-    pub fn of_settings(error: StudyError) -> Self {
-        match error {
-            StudyError::Convergence(invalid) => Self::Usage(format!("--{invalid}")),
-            StudyError::StiffSprings(invalid) => Self::Usage(format!("--{invalid}")),
-            error => Self::Study(error),
-        }
-    }
-
     /// An input file that cannot be used.
     pub fn input(path: &Path, reason: impl Display) -> Self {
         // The reason may quote the file, and what it quotes must not break the line.

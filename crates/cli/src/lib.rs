@@ -83,7 +83,7 @@ fn carry_out(arguments: &Arguments) -> Result<(), Failure> {
             ReproducePlan::Statements(plan) => commands::statements::run(&plan),
         },
         Command::Asymptote(arguments) => {
-            commands::studies::run(&StudyPlan::stiff_springs(arguments), stiff_springs::run)
+            commands::studies::run(&StudyPlan::stiff_springs(arguments)?, stiff_springs::run)
         }
         Command::Converge(arguments) => {
             commands::studies::run(&StudyPlan::convergence(arguments)?, convergence::run)

@@ -24,7 +24,7 @@ pub fn run<S: Sync>(
     let bar = Bar::steps();
     let study = pool.install(|| make(&plan.settings, &|progress| bar.report(progress)));
     drop(bar);
-    let study = study.map_err(Failure::of_settings)?;
+    let study = study?;
     write_study(&study, &plan.out)?;
     print(|out| study.findings.iter().try_for_each(|line| writeln!(out, "{line}")))
 }

@@ -18,7 +18,7 @@ pub fn contact(given: &Given) -> Result<Contact, Failure> {
 pub fn refused(error: RecipeError) -> Failure {
     Failure::Usage(match error {
         RecipeError::NoKappa => {
-            "--kappa is missing; expected it, and exactly one of --psi and --ratio".to_owned()
+            "--kappa is missing; expected --kappa with exactly one of --psi and --ratio".to_owned()
         }
         RecipeError::NoImpact => {
             "neither --psi nor --ratio is given; expected exactly one of them".to_owned()

@@ -1,5 +1,6 @@
 //! What `converge` and `asymptote` are to do.
 
+use std::fmt::Display;
 use std::path::PathBuf;
 
 use stickslip_studies::{convergence, stiff_springs};
@@ -35,15 +36,25 @@ impl StudyPlan<convergence::Settings> {
             let contact = contact(&Given { kappa, psi, ratio, mu, alpha, damping })?;
             convergence::Settings { contacts: vec![contact] }
         };
+        settings.validate().map_err(refused)?;
         Ok(Self { settings, out: out.clone(), threads })
     }
 }
 
 impl StudyPlan<stiff_springs::Settings> {
     /// The study of stiff springs that `arguments` make.
-    pub fn stiff_springs(arguments: &AsymptoteArguments) -> Self {
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] says which option is out of range.
+    pub fn stiff_springs(arguments: &AsymptoteArguments) -> Result<Self, Failure> {
         let AsymptoteArguments { kappa, psi, out, threads } = arguments;
         let settings = stiff_springs::Settings { kappa: *kappa, psi: psi.clone() };
-        Self { settings, out: out.clone(), threads: *threads }
+        settings.validate().map_err(refused)?;
+        Ok(Self { settings, out: out.clone(), threads: *threads })
     }
+}
+
+/// The failure of settings that are out of range. The settings have the names of the options.
+fn refused(invalid: impl Display) -> Failure {
+    Failure::Usage(format!("--{invalid}"))
 }

@@ -301,6 +301,9 @@ fn geojson_holds_what_the_atlas_has() {
     let ran = workspace.run(&format!("{WINDOW} --out b.json --geojson b.json"));
     assert_eq!(ran.code, 2);
     assert!(ran.stderr.contains("--geojson b.json"), "{}", ran.stderr);
+    let ran = workspace.run(&format!("{WINDOW} --out b.svg --plot ./b.svg"));
+    assert_eq!(ran.code, 2);
+    assert!(ran.stderr.contains("--plot ./b.svg is the same file as --out"), "{}", ran.stderr);
     let ran = workspace.run(&format!("{WINDOW} --out b.json --geojson no/b.json"));
     assert_eq!(ran.code, 1);
     assert!(ran.stderr.contains("no/b.json: cannot be written"), "{}", ran.stderr);

@@ -36,9 +36,11 @@ impl Settings {
         Ok(Self { contacts: contacts.collect::<Result<_, _>>()? })
     }
 
+    /// Checks all settings.
+    ///
     /// # Errors
-    /// A collision is too stiff.
-    pub(super) fn validate(&self) -> Result<(), InvalidConvergence> {
+    /// [`InvalidConvergence`]: a collision is too stiff.
+    pub fn validate(&self) -> Result<(), InvalidConvergence> {
         match self.contacts.iter().find(|contact| contact.kappa() > MOST_STIFFNESS) {
             Some(stiff) => Err(InvalidConvergence { kappa: stiff.kappa() }),
             None => Ok(()),

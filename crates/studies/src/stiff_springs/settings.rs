@@ -63,9 +63,11 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// Checks all settings.
+    ///
     /// # Errors
-    /// A setting is out of range.
-    pub(super) fn validate(&self) -> Result<(), InvalidStiffSprings> {
+    /// [`InvalidStiffSprings`]: a setting is out of range.
+    pub fn validate(&self) -> Result<(), InvalidStiffSprings> {
         let Range { low, high } = self.kappa;
         if !(STIFFNESS.low <= low && low < high && high <= STIFFNESS.high) {
             return Err(InvalidStiffSprings::Kappa { low, high });
