@@ -94,7 +94,7 @@ fn labelled<'a>(row: &'a [Cell], table: &'a Table) -> Vec<(&'a Cell, &'a Column)
 }
 
 /// The class of a verdict and a mark that tells it apart without its colour.
-fn verdict(verdict: &Verdict) -> (&'static str, char) {
+fn verdict(verdict: Verdict) -> (&'static str, char) {
     match verdict {
         Verdict::Holds => ("holds", '✓'),
         Verdict::HoldsWithACondition => ("condition", '◐'),
