@@ -4,7 +4,7 @@
 use stickslip_model::regularized::{Phase, Regularized};
 use stickslip_model::{Contact, exact};
 use stickslip_solver::margin::{Margin, Margins, Place, margin, margins};
-use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
+use stickslip_solver::{Dop853, Options, Start};
 
 use crate::common::{file, number};
 
@@ -170,52 +170,6 @@ fn both_engines_have_margins_of_one_sign() {
     }
     println!("{counts:?} margins above and below 0");
     assert!(counts[0] > 2000 && counts[1] > 100, "{counts:?}");
-}
-
-/// A body that falls with g = 1 and bounces.
-struct Drop;
-
-impl HybridSystem<2, 1> for Drop {
-    type Mode = ();
-
-    fn field(&self, (): (), _s: f64, y: &State<2>) -> State<2> {
-        State::from([y[1], -1.0])
-    }
-
-    fn guards(&self, (): ()) -> [Guard; 1] {
-        [Guard::new(Direction::Below)]
-    }
-
-    fn guard_values(&self, (): (), _s: f64, y: &State<2>) -> [f64; 1] {
-        [y[0]]
-    }
-
-    fn transition(&self, (): (), _guard: usize, _s: f64, y: &State<2>) -> ((), State<2>) {
-        ((), State::from([0.0, -0.5 * y[1]]))
-    }
-}
-
-/// The margin is the height at the end of a run of length 1, h − 1/2, above the floor and below it.
-#[test]
-fn the_end_of_the_span_leaves_a_margin() {
-    let start = |height| Start { mode: (), s: 0.0, state: State::from([height, 0.0]) };
-    let options = Options::with_tolerance(1e-14);
-    let free = margins(Dop853, &Drop, start(0.6), 1.0, &options).unwrap();
-    let [miss] = &free.near_misses[..] else { panic!("{:?}", free.near_misses) };
-    assert_eq!(miss.margin.place, Place::End);
-    assert!((miss.value - 0.1).abs() < 1e-15, "{}", miss.value);
-    for height in [0.4, 0.5, 0.6] {
-        let miss = margin(Dop853, &Drop, start(height), 1.0, &options, &miss.margin).unwrap();
-        let value = miss.expect("a margin").value;
-        // Measured: 1.0e-15.
-        assert!((value - (height - 0.5)).abs() < 2e-15, "{height}: {value}");
-    }
-    // After a bounce the next flight ends in the air.
-    let free = margins(Dop853, &Drop, start(0.4), 1.0, &options).unwrap();
-    assert_eq!(free.fired, [0]);
-    assert!(
-        free.near_misses.iter().any(|miss| miss.margin.place == Place::End && miss.value > 0.0)
-    );
 }
 
 /// Phases that are followed by another one have no margin at the end of the run.
