@@ -16,6 +16,10 @@ pub use stickslip_plane as plane;
 #[cfg(feature = "figure")]
 pub use stickslip_figure as figure;
 
-/// The paper checked: its statements, figures and limits.
+/// The limit of stiff springs, and how accurate the integrators are.
 #[cfg(feature = "studies")]
 pub use stickslip_studies as studies;
+
+/// The paper checked: its statements and figures.
+#[cfg(feature = "reproduction")]
+pub use stickslip_reproduction as reproduction;

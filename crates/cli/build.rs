@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// The sources of the program, relative to this package in the repository.
-const SOURCES: [&str; 11] = [
+const SOURCES: [&str; 12] = [
     "src",
     "build.rs",
     "templates",
@@ -15,6 +15,7 @@ const SOURCES: [&str; 11] = [
     "../figure/src",
     "../model/src",
     "../plane/src",
+    "../reproduction/src",
     "../studies/src",
     "../solver/src",
     "../tracer/src",

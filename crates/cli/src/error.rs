@@ -5,11 +5,11 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use stickslip_figure::FigureError;
-use stickslip_model::{Contact, EngineError};
 use stickslip_plane::atlas::AtlasError;
 use stickslip_plane::sweep::Failed;
-use stickslip_studies::StudyError;
-use stickslip_studies::figures::Objection;
+use stickslip_reproduction::ReproductionError;
+use stickslip_reproduction::figures::Objection;
+use stickslip_studies::{CollisionFailure, StudyError};
 
 /// The reason why the program did not do what it was asked.
 #[derive(Debug, thiserror::Error)]
@@ -26,17 +26,8 @@ pub enum Failure {
         reason: String,
     },
     /// A collision cannot be computed.
-    #[error("kappa = {kappa:?}, psi = {psi:?}, damping = {damping:?}: {source}")]
-    Computation {
-        /// Scaled stiffness of the contact.
-        kappa: f64,
-        /// Its reduced impact ratio.
-        psi: f64,
-        /// Its scaled damping.
-        damping: f64,
-        /// What the engine reports.
-        source: EngineError,
-    },
+    #[error(transparent)]
+    Collision(#[from] CollisionFailure),
     /// Some rows of a batch have no result.
     #[error(
         "{failed} of {rows} rows could not be computed; \
@@ -69,6 +60,9 @@ pub enum Failure {
     /// A study has no result.
     #[error(transparent)]
     Study(#[from] StudyError),
+    /// A part of the reproduction has no result.
+    #[error(transparent)]
+    Reproduction(#[from] ReproductionError),
     /// Something speaks against a result of `reproduce`.
     #[error(transparent)]
     Objection(Box<Objection>),
@@ -123,13 +117,6 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// A collision that cannot be computed.
-    #[must_use]
-    pub fn computation(contact: &Contact, source: EngineError) -> Self {
-        let (kappa, psi, damping) = (contact.kappa(), contact.psi(), contact.damping());
-        Self::Computation { kappa, psi, damping, source }
-    }
-
     /// An input file that cannot be used.
     pub fn input(path: &Path, reason: impl Display) -> Self {
         // The reason may quote the file, and what it quotes must not break the line.

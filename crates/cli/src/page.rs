@@ -10,8 +10,8 @@ use askama::Template;
 use askama::filters::{Html, escape};
 use stickslip_figure::markup::{Piece, PieceStyle, pieces, plain};
 use stickslip_figure::number;
-use stickslip_studies::figures::{Section, headlines};
-use stickslip_studies::statements::{Audit, Verdict};
+use stickslip_reproduction::figures::{Section, headlines};
+use stickslip_reproduction::statements::{Audit, Verdict};
 use stickslip_studies::{Cell, Column, Table};
 
 /// The title of the page and of the report.

@@ -2,7 +2,8 @@
 //! field disappears or changes its meaning.
 
 use stickslip_plane::atlas;
-use stickslip_studies::{convergence, statements, stiff_springs};
+use stickslip_reproduction::statements;
+use stickslip_studies::{convergence, stiff_springs};
 
 /// The layout of a collision.
 pub const COLLISION: &str = "stickslip.collision/1";

@@ -26,6 +26,7 @@ mod phase;
 mod quick;
 mod together;
 
+pub(crate) use along_step::dense_output;
 pub(crate) use event::{Event, Found};
 pub(crate) use examination::Examination;
 pub(crate) use phase::{Phase, Standing};

@@ -1,34 +1,32 @@
-//! The paper checked: T. Schwager, V. Becker and T. Pöschel, *Coefficient of tangential restitution
-//! for viscoelastic spheres*, Eur. Phys. J. E 27, 107 (2008), computed anew.
+//! Studies of the collision of frictional viscoelastic spheres: the limit of stiff springs, and how
+//! accurate the integrators are.
 //!
 //! Each study is a function from plain settings to a [`Study`]: findings in sentences, numbers,
 //! tables and pictures. It writes no files. Parallel loops run on the rayon pool of the caller.
 //!
-//! Start reading in [`study`]; then, in this order: [`paper`] (what the paper's symbols and axes
-//! mean), [`figures`] (its figures, and everything together), [`statements`] (its statements, each
-//! with a verdict), [`stiff_springs`] (the limit of stiff springs), [`convergence`] (how accurate
-//! the integrators are), `search` (maxima and zeros).
+//! Start reading in [`study`]; then, in this order: [`paper`] (what the symbols and axes of the
+//! paper mean), [`stiff_springs`] (the limit of stiff springs), [`convergence`] (how accurate the
+//! integrators are), [`search`] (maxima and zeros). The figures and statements of the paper are
+//! studies of `stickslip-reproduction`.
 //!
 //! ```
-//! use stickslip_studies::statements::{self, Spring, Verdict};
+//! use stickslip_plane::{Range, progress};
+//! use stickslip_studies::stiff_springs::{self, Settings};
 //!
-//! // Statement 4: a collision ends with sliding.
-//! let audit = statements::run(Spring::Reset, &[4], stickslip_plane::progress::SILENT)?;
-//! assert_eq!(audit.statements[0].finding.verdict, Verdict::Holds);
+//! let kappa = Range { low: 10.0, high: 100.0 };
+//! let study = stiff_springs::run(&Settings { kappa, psi: vec![1.0] }, progress::SILENT)?;
+//! assert_eq!(study.pictures[0].name, "asymptote_envelope");
 //! # Ok::<(), stickslip_studies::StudyError>(())
 //! ```
 
 pub mod convergence;
 mod error;
-pub mod figures;
 pub mod paper;
-mod search;
-pub mod statements;
+pub mod search;
 pub mod stiff_springs;
 pub mod study;
 
 pub use error::{CollisionFailure, StudyError};
-pub use search::SearchError;
 pub use study::{Cell, Column, Picture, Study, Table};
 
 #[doc = include_str!("../README.md")]

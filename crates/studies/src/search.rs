@@ -24,12 +24,18 @@ pub enum SearchError {
 /// A place and the value there.
 #[derive(Clone, Copy, Debug)]
 pub struct Optimum<T> {
+    /// The place.
     pub at: T,
+    /// The value there.
     pub value: f64,
 }
 
 /// The maximum of `value`: the best of `places`, which are in order, improved by golden section
 /// between its neighbours, to 1e-9 of their distance.
+///
+/// # Errors
+/// [`SearchError::NoPlaces`] without places, a failure of the solver, or the first failure of
+/// `value`.
 pub fn maximum<E: From<SearchError> + Send>(
     places: &[f64],
     value: impl Fn(f64) -> Result<f64, E> + Send + Sync,
@@ -54,6 +60,9 @@ pub fn maximum<E: From<SearchError> + Send>(
 
 /// The maximum of `value` near `start`, by the simplex method of Nelder and Mead from a triangle of
 /// size `step`.
+///
+/// # Errors
+/// A failure of the solver, or the first failure of `value`.
 pub fn maximum_near<E: From<SearchError>>(
     start: [f64; 2],
     step: [f64; 2],
@@ -69,6 +78,9 @@ pub fn maximum_near<E: From<SearchError>>(
 
 /// The place of the one maximum of `height` in `interval`, by Brent's method, to a `tolerance` in
 /// parts of the interval.
+///
+/// # Errors
+/// A failure of the solver, or the first failure of `height`.
 pub fn highest<E: From<SearchError>>(
     interval: (f64, f64),
     tolerance: f64,
@@ -81,6 +93,9 @@ pub fn highest<E: From<SearchError>>(
 
 /// The place of the one zero of `height` in `interval`, by Brent's method, to 1e-14 of the
 /// interval.
+///
+/// # Errors
+/// A failure of the solver, or the first failure of `height`.
 pub fn root<E: From<SearchError>>(
     interval: (f64, f64),
     height: impl Fn(f64) -> Result<f64, E>,
@@ -92,6 +107,9 @@ pub fn root<E: From<SearchError>>(
 
 /// The place between `from` and `to` where `holds`, true at `from` and false at `to`, changes; by
 /// bisection, to rounding.
+///
+/// # Errors
+/// The first failure of `holds`.
 pub fn change<E>(
     mut from: f64,
     mut to: f64,

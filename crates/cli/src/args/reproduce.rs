@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use stickslip_studies::statements::{COUNT, Spring};
+use stickslip_reproduction::statements::{COUNT, Spring};
 
 use super::shared;
 

@@ -1,6 +1,7 @@
 //! One collision, computed, printed and drawn.
 
 use stickslip_figure::pictures;
+use stickslip_studies::CollisionFailure;
 
 use crate::args::Format;
 use crate::error::Failure;
@@ -16,7 +17,7 @@ use crate::schema;
 /// The collision cannot be computed, or the picture or standard output cannot be written.
 pub fn run(plan: &SinglePlan) -> Result<(), Failure> {
     let SinglePlan { contact, engine, format, plot } = plan;
-    let failed = |source| Failure::computation(contact, source);
+    let failed = |source| CollisionFailure::new(contact, source);
     if let Some(plot) = plot {
         plot.probe()?;
     }

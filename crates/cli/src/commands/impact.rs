@@ -3,6 +3,7 @@
 mod table;
 
 use stickslip_model::ImpactReport;
+use stickslip_studies::CollisionFailure;
 
 use crate::args::Format;
 use crate::error::Failure;
@@ -18,7 +19,7 @@ use crate::schema;
 pub fn run(plan: &ImpactPlan) -> Result<(), Failure> {
     let ImpactPlan { encounter, engine, format } = plan;
     let contact = encounter.contact();
-    let failed = |source| Failure::computation(&contact, source);
+    let failed = |source| CollisionFailure::new(&contact, source);
     let (collision, statistics) = engine.collide(contact).map_err(failed)?;
     let impact = ImpactReport::new(encounter, collision);
     impact.require_finite().map_err(|error| failed(error.into()))?;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use stickslip_model::Engine;
 use stickslip_plane::atlas::Document;
-use stickslip_studies::figures::{Content, DataFile, Reproduction, Section};
+use stickslip_reproduction::figures::{Content, DataFile, Reproduction, Section};
 
 use super::map::archive;
 use crate::error::Failure;

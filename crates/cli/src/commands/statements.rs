@@ -1,8 +1,8 @@
 //! Statements of the paper, tested and printed.
 
 use stickslip_plane::progress::SILENT;
+use stickslip_reproduction::statements::{Statement, run as test};
 use stickslip_studies::Cell;
-use stickslip_studies::statements::{Statement, run as test};
 
 use crate::args::AuditFormat;
 use crate::error::Failure;

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use serde_json::{Value, json};
 use stickslip_figure::number;
-use stickslip_studies::figures::Section;
+use stickslip_reproduction::figures::Section;
 use stickslip_studies::{Cell, Table};
 
 use super::{INTRODUCTION, TITLE};

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use stickslip_studies::statements::Spring;
+use stickslip_reproduction::statements::Spring;
 
 use crate::args::{AuditFormat, ReproduceArguments};
 

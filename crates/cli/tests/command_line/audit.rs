@@ -9,18 +9,25 @@ use serde_json::Value;
 use crate::{decimal, reference, stickslip};
 
 /// All statements, as they are printed.
-fn audit(options: &str) -> Vec<Value> {
+fn audit(options: &str) -> String {
     let numbers: Vec<_> = (1..=24).map(|number: u8| number.to_string()).collect();
-    let line = format!("reproduce --format json {options} --statement {}", numbers.join(" "));
-    let ran = stickslip(&line);
+    let ran =
+        stickslip(&format!("reproduce --statement {} --format json {options}", numbers.join(" ")));
     assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
-    let document: Value = serde_json::from_str(&ran.stdout).expect("JSON");
+    ran.stdout
+}
+
+fn statements(text: &str) -> Vec<Value> {
+    let document: Value = serde_json::from_str(text).expect("JSON");
     assert_eq!(document["schema"], "stickslip.audit/1");
     document["statements"].as_array().expect("statements").clone()
 }
 
-static RESET: LazyLock<Vec<Value>> = LazyLock::new(|| audit("--threads 2"));
-static UNRESET: LazyLock<Vec<Value>> = LazyLock::new(|| audit("--model unreset-spring"));
+/// The usual audit, which `notebooks_data` reads too.
+pub static PRINTED: LazyLock<String> = LazyLock::new(|| audit("--threads 2"));
+static RESET: LazyLock<Vec<Value>> = LazyLock::new(|| statements(&PRINTED));
+static UNRESET: LazyLock<Vec<Value>> =
+    LazyLock::new(|| statements(&audit("--model unreset-spring")));
 
 fn verdict(statement: &Value) -> &str {
     statement["verdict"].as_str().expect("a verdict")

@@ -1,9 +1,11 @@
 //! The study of convergence: its files and its numbers, which do not depend on threads.
 
+use std::sync::LazyLock;
+
 use roxmltree::Document;
 use serde_json::Value;
 
-use crate::{Workspace, rows, stickslip};
+use crate::{Ran, Workspace, rows, stickslip};
 
 const TIMES: &str = "convergence_time.csv";
 const FILES: [&str; 11] = [
@@ -37,13 +39,19 @@ fn orders(study: &Value, series: [&str; 4]) -> [f64; 2] {
     })
 }
 
-#[test]
-fn the_usual_collisions_have_the_orders_of_the_methods() {
+/// The usual study, which `notebooks_data` reads too: its directory and the run.
+pub static USUAL: LazyLock<(Workspace, Ran)> = LazyLock::new(|| {
     let workspace = Workspace::new();
     let ran = workspace.run("converge --out new/study");
     assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
+    (workspace, ran)
+});
+
+#[test]
+fn the_usual_collisions_have_the_orders_of_the_methods() {
+    let (workspace, ran) = &*USUAL;
     assert_eq!(workspace.names_in("new/study"), FILES);
-    let study = json(&workspace, "new/study/convergence.json");
+    let study = json(workspace, "new/study/convergence.json");
     assert_eq!(study["schema"], "stickslip.convergence/1");
     assert_eq!(study["reference"], "the exact solution");
     let findings: Vec<_> = ran.stdout.lines().collect();

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::{Array, Workspace, npz, rows};
+use crate::{Array, Workspace, audit, converge, npz, reproduce, rows};
 
 /// Relative tolerance of numbers. On the machine that made the data all bits are the same, whatever
 /// the optimisation. Other machines have other mathematical libraries.
@@ -47,17 +47,19 @@ fn extension(name: &str) -> &str {
     name.rsplit_once('.').map_or("", |(_, extension)| extension)
 }
 
-/// The files that the commands of a folder make in a workspace.
+/// The files that the commands of a folder make.
 struct Remade {
     folder: PathBuf,
+    /// Where commands that are not run for other tests too write.
     workspace: Workspace,
+    /// The directory that the commands call `out`.
+    out: PathBuf,
     /// Standard output that goes to a file, by the name of the file.
     printed: BTreeMap<String, String>,
 }
 
 impl Remade {
-    /// Runs the commands in the folder's README. The figures are made with 40 cells along an axis,
-    /// so that the table of Figure 1 has every fifth velocity.
+    /// Runs the commands in the folder's README, or takes what they made for other tests.
     fn new(name: &str) -> Self {
         let folder = repository().join("notebooks-data").join(name);
         let workspace = Workspace::new();
@@ -67,6 +69,7 @@ impl Remade {
         let bodies = "examples/steel_pair.json";
         fs::copy(repository().join(bodies), workspace.path(bodies)).expect("the example");
         let mut printed = BTreeMap::new();
+        let mut out = workspace.path("out");
         let readme = read(&folder.join("README.md"));
         let lines: Vec<_> = readme
             .lines()
@@ -76,21 +79,34 @@ impl Remade {
         for line in lines {
             let (line, _) = line.split_once(" && ").unwrap_or((line, ""));
             let (command, target) = line.split_once(" > ").unwrap_or((line, ""));
-            let cells = if command == "reproduce --out out" { " --cells 40" } else { "" };
-            let ran = workspace.run(&format!("{command}{cells}"));
-            assert_eq!(ran.code, 0, "{line}: {}", ran.stderr);
+            let stdout = match command {
+                "reproduce --out out" => {
+                    out = reproduce::RUN.path("out");
+                    String::new()
+                }
+                "converge --out out" => {
+                    out = converge::USUAL.0.path("new/study");
+                    String::new()
+                }
+                _ if command.starts_with("reproduce --statement") => audit::PRINTED.clone(),
+                _ => {
+                    let ran = workspace.run(command);
+                    assert_eq!(ran.code, 0, "{line}: {}", ran.stderr);
+                    ran.stdout
+                }
+            };
             if let Some((_, name)) = target.rsplit_once('/') {
-                printed.insert(name.to_owned(), ran.stdout);
+                printed.insert(name.to_owned(), stdout);
             }
         }
-        Self { folder, workspace, printed }
+        Self { folder, workspace, out, printed }
     }
 
     /// The path at which a command has written the file.
     fn path(&self, name: &str) -> PathBuf {
         let direct = self.workspace.path("notebooks-data");
         let direct = direct.join(self.folder.file_name().expect("a name")).join(name);
-        if direct.exists() { direct } else { self.workspace.path("out").join(name) }
+        if direct.exists() { direct } else { self.out.join(name) }
     }
 
     /// Compares all files of the folder, and looks for their columns in its README.

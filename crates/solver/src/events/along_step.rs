@@ -27,6 +27,22 @@ pub(crate) fn rounding<const N: usize>(
     if change.is_finite() { 4.0 * f64::EPSILON / SLIGHT * change } else { 0.0 }
 }
 
+/// The dense output over a step taken in `mode`.
+///
+/// All callers share this one function, because what it compiles to is large.
+#[inline(never)]
+pub(crate) fn dense_output<S, M, const N: usize, const G: usize>(
+    system: &S,
+    mode: S::Mode,
+    step: &mut Step<N>,
+) -> Dense<N>
+where
+    S: HybridSystem<N, G>,
+    M: Method,
+{
+    step.dense::<M>(&mut |s, y| system.field(mode, s, y))
+}
+
 /// A guard as a function along a step, for isolation.
 pub(crate) struct AlongStep<'a, S: HybridSystem<N, G>, M, const N: usize, const G: usize> {
     pub(crate) system: &'a S,

@@ -3,7 +3,7 @@
 use std::marker::PhantomData;
 
 use crate::error::RunError;
-use crate::events::along_step::AlongStep;
+use crate::events::along_step::{AlongStep, dense_output};
 use crate::events::examination::Examination;
 use crate::events::isolate::{Bracket, Touch, Verdict, first_crossing, sides};
 use crate::events::quick::{self, Quick};
@@ -129,7 +129,7 @@ where
         }
         self.statistics.isolations += 1;
         let (system, mode) = (self.system, self.phase.mode);
-        let dense = step.dense::<M>(&mut |s, y| system.field(mode, s, y));
+        let dense = dense_output::<_, M, N, G>(system, mode, step);
         self.statistics.field += M::DENSE_STAGES - 1;
         let order = self.phase.zero_orders[guard];
         let signs: &[f64] = match self.phase.guards[guard].direction() {
@@ -208,7 +208,7 @@ where
     /// The result is 0 if the guard shows no sign.
     fn last_side<M: Method>(&mut self, guard: usize, step: &mut Step<N>, values: &[f64; 6]) -> f64 {
         let (system, mode) = (self.system, self.phase.mode);
-        let dense = step.dense::<M>(&mut |s, y| system.field(mode, s, y));
+        let dense = dense_output::<_, M, N, G>(system, mode, step);
         self.statistics.field += M::DENSE_STAGES - 1;
         let statistics = &mut *self.statistics;
         let (sign, method) = (1.0, PhantomData);

@@ -9,7 +9,7 @@
 
 use std::marker::PhantomData;
 
-use crate::events::along_step::{AlongStep, rounding};
+use crate::events::along_step::{AlongStep, dense_output, rounding};
 use crate::events::event::{Event, bit};
 use crate::events::isolate::{noise, sides};
 use crate::events::phase::{Phase, Standing};
@@ -229,7 +229,7 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Passage<'_, S, N, G>
     fn dense<M: Method>(&mut self, step: &mut Step<N>) -> Dense<N> {
         let (system, mode) = (self.system, self.phase.mode);
         self.statistics.field += M::DENSE_STAGES - 1;
-        step.dense::<M>(&mut |s, y| system.field(mode, s, y))
+        dense_output::<_, M, N, G>(system, mode, step)
     }
 
     fn curve<'b, M: Method>(

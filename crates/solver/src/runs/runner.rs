@@ -4,7 +4,7 @@
 //! switch.
 
 use crate::error::RunError;
-use crate::events::{Event, Examination, Found, Passage, Phase, Standing};
+use crate::events::{Event, Examination, Found, Passage, Phase, Standing, dense_output};
 use crate::hybrid::{HybridSystem, Observer, Outcome, Run, Start, Statistics, SwitchEvent};
 use crate::method::control::{Controller, first_step};
 use crate::method::{Method, State, Step, Trial};
@@ -182,14 +182,14 @@ where
             }
             if let Some(event) = event {
                 if O::WANTS_SEGMENTS && event.step.h > 0.0 {
-                    let dense = event.step.dense::<M>(&mut field);
+                    let dense = dense_output::<_, M, N, G>(system, mode, &mut event.step);
                     self.observer.on_segment(mode, &dense);
                 }
                 self.clock.advance(event.elapsed);
                 return Ok(());
             }
             if O::WANTS_SEGMENTS {
-                let dense = step.dense::<M>(&mut field);
+                let dense = dense_output::<_, M, N, G>(system, mode, step);
                 self.observer.on_segment(mode, &dense);
             }
             self.state = step.y1;

@@ -1,0 +1,73 @@
+//! What can go wrong in the reproduction of the paper.
+
+use std::sync::Arc;
+
+use stickslip_figure::FigureError;
+use stickslip_model::{CollisionError, InvalidParameter};
+use stickslip_plane::atlas::AtlasError;
+use stickslip_solver::Outcome;
+use stickslip_studies::search::SearchError;
+use stickslip_studies::{CollisionFailure, StudyError};
+
+/// Why a part of the reproduction has no result.
+#[derive(Debug, thiserror::Error)]
+pub enum ReproductionError {
+    /// A study that is a part of the reproduction has no result.
+    #[error(transparent)]
+    Study(#[from] StudyError),
+    /// No collision has these parameters.
+    #[error(transparent)]
+    Parameter(#[from] InvalidParameter),
+    /// A collision cannot be computed.
+    #[error(transparent)]
+    Collision(#[from] CollisionFailure),
+    /// A contact with Coulomb friction alone cannot be integrated.
+    #[error("pure sliding at psi = {psi:?}: {source}")]
+    Sliding {
+        /// The reduced impact ratio.
+        psi: f64,
+        /// What the integrator reports.
+        source: CollisionError,
+    },
+    /// A contact does not end.
+    #[error("kappa = {kappa:?}, psi = {psi:?}: the contact does not end: {outcome:?}")]
+    Unended {
+        /// The stiffness κ.
+        kappa: f64,
+        /// The reduced impact ratio ψ.
+        psi: f64,
+        /// How its integration ended.
+        outcome: Outcome,
+    },
+    /// Boundaries cannot be traced.
+    #[error("the boundaries cannot be traced: {0}")]
+    Atlas(#[from] AtlasError),
+    /// The points of Figure 4 cannot be named: their line crosses another number of regions than
+    /// the paper has points.
+    #[error("the line at κ = {kappa} crosses {found} regions; expected {expected}")]
+    Regions {
+        /// The stiffness κ of the line.
+        kappa: f64,
+        /// The number of regions that were found.
+        found: usize,
+        /// The number of points, with the one that has no letter.
+        expected: usize,
+    },
+    /// The largest elongation of the spring has no closed form.
+    #[error("kappa = {kappa:?}, psi = {psi:?}: the largest elongation has no closed form")]
+    NoElongation {
+        /// The stiffness κ.
+        kappa: f64,
+        /// The reduced impact ratio ψ.
+        psi: f64,
+    },
+    /// A search for an extremum has no result.
+    #[error(transparent)]
+    Search(#[from] SearchError),
+    /// A computation failed that several statements need.
+    #[error(transparent)]
+    Shared(Arc<ReproductionError>),
+    /// A picture cannot be drawn.
+    #[error(transparent)]
+    Figure(#[from] FigureError),
+}

@@ -1,0 +1,123 @@
+//! A part of the reproduction with its data.
+
+use std::sync::Arc;
+
+use stickslip_model::Engine;
+use stickslip_plane::atlas::VerifiedAtlas;
+use stickslip_plane::sweep::{Failed, FailureCount};
+
+use super::sweep::Sweep;
+use crate::statements::Audit;
+use stickslip_studies::Study;
+
+/// A study with everything else that belongs to it.
+#[derive(Debug)]
+pub struct Section {
+    /// What was computed.
+    pub study: Study,
+    /// The names of those of its tables that a page shows.
+    pub shown: Vec<&'static str>,
+    /// The statements of the paper with their verdicts, in the part that tests them.
+    pub audit: Option<Audit>,
+    /// Data beside those of the study.
+    pub files: Vec<DataFile>,
+    /// What speaks against its results.
+    pub objections: Vec<Objection>,
+}
+
+/// Data for a file.
+#[derive(Clone, Debug)]
+pub struct DataFile {
+    /// The name of the file.
+    pub name: String,
+    /// What the file holds.
+    pub title: String,
+    /// The content of the file.
+    pub content: Content,
+}
+
+/// The content of a file.
+#[derive(Clone, Debug)]
+pub enum Content {
+    /// A map.
+    Map(Arc<Sweep>),
+    /// An atlas.
+    Atlas(Arc<VerifiedAtlas>),
+}
+
+/// Something that speaks against a result.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Objection {
+    /// Points of a map have no result.
+    #[error("{file}: {} of {points} points could not be computed; the first, {failed}", failed.points)]
+    Points {
+        /// The file of the map.
+        file: String,
+        /// The number of its points.
+        points: usize,
+        /// The points without a result.
+        failed: Failed,
+    },
+    /// An atlas may be wrong.
+    #[error("{file}: the atlas is complete, but may be wrong: {reason}")]
+    Doubtful {
+        /// The file of the atlas.
+        file: String,
+        /// What its verification found.
+        reason: String,
+    },
+}
+
+/// The main results of all `sections`, a sentence each: the opening of a page that shows them.
+#[must_use]
+pub fn headlines(sections: &[Section]) -> Vec<String> {
+    sections.iter().flat_map(|section| &section.study.headlines).cloned().collect()
+}
+
+impl From<Study> for Section {
+    fn from(study: Study) -> Self {
+        let (shown, files, objections) = (Vec::new(), Vec::new(), Vec::new());
+        Self { study, shown, audit: None, files, objections }
+    }
+}
+
+impl Section {
+    /// The names of all files with data, and what they hold.
+    #[must_use]
+    pub fn data(&self) -> Vec<(String, &str)> {
+        let tables = self.study.tables.iter();
+        let tables = tables.map(|table| (format!("{}.csv", table.name), table.title.as_str()));
+        let files = self.files.iter().map(|file| (file.name.clone(), file.title.as_str()));
+        tables.chain(files).collect()
+    }
+
+    /// The section with a map as `name`.npz, and with what speaks against the map.
+    #[must_use]
+    pub(super) fn with_map(mut self, name: &str, title: String, sweep: &Arc<Sweep>) -> Self {
+        let name = format!("{name}.npz");
+        let mut count = FailureCount::default();
+        count.add(0, &sweep.results);
+        if let Some(failed) = count.failed(&sweep.grid, Engine::Exact) {
+            let (file, points) = (name.clone(), sweep.grid.points());
+            self.objections.push(Objection::Points { file, points, failed });
+        }
+        self.files.push(DataFile { name, title, content: Content::Map(Arc::clone(sweep)) });
+        self
+    }
+
+    /// The section with an atlas as `name`, and with what speaks against the atlas.
+    #[must_use]
+    pub(super) fn with_atlas(
+        mut self,
+        name: &str,
+        title: &str,
+        atlas: &Arc<VerifiedAtlas>,
+    ) -> Self {
+        let (name, title) = (name.to_owned(), title.to_owned());
+        if let Some(reason) = atlas.report.objection() {
+            self.objections.push(Objection::Doubtful { file: name.clone(), reason });
+        }
+        self.files.push(DataFile { name, title, content: Content::Atlas(Arc::clone(atlas)) });
+        self
+    }
+}

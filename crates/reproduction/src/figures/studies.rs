@@ -1,0 +1,30 @@
+//! The studies as parts of the reproduction.
+
+use stickslip_plane::progress::SILENT;
+
+use super::reproduction::Reproduction;
+use super::section::Section;
+use crate::error::ReproductionError;
+use crate::statements;
+use stickslip_studies::{convergence, stiff_springs};
+
+/// The study of convergence, without the times, which differ from run to run.
+pub fn convergence(_: &Reproduction) -> Result<Section, ReproductionError> {
+    let mut study = convergence::run(&convergence::Settings::usual(0.0)?, SILENT)?;
+    study.tables.retain(|table| table.name != convergence::TIMES);
+    Ok(Section { shown: vec![convergence::ORDERS], ..study.into() })
+}
+
+/// The study of stiff springs.
+pub fn stiff_springs(_: &Reproduction) -> Result<Section, ReproductionError> {
+    Ok(stiff_springs::run(&stiff_springs::Settings::default(), SILENT)?.into())
+}
+
+/// The statements of the paper, each with its verdict.
+pub fn statements(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
+    let numbers: Vec<u8> = (1..=statements::COUNT).collect();
+    let audit = statements::run(reproduction.spring, &numbers, SILENT)?;
+    let study = audit.study();
+    let shown = study.tables.iter().map(|table| table.name).collect();
+    Ok(Section { shown, audit: Some(audit), ..study.into() })
+}

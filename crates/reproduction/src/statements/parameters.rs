@@ -1,0 +1,173 @@
+//! Statement 2, on the number of parameters.
+
+use fastrand::Rng;
+use stickslip_model::regularized::{END, OTHER_SIDE, Phase, Progress};
+use stickslip_model::{CollisionError, Material, Pair, Regime, Side, Surface, regularized};
+use stickslip_solver::{
+    Direction, Dop853, Guard, HybridSystem, Options, Outcome, Start, State, run,
+};
+
+use super::sampling::{each, random};
+use super::spring::Spring;
+use super::statement::{Evidence, Finding, Stop, Verdict};
+use super::subject::Subject;
+use crate::error::ReproductionError;
+use stickslip_studies::CollisionFailure;
+
+/// 2: three independent parameters; these are κ, g_t/g_n and μ/α.
+pub fn three(subject: &Subject) -> Result<Finding, Stop> {
+    const CLOSE: f64 = 1e-9;
+    let mut draw = Rng::with_seed(2);
+    let contacts = random(1000, 2, false);
+    let cases: Vec<_> = contacts
+        .iter()
+        .map(|&[kappa, psi, _]| [kappa, psi, 0.05 * 60_f64.powf(draw.f64())])
+        .collect();
+    let differences = each(&cases, |&[kappa, psi, friction]| {
+        let reference = subject.collide(kappa, psi, 0.0)?.eps_t();
+        let system = ThreeParameters { spring: subject.spring, kappa, friction };
+        Ok((system.eps_t(psi)? - reference).abs() * psi)
+    })?;
+    let largest = differences.into_iter().fold(0.0, f64::max);
+
+    let mut in_si = 0.0_f64;
+    for &[kappa, psi, _] in &contacts {
+        let (target_kappa, target_psi) = scaled_back(&mut draw, kappa, psi)?;
+        in_si = in_si.max((target_kappa / kappa - 1.0).abs()).max((target_psi / psi - 1.0).abs());
+    }
+    // Both of them are needed.
+    let spread = |cases: &[[f64; 3]]| -> Result<f64, ReproductionError> {
+        let eps_t = each(cases, |&[k, p, _]| Ok(subject.collide(k, p, 0.0)?.eps_t()))?;
+        let [low, high] = eps_t
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &e| [low.min(e), high.max(e)]);
+        Ok(high - low)
+    };
+    let over_kappa = spread(&[1.0, 2.0, 4.0, 8.0, 16.0].map(|kappa| [kappa, 0.5, 0.0]))?;
+    let over_psi = spread(&[0.2, 0.5, 0.8, 1.1, 1.4].map(|psi| [5.0, psi, 0.0]))?;
+    let evidence = Evidence::default()
+        .count("random triples of κ, g_t/g_n and μ/α", cases.len())
+        .number("largest difference of w at equal κ and ψ", largest)
+        .number("largest relative error of κ and ψ from random spheres in SI units", in_si)
+        .number("spread of ε_t over κ at ψ = 0.5", over_kappa)
+        .number("spread of ε_t over ψ at κ = 5", over_psi);
+    let explanation = format!(
+        "The scaled equations with κ, g_t/g_n and μ/α were integrated for {} random triples. Their w at \
+         the end, in units of μ/α, differs by {largest:.1e} at most from that with κ and ψ = (g_t/g_n) \
+         α/μ alone: spring and velocity may be measured in units of μ/α. Two parameters suffice if \
+         this difference is below {CLOSE:e}. Both are needed, since ε_t varies by {over_kappa:.2} with \
+         κ and by {over_psi:.2} with ψ. Damping adds one.",
+        cases.len()
+    );
+    let two = largest < CLOSE && in_si < CLOSE && over_kappa.min(over_psi) > 0.01;
+    Ok(Finding::new(Verdict::of(!two), evidence, explanation))
+}
+
+/// κ and ψ of spheres in SI units that are chosen to have `kappa` and `psi`.
+fn scaled_back(draw: &mut Rng, kappa: f64, psi: f64) -> Result<(f64, f64), ReproductionError> {
+    let mut between = |low: f64, high: f64| low * (high / low).powf(draw.f64());
+    let material = Material {
+        young_modulus_pa: between(1e6, 1e12),
+        poisson_ratio: between(0.1, 0.5),
+        density_kg_per_m3: between(500.0, 2e4),
+    };
+    let friction = between(0.05, 1.0);
+    let surface = Surface { friction, tangential_stiffness_kg_per_s2: 1.0, damping_time_s: 0.0 };
+    let soft = Pair::equal_spheres(between(1e-4, 1.0), &material, &surface)?;
+    let soft = Pair { alpha: between(0.1, 1.0), ..soft };
+    let normal_m_per_s = between(1e-3, 100.0);
+    let tangential_m_per_s = psi * normal_m_per_s * friction / soft.alpha;
+    // κ is proportional to the stiffness.
+    let unit = soft.impact(normal_m_per_s, tangential_m_per_s)?.contact.kappa();
+    let surface = Surface { tangential_stiffness_kg_per_s2: kappa / unit, ..surface };
+    let pair = Pair { surface, ..soft };
+    let impact = pair.impact(normal_m_per_s, tangential_m_per_s)?;
+    Ok((impact.contact.kappa(), impact.contact.psi()))
+}
+
+/// The undamped contact in the scaled units of (23, 24), with friction f = μ/α kept: |F_t| ≤ f
+/// x^{3/2}.
+struct ThreeParameters {
+    spring: Spring,
+    kappa: f64,
+    friction: f64,
+}
+
+/// The number of components: u, v, y, w in the coordinates of `regularized`.
+const STATE: usize = 4;
+
+impl ThreeParameters {
+    fn eps_t(&self, psi: f64) -> Result<f64, ReproductionError> {
+        let (kappa, ratio) = (self.kappa, psi * self.friction);
+        let size = ratio.min(1.0) * 1e-14;
+        let options = Options { rtol: 1e-14, atol: size, max_step: 0.1, ..Options::default() };
+        let (regime, side, progress) = (Regime::Slip, Side::Positive, Progress::Touched);
+        let mode = Phase { regime, side, progress };
+        let start = Start { mode, s: 0.0, state: State::from([0.0, 1.0, 0.0, ratio]) };
+        let end = run(Dop853, self, start, f64::INFINITY, &options, &mut ());
+        let end = end.map_err(|error| {
+            let source = CollisionError::from(error).into();
+            CollisionFailure { kappa, psi, damping: 0.0, source }
+        })?;
+        match end.outcome {
+            Outcome::EndedByGuard { guard: END } => Ok(end.state[3] / ratio),
+            outcome => Err(ReproductionError::Unended { kappa, psi, outcome }),
+        }
+    }
+}
+
+impl HybridSystem<STATE, { regularized::GUARDS }> for ThreeParameters {
+    type Mode = Phase;
+
+    fn field(&self, phase: Phase, _s: f64, state: &State<STATE>) -> State<STATE> {
+        let [u, v, y, w] = *state.as_ref();
+        let follows = phase.regime == Regime::Stick || self.spring == Spring::Unreset;
+        let pull = match phase.regime {
+            Regime::Slip => phase.side.sign() * self.friction * u * u * u,
+            Regime::Stick => self.kappa * y,
+        };
+        let stretch = if follows { 2.0 * u * w } else { 0.0 };
+        State::from([v, -2.0 * u.powi(4), stretch, -2.0 * u * pull])
+    }
+
+    fn guards(&self, phase: Phase) -> [Guard; 3] {
+        let end = Guard::new(Direction::Below).terminal();
+        let leave = Guard::new(Direction::Below);
+        let reset = self.spring == Spring::Reset;
+        match (phase.regime, phase.progress) {
+            (Regime::Slip, Progress::Touched) if reset => [end.from_zero(1), leave, Guard::OFF],
+            (Regime::Slip, Progress::Touched) => [end.from_zero(1), leave.from_zero(2), Guard::OFF],
+            (Regime::Slip, _) if reset => [end, leave, Guard::OFF],
+            (Regime::Slip, _) => [end, leave.from_zero(1), Guard::OFF],
+            (Regime::Stick, _) => [end, leave.from_zero(if reset { 2 } else { 1 }), leave],
+        }
+    }
+
+    fn guard_values(&self, phase: Phase, _s: f64, state: &State<STATE>) -> [f64; 3] {
+        let [u, v, y, w] = *state.as_ref();
+        let (sign, limit) = (phase.side.sign(), self.friction * u * u * u);
+        let pull = sign * self.kappa * y;
+        match (phase.regime, self.spring) {
+            (Regime::Slip, Spring::Reset) => {
+                [u, sign * self.kappa * w - 1.5 * self.friction * u * v, 1.0]
+            }
+            (Regime::Slip, Spring::Unreset) => [u, pull - limit, 1.0],
+            (Regime::Stick, _) => [u, limit - pull, limit + pull],
+        }
+    }
+
+    fn transition(
+        &self,
+        phase: Phase,
+        guard: usize,
+        _s: f64,
+        state: &State<STATE>,
+    ) -> (Phase, State<STATE>) {
+        let next = phase.after(guard == OTHER_SIDE);
+        let mut state = *state;
+        if next.regime == Regime::Stick && self.spring == Spring::Reset {
+            state[2] = next.side.sign() * self.friction * state[0].powi(3) / self.kappa;
+        }
+        (next, state)
+    }
+}

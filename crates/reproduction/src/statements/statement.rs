@@ -1,0 +1,170 @@
+//! A statement of the paper, and what was found of it.
+
+use std::fmt;
+use std::sync::Arc;
+
+use crate::error::ReproductionError;
+use stickslip_studies::Cell;
+
+/// A statement of the paper, tested.
+#[derive(Debug)]
+pub struct Statement {
+    /// The number of the statement, from 1.
+    pub number: u8,
+    /// The statement in other words.
+    pub paraphrase: &'static str,
+    /// The place of the statement in the paper.
+    pub place: &'static str,
+    /// What was found of it.
+    pub finding: Finding,
+}
+
+/// What was found of a statement.
+#[derive(Debug)]
+pub struct Finding {
+    /// Whether the statement is true, by the rule that the explanation names.
+    pub verdict: Verdict,
+    /// The condition under which it holds, if there is one.
+    pub condition: Option<String>,
+    /// The numbers from which the verdict follows.
+    pub evidence: Evidence,
+    /// What they mean, in sentences.
+    pub explanation: String,
+}
+
+/// Whether a statement is true.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// The statement is true.
+    Holds,
+    /// The statement is true under a condition.
+    HoldsWithACondition,
+    /// The statement is not true.
+    DoesNotHold,
+    /// The numbers leave the statement open.
+    CannotBeDecided,
+}
+
+/// Why a test ends early.
+#[derive(Clone, Debug)]
+pub enum Stop {
+    /// A collision cannot be computed. This is an error of the audit.
+    Failed(Arc<ReproductionError>),
+    /// The numbers leave the statement open, for this reason. This is a verdict.
+    Open(String),
+}
+
+/// Numbers with their names.
+#[derive(Debug, Default)]
+pub struct Evidence(Vec<(String, Cell)>);
+
+impl Statement {
+    /// The command that tests this statement alone.
+    #[must_use]
+    pub fn command(&self) -> String {
+        format!("stickslip reproduce --statement {}", self.number)
+    }
+}
+
+impl Finding {
+    /// A finding without a condition.
+    #[must_use]
+    pub fn new(verdict: Verdict, evidence: Evidence, explanation: String) -> Self {
+        Self { verdict, condition: None, evidence, explanation }
+    }
+
+    /// The finding that a statement holds under `condition`.
+    #[must_use]
+    pub fn under(condition: String, evidence: Evidence, explanation: String) -> Self {
+        let verdict = Verdict::HoldsWithACondition;
+        Self { verdict, condition: Some(condition), evidence, explanation }
+    }
+
+    /// The finding of a statement that is true or not in both readings of the axis of stiffness:
+    /// as κ of (24), and as ακ.
+    pub(super) fn by_reading(
+        [printed, axis]: [bool; 2],
+        evidence: Evidence,
+        explanation: String,
+    ) -> Self {
+        match (printed, axis) {
+            (true, _) => Self::new(Verdict::Holds, evidence, explanation),
+            (false, true) => {
+                let condition = "if the figures' κ is α times that of (24)".to_owned();
+                Self::under(condition, evidence, explanation)
+            }
+            (false, false) => Self::new(Verdict::DoesNotHold, evidence, explanation),
+        }
+    }
+}
+
+impl Verdict {
+    /// The verdict on a statement that is either true or not.
+    #[must_use]
+    pub fn of(holds: bool) -> Self {
+        if holds { Self::Holds } else { Self::DoesNotHold }
+    }
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Holds => "holds",
+            Self::HoldsWithACondition => "holds with a condition",
+            Self::DoesNotHold => "does not hold",
+            Self::CannotBeDecided => "cannot be decided",
+        })
+    }
+}
+
+impl Stop {
+    /// The finding of a test, which a reason to leave the statement open is too.
+    ///
+    /// # Errors
+    /// [`ReproductionError`]: a collision cannot be computed.
+    pub fn into_finding(tested: Result<Finding, Self>) -> Result<Finding, ReproductionError> {
+        match tested {
+            Ok(finding) => Ok(finding),
+            Err(Self::Open(reason)) => {
+                Ok(Finding::new(Verdict::CannotBeDecided, Evidence::default(), reason))
+            }
+            Err(Self::Failed(error)) => {
+                Err(Arc::try_unwrap(error).unwrap_or_else(ReproductionError::Shared))
+            }
+        }
+    }
+}
+
+impl<E: Into<ReproductionError>> From<E> for Stop {
+    fn from(error: E) -> Self {
+        Self::Failed(Arc::new(error.into()))
+    }
+}
+
+impl Evidence {
+    /// The evidence with a further number.
+    #[must_use]
+    pub fn number(mut self, name: impl Into<String>, value: f64) -> Self {
+        self.0.push((name.into(), value.into()));
+        self
+    }
+
+    /// The evidence with a further count.
+    #[must_use]
+    pub fn count(mut self, name: impl Into<String>, value: usize) -> Self {
+        self.0.push((name.into(), value.into()));
+        self
+    }
+
+    /// The evidence with further words.
+    #[must_use]
+    pub fn text(mut self, name: impl Into<String>, value: impl Into<String>) -> Self {
+        self.0.push((name.into(), Cell::Text(value.into())));
+        self
+    }
+
+    /// All numbers with their names, in order.
+    pub fn iter(&self) -> impl Iterator<Item = &(String, Cell)> {
+        self.0.iter()
+    }
+}

@@ -1,0 +1,3 @@
+//! Tests of the reproduction, in one program.
+
+mod parts;
