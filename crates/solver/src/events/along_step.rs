@@ -71,8 +71,6 @@ where
     S: HybridSystem<N, G>,
     M: Method,
 {
-    type Error = RunError;
-
     fn dense(&mut self, theta: f64) -> (f64, f64) {
         let (fine, coarse) = (self.dense.at(theta), self.dense.coarse_at(theta));
         (self.value(theta, &fine), self.value(theta, &coarse))

@@ -5,6 +5,9 @@
 //! coefficients and subdivision isolate its critical points. These cut the step into pieces on
 //! which q is monotone, and on each piece the signs at the ends decide. If a value is smaller than
 //! the error of the dense output, a step of the method to that point tells its sign.
+//!
+//! Few steps come here. A curve is therefore dispatched at run time, and all this is compiled once,
+//! not once for each system and method.
 
 mod chebyshev;
 mod curve;
@@ -12,6 +15,7 @@ mod panel;
 
 use std::ops::ControlFlow;
 
+use crate::error::RunError;
 use crate::events::isolate::curve::{Accuracy, DEPTH, NARROWEST, Quotient, power};
 use crate::events::isolate::panel::{Panel, Points};
 
@@ -59,13 +63,13 @@ pub(crate) enum Verdict {
 /// `hidden` count as zero. `start` and `end` are the curve's values at the ends of the step. If the
 /// curve bounds a `domain`, a negative start counts too. Touches before the crossing go to
 /// `on_touch`.
-pub(crate) fn first_crossing<C: Curve>(
-    curve: &mut C,
+pub(crate) fn first_crossing(
+    curve: &mut dyn Curve,
     (zero_order, side, hidden): (u32, f64, f64),
     domain: bool,
     (start, end): (f64, f64),
-    on_touch: impl FnMut(Touch),
-) -> Result<Verdict, C::Error> {
+    on_touch: &mut dyn FnMut(Touch),
+) -> Result<Verdict, RunError> {
     let mut quotient = Quotient { curve, order: zero_order };
     let mut accuracy = quotient.accuracy();
     if accuracy.dense.is_nan() {
@@ -123,11 +127,11 @@ pub(crate) fn first_crossing<C: Curve>(
 /// The first and the last sign that a curve shows on a step. They are 0 if it shows none. At the
 /// ends of the step, values up to `hidden` have no sign. `None` means that a shorter step is
 /// needed.
-pub(crate) fn sides<C: Curve>(
-    curve: &mut C,
+pub(crate) fn sides(
+    curve: &mut dyn Curve,
     hidden: f64,
     end: f64,
-) -> Result<Option<[f64; 2]>, C::Error> {
+) -> Result<Option<[f64; 2]>, RunError> {
     let mut quotient = Quotient { curve, order: 0 };
     let mut accuracy = quotient.accuracy();
     if accuracy.dense.is_nan() {
@@ -158,14 +162,14 @@ pub(crate) fn sides<C: Curve>(
 /// has no sign. The value `end` at the end of the step is given. If it is within `hidden_end` of
 /// zero, the middle of the last piece is visited instead. The result is `None` if the step is too
 /// coarse.
-fn walk<C: Curve, B>(
-    quotient: &mut Quotient<'_, C>,
+fn walk<B>(
+    quotient: &mut Quotient<'_>,
     accuracy: &mut Accuracy,
     hidden: f64,
     (end, hidden_end): (f64, f64),
     mut on_touch: impl FnMut(Touch),
-    mut visit: impl FnMut(&mut Quotient<'_, C>, (f64, f64)) -> ControlFlow<B>,
-) -> Result<Option<ControlFlow<B>>, C::Error> {
+    mut visit: impl FnMut(&mut Quotient<'_>, (f64, f64)) -> ControlFlow<B>,
+) -> Result<Option<ControlFlow<B>>, RunError> {
     let order = quotient.order;
     let mut pending = [(0.0, 0.0); DEPTH as usize + 2];
     pending[0] = (0.0, 1.0);
@@ -239,7 +243,7 @@ fn walk<C: Curve, B>(
 
 /// The root of the quotient along the dense output between two points of opposite sign, by the
 /// Illinois rule.
-fn panel_root<C: Curve>(quotient: &mut Quotient<'_, C>, low: (f64, f64), high: (f64, f64)) -> f64 {
+fn panel_root(quotient: &mut Quotient<'_>, low: (f64, f64), high: (f64, f64)) -> f64 {
     let (mut a, mut b) = (low, high);
     let mut theta = b.0;
     for _ in 0..40 {

@@ -158,7 +158,7 @@ where
                 (order, sign * self.phase.sides[guard], self.phase.hidden[guard]),
                 below,
                 (sign * values[0], sign * end),
-                |touch: Touch| {
+                &mut |touch: Touch| {
                     if let Some(place) = touches.get_mut(count) {
                         *place = Some(touch);
                     }
@@ -212,9 +212,9 @@ where
         self.statistics.field += M::DENSE_STAGES - 1;
         let statistics = &mut *self.statistics;
         let (sign, method) = (1.0, PhantomData);
-        let mut curve =
+        let mut curve: AlongStep<'_, S, M, N, G> =
             AlongStep { system, mode, guard, sign, step, dense: &dense, statistics, method };
-        match sides::<AlongStep<'_, S, M, N, G>>(&mut curve, 0.0, 0.0) {
+        match sides(&mut curve, 0.0, 0.0) {
             Ok(Some([_, last])) if last != 0.0 => f64::MIN_POSITIVE.copysign(last),
             // Otherwise the last nonzero value at the nodes decides.
             _ => values[..5]

@@ -1,5 +1,6 @@
 //! A guard as isolation sees it: a curve, its quotient by a known zero, and the accuracy of both.
 
+use crate::error::RunError;
 use crate::events::isolate::chebyshev::COSINES;
 use crate::events::isolate::panel::Panel;
 
@@ -23,20 +24,18 @@ const DIFFERENCED: f64 = 30.397_368_307_141_3;
 
 /// A guard's value along a step.
 pub(crate) trait Curve {
-    /// The reason for which a value cannot be computed.
-    type Error;
     /// The value by the dense output, and by the dense output without its last term.
     fn dense(&mut self, theta: f64) -> (f64, f64);
     /// The effect of rounding of state and time on a value: at the start of the step, and the
     /// largest on the step.
     fn rounding(&mut self) -> (f64, f64);
     /// The value by a step of the method to `theta`.
-    fn truth(&mut self, theta: f64) -> Result<f64, Self::Error>;
+    fn truth(&mut self, theta: f64) -> Result<f64, RunError>;
 }
 
 /// The scatter of a curve's values at the start of the step or, if `at_end`, at its end. It is 0 if
 /// the values scatter only by their own rounding.
-pub(crate) fn noise<C: Curve>(curve: &mut C, at_end: bool) -> f64 {
+pub(crate) fn noise(curve: &mut dyn Curve, at_end: bool) -> f64 {
     let width = NARROWEST / 64.0;
     let (low, high) = if at_end { (1.0 - width, 1.0) } else { (0.0, width) };
     let largest = curve.dense(low).0.abs().max(curve.dense(high).0.abs());
@@ -50,12 +49,12 @@ pub(super) fn power(theta: f64, order: u32) -> f64 {
 }
 
 /// A curve divided by θ to the power `order`, to remove a known zero at its start.
-pub(super) struct Quotient<'a, C> {
-    pub(super) curve: &'a mut C,
+pub(super) struct Quotient<'a> {
+    pub(super) curve: &'a mut (dyn Curve + 'a),
     pub(super) order: u32,
 }
 
-impl<C: Curve> Quotient<'_, C> {
+impl Quotient<'_> {
     /// The quotient by the dense output, and by the dense output without its last term.
     pub(super) fn at(&mut self, theta: f64) -> (f64, f64) {
         let (fine, coarse) = self.curve.dense(theta);
@@ -64,7 +63,7 @@ impl<C: Curve> Quotient<'_, C> {
     }
 
     /// The quotient by a step of the method.
-    pub(super) fn truth(&mut self, theta: f64) -> Result<f64, C::Error> {
+    pub(super) fn truth(&mut self, theta: f64) -> Result<f64, RunError> {
         Ok(self.curve.truth(theta)? / power(theta, self.order))
     }
 
