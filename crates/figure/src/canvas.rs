@@ -20,3 +20,4 @@ mod ticks;
 pub(crate) use bitmap::Bitmap;
 pub(crate) use legend::Legend;
 pub(crate) use placement::{Cells, place};
+pub(crate) use ticks::rises;

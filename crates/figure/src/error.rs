@@ -16,6 +16,14 @@ pub enum FigureError {
         /// Number of values.
         values: usize,
     },
+    /// An axis of a map shows nothing.
+    #[error("an axis from {low:?} to {high:?}; expected two finite numbers, the second one larger")]
+    Range {
+        /// The lower end of the axis.
+        low: f64,
+        /// Its upper end.
+        high: f64,
+    },
     /// An image has more pixels than PNG allows.
     #[error("an image of {pixels} pixels in a row or column; expected up to 4294967295")]
     TooLarge {
@@ -28,6 +36,14 @@ pub enum FigureError {
     /// The SVG cannot be read.
     #[error("the SVG cannot be read: {0}")]
     Svg(#[from] resvg::usvg::Error),
+    /// A picture has no size.
+    #[error("a picture of {width:?} by {height:?} pixels; expected two finite numbers above 0")]
+    Size {
+        /// The width of the picture.
+        width: f64,
+        /// The height of the picture.
+        height: f64,
+    },
     /// The picture does not fit into memory.
     #[error("the picture does not fit into memory")]
     Memory,

@@ -89,16 +89,18 @@ pub enum Extent {
 }
 
 impl Grid {
-    /// Number of points, one for each cell.
+    /// Number of points, one for each cell; the largest number if there are more.
     #[must_use]
     pub fn points(&self) -> usize {
-        self.columns.cells * self.rows.cells
+        self.columns.cells.saturating_mul(self.rows.cells)
     }
 
-    /// Column and row of a point. Points are counted row by row.
+    /// Column and row of a point. Points are counted row by row. A grid without columns has no
+    /// points, and all are said to be in its first row.
     #[must_use]
     pub fn cell(&self, point: usize) -> (usize, usize) {
-        (point % self.columns.cells, point / self.columns.cells)
+        let cells = self.columns.cells.max(1);
+        (point % cells, point / cells)
     }
 
     /// The point of a cell: the inverse of [`Self::cell`].

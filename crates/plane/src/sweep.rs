@@ -17,6 +17,14 @@ pub enum PointError {
     /// The collision cannot be computed.
     #[error(transparent)]
     Engine(#[from] EngineError),
+    /// The grid has no such point.
+    #[error("point {index} of a map of {points} points")]
+    Outside {
+        /// The number of the point.
+        index: usize,
+        /// The number of all points.
+        points: usize,
+    },
     /// The number of switches does not fit into a [`Tile`].
     #[error("{count} switches; a map holds up to 2147483647")]
     Count {
@@ -58,6 +66,9 @@ pub fn compute(grid: &Grid, engine: Engine, points: ops::Range<usize>) -> Tile {
 /// # Errors
 /// [`PointError`] says why the point has no result.
 pub fn point(grid: &Grid, engine: Engine, index: usize) -> Result<(f64, i32), PointError> {
+    if index >= grid.points() {
+        return Err(PointError::Outside { index, points: grid.points() });
+    }
     let (column, row) = grid.cell(index);
     let (collision, _) = engine.collide(grid.contact(column, row)?)?;
     let count = collision.switches.len();

@@ -34,7 +34,7 @@ impl Tile {
     /// the same label.
     #[must_use]
     pub fn from_bytes(bytes: &[u8], label: &str, points: usize) -> Option<Self> {
-        if bytes.len() != length(label, points) {
+        if points > bytes.len() || bytes.len() != length(label, points) {
             return None;
         }
         let (content, checksum) = bytes.split_last_chunk()?;

@@ -9,12 +9,23 @@ use stickslip_solver::Outcome;
 use stickslip_studies::search::SearchError;
 use stickslip_studies::{CollisionFailure, StudyError};
 
+use crate::statements::COUNT;
+
 /// Why a part of the reproduction has no result.
 #[derive(Debug, thiserror::Error)]
 pub enum ReproductionError {
     /// A study that is a part of the reproduction has no result.
     #[error(transparent)]
     Study(#[from] StudyError),
+    /// The paper has no such statement.
+    #[error("there is no statement {number}; expected 1 to {COUNT}")]
+    Statement {
+        /// The number of the statement.
+        number: u8,
+    },
+    /// Maps have no cells.
+    #[error("maps of 0 cells; expected at least one")]
+    NoCells,
     /// No collision has these parameters.
     #[error(transparent)]
     Parameter(#[from] InvalidParameter),

@@ -49,10 +49,7 @@ pub struct Audit {
 /// Tests the statements `numbers`, from 1 to [`COUNT`], on the threads of the current pool.
 ///
 /// # Errors
-/// [`ReproductionError`]: a collision cannot be computed.
-///
-/// # Panics
-/// A number is not from 1 to [`COUNT`].
+/// [`ReproductionError`]: a number is not from 1 to [`COUNT`], or a collision cannot be computed.
 pub fn run(
     spring: Spring,
     numbers: &[u8],

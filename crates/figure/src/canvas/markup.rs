@@ -106,6 +106,9 @@ pub(crate) fn spans(markup: &str, size: f64) -> String {
 
 /// `text` with escapes for the characters that have a meaning in XML.
 pub(crate) fn escaped(text: &str) -> String {
+    // XML has no control characters.
+    let allowed = |c: &char| !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}');
+    let text: String = text.chars().filter(allowed).collect();
     text.replace('&', "&amp;").replace('<', "&lt;")
 }
 
@@ -123,6 +126,7 @@ mod tests {
     fn markup_becomes_pieces() {
         assert_eq!(plain("F_t/μ in m β^{2/5} g_n^{6/5}"), "Ft/μ in m β2/5 gn6/5");
         assert_eq!(escaped(&plain("a<b&c_")), "a&lt;b&amp;c");
+        assert_eq!(escaped("a\u{0}\u{1b}b\u{ffff}"), "ab");
         let spans = spans("g_n^{−1}x", 10.0);
         let expected = r#"g<tspan dy="2.2" font-size="7.2">n</tspan><tspan dy="-5.8" font-size="7.2">−1</tspan><tspan dy="3.6" font-size="10">x</tspan>"#;
         assert_eq!(spans, expected);

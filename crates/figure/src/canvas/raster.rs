@@ -18,8 +18,13 @@ const FONT_FILE: &[u8] = include_bytes!("../../assets/DejaVuSans-subset.ttf");
 /// The picture as a PNG file, with two pixels for each pixel of the SVG.
 ///
 /// # Errors
-/// [`FigureError::Memory`]: the picture is too large for memory.
+/// [`FigureError::Size`]: the picture has no size. [`FigureError::Memory`]: it is too large for
+/// memory.
 pub fn png(svg: &Svg) -> Result<Vec<u8>, FigureError> {
+    let (width, height) = (svg.width(), svg.height());
+    if ![width, height].iter().all(|side| side.is_finite() && *side > 0.0) {
+        return Err(FigureError::Size { width, height });
+    }
     let mut fonts = Database::new();
     fonts.load_font_data(FONT_FILE.to_vec());
     let options = Options { fontdb: Arc::new(fonts), ..Options::default() };

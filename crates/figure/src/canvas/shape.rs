@@ -16,6 +16,11 @@ pub struct Rectangle {
 }
 
 impl Rectangle {
+    /// Whether its place and its size are finite.
+    pub(super) fn is_finite(&self) -> bool {
+        [self.left, self.top, self.width, self.height].into_iter().all(f64::is_finite)
+    }
+
     /// x of the right edge.
     #[must_use]
     pub fn right(&self) -> f64 {

@@ -10,7 +10,7 @@ use super::shape::{Px, Rectangle, Stroke};
 use super::style::{FONT, INK};
 
 /// A picture to which shapes and words are added. Later ones lie on top. Lengths are in pixels, and
-/// y points down.
+/// y points down. What has a place or a size that is not finite is not added.
 #[derive(Debug)]
 pub struct Svg {
     width: f64,
@@ -66,6 +66,12 @@ impl Svg {
         self.width
     }
 
+    /// The height of the picture.
+    #[must_use]
+    pub fn height(&self) -> f64 {
+        self.height
+    }
+
     /// The picture as an SVG document.
     #[must_use]
     pub fn document(&self) -> String {
@@ -108,41 +114,74 @@ impl Svg {
 
     /// Adds a filled rectangle.
     pub fn fill(&mut self, at: Rectangle, colour: &str) {
+        if !at.is_finite() {
+            return;
+        }
         self.element(format_args!(r#"<rect {} fill="{colour}"/>"#, Sides(at)));
     }
 
     /// Adds the edge of a rectangle.
     pub fn outline(&mut self, at: Rectangle, stroke: Stroke) {
+        if !at.is_finite() {
+            return;
+        }
         self.element(format_args!(r#"<rect {} fill="none" {stroke}/>"#, Sides(at)));
     }
 
     /// Adds a filled circle.
     pub fn disc(&mut self, centre: (f64, f64), radius: f64, colour: &str) {
+        if !is_finite(centre) {
+            return;
+        }
         let [x, y, r] = [centre.0, centre.1, radius].map(Px);
         self.element(format_args!(r#"<circle cx="{x}" cy="{y}" r="{r}" fill="{colour}"/>"#));
     }
 
     /// Adds a circle filled with white.
     pub fn ring(&mut self, centre: (f64, f64), radius: f64, stroke: Stroke) {
+        if !is_finite(centre) {
+            return;
+        }
         let [x, y, r] = [centre.0, centre.1, radius].map(Px);
         self.element(format_args!(r#"<circle cx="{x}" cy="{y}" r="{r}" fill="white" {stroke}/>"#));
     }
 
     /// Adds a straight line.
     pub fn line(&mut self, (x1, y1): (f64, f64), (x2, y2): (f64, f64), stroke: Stroke) {
+        if !(is_finite((x1, y1)) && is_finite((x2, y2))) {
+            return;
+        }
         let [x1, y1, x2, y2] = [x1, y1, x2, y2].map(Px);
         self.element(format_args!(r#"<line x1="{x1}" y1="{y1}" x2="{x2}" y2="{y2}" {stroke}/>"#));
     }
 
-    /// Adds a line through points. Points too close to be told apart are left out.
+    /// Adds a line through points. Points too close to be told apart are left out; a point that is
+    /// not finite interrupts the line.
     pub fn polyline(&mut self, points: impl IntoIterator<Item = (f64, f64)>, stroke: Stroke) {
+        let mut run = Vec::new();
+        for point in points {
+            if is_finite(point) {
+                run.push(point);
+            } else {
+                self.unbroken(&run, stroke);
+                run.clear();
+            }
+        }
+        self.unbroken(&run, stroke);
+    }
+
+    /// Adds a line through points, all of which are finite.
+    fn unbroken(&mut self, points: &[(f64, f64)], stroke: Stroke) {
         /// No eye and no usual magnification tells points apart that are closer.
         const APART: f64 = 0.1;
+        if points.is_empty() {
+            return;
+        }
         let mut list = String::new();
         let mut write =
             |(x, y): (f64, f64)| markup::append(&mut list, format_args!("{},{} ", Px(x), Px(y)));
         let (mut written, mut skipped) = (None::<(f64, f64)>, None);
-        for point in points {
+        for &point in points {
             let near =
                 |(x, y): (f64, f64)| (x - point.0).abs() < APART && (y - point.1).abs() < APART;
             if written.is_some_and(near) {
@@ -162,14 +201,17 @@ impl Svg {
 
     /// Adds a filled polygon.
     pub fn area(&mut self, corners: impl IntoIterator<Item = (f64, f64)>, colour: &str) {
-        let corners: Vec<String> =
-            corners.into_iter().map(|(x, y)| format!("{},{}", Px(x), Px(y))).collect();
+        let corners = corners.into_iter().filter(|&corner| is_finite(corner));
+        let corners: Vec<String> = corners.map(|(x, y)| format!("{},{}", Px(x), Px(y))).collect();
         let list = corners.join(" ");
         self.element(format_args!(r#"<polygon points="{list}" fill="{colour}"/>"#));
     }
 
     /// Adds an image, each pixel of which becomes a sharp rectangle. `png` is its file in base 64.
     pub fn image(&mut self, at: Rectangle, png: &str) {
+        if !at.is_finite() {
+            return;
+        }
         // The attribute is for viewers that do not know the newer word in the style.
         self.element(format_args!(
             r#"<image {} preserveAspectRatio="none" image-rendering="optimizeSpeed" style="image-rendering:pixelated" href="data:image/png;base64,{png}"/>"#,
@@ -180,6 +222,9 @@ impl Svg {
     /// Adds a text; its position is at the middle of its height.
     pub fn words(&mut self, (x, y): (f64, f64), words: Words<'_>) {
         let Words { text, size, anchor, colour, upwards } = words;
+        if !is_finite((x, y)) {
+            return;
+        }
         let anchor = match anchor {
             Anchor::Start => "start",
             Anchor::Middle => "middle",
@@ -204,6 +249,10 @@ impl Svg {
         markup::append(&mut self.body, element);
         self.body.push('\n');
     }
+}
+
+fn is_finite((x, y): (f64, f64)) -> bool {
+    x.is_finite() && y.is_finite()
 }
 
 /// The attributes of a rectangle.

@@ -12,8 +12,11 @@ pub struct Tick {
 }
 
 /// About `count` ticks of a linear axis. They are 1, 2 or 5 times a power of ten apart, and their
-/// labels are in units of 10^[`exponent`].
+/// labels are in units of 10^[`exponent`]. An axis whose range is not finite and rising has none.
 pub fn linear(range: (f64, f64), count: f64) -> Vec<Tick> {
+    if !rises(range) {
+        return Vec::new();
+    }
     let finest = (range.1 - range.0) / unit(range) / count.max(1.0);
     let power = finest.log10().floor();
     let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * 10_f64.powf(power));
@@ -22,7 +25,13 @@ pub fn linear(range: (f64, f64), count: f64) -> Vec<Tick> {
 }
 
 /// The ticks of a linear axis at all multiples of `step`, with labels in units of 10^[`exponent`].
+/// There are none if the range is not finite and rising, or would have more than a thousand.
 pub fn every(step: f64, range: (f64, f64)) -> Vec<Tick> {
+    // Written so that NaN has none.
+    let few = step > 0.0 && (range.1 - range.0) / step <= 1000.0;
+    if !(rises(range) && few) {
+        return Vec::new();
+    }
     multiples(range, step / unit(range))
 }
 
@@ -53,8 +62,11 @@ fn decimals(step: f64) -> usize {
 /// powers of ten or at powers of ten alone.
 ///
 /// All labels of an axis are written alike: as decimals if all values are from 10^−3 to 10^4,
-/// otherwise as powers of ten.
+/// otherwise as powers of ten. An axis whose range is not finite, rising and above 0 has no ticks.
 pub fn logarithmic(range: (f64, f64), count: f64) -> Vec<Tick> {
+    if !(rises(range) && range.0 > 0.0) {
+        return Vec::new();
+    }
     let decades = (range.1 / range.0).log10();
     // Values 1, 2 and 5 times a power of ten lie closer together than three ticks of a decade that
     // are evenly spread, and powers are wider than decimals.
@@ -110,6 +122,11 @@ fn decade_values((low, high): (f64, f64), factors: &[f64], apart: usize) -> Vec<
 /// Whether decimals are short enough for all `values`.
 fn are_plain(values: &[DecadeValue]) -> bool {
     values.iter().all(|decade| (1e-3..=1e4).contains(&decade.value))
+}
+
+/// Whether an axis with this range shows anything.
+pub(crate) fn rises((low, high): (f64, f64)) -> bool {
+    low < high && (high - low).is_finite()
 }
 
 /// The power of ten that the labels of a linear axis leave out: 0 if the numbers are short enough.

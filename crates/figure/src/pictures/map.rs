@@ -26,7 +26,7 @@ const TITLE_AT: (f64, f64) = (72.0, 20.0);
 /// # Errors
 /// [`FigureError`]: a map has no cells, not one value for each, or too many cells.
 pub fn draw(title: &str, maps: &[MapPanel<'_>]) -> Result<Svg, FigureError> {
-    maps.iter().try_for_each(MapPanel::require_values)?;
+    maps.iter().try_for_each(MapPanel::validate)?;
     let names = maps.iter().map(MapPanel::names).fold(0.0, f64::max);
     let step = STEP + names;
     let mut svg = Svg::new(step * maps.len().max(1) as f64, HEIGHT, title);

@@ -7,3 +7,4 @@ mod examples;
 mod layout;
 mod maps;
 mod svg;
+mod unusual;

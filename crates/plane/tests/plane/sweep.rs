@@ -94,3 +94,26 @@ fn a_parameter_that_no_collision_can_have_is_named() {
     failures.add(0, &compute(&grid, Engine::Auto, 0..grid.points()));
     assert_eq!(failures.failed(&grid, Engine::Auto).unwrap().points, grid.points());
 }
+
+/// A grid without columns has no points, and one with more than there are numbers has the most.
+#[test]
+fn a_point_that_a_grid_does_not_have_is_refused() {
+    let mut grid = grid((0.0, 70.0), (0.0, 2.9), 0.0);
+    let outside = point(&grid, Engine::Exact, grid.points());
+    assert_eq!(outside, Err(PointError::Outside { index: 84, points: 84 }));
+    grid.columns.cells = 0;
+    assert_eq!((grid.points(), grid.cell(5)), (0, (0, 5)));
+    let outside = point(&grid, Engine::Exact, 0);
+    assert_eq!(outside.unwrap_err().to_string(), "point 0 of a map of 0 points");
+    grid.columns.cells = usize::MAX;
+    assert_eq!(grid.points(), usize::MAX);
+}
+
+#[test]
+fn bytes_of_any_length_are_a_tile_or_none() {
+    for points in [0, 1, usize::MAX / 12, usize::MAX] {
+        for length in [0, 1, 15, 16, 17] {
+            assert_eq!(Tile::from_bytes(&vec![0; length], "", points), None, "{points} {length}");
+        }
+    }
+}

@@ -46,9 +46,10 @@ const ENTRIES: [Entry; COUNT as usize] = [
 /// Tests statement `number`, from 1 to [`COUNT`].
 ///
 /// # Errors
-/// A collision cannot be computed.
+/// There is no such statement, or a collision cannot be computed.
 pub fn test(number: u8, subject: &Subject) -> Result<Statement, ReproductionError> {
-    let Entry(paraphrase, place, test) = &ENTRIES[usize::from(number) - 1];
+    let entry = usize::from(number).checked_sub(1).and_then(|index| ENTRIES.get(index));
+    let Entry(paraphrase, place, test) = entry.ok_or(ReproductionError::Statement { number })?;
     let finding = Stop::into_finding(test(subject))?;
     Ok(Statement { number, paraphrase, place, finding })
 }

@@ -1,3 +1,4 @@
 //! Tests of the reproduction, in one program.
 
 mod parts;
+mod refusals;

@@ -14,12 +14,20 @@ pub struct Settings {
     pub contacts: Vec<Contact>,
 }
 
-/// A collision is too stiff for a study.
+/// Settings are out of range.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("kappa = {kappa:?} is out of range; expected a number above 0, at most {MOST_STIFFNESS:?}")]
-pub struct InvalidConvergence {
-    /// The stiffness of the collision.
-    pub kappa: f64,
+pub enum InvalidConvergence {
+    /// There is nothing to measure.
+    #[error("a study of 0 collisions; expected at least one")]
+    NoContacts,
+    /// A collision is too stiff.
+    #[error(
+        "kappa = {kappa:?} is out of range; expected a number above 0, at most {MOST_STIFFNESS:?}"
+    )]
+    Stiff {
+        /// The stiffness of the collision.
+        kappa: f64,
+    },
 }
 
 impl Settings {
@@ -39,10 +47,13 @@ impl Settings {
     /// Checks all settings.
     ///
     /// # Errors
-    /// [`InvalidConvergence`]: a collision is too stiff.
+    /// [`InvalidConvergence`]: there is no collision, or one is too stiff.
     pub fn validate(&self) -> Result<(), InvalidConvergence> {
+        if self.contacts.is_empty() {
+            return Err(InvalidConvergence::NoContacts);
+        }
         match self.contacts.iter().find(|contact| contact.kappa() > MOST_STIFFNESS) {
-            Some(stiff) => Err(InvalidConvergence { kappa: stiff.kappa() }),
+            Some(stiff) => Err(InvalidConvergence::Stiff { kappa: stiff.kappa() }),
             None => Ok(()),
         }
     }

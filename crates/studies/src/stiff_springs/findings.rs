@@ -71,17 +71,26 @@ impl Measurement {
         let integrated = all().filter(|largest| largest.integrated.is_finite());
         let off = integrated.clone().map(|found| (found.integrated - found.crest.velocity).abs());
         let [first, .., last] = &self.velocities[0][..] else { return String::new() };
+        let highest = first.crest.velocity;
+        let highest =
+            if highest < 1e-3 { format!("{highest:.6e}") } else { format!("{highest:.6}") };
+        let repeated = match integrated.count() {
+            0 => "repeats none of them, which are too stiff".to_owned(),
+            count => {
+                format!(
+                    "repeats {count} of {} tops within {:.1e}",
+                    all().count(),
+                    off.fold(0.0, f64::max)
+                )
+            }
+        };
         format!(
-            "The largest |w_final| around ψ = {} falls from {:.6} at κ = {} to {:.6e} at κ = {}. \
-             dop853 repeats {} of {} tops within {:.1e}.",
+            "The largest |w_final| around ψ = {} falls from {highest} at κ = {} to {:.6e} at κ = {}. \
+             dop853 {repeated}.",
             first.psi,
-            first.crest.velocity,
             brief(first.kappa),
             last.crest.velocity,
             brief(last.kappa),
-            integrated.count(),
-            all().count(),
-            off.fold(0.0, f64::max)
         )
     }
 

@@ -5,8 +5,9 @@
 //! chooses the steps.
 
 use stickslip_model::{Collision, Contact};
+use stickslip_plane::progress::SILENT;
 use stickslip_solver::{Dop853, Dopri5, Method, Options, Order, StepSize, fit_order};
-use stickslip_studies::convergence::{Coordinates, Switching, measure, reference};
+use stickslip_studies::convergence::{self, Coordinates, Settings, Switching, measure, reference};
 
 /// Collisions with two to eight switches, three to seven with damping.
 fn references(damping: f64) -> Vec<Collision> {
@@ -103,4 +104,13 @@ fn steps_over_switches_leave_order_two_of_the_velocity_and_one_of_the_times() {
             assert!((found.order - better.order).abs() < 1e-3, "{found:?} {better:?}");
         }
     }
+}
+
+#[test]
+fn a_study_of_nothing_is_refused() {
+    let error = convergence::run(&Settings { contacts: Vec::new() }, SILENT).unwrap_err();
+    assert_eq!(error.to_string(), "a study of 0 collisions; expected at least one");
+    let stiff = Contact::new(2e6, 1.0, 0.0).unwrap();
+    let error = convergence::run(&Settings { contacts: vec![stiff] }, SILENT).unwrap_err();
+    assert!(error.to_string().contains("at most 1000000.0"), "{error}");
 }

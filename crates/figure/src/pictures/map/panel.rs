@@ -4,6 +4,7 @@ use colorous::Color;
 
 use crate::canvas::Bitmap;
 use crate::canvas::panel::{Edge, Panel};
+use crate::canvas::rises;
 use crate::canvas::shape::{Rectangle, Stroke};
 use crate::canvas::style::{FRAME, HALO, SMALL, TEXT};
 use crate::canvas::svg::{Anchor, Svg, Words};
@@ -62,8 +63,13 @@ const KEY: (f64, f64) = (12.0, 16.0);
 const FINE: usize = 600;
 
 impl MapPanel<'_> {
-    /// Refuses a map without cells, or with another number of values.
-    pub(super) fn require_values(&self) -> Result<(), FigureError> {
+    /// Refuses a map without cells, with another number of values, or with an axis that shows
+    /// nothing.
+    pub(super) fn validate(&self) -> Result<(), FigureError> {
+        let ranges = [self.horizontal.range, self.vertical.range];
+        if let Some((low, high)) = ranges.into_iter().find(|&range| !rises(range)) {
+            return Err(FigureError::Range { low, high });
+        }
         let Self { columns, rows, .. } = *self;
         let values = match self.values {
             Values::Restitution(values) => values.len(),
