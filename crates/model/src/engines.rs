@@ -37,8 +37,8 @@ pub enum Engine {
     Dopri5(Tolerances),
     /// The exact solution, which only contacts without damping have.
     Exact,
-    /// The exact solution without damping, and with it Dormand–Prince 8(5,3) at its default
-    /// tolerances.
+    /// The exact solution for a contact without damping, and Dormand–Prince 8(5,3) at its default
+    /// tolerances for a contact with damping.
     Auto,
 }
 
@@ -140,7 +140,8 @@ impl Engine {
     /// run that keeps the course, which repeats some steps.
     ///
     /// # Errors
-    /// As [`Self::collide`]; or the run takes more than [`History::MOST_STEPS`] steps.
+    /// As [`Self::collide`]; or the course, which is always integrated, is out of the integrator's
+    /// range or takes more than [`History::MOST_STEPS`] steps.
     pub fn followed(
         &self,
         contact: Contact,
@@ -165,7 +166,8 @@ impl Engine {
     /// Dormand–Prince 8(5,3) integrates it at its default tolerances.
     ///
     /// # Errors
-    /// [`EngineError::Collision`]: the integration fails.
+    /// [`EngineError::Collision`]: the contact is out of the integrator's range, or the integration
+    /// fails.
     pub fn history(&self, contact: Contact) -> Result<History, EngineError> {
         let history = match *self {
             Self::Dop853(Tolerances { rtol, atol }) => {

@@ -57,7 +57,8 @@ pub const FEW_SWITCHES: usize = 16;
 pub type Switches = SmallVec<[Switch; FEW_SWITCHES]>;
 
 impl Collision {
-    /// A collision that has not been computed yet; its results are NaN.
+    /// A collision that has not been computed yet: its coefficient, velocity and duration are NaN,
+    /// it has no switches, and its energies are 0.
     #[must_use]
     pub fn before(contact: Contact) -> Self {
         Self {

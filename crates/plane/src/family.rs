@@ -90,7 +90,7 @@ impl CollisionPlane {
     /// below. There ψ is kept at half of the window's lower end.
     ///
     /// # Errors
-    /// [`InvalidParameter`]: κ has left the range of numbers.
+    /// [`InvalidParameter`]: κ or ψ is beyond the range of numbers.
     pub fn contact(&self, point: &Point) -> Result<Contact, InvalidParameter> {
         let [kappa, psi] = Self::parameters(point);
         Contact::new(kappa, psi.max(0.5 * self.low.psi()), self.low.damping())

@@ -112,7 +112,7 @@ impl Grid {
     /// The collision at the centre of a cell.
     ///
     /// # Errors
-    /// [`InvalidParameter`]: the centre has left the range of numbers.
+    /// [`InvalidParameter`]: no collision has the parameters of this cell.
     pub fn contact(&self, column: usize, row: usize) -> Result<Contact, InvalidParameter> {
         let [kappa, psi, damping] = self.parameters(column, row)?;
         Contact::new(kappa, psi, damping)
@@ -162,9 +162,12 @@ impl Grid {
         }
     }
 
-    /// The largest κ in the grid, as far as it can be computed.
+    /// The largest κ in the grid, as far as it can be computed; 0 if the grid has no cells.
     #[must_use]
     pub fn largest_stiffness(&self) -> f64 {
+        if self.points() == 0 {
+            return 0.0;
+        }
         let corners = [(0, 0), (self.columns.cells - 1, self.rows.cells - 1)];
         corners
             .into_iter()

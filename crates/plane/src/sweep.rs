@@ -51,6 +51,10 @@ pub struct Failed {
 ///
 /// The results are the same with any number of threads. A point that cannot be computed gets
 /// [`NO_EPS_T`] and [`NO_COUNT`]; [`point()`] says why, and [`FailureCount`] counts such points.
+/// Points that the grid does not have get them too.
+///
+/// # Panics
+/// If the results of all points do not fit into memory.
 #[must_use]
 pub fn compute(grid: &Grid, engine: Engine, points: ops::Range<usize>) -> Tile {
     let mut tile = Tile { eps_t: Vec::new(), switch_count: Vec::new() };
@@ -88,10 +92,10 @@ pub struct FailureCount {
 impl FailureCount {
     /// Looks at the results of successive points; `start` is the first one.
     pub fn add(&mut self, start: usize, tile: &Tile) {
-        for (point, count) in (start..).zip(&tile.switch_count) {
+        for (index, count) in tile.switch_count.iter().enumerate() {
             if *count == NO_COUNT {
                 self.points += 1;
-                self.first.get_or_insert(point);
+                self.first.get_or_insert(start.saturating_add(index));
             }
         }
     }

@@ -9,8 +9,6 @@ use stickslip_solver::Outcome;
 use stickslip_studies::search::SearchError;
 use stickslip_studies::{CollisionFailure, StudyError};
 
-use crate::statements::COUNT;
-
 /// Why a part of the reproduction has no result.
 #[derive(Debug, thiserror::Error)]
 pub enum ReproductionError {
@@ -18,10 +16,12 @@ pub enum ReproductionError {
     #[error(transparent)]
     Study(#[from] StudyError),
     /// The paper has no such statement.
-    #[error("there is no statement {number}; expected 1 to {COUNT}")]
+    #[error("there is no statement {number}; expected 1 to {last}")]
     Statement {
         /// The number of the statement.
         number: u8,
+        /// The number of the last one.
+        last: u8,
     },
     /// Maps have no cells.
     #[error("maps of 0 cells; expected at least one")]
@@ -72,7 +72,7 @@ pub enum ReproductionError {
         /// The reduced impact ratio ψ.
         psi: f64,
     },
-    /// A search for an extremum has no result.
+    /// A search for an extremum or a zero has no result.
     #[error(transparent)]
     Search(#[from] SearchError),
     /// A computation failed that several statements need.

@@ -1,8 +1,8 @@
 //! The paper checked: T. Schwager, V. Becker and T. Pöschel, *Coefficient of tangential restitution
 //! for viscoelastic spheres*, Eur. Phys. J. E 27, 107 (2008), computed anew.
 //!
-//! The figures and the statements of the paper, and everything together as a list of parts. No part
-//! writes files. Parallel loops run on the rayon pool of the caller. What the paper's symbols and
+//! The crate computes the figures and tests the statements of the paper; all of it together is a
+//! list of parts. No part writes files. Parallel loops run on the rayon pool of the caller. What the paper's symbols and
 //! axes mean is in [`stickslip_studies::paper`].
 //!
 //! Start reading in [`figures`] (the figures, and all parts of the reproduction); then

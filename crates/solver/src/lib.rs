@@ -43,7 +43,7 @@
 //!
 //! | you want | use |
 //! |---|---|
-//! | several guards in a mode | as many values and as many guards; [`Guard::OFF`] where a mode has fewer |
+//! | several guards in a mode | one value and one guard for each; [`Guard::OFF`] where a mode has fewer |
 //! | a guard that ends the run | [`Guard::terminal`], [`Outcome::EndedByGuard`] |
 //! | a guard that starts from zero and must not fire there | nothing if it is exactly 0 and rises; else [`Guard::from_zero`] |
 //! | a crossing that is reported and changes nothing | [`Direction::Falling`], [`Rising`](Direction::Rising) or [`Either`](Direction::Either), and the provided transition |
@@ -54,7 +54,7 @@
 //! | no guards at all | [`integrate`] with a closure |
 //! | how far a run is from another sequence of switches | [`fn@margins`], and the crate `stickslip-tracer` |
 //!
-//! The repository's `examples` have less than 80 lines each and check themselves against a closed
+//! The repository's `examples` have fewer than 80 lines each and check themselves against a closed
 //! form or an independent value: `bouncing_ball` (switches that accumulate), `friction_belt`
 //! (stick–slip), `relay` (feedback with hysteresis), `impact_oscillator` (near grazing) and
 //! `arenstorf` (a smooth problem with dense output).

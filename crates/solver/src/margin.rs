@@ -116,7 +116,8 @@ where
 
 /// The value of `margin` for `system`, by a run that follows the itinerary in its name.
 ///
-/// The result is `None` if the run cannot follow that itinerary, or if there is no such minimum.
+/// The result is `None` if the run cannot follow that itinerary, if there is no such minimum, or if
+/// the system does not have the guards in the name.
 ///
 /// # Errors
 /// Those of [`run`].
@@ -133,6 +134,9 @@ where
     S: HybridSystem<N, G>,
 {
     let exits = &margin.exits;
+    if margin.guard >= G || exits.iter().any(|exit| exit.guard >= G) {
+        return Ok(None);
+    }
     let enough = match margin.place {
         // The minimum that is nearest to a place is the last one before or the first one after it.
         Place::Minimum { near, .. } => near.0,

@@ -48,8 +48,8 @@ struct Measurement {
 /// Makes the study on the threads of the current pool.
 ///
 /// # Errors
-/// [`StudyError`]: a collision is too stiff, has no reference to compare with, or `collide` cannot
-/// compute it.
+/// [`StudyError`]: there is no collision, one is too stiff or has no reference to compare with, or
+/// `collide` cannot compute it.
 pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Study, StudyError> {
     settings.validate()?;
     let references = settings.contacts.iter().map(|contact| {

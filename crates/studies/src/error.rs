@@ -1,10 +1,8 @@
 //! What can go wrong in a study.
 
-use stickslip_figure::FigureError;
 use stickslip_model::{Contact, EngineError};
 
 use crate::convergence::InvalidConvergence;
-use crate::search::SearchError;
 use crate::stiff_springs::InvalidStiffSprings;
 use crate::stiff_springs::limit::StiffError;
 
@@ -23,12 +21,6 @@ pub enum StudyError {
     /// The limit of stiff springs cannot be studied.
     #[error("the limit of stiff springs cannot be studied: {0}")]
     Stiff(#[from] StiffError),
-    /// A search for an extremum has no result.
-    #[error(transparent)]
-    Search(#[from] SearchError),
-    /// A picture cannot be drawn.
-    #[error(transparent)]
-    Figure(#[from] FigureError),
 }
 
 /// A collision cannot be computed.

@@ -14,10 +14,10 @@ use rayon::prelude::*;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SearchError {
     /// There is no place to start from.
-    #[error("a search for an extremum has no places")]
+    #[error("a search has no places to start from")]
     NoPlaces,
     /// The solver failed.
-    #[error("a search for an extremum failed: {0}")]
+    #[error("a search failed: {0}")]
     Solver(String),
 }
 
@@ -46,6 +46,9 @@ pub fn maximum<E: From<SearchError> + Send>(
         return Err(SearchError::NoPlaces.into());
     };
     let (low, high) = (places[best.saturating_sub(1)], places[(best + 1).min(places.len() - 1)]);
+    if low >= high {
+        return Ok(Optimum { at: places[best], value: values[best] });
+    }
     let solver = GoldenSectionSearch::new(low, high)
         .and_then(|solver| solver.with_tolerance(1e-9 * (high - low)));
     let start = 0.5 * (low + high);
@@ -106,7 +109,7 @@ pub fn root<E: From<SearchError>>(
 }
 
 /// The place between `from` and `to` where `holds`, true at `from` and false at `to`, changes; by
-/// bisection, to rounding.
+/// bisection, to rounding. It is NaN if an end is NaN or both are infinite.
 ///
 /// # Errors
 /// The first failure of `holds`.
@@ -117,7 +120,7 @@ pub fn change<E>(
 ) -> Result<f64, E> {
     loop {
         let middle = 0.5 * (from + to);
-        if middle == from || middle == to {
+        if !(from.min(to) < middle && middle < from.max(to)) {
             return Ok(middle);
         }
         if holds(middle)? { from = middle } else { to = middle }
@@ -201,6 +204,9 @@ mod tests {
         assert!((found.at - (0.3 + 0.1_f64.asin())).abs() < 1e-7);
         let end = maximum(&places, Ok::<_, Failure>).unwrap();
         assert_eq!(end.at, places[19]);
+        let [single, equal] =
+            [&[2.0][..], &[2.0, 2.0]].map(|places| maximum(places, wave).unwrap());
+        assert_eq!([single.at, equal.at], [2.0; 2]);
         let none = maximum(&[], Ok::<_, Failure>).unwrap_err();
         assert_eq!(none, Failure::Search(SearchError::NoPlaces));
     }
@@ -240,5 +246,16 @@ mod tests {
         assert_eq!(highest((0.0, 1.0), 1e-8, broken), Err(Failure::Broken));
         assert_eq!(root((0.0, 1.0), broken), Err(Failure::Broken));
         assert_eq!(change(0.0, 1.0, |_| Err(Failure::Broken)), Err(Failure::Broken));
+    }
+
+    #[test]
+    fn a_change_between_any_two_numbers_is_found_or_nan() {
+        let below = |x: f64| Ok::<_, Failure>(x < 0.5);
+        assert!((change(0.0, 1.0, below).unwrap() - 0.5).abs() < 1e-15);
+        assert!((change(-f64::MAX, f64::MAX, below).unwrap() - 0.5).abs() < 1e-15);
+        assert_eq!(change(3.0, 3.0, below).unwrap(), 3.0);
+        for (from, to) in [(f64::NAN, 1.0), (0.0, f64::NAN), (f64::NEG_INFINITY, f64::INFINITY)] {
+            assert!(change(from, to, below).unwrap().is_nan(), "{from} {to}");
+        }
     }
 }

@@ -7,26 +7,26 @@ use crate::window::{Point, Window};
 /// Lengths are in the coordinates of the window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TraceOptions {
-    /// The largest distance of a node from its boundary, above 0.
+    /// The largest distance of a node from its boundary, above 0, up to 1e-6.
     pub tolerance: f64,
-    /// The largest distance of the cubics between nodes from their boundary, at least ten times
-    /// `tolerance`.
+    /// The largest distance of the cubics between nodes from their boundary, from ten times
+    /// `tolerance` to 1e-2.
     pub interpolation: f64,
-    /// The distance from a boundary at which the labels on both of its sides are computed, at least
-    /// ten times `tolerance`.
+    /// The distance from a boundary at which the labels on both of its sides are computed, from ten
+    /// times `tolerance` to 1e-4.
     pub offset: f64,
-    /// The error of a margin: smaller values carry no information.
+    /// The error of a margin, from 0 to 1e-6: smaller values carry no information.
     pub noise: f64,
     /// The longest step, as a fraction of the window's shorter extent, up to 0.25.
     pub max_step: f64,
     /// The largest angle between the tangents of consecutive nodes, in radians, up to 0.5.
     pub max_angle: f64,
-    /// The number of cells of the grid along each axis, at least 2. Along each side of the window,
-    /// twice as many segments are searched.
+    /// The number of cells of the grid along each axis, from 2 to 4096. The runs of all cells are
+    /// held in memory. Along each side of the window, twice as many segments are searched.
     pub cells: usize,
-    /// The greatest number of nodes of a branch, which stops there.
+    /// The greatest number of nodes of a branch, which stops there; at least 2.
     pub max_nodes: usize,
-    /// The greatest number of curves. Further ones are reported as unresolved.
+    /// The greatest number of curves, at least 1. Further ones are reported as unresolved.
     pub max_curves: usize,
 }
 

@@ -109,7 +109,7 @@ fn format(out: &Path) -> Result<MapFormat, Failure> {
         Some("npz") => Ok(MapFormat::Npz),
         Some("csv") => Ok(MapFormat::Csv),
         _ => Err(Failure::Usage(format!(
-            "--out {}: the name does not tell the format; expected FILE.npz and FILE.csv",
+            "--out {}: the name does not tell the format; expected FILE.npz or FILE.csv",
             out.display()
         ))),
     }

@@ -72,7 +72,7 @@ fn options_that_do_not_go_together() {
     refused(&format!("{WINDOW} --size 3x3"), &["--out"]);
     for out in ["m.txt", "m", "npz", "m.npz.gz", ".npz"] {
         let line = format!("{WINDOW} --size 3x3 --out {out}");
-        refused(&line, &[&format!("--out {out}:"), "FILE.npz and FILE.csv"]);
+        refused(&line, &[&format!("--out {out}:"), "FILE.npz or FILE.csv"]);
     }
 }
 

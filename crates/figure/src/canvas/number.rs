@@ -1,6 +1,6 @@
 //! Numbers in texts of pictures.
 
-/// `value` with at most `digits` significant digits, as [markup](super::markup).
+/// `value` with at most `digits` significant digits (1 to 17), as [markup](super::markup).
 ///
 /// Very large and very small numbers get a power of ten.
 ///
@@ -12,12 +12,13 @@
 /// ```
 #[must_use]
 pub fn number(value: f64, digits: usize) -> String {
-    let rounded = format!("{value:.*e}", digits.saturating_sub(1));
+    let rounded = format!("{value:.*e}", digits.clamp(1, 17) - 1);
     let (mantissa, exponent) = rounded.split_once('e').unwrap_or((&rounded, "0"));
     let exponent: i32 = exponent.parse().unwrap_or(0);
     if value == 0.0 || (-4..6).contains(&exponent) {
         // Reading the rounded number back drops trailing zeros.
-        return minus(&rounded.parse().unwrap_or(value).to_string());
+        // Adding 0 makes −0 a 0.
+        return minus(&(rounded.parse().unwrap_or(value) + 0.0).to_string());
     }
     let mantissa: f64 = mantissa.parse().unwrap_or(value);
     minus(&format!("{mantissa}×10^{{{exponent}}}"))

@@ -9,7 +9,7 @@ use resvg::usvg::{Options, Tree};
 use super::svg::Svg;
 use crate::error::FigureError;
 
-/// The PNG has so many pixels for one pixel of the SVG, in each direction.
+/// The number of pixels of the PNG for one pixel of the SVG, in each direction.
 const SCALE: f32 = 2.0;
 
 /// The font DejaVu Sans, so that no font needs to be installed; see `assets/README.md`.
@@ -30,9 +30,13 @@ pub fn png(svg: &Svg) -> Result<Vec<u8>, FigureError> {
     let options = Options { fontdb: Arc::new(fonts), ..Options::default() };
     let tree = Tree::from_str(&svg.document(), &options)?;
     let size = tree.size().to_int_size().scale_by(SCALE);
-    let mut pixels = size
-        .and_then(|size| Pixmap::new(size.width(), size.height()))
-        .ok_or(FigureError::Memory)?;
+    let size = size.ok_or(FigureError::Memory)?;
+    // Pixmap::new aborts where this fails.
+    let pixels = (size.width() as usize).saturating_mul(size.height() as usize);
+    Vec::<u8>::new()
+        .try_reserve_exact(pixels.saturating_mul(4))
+        .map_err(|_| FigureError::Memory)?;
+    let mut pixels = Pixmap::new(size.width(), size.height()).ok_or(FigureError::Memory)?;
     resvg::render(&tree, Transform::from_scale(SCALE, SCALE), &mut pixels.as_mut());
     Ok(pixels.encode_png()?)
 }

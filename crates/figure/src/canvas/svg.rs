@@ -99,6 +99,10 @@ impl Svg {
 
     /// Shows only the part inside a rectangle of what is added until [`Self::end_inside`].
     pub fn begin_inside(&mut self, at: Rectangle) {
+        if !at.is_finite() {
+            self.element(format_args!(r#"<svg width="0" height="0">"#));
+            return;
+        }
         let [x, y, width, height] = [at.left, at.top, at.width, at.height].map(Px);
         // Unlike a clip path it needs no name, which would have to be unique on a page of pictures.
         self.element(format_args!(
@@ -130,7 +134,7 @@ impl Svg {
 
     /// Adds a filled circle.
     pub fn disc(&mut self, centre: (f64, f64), radius: f64, colour: &str) {
-        if !is_finite(centre) {
+        if !(is_finite(centre) && radius.is_finite()) {
             return;
         }
         let [x, y, r] = [centre.0, centre.1, radius].map(Px);
@@ -139,7 +143,7 @@ impl Svg {
 
     /// Adds a circle filled with white.
     pub fn ring(&mut self, centre: (f64, f64), radius: f64, stroke: Stroke) {
-        if !is_finite(centre) {
+        if !(is_finite(centre) && radius.is_finite()) {
             return;
         }
         let [x, y, r] = [centre.0, centre.1, radius].map(Px);
@@ -222,7 +226,7 @@ impl Svg {
     /// Adds a text; its position is at the middle of its height.
     pub fn words(&mut self, (x, y): (f64, f64), words: Words<'_>) {
         let Words { text, size, anchor, colour, upwards } = words;
-        if !is_finite((x, y)) {
+        if !(is_finite((x, y)) && size.is_finite()) {
             return;
         }
         let anchor = match anchor {

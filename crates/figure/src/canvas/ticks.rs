@@ -17,7 +17,9 @@ pub fn linear(range: (f64, f64), count: f64) -> Vec<Tick> {
     if !rises(range) {
         return Vec::new();
     }
-    let finest = (range.1 - range.0) / unit(range) / count.max(1.0);
+    // NaN counts as 1.
+    let count = if count > 1.0 { count.min(1000.0) } else { 1.0 };
+    let finest = (range.1 - range.0) / unit(range) / count;
     let power = finest.log10().floor();
     let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * 10_f64.powf(power));
     let step = steps.into_iter().find(|&step| step >= finest * (1.0 - 1e-9)).unwrap_or(finest);
@@ -67,7 +69,7 @@ pub fn logarithmic(range: (f64, f64), count: f64) -> Vec<Tick> {
     if !(rises(range) && range.0 > 0.0) {
         return Vec::new();
     }
-    let decades = (range.1 / range.0).log10();
+    let decades = range.1.log10() - range.0.log10();
     // Values 1, 2 and 5 times a power of ten lie closer together than three ticks of a decade that
     // are evenly spread, and powers are wider than decimals.
     let most_decades = if are_plain(&decade_values(range, &[1.0, 2.0, 5.0], 1)) {
@@ -130,7 +132,11 @@ pub(crate) fn rises((low, high): (f64, f64)) -> bool {
 }
 
 /// The power of ten that the labels of a linear axis leave out: 0 if the numbers are short enough.
-pub fn exponent((low, high): (f64, f64)) -> i32 {
+pub fn exponent(range: (f64, f64)) -> i32 {
+    if !rises(range) {
+        return 0;
+    }
+    let (low, high) = range;
     #[allow(clippy::cast_possible_truncation)]
     let exponent = low.abs().max(high.abs()).log10().floor() as i32;
     // Below, 10^−exponent is beyond the range of doubles.

@@ -14,7 +14,8 @@ use crate::error::FigureError;
 /// the grid, or fewer of a large one.
 ///
 /// # Errors
-/// [`FigureError`]: `results` has no values, too many, or not as many as `size` says.
+/// [`FigureError`]: an axis of the grid shows nothing, or `results` has no values, too many, or not
+/// as many as `size` says.
 pub fn draw(grid: &Grid, size: (usize, usize), results: &Tile) -> Result<Svg, FigureError> {
     let cells = format!("{} × {} collisions", grid.columns.cells, grid.rows.cells);
     let title = std::iter::once(cells)

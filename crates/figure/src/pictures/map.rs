@@ -24,7 +24,8 @@ const TITLE_AT: (f64, f64) = (72.0, 20.0);
 /// Draws `maps` from left to right; `title` holds for all of them.
 ///
 /// # Errors
-/// [`FigureError`]: a map has no cells, not one value for each, or too many cells.
+/// [`FigureError`]: an axis of a map shows nothing, or a map has no cells, not one value for each,
+/// or too many cells.
 pub fn draw(title: &str, maps: &[MapPanel<'_>]) -> Result<Svg, FigureError> {
     maps.iter().try_for_each(MapPanel::validate)?;
     let names = maps.iter().map(MapPanel::names).fold(0.0, f64::max);

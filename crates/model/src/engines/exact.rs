@@ -42,7 +42,7 @@ use totals::Totals;
 pub use trajectory::CONTACT_TIME;
 use trajectory::{Moment, NormalMotion};
 
-/// Most switches that [`collide`] lists for one collision; they take about 190 MB.
+/// Most switches that [`collide`] lists for one collision; they take about 170 MB.
 ///
 /// The count grows as √κ t_c/π: for κ = 1e13 it is 3.3 million.
 pub const MOST_SWITCHES: usize = 4_000_000;

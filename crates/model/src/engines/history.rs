@@ -203,7 +203,8 @@ impl PhaseHistory<'_> {
         self.history.snapshot(self.record, &self.record.end)
     }
 
-    /// `intervals` + 1 moments from the first to the last.
+    /// `intervals` + 1 moments from the first to the last. There are only these two if `intervals`
+    /// is 0, or if the phase is too short for a step.
     ///
     /// They are evenly spaced in s, with dt = 2√x ds, in which the motion is smooth. In time they
     /// are closer to each other near the ends of contact.

@@ -64,7 +64,7 @@ impl<M: Method> Collider<M> {
     /// Absolute tolerance that goes with [`Self::RTOL`].
     pub const ATOL: f64 = 4e-13;
 
-    /// A collider with the default tolerances.
+    /// A collider with the tolerances [`Self::RTOL`] and [`Self::ATOL`], whatever the method.
     #[must_use]
     pub fn new(method: M) -> Self {
         Self::with_tolerances(method, Self::RTOL, Self::ATOL)
@@ -91,7 +91,8 @@ impl<M: Method> Collider<M> {
     /// Integrates one collision.
     ///
     /// # Errors
-    /// [`CollisionError`]: invalid options, or a contact that does not end within the limits.
+    /// [`CollisionError`]: the contact is out of range, the integration fails (also for invalid
+    /// options), or the contact does not end within the limits.
     pub fn collide(&self, contact: Contact) -> Result<Collision, CollisionError> {
         let mut collision = Collision::before(contact);
         self.collide_into(contact, &mut collision)?;

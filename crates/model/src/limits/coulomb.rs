@@ -36,7 +36,8 @@ pub fn restitution(psi: f64, eps_n: f64) -> f64 {
 /// ```
 #[must_use]
 pub fn pragmatic(psi: f64, eps_n: f64, floor: f64) -> f64 {
-    (1.0 - (1.0 + eps_n) / psi).max(floor)
+    let sliding = 1.0 - (1.0 + eps_n) / psi;
+    if sliding < floor { floor } else { sliding }
 }
 
 /// A law of the normal force, F = x^{n/2}(x + a ẋ) in scaled units: n = 0 is the linear spring with

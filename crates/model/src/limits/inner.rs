@@ -119,10 +119,13 @@ impl HalfSwing {
     }
 }
 
-/// The phase of an onset at σ = `onset` > 0. It is about σ/π, the number of half swings to come if
+/// The phase of an onset at σ = `onset` > 0, otherwise NaN. It is about σ/π, the number of half swings to come if
 /// all of them lasted π.
 #[must_use]
 pub fn phase(onset: f64) -> f64 {
+    if onset.is_nan() || onset <= 0.0 {
+        return f64::NAN;
+    }
     let (mut onset, mut passed) = (onset, 0.0);
     while onset < FAR {
         onset = previous_onset(onset);
@@ -139,10 +142,11 @@ pub fn last_half_swing(phase: f64) -> HalfSwing {
 }
 
 /// As [`last_half_swing`], from the first onset at σ > `start` and with the first `terms`
-/// coefficients of [`PHASE`]. It shows how fast both converge. `start` is at least 10.
+/// coefficients of [`PHASE`]. It shows how fast both converge. `start` is from 10 to 1e6; the work
+/// grows with it.
 #[must_use]
 pub fn last_half_swing_from(phase: f64, start: f64, terms: usize) -> HalfSwing {
-    let phase = phase - phase.floor() + (start / PI).ceil();
+    let phase = phase - phase.floor() + (start.clamp(10.0, 1e6) / PI).ceil();
     let mut onset = PI * phase;
     // The series is almost linear: each pass leaves a hundredth of the error.
     for _ in 0..40 {

@@ -54,9 +54,8 @@ pub struct Pair {
     /// Elastic constant ρ = (4/3) E* √R in kg m^{−1/2} s^{−2}; 2Y √R/(3(1 − ν²)) for equal
     /// materials.
     pub elastic_constant: f64,
-    /// Stiffness ratio 4G*/E* of tangential and normal motion without slip, with 1/G* = (2 −
-    /// ν_i)/G_i
-    /// + (2 − ν_j)/G_j; 2(1 − ν)/(2 − ν) for equal materials.
+    /// Stiffness ratio 4G*/E* of tangential and normal motion without slip, where 1/G* is the sum
+    /// of (2 − ν)/G over both bodies; 2(1 − ν)/(2 − ν) for equal materials.
     pub stiffness_ratio: f64,
     /// α = 1/(1 + m R_i²/J_i + m R_j²/J_j); 2/7 for homogeneous spheres.
     pub alpha: f64,

@@ -83,7 +83,8 @@ pub struct MismatchFields {
 /// between which a boundary is missing.
 ///
 /// # Errors
-/// [`VerifyError`]: the distances from boundaries are not in order, which is a defect.
+/// [`VerifyError`]: the distances from boundaries are not in order. This would be a defect of this
+/// module.
 pub(super) fn verify(
     atlas: &Atlas,
     mut unresolved: Vec<String>,

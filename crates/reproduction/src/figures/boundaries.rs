@@ -9,11 +9,11 @@ use stickslip_plane::CollisionPlane;
 use stickslip_plane::Range;
 use stickslip_plane::atlas::{Atlas, Frame, VerifiedAtlas, trace};
 use stickslip_plane::progress::SILENT;
+use stickslip_studies::{Picture, Study};
 
 use super::reproduction::Reproduction;
 use super::section::Section;
 use crate::error::ReproductionError;
-use stickslip_studies::{Picture, Study};
 
 /// The title of the part.
 pub const TITLE: &str = "All boundaries of the switching";

@@ -1,13 +1,13 @@
 //! Single collisions and their course in time.
 
 use stickslip_figure::pictures::course::Course;
-use stickslip_model::{Collision, Engine, History, Snapshot};
-
-use crate::error::ReproductionError;
-use crate::statements::Spring;
+use stickslip_model::{Collision, Contact, Engine, History, Snapshot};
 use stickslip_studies::Cell;
 use stickslip_studies::CollisionFailure;
 use stickslip_studies::paper::{Reading, psi};
+
+use crate::error::ReproductionError;
+use crate::statements::Spring;
 
 /// The undamped collision at κ and ψ, by the exact solution.
 ///
@@ -27,10 +27,9 @@ pub fn followed(
     value: f64,
     ratio: f64,
 ) -> Result<(Collision, History), ReproductionError> {
-    let collision = collide(reading.kappa(value), psi(ratio))?;
-    let contact = collision.contact;
+    let contact = Contact::new(reading.kappa(value), psi(ratio), 0.0)?;
     let failed = |source| CollisionFailure::new(&contact, source);
-    let history = Engine::Exact.history(contact).map_err(failed)?;
+    let (collision, _, history) = Engine::Exact.followed(contact).map_err(failed)?;
     Ok((collision, history))
 }
 

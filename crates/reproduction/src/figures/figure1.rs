@@ -6,12 +6,12 @@ use stickslip_figure::number;
 use stickslip_figure::pictures::map::{self, MapAxis, MapPanel, Values};
 use stickslip_model::coulomb;
 use stickslip_plane::{GridAxis, Range};
+use stickslip_studies::paper::{ALPHA, MU, psi, ratio};
+use stickslip_studies::{Cell, Column, Picture, Study, Table};
 
 use super::reproduction::Reproduction;
 use super::section::Section;
 use crate::error::ReproductionError;
-use stickslip_studies::paper::{ALPHA, MU, psi, ratio};
-use stickslip_studies::{Cell, Column, Picture, Study, Table};
 
 /// The title of the part.
 pub const TITLE: &str = "Figure 1: pure Coulomb sliding";

@@ -8,14 +8,14 @@ use stickslip_figure::number;
 use stickslip_figure::pictures::map::{self, MapPanel};
 use stickslip_model::{Pair, Surface};
 use stickslip_plane::{Coordinates, Grid, GridAxis, Quantity, Range};
+use stickslip_studies::paper::{MU, STEEL, STEEL_RADIUS_M, STEEL_STIFFNESS_KG_PER_S2, ratio};
+use stickslip_studies::{Picture, Study};
 
 use super::figure1::limit_line;
 use super::reproduction::Reproduction;
 use super::section::Section;
 use super::sweep::Sweep;
 use crate::error::ReproductionError;
-use stickslip_studies::paper::{MU, STEEL, STEEL_RADIUS_M, STEEL_STIFFNESS_KG_PER_S2, ratio};
-use stickslip_studies::{Picture, Study};
 
 /// The title of the part.
 pub const TITLE: &str = "Figure 2: two steel spheres";

@@ -4,13 +4,13 @@ use serde_json::{Value, json};
 use stickslip_figure::number;
 use stickslip_figure::pictures::map::{self, MapPanel};
 use stickslip_plane::Quantity;
+use stickslip_studies::paper::{ALPHA, MOST_RATIO_3, MOST_STIFFNESS, MU, Reading};
+use stickslip_studies::{Picture, Study};
 
 use super::reproduction::Reproduction;
 use super::section::Section;
 use super::stiffness_map::{StiffnessMap, title};
 use crate::error::ReproductionError;
-use stickslip_studies::paper::{ALPHA, MOST_RATIO_3, MOST_STIFFNESS, MU, Reading};
-use stickslip_studies::{Picture, Study};
 
 /// The title of the part.
 pub const TITLE: &str = "Figure 3: restitution over stiffness and impact ratio";

@@ -6,6 +6,8 @@ use stickslip_figure::number;
 use stickslip_figure::pictures::atlas::{boundaries, stroke};
 use stickslip_figure::pictures::map::{self, MapPanel};
 use stickslip_plane::atlas::VerifiedAtlas;
+use stickslip_studies::paper::{ALPHA, MOST_RATIO_4, MOST_SWITCHES, MU, Reading, STIFFNESS, ratio};
+use stickslip_studies::{Column, Picture, Study, Table};
 
 use super::boundaries::summary;
 use super::columns::{AXIS, KAPPA, PHASES, SWITCHES};
@@ -14,8 +16,6 @@ use super::reproduction::Reproduction;
 use super::section::Section;
 use super::stiffness_map::{StiffnessMap, title};
 use crate::error::ReproductionError;
-use stickslip_studies::paper::{ALPHA, MOST_RATIO_4, MOST_SWITCHES, MU, Reading, STIFFNESS, ratio};
-use stickslip_studies::{Column, Picture, Study, Table};
 
 /// The title of the part.
 pub const TITLE: &str = "Figure 4: number of switches";

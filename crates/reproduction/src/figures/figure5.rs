@@ -4,6 +4,8 @@ use serde_json::json;
 use stickslip_figure::number;
 use stickslip_figure::pictures::gallery::{self, Exhibit, PANEL_WIDTH};
 use stickslip_model::Collision;
+use stickslip_studies::paper::{ALPHA, MU, Reading, STIFFNESS};
+use stickslip_studies::{Cell, Column, Picture, Study, Table};
 
 use super::columns::{AXIS, COURSE, EPS_T, KAPPA, PHASES, POINT, RATIO, SWITCHES};
 use super::course::{first_and_last, followed, largest_compression, rows};
@@ -12,8 +14,6 @@ use super::reproduction::Reproduction;
 use super::section::Section;
 use super::stiffness_map::title;
 use crate::error::ReproductionError;
-use stickslip_studies::paper::{ALPHA, MU, Reading, STIFFNESS};
-use stickslip_studies::{Cell, Column, Picture, Study, Table};
 
 /// The title of the part.
 pub const TITLE: &str = "Figure 5: forces at the points a to o";

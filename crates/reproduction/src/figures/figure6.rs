@@ -5,14 +5,14 @@ use stickslip_figure::number;
 use stickslip_figure::pictures::collision::{self, PANEL_WIDTH};
 use stickslip_figure::pictures::course::Course;
 use stickslip_model::{Collision, History};
+use stickslip_studies::paper::{ALPHA, MU, RATIO_6, Reading, STIFFNESS_6};
+use stickslip_studies::{Column, Picture, Study, Table};
 
 use super::columns::{AXIS, COURSE, EPS_T, KAPPA, PHASES, RATIO, SWITCHES};
 use super::course::{followed, rows};
 use super::reproduction::Reproduction;
 use super::section::Section;
 use crate::error::ReproductionError;
-use stickslip_studies::paper::{ALPHA, MU, RATIO_6, Reading, STIFFNESS_6};
-use stickslip_studies::{Column, Picture, Study, Table};
 
 /// The title of the part.
 pub const TITLE: &str = "Figure 6: a stiff spring";

@@ -1,11 +1,12 @@
 //! All parts of the reproduction, in order.
 
+use stickslip_studies::{convergence, stiff_springs};
+
 use super::reproduction::Reproduction;
 use super::section::Section;
 use super::{boundaries, figure1, figure2, figure3, figure4, figure5, figure6, studies};
 use crate::error::ReproductionError;
 use crate::statements;
-use stickslip_studies::{convergence, stiff_springs};
 
 /// A part of the reproduction.
 #[derive(Clone, Copy, Debug)]
@@ -40,8 +41,8 @@ impl Part {
     /// Computes the part on the threads of the current pool.
     ///
     /// # Errors
-    /// [`ReproductionError`]: maps have no cells, a collision cannot be computed, boundaries cannot be traced, or a picture
-    /// cannot be drawn.
+    /// [`ReproductionError`]: maps have no cells, a collision cannot be computed, boundaries cannot
+    /// be traced, or a picture cannot be drawn.
     pub fn run(&self, reproduction: &Reproduction) -> Result<Section, ReproductionError> {
         if reproduction.cells == 0 {
             return Err(ReproductionError::NoCells);

@@ -5,11 +5,11 @@
 //! way (`statements::line`). This is an independent check: a test holds that both agree.
 
 use stickslip_model::Collision;
+use stickslip_studies::paper::{MOST_RATIO_4, Reading, STIFFNESS, psi, ratio};
 
 use super::course::collide;
 use super::reproduction::Reproduction;
 use crate::error::ReproductionError;
-use stickslip_studies::paper::{MOST_RATIO_4, Reading, STIFFNESS, psi, ratio};
 
 /// Names of the intervals on the line of the points, from large to small ratios; n' is one that has
 /// no letter in the paper.

@@ -5,9 +5,9 @@ use std::sync::{Arc, OnceLock};
 use stickslip_plane::Range;
 use stickslip_plane::atlas::{AtlasError, Frame, VerifiedAtlas, trace};
 use stickslip_plane::progress::SILENT;
+use stickslip_studies::paper::{MOST_RATIO_4, MOST_STIFFNESS, Reading, psi};
 
 use crate::statements::Spring;
-use stickslip_studies::paper::{MOST_RATIO_4, MOST_STIFFNESS, Reading, psi};
 
 /// The reproduction of the paper.
 #[derive(Debug)]
@@ -36,8 +36,8 @@ impl Reproduction {
         if let Some(verified) = self.boundaries.get() {
             return Ok(verified);
         }
-        // The lower ends: boundaries never end at κ = 0 or ψ = 0. Below this ψ no boundary crosses
-        // the line of the points.
+        // Boundaries go on towards κ = 0 and ψ = 0 without end, so the window must stop above 0.
+        // Below this ψ no boundary crosses the line of the points.
         let kappa = Range { low: 0.05, high: Reading::Axis.kappa(MOST_STIFFNESS) };
         let psi = Range { low: 0.002, high: psi(MOST_RATIO_4) };
         let frame = Frame { kappa, psi, ratio: None, damping: 0.0 };

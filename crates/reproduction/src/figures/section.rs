@@ -5,10 +5,10 @@ use std::sync::Arc;
 use stickslip_model::Engine;
 use stickslip_plane::atlas::VerifiedAtlas;
 use stickslip_plane::sweep::{Failed, FailureCount};
+use stickslip_studies::Study;
 
 use super::sweep::Sweep;
 use crate::statements::Audit;
-use stickslip_studies::Study;
 
 /// A study with everything else that belongs to it.
 #[derive(Debug)]

@@ -6,11 +6,11 @@ use std::sync::Arc;
 use stickslip_figure::number;
 use stickslip_figure::pictures::map::MapAxis;
 use stickslip_plane::{Coordinates, Grid, GridAxis, Range};
+use stickslip_studies::paper::{ALPHA, MOST_STIFFNESS, MU, REDUCTION, Reading};
 
 use super::reproduction::Reproduction;
 use super::section::Section;
 use super::sweep::Sweep;
-use stickslip_studies::paper::{ALPHA, MOST_STIFFNESS, MU, REDUCTION, Reading};
 
 /// The collisions of a figure, with its axis of stiffness read in one way.
 pub struct StiffnessMap {

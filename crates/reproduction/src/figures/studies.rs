@@ -1,12 +1,12 @@
 //! The studies as parts of the reproduction.
 
 use stickslip_plane::progress::SILENT;
+use stickslip_studies::{convergence, stiff_springs};
 
 use super::reproduction::Reproduction;
 use super::section::Section;
 use crate::error::ReproductionError;
 use crate::statements;
-use stickslip_studies::{convergence, stiff_springs};
 
 /// The study of convergence, without the times, which differ from run to run.
 pub fn convergence(_: &Reproduction) -> Result<Section, ReproductionError> {

@@ -4,13 +4,13 @@ use std::f64::consts::PI;
 
 use rayon::prelude::*;
 use stickslip_model::{coulomb, exact, largest};
+use stickslip_studies::paper::{MOST_RATIO_3, MOST_STIFFNESS, Reading, psi};
+use stickslip_studies::search::{Optimum, maximum, maximum_near};
 
 use super::sampling::{each, geometric};
 use super::statement::{Evidence, Finding, Stop, Verdict};
 use super::subject::Subject;
 use crate::error::ReproductionError;
-use stickslip_studies::paper::{MOST_RATIO_3, MOST_STIFFNESS, Reading, psi};
-use stickslip_studies::search::{Optimum, maximum, maximum_near};
 
 /// 12: the spring's elongation is at most μ/(ακ) (25), so that |ε_t| ≤ (g_n/g_t) μ/(α√κ) (26, 27).
 pub fn largest(subject: &Subject) -> Result<Finding, Stop> {

@@ -49,7 +49,8 @@ const ENTRIES: [Entry; COUNT as usize] = [
 /// There is no such statement, or a collision cannot be computed.
 pub fn test(number: u8, subject: &Subject) -> Result<Statement, ReproductionError> {
     let entry = usize::from(number).checked_sub(1).and_then(|index| ENTRIES.get(index));
-    let Entry(paraphrase, place, test) = entry.ok_or(ReproductionError::Statement { number })?;
+    let Entry(paraphrase, place, test) =
+        entry.ok_or(ReproductionError::Statement { number, last: COUNT })?;
     let finding = Stop::into_finding(test(subject))?;
     Ok(Statement { number, paraphrase, place, finding })
 }

@@ -1,14 +1,14 @@
 //! Statements on the number of switches and of reversals: 6, 7, 8, 21, 23, 24.
 
 use stickslip_model::exact;
+use stickslip_studies::paper::{MOST_SWITCHES, STIFFNESS, SWITCHES, ratio};
+use stickslip_studies::search::change;
 
 use super::line::{Line, Span};
 use super::sampling::{each, random};
 use super::statement::{Evidence, Finding, Stop, Verdict};
 use super::subject::Subject;
 use crate::error::ReproductionError;
-use stickslip_studies::paper::{MOST_SWITCHES, STIFFNESS, SWITCHES, ratio};
-use stickslip_studies::search::change;
 
 /// 6: at κ = 18 up to eight switches.
 pub fn eight(subject: &Subject) -> Result<Finding, Stop> {

@@ -3,13 +3,13 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use stickslip_model::{Collision, Regime};
+use stickslip_studies::paper::{RATIO_6, Reading, STIFFNESS, STIFFNESS_6, psi, ratio};
+use stickslip_studies::search::maximum;
 
 use super::sampling::{each, geometric};
 use super::statement::{Evidence, Finding, Stop, Verdict};
 use super::subject::Subject;
 use crate::error::ReproductionError;
-use stickslip_studies::paper::{RATIO_6, Reading, STIFFNESS, STIFFNESS_6, psi, ratio};
-use stickslip_studies::search::maximum;
 
 /// 19: the course of Fig. 6.
 pub fn figure_6(subject: &Subject) -> Result<Finding, Stop> {

@@ -9,13 +9,13 @@
 
 use stickslip_plane::CollisionPlane;
 use stickslip_plane::atlas::AtlasError;
+use stickslip_studies::search::change;
 use stickslip_tracer::{Family, Point, TraceOptions, trace};
 
 use super::sampling::geometric;
 use super::spring::Spring;
 use super::statement::Stop;
 use crate::error::ReproductionError;
-use stickslip_studies::search::change;
 
 /// Half the window's width in ln κ.
 const REACH: f64 = 0.05;

@@ -6,13 +6,13 @@ use stickslip_model::{CollisionError, Material, Pair, Regime, Side, Surface, reg
 use stickslip_solver::{
     Direction, Dop853, Guard, HybridSystem, Options, Outcome, Start, State, run,
 };
+use stickslip_studies::CollisionFailure;
 
 use super::sampling::{each, random};
 use super::spring::Spring;
 use super::statement::{Evidence, Finding, Stop, Verdict};
 use super::subject::Subject;
 use crate::error::ReproductionError;
-use stickslip_studies::CollisionFailure;
 
 /// 2: three independent parameters; these are κ, g_t/g_n and μ/α.
 pub fn three(subject: &Subject) -> Result<Finding, Stop> {

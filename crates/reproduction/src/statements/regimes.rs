@@ -134,7 +134,7 @@ pub fn damping(subject: &Subject) -> Result<Finding, Stop> {
     let compared = each(&tried, |&[kappa, psi, _]| {
         let without = subject.integrate(kappa, psi, 0.0)?;
         let with = subject.integrate(kappa, psi, SMALL)?;
-        let odd = (with.switches.len() - without.switches.len() % 2) % 2 == 1;
+        let odd = (with.switches.len() + without.switches.len()) % 2 == 1;
         Ok((with.start != without.start, odd, (with.eps_t() - without.eps_t()).abs() * psi))
     })?;
     let starts = compared.iter().filter(|(start, ..)| *start).count();

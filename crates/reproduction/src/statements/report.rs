@@ -2,10 +2,11 @@
 
 use serde_json::{Value, json};
 
+use stickslip_studies::{Cell, Column, Study, Table};
+
 use super::Audit;
 use super::spring::Spring;
 use super::statement::{Statement, Verdict};
-use stickslip_studies::{Cell, Column, Study, Table};
 
 /// The name of the layout of the JSON, with its version.
 pub const SCHEMA: &str = "stickslip.audit/1";
@@ -82,6 +83,9 @@ impl Audit {
 
     /// The numbers of statements with each verdict.
     fn headline(&self) -> String {
+        if self.statements.is_empty() {
+            return "No statement of the paper was tested.".to_owned();
+        }
         let verdicts = [
             (Verdict::Holds, "holds", "hold"),
             (Verdict::HoldsWithACondition, "holds under a condition", "hold under a condition"),

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use crate::error::ReproductionError;
 
-/// `of` each of `inputs`, in their order, on the threads of the current pool.
+/// The results of `of` for all `inputs`, in their order, on the threads of the current pool.
 ///
 /// # Errors
 /// The first error in that order, whatever the number of threads.

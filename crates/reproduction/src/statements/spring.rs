@@ -1,15 +1,15 @@
 //! Models of the spring, and the collisions with each.
 
 use stickslip_model::{Collider, Collision, Contact, Engine, EngineError, largest};
+use stickslip_studies::CollisionFailure;
 
 use super::unreset;
 use crate::error::ReproductionError;
-use stickslip_studies::CollisionFailure;
 
 /// A model of the spring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spring {
-    /// The paper's model: the spring is reset to the limit as long as that is active.
+    /// The paper's model: the spring is reset to its limit as long as the limit is active.
     Reset,
     /// The spring is never reset.
     Unreset,

@@ -3,8 +3,9 @@
 use std::fmt;
 use std::sync::Arc;
 
-use crate::error::ReproductionError;
 use stickslip_studies::Cell;
+
+use crate::error::ReproductionError;
 
 /// A statement of the paper, tested.
 #[derive(Debug)]
@@ -118,7 +119,8 @@ impl fmt::Display for Verdict {
 }
 
 impl Stop {
-    /// The finding of a test, which a reason to leave the statement open is too.
+    /// The finding of a test. If the test leaves the statement open, that is a finding too, with
+    /// the verdict "cannot be decided".
     ///
     /// # Errors
     /// [`ReproductionError`]: a collision cannot be computed.

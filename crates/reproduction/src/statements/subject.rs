@@ -4,12 +4,12 @@
 use std::sync::OnceLock;
 
 use stickslip_model::Collision;
+use stickslip_studies::paper::{Reading, STIFFNESS};
 
 use super::line::{Line, line};
 use super::spring::Spring;
 use super::statement::Stop;
 use crate::error::ReproductionError;
-use stickslip_studies::paper::{Reading, STIFFNESS};
 
 /// What is audited.
 pub struct Subject {

@@ -5,8 +5,8 @@ const ROUNDING: f64 = 1e-12;
 /// Rounding affects errors up to this multiple of the errors of the finest steps.
 const SHOWS: f64 = 10.0;
 /// The largest difference between the slopes of the two halves, in standard errors of the whole
-/// slope. It is twice the standard error of the difference. That is four times the standard error
-/// of the whole slope, as each half has an eighth of the whole's sum of squares.
+/// slope: twice the standard error of that difference. The difference has four times the standard
+/// error of the whole slope, as each half has an eighth of the whole's sum of squares.
 const STRAIGHT: f64 = 8.0;
 /// The fewest points of a fit, and the number of finest steps that tell the level of rounding.
 const FEW: usize = 5;
@@ -39,8 +39,8 @@ pub struct Order {
 /// 1. *Rounding.* The root mean square of the last five errors is the level at which errors may
 ///    have stopped falling. The first error that is below ten times this level, and below 1e-12, is
 ///    left out together with all finer steps.
-/// 2. *No error.* NaN stands for an approximation that cannot be compared, for example because it
-///    has other switches. It is left out together with all coarser steps.
+/// 2. *No error.* NaN or infinity stands for an approximation that cannot be compared, for example
+///    because it has other switches. It is left out together with all coarser steps.
 /// 3. *Asymptotic range.* A range begins at the finest step that remains, spans at least a factor
 ///    of `span` and has at least five points. Two kinds of ranges compete: the shortest one, and
 ///    those whose two halves have slopes that differ by at most twice the standard error of that
@@ -63,8 +63,8 @@ pub fn fit_order(errors: &[(f64, f64)], span: f64) -> Option<Order> {
     let level = (last.iter().map(|(_, error)| error * error).sum::<f64>() / FEW as f64).sqrt();
     let rounded = |&(_, error): &(f64, f64)| error < ROUNDING && error <= SHOWS * level;
     let above = errors.iter().position(rounded).unwrap_or(errors.len());
-    let compared = errors[..above].iter().rposition(|(_, error)| error.is_nan());
-    let usable: Vec<(f64, f64)> = errors[compared.map_or(0, |nan| nan + 1)..above]
+    let compared = errors[..above].iter().rposition(|(_, error)| !error.is_finite());
+    let usable: Vec<(f64, f64)> = errors[compared.map_or(0, |none| none + 1)..above]
         .iter()
         .rev()
         .map(|(step, error)| (step.ln(), error.ln()))
@@ -73,7 +73,7 @@ pub fn fit_order(errors: &[(f64, f64)], span: f64) -> Option<Order> {
         points[points.len() - 1].0 - points[0].0 >= span.ln() * (1.0 - 1e-9)
     };
     let ranges = (FEW..=usable.len()).map(|count| &usable[..count]).filter(wide);
-    let fits: Vec<Order> = ranges.map(fit).collect();
+    let fits: Vec<Order> = ranges.map(fit).filter(|fit| fit.order.is_finite()).collect();
     let straight = fits.iter().filter(|fit| fit.drift.abs() <= STRAIGHT * fit.standard_error);
     let competing = fits.first().into_iter().chain(straight);
     competing.min_by(|a, b| a.standard_error.total_cmp(&b.standard_error)).copied()
@@ -150,7 +150,7 @@ mod tests {
         assert!((fit.order - 8.0).abs() < 0.01 && fit.finest > 0.012, "{fit:?}");
         let mut others = errors(40, |h| h);
         others[20].1 = f64::NAN;
-        others[3].1 = f64::NAN;
+        others[3].1 = f64::INFINITY;
         let fit = fit_order(&others, 4.0).unwrap();
         assert_eq!(fit.points, 19);
         // A level of 1e-10 does not count as rounding.
@@ -165,5 +165,7 @@ mod tests {
         assert!(fit_order(&errors(9, |h| h), 4.0).is_some());
         assert_eq!(fit_order(&errors(40, |_| f64::NAN), 4.0), None);
         assert_eq!(fit_order(&errors(40, |_| 0.0), 4.0), None);
+        assert_eq!(fit_order(&errors(40, |_| f64::INFINITY), 4.0), None);
+        assert_eq!(fit_order(&[(0.5, 0.1); 9], 1.0), None);
     }
 }

@@ -104,6 +104,7 @@ where
                     return Ok(outcome);
                 }
             } else if self.clock.s >= self.end {
+                check_finite(self.clock.s, &self.state)?;
                 return Ok(Outcome::ReachedEnd);
             }
         }
@@ -213,7 +214,7 @@ where
 
     fn reject<M: Method>(&mut self, h: f64, error: f64) -> Result<(), RunError> {
         self.statistics.rejected += 1;
-        let step = self.statistics.accepted + self.statistics.rejected;
+        let step = self.statistics.tried();
         let s = self.clock.s;
         if let StepSize::Fixed(_) = self.options.step_size {
             return Err(RunError::Field { s, step });
@@ -310,7 +311,7 @@ where
         if self.slope.iter().all(|v| v.is_finite()) {
             Ok(())
         } else {
-            Err(RunError::Field { s, step: self.statistics.accepted + self.statistics.rejected })
+            Err(RunError::Field { s, step: self.statistics.tried() })
         }
     }
 

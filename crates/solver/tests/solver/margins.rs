@@ -49,3 +49,14 @@ fn the_end_of_the_span_leaves_a_margin() {
         free.near_misses.iter().any(|miss| miss.margin.place == Place::End && miss.value > 0.0)
     );
 }
+
+/// A margin that belongs to another system.
+#[test]
+fn a_guard_that_the_system_does_not_have_has_no_margin() {
+    let start = || Start { mode: (), s: 0.0, state: State::from([0.6, 0.0]) };
+    let options = Options::default();
+    let free = margins(Dop853, &Drop, start(), 1.0, &options).unwrap();
+    let mut other = free.near_misses[0].margin.clone();
+    other.guard = 1;
+    assert_eq!(margin(Dop853, &Drop, start(), 1.0, &options, &other), Ok(None));
+}

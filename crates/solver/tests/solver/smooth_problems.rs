@@ -1,7 +1,7 @@
 //! Smooth problems: published results of other codes, the DETEST problems, and work counters.
 
 use serde_json::Value;
-use stickslip_solver::{Dop853, Dopri5, Method, Options, Run, State, integrate};
+use stickslip_solver::{Dop853, Dopri5, Method, Options, Outcome, Run, State, integrate};
 
 /// The restricted three-body problem on a closed orbit of Arenstorf (Hairer, Nørsett and Wanner,
 /// *Solving Ordinary Differential Equations I*, 2nd ed., section II.0).
@@ -212,4 +212,16 @@ fn work_counters_stay_as_they_are() {
     // Without guards there is no work for guards.
     let rest = (run.statistics.resteps, run.statistics.isolations, run.statistics.too_coarse);
     assert_eq!(rest, (0, 0, 0));
+}
+
+/// A step over which the state overflows has an infinite end, to which the error is relative.
+#[test]
+fn a_state_that_overflows_at_the_end_is_an_error() {
+    for (field, end) in [(1e306, 200.0), (0.0, f64::INFINITY)] {
+        let options = Options { max_steps: 10_000, ..Options::default() };
+        let field = |_s: f64, _y: &State<1>| State::from([field]);
+        let ran = integrate(Dop853, field, 0.0, State::zeros(), end, &options, &mut ());
+        let finite = ran.as_ref().is_ok_and(|run| run.outcome != Outcome::ReachedEnd);
+        assert!(ran.is_err() || finite, "{ran:?}");
+    }
 }

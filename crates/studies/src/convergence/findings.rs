@@ -5,7 +5,7 @@ use stickslip_solver::Order;
 use super::Measurement;
 use super::collisions::engine;
 use super::measure::Coordinates;
-use super::series::{Control, ErrorRow, ErrorSeries, MethodPair, Scheme, SwitchHandling};
+use super::series::{Control, ErrorRow, ErrorSeries, MethodPair, Scheme, SwitchHandling, fitted};
 
 /// Accuracies whose work is told.
 const TARGETS: [f64; 2] = [1e-6, 1e-10];
@@ -170,7 +170,7 @@ impl Measurement {
                 let Some(fit) = series.velocity else {
                     return format!("{} without a range to fit", name(series));
                 };
-                let range = fit.finest * (1.0 - 1e-9)..=fit.coarsest * (1.0 + 1e-9);
+                let range = fitted(&fit);
                 let fitted = series.rows.iter().filter(|row| range.contains(&row.value));
                 let ratios = fitted.map(|row| row.errors.velocity.root_mean_square / row.value);
                 let (least, most) = ratios.fold((f64::INFINITY, 0.0), |(least, most), ratio| {

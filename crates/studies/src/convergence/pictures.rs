@@ -8,7 +8,7 @@ use stickslip_solver::Order;
 
 use super::Measurement;
 use super::measure::{Coordinates, Errors, Spread};
-use super::series::{Control, ErrorRow, ErrorSeries, MethodPair, Scheme, SwitchHandling};
+use super::series::{Control, ErrorRow, ErrorSeries, MethodPair, Scheme, SwitchHandling, fitted};
 use crate::study::Picture;
 
 /// An error that is drawn.
@@ -84,8 +84,8 @@ impl Measurement {
         for series in self.series.iter().filter(|series| series.scheme.control == control) {
             let points = points(series, |row| row.value, drawn);
             let order = (drawn.order)(series);
-            if let Some(Order { coarsest, finest, .. }) = order {
-                let range = finest * (1.0 - 1e-9)..=coarsest * (1.0 + 1e-9);
+            if let Some(order) = &order {
+                let range = fitted(order);
                 let fitted = points.iter().copied().filter(|(value, _)| range.contains(value));
                 let line = Some(Stroke { width: 3.6, ..stroke(series.scheme) });
                 let points = fitted.collect();

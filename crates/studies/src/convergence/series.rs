@@ -1,5 +1,6 @@
 //! The errors of each way to integrate, over steps or tolerances.
 
+use std::ops::RangeInclusive;
 use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
@@ -63,6 +64,11 @@ pub struct ErrorRow {
     pub errors: Errors,
     /// The measured time per collision.
     pub microseconds: f64,
+}
+
+/// The steps or tolerances to which `order` was fitted.
+pub fn fitted(order: &Order) -> RangeInclusive<f64> {
+    order.finest * (1.0 - 1e-9)..=order.coarsest * (1.0 + 1e-9)
 }
 
 /// The errors of a scheme from coarse to fine.

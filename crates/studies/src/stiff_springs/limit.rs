@@ -69,8 +69,9 @@ pub enum StiffError {
 /// ```
 ///
 /// # Errors
-/// [`StiffError::Parameter`] unless κ > 0 and 0 < ψ < 2, above which nothing oscillates;
-/// [`StiffError::Exact`] if κ is more than the exact engine takes.
+/// [`StiffError::Parameter`] unless κ > 0 and 0 < ψ < 2: from ψ = 2 on nothing oscillates;
+/// [`StiffError::Exact`] if κ is more than the exact engine takes; [`StiffError::Search`] if the
+/// search fails.
 pub fn envelope(kappa: f64, psi: f64) -> Result<Crest, StiffError> {
     envelope_within(kappa, psi, SMOOTH)
 }
@@ -107,12 +108,12 @@ pub fn largest_restitution(kappa: f64, lowest: f64) -> Result<Crest, StiffError>
     let height = |psi| collide(kappa, psi).map(|collision| collision.eps_t().abs());
     // No oscillation is higher than the last one, which lasts to ψ = 2, has two switches and costs
     // next to nothing. Its top is 12.5 κ^{−5/4} below ψ = 2.
-    let last = (2.0 - 12.5 * kappa.powf(-1.25)).max(1.0);
+    let last = (2.0 - 12.5 * kappa.powf(-1.25)).clamp(1.0, 2.0_f64.next_down());
     let ceiling = 1.001 * envelope(kappa, last)?.velocity;
     let mut best = (lowest, height(lowest)?);
     let (mut before, mut here) = (best, best);
     while here.0 < 2.0 && ceiling > best.1 * here.0 {
-        let psi = (here.0 + eighth(kappa, here.0)).min(2.0);
+        let psi = (here.0 + eighth(kappa, here.0)).max(here.0.next_up()).min(2.0);
         let next = (psi, height(psi)?);
         // `before` and `here` are equal at first, which finds a maximum just above the lowest ψ.
         if here.1 >= before.1.max(next.1) {

@@ -73,9 +73,12 @@ fn integrated(crest: &Crest) -> Result<f64, StudyError> {
 /// # Errors
 /// A collision cannot be computed.
 pub fn single(kappa: Range, psi: f64) -> Result<Vec<(f64, f64)>, StiffError> {
+    if kappa.low > MOST_RESOLVED {
+        return Ok(Vec::new());
+    }
     let (from, to) = (kappa.low.sqrt(), kappa.high.min(MOST_RESOLVED).sqrt());
     // A half swing lasts π/√κ, and a contact 3.2: an oscillation is at least 1 long in √κ.
-    let steps = ((to - from) * FINE).max(0.0).ceil();
+    let steps = ((to - from) * FINE).ceil();
     let places = (0..).map(f64::from).take_while(|step| *step <= steps);
     let point = |step: f64| {
         let kappa = (from + (to - from) * step / steps.max(1.0)).powi(2);

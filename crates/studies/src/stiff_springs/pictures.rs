@@ -90,6 +90,7 @@ impl Measurement {
             power("bound with its factor, (5/4)^{3/5}/√κ", BOUND_FACTOR, -0.5, CORRECTED),
             power(&limit, self.peak.velocity, -1.25, THEORY),
         ];
+        series.retain(|series| !series.points.is_empty());
         series.extend(self.around_each_psi(|largest| largest.crest.velocity));
         chart::draw(&Chart {
             title: "Final velocity and its bounds for stiff springs",

@@ -107,7 +107,9 @@ impl<'a, F: Family> Runs<'a, F> {
         else {
             return Ok(None);
         };
-        Ok(Some(direction * along + across * rise))
+        let gradient = direction * along + across * rise;
+        // Where a margin is flat, its boundary has no direction.
+        Ok(Some(gradient).filter(|gradient| gradient.norm() > 0.0))
     }
 
     /// The derivative of a margin along `direction`, by differences with step `h` at most.

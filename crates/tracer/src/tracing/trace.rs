@@ -127,7 +127,7 @@ impl<'f, F: Family> Tracer<'f, F> {
     }
 
     /// Scans a segment. It is first halved if the run in its middle is not what the runs at its
-    /// ends let expect.
+    /// ends suggest.
     fn divide(&mut self, a: &Sampled<F>, b: &Sampled<F>, depth: u32) -> Traced<(), F> {
         if depth == 0 {
             return self.scan([a.0, b.0], [a.1.label.clone(), b.1.label.clone()]);
@@ -283,8 +283,8 @@ impl<'f, F: Family> Tracer<'f, F> {
 /// How often a segment on the window's edge is halved, at most.
 const DIVISIONS: u32 = 4;
 
-/// Whether a run between two others is what they let expect: the same label, and margins near the
-/// mean of theirs.
+/// Whether a run between two others is what they suggest: it has the same label, and margins near
+/// the mean of theirs.
 fn is_expected<L: Eq, M: PartialEq>(
     a: &FreeRun<L, M>,
     middle: &FreeRun<L, M>,

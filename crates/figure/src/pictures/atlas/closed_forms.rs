@@ -15,6 +15,8 @@ const LIMIT: (f64, f64) = (6.0, 3.5);
 const KEYS: (f64, f64) = (28.0, 12.0);
 /// From a higher ψ, boundaries need not lead to their limits.
 const SMALL_PSI: f64 = 0.05;
+/// The most limits that are drawn. More would be closer together than pixels.
+const MOST_LIMITS: usize = 1000;
 
 /// The closed forms that are in the picture. There are none with damping.
 #[derive(Clone, Debug)]
@@ -42,10 +44,13 @@ impl ClosedForms {
         }
         let kind =
             |n| if n % 2 == 0 { BoundaryKind::StickGraze } else { BoundaryKind::EndOfContact };
-        let limits = (1..)
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let first = (window.kappa.low / exact::small_impact_boundary(1)).sqrt().max(1.0) as u32;
+        let limits = (first..=u32::MAX)
             .map(|n| (kind(n), exact::small_impact_boundary(n)))
             .skip_while(|(_, kappa)| *kappa < window.kappa.low)
             .take_while(|(_, kappa)| *kappa <= window.kappa.high)
+            .take(MOST_LIMITS)
             .filter(|_| window.psi.low <= SMALL_PSI);
         Self { top, limits: limits.collect() }
     }

@@ -1,6 +1,6 @@
 //! What a verification finds, and its error.
 
-use crate::regions::finding::{Euler, SubdivisionError};
+use crate::regions::finding::Euler;
 use crate::regions::locate::Location;
 use crate::regions::region::Side;
 use crate::window::Point;
@@ -115,9 +115,6 @@ impl<Label, Error> Verification<Label, Error> {
 /// Why a subdivision cannot be verified.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum VerifyError {
-    /// The curves do not make a subdivision.
-    #[error(transparent)]
-    Subdivision(#[from] SubdivisionError),
     /// The distances from curves are not finite, not above 0, or not in order.
     #[error(
         "distances from {nearest:e} to {farthest:e}, expected finite values above 0 in ascending order"

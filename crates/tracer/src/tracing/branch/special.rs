@@ -100,6 +100,10 @@ pub(crate) fn give_up<F: Family>(
     }
     while length - exists > track.runs.options.tolerance {
         let middle = 0.5 * (exists + length);
+        if middle <= exists || middle >= length {
+            // The tolerance is finer than doubles are.
+            break;
+        }
         match place(middle)? {
             Some(next) => (exists, point) = (middle, next),
             None => length = middle,

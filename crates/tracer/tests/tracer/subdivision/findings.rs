@@ -142,6 +142,25 @@ fn a_curve_given_twice_is_found() {
     assert!(!findings(&plane).is_empty());
 }
 
+/// Also where it is vertical, which is hardest at x = 0, where doubles are closest to each other.
+#[test]
+fn a_curve_given_twice_is_found_where_it_is_vertical() {
+    for x in [0.3, 0.5] {
+        let ring = circle(x, 0.5, 0.3);
+        let mut plane = KnownPlane::new(|_| 0).curve(ring, even(0.0, TAU, 200), [1, 0], None);
+        plane.curves.push(plane.curves[0].clone());
+        let found = plane.subdivision().map(|made| !made.findings().is_empty());
+        assert!(found.unwrap_or(true), "{x}");
+    }
+    let steep = |s: f64| [0.1 + 1e-7 * s, s, 1e-7, 1.0];
+    let mut plane = KnownPlane::new(|_| 0)
+        .vertex(0.1, 0.0, VertexKind::WindowEdge)
+        .vertex(0.1 + 1e-7, 1.0, VertexKind::WindowEdge)
+        .curve(steep, even(0.0, 1.0, 2), [1, 0], Some([0, 1]));
+    plane.curves.push(plane.curves[0].clone());
+    assert!(!findings(&plane).is_empty());
+}
+
 #[test]
 fn vertices_that_are_not_where_their_kind_says_are_found() {
     let plane = KnownPlane::new(|_| 0).vertex(0.0 + 1e-6, 0.5, VertexKind::WindowEdge);
