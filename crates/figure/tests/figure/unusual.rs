@@ -72,11 +72,11 @@ fn ticks_at_steps_that_are_none_are_left_out() {
     let scales = (Scale::Linear, Scale::Linear);
     let panel = Panel { frame, x: (0.0, 1.0), y: (0.0, 1.0), scales };
     for (step, drawn) in
-        [(0.0, false), (-0.1, false), (NAN, false), (1e-9, false), (INFINITY, true), (0.1, true)]
+        [(0.0, false), (-0.1, false), (NAN, false), (1e-9, false), (INFINITY, false), (0.1, true)]
     {
         let mut svg = Svg::new(400.0, 300.0, "");
         panel.ticks_every(&mut svg, Edge::Left, step);
-        assert_eq!(svg.document().contains("<line"), drawn && step.is_finite(), "{step}");
+        assert_eq!(svg.document().contains("<line"), drawn, "{step}");
     }
 }
 

@@ -5,15 +5,15 @@ use std::f64::consts::PI;
 use fastrand::Rng;
 use stickslip_model::coulomb::{self, NormalLaw};
 use stickslip_model::{Pair, Surface, exact};
+use stickslip_studies::paper::{
+    self, Reading, STEEL, STEEL_RADIUS_M, STEEL_STIFFNESS_KG_PER_S2, STIFFNESS,
+};
+use stickslip_studies::search::change;
 
 use super::sampling::{each, geometric};
 use super::statement::{Evidence, Finding, Stop, Verdict};
 use super::subject::Subject;
 use crate::error::ReproductionError;
-use stickslip_studies::paper::{
-    self, Reading, STEEL, STEEL_RADIUS_M, STEEL_STIFFNESS_KG_PER_S2, STIFFNESS,
-};
-use stickslip_studies::search::change;
 
 /// 1: the closed form, whatever the normal law.
 pub fn closed_form(_: &Subject) -> Result<Finding, Stop> {
