@@ -11,23 +11,24 @@
 //! | `one_guard` | what one guard does on a step |
 //! | `quick` | the first look at a guard, from six values that the step already has |
 //! | `isolate` | the decision about a guard, from its monotone pieces |
+//! | `path` | bounds for the state along a step, for the guards of readable systems |
 //! | `along_step` | a guard as a function along a step, and its rounding |
 //! | `locate` | the place of a switch, by steps of the method |
-//! | `together` | guards that vanish where another guard fires |
+//! | `arrival` | guards that are zero where the span of a run ends |
 
 mod along_step;
+mod arrival;
 mod event;
 mod examination;
 mod first_guard;
 mod isolate;
 mod locate;
 mod one_guard;
+mod path;
 mod phase;
 mod quick;
-mod together;
 
 pub(crate) use along_step::dense_output;
-pub(crate) use event::{Event, Found};
+pub(crate) use event::{Event, Found, bit};
 pub(crate) use examination::Examination;
-pub(crate) use phase::{Phase, Standing};
-pub(crate) use together::Passage;
+pub(crate) use phase::Phase;

@@ -5,14 +5,17 @@
 //! receives the results while the run goes on.
 
 mod guard;
+mod readable;
 mod results;
 
 use std::fmt;
 
 pub use guard::{Direction, Guard};
-pub use results::{Grazing, Observer, Outcome, Run, Statistics, SwitchEvent};
+pub use readable::ReadableSystem;
+pub use results::{Grazing, Observer, Outcome, Pole, Run, Statistics, SwitchEvent, Unfinished};
 
 use crate::method::{Method, State, Step, Trial};
+use crate::number::Enclosure;
 
 /// A piecewise-smooth ODE of `N` components with at most `G` guards in a mode.
 ///
@@ -43,6 +46,21 @@ pub trait HybridSystem<const N: usize, const G: usize> {
     /// `max_step` on that scale.
     fn guard_rates(&self, _mode: Self::Mode, _s: f64, _y: &State<N>) -> [f64; G] {
         [f64::NAN; G]
+    }
+
+    /// Whether [`Self::enclose_guards`] bounds the guards, so that their signs are decided and not
+    /// sampled. It is true of every [`ReadableSystem`].
+    const READABLE: bool = false;
+
+    /// Bounds for the guards of `mode` along a curve, with bounds for time and state along that
+    /// curve. A [`ReadableSystem`] provides them by itself.
+    fn enclose_guards(
+        &self,
+        _mode: Self::Mode,
+        _s: Enclosure,
+        _y: &[Enclosure; N],
+    ) -> [Enclosure; G] {
+        [Enclosure::ENTIRE; G]
     }
 
     /// The mode in which a phase goes on after its first step.

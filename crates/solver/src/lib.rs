@@ -75,6 +75,8 @@
 
 pub mod hybrid;
 
+pub mod number;
+
 mod options;
 
 mod error;
@@ -91,10 +93,12 @@ pub mod sensitivity;
 
 pub use error::RunError;
 pub use hybrid::{
-    Direction, Grazing, Guard, HybridSystem, Observer, Outcome, Run, Start, Statistics, SwitchEvent,
+    Direction, Grazing, Guard, HybridSystem, Observer, Outcome, Pole, ReadableSystem, Run, Start,
+    Statistics, SwitchEvent, Unfinished,
 };
 pub use margin::{Exit, Hint, Margin, Margins, NearMiss, Place, margin, margins};
 pub use method::{Dense, Dop853, Dopri5, Method, Order, State, Step, Tableau, Trial, fit_order};
+pub use number::{Enclosure, Interval, Number};
 pub use options::{InvalidOption, Options, StepSize};
 pub use runs::{
     Recorder, Segment, Trajectory, integrate, run, run_over_switches, smooth, trajectory,

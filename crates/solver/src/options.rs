@@ -36,10 +36,19 @@ pub struct Options {
     pub max_steps: usize,
     /// The run stops after this many switches.
     pub max_switches: usize,
-    /// The bound for a Zeno accumulation. The time that a sequence of switches still takes is
-    /// extrapolated geometrically. The switches accumulate if it falls below this part of the time
-    /// that has passed.
+    /// The run stops after this many successive transitions at one instant, at least 1.
+    pub max_at_one_instant: usize,
+    /// The bound for a Zeno accumulation, or 0 if switches are never said to accumulate.
+    ///
+    /// If the last six gaps between switches are together shorter than the six before, the time
+    /// that the sequence still takes is extrapolated geometrically. The switches accumulate if it
+    /// falls below this part of the time that has passed. Gaps without length do not count, nor do
+    /// switches that change nothing.
     pub zeno: f64,
+    /// The shortest time on which a guard of a black box changes, or `None` if guards change on the
+    /// scale of the solution. On longer steps such guards are expanded in pieces of this length.
+    /// Guards of a [readable system](crate::ReadableSystem) need no scale.
+    pub guard_scale: Option<f64>,
 }
 
 impl Default for Options {
@@ -52,7 +61,9 @@ impl Default for Options {
             max_step: f64::INFINITY,
             max_steps: 10_000_000,
             max_switches: 10_000_000,
+            max_at_one_instant: 1000,
             zeno: 1e-13,
+            guard_scale: None,
         }
     }
 }
@@ -78,6 +89,11 @@ impl Options {
         check("atol", self.atol, "a finite number above 0", positive(self.atol))?;
         check("max_step", self.max_step, "a number above 0", self.max_step > 0.0)?;
         check("zeno", self.zeno, "0 to 0.1", (0.0..=0.1).contains(&self.zeno))?;
+        let instant = self.max_at_one_instant;
+        check("max_at_one_instant", instant as f64, "at least 1", instant > 0)?;
+        if let Some(scale) = self.guard_scale {
+            check("guard_scale", scale, "a finite number above 0", positive(scale))?;
+        }
         if let Some(h) = self.first_step {
             check("first_step", h, "a finite number above 0", positive(h))?;
         }

@@ -1,9 +1,13 @@
 //! A guard as a function along a step, and the effect of rounding on it.
 
+use std::marker::PhantomData;
+
 use crate::error::RunError;
-use crate::events::isolate::Curve;
+use crate::events::isolate::{Curve, Enclosed};
+use crate::events::path::Path;
 use crate::hybrid::{HybridSystem, Statistics};
 use crate::method::{Dense, Method, State, Step};
+use crate::number::{Enclosure, Interval};
 
 /// The relative change of state and time with which a guard's sensitivity to them is measured.
 const SLIGHT: f64 = 1e-12;
@@ -52,17 +56,32 @@ pub(crate) struct AlongStep<'a, S: HybridSystem<N, G>, M, const N: usize, const 
     pub(crate) step: &'a Step<N>,
     pub(crate) dense: &'a Dense<N>,
     pub(crate) statistics: &'a mut Statistics,
-    pub(crate) method: std::marker::PhantomData<M>,
+    pub(crate) method: PhantomData<M>,
 }
 
 impl<S, M, const N: usize, const G: usize> AlongStep<'_, S, M, N, G>
 where
     S: HybridSystem<N, G>,
+    M: Method,
 {
     fn value(&mut self, theta: f64, y: &State<N>) -> f64 {
         self.statistics.guards += 1;
         let s = self.step.s + theta * self.step.h;
         self.sign * self.system.guard_values(self.mode, s, y)[self.guard]
+    }
+
+    /// The state by a step of the method to `theta`, and the guard's value there.
+    fn step_to(&mut self, theta: f64) -> Result<(State<N>, f64), RunError> {
+        let (system, mode, step) = (self.system, self.mode, self.step);
+        let mut shorter = Step::blank();
+        system.step::<M>(mode, &step.shortened(theta * step.h), &mut shorter);
+        self.statistics.resteps += 1;
+        self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
+        let value = self.value(theta, &shorter.y1);
+        if value.is_nan() {
+            return Err(RunError::GuardNotANumber { guard: self.guard, s: step.s });
+        }
+        Ok((shorter.y1, value))
     }
 }
 
@@ -71,9 +90,12 @@ where
     S: HybridSystem<N, G>,
     M: Method,
 {
-    fn dense(&mut self, theta: f64) -> (f64, f64) {
-        let (fine, coarse) = (self.dense.at(theta), self.dense.coarse_at(theta));
-        (self.value(theta, &fine), self.value(theta, &coarse))
+    fn dense(&mut self, theta: f64) -> f64 {
+        self.value(theta, &self.dense.at(theta))
+    }
+
+    fn coarse(&mut self, theta: f64) -> f64 {
+        self.value(theta, &self.dense.coarse_at(theta))
     }
 
     fn rounding(&mut self) -> (f64, f64) {
@@ -87,15 +109,42 @@ where
     }
 
     fn truth(&mut self, theta: f64) -> Result<f64, RunError> {
-        let (system, mode, step) = (self.system, self.mode, self.step);
-        let mut shorter = Step::blank();
-        system.step::<M>(mode, &step.shortened(theta * step.h), &mut shorter);
-        self.statistics.resteps += 1;
-        self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
-        let value = self.value(theta, &shorter.y1);
-        if value.is_nan() {
-            return Err(RunError::GuardNotANumber { guard: self.guard, s: step.s });
-        }
-        Ok(value)
+        self.step_to(theta).map(|(_, value)| value)
+    }
+}
+
+/// A guard of a readable system along a step.
+pub(crate) struct EnclosedAlongStep<'a, S, M, const N: usize, const G: usize>
+where
+    S: HybridSystem<N, G>,
+{
+    pub(crate) along: AlongStep<'a, S, M, N, G>,
+    pub(crate) path: Path<N>,
+}
+
+impl<S, M, const N: usize, const G: usize> Enclosed for EnclosedAlongStep<'_, S, M, N, G>
+where
+    S: HybridSystem<N, G>,
+    M: Method,
+{
+    fn over(&mut self, low: f64, high: f64) -> Enclosure {
+        let AlongStep { system, mode, guard, sign, .. } = self.along;
+        self.along.statistics.enclosures += 1;
+        let (s, y) = self.path.over(low, high);
+        let bounds = system.enclose_guards(mode, s, &y)[guard];
+        if sign < 0.0 { -bounds } else { bounds }
+    }
+
+    fn truth(&mut self, theta: f64) -> Result<(f64, Interval), RunError> {
+        let (y, value) = self.along.step_to(theta)?;
+        let AlongStep { system, mode, guard, sign, step, .. } = self.along;
+        let s = Enclosure::from(step.s + theta * step.h);
+        let state = std::array::from_fn(|i| Enclosure::from(y[i]));
+        let bounds = system.enclose_guards(mode, s, &state)[guard].value;
+        Ok((value, if sign < 0.0 { bounds.negated() } else { bounds }))
+    }
+
+    fn at(&mut self, theta: f64) -> f64 {
+        self.along.dense(theta)
     }
 }

@@ -8,9 +8,6 @@ pub(crate) struct Event<const N: usize> {
     pub(crate) guard: usize,
     /// Further guards that are zero where the step ends, one bit each.
     pub(crate) simultaneous: u32,
-    /// Guards that crossed too, at the same place or slightly before, and yielded to this one, one
-    /// bit each.
-    pub(crate) passed: u32,
     /// The absolute slope of the guard where it fires.
     pub(crate) slope: f64,
     /// The time from the start of the step to the event.
@@ -21,19 +18,13 @@ pub(crate) struct Event<const N: usize> {
     pub(crate) residual: f64,
     /// The sign of the guard before it fired.
     pub(crate) sign: f64,
+    /// The time from the start of the step to a place between which and the event the guard does
+    /// not cross zero again.
+    pub(crate) beyond: f64,
+    /// Whether the guard jumps over zero.
+    pub(crate) jump: bool,
     /// The step that ends at the event.
     pub(crate) step: Step<N>,
-}
-
-impl<const N: usize> Event<N> {
-    /// Notes that `guard` crossed too and yielded.
-    pub(crate) fn pass(&mut self, guard: usize) {
-        self.passed |= bit(guard);
-    }
-
-    pub(crate) fn has_passed(&self, guard: usize) -> bool {
-        self.passed & bit(guard) != 0
-    }
 }
 
 /// The bit of a guard in a mask, or 0 for guards beyond the 32 that a mask can hold.

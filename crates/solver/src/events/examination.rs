@@ -1,8 +1,8 @@
 //! What the examination of a step needs, and the values of its guards.
 
 use crate::events::phase::Phase;
-use crate::events::quick::NODES;
-use crate::hybrid::{HybridSystem, Observer, Statistics};
+use crate::events::quick::{BETWEEN, NODES, between};
+use crate::hybrid::{HybridSystem, Observer, Statistics, SwitchEvent};
 use crate::method::{State, Step, Trial};
 
 /// The data that the examination of a step needs.
@@ -11,6 +11,10 @@ pub(crate) struct Examination<'a, S: HybridSystem<N, G>, O, const N: usize, cons
     pub(crate) phase: &'a Phase<S::Mode, G>,
     /// The step before it was shortened.
     pub(crate) trial: &'a Trial<'a, N>,
+    /// The shortest time on which a guard of a black box may change, infinite if it is not known.
+    pub(crate) guard_scale: f64,
+    /// The events on this step that change nothing.
+    pub(crate) notes: &'a mut Vec<SwitchEvent<S::Mode, N>>,
     pub(crate) statistics: &'a mut Statistics,
     pub(crate) observer: &'a mut O,
 }
@@ -35,5 +39,33 @@ where
             at(NODES[4], &step.interior[3]),
             at(1.0, &step.y1),
         ]
+    }
+    /// Whether the values of each guard between the [`NODES`] are those that the values at the nodes
+    /// predict. This is asked of black boxes only.
+    #[inline(always)]
+    pub(crate) fn confirmed(&mut self, step: &Step<N>, values: &[[f64; G]; 6]) -> [bool; G] {
+        if S::READABLE {
+            return [true; G];
+        }
+        if step.h > self.guard_scale {
+            return [false; G];
+        }
+        let [a, b, c, d] = &step.interior;
+        let states = [&step.y0, a, b, c, d, &step.y1];
+        let mut confirmed = [true; G];
+        self.statistics.guards += BETWEEN.len();
+        for (place, theta) in BETWEEN.into_iter().enumerate() {
+            let y = State::from_fn(|i, _| between(place, &states.map(|state| state[i])));
+            let found = self.system.guard_values(self.phase.mode, step.s + theta * step.h, &y);
+            for guard in 0..G {
+                let column = values.map(|at_node| at_node[guard]);
+                let expected = between(place, &column);
+                let size = column.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
+                // NaN is not confirmed.
+                let off = (found[guard] - expected).abs();
+                confirmed[guard] &= off <= (0.5 * expected.abs()).max(0.01 * size);
+            }
+        }
+        confirmed
     }
 }

@@ -3,10 +3,10 @@
 use crate::error::RunError;
 use crate::events::event::{Event, Found, bit};
 use crate::events::examination::Examination;
-use crate::events::isolate::Bracket;
+use crate::events::isolate::{Beginning, Bracket};
 use crate::events::one_guard::{Crossing, Status};
 use crate::events::quick;
-use crate::hybrid::{Direction, HybridSystem, Observer};
+use crate::hybrid::{Direction, HybridSystem, Observer, SwitchEvent};
 use crate::method::{Method, Step};
 
 /// Guards whose zeros are closer together than this part of the step fire together.
@@ -17,7 +17,8 @@ where
     S: HybridSystem<N, G>,
     O: Observer<S::Mode, N>,
 {
-    /// Finds the first guard that fires on `step`, and writes it to `event`, which is empty.
+    /// Finds the first guard that fires on `step` and changes something, and writes it to `event`,
+    /// which is empty. Guards that fire before it and change nothing are noted.
     #[inline]
     pub(crate) fn look<M: Method>(
         &mut self,
@@ -28,32 +29,33 @@ where
             return Ok(Found::Nothing(self.phase.values));
         }
         let values = self.values_on(step);
-        if self.all_clearly_away(&values) {
+        if self.all_clearly_away(step, &values) {
             return Ok(Found::Nothing(values[5]));
         }
-        let statuses = std::array::from_fn(|guard| self.glance::<M>(guard, &values));
+        let statuses = self.glances::<M>(step, &values);
         if statuses.iter().all(|&status| status == Status::Clear) {
             Ok(Found::Nothing(self.on_their_side::<M>(step, &values)))
         } else {
-            self.decide::<M>(step, event, values, statuses)
+            self.decide::<M>(step, event, &values, statuses)
         }
     }
 
     /// Whether all guards stay clearly on the side where they do not fire. This holds on most
     /// steps.
     #[inline(always)]
-    fn all_clearly_away(&self, values: &[[f64; G]; 6]) -> bool {
+    fn all_clearly_away(&mut self, step: &Step<N>, values: &[[f64; G]; 6]) -> bool {
         // The verdicts are collected in an array, so that the loop is unrolled and the values stay
         // in registers.
         let away: [bool; G] = std::array::from_fn(|guard| {
             let column = values.map(|at_node| at_node[guard]);
+            let away = || self.decides_quickly(guard) && quick::clearly_away(column);
             match self.phase.guards[guard].direction() {
                 Direction::Off => true,
-                Direction::Below => column[0] > 0.0 && quick::clearly_away(column),
-                _ => quick::clearly_away(column),
+                Direction::Below => column[0] > 0.0 && away(),
+                _ => away(),
             }
         });
-        !self.phase.at_zero && away == [true; G]
+        !self.phase.at_zero && away == [true; G] && self.confirmed(step, values) == [true; G]
     }
 
     /// Decides which guard fires first if the quick look alone does not tell that none fires.
@@ -61,20 +63,114 @@ where
         &mut self,
         step: &mut Step<N>,
         event: &mut Option<Event<N>>,
-        mut values: [[f64; G]; 6],
+        values: &[[f64; G]; 6],
         mut statuses: [Status; G],
     ) -> Result<Found<G>, RunError> {
-        let end_values = self.on_their_side::<M>(step, &values);
+        let end_values = self.on_their_side::<M>(step, values);
+        // Where the part of the step begins that is still to be examined, for each guard.
+        let mut beginnings: [Beginning; G] = std::array::from_fn(|guard| Beginning {
+            theta: 0.0,
+            value: self.phase.values[guard],
+            zero_order: self.phase.zero_orders[guard],
+        });
+        let mut last: Option<f64> = None;
+        loop {
+            *event = None;
+            let found = self.first::<M>(step, event, values, &mut statuses, &beginnings)?;
+            let Some(next) = event.as_ref() else {
+                return Ok(match found {
+                    Found::Nothing(_) => Found::Nothing(end_values),
+                    other => other,
+                });
+            };
+            let guard = next.guard;
+            if !self.is_noted(next) {
+                return Ok(Found::Event);
+            }
+            let elapsed = next.elapsed.max(last.unwrap_or(0.0));
+            self.note(next, last.is_some_and(|last| elapsed - last <= TOGETHER * step.h));
+            last = Some(elapsed);
+            // Whether the guard crosses again is not known beyond the bracket of this crossing.
+            let theta = next.beyond / step.h;
+            beginnings[guard] = Beginning { theta, value: -next.sign, zero_order: 0 };
+            statuses[guard] = if theta < 1.0 { Status::Unclear } else { Status::Clear };
+        }
+    }
+
+    /// Whether an event only reports a crossing: mode and state go on unchanged.
+    pub(crate) fn is_noted(&self, event: &Event<N>) -> bool {
+        let about = self.phase.guards[event.guard];
+        let before = self.notes.iter().filter(|note| note.guard == event.guard).count();
+        if about.direction() == Direction::Below
+            || before + 1 == about.fires_until_end() as usize
+            || !event.state.iter().all(|value| value.is_finite())
+        {
+            return false;
+        }
+        let s = self.trial.s + event.elapsed;
+        self.system.transition(self.phase.mode, event.guard, s, &event.state)
+            == (self.phase.mode, event.state)
+    }
+
+    /// Whether a guard has fired on this step, at `s` or later.
+    pub(crate) fn noted_since(&self, guard: usize, s: f64) -> bool {
+        self.notes
+            .iter()
+            .any(|note| (note.guard == guard || note.simultaneous & bit(guard) != 0) && note.s >= s)
+    }
+
+    /// Notes an event that changes nothing. If it is `together` with the one before, both are one.
+    pub(crate) fn note(&mut self, event: &Event<N>, together: bool) {
+        if together
+            && bit(event.guard) != 0
+            && let Some(last) = self.notes.last_mut()
+            && last.guard != event.guard
+        {
+            last.simultaneous |= bit(event.guard);
+            return;
+        }
+        let largest = self.phase.largest[event.guard];
+        self.notes.push(SwitchEvent {
+            s: self.trial.s + event.elapsed,
+            guard: event.guard,
+            simultaneous: 0,
+            flatness: if largest == 0.0 { 0.0 } else { largest / event.slope },
+            jump: event.jump,
+            from: self.phase.mode,
+            to: self.phase.mode,
+            before: event.state,
+            after: event.state,
+        });
+    }
+
+    /// Finds the first guard that fires, whether or not it changes something.
+    fn first<M: Method>(
+        &mut self,
+        step: &mut Step<N>,
+        event: &mut Option<Event<N>>,
+        full_values: &[[f64; G]; 6],
+        full: &mut [Status; G],
+        beginnings: &[Beginning; G],
+    ) -> Result<Found<G>, RunError> {
+        let (mut values, mut statuses) = (*full_values, *full);
         loop {
             let first = self.earliest(&statuses);
             let Some((guard, crossing)) = first else {
+                let shortened = event.is_some();
                 let on = event.as_mut().map_or(&mut *step, |event| &mut event.step);
                 let mut found_any = false;
                 for guard in 0..G {
                     if statuses[guard] == Status::Unclear {
                         let column = values.map(|at_node| at_node[guard]);
                         let at_start = on.h <= TOGETHER * self.trial.h;
-                        let status = match self.isolate::<M>(guard, on, &column)? {
+                        let mut beginning = beginnings[guard];
+                        beginning.theta *= self.trial.h / on.h;
+                        let status = if beginning.theta < 1.0 {
+                            self.isolate::<M>(guard, on, &column, beginning)?
+                        } else {
+                            Some(Status::Clear)
+                        };
+                        let status = match status {
                             Some(status) => status,
                             // Whether it fires together with the event shows after the event.
                             None if at_start => Status::Clear,
@@ -85,12 +181,15 @@ where
                         };
                         found_any |= status != Status::Clear;
                         statuses[guard] = status;
+                        if !shortened {
+                            full[guard] = status;
+                        }
                     }
                 }
                 if found_any {
                     continue;
                 }
-                let nothing = Found::Nothing(end_values);
+                let nothing = Found::Nothing(values[5]);
                 return Ok(if event.is_some() { Found::Event } else { nothing });
             };
             statuses[guard] = Status::Clear;
@@ -98,26 +197,27 @@ where
             let exact = O::WANTS_SEGMENTS
                 || event.is_some()
                 || statuses.iter().any(|&status| status != Status::Clear);
-            let mut next = self.locate::<M>(on, guard, &crossing, exact)?;
+            let Some(mut next) = self.locate::<M>(on, guard, &crossing, exact)? else {
+                *event = None;
+                return Ok(Found::TooCoarse(guard));
+            };
             if next.elapsed == 0.0 {
                 *event = Some(next);
                 return Ok(Found::Event);
             }
             if let Some(event) = event.as_mut()
                 && next.elapsed >= (1.0 - TOGETHER) * event.elapsed
+                && self.precedes(event.guard, guard)
             {
-                if self.precedes(event.guard, guard) {
-                    // Both fire at the end of the shortened step, and the event's guard precedes.
-                    event.pass(guard);
-                    continue;
-                }
-                next.passed = event.passed;
-                next.pass(event.guard);
+                // Both fire at the end of the shortened step, and the event's guard precedes.
+                continue;
             }
             let mut at_nodes = self.values_on(&next.step);
             next.simultaneous = self.simultaneous(guard, &at_nodes);
             let on = event.as_mut().map_or(&mut *step, |event| &mut event.step);
-            if let Some(preceding) = self.preceding::<M>(&next, on, &values, &statuses)? {
+            if let Some(preceding) =
+                self.preceding::<M>(&next, on, &values, &statuses, beginnings)?
+            {
                 // Of guards that fire together the one that precedes decides, even if rounding
                 // puts another one earlier.
                 next = preceding;
@@ -128,11 +228,24 @@ where
             values = at_nodes;
             for (other, status) in statuses.iter_mut().enumerate() {
                 if *status != Status::Clear {
-                    *status = self.glance::<M>(other, &values);
+                    *status = self.glance_again::<M>(other, &next.step, &values);
                 }
             }
             *event = Some(next);
         }
+    }
+
+    /// What a quick look at a shortened step tells about a guard.
+    fn glance_again<M: Method>(
+        &mut self,
+        guard: usize,
+        step: &Step<N>,
+        values: &[[f64; G]; 6],
+    ) -> Status {
+        if self.noted_since(guard, f64::NEG_INFINITY) {
+            return Status::Unclear;
+        }
+        self.glance_at::<M>(guard, step, values, &mut None)
     }
 
     /// Whether guard `first` decides the transition if it fires together with guard `second`. The
@@ -167,6 +280,7 @@ where
         step: &mut Step<N>,
         values: &[[f64; G]; 6],
         statuses: &[Status; G],
+        beginnings: &[Beginning; G],
     ) -> Result<Option<Event<N>>, RunError> {
         for first in 0..G.min(32) {
             if event.simultaneous & bit(first) == 0 || !self.precedes(first, event.guard) {
@@ -175,22 +289,23 @@ where
             let mut status = statuses[first];
             if status == Status::Unclear {
                 let column = values.map(|at_node| at_node[first]);
-                status = self.isolate::<M>(first, step, &column)?.unwrap_or(Status::Unclear);
+                let mut beginning = beginnings[first];
+                beginning.theta *= self.trial.h / step.h;
+                if beginning.theta < 1.0 {
+                    let isolated = self.isolate::<M>(first, step, &column, beginning)?;
+                    status = isolated.unwrap_or(Status::Unclear);
+                }
             }
             let Status::Fires(Crossing { sign, bracket }) = status else { continue };
             let guess = event.elapsed / step.h;
             let Bracket { low, high, .. } = bracket;
             if low <= (1.0 + TOGETHER) * guess && (1.0 - TOGETHER) * guess <= high {
-                // If the guard starts from a known zero, a search that begins close to it would
-                // find that zero again.
-                let known = self.phase.sides[first] != 0.0;
-                let guess = if known { bracket.guess } else { guess };
                 let crossing = Crossing { sign, bracket: Bracket { guess, ..bracket } };
-                let mut preceding = self.locate::<M>(step, first, &crossing, true)?;
+                let preceding = self.locate::<M>(step, first, &crossing, true)?;
                 // A guard that only touches zero here may fire elsewhere.
-                if (preceding.elapsed - event.elapsed).abs() <= TOGETHER * event.elapsed {
-                    preceding.passed = event.passed;
-                    preceding.pass(event.guard);
+                if let Some(preceding) = preceding
+                    && (preceding.elapsed - event.elapsed).abs() <= TOGETHER * event.elapsed
+                {
                     return Ok(Some(preceding));
                 }
             }

@@ -1,29 +1,42 @@
 //! Isolation: it decides whether a guard crosses zero on a step.
 //!
-//! Along the dense output a guard is an analytic function q of the step fraction θ. It is expanded
-//! in Chebyshev polynomials on panels that are narrow enough for degree 8. Bounds on the
-//! coefficients and subdivision isolate its critical points. These cut the step into pieces on
-//! which q is monotone, and on each piece the signs at the ends decide. If a value is smaller than
-//! the error of the dense output, a step of the method to that point tells its sign.
+//! Along the dense output a guard is a function q of the step fraction θ. If its system is
+//! readable, `enclosed` bounds it and its derivatives. Otherwise it is *sampled*: expanded in
+//! Chebyshev polynomials on panels that are narrow enough for degree 8. Bounds on the coefficients
+//! and subdivision isolate its critical points. These cut the step into pieces on which q is
+//! monotone, and on each piece the signs at the ends decide. If a value is smaller than the error
+//! of the dense output, a step of the method to that point tells its sign. A panel that stays
+//! unresolved however narrow it is has a kink, a jump or a pole.
 //!
 //! Few steps come here. A curve is therefore dispatched at run time, and all this is compiled once,
 //! not once for each system and method.
 
 mod chebyshev;
 mod curve;
+mod enclosed;
 mod panel;
+mod root;
 
 use std::ops::ControlFlow;
 
 use crate::error::RunError;
-use crate::events::isolate::curve::{Accuracy, DEPTH, NARROWEST, Quotient, power};
+use crate::events::isolate::curve::{Accuracy, NARROWEST, Quotient, power};
 use crate::events::isolate::panel::{Panel, Points};
 
-pub(crate) use curve::{Curve, noise};
+pub(crate) use curve::Curve;
+pub(crate) use enclosed::{Enclosed, first_enclosed_crossing};
+pub(crate) use root::narrow;
+use root::root;
 
 /// Panels are halved at most this often in the search for critical points. A stretch that is flat
 /// to within the error ends the search earlier.
 const CRITICAL_DEPTH: u32 = 45;
+/// Panels that do not resolve the guard are halved at most this often.
+const DEPTH: usize = 48;
+/// The panels that may be examined before a step counts as too coarse.
+const LIMIT: usize = 20_000;
+/// The number of widths of the last panel after which a pole is compared with its surroundings.
+const AROUND: f64 = 64.0;
 /// The part of the step on which a quotient is expanded to find its value at the start.
 const OPENING: f64 = 0.25;
 
@@ -43,6 +56,26 @@ pub(crate) struct Touch {
     pub(crate) margin: f64,
 }
 
+/// What isolation notices about a guard besides its crossings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Notice {
+    /// It touches zero, or nearly.
+    Touch(Touch),
+    /// It changes its sign at a pole, at this step fraction.
+    Pole(f64),
+}
+
+/// Where isolation begins.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Beginning {
+    /// The step fraction.
+    pub(crate) theta: f64,
+    /// The guard's value there. Only its sign counts.
+    pub(crate) value: f64,
+    /// The order of a known zero there, 0 if there is none. It is 0 unless `theta` is 0.
+    pub(crate) zero_order: u32,
+}
+
 /// What isolation finds out about a guard on a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Verdict {
@@ -56,67 +89,74 @@ pub(crate) enum Verdict {
     TooCoarse,
 }
 
-/// Finds the first crossing of a curve from ≥ 0 to < 0.
-///
-/// `zero_order` is the order of a known zero at θ = 0, which is divided out. `side` is the sign
-/// with which the curve leaves this zero, or 0 if that is not known. If it is known, values up to
-/// `hidden` count as zero. `start` and `end` are the curve's values at the ends of the step. If the
-/// curve bounds a `domain`, a negative start counts too. Touches before the crossing go to
-/// `on_touch`.
+/// A guard on a step, normalised so that it fires where it falls.
+pub(crate) struct Task {
+    pub(crate) beginning: Beginning,
+    /// Whether it bounds a domain, so that a negative start counts too.
+    pub(crate) domain: bool,
+    /// The value at the end of the step.
+    pub(crate) end: f64,
+    /// The narrowest part of the step that can be told from a point.
+    pub(crate) resolution: f64,
+    /// The widest panel on which the guard may be expanded.
+    pub(crate) widest: f64,
+}
+
+/// Finds the first crossing of a sampled curve from ≥ 0 to < 0. What it notices before the crossing
+/// goes to `notice`.
 pub(crate) fn first_crossing(
     curve: &mut dyn Curve,
-    (zero_order, side, hidden): (u32, f64, f64),
-    domain: bool,
-    (start, end): (f64, f64),
-    on_touch: &mut dyn FnMut(Touch),
+    task: &Task,
+    notice: &mut dyn FnMut(Notice),
 ) -> Result<Verdict, RunError> {
+    let Beginning { theta: first, value: start, zero_order } = task.beginning;
     let mut quotient = Quotient { curve, order: zero_order };
     let mut accuracy = quotient.accuracy();
     if accuracy.dense.is_nan() {
         return Ok(Verdict::TooCoarse);
     }
-    if side != 0.0 {
-        // Values up to `hidden` count as zero at the start.
-        accuracy.state.0 = accuracy.state.0.max(hidden);
-    }
     // The last point whose sign is known, and the value there.
-    let mut before = Some((0.0, start));
+    let mut before = Some((first, start));
     if zero_order > 0 {
-        let panel = Panel::new(0.0, OPENING, |theta| quotient.at(theta).0);
+        let panel = Panel::new(0.0, OPENING, |theta| quotient.at(theta));
         let opening = panel.at(-1.0);
-        if side == 0.0 {
-            if panel.tail() > accuracy.on(&panel, zero_order) {
-                accuracy.noise = quotient.noise(0.5 * OPENING, 0.5 * OPENING + NARROWEST);
-            }
-            let error = accuracy.on(&panel, zero_order);
-            before = Some((0.0, opening)).filter(|_| opening.abs() > error);
-            // A shorter step diminishes the error at the opening, but not the effect of noise and
-            // rounding at the start.
-            if before.is_none() && 2.0 * accuracy.lasting(&panel, zero_order) < error {
-                return Ok(Verdict::TooCoarse);
-            }
-        } else {
-            before = Some((0.0, opening.abs().max(f64::MIN_POSITIVE).copysign(side)));
+        if panel.tail() > accuracy.on(&panel, zero_order) {
+            accuracy.noise = quotient.noise(0.5 * OPENING, 0.5 * OPENING + NARROWEST);
+        }
+        let error = accuracy.on(&panel, zero_order);
+        before = Some((0.0, opening)).filter(|_| opening.abs() > error);
+        // A shorter step diminishes the error at the opening, but not the effect of noise and
+        // rounding at the start.
+        if before.is_none() && 2.0 * accuracy.lasting(&panel, zero_order) < error {
+            return Ok(Verdict::TooCoarse);
         }
     }
-    if domain && before.is_some_and(|(_, value)| value < 0.0) {
+    if task.domain && before.is_some_and(|(_, value)| value < 0.0) {
         return Ok(Verdict::StartsBelow);
     }
-    let hidden = if zero_order > 0 { accuracy.state.0 } else { 0.0 };
-    let end = (end, -1.0);
-    let walked = walk(&mut quotient, &mut accuracy, hidden, end, on_touch, |quotient, point| {
-        match before {
-            Some(before) if before.1 >= 0.0 && point.1 < 0.0 => {
-                let guess = panel_root(quotient, before, point);
-                let bracket = Bracket { low: before.0, high: point.0, guess };
-                return ControlFlow::Break(Verdict::Crossing(bracket));
+    let walked =
+        walk(&mut quotient, &mut accuracy, task, notice, |quotient, (theta, value), pole| {
+            match before {
+                Some((low, at_low)) if at_low >= 0.0 && value < 0.0 && !pole => {
+                    if at_low == 0.0 && low == first {
+                        // It is zero where it begins, and falls from there.
+                        return ControlFlow::Break(Verdict::Crossing(Bracket::at(first)));
+                    }
+                    let guess = root(|theta| quotient.at(theta), (low, at_low), (theta, value));
+                    return ControlFlow::Break(Verdict::Crossing(Bracket {
+                        low,
+                        high: theta,
+                        guess,
+                    }));
+                }
+                // The first sign that can be told is that with which the curve leaves its zero.
+                None if task.domain && value < 0.0 => {
+                    return ControlFlow::Break(Verdict::StartsBelow);
+                }
+                _ => before = Some((theta, value)),
             }
-            // The first sign that can be told is that with which the curve leaves its zero.
-            None if domain && point.1 < 0.0 => return ControlFlow::Break(Verdict::StartsBelow),
-            _ => before = Some(point),
-        }
-        ControlFlow::Continue(())
-    })?;
+            ControlFlow::Continue(())
+        })?;
     Ok(match walked {
         Some(ControlFlow::Break(verdict)) => verdict,
         Some(ControlFlow::Continue(())) => Verdict::None,
@@ -124,80 +164,81 @@ pub(crate) fn first_crossing(
     })
 }
 
-/// The first and the last sign that a curve shows on a step. They are 0 if it shows none. At the
-/// ends of the step, values up to `hidden` have no sign. `None` means that a shorter step is
-/// needed.
-pub(crate) fn sides(
-    curve: &mut dyn Curve,
-    hidden: f64,
-    end: f64,
-) -> Result<Option<[f64; 2]>, RunError> {
+/// The last sign that a curve shows on a step, or 0 if it shows none. The result is `None` if a
+/// shorter step is needed.
+pub(crate) fn last_sign(curve: &mut dyn Curve, resolution: f64) -> Result<Option<f64>, RunError> {
     let mut quotient = Quotient { curve, order: 0 };
     let mut accuracy = quotient.accuracy();
     if accuracy.dense.is_nan() {
         return Ok(None);
     }
-    accuracy.noise = hidden;
-    let mut sides = [0.0; 2];
-    let inside = accuracy.state.1;
-    let end = (end, hidden + inside);
-    let walked = walk(
-        &mut quotient,
-        &mut accuracy,
-        inside,
-        end,
-        |_| {},
-        |_, (_, value)| {
-            let side = value.signum();
-            sides = [if sides[0] == 0.0 { side } else { sides[0] }, side];
-            ControlFlow::<()>::Continue(())
-        },
-    )?;
-    Ok(walked.map(|_| sides))
+    let mut last = 0.0;
+    let beginning = Beginning { theta: 0.0, value: 0.0, zero_order: 0 };
+    let task = Task { beginning, domain: false, end: 0.0, resolution, widest: 1.0 };
+    let walked = walk(&mut quotient, &mut accuracy, &task, &mut |_| {}, |_, (_, value), _| {
+        last = value.signum();
+        ControlFlow::<()>::Continue(())
+    })?;
+    Ok(walked.map(|_| last))
 }
 
-/// Visits points between which a quotient is monotone, from left to right, with the values there.
+impl Bracket {
+    /// A crossing exactly at `theta`.
+    pub(crate) const fn at(theta: f64) -> Self {
+        Self { low: theta, high: theta, guess: theta }
+    }
+}
+
+/// Visits points between which a quotient is monotone, from left to right, with the values there,
+/// and whether there is a pole before it.
 ///
-/// Points are left out if the guard's value there is within noise and `hidden` of zero, so that it
-/// has no sign. The value `end` at the end of the step is given. If it is within `hidden_end` of
-/// zero, the middle of the last piece is visited instead. The result is `None` if the step is too
-/// coarse.
+/// Points are left out if the guard's value there is within its noise, so that it has no sign. If
+/// the value at the end of the step is zero, the middle of the last piece is visited instead. The
+/// result is `None` if the step is too coarse.
 fn walk<B>(
     quotient: &mut Quotient<'_>,
     accuracy: &mut Accuracy,
-    hidden: f64,
-    (end, hidden_end): (f64, f64),
-    mut on_touch: impl FnMut(Touch),
-    mut visit: impl FnMut(&mut Quotient<'_>, (f64, f64)) -> ControlFlow<B>,
+    task: &Task,
+    notice: &mut dyn FnMut(Notice),
+    mut visit: impl FnMut(&mut Quotient<'_>, (f64, f64), bool) -> ControlFlow<B>,
 ) -> Result<Option<ControlFlow<B>>, RunError> {
     let order = quotient.order;
-    let mut pending = [(0.0, 0.0); DEPTH as usize + 2];
-    pending[0] = (0.0, 1.0);
+    let hidden = if order > 0 { accuracy.state.0 } else { 0.0 };
+    let mut pending = [(0.0, 0.0); DEPTH + 2];
+    pending[0] = (task.beginning.theta, 1.0);
     let mut count = 1;
+    let mut examined = 0;
     while count > 0 {
         count -= 1;
+        examined += 1;
         let (low, high) = pending[count];
-        let panel = Panel::new(low, high, |theta| quotient.at(theta).0);
+        let panel = Panel::new(low, high, |theta| quotient.at(theta));
         let mut error = accuracy.on(&panel, order);
-        if panel.tail().is_nan() {
+        if panel.tail().is_nan() || examined > LIMIT {
             return Ok(None);
         }
+        let wide = high - low > task.widest;
         let narrow = high - low < 1.5 * NARROWEST;
         if panel.tail() > error && narrow {
-            // Structure that even the narrowest panel does not resolve may be noise. A shorter step
+            // Structure that even a narrow panel does not resolve may be noise. A shorter step
             // would not diminish that.
             accuracy.noise = accuracy.noise.max(quotient.noise(low, high));
             error = accuracy.on(&panel, order);
         }
-        if panel.tail() > error {
-            if narrow {
-                return Ok(None);
+        let unresolved = panel.tail() > error && !(narrow && panel.is_far_from_zero());
+        if unresolved || wide {
+            if high - low > task.resolution && count + 2 <= DEPTH {
+                let middle = 0.5 * (low + high);
+                pending[count] = (middle, high);
+                pending[count + 1] = (low, middle);
+                count += 2;
+                continue;
             }
-            let middle = 0.5 * (low + high);
-            pending[count] = (middle, high);
-            pending[count + 1] = (low, middle);
-            count += 2;
-            continue;
+            let visited = at_break(quotient, task, (low, high), notice, &mut visit);
+            match visited {
+                Some(ControlFlow::Continue(())) => continue,
+                visited => return Ok(visited),
+            }
         }
         let mut points = Points::default();
         panel.critical_points(-1.0, 1.0, error, CRITICAL_DEPTH, &mut points);
@@ -209,8 +250,8 @@ fn walk<B>(
         for &local in points.as_slice() {
             let mut theta = panel.theta(local);
             let at_end = theta >= 1.0;
-            let mut value = if at_end { end } else { panel.at(local) };
-            if at_end && value.abs() <= hidden_end {
+            let mut value = if at_end { task.end } else { panel.at(local) };
+            if at_end && value == 0.0 {
                 let middle = 0.5 * (last + local);
                 value = panel.at(middle);
                 if value.abs() <= error {
@@ -222,7 +263,7 @@ fn walk<B>(
             if !at_end && value.abs() <= error {
                 value = quotient.truth(theta)?;
                 if local < 1.0 {
-                    on_touch(Touch { theta, margin: value * power(theta, order) });
+                    notice(Notice::Touch(Touch { theta, margin: value * power(theta, order) }));
                 }
                 if value.abs() * power(theta, order) <= accuracy.noise + hidden {
                     // It has no sign. The points that follow tell whether the guard goes through.
@@ -232,7 +273,7 @@ fn walk<B>(
             if value.is_nan() {
                 return Ok(None);
             }
-            let visited = visit(quotient, (theta, value));
+            let visited = visit(quotient, (theta, value), false);
             if visited.is_break() {
                 return Ok(Some(visited));
             }
@@ -241,25 +282,33 @@ fn walk<B>(
     Ok(Some(ControlFlow::Continue(())))
 }
 
-/// The root of the quotient along the dense output between two points of opposite sign, by the
-/// Illinois rule.
-fn panel_root(quotient: &mut Quotient<'_>, low: (f64, f64), high: (f64, f64)) -> f64 {
-    let (mut a, mut b) = (low, high);
-    let mut theta = b.0;
-    for _ in 0..40 {
-        let next = a.0 + (b.0 - a.0) * (a.1 / (a.1 - b.1));
-        if !next.is_finite() || (next - theta).abs() <= 1e-9 * next {
-            break;
-        }
-        theta = next;
-        let value = quotient.at(theta).0;
-        if value < 0.0 {
-            b = (theta, value);
-            a.1 *= 0.5;
-        } else {
-            a = (theta, value);
-            b.1 *= 0.5;
+/// Visits both ends of a panel that is as narrow as a point and still unresolved: a kink, a jump or
+/// a pole. The result is `None` if the curve has no value there.
+fn at_break<B>(
+    quotient: &mut Quotient<'_>,
+    task: &Task,
+    (low, high): (f64, f64),
+    notice: &mut dyn FnMut(Notice),
+    visit: &mut impl FnMut(&mut Quotient<'_>, (f64, f64), bool) -> ControlFlow<B>,
+) -> Option<ControlFlow<B>> {
+    let mut at = |theta: f64| quotient.at(theta.clamp(f64::MIN_POSITIVE, 1.0));
+    let (before, after) = (at(low), if high >= 1.0 { task.end } else { at(high) });
+    let distance = AROUND * (high - low);
+    let size = |a: f64, b: f64| a.abs() + b.abs();
+    let pole = size(before, after) > 4.0 * size(at(low - distance), at(high + distance));
+    if before.is_nan() || after.is_nan() {
+        return None;
+    }
+    if pole && before * after < 0.0 {
+        notice(Notice::Pole(high));
+    }
+    for point in [(low, before), (high, after)] {
+        if point.1 != 0.0 {
+            let visited = visit(quotient, point, pole && point.0 == high);
+            if visited.is_break() {
+                return Some(visited);
+            }
         }
     }
-    theta.clamp(low.0, high.0)
+    Some(ControlFlow::Continue(()))
 }

@@ -7,6 +7,7 @@ use crate::error::RunError;
 use crate::events::along_step::rounding;
 use crate::events::event::Event;
 use crate::events::examination::Examination;
+use crate::events::isolate::{Bracket, narrow};
 use crate::events::one_guard::Crossing;
 use crate::hybrid::{HybridSystem, Observer};
 use crate::method::{Method, State, Step};
@@ -22,84 +23,126 @@ const NOWHERE: f64 = 1e-20;
 /// step is.
 const REACH: f64 = 1e-3;
 
+/// The part of the bracket over which it is differenced at most: other zeros may be beyond the
+/// bracket.
+const INSIDE: f64 = 0.03;
+/// The least part of a step over which a guard is differenced, so that rounding cannot spoil the
+/// slope.
+const LEAST_REACH: f64 = 1e-7;
+
 impl<S, O, const N: usize, const G: usize> Examination<'_, S, O, N, G>
 where
     S: HybridSystem<N, G>,
     O: Observer<S::Mode, N>,
 {
     /// Ends `step` where `guard` crosses zero inside the bracket. If `exact`, the event's step ends
-    /// exactly at the crossing; otherwise it ends within a small part of itself.
+    /// exactly at the crossing; otherwise it ends within a small part of itself. The result is
+    /// `None` if steps of the method do not find the signs that the bracket claims.
     pub(crate) fn locate<M: Method>(
         &mut self,
         step: &Step<N>,
         guard: usize,
         crossing: &Crossing,
         exact: bool,
-    ) -> Result<Event<N>, RunError> {
+    ) -> Result<Option<Event<N>>, RunError> {
         let (system, mode) = (self.system, self.phase.mode);
-        let (mut low, mut high) = (crossing.bracket.low, crossing.bracket.high);
-        let mut theta = crossing.bracket.guess;
-        let event = |elapsed, state, residual: f64, slope: f64, step| Event {
+        let Bracket { mut low, mut high, guess: mut theta } = crossing.bracket;
+        let (mut seen_low, mut seen_high) = (false, false);
+        let beyond = crossing.bracket.high * step.h;
+        let event = |at: Landing<N>, step: Step<N>| Event {
             guard,
             simultaneous: 0,
-            passed: 0,
-            slope: slope.abs(),
-            elapsed,
-            state,
-            residual: residual.abs(),
+            slope: at.slope.abs(),
+            elapsed: at.elapsed,
+            state: at.state,
+            residual: at.residual.abs(),
             sign: crossing.sign,
+            beyond,
+            jump: at.jump,
             step,
         };
+        let at_start = |slope: f64, residual: f64| {
+            let (elapsed, state, jump) = (0.0, step.y0, false);
+            let landing = Landing { elapsed, state, residual, slope, jump };
+            Ok(Some(event(landing, step.shrunk_to_start())))
+        };
+        let start = self.phase.values[guard];
         if high == 0.0 {
-            let residual = self.phase.values[guard];
-            return Ok(event(0.0, step.y0, residual, f64::INFINITY, step.shrunk_to_start()));
+            return at_start(f64::INFINITY, start);
+        }
+        let from_zero = start.abs() <= f64::MIN_POSITIVE && self.phase.zero_orders[guard] == 0;
+        if low == 0.0 && from_zero && !self.noted_since(guard, step.s) {
+            // The guard is zero at the start. If it falls from there, it crosses there.
+            let reach = REACH * step.h;
+            let near = Near { system, mode, guard, sign: crossing.sign, reach };
+            let probe = near.probe(step.s, &step.y0);
+            self.count_probe();
+            if probe.slope < 0.0 && probe.bend.abs() * reach < 0.1 * probe.slope.abs() {
+                return at_start(probe.slope, start);
+            }
         }
         if !(theta > low && theta < high) {
             theta = 0.5 * (low + high);
         }
+        let width = (high - low) * step.h;
         let mut last_value = f64::INFINITY;
         loop {
             let mut trial = self.restep::<M>(step, theta * step.h);
-            let near = Near { system, mode, guard, sign: crossing.sign, reach: REACH * trial.h };
+            let reach = (REACH * trial.h).min((INSIDE * width).max(LEAST_REACH * trial.h));
+            let near = Near { system, mode, guard, sign: crossing.sign, reach };
             let end = near.probe(trial.s + trial.h, &trial.y1);
             self.count_probe();
             if end.value.is_nan() {
                 return Err(RunError::GuardNotANumber { guard, s: step.s });
             }
             if end.value >= 0.0 {
-                low = theta;
+                (low, seen_low) = (theta, true);
             } else {
-                high = theta;
+                (high, seen_high) = (theta, true);
+            }
+            if low >= high {
+                return Ok(None);
             }
             let shift = end.shift() / step.h;
             let next = theta + shift;
-            if shift.abs() <= BRIDGE * theta
-                && next >= low
-                && next <= high
-                && let Some((elapsed, state, residual)) = self.bridge(&near, &trial, end)
-            {
-                if elapsed > step.h {
+            let by_newton = if shift.abs() <= BRIDGE * theta && next >= low && next <= high {
+                self.bridge(&near, &trial, end)
+            } else {
+                None
+            };
+            let landing = match by_newton {
+                None if high - low > BRIDGE * theta => {
+                    self.search_nearby(&near, &trial, &end, (low * step.h, high * step.h))
+                }
+                landing => landing,
+            };
+            if let Some(mut at) = landing {
+                if at.elapsed > step.h {
                     // The other guards have been examined only up to the end of the step.
                     trial = self.restep::<M>(step, step.h);
-                    let residual = near.value(step.s + step.h, &trial.y1);
-                    return Ok(event(step.h, trial.y1, residual, end.slope, trial));
+                    at.residual = near.value(step.s + step.h, &trial.y1);
+                    (at.elapsed, at.state) = (step.h, trial.y1);
+                } else if exact && at.elapsed != trial.h {
+                    trial = self.restep::<M>(step, at.elapsed);
                 }
-                if exact && elapsed != trial.h {
-                    trial = self.restep::<M>(step, elapsed);
-                }
-                return Ok(event(elapsed, state, residual, end.slope, trial));
+                return Ok(Some(event(at, trial)));
             }
-            if high * step.h <= NOWHERE * step.s.abs() || high <= f64::MIN_POSITIVE {
-                let residual = self.phase.values[guard];
-                return Ok(event(0.0, step.y0, residual, end.slope, step.shrunk_to_start()));
+            if high * step.h <= NOWHERE * (step.s.abs() + step.h) {
+                return at_start(end.slope, start);
             }
             if high - low <= 4.0 * f64::EPSILON * high {
-                if theta < high {
-                    // The zero is too flat for Newton's method, and the step ends just beyond it.
+                // The zero is too flat for Newton's method, and the step ends just beyond it. Both
+                // signs must have been seen.
+                if !seen_low && low > 0.0 {
+                    theta = low;
+                } else if theta < high || !seen_high {
                     theta = high;
-                    continue;
+                } else {
+                    let (elapsed, state, residual) = (trial.h, trial.y1, end.value);
+                    let at = Landing { elapsed, state, residual, slope: end.slope, jump: false };
+                    return Ok(Some(event(at, trial)));
                 }
-                return Ok(event(trial.h, trial.y1, end.value, end.slope, trial));
+                continue;
             }
             // Newton's method if it makes progress, and bisection if the guard is too flat for it.
             let progress = end.value.abs() <= 0.1 * last_value;
@@ -117,15 +160,14 @@ where
         shorter
     }
 
-    /// Moves from the end of `trial` to the zero of the guard. Returns the time from the start of
-    /// the step, the state, and the remaining value of the guard. The result is `None` if
-    /// Newton's method does not converge as it does near a simple zero.
+    /// Moves from the end of `trial` to the zero of the guard. The result is `None` if Newton's
+    /// method does not converge as it does near a simple zero.
     fn bridge(
         &mut self,
         near: &Near<'_, S, N, G>,
         trial: &Step<N>,
         mut at: Probe<N>,
-    ) -> Option<(f64, State<N>, f64)> {
+    ) -> Option<Landing<N>> {
         let (mut moved, mut y) = (0.0, trial.y1);
         let s = trial.s + trial.h;
         for _ in 0..4 {
@@ -141,14 +183,19 @@ where
                 {
                     return None;
                 }
-                let rest = -residual / at.slope;
-                if rest.abs() > f64::EPSILON * trial.h {
+                // The slope is a difference, so that a correction leaves a part of the distance.
+                for _ in 0..3 {
+                    let rest = -residual / at.slope;
+                    if rest.abs() <= f64::EPSILON * trial.h {
+                        break;
+                    }
                     moved += rest;
                     y += at.slope_of_state * rest;
                     residual = near.value(s + moved, &y);
                     self.statistics.guards += 1;
                 }
-                return Some((trial.h + moved, y, residual));
+                let elapsed = trial.h + moved;
+                return Some(Landing { elapsed, state: y, residual, slope: at.slope, jump: false });
             }
             let middle = y + at.slope_of_state * (0.5 * shift);
             y += self.system.field(near.mode, s + moved + 0.5 * shift, &middle) * shift;
@@ -164,10 +211,57 @@ where
         None
     }
 
+    /// Searches for the zero of a steep guard near the end of `trial`, where the state is known by
+    /// its second derivative. The zero lies between the times `low` and `high` from the start of
+    /// the step. The result is `None` if it is farther away.
+    fn search_nearby(
+        &mut self,
+        near: &Near<'_, S, N, G>,
+        trial: &Step<N>,
+        at: &Probe<N>,
+        (low, high): (f64, f64),
+    ) -> Option<Landing<N>> {
+        let (s, y, reach) = (trial.s + trial.h, &trial.y1, BRIDGE * trial.h);
+        let (low, high) = ((low - trial.h).max(-reach), (high - trial.h).min(reach));
+        let slope = at.slope_of_state;
+        let ahead = self.system.field(near.mode, s + reach, &(y + slope * reach));
+        let behind = self.system.field(near.mode, s - reach, &(y - slope * reach));
+        let bend = (ahead - behind) / (4.0 * reach);
+        self.statistics.field += 2;
+        let state = |moved: f64| y + (slope + bend * moved) * moved;
+        let mut count = 0;
+        let mut value = |moved: f64| {
+            count += 1;
+            near.value(s + moved, &state(moved))
+        };
+        let (before, after) = (value(low), value(high));
+        let found = (before >= 0.0 && after < 0.0)
+            .then(|| narrow(&mut value, (low, before), (high, after), f64::EPSILON * trial.h));
+        self.statistics.guards += count;
+        let (left, right) = found?;
+        let jump = left.1 - right.1 > 0.1 * (before - after);
+        let (moved, residual) = if left.1 < -right.1 && !jump { left } else { right };
+        let slope = (right.1 - left.1) / (right.0 - left.0);
+        Some(Landing { elapsed: trial.h + moved, state: state(moved), residual, slope, jump })
+    }
+
     fn count_probe(&mut self) {
         self.statistics.field += 1;
         self.statistics.guards += 3;
     }
+}
+
+/// Where a guard is zero.
+struct Landing<const N: usize> {
+    /// The time from the start of the step.
+    elapsed: f64,
+    state: State<N>,
+    /// The value that remains.
+    residual: f64,
+    /// The slope of the guard.
+    slope: f64,
+    /// Whether the guard jumps over zero.
+    jump: bool,
 }
 
 /// A guard near its zero.

@@ -3,17 +3,25 @@
 use std::marker::PhantomData;
 
 use crate::error::RunError;
-use crate::events::along_step::{AlongStep, dense_output};
+use crate::events::along_step::{AlongStep, EnclosedAlongStep, dense_output};
 use crate::events::examination::Examination;
-use crate::events::isolate::{Bracket, Touch, Verdict, first_crossing, sides};
+use crate::events::isolate::{
+    Beginning, Bracket, Notice, Task, Verdict, first_crossing, first_enclosed_crossing, last_sign,
+};
+use crate::events::path::Path;
 use crate::events::quick::{self, Quick};
-use crate::hybrid::{Direction, Grazing, HybridSystem, Observer};
+use crate::hybrid::{Direction, Grazing, HybridSystem, Observer, Pole};
 use crate::method::{Method, Step, Trial};
+use crate::number::Enclosure;
 
 /// A guard that is zero throughout a step is examined on longer steps, each four times as long as
 /// the one before, at most this often. The shortest step that moves the time grows to ordinary
 /// length that way.
 const LONGER: i32 = 26;
+/// The narrowest part of a step that is worth dividing.
+const FINEST: f64 = 1.0 / (1_u64 << 48) as f64;
+/// A quick look with bounds divides a step at most into 2 to this power parts.
+const HALVINGS: u32 = 3;
 
 /// What is known about a guard on the step at hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +44,12 @@ pub(crate) struct Crossing {
 impl Crossing {
     /// A crossing at the start of the step.
     pub(crate) const fn at_start(sign: f64) -> Self {
-        Self { sign, bracket: Bracket { low: 0.0, high: 0.0, guess: 0.0 } }
+        Self { sign, bracket: Bracket::at(0.0) }
+    }
+
+    /// A crossing near `theta` of a guard that is monotone on the whole step.
+    fn alone(sign: f64, theta: f64) -> Status {
+        Status::Fires(Self { sign, bracket: Bracket { low: 0.0, high: 1.0, guess: theta } })
     }
 }
 
@@ -45,45 +58,148 @@ where
     S: HybridSystem<N, G>,
     O: Observer<S::Mode, N>,
 {
-    /// What the six values of a guard tell about it.
-    pub(crate) fn glance<M: Method>(&self, guard: usize, values: &[[f64; G]; 6]) -> Status {
-        let direction = self.phase.guards[guard].direction();
-        if direction == Direction::Off {
-            return Status::Clear;
-        }
-        if self.phase.due[guard] {
-            return Status::Fires(Crossing::at_start(self.phase.sides[guard]));
-        }
-        if self.stays(guard, &values.map(|at_node| at_node[guard])) {
-            return Status::Clear;
-        }
-        let sign = if direction == Direction::Rising { -1.0 } else { 1.0 };
-        let (order, side) = (self.phase.zero_orders[guard], sign * self.phase.sides[guard]);
-        let column = values.map(|at_node| sign * at_node[guard]);
-        let falls = |sign: f64, theta: f64| {
-            Status::Fires(Crossing { sign, bracket: Bracket { low: 0.0, high: 1.0, guess: theta } })
-        };
-        let look = |sign: f64| {
-            let look = quick::look(&column.map(|value| sign * value), order, M::QUICK_ERROR);
-            // If the values contradict the side to which the guard is known to go, the reason is
-            // rounding, or a crossing right after the start.
-            match look {
-                Quick::Positive | Quick::Falls { .. } if sign * side < 0.0 => Quick::Unclear,
-                Quick::Negative if sign * side > 0.0 => Quick::Unclear,
-                look => look,
+    /// Whether the six values of a guard may decide: it is declared to be smooth, or it is a black
+    /// box and other values agree with them.
+    #[inline(always)]
+    pub(crate) fn decides_quickly(&self, guard: usize) -> bool {
+        !S::READABLE || self.phase.guards[guard].is_smooth()
+    }
+
+    /// What a quick look at a step tells about each guard.
+    pub(crate) fn glances<M: Method>(
+        &mut self,
+        step: &Step<N>,
+        values: &[[f64; G]; 6],
+    ) -> [Status; G] {
+        let confirmed = self.confirmed(step, values);
+        let mut path = None;
+        std::array::from_fn(|guard| {
+            if confirmed[guard] {
+                self.glance_at::<M>(guard, step, values, &mut path)
+            } else if self.phase.guards[guard].direction() == Direction::Off {
+                Status::Clear
+            } else {
+                Status::Unclear
             }
-        };
-        match look(1.0) {
+        })
+    }
+
+    /// What a quick look at a step tells about a guard. The quick `path` is made if it is needed.
+    pub(crate) fn glance_at<M: Method>(
+        &mut self,
+        guard: usize,
+        step: &Step<N>,
+        values: &[[f64; G]; 6],
+        path: &mut Option<Path<N>>,
+    ) -> Status {
+        let column = values.map(|at_node| at_node[guard]);
+        if self.phase.guards[guard].direction() == Direction::Off {
+            Status::Clear
+        } else if self.decides_quickly(guard) {
+            self.glance::<M>(guard, &column)
+        } else {
+            let path = path.get_or_insert_with(|| Path::quick(step, M::QUICK_ERROR));
+            self.glance_at_bounds::<M>(guard, &column, path)
+        }
+    }
+
+    /// What the six values of a guard tell about it.
+    fn glance<M: Method>(&self, guard: usize, column: &[f64; 6]) -> Status {
+        let direction = self.phase.guards[guard].direction();
+        let sign = if direction == Direction::Rising { -1.0 } else { 1.0 };
+        let order = self.phase.zero_orders[guard];
+        let look = |sign: f64| quick::look(&column.map(|v| sign * v), order, M::QUICK_ERROR);
+        match look(sign) {
             Quick::Negative if direction == Direction::Below => {
                 Status::Fires(Crossing::at_start(sign))
             }
             Quick::Positive | Quick::Negative => Status::Clear,
-            Quick::Falls { theta } => falls(sign, theta),
+            Quick::Falls { theta } => Crossing::alone(sign, theta),
             Quick::Unclear if direction == Direction::Either => match look(-1.0) {
-                Quick::Falls { theta } => falls(-1.0, theta),
+                Quick::Falls { theta } => Crossing::alone(-1.0, theta),
                 _ => Status::Unclear,
             },
             Quick::Unclear => Status::Unclear,
+        }
+    }
+
+    /// What bounds of a guard along the quick path tell about it.
+    fn glance_at_bounds<M: Method>(
+        &mut self,
+        guard: usize,
+        column: &[f64; 6],
+        path: &Path<N>,
+    ) -> Status {
+        let (about, order) = (self.phase.guards[guard], self.phase.zero_orders[guard]);
+        let below = about.direction() == Direction::Below;
+        let [start, .., end] = *column;
+        if order == 0 && start == 0.0 || end == 0.0 {
+            return Status::Unclear;
+        }
+        let bounds = self.bounds(guard, path, 0.0, 1.0);
+        let monotone = bounds.slope.is_bounded() && bounds.slope.sign() != 0.0;
+        // The side on which the guard is throughout, but for a known zero at the start.
+        let side = match order {
+            0 if monotone && start * end > 0.0 => start,
+            0 => self.side(guard, path, (0.0, 1.0), HALVINGS),
+            1 if monotone => bounds.slope.sign(),
+            2 if bounds.slope.is_bounded() => bounds.bend.sign(),
+            _ => 0.0,
+        };
+        if side < 0.0 && below {
+            return Status::Fires(Crossing::at_start(1.0));
+        }
+        if side != 0.0 {
+            return Status::Clear;
+        }
+        if order == 0 && monotone {
+            if below && start < 0.0 {
+                return Status::Fires(Crossing::at_start(1.0));
+            }
+            // The guard crosses once. It is located from here if its six values tell where.
+            let fires = match about.direction() {
+                Direction::Either => true,
+                Direction::Rising => start < 0.0,
+                _ => start > 0.0,
+            };
+            return if fires { self.glance::<M>(guard, column) } else { Status::Clear };
+        }
+        Status::Unclear
+    }
+
+    /// Bounds of a guard between two step fractions, along a path.
+    fn bounds(&mut self, guard: usize, path: &Path<N>, low: f64, high: f64) -> Enclosure {
+        let mut over = |low: f64, high: f64| {
+            self.statistics.enclosures += 1;
+            let (s, y) = path.over(low, high);
+            self.system.enclose_guards(self.phase.mode, s, &y)[guard]
+        };
+        let plain = over(low, high);
+        if plain.value.sign() != 0.0 || !plain.slope.is_bounded() {
+            return plain;
+        }
+        let middle = 0.5 * (low + high);
+        plain.about(&over(middle, middle), 0.5 * (high - low))
+    }
+
+    /// The sign that a guard has between two step fractions, 0 if the bounds do not exclude zero.
+    fn side(
+        &mut self,
+        guard: usize,
+        path: &Path<N>,
+        (low, high): (f64, f64),
+        halvings: u32,
+    ) -> f64 {
+        let sign = self.bounds(guard, path, low, high).value.sign();
+        if sign != 0.0 || halvings == 0 {
+            return sign;
+        }
+        let middle = 0.5 * (low + high);
+        let left = self.side(guard, path, (low, middle), halvings - 1);
+        if left != 0.0 && self.side(guard, path, (middle, high), halvings - 1) == left {
+            left
+        } else {
+            0.0
         }
     }
 
@@ -110,12 +226,14 @@ where
         false
     }
 
-    /// Decides about a guard by isolation. The result is `None` if the step is too coarse for that.
+    /// Decides about a guard by isolation, from `beginning` on. The result is `None` if the step is
+    /// too coarse for that.
     pub(crate) fn isolate<M: Method>(
         &mut self,
         guard: usize,
         step: &mut Step<N>,
         values: &[f64; 6],
+        beginning: Beginning,
     ) -> Result<Option<Status>, RunError> {
         // A tiny value at the start may stand for the side from which the guard came.
         if values[0].abs() <= f64::MIN_POSITIVE && values[1..].iter().all(|&value| value == 0.0) {
@@ -131,45 +249,40 @@ where
         let (system, mode) = (self.system, self.phase.mode);
         let dense = dense_output::<_, M, N, G>(system, mode, step);
         self.statistics.field += M::DENSE_STAGES - 1;
-        let order = self.phase.zero_orders[guard];
-        let signs: &[f64] = match self.phase.guards[guard].direction() {
+        let direction = self.phase.guards[guard].direction();
+        let signs: &[f64] = match direction {
             Direction::Rising => &[-1.0],
             Direction::Either => &[1.0, -1.0],
             _ => &[1.0],
         };
-        let below = self.phase.guards[guard].direction() == Direction::Below;
-        let end = if self.stays(guard, values) { 0.0 } else { values[5] };
+        let resolution = resolution(step);
         let mut found = Status::Clear;
         for &sign in signs {
-            let mut curve = AlongStep::<'_, S, M, N, G> {
-                system,
-                mode,
-                guard,
-                sign,
-                step,
-                dense: &dense,
-                statistics: &mut *self.statistics,
-                method: PhantomData,
+            let (statistics, method) = (&mut *self.statistics, PhantomData::<M>);
+            let mut along =
+                AlongStep { system, mode, guard, sign, step, dense: &dense, statistics, method };
+            let mut noticed = [None; 8];
+            let mut places = noticed.iter_mut();
+            let mut notice = |found: Notice| {
+                if let Some(place) = places.next() {
+                    *place = Some(found);
+                }
             };
-            let mut touches = [None; 8];
-            let mut count = 0;
-            let verdict = first_crossing(
-                &mut curve,
-                (order, sign * self.phase.sides[guard], self.phase.hidden[guard]),
-                below,
-                (sign * values[0], sign * end),
-                &mut |touch: Touch| {
-                    if let Some(place) = touches.get_mut(count) {
-                        *place = Some(touch);
-                    }
-                    count += 1;
-                },
-            )?;
-            for touch in touches.into_iter().flatten() {
-                self.statistics.grazings += 1;
-                let s = step.s + touch.theta * step.h;
-                self.observer.on_grazing(&Grazing { s, mode, guard, margin: sign * touch.margin });
-            }
+            let task = Task {
+                beginning: Beginning { value: sign * beginning.value, ..beginning },
+                domain: direction == Direction::Below,
+                end: sign * values[5],
+                resolution,
+                widest: self.guard_scale / step.h,
+            };
+            // Zeros of higher order have no bounds.
+            let verdict = if S::READABLE && beginning.zero_order <= 2 {
+                let mut enclosed = EnclosedAlongStep { along, path: Path::dense(&dense) };
+                first_enclosed_crossing(&mut enclosed, &task, &mut notice)?
+            } else {
+                first_crossing(&mut along, &task, &mut notice)?
+            };
+            self.report(guard, sign, step, noticed);
             let crossing = match verdict {
                 Verdict::None => continue,
                 Verdict::TooCoarse => return Ok(None),
@@ -184,9 +297,26 @@ where
         Ok(Some(found))
     }
 
-    /// The values of the guards at the end of a step. A value is replaced by the smallest number of
-    /// the right sign in two cases: it is exactly zero, and the guard keeps the sign that it had
-    /// before; or the guard is still at its known zero, and keeps the sign with which it leaves it.
+    /// Reports what isolation noticed of a guard.
+    fn report(&mut self, guard: usize, sign: f64, step: &Step<N>, noticed: [Option<Notice>; 8]) {
+        let mode = self.phase.mode;
+        for notice in noticed.into_iter().flatten() {
+            match notice {
+                Notice::Touch(touch) => {
+                    self.statistics.grazings += 1;
+                    let s = step.s + touch.theta * step.h;
+                    let margin = sign * touch.margin;
+                    self.observer.on_grazing(&Grazing { s, mode, guard, margin });
+                }
+                Notice::Pole(theta) => {
+                    self.observer.on_pole(&Pole { s: step.s + theta * step.h, mode, guard });
+                }
+            }
+        }
+    }
+
+    /// The values of the guards at the end of a step. A value that is exactly zero is replaced by
+    /// the smallest number with the sign that the guard had before.
     pub(crate) fn on_their_side<M: Method>(
         &mut self,
         step: &mut Step<N>,
@@ -194,10 +324,8 @@ where
     ) -> [f64; G] {
         let mut ends = values[5];
         for (guard, end) in ends.iter_mut().enumerate() {
-            let column = values.map(|at_node| at_node[guard]);
-            if self.stays(guard, &column) {
-                *end = f64::MIN_POSITIVE.copysign(self.phase.sides[guard]);
-            } else if *end == 0.0 && self.phase.guards[guard].direction() != Direction::Off {
+            if *end == 0.0 && self.phase.guards[guard].direction() != Direction::Off {
+                let column = values.map(|at_node| at_node[guard]);
                 *end = self.last_side::<M>(guard, step, &column);
             }
         }
@@ -214,8 +342,8 @@ where
         let (sign, method) = (1.0, PhantomData);
         let mut curve: AlongStep<'_, S, M, N, G> =
             AlongStep { system, mode, guard, sign, step, dense: &dense, statistics, method };
-        match sides(&mut curve, 0.0, 0.0) {
-            Ok(Some([_, last])) if last != 0.0 => f64::MIN_POSITIVE.copysign(last),
+        match last_sign(&mut curve, resolution(step)) {
+            Ok(Some(last)) if last != 0.0 => f64::MIN_POSITIVE.copysign(last),
             // Otherwise the last nonzero value at the nodes decides.
             _ => values[..5]
                 .iter()
@@ -224,11 +352,9 @@ where
                 .map_or(0.0, |value| f64::MIN_POSITIVE.copysign(*value)),
         }
     }
+}
 
-    /// Whether a guard is still at the known zero from which it started, if its side after this
-    /// zero is known.
-    fn stays(&self, guard: usize, values: &[f64; 6]) -> bool {
-        let hidden = self.phase.hidden[guard];
-        self.phase.sides[guard] != 0.0 && values.iter().all(|value| value.abs() <= hidden)
-    }
+/// The narrowest part of a step that can be told from a point.
+fn resolution<const N: usize>(step: &Step<N>) -> f64 {
+    (2.0 * f64::EPSILON * step.s.abs() / step.h).clamp(FINEST, 1.0)
 }

@@ -52,6 +52,55 @@ pub(crate) fn look(values: &[f64; COUNT], zero_order: u32, trust: f64) -> Quick 
     classify(&multiply(&QUARTIC, &quotient), error)
 }
 
+/// The coefficients of the quintic through `values` at [`NODES`] for powers of the step fraction,
+/// and a bound for its error, in which the part `trust` of the next-to-last term counts.
+pub(crate) fn expand(values: &[f64; COUNT], trust: f64) -> ([f64; COUNT], f64) {
+    // A constant would only bring rounding.
+    let rises = values.map(|value| value - values[0]);
+    let bernstein = multiply(&QUINTIC, &rises);
+    let largest = bernstein.iter().fold(0.0_f64, |most, b| most.max(b.abs()));
+    let error = last_term(&rises, &QUINTIC_TERM) + trust * last_term(&rises, &QUARTIC_TERM);
+    // The k-th differences of the coefficients, times the binomial coefficients of 5 over k.
+    let mut differences = bernstein;
+    let mut terms = [0.0; COUNT];
+    for (k, term) in terms.iter_mut().enumerate() {
+        *term = [1.0, 5.0, 10.0, 10.0, 5.0, 1.0][k] * differences[0];
+        for i in 0..COUNT - 1 - k {
+            differences[i] = differences[i + 1] - differences[i];
+        }
+    }
+    terms[0] = values[0];
+    (terms, error + ROUNDING * largest)
+}
+
+/// Step fractions in the gaps between the [`NODES`].
+pub(crate) const BETWEEN: [f64; 3] = [0.11, 0.47, 0.74];
+
+/// The weights of the values at the [`NODES`] in the quintic at [`BETWEEN`], by Lagrange's formula.
+const WEIGHTS: [[f64; COUNT]; BETWEEN.len()] = {
+    let mut weights = [[1.0; COUNT]; BETWEEN.len()];
+    let (mut place, mut node, mut other) = (0, 0, 0);
+    while place < BETWEEN.len() {
+        if node != other {
+            weights[place][node] *= (BETWEEN[place] - NODES[other]) / (NODES[node] - NODES[other]);
+        }
+        other += 1;
+        if other == COUNT {
+            (other, node) = (0, node + 1);
+        }
+        if node == COUNT {
+            (node, place) = (0, place + 1);
+        }
+    }
+    weights
+};
+
+/// The value at one of the places [`BETWEEN`] that the values at the [`NODES`] predict.
+#[inline]
+pub(crate) fn between(place: usize, values: &[f64; COUNT]) -> f64 {
+    values.iter().zip(WEIGHTS[place]).map(|(value, weight)| value * weight).sum()
+}
+
 /// A first test that settles most guards: a guard has one sign throughout if it is far from zero
 /// compared with the distance of its values from their chord. The result is false if a value is
 /// NaN.

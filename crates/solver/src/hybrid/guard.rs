@@ -31,8 +31,9 @@ pub enum Direction {
 pub struct Guard {
     direction: Direction,
     zero_order: u32,
-    terminal: bool,
+    terminal: u32,
     yields: bool,
+    smooth: bool,
 }
 
 impl Guard {
@@ -42,7 +43,7 @@ impl Guard {
     /// A guard that fires in `direction` and causes a transition.
     #[must_use]
     pub const fn new(direction: Direction) -> Self {
-        Self { direction, zero_order: 0, terminal: false, yields: false }
+        Self { direction, zero_order: 0, terminal: 0, yields: false, smooth: false }
     }
 
     /// Declares that the guard starts from a zero of this order whenever the mode is entered, also
@@ -64,7 +65,27 @@ impl Guard {
     /// Makes the guard end the run instead of causing a transition.
     #[must_use]
     pub const fn terminal(self) -> Self {
-        Self { terminal: true, ..self }
+        self.terminal_after(1)
+    }
+
+    /// Makes the guard end the run when it fires for the `count`-th time. Before that it causes
+    /// transitions. With a count of 0 it never ends the run.
+    ///
+    /// Guards are counted by their place, whatever the mode.
+    #[must_use]
+    pub const fn terminal_after(self, count: u32) -> Self {
+        Self { terminal: count, ..self }
+    }
+
+    /// Declares that the guard is as smooth as the solution: a combination of few components of the
+    /// state, or of the time, in which nothing is steep or fast.
+    ///
+    /// On most steps its sign then follows from six states that the step knows anyway. For the
+    /// other guards of a [readable system](crate::ReadableSystem) the solver bounds them on every
+    /// step, which is always right and costs more. Guards of other systems are sampled either way.
+    #[must_use]
+    pub const fn smooth(self) -> Self {
+        Self { smooth: true, ..self }
     }
 
     /// Makes the guard yield to every other guard that fires at the same place: the other one
@@ -86,10 +107,28 @@ impl Guard {
         self.zero_order
     }
 
-    /// Whether the guard ends the run.
+    /// Whether the guard ends the run when it fires next.
     #[must_use]
     pub const fn ends_run(&self) -> bool {
+        self.terminal == 1
+    }
+
+    /// The guard after it has fired `count` times.
+    pub(crate) fn fired(self, count: u32) -> Self {
+        let left = self.terminal.saturating_sub(count).max(1);
+        Self { terminal: if self.terminal == 0 { 0 } else { left }, ..self }
+    }
+
+    /// How often the guard fires until it ends the run, or 0 if it never ends it.
+    #[must_use]
+    pub const fn fires_until_end(&self) -> u32 {
         self.terminal
+    }
+
+    /// Whether the guard is declared to be as smooth as the solution.
+    #[must_use]
+    pub const fn is_smooth(&self) -> bool {
+        self.smooth
     }
 
     /// Whether the guard yields to others that fire at the same place.

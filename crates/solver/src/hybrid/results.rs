@@ -13,17 +13,16 @@ pub struct SwitchEvent<Mode, const N: usize> {
     /// fire together, the guard that is listed first decides the transition, unless it yields
     /// ([`Guard::yielding`](crate::Guard::yielding)).
     ///
-    /// If mode and state go on unchanged, these are the guards that cross here in their direction,
-    /// as far as rounding tells. They have fired with this event and do not fire again. The
-    /// following guards are not among them: a guard that only touches zero; a guard whose zero
-    /// lies measurably elsewhere, which fires by itself; a terminal guard and a guard with
-    /// [`Direction::Below`](crate::Direction::Below), which fire next, with an event of their own
-    /// at the same place.
+    /// If mode and state go on unchanged, these are the guards that cross here in their direction
+    /// and change nothing either. They have fired with this event and do not fire again. All others
+    /// that cross here fire next, with an event of their own at the same place.
     pub simultaneous: u32,
     /// The guard's largest value in the phase divided by its slope here, in units of s. An error
     /// of the guard, relative to its largest value, moves the switch by the error times this
     /// number. It is large near a graze.
     pub flatness: f64,
+    /// Whether the guard jumps over zero and is nowhere small.
+    pub jump: bool,
     /// The mode that ended.
     pub from: Mode,
     /// The mode that begins. It is `from` if the run ends here.
@@ -49,6 +48,18 @@ pub struct Grazing<Mode> {
     pub margin: f64,
 }
 
+/// A guard changes its sign at a pole, where it is not zero and does not fire.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Pole<Mode> {
+    /// The place of the pole.
+    pub s: f64,
+    /// The mode at that place.
+    pub mode: Mode,
+    /// The guard that has the pole.
+    pub guard: usize,
+}
+
 /// Receives what a run finds, in order.
 pub trait Observer<Mode, const N: usize> {
     /// Whether the run calls [`Self::on_segment`]. Dense output costs further stages.
@@ -59,6 +70,15 @@ pub trait Observer<Mode, const N: usize> {
 
     /// A guard touched zero, or nearly.
     fn on_grazing(&mut self, _grazing: &Grazing<Mode>) {}
+
+    /// A guard changed its sign at a pole.
+    fn on_pole(&mut self, _pole: &Pole<Mode>) {}
+
+    /// Whether the run should stop. It is asked after every step and every switch, and the run then
+    /// ends with [`Outcome::Stopped`].
+    fn stops(&self) -> bool {
+        false
+    }
 
     /// A step was accepted, and `dense` is its dense output.
     fn on_segment(&mut self, _mode: Mode, _dense: &Dense<N>) {}
@@ -82,6 +102,14 @@ pub enum Outcome {
     StepLimit,
     /// [`Options::max_switches`](crate::Options::max_switches) was reached.
     SwitchLimit,
+    /// [`Options::max_at_one_instant`](crate::Options::max_at_one_instant) was reached: transitions
+    /// lead from one to the next and no time passes.
+    InstantLimit {
+        /// The place of these transitions.
+        s: f64,
+    },
+    /// The observer asked for it ([`Observer::stops`]).
+    Stopped,
     /// The switches accumulate.
     Zeno {
         /// The accumulation point, extrapolated geometrically.
@@ -107,6 +135,9 @@ pub struct Statistics {
     pub resteps: usize,
     /// Isolations of a guard on a step, where the quick look did not suffice.
     pub isolations: usize,
+    /// Bounds of the guards of a readable system over a part of a step. One evaluation bounds all
+    /// of them.
+    pub enclosures: usize,
     /// Switches, without the one that ends the run.
     pub switches: usize,
     /// Extrema close to zero that a step of the method had to decide ([`Grazing`]).
@@ -121,6 +152,7 @@ impl Statistics {
 }
 
 /// How a run ended.
+#[must_use = "a run may end early, which its outcome tells; `finished` turns that into an error"]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Run<Mode, const N: usize> {
     /// Why the run ended.
@@ -133,4 +165,28 @@ pub struct Run<Mode, const N: usize> {
     pub state: State<N>,
     /// The work done by the run.
     pub statistics: Statistics,
+}
+
+impl<Mode, const N: usize> Run<Mode, N> {
+    /// The run, if it came to a regular end: the end of its span or a terminal guard.
+    ///
+    /// # Errors
+    /// [`Unfinished`] if the run ended early: at a limit, at an accumulation of switches, or because
+    /// the observer stopped it.
+    pub fn finished(self) -> Result<Self, Unfinished> {
+        match self.outcome {
+            Outcome::ReachedEnd | Outcome::EndedByGuard { .. } => Ok(self),
+            outcome => Err(Unfinished { outcome, s: self.s }),
+        }
+    }
+}
+
+/// A run ended before it reached the end of its span or a terminal guard.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("the run ended early, at s = {s}: {outcome:?}")]
+pub struct Unfinished {
+    /// Why the run ended.
+    pub outcome: Outcome,
+    /// Where the run ended.
+    pub s: f64,
 }

@@ -38,11 +38,53 @@ impl<const N: usize> Dense<N> {
         self.truncated(theta, self.degree - 1)
     }
 
+    /// The coefficients of component `i` for powers of the step fraction, and the largest size of
+    /// its last term on the step.
+    pub(crate) fn terms(&self, i: usize) -> ([f64; 8], f64) {
+        let mut terms = [0.0; 8];
+        terms[0] = self.r[self.degree][i];
+        for k in (0..self.degree).rev() {
+            // Times θ, or times 1 − θ.
+            for power in (0..7).rev() {
+                let raised = terms[power];
+                let kept = if k % 2 == 0 { 0.0 } else { terms[power + 1] };
+                terms[power + 1] = if k % 2 == 0 { raised } else { kept - raised };
+            }
+            terms[0] = self.r[k][i] + if k % 2 == 0 { 0.0 } else { terms[0] };
+        }
+        // The maximum of θ^a (1 − θ)^b.
+        let (a, b) = (self.degree.div_ceil(2) as f64, (self.degree / 2) as f64);
+        let most = (a / (a + b)).powf(a) * (b / (a + b)).powf(b);
+        (terms, most * self.r[self.degree][i].abs())
+    }
+
     fn truncated(&self, theta: f64, degree: usize) -> State<N> {
         let mut sum = self.r[degree];
         for i in (0..degree).rev() {
             sum = self.r[i] + sum * if i % 2 == 0 { theta } else { 1.0 - theta };
         }
         sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_terms_are_those_of_the_polynomial() {
+        for degree in [4, 7] {
+            let r = std::array::from_fn(|i| State::from([1.0 / (1.0 + i as f64) - 0.3]));
+            let dense = Dense { s: 0.0, h: 1.0, r, degree };
+            let (terms, last) = dense.terms(0);
+            let mut most = 0.0_f64;
+            for j in 0..=1000 {
+                let theta = f64::from(j) / 1000.0;
+                let value = terms.iter().rev().fold(0.0, |sum, term| sum * theta + term);
+                assert!((value - dense.at(theta)[0]).abs() < 1e-14);
+                most = most.max((dense.at(theta) - dense.coarse_at(theta))[0].abs());
+            }
+            assert!(most <= last * (1.0 + 1e-14) && most > 0.999 * last);
+        }
     }
 }

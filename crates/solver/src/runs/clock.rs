@@ -1,5 +1,8 @@
 //! The independent variable of a run, and switches that accumulate in it.
 
+use crate::hybrid::Outcome;
+use crate::options::Options;
+
 /// The independent variable as a sum with compensation, so that many short steps add up.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Clock {
@@ -37,31 +40,52 @@ impl Clock {
     }
 }
 
-/// Detects switches that accumulate.
+/// Detects switches that accumulate, in time or at one instant.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Zeno {
-    pub(crate) start: f64,
-    phase: f64,
-    shrinking: usize,
+    start: f64,
+    /// The last gaps of positive length between switches, as a ring.
+    gaps: [f64; 2 * Self::HALF],
+    count: usize,
+    /// The place of the last switch, and how many switches came there.
+    instant: (f64, usize),
 }
 
 impl Zeno {
-    /// The number of successive phases that must have become shorter.
-    const PHASES: usize = 12;
+    /// The number of gaps in either half of those that are compared.
+    const HALF: usize = 6;
 
     pub(crate) fn new(s: f64) -> Self {
-        Self { start: s, phase: f64::INFINITY, shrinking: 0 }
+        Self { start: s, gaps: [0.0; 2 * Self::HALF], count: 0, instant: (s, 0) }
     }
 
-    /// Records a switch at `s` that ends a phase of length `phase`. Returns the accumulation point
-    /// if the switches accumulate and the remaining time is within `tolerance`.
-    pub(crate) fn after_switch(&mut self, s: f64, phase: f64, tolerance: f64) -> Option<f64> {
-        // A phase that does not move the time has length 0.
-        let phase = if phase <= f64::EPSILON * (s - self.start) { 0.0 } else { phase };
-        let ratio = if phase == 0.0 { 0.0 } else { phase / self.phase };
-        self.shrinking = if ratio < 1.0 { self.shrinking + 1 } else { 0 };
-        self.phase = phase;
-        let left = phase * ratio / (1.0 - ratio);
-        (self.shrinking >= Self::PHASES && left <= tolerance * (s - self.start)).then_some(s + left)
+    /// Records a switch at `s` that ends a phase of length `phase`. Returns the outcome of the run
+    /// if the switches accumulate.
+    pub(crate) fn after_switch(
+        &mut self,
+        s: f64,
+        phase: f64,
+        options: &Options,
+    ) -> Option<Outcome> {
+        self.instant = if s == self.instant.0 { (s, self.instant.1 + 1) } else { (s, 1) };
+        if self.instant.1 >= options.max_at_one_instant {
+            return Some(Outcome::InstantLimit { s });
+        }
+        if phase <= 0.0 || options.zeno == 0.0 {
+            return None;
+        }
+        self.gaps[self.count % self.gaps.len()] = phase;
+        self.count += 1;
+        if self.count < self.gaps.len() {
+            return None;
+        }
+        let sum = |first: usize| -> f64 {
+            (0..Self::HALF).map(|i| self.gaps[(self.count + first + i) % self.gaps.len()]).sum()
+        };
+        let (before, last) = (sum(0), sum(Self::HALF));
+        let ratio = last / before;
+        let left = last * ratio / (1.0 - ratio);
+        let soon = ratio < 1.0 && left <= options.zeno * (s - self.start);
+        soon.then_some(Outcome::Zeno { accumulation: s + left })
     }
 }

@@ -4,7 +4,7 @@
 //! switch.
 
 use crate::error::RunError;
-use crate::events::{Event, Examination, Found, Passage, Phase, Standing, dense_output};
+use crate::events::{Event, Examination, Found, Phase, bit, dense_output};
 use crate::hybrid::{HybridSystem, Observer, Outcome, Run, Start, Statistics, SwitchEvent};
 use crate::method::control::{Controller, first_step};
 use crate::method::{Method, State, Step, Trial};
@@ -42,13 +42,15 @@ where
         observer,
         end,
         clock: Clock::new(start.s),
-        phase: Phase::enter(system, start.mode, start.s, &start.state)?,
+        phase: Phase::enter(system, start.mode, (start.s, &start.state), &[0; G])?,
         state: start.state,
         slope: State::zeros(),
         other_h: None,
         h: 0.0,
         controller: Controller::new(),
         zeno: Zeno::new(start.s),
+        fired: [0; G],
+        notes: Vec::new(),
         statistics: Statistics { guards: 1, ..Statistics::default() },
     };
     let outcome = runner.run::<M>()?;
@@ -79,6 +81,10 @@ struct Runner<'a, S: HybridSystem<N, G>, O, const N: usize, const G: usize> {
     other_h: Option<f64>,
     controller: Controller,
     zeno: Zeno,
+    /// How often each guard has fired.
+    fired: [u32; G],
+    /// The events on the present step that change nothing.
+    notes: Vec<SwitchEvent<S::Mode, N>>,
     statistics: Statistics,
 }
 
@@ -95,23 +101,26 @@ where
         };
         let (mut step, mut event) = (Step::blank(), None);
         loop {
-            if self.statistics.tried() >= self.options.max_steps {
-                return Ok(Outcome::StepLimit);
+            if let Some(outcome) = self.advance::<M>(&mut step, &mut event)? {
+                return Ok(outcome);
             }
-            self.advance::<M>(&mut step, &mut event)?;
-            if let Some(event) = &event {
-                if let Some(outcome) = self.switch::<M>(event)? {
-                    return Ok(outcome);
-                }
-            } else if self.clock.s >= self.end {
+            if let Some(event) = &event
+                && let Some(outcome) = self.switch(event)?
+            {
+                return Ok(outcome);
+            }
+            if self.clock.until(self.end) <= 0.0 {
                 check_finite(self.clock.s, &self.state)?;
                 return Ok(Outcome::ReachedEnd);
+            }
+            if self.observer.stops() {
+                return Ok(Outcome::Stopped);
             }
         }
     }
 
-    /// Takes one step that is good enough, unless the limit of steps is reached first. The step
-    /// ends at a switch if it meets one.
+    /// Takes one step that is good enough. The step ends at a switch if it meets one that changes
+    /// something. Other events on it are reported. Returns the outcome if the run ends here.
     ///
     /// An event contains a step. It is written to the place where it stays, since returning it
     /// would copy it on every step.
@@ -119,14 +128,14 @@ where
         &mut self,
         step: &mut Step<N>,
         event: &mut Option<Event<N>>,
-    ) -> Result<(), RunError> {
+    ) -> Result<Option<Outcome>, RunError> {
         *event = None;
         let (system, mode) = (self.system, self.phase.mode);
         let mut field = |s: f64, y: &State<N>| system.field(mode, s, y);
         let mut cuts = 0;
         loop {
             if self.statistics.tried() >= self.options.max_steps {
-                return Ok(());
+                return Ok(Some(Outcome::StepLimit));
             }
             let left = self.clock.until(self.end);
             let h = self.h.min(self.options.max_step);
@@ -150,15 +159,25 @@ where
                 self.reject::<M>(h, error)?;
                 continue;
             }
+            self.notes.clear();
             let mut examination = Examination {
                 system,
                 phase: &self.phase,
                 trial: &trial,
+                guard_scale: self.options.guard_scale.unwrap_or(f64::INFINITY),
+                notes: &mut self.notes,
                 statistics: &mut self.statistics,
                 observer: self.observer,
             };
             match examination.look::<M>(step, event)? {
-                Found::Nothing(values) => self.phase.advance(values),
+                Found::Nothing(values) => {
+                    if last {
+                        examination.arrive(step, event);
+                    }
+                    if event.is_none() {
+                        self.phase.advance(values);
+                    }
+                }
                 Found::Event => {}
                 Found::TooCoarse(guard) => {
                     self.statistics.too_coarse += 1;
@@ -181,13 +200,21 @@ where
             } else if let StepSize::Fixed(h) = self.options.step_size {
                 self.h = h;
             }
+            if !self.notes.is_empty()
+                && let Some(outcome) = self.report_notes()
+            {
+                return Ok(Some(outcome));
+            }
             if let Some(event) = event {
                 if O::WANTS_SEGMENTS && event.step.h > 0.0 {
                     let dense = dense_output::<_, M, N, G>(system, mode, &mut event.step);
                     self.observer.on_segment(mode, &dense);
                 }
                 self.clock.advance(event.elapsed);
-                return Ok(());
+                if last && event.elapsed == h {
+                    self.clock.arrive(self.end);
+                }
+                return Ok(None);
             }
             if O::WANTS_SEGMENTS {
                 let dense = dense_output::<_, M, N, G>(system, mode, step);
@@ -203,12 +230,13 @@ where
             let settled = system.settle(mode);
             if settled != mode {
                 let largest = self.phase.largest;
-                self.phase = Phase::enter(system, settled, self.clock.s, &self.state)?;
+                let place = (self.clock.s, &self.state);
+                self.phase = Phase::enter(system, settled, place, &self.fired)?;
                 self.phase = Phase { at_zero: false, zero_orders: [0; G], largest, ..self.phase };
                 self.statistics.guards += 1;
                 self.refresh_slope()?;
             }
-            return Ok(());
+            return Ok(None);
         }
     }
 
@@ -230,8 +258,32 @@ where
         Ok(())
     }
 
+    /// Reports the events on the step that change nothing. The run may end at one of them.
+    fn report_notes(&mut self) -> Option<Outcome> {
+        for note in &self.notes {
+            self.observer.on_switch(note);
+            let others = (0..G).filter(|&other| note.simultaneous & bit(other) != 0);
+            for guard in others.chain([note.guard]) {
+                self.fired[guard] += 1;
+                self.phase.guards[guard] = self.phase.guards[guard].fired(1);
+            }
+            self.statistics.switches += 1;
+            let outcome = if self.statistics.switches >= self.options.max_switches {
+                Outcome::SwitchLimit
+            } else if self.observer.stops() {
+                Outcome::Stopped
+            } else {
+                continue;
+            };
+            self.state = note.after;
+            self.clock.arrive(note.s);
+            return Some(outcome);
+        }
+        None
+    }
+
     /// Reports the switch and enters the next phase, or ends the run.
-    fn switch<M: Method>(&mut self, event: &Event<N>) -> Result<Option<Outcome>, RunError> {
+    fn switch(&mut self, event: &Event<N>) -> Result<Option<Outcome>, RunError> {
         let (s, from, guard) = (self.clock.s, self.phase.mode, event.guard);
         check_finite(s, &event.state)?;
         let ends = self.phase.guards[guard].ends_run();
@@ -240,17 +292,17 @@ where
         } else {
             self.system.transition(from, guard, s, &event.state)
         };
+        self.fired[guard] += 1;
         self.statistics.switches += usize::from(!ends);
-        let unchanged = !ends && to == from && after == event.state;
-        let standing = unchanged.then(|| self.standing::<M>(event));
         let largest = self.phase.largest[guard];
         // A guard that has always been zero has no size.
         let flatness = if largest == 0.0 { 0.0 } else { largest / event.slope };
         self.observer.on_switch(&SwitchEvent {
             s,
             guard,
-            simultaneous: standing.map_or(event.simultaneous, |standing| standing.fired),
+            simultaneous: event.simultaneous,
             flatness,
+            jump: event.jump,
             from,
             to,
             before: event.state,
@@ -260,47 +312,24 @@ where
         if ends {
             return Ok(Some(Outcome::EndedByGuard { guard }));
         }
+        self.phase.mode = to;
         if self.statistics.switches >= self.options.max_switches {
             return Ok(Some(Outcome::SwitchLimit));
         }
-        if let Some(accumulation) = self.zeno.after_switch(s, self.clock.phase, self.options.zeno) {
-            return Ok(Some(Outcome::Zeno { accumulation }));
+        if let Some(outcome) = self.zeno.after_switch(s, self.clock.phase, self.options) {
+            return Ok(Some(outcome));
         }
         self.clock.phase = 0.0;
-        self.phase = Phase::enter(self.system, to, s, &after)?;
+        self.phase = Phase::enter(self.system, to, (s, &after), &self.fired)?;
+        self.phase.forgive(self.system, (s, &after), event);
         self.statistics.guards += 1;
         if self.options.step_size == StepSize::Adaptive {
             let h = self.other_h.replace(self.h).unwrap_or(self.h);
             self.h = h;
             self.controller.begin();
         }
-        if let Some(standing) = standing {
-            // A step that does not move the time would find every guard where it was.
-            if self.clock.until(self.end) <= f64::EPSILON * s.abs().max(s - self.zeno.start) {
-                self.clock.arrive(self.end);
-                return Ok(Some(Outcome::ReachedEnd));
-            }
-            self.phase.stand(&standing);
-        } else if to == from {
-            self.phase.resume(event);
-        }
         self.refresh_slope()?;
         Ok(None)
-    }
-
-    fn standing<M: Method>(&mut self, event: &Event<N>) -> Standing<G> {
-        let ordinary = self.h.min(self.options.max_step);
-        let passage = Passage {
-            system: self.system,
-            phase: &self.phase,
-            event,
-            s: self.clock.s,
-            ahead: ordinary.min(self.clock.until(self.end)),
-            ordinary,
-            options: self.options,
-            statistics: &mut self.statistics,
-        };
-        passage.standing::<M>()
     }
 
     fn refresh_slope(&mut self) -> Result<(), RunError> {

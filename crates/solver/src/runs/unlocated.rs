@@ -121,6 +121,7 @@ where
                 guard,
                 simultaneous: 0,
                 flatness: f64::NAN,
+                jump: false,
                 from,
                 to,
                 before,

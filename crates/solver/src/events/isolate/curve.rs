@@ -4,10 +4,8 @@ use crate::error::RunError;
 use crate::events::isolate::chebyshev::COSINES;
 use crate::events::isolate::panel::Panel;
 
-/// Panels narrower than 2^−`DEPTH` of the step are not cut further.
-pub(super) const DEPTH: u32 = 12;
-/// The width of such a panel, as a part of the step.
-pub(super) const NARROWEST: f64 = 1.0 / (1_u32 << DEPTH) as f64;
+/// The width of a narrow panel, as a part of the step: what it does not resolve may be noise.
+pub(super) const NARROWEST: f64 = 1.0 / 4096.0;
 
 /// The factor by which the error of the dense output may exceed its last term. A value that is too
 /// large costs steps of the method. One that is too small would make decisions wrong.
@@ -24,23 +22,15 @@ const DIFFERENCED: f64 = 30.397_368_307_141_3;
 
 /// A guard's value along a step.
 pub(crate) trait Curve {
-    /// The value by the dense output, and by the dense output without its last term.
-    fn dense(&mut self, theta: f64) -> (f64, f64);
+    /// The value by the dense output.
+    fn dense(&mut self, theta: f64) -> f64;
+    /// The value by the dense output without its last term.
+    fn coarse(&mut self, theta: f64) -> f64;
     /// The effect of rounding of state and time on a value: at the start of the step, and the
     /// largest on the step.
     fn rounding(&mut self) -> (f64, f64);
     /// The value by a step of the method to `theta`.
     fn truth(&mut self, theta: f64) -> Result<f64, RunError>;
-}
-
-/// The scatter of a curve's values at the start of the step or, if `at_end`, at its end. It is 0 if
-/// the values scatter only by their own rounding.
-pub(crate) fn noise(curve: &mut dyn Curve, at_end: bool) -> f64 {
-    let width = NARROWEST / 64.0;
-    let (low, high) = if at_end { (1.0 - width, 1.0) } else { (0.0, width) };
-    let largest = curve.dense(low).0.abs().max(curve.dense(high).0.abs());
-    let noise = Quotient { curve, order: 0 }.noise(low, high);
-    if noise > BEYOND_NOISE * f64::EPSILON * largest { noise } else { 0.0 }
 }
 
 /// θ to the power `order`.
@@ -55,11 +45,9 @@ pub(super) struct Quotient<'a> {
 }
 
 impl Quotient<'_> {
-    /// The quotient by the dense output, and by the dense output without its last term.
-    pub(super) fn at(&mut self, theta: f64) -> (f64, f64) {
-        let (fine, coarse) = self.curve.dense(theta);
-        let divisor = power(theta, self.order);
-        (fine / divisor, coarse / divisor)
+    /// The quotient by the dense output.
+    pub(super) fn at(&mut self, theta: f64) -> f64 {
+        self.curve.dense(theta) / power(theta, self.order)
     }
 
     /// The quotient by a step of the method.
@@ -74,7 +62,7 @@ impl Quotient<'_> {
         for j in 1..16 {
             let theta = f64::from(j) / 16.0;
             let divisor = power(theta, self.order);
-            let (fine, coarse) = self.curve.dense(theta);
+            let (fine, coarse) = (self.curve.dense(theta), self.curve.coarse(theta));
             // The error of the dense output vanishes as θ²(1−θ)² at the ends of the step. Divided
             // by a double zero, it is not zero at the start, whereas the last term is. 16 is the
             // inverse of the maximum of θ²(1−θ)².
@@ -101,7 +89,7 @@ impl Quotient<'_> {
             let [wide, narrow] = [32.0, 128.0].map(|parts| {
                 let spacing = (high - low) / parts;
                 let mut row: [f64; ROW] =
-                    std::array::from_fn(|i| self.curve.dense(start + i as f64 * spacing).0);
+                    std::array::from_fn(|i| self.curve.dense(start + i as f64 * spacing));
                 for order in 1..=DIFFERENCES {
                     for i in 0..ROW - order {
                         row[i] = row[i + 1] - row[i];

@@ -39,6 +39,12 @@ impl Panel {
         self.coefficients[TERMS - 1].abs() + self.coefficients[TERMS - 2].abs()
     }
 
+    /// Whether the values vary by much less than their distance from zero.
+    pub(crate) fn is_far_from_zero(&self) -> bool {
+        let others: f64 = self.coefficients[1..].iter().map(|c| c.abs()).sum();
+        self.coefficients[0].abs() > 2.0 * others
+    }
+
     /// Collects points of ]low, high[ that cut this interval into monotone pieces, from left to
     /// right. A stretch that is flat to within `error` contributes its middle.
     pub(crate) fn critical_points(

@@ -1,0 +1,72 @@
+//! Guards that are zero where the span of a run ends.
+
+use crate::events::along_step::rounding;
+use crate::events::event::Event;
+use crate::events::examination::Examination;
+use crate::hybrid::{Direction, HybridSystem, Observer};
+use crate::method::Step;
+
+/// The part of the step over which a guard is differenced, on both sides of the end.
+const REACH: f64 = 1e-3;
+/// An event this close to the end of its step is the one at the end.
+const SAME: f64 = 1e-6;
+
+impl<S, O, const N: usize, const G: usize> Examination<'_, S, O, N, G>
+where
+    S: HybridSystem<N, G>,
+    O: Observer<S::Mode, N>,
+{
+    /// Finds guards that are zero at the end of `step`, to within rounding, and cross there in
+    /// their direction. Such a guard fires, since no other step will find it.
+    pub(crate) fn arrive(&mut self, step: &Step<N>, event: &mut Option<Event<N>>) {
+        let (system, mode) = (self.system, self.phase.mode);
+        let (s, y) = (step.s + step.h, &step.y1);
+        let values = system.guard_values(mode, s, y);
+        self.statistics.guards += 1;
+        let (s_scale, y_scale) =
+            (s.abs().max(step.s.abs()), y.zip_map(&step.y0, |a, b| a.abs().max(b.abs())));
+        for guard in 0..G {
+            let direction = self.phase.guards[guard].direction();
+            let far = self.phase.largest[guard] > 0.0
+                && values[guard].abs() > 1e-6 * self.phase.largest[guard];
+            if direction == Direction::Off || far || self.noted_since(guard, s - SAME * step.h) {
+                continue;
+            }
+            let value = |s: f64, y: &_| system.guard_values(mode, s, y)[guard];
+            let hidden = rounding(value, (s, y), (s_scale, &y_scale));
+            self.statistics.guards += N + 4;
+            self.statistics.field += 1;
+            let reach = REACH * step.h;
+            let away = system.field(mode, s, y) * reach;
+            let (behind, ahead) = (value(s - reach, &(y - away)), value(s + reach, &(y + away)));
+            let crosses = behind * ahead < 0.0 && behind.abs().min(ahead.abs()) > 4.0 * hidden;
+            let in_direction = match direction {
+                Direction::Either => true,
+                Direction::Rising => behind < 0.0,
+                _ => behind > 0.0,
+            };
+            if values[guard].abs() > hidden || !crosses || !in_direction {
+                continue;
+            }
+            let found = Event {
+                guard,
+                simultaneous: 0,
+                slope: ((ahead - behind) / (2.0 * reach)).abs(),
+                elapsed: step.h,
+                state: step.y1,
+                residual: values[guard].abs(),
+                sign: behind.signum(),
+                beyond: step.h,
+                jump: false,
+                step: *step,
+            };
+            if self.is_noted(&found) {
+                let together = self.notes.last().is_some_and(|last| last.s == s);
+                self.note(&found, together);
+            } else {
+                *event = Some(found);
+                return;
+            }
+        }
+    }
+}

@@ -1,0 +1,248 @@
+//! Isolation by enclosures: it decides where a guard of a readable system crosses zero.
+//!
+//! A part of the step whose bounds exclude zero has no crossing. A part whose slopes have one sign
+//! is monotone, and one whose second derivatives have one sign has at most one extremum: the signs
+//! at the ends and at the extremum decide. All other parts are halved. What remains at rounding is
+//! a jump, a pole, or a touch that cannot be told from a crossing pair.
+
+use crate::error::RunError;
+use crate::events::isolate::{Beginning, Bracket, Notice, Task, Touch, Verdict, root};
+use crate::number::{Enclosure, Interval};
+
+/// A guard along a step.
+pub(crate) trait Enclosed {
+    /// Bounds for value and derivatives by the step fraction, between two step fractions. They
+    /// contain what steps of the method to any place in between would give.
+    fn over(&mut self, low: f64, high: f64) -> Enclosure;
+    /// The value by a step of the method to `theta`, as a number and with its rounding.
+    fn truth(&mut self, theta: f64) -> Result<(f64, Interval), RunError>;
+    /// The value by the dense output.
+    fn at(&mut self, theta: f64) -> f64;
+}
+
+/// The parts of a step that may be examined before the step counts as too coarse.
+const LIMIT: usize = 100_000;
+/// Parts of a step are halved at most this often.
+const DEPTH: usize = 60;
+
+/// Finds the first crossing of an enclosed curve from ≥ 0 to < 0. What it notices before the
+/// crossing goes to `notice`.
+pub(crate) fn first_enclosed_crossing(
+    curve: &mut dyn Enclosed,
+    task: &Task,
+    notice: &mut dyn FnMut(Notice),
+) -> Result<Verdict, RunError> {
+    let Beginning { theta: first, value, zero_order } = task.beginning;
+    let before = (first, value);
+    let mut search = Search { curve, notice, task, before, count: 0 };
+    if zero_order == 0 && value != 0.0 {
+        if task.domain && value < 0.0 {
+            return Ok(Verdict::StartsBelow);
+        }
+        return search.walk(first);
+    }
+    let Some((theta, sign)) = search.leave_zero(first, zero_order) else {
+        return Ok(Verdict::TooCoarse);
+    };
+    if sign < 0.0 && task.domain {
+        return Ok(Verdict::StartsBelow);
+    }
+    if sign < 0.0 && zero_order == 0 {
+        // It is zero where it begins, and falls from there.
+        return Ok(Verdict::Crossing(Bracket::at(first)));
+    }
+    search.before = (theta, sign);
+    search.walk(theta)
+}
+
+/// The search for a crossing, from left to right.
+struct Search<'a> {
+    curve: &'a mut dyn Enclosed,
+    notice: &'a mut dyn FnMut(Notice),
+    task: &'a Task,
+    /// The last place where the sign was seen, and that sign.
+    before: (f64, f64),
+    /// The parts that were examined.
+    count: usize,
+}
+
+impl Search<'_> {
+    /// A part of the step on which a guard that starts from zero has one sign, by its end, and that
+    /// sign. The sign is 0 if the guard stays at zero.
+    fn leave_zero(&mut self, first: f64, zero_order: u32) -> Option<(f64, f64)> {
+        let mut width = 1.0 - first;
+        for _ in 0..DEPTH {
+            let high = first + width;
+            let Enclosure { slope, bend, .. } = self.over(first, high);
+            // A guard that leaves a simple zero has a slope of one sign; from a double one, a bend.
+            let sign = match zero_order {
+                0 | 1 => slope.sign(),
+                2 => bend.sign(),
+                _ => 0.0,
+            };
+            if sign != 0.0 && slope.is_bounded() {
+                return Some((high, sign));
+            }
+            if zero_order < 2 && slope.is_bounded() && bend.sign() != 0.0 && width < 1e-6 {
+                // The slope starts from 0 too, within its error.
+                let start = self.over(first, first).slope;
+                if start.contains(0.0) {
+                    return Some((high, bend.sign()));
+                }
+            }
+            if width <= self.task.resolution {
+                break;
+            }
+            width *= 0.25;
+        }
+        None
+    }
+
+    fn over(&mut self, low: f64, high: f64) -> Enclosure {
+        self.count += 1;
+        self.curve.over(low, high)
+    }
+
+    /// Bounds between two step fractions, made tight by an expansion about the middle.
+    fn bounds(&mut self, low: f64, high: f64) -> (Enclosure, Enclosure) {
+        let plain = self.over(low, high);
+        let middle = 0.5 * (low + high);
+        let centre = self.over(middle, middle);
+        if plain.value.sign() != 0.0 || !plain.slope.is_bounded() {
+            return (plain, centre);
+        }
+        (plain.about(&centre, 0.5 * (high - low)), centre)
+    }
+
+    /// The value at a place, with the sign that a step of the method finds. It is 0 if rounding
+    /// hides the sign.
+    fn value(&mut self, theta: f64, touch: bool) -> Result<f64, RunError> {
+        if theta >= 1.0 {
+            return Ok(self.task.end);
+        }
+        let sign = self.over(theta, theta).value.sign();
+        if sign != 0.0 {
+            return Ok(sign * self.curve.at(theta).abs().max(f64::MIN_POSITIVE));
+        }
+        let (value, bounds) = self.curve.truth(theta)?;
+        if touch {
+            (self.notice)(Notice::Touch(Touch { theta, margin: value }));
+        }
+        Ok(bounds.sign() * value.abs().max(f64::MIN_POSITIVE))
+    }
+
+    /// Notes the value at a place. The result is the crossing that it completes, if there is one.
+    fn visit(&mut self, theta: f64, value: f64) -> Option<Bracket> {
+        if value == 0.0 {
+            return None;
+        }
+        let before = std::mem::replace(&mut self.before, (theta, value));
+        if before.1 >= 0.0 && value < 0.0 {
+            let curve = &mut *self.curve;
+            let low = (before.0, curve.at(before.0).max(0.0));
+            let high = (theta, curve.at(theta).min(-f64::MIN_POSITIVE));
+            let guess = root(|theta| curve.at(theta), low, high);
+            return Some(Bracket { low: before.0, high: theta, guess });
+        }
+        None
+    }
+
+    fn walk(&mut self, low: f64) -> Result<Verdict, RunError> {
+        let mut pending = [(0.0, 0.0); DEPTH + 2];
+        pending[0] = (low, 1.0);
+        let mut pieces = usize::from(low < 1.0);
+        while pieces > 0 {
+            pieces -= 1;
+            let (low, high) = pending[pieces];
+            if self.count > LIMIT {
+                return Ok(Verdict::TooCoarse);
+            }
+            let (bounds, centre) = self.bounds(low, high);
+            let sign = bounds.value.sign();
+            if sign != 0.0 {
+                if let Some(bracket) = self.visit(high, sign) {
+                    return Ok(Verdict::Crossing(bracket));
+                }
+                continue;
+            }
+            let smooth = bounds.slope.is_bounded();
+            let hidden = 4.0 * centre.value.width();
+            let flat = smooth && bounds.value.magnitude() <= hidden;
+            if smooth && bounds.slope.sign() != 0.0 {
+                let value = self.value(high, false)?;
+                if let Some(bracket) = self.visit(high, value) {
+                    return Ok(Verdict::Crossing(bracket));
+                }
+            } else if smooth && bounds.bend.is_bounded() && bounds.bend.sign() != 0.0 || flat {
+                let turn = if flat { 0.5 * (low + high) } else { self.extremum(low, high) };
+                // A maximum above zero and a minimum below it change nothing.
+                let matters = flat || self.before.1 * bounds.bend.sign() > 0.0;
+                if matters && turn > low && turn < high {
+                    let value = self.value(turn, true)?;
+                    if let Some(bracket) = self.visit(turn, value) {
+                        return Ok(Verdict::Crossing(bracket));
+                    }
+                }
+                let value = self.value(high, false)?;
+                if let Some(bracket) = self.visit(high, value) {
+                    return Ok(Verdict::Crossing(bracket));
+                }
+            } else if high - low <= self.task.resolution || pieces + 2 > DEPTH {
+                if let Some(verdict) = self.irregular(low, high, &bounds)? {
+                    return Ok(verdict);
+                }
+            } else {
+                let middle = 0.5 * (low + high);
+                pending[pieces] = (middle, high);
+                pending[pieces + 1] = (low, middle);
+                pieces += 2;
+            }
+        }
+        Ok(Verdict::None)
+    }
+
+    /// A part that cannot be divided: a kink, a jump or a pole.
+    fn irregular(
+        &mut self,
+        low: f64,
+        high: f64,
+        bounds: &Enclosure,
+    ) -> Result<Option<Verdict>, RunError> {
+        let value = if high >= 1.0 { self.task.end } else { self.curve.truth(high)?.0 };
+        let crosses = self.before.1 >= 0.0 && value < 0.0;
+        let turns = self.before.1 * value < 0.0;
+        if !bounds.value.is_bounded() && turns {
+            (self.notice)(Notice::Pole(high));
+        } else if crosses {
+            return Ok(Some(Verdict::Crossing(Bracket { low, high, guess: high })));
+        } else if bounds.value.is_bounded() && value != 0.0 && !turns {
+            (self.notice)(Notice::Touch(Touch { theta: high, margin: value }));
+        }
+        if value != 0.0 {
+            self.before = (high, value);
+        }
+        Ok(None)
+    }
+
+    /// The extremum between two step fractions, where the second derivatives have one sign.
+    fn extremum(&mut self, low: f64, high: f64) -> f64 {
+        let (mut low, mut high) = (low, high);
+        let rises = |slope: Interval| slope.lower() + slope.upper() > 0.0;
+        let at_low = rises(self.over(low, low).slope);
+        if rises(self.over(high, high).slope) == at_low {
+            return high;
+        }
+        while high - low > self.task.resolution {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                break;
+            }
+            if rises(self.over(middle, middle).slope) == at_low {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        0.5 * (low + high)
+    }
+}

@@ -1,0 +1,148 @@
+//! The state along a step as polynomials with bounds of their errors, for enclosures.
+//!
+//! There are two paths. The *quick* one is a quintic through the six states that a step knows
+//! already, and costs no right-hand side. The other one is the dense output. Its error vanishes at
+//! both ends of the step with its slope.
+
+use crate::events::quick::{NODES, expand};
+use crate::method::{Dense, Step};
+use crate::number::{Enclosure, Interval};
+
+/// The largest number of terms.
+const TERMS: usize = 8;
+
+/// The factor by which the error of the dense output may exceed its last term. A value that is too
+/// large costs steps of the method. One that is too small would make decisions wrong.
+const SAFETY: f64 = 4.0;
+
+/// The rounding of a polynomial, relative to the sum of its terms.
+const ROUNDING: f64 = 32.0 * f64::EPSILON;
+
+/// A component of the state along a step.
+#[derive(Clone, Copy)]
+struct Component {
+    /// The coefficients of powers of the step fraction.
+    terms: [f64; TERMS],
+    /// The sum of the terms beyond the constant one.
+    size: f64,
+    /// A bound for the error of the polynomial.
+    error: f64,
+    /// A bound for the rounding of the state at the end of the step.
+    rounding: f64,
+}
+
+/// The state along a step.
+pub(crate) struct Path<const N: usize> {
+    s: f64,
+    h: f64,
+    components: [Component; N],
+    /// Whether the error vanishes at both ends, with its slope.
+    tight: bool,
+}
+
+/// Bounds of an error and of its first two derivatives.
+#[derive(Clone, Copy)]
+struct Band([f64; 3]);
+
+impl<const N: usize> Path<N> {
+    /// The path along the six states of a step. The part `trust` of the next-to-last term counts
+    /// as error.
+    pub(crate) fn quick(step: &Step<N>, trust: f64) -> Self {
+        let [a, b, c, d] = &step.interior;
+        let states = [&step.y0, a, b, c, d, &step.y1];
+        let components = std::array::from_fn(|i| {
+            let values = states.map(|state| state[i]);
+            let (terms, error) = expand(&values, trust);
+            let mut all = [0.0; TERMS];
+            all[..NODES.len()].copy_from_slice(&terms);
+            Component::new(all, error, values[0].abs().max(values[5].abs()))
+        });
+        Self { s: step.s, h: step.h, components, tight: false }
+    }
+
+    /// The path along the dense output of a step.
+    pub(crate) fn dense(dense: &Dense<N>) -> Self {
+        let components = std::array::from_fn(|i| {
+            let (terms, last) = dense.terms(i);
+            let ends = terms[0].abs().max(terms.iter().sum::<f64>().abs());
+            Component::new(terms, SAFETY * last, ends)
+        });
+        Self { s: dense.start(), h: dense.size(), components, tight: true }
+    }
+
+    /// Bounds for the time and the state between two step fractions, with their derivatives by the
+    /// step fraction.
+    pub(crate) fn over(&self, low: f64, high: f64) -> (Enclosure, [Enclosure; N]) {
+        let range = Interval::new(low, high);
+        let time = Enclosure {
+            value: Interval::point(self.s).plus(range.scaled(self.h)),
+            slope: Interval::point(self.h),
+            bend: Interval::ZERO,
+        };
+        (time, self.components.map(|component| component.over(low, high, self.tight)))
+    }
+}
+
+impl Component {
+    fn new(terms: [f64; TERMS], error: f64, ends: f64) -> Self {
+        let size = terms[1..].iter().map(|term| term.abs()).sum();
+        Self { terms, size, error, rounding: 2.0 * f64::EPSILON * ends }
+    }
+
+    /// The bounds of the error between two step fractions.
+    fn band(&self, low: f64, high: f64, tight: bool) -> Band {
+        let (left, right) = (high, 1.0 - low);
+        let (e, r) = (self.error, self.rounding);
+        let near = left.min(right);
+        let truncation = if tight {
+            // The error is at most of the size of 16 θ²(1−θ)² times `error`.
+            [e * (16.0 * near * near).min(1.0), e * (32.0 * near).min(4.0), 32.0 * e]
+        } else {
+            // Markov's inequality for polynomials of degree 5.
+            [e * (50.0 * left).min(1.0), 50.0 * e, 800.0 * e]
+        };
+        let rounding = [r * (4.0 * left * left).min(1.0), r * (8.0 * left).min(8.0), 16.0 * r];
+        let polynomial = ROUNDING * self.size;
+        Band([
+            truncation[0] + rounding[0] + polynomial * left,
+            truncation[1] + rounding[1] + 8.0 * polynomial,
+            truncation[2] + rounding[2] + 64.0 * polynomial,
+        ])
+    }
+
+    /// The component between two step fractions, by its expansion about the middle.
+    fn over(&self, low: f64, high: f64, tight: bool) -> Enclosure {
+        let (middle, radius) = (0.5 * (low + high), 0.5 * (high - low));
+        // Repeated division by θ − middle leaves the coefficients about the middle.
+        let mut c = self.terms;
+        for first in 0..TERMS - 1 {
+            for k in (first..TERMS - 1).rev() {
+                c[k] += middle * c[k + 1];
+            }
+        }
+        // The remainders beyond the first derivatives.
+        let (mut value, mut slope, mut bend) = (0.0, 0.0, 0.0);
+        let mut power = radius;
+        for k in 1..TERMS {
+            let n = k as f64;
+            // The powers radius^k, radius^(k−1) and radius^(k−2).
+            value += c[k].abs() * power;
+            if k > 1 {
+                slope += n * c[k].abs() * power / radius.max(f64::MIN_POSITIVE);
+            }
+            if k > 2 {
+                let square = (radius * radius).max(f64::MIN_POSITIVE);
+                bend += n * (n - 1.0) * c[k].abs() * power / square;
+            }
+            power *= radius;
+        }
+        let Band(band) = self.band(low, high, tight);
+        let around = |middle: f64, radius: f64| Interval::around(middle, radius);
+        let wide = 1.0 + 64.0 * f64::EPSILON;
+        Enclosure {
+            value: around(c[0], wide * (value + band[0])),
+            slope: around(c[1], wide * (slope + band[1])),
+            bend: around(2.0 * c[2], wide * (bend + band[2])),
+        }
+    }
+}

@@ -1,0 +1,397 @@
+//! Enclosures: a function of one variable over an interval, with its first two derivatives.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use crate::number::{Interval, Number};
+
+/// Bounds for the values, the slopes and the second derivatives of a function over an interval of
+/// its variable.
+///
+/// A kink makes the second derivative unbounded, a jump or a pole the slope too. So bounded slopes
+/// mean that the function is continuous, and slopes of one sign then mean that it is monotone.
+///
+/// ```
+/// use stickslip_solver::{Enclosure, Interval, Number};
+///
+/// // The variable itself, over [0.5, 1.5].
+/// let x = Enclosure::variable(Interval::new(0.5, 1.5));
+/// let kink = (x - 1.0).abs();
+/// assert!(kink.slope.is_bounded() && !kink.bend.is_bounded());
+/// let jump = (x - 1.0).select(x, -x);
+/// assert!(!jump.slope.is_bounded());
+/// let rises = x * x;
+/// assert!(rises.slope.sign() == 1.0 && rises.bend.contains(2.0));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Enclosure {
+    /// Bounds for the values.
+    pub value: Interval,
+    /// Bounds for the slopes.
+    pub slope: Interval,
+    /// Bounds for the second derivatives.
+    pub bend: Interval,
+}
+
+impl Enclosure {
+    /// A function about which nothing is known.
+    pub const ENTIRE: Self =
+        Self { value: Interval::ENTIRE, slope: Interval::ENTIRE, bend: Interval::ENTIRE };
+
+    /// The variable itself.
+    #[must_use]
+    pub fn variable(range: Interval) -> Self {
+        Self { value: range, slope: Interval::point(1.0), bend: Interval::ZERO }
+    }
+
+    /// The same bounds, made tighter by an expansion about the middle, with the bounds `centre`
+    /// there and the distance `radius` from there to the ends.
+    #[must_use]
+    pub(crate) fn about(self, centre: &Self, radius: f64) -> Self {
+        let away = Interval::around(0.0, radius);
+        let Self { mut value, mut slope, bend } = self;
+        if bend.is_bounded() {
+            slope = slope.meet(centre.slope.plus(bend.times(away)));
+            let half = bend.times(away.powi(2)).scaled(0.5);
+            value = value.meet(centre.value.plus(centre.slope.times(away)).plus(half));
+        }
+        value = value.meet(centre.value.plus(slope.times(away)));
+        Self { value, slope, bend }
+    }
+
+    /// A function of this function, with its `value` and its first two derivatives there.
+    #[inline]
+    fn chain(self, value: Interval, first: Interval, second: Interval) -> Self {
+        let slope = first.times(self.slope);
+        let bend = second.times(self.slope.powi(2)).plus(first.times(self.bend));
+        Self { value, slope, bend }
+    }
+
+    /// A function that is constant but for jumps.
+    fn jumps(value: Interval) -> Self {
+        let still = value.width() == 0.0;
+        let slope = if still { Interval::ZERO } else { Interval::ENTIRE };
+        Self { value, slope, bend: slope }
+    }
+
+    /// 1 divided by this function.
+    fn inverse(self) -> Self {
+        let inverse = self.value.inverse();
+        let square = inverse.powi(2);
+        self.chain(inverse, square.negated(), square.times(inverse).scaled(2.0))
+    }
+
+    /// One of two continuous functions at each place.
+    fn either(value: Interval, one: Self, other: Self) -> Self {
+        Self { value, slope: one.slope.hull(other.slope), bend: Interval::ENTIRE }
+    }
+}
+
+impl From<f64> for Enclosure {
+    #[inline]
+    fn from(x: f64) -> Self {
+        Self { value: Interval::point(x), slope: Interval::ZERO, bend: Interval::ZERO }
+    }
+}
+
+impl Neg for Enclosure {
+    type Output = Self;
+    #[inline]
+    fn neg(self) -> Self {
+        let Self { value, slope, bend } = self;
+        Self { value: value.negated(), slope: slope.negated(), bend: bend.negated() }
+    }
+}
+
+impl Add for Enclosure {
+    type Output = Self;
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self {
+            value: self.value.plus(other.value),
+            slope: self.slope.plus(other.slope),
+            bend: self.bend.plus(other.bend),
+        }
+    }
+}
+
+impl Sub for Enclosure {
+    type Output = Self;
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for Enclosure {
+    type Output = Self;
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        let (a, b) = (self, other);
+        let crossed = a.slope.times(b.slope).scaled(2.0);
+        Self {
+            value: a.value.times(b.value),
+            slope: a.slope.times(b.value).plus(a.value.times(b.slope)),
+            bend: a.bend.times(b.value).plus(crossed).plus(a.value.times(b.bend)),
+        }
+    }
+}
+
+impl Div for Enclosure {
+    type Output = Self;
+    #[inline]
+    fn div(self, other: Self) -> Self {
+        self * other.inverse()
+    }
+}
+
+impl Add<f64> for Enclosure {
+    type Output = Self;
+    #[inline]
+    fn add(self, other: f64) -> Self {
+        Self { value: self.value.plus(Interval::point(other)), ..self }
+    }
+}
+
+impl Sub<f64> for Enclosure {
+    type Output = Self;
+    #[inline]
+    fn sub(self, other: f64) -> Self {
+        self + -other
+    }
+}
+
+impl Mul<f64> for Enclosure {
+    type Output = Self;
+    #[inline]
+    fn mul(self, other: f64) -> Self {
+        let Self { value, slope, bend } = self;
+        Self { value: value.scaled(other), slope: slope.scaled(other), bend: bend.scaled(other) }
+    }
+}
+
+impl Div<f64> for Enclosure {
+    type Output = Self;
+    #[inline]
+    fn div(self, other: f64) -> Self {
+        // The quotient of the bounds is rounded once; a product with the inverse is rounded twice.
+        let by = Interval::point(other).inverse();
+        let Self { value, slope, bend } = self;
+        Self { value: value.times(by), slope: slope.times(by), bend: bend.times(by) }
+    }
+}
+
+impl Number for Enclosure {
+    fn select(self, on_or_above: Self, below: Self) -> Self {
+        if self.value.lower() >= 0.0 {
+            on_or_above
+        } else if self.value.upper() < 0.0 {
+            below
+        } else {
+            Self {
+                value: on_or_above.value.hull(below.value),
+                slope: Interval::ENTIRE,
+                bend: Interval::ENTIRE,
+            }
+        }
+    }
+
+    fn floor(self) -> Self {
+        Self::jumps(Interval::new(self.value.lower().floor(), self.value.upper().floor()))
+    }
+
+    fn abs(self) -> Self {
+        if self.value.lower() >= 0.0 {
+            self
+        } else if self.value.upper() <= 0.0 {
+            -self
+        } else {
+            Self::either(self.value.abs(), self, -self)
+        }
+    }
+
+    fn min(self, other: Self) -> Self {
+        -(-self).max(-other)
+    }
+
+    fn max(self, other: Self) -> Self {
+        let (a, b) = (self.value, other.value);
+        if a.lower() >= b.upper() {
+            self
+        } else if b.lower() >= a.upper() {
+            other
+        } else {
+            let value = Interval::new(a.lower().max(b.lower()), a.upper().max(b.upper()));
+            Self::either(value, self, other)
+        }
+    }
+
+    fn powi(self, exponent: i32) -> Self {
+        let n = f64::from(exponent);
+        let power = |less: i32| self.value.powi(exponent.saturating_sub(less));
+        match exponent {
+            0 => Self::from(1.0),
+            1 => self,
+            _ => self.chain(power(0), power(1).scaled(n), power(2).scaled(n).scaled(n - 1.0)),
+        }
+    }
+
+    fn powf(self, exponent: f64) -> Self {
+        if self.value.lower() <= 0.0 && exponent < 2.0 {
+            // The derivatives may be unbounded at 0, and below it there is no value.
+            let kept = if exponent >= 1.0 && self.value.lower() == 0.0 {
+                self.value.powf(exponent - 1.0).scaled(exponent)
+            } else {
+                Interval::ENTIRE
+            };
+            return self.chain(self.value.powf(exponent), kept, Interval::ENTIRE);
+        }
+        if self.value.lower() < 0.0 {
+            return self.chain(self.value.powf(exponent), Interval::ENTIRE, Interval::ENTIRE);
+        }
+        let power = |less: f64| self.value.powf(exponent - less);
+        let second = power(2.0).scaled(exponent).scaled(exponent - 1.0);
+        self.chain(power(0.0), power(1.0).scaled(exponent), second)
+    }
+
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        if self.value.lower() <= 0.0 {
+            return self.chain(root, Interval::ENTIRE, Interval::ENTIRE);
+        }
+        let first = root.scaled(2.0).inverse();
+        self.chain(root, first, first.times(self.value.scaled(-2.0).inverse()))
+    }
+
+    fn exp(self) -> Self {
+        let value = self.value.exp();
+        self.chain(value, value, value)
+    }
+
+    fn ln(self) -> Self {
+        if self.value.lower() <= 0.0 {
+            return self.chain(self.value.ln(), Interval::ENTIRE, Interval::ENTIRE);
+        }
+        let first = self.value.inverse();
+        self.chain(self.value.ln(), first, first.powi(2).negated())
+    }
+
+    fn sin(self) -> Self {
+        let (sine, cosine) = (self.value.sin(), self.value.cos());
+        self.chain(sine, cosine, sine.negated())
+    }
+
+    fn cos(self) -> Self {
+        let (sine, cosine) = (self.value.sin(), self.value.cos());
+        self.chain(cosine, sine.negated(), cosine.negated())
+    }
+
+    fn tan(self) -> Self {
+        let value = self.value.tan();
+        if !value.is_bounded() {
+            return Self::ENTIRE;
+        }
+        let first = Interval::point(1.0).plus(value.powi(2));
+        self.chain(value, first, value.times(first).scaled(2.0))
+    }
+
+    fn sinh(self) -> Self {
+        let (sine, cosine) = (self.value.sinh(), self.value.cosh());
+        self.chain(sine, cosine, sine)
+    }
+
+    fn cosh(self) -> Self {
+        let (sine, cosine) = (self.value.sinh(), self.value.cosh());
+        self.chain(cosine, sine, cosine)
+    }
+
+    fn tanh(self) -> Self {
+        let value = self.value.tanh();
+        // 1 − tanh² would be the difference of equal numbers.
+        let first = self.value.cosh().powi(2).inverse();
+        self.chain(value, first, value.times(first).scaled(-2.0))
+    }
+
+    fn asin(self) -> Self {
+        let value = self.value.asin();
+        let inside = Interval::point(1.0).plus(self.value.powi(2).negated());
+        if inside.lower() <= 0.0 {
+            return self.chain(value, Interval::ENTIRE, Interval::ENTIRE);
+        }
+        let first = inside.sqrt().inverse();
+        self.chain(value, first, self.value.times(first.powi(3)))
+    }
+
+    fn acos(self) -> Self {
+        let right = Interval::around(std::f64::consts::FRAC_PI_2, f64::EPSILON);
+        Self { value: right, ..Self::from(0.0) } - self.asin()
+    }
+
+    fn atan(self) -> Self {
+        let first = Interval::point(1.0).plus(self.value.powi(2)).inverse();
+        let second = self.value.times(first.powi(2)).scaled(-2.0);
+        self.chain(self.value.atan(), first, second)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A formula with everything that a number can do.
+    fn formula<T: Number>(x: T, kind: usize) -> T {
+        match kind {
+            0 => (x * 3.0).sin() * x.exp() - x.powi(3) / (x * x + 2.0),
+            1 => (x * x + 0.5).sqrt() + (x + 4.0).ln().tanh(),
+            2 => (x * 0.3).asin() + x.atan() * (x * 0.2).acos(),
+            3 => (x * 0.4).tan() + x.sinh() * x.cosh() - (x + 5.0).powf(1.7),
+            4 => (x * 2.0).cos().max(x).min(T::from(0.7)),
+            5 => (x - 0.3).abs() * x + (x * 4.0).floor(),
+            _ => (x - 0.2).select(x * x, -x) - 0.1,
+        }
+    }
+
+    /// Values and difference quotients of any two places of an interval are enclosed.
+    #[test]
+    fn formulas_are_enclosed() {
+        let mut random = fastrand::Rng::with_seed(2);
+        for kind in 0..7 {
+            for _ in 0..5000 {
+                let (middle, radius) = (2.0 * random.f64() - 1.0, 10_f64.powf(-4.0 * random.f64()));
+                let range = Interval::new(middle - radius, middle + radius);
+                let found = formula(Enclosure::variable(range), kind);
+                let [a, b] = [(); 2].map(|()| middle + radius * (2.0 * random.f64() - 1.0));
+                let (at_a, at_b) = (formula(a, kind), formula(b, kind));
+                assert!(found.value.contains(at_a) && found.value.contains(at_b));
+                let slope = (at_a - at_b) / (a - b);
+                let slack = 1e-13 / (a - b).abs();
+                let inside = Interval::around(slope, slack);
+                assert!(
+                    (a - b).abs() < 1e-9
+                        || found.slope.hull(inside) == found.slope
+                        || found.slope.lower() <= slope + slack
+                            && found.slope.upper() >= slope - slack,
+                    "{kind} {range:?} {found:?} {slope}"
+                );
+                let c = 0.5 * (a + b);
+                let bend = 4.0 * (at_a - 2.0 * formula(c, kind) + at_b) / (a - b).powi(2);
+                let slack = 1e-12 / (a - b).powi(2);
+                assert!(
+                    (a - b).abs() < 1e-4
+                        || found.bend.lower() <= bend + slack && found.bend.upper() >= bend - slack,
+                    "{kind} {range:?} {found:?} {bend}"
+                );
+            }
+        }
+    }
+
+    /// A narrow enclosure of a smooth formula has the derivatives to many digits.
+    #[test]
+    fn enclosures_are_tight() {
+        for kind in 0..4 {
+            let found = formula(Enclosure::variable(Interval::point(0.37)), kind);
+            for part in [found.value, found.slope, found.bend] {
+                assert!(part.width() < 1e-12, "{kind} {found:?}");
+            }
+        }
+    }
+}
