@@ -186,7 +186,7 @@ where
                 // The slope is a difference, so that a correction leaves a part of the distance.
                 for _ in 0..3 {
                     let rest = -residual / at.slope;
-                    if rest.abs() <= f64::EPSILON * trial.h {
+                    if residual == 0.0 || rest.abs() <= f64::EPSILON * trial.h {
                         break;
                     }
                     moved += rest;
