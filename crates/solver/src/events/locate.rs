@@ -23,9 +23,8 @@ const NOWHERE: f64 = 1e-20;
 /// step is.
 const REACH: f64 = 1e-3;
 
-/// The part of the bracket over which it is differenced at most: other zeros may be beyond the
-/// bracket.
-const INSIDE: f64 = 0.03;
+/// The part of the distance to the ends of the bracket over which it is differenced at most.
+const INSIDE: f64 = 0.1;
 /// The least part of a step over which a guard is differenced, so that rounding cannot spoil the
 /// slope.
 const LEAST_REACH: f64 = 1e-7;
@@ -84,7 +83,10 @@ where
         if !(theta > low && theta < high) {
             theta = 0.5 * (low + high);
         }
-        let width = (high - low) * step.h;
+        // Beyond the bracket, except at the ends of the step, the guard may turn.
+        let left = if low > 0.0 { theta - low } else { f64::INFINITY };
+        let right = if high < 1.0 { high - theta } else { f64::INFINITY };
+        let width = left.min(right) * step.h;
         let mut last_value = f64::INFINITY;
         loop {
             let mut trial = self.restep::<M>(step, theta * step.h);
@@ -111,7 +113,7 @@ where
                 None
             };
             let landing = match by_newton {
-                None if high - low > BRIDGE * theta => {
+                None if high - low > 4.0 * f64::EPSILON * high => {
                     self.search_nearby(&near, &trial, &end, (low * step.h, high * step.h))
                 }
                 landing => landing,
@@ -183,16 +185,17 @@ where
                 {
                     return None;
                 }
-                // The slope is a difference, so that a correction leaves a part of the distance.
-                for _ in 0..3 {
-                    let rest = -residual / at.slope;
-                    if residual == 0.0 || rest.abs() <= f64::EPSILON * trial.h {
-                        break;
-                    }
+                let rest = -residual / at.slope;
+                if residual != 0.0 && rest.abs() > f64::EPSILON * trial.h {
                     moved += rest;
                     y += at.slope_of_state * rest;
+                    let before = residual.abs();
                     residual = near.value(s + moved, &y);
                     self.statistics.guards += 1;
+                    let far = residual.abs() > 0.01 * before;
+                    if far && residual.abs() > 2.0 * near.rounding(s + moved, &y) {
+                        return None;
+                    }
                 }
                 let elapsed = trial.h + moved;
                 return Some(Landing { elapsed, state: y, residual, slope: at.slope, jump: false });
