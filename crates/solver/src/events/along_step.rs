@@ -119,7 +119,10 @@ where
     S: HybridSystem<N, G>,
 {
     pub(crate) along: AlongStep<'a, S, M, N, G>,
+    /// The path along the dense output.
     pub(crate) path: Path<N>,
+    /// The path on the part of the step that is looked at more closely.
+    pub(crate) local: Option<Path<N>>,
 }
 
 impl<S, M, const N: usize, const G: usize> Enclosed for EnclosedAlongStep<'_, S, M, N, G>
@@ -130,7 +133,7 @@ where
     fn over(&mut self, low: f64, high: f64) -> Enclosure {
         let AlongStep { system, mode, guard, sign, .. } = self.along;
         self.along.statistics.enclosures += 1;
-        let (s, y) = self.path.over(low, high);
+        let (s, y) = self.local.as_ref().unwrap_or(&self.path).over(low, high);
         let bounds = system.enclose_guards(mode, s, &y)[guard];
         if sign < 0.0 { -bounds } else { bounds }
     }
@@ -146,5 +149,21 @@ where
 
     fn at(&mut self, theta: f64) -> f64 {
         self.along.dense(theta)
+    }
+    fn refine(&mut self, low: f64, high: f64) -> Result<bool, RunError> {
+        let AlongStep { system, mode, step, .. } = self.along;
+        let (middle, reach) = (0.5 * (low + high), 0.5 * (high - low) * step.h);
+        let (y, _) = self.along.step_to(middle)?;
+        let s = step.s + middle * step.h;
+        let slope = system.field(mode, s, &y);
+        let away = |by: f64| system.field(mode, s + by, &(y + slope * by));
+        let bend = (away(reach) - away(-reach)) / (2.0 * reach);
+        self.along.statistics.field += 3;
+        self.local = self.path.local((low, high), [&y, &slope, &bend]);
+        Ok(self.local.is_some())
+    }
+
+    fn widen(&mut self) {
+        self.local = None;
     }
 }

@@ -277,7 +277,8 @@ where
             };
             // Zeros of higher order have no bounds.
             let verdict = if S::READABLE && beginning.zero_order <= 2 {
-                let mut enclosed = EnclosedAlongStep { along, path: Path::dense(&dense) };
+                let mut enclosed =
+                    EnclosedAlongStep { along, path: Path::dense(&dense), local: None };
                 first_enclosed_crossing(&mut enclosed, &task, &mut notice)?
             } else {
                 first_crossing(&mut along, &task, &mut notice)?

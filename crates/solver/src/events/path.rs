@@ -1,11 +1,13 @@
 //! The state along a step as polynomials with bounds of their errors, for enclosures.
 //!
-//! There are two paths. The *quick* one is a quintic through the six states that a step knows
-//! already, and costs no right-hand side. The other one is the dense output. Its error vanishes at
-//! both ends of the step with its slope.
+//! There are three paths. The *quick* one is a quintic through the six states that a step knows
+//! already, and costs no right-hand side. The *dense* one is the dense output; its error vanishes
+//! at both ends of the step with its slope. The *local* one is an expansion about a place of the
+//! step, from a step of the method to that place. On a short part of the step its error is of the
+//! size of rounding.
 
 use crate::events::quick::{NODES, expand};
-use crate::method::{Dense, Step};
+use crate::method::{Dense, State, Step};
 use crate::number::{Enclosure, Interval};
 
 /// The largest number of terms.
@@ -14,6 +16,9 @@ const TERMS: usize = 8;
 /// The factor by which the error of the dense output may exceed its last term. A value that is too
 /// large costs steps of the method. One that is too small would make decisions wrong.
 const SAFETY: f64 = 4.0;
+
+/// The part of the error of a path that a local one may have, to be of use.
+const NEARER: f64 = 1.0 / 16.0;
 
 /// The rounding of a polynomial, relative to the sum of its terms.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
@@ -36,8 +41,16 @@ pub(crate) struct Path<const N: usize> {
     s: f64,
     h: f64,
     components: [Component; N],
-    /// Whether the error vanishes at both ends, with its slope.
-    tight: bool,
+    kind: Kind,
+}
+
+/// How a path is made, which says how its error varies.
+#[derive(Clone, Copy)]
+enum Kind {
+    Quick,
+    Dense,
+    /// The step fraction in the middle, and the distance from there to the ends.
+    Local(f64, f64),
 }
 
 /// Bounds of an error and of its first two derivatives.
@@ -57,7 +70,7 @@ impl<const N: usize> Path<N> {
             all[..NODES.len()].copy_from_slice(&terms);
             Component::new(all, error, values[0].abs().max(values[5].abs()))
         });
-        Self { s: step.s, h: step.h, components, tight: false }
+        Self { s: step.s, h: step.h, components, kind: Kind::Quick }
     }
 
     /// The path along the dense output of a step.
@@ -67,7 +80,33 @@ impl<const N: usize> Path<N> {
             let ends = terms[0].abs().max(terms.iter().sum::<f64>().abs());
             Component::new(terms, SAFETY * last, ends)
         });
-        Self { s: dense.start(), h: dense.size(), components, tight: true }
+        Self { s: dense.start(), h: dense.size(), components, kind: Kind::Dense }
+    }
+
+    /// The path between two step fractions from the state `y` in the middle, with its first and
+    /// second derivatives by the time. The result is `None` if it is not much more accurate than
+    /// this path.
+    pub(crate) fn local(
+        &self,
+        (low, high): (f64, f64),
+        [y, slope, bend]: [&State<N>; 3],
+    ) -> Option<Self> {
+        let (middle, radius) = (0.5 * (low + high), 0.5 * (high - low));
+        let mut better = true;
+        let components = std::array::from_fn(|i| {
+            let from = &self.components[i];
+            let about = from.about(middle);
+            let beyond = about[3..].iter().enumerate();
+            let error: f64 = beyond.map(|(k, c)| c.abs() * radius.powi(k as i32 + 3)).sum();
+            let Band([present, ..]) = from.band(low, high, self.kind);
+            let mut terms = [0.0; TERMS];
+            terms[..3].copy_from_slice(&[y[i], self.h * slope[i], 0.5 * self.h * self.h * bend[i]]);
+            let local = Component::new(terms, SAFETY * error, y[i].abs());
+            better &= local.error <= NEARER * present || local.error <= local.rounding;
+            local
+        });
+        let kind = Kind::Local(middle, radius);
+        better.then_some(Self { s: self.s, h: self.h, components, kind })
     }
 
     /// Bounds for the time and the state between two step fractions, with their derivatives by the
@@ -79,7 +118,7 @@ impl<const N: usize> Path<N> {
             slope: Interval::point(self.h),
             bend: Interval::ZERO,
         };
-        (time, self.components.map(|component| component.over(low, high, self.tight)))
+        (time, self.components.map(|component| component.over(low, high, self.kind)))
     }
 }
 
@@ -90,16 +129,19 @@ impl Component {
     }
 
     /// The bounds of the error between two step fractions.
-    fn band(&self, low: f64, high: f64, tight: bool) -> Band {
+    fn band(&self, low: f64, high: f64, kind: Kind) -> Band {
         let (left, right) = (high, 1.0 - low);
         let (e, r) = (self.error, self.rounding);
         let near = left.min(right);
-        let truncation = if tight {
-            // The error is at most of the size of 16 θ²(1−θ)² times `error`.
-            [e * (16.0 * near * near).min(1.0), e * (32.0 * near).min(4.0), 32.0 * e]
-        } else {
+        let truncation = match kind {
             // Markov's inequality for polynomials of degree 5.
-            [e * (50.0 * left).min(1.0), 50.0 * e, 800.0 * e]
+            Kind::Quick => [e * (50.0 * left).min(1.0), 50.0 * e, 800.0 * e],
+            // The error is at most of the size of 16 θ²(1−θ)² times `error`.
+            Kind::Dense => {
+                [e * (16.0 * near * near).min(1.0), e * (32.0 * near).min(4.0), 32.0 * e]
+            }
+            // It is of third order.
+            Kind::Local(_, radius) => [e, 3.0 * e / radius, 6.0 * e / (radius * radius)],
         };
         let rounding = [r * (4.0 * left * left).min(1.0), r * (8.0 * left).min(8.0), 16.0 * r];
         let polynomial = ROUNDING * self.size;
@@ -110,16 +152,25 @@ impl Component {
         ])
     }
 
-    /// The component between two step fractions, by its expansion about the middle.
-    fn over(&self, low: f64, high: f64, tight: bool) -> Enclosure {
-        let (middle, radius) = (0.5 * (low + high), 0.5 * (high - low));
-        // Repeated division by θ − middle leaves the coefficients about the middle.
+    /// The coefficients about `middle`.
+    fn about(&self, middle: f64) -> [f64; TERMS] {
+        // Repeated division by θ − middle.
         let mut c = self.terms;
         for first in 0..TERMS - 1 {
             for k in (first..TERMS - 1).rev() {
                 c[k] += middle * c[k + 1];
             }
         }
+        c
+    }
+
+    /// The component between two step fractions, by its expansion about the middle.
+    fn over(&self, low: f64, high: f64, kind: Kind) -> Enclosure {
+        let (middle, radius) = (0.5 * (low + high), 0.5 * (high - low));
+        let c = self.about(match kind {
+            Kind::Local(origin, _) => middle - origin,
+            _ => middle,
+        });
         // The remainders beyond the first derivatives.
         let (mut value, mut slope, mut bend) = (0.0, 0.0, 0.0);
         let mut power = radius;
@@ -136,7 +187,7 @@ impl Component {
             }
             power *= radius;
         }
-        let Band(band) = self.band(low, high, tight);
+        let Band(band) = self.band(low, high, kind);
         let around = |middle: f64, radius: f64| Interval::around(middle, radius);
         let wide = 1.0 + 64.0 * f64::EPSILON;
         Enclosure {

@@ -16,6 +16,11 @@ pub(crate) trait Enclosed {
     fn over(&mut self, low: f64, high: f64) -> Enclosure;
     /// The value by a step of the method to `theta`, as a number and with its rounding.
     fn truth(&mut self, theta: f64) -> Result<(f64, Interval), RunError>;
+    /// Makes bounds between two step fractions tighter, by a step of the method into their middle.
+    /// The result tells whether that helps.
+    fn refine(&mut self, low: f64, high: f64) -> Result<bool, RunError>;
+    /// Returns to the bounds on the whole step.
+    fn widen(&mut self);
     /// The value by the dense output.
     fn at(&mut self, theta: f64) -> f64;
 }
@@ -151,71 +156,95 @@ impl Search<'_> {
         let mut pending = [(0.0, 0.0); DEPTH + 2];
         pending[0] = (low, 1.0);
         let mut pieces = usize::from(low < 1.0);
+        // The end of the part of the step on which bounds have been refined.
+        let mut refined = None;
         while pieces > 0 {
             pieces -= 1;
             let (low, high) = pending[pieces];
             if self.count > LIMIT {
                 return Ok(Verdict::TooCoarse);
             }
+            if refined.is_some_and(|end| low >= end) {
+                self.curve.widen();
+                refined = None;
+            }
             let (bounds, centre) = self.bounds(low, high);
             let sign = bounds.value.sign();
+            let (slope, bend) = (bounds.slope, bounds.bend);
             if sign != 0.0 {
                 if let Some(bracket) = self.visit(high, sign) {
                     return Ok(Verdict::Crossing(bracket));
                 }
                 continue;
             }
-            let smooth = bounds.slope.is_bounded();
-            let hidden = 4.0 * centre.value.width();
-            let flat = smooth && bounds.value.magnitude() <= hidden;
-            if smooth && bounds.slope.sign() != 0.0 {
-                let value = self.value(high, false)?;
-                if let Some(bracket) = self.visit(high, value) {
-                    return Ok(Verdict::Crossing(bracket));
-                }
-            } else if smooth && bounds.bend.is_bounded() && bounds.bend.sign() != 0.0 || flat {
-                let turn = if flat { 0.5 * (low + high) } else { self.extremum(low, high) };
+            let monotone = slope.is_bounded() && slope.sign() != 0.0;
+            let turns_once = slope.is_bounded() && bend.is_bounded() && bend.sign() != 0.0;
+            // The error of the path, and not the guard, makes these bounds.
+            let blurred = bounds.value.magnitude() <= 4.0 * centre.value.width();
+            let narrow = high - low <= self.task.resolution || pieces + 2 > DEPTH;
+            let verdict = if monotone {
+                self.follow(&[high])?
+            } else if turns_once {
+                let turn = self.extremum(low, high);
                 // A maximum above zero and a minimum below it change nothing.
-                let matters = flat || self.before.1 * bounds.bend.sign() > 0.0;
-                if matters && turn > low && turn < high {
-                    let value = self.value(turn, true)?;
-                    if let Some(bracket) = self.visit(turn, value) {
-                        return Ok(Verdict::Crossing(bracket));
-                    }
+                let matters = self.before.1 * bend.sign() > 0.0;
+                if matters && turn < high {
+                    self.follow(&[turn, high])?
+                } else {
+                    self.follow(&[high])?
                 }
-                let value = self.value(high, false)?;
-                if let Some(bracket) = self.visit(high, value) {
-                    return Ok(Verdict::Crossing(bracket));
-                }
-            } else if high - low <= self.task.resolution || pieces + 2 > DEPTH {
-                if let Some(verdict) = self.irregular(low, high, &bounds)? {
-                    return Ok(verdict);
-                }
+            } else if blurred && !narrow && refined.is_none() && self.curve.refine(low, high)? {
+                refined = Some(high);
+                pending[pieces] = (low, high);
+                pieces += 1;
+                None
+            } else if blurred && slope.is_bounded() && (refined.is_some() || narrow) {
+                self.follow(&[0.5 * (low + high), high])?
+            } else if narrow || blurred && refined.is_some() {
+                self.irregular(low, high, &bounds)?
             } else {
                 let middle = 0.5 * (low + high);
                 pending[pieces] = (middle, high);
                 pending[pieces + 1] = (low, middle);
                 pieces += 2;
+                None
+            };
+            if let Some(bracket) = verdict {
+                return Ok(Verdict::Crossing(bracket));
             }
         }
         Ok(Verdict::None)
     }
 
-    /// A part that cannot be divided: a kink, a jump or a pole.
+    /// Notes the values at places between which the guard is monotone. All but the last are
+    /// extrema. The result is the crossing that they complete, if there is one.
+    fn follow(&mut self, places: &[f64]) -> Result<Option<Bracket>, RunError> {
+        for (index, &theta) in places.iter().enumerate() {
+            let value = self.value(theta, index + 1 < places.len())?;
+            let crossing = self.visit(theta, value);
+            if crossing.is_some() {
+                return Ok(crossing);
+            }
+        }
+        Ok(None)
+    }
+
+    /// A part that cannot be divided: a kink, a jump or a pole. The result is the crossing there,
+    /// if there is one.
     fn irregular(
         &mut self,
         low: f64,
         high: f64,
         bounds: &Enclosure,
-    ) -> Result<Option<Verdict>, RunError> {
+    ) -> Result<Option<Bracket>, RunError> {
         let value = if high >= 1.0 { self.task.end } else { self.curve.truth(high)?.0 };
-        let crosses = self.before.1 >= 0.0 && value < 0.0;
         let turns = self.before.1 * value < 0.0;
         if !bounds.value.is_bounded() && turns {
             (self.notice)(Notice::Pole(high));
-        } else if crosses {
-            return Ok(Some(Verdict::Crossing(Bracket { low, high, guess: high })));
-        } else if bounds.value.is_bounded() && value != 0.0 && !turns {
+        } else if self.before.1 >= 0.0 && value < 0.0 {
+            self.before = (high, value);
+            return Ok(Some(Bracket { low, high, guess: high }));
+        } else if bounds.value.is_bounded() && !turns && value != 0.0 {
             (self.notice)(Notice::Touch(Touch { theta: high, margin: value }));
         }
         if value != 0.0 {
