@@ -98,10 +98,12 @@ impl<const N: usize> Path<N> {
             let about = from.about(middle);
             let beyond = about[3..].iter().enumerate();
             let error: f64 = beyond.map(|(k, c)| c.abs() * radius.powi(k as i32 + 3)).sum();
+            // Steps of the method to neighbouring places do not follow the right-hand side exactly.
+            let error = SAFETY * error + 8.0 * from.error * radius;
             let Band([present, ..]) = from.band(low, high, self.kind);
             let mut terms = [0.0; TERMS];
             terms[..3].copy_from_slice(&[y[i], self.h * slope[i], 0.5 * self.h * self.h * bend[i]]);
-            let local = Component::new(terms, SAFETY * error, y[i].abs());
+            let local = Component::new(terms, error, y[i].abs());
             better &= local.error <= NEARER * present || local.error <= local.rounding;
             local
         });

@@ -27,6 +27,8 @@ pub(crate) trait Enclosed {
 
 /// The parts of a step that may be examined before the step counts as too coarse.
 const LIMIT: usize = 100_000;
+/// A refined part is refined again where the search has come this much closer.
+const CLOSER: f64 = 1.0 / 16.0;
 /// Parts of a step are halved at most this often.
 const DEPTH: usize = 60;
 
@@ -156,15 +158,15 @@ impl Search<'_> {
         let mut pending = [(0.0, 0.0); DEPTH + 2];
         pending[0] = (low, 1.0);
         let mut pieces = usize::from(low < 1.0);
-        // The end of the part of the step on which bounds have been refined.
-        let mut refined = None;
+        // The end and the width of the part of the step on which bounds have been refined.
+        let mut refined: Option<(f64, f64)> = None;
         while pieces > 0 {
             pieces -= 1;
             let (low, high) = pending[pieces];
             if self.count > LIMIT {
                 return Ok(Verdict::TooCoarse);
             }
-            if refined.is_some_and(|end| low >= end) {
+            if refined.is_some_and(|(end, _)| low >= end) {
                 self.curve.widen();
                 refined = None;
             }
@@ -193,8 +195,12 @@ impl Search<'_> {
                 } else {
                     self.follow(&[high])?
                 }
-            } else if blurred && !narrow && refined.is_none() && self.curve.refine(low, high)? {
-                refined = Some(high);
+            } else if blurred
+                && !narrow
+                && refined.is_none_or(|(_, width)| high - low < CLOSER * width)
+                && self.curve.refine(low, high)?
+            {
+                refined = Some((high, high - low));
                 pending[pieces] = (low, high);
                 pieces += 1;
                 None
