@@ -16,6 +16,9 @@ const BEYOND_NOISE: f64 = 32.0;
 const ROW: usize = 9;
 /// The order of the differences that are taken of these points.
 const DIFFERENCES: usize = 6;
+/// Differences that shrink by more than this factor with a quarter of the spacing are those of a
+/// smooth function. They would shrink by 4096.
+const SHRINKS: f64 = 64.0;
 /// The factor by which such a difference is larger than the noise: the square root of C(12, 6), the
 /// sum of its squared weights.
 const DIFFERENCED: f64 = 30.397_368_307_141_3;
@@ -81,8 +84,9 @@ impl Quotient<'_> {
     ///
     /// Noise is estimated from differences of high order of successive values (Moré and Wild, SIAM
     /// J. Sci. Comput. 33 (2011) 1292). A smooth function hardly contributes to them if the values
-    /// are close together, and a jump contributes in one place only. Therefore the smaller of the
-    /// estimates with two spacings counts, and the middle one of those at three places.
+    /// are close together, and a jump contributes in one place only. Therefore both of two spacings
+    /// must show the noise, the smaller estimate counts, and the middle one of those at three
+    /// places.
     pub(super) fn noise(&mut self, low: f64, high: f64) -> f64 {
         let mut at = [0.0, 1.0 / 3.0, 2.0 / 3.0].map(|place| {
             let start = low + place * (high - low);
@@ -99,7 +103,7 @@ impl Quotient<'_> {
                 let square = left.iter().map(|d| d * d).sum::<f64>() / left.len() as f64;
                 square.sqrt() / DIFFERENCED
             });
-            if wide < narrow { wide } else { narrow }
+            if narrow * SHRINKS < wide { 0.0 } else { wide.min(narrow) }
         });
         at.sort_unstable_by(f64::total_cmp);
         if at[2].is_finite() { BEYOND_NOISE * at[1] } else { 0.0 }
