@@ -35,7 +35,9 @@ const CRITICAL_DEPTH: u32 = 45;
 const DEPTH: usize = 48;
 /// The panels that may be examined before a step counts as too coarse.
 const LIMIT: usize = 20_000;
-/// The number of widths of the last panel after which a pole is compared with its surroundings.
+/// Values that are larger than those around them by this factor make a pole.
+const GROWS: f64 = 4.0;
+/// The number of widths from a pole where it is compared with its surroundings.
 const AROUND: f64 = 64.0;
 /// The part of the step on which a quotient is expanded to find its value at the start.
 const OPENING: f64 = 0.25;
@@ -117,11 +119,16 @@ pub(crate) fn first_crossing(
     }
     // The last point whose sign is known, and the value there.
     let mut before = Some((first, start));
+    if first > 0.0 {
+        // Only the sign of the given value counts.
+        let size = quotient.at(first).abs().max(f64::MIN_POSITIVE);
+        before = Some((first, size.copysign(start)));
+    }
     if zero_order > 0 {
         let panel = Panel::new(0.0, OPENING, |theta| quotient.at(theta));
         let opening = panel.at(-1.0);
         if panel.tail() > accuracy.on(&panel, zero_order) {
-            accuracy.noise = quotient.noise(0.5 * OPENING, 0.5 * OPENING + NARROWEST);
+            accuracy.learn(quotient.noise(0.5 * OPENING, 0.5 * OPENING + NARROWEST), &panel);
         }
         let error = accuracy.on(&panel, zero_order);
         before = Some((0.0, opening)).filter(|_| opening.abs() > error);
@@ -135,14 +142,20 @@ pub(crate) fn first_crossing(
         return Ok(Verdict::StartsBelow);
     }
     let walked =
-        walk(&mut quotient, &mut accuracy, task, notice, |quotient, (theta, value), pole| {
+        walk(&mut quotient, &mut accuracy, task, notice, |quotient, (theta, value), notice| {
             match before {
-                Some((low, at_low)) if at_low >= 0.0 && value < 0.0 && !pole => {
+                Some((low, at_low)) if at_low >= 0.0 && value < 0.0 => {
                     if at_low == 0.0 && low == first {
                         // It is zero where it begins, and falls from there.
                         return ControlFlow::Break(Verdict::Crossing(Bracket::at(first)));
                     }
-                    let guess = root(|theta| quotient.at(theta), (low, at_low), (theta, value));
+                    let (a, b) = ((low, at_low), (theta, value));
+                    let guess = root(|theta| quotient.at(theta), a, b);
+                    if is_pole(quotient, a, b, guess, task.resolution) {
+                        notice(Notice::Pole(guess));
+                        before = Some((theta, value));
+                        return ControlFlow::Continue(());
+                    }
                     return ControlFlow::Break(Verdict::Crossing(Bracket {
                         low,
                         high: theta,
@@ -162,6 +175,31 @@ pub(crate) fn first_crossing(
         Some(ControlFlow::Continue(())) => Verdict::None,
         None => Verdict::TooCoarse,
     })
+}
+
+/// Whether a curve changes its sign between two places at a pole: its values grow towards `guess`,
+/// where the sign seems to change, or towards both places if they are close together.
+fn is_pole(
+    quotient: &mut Quotient<'_>,
+    low: (f64, f64),
+    high: (f64, f64),
+    guess: f64,
+    resolution: f64,
+) -> bool {
+    let size = low.1.max(-high.1);
+    let width = high.0 - low.0;
+    if width < NARROWEST {
+        let mut at = |theta: f64| quotient.at(theta.clamp(f64::MIN_POSITIVE, 1.0)).abs();
+        let around = at(low.0 - AROUND * width).max(at(high.0 + AROUND * width));
+        if size > GROWS * around {
+            return true;
+        }
+    }
+    if quotient.at(guess).abs() <= 2.0 * size {
+        return false;
+    }
+    let (a, b) = narrow(|theta| quotient.at(theta), low, high, resolution);
+    a.1.max(-b.1) > GROWS * size
 }
 
 /// The last sign that a curve shows on a step, or 0 if it shows none. The result is `None` if a
@@ -189,8 +227,15 @@ impl Bracket {
     }
 }
 
-/// Visits points between which a quotient is monotone, from left to right, with the values there,
-/// and whether there is a pole before it.
+/// What is done at a point of a curve, with its value there.
+trait Visit<B>: FnMut(&mut Quotient<'_>, (f64, f64), &mut dyn FnMut(Notice)) -> ControlFlow<B> {}
+
+impl<B, F> Visit<B> for F where
+    F: FnMut(&mut Quotient<'_>, (f64, f64), &mut dyn FnMut(Notice)) -> ControlFlow<B>
+{
+}
+
+/// Visits points between which a quotient is monotone, from left to right, with the values there.
 ///
 /// Points are left out if the guard's value there is within its noise, so that it has no sign. If
 /// the value at the end of the step is zero, the middle of the last piece is visited instead. The
@@ -200,7 +245,7 @@ fn walk<B>(
     accuracy: &mut Accuracy,
     task: &Task,
     notice: &mut dyn FnMut(Notice),
-    mut visit: impl FnMut(&mut Quotient<'_>, (f64, f64), bool) -> ControlFlow<B>,
+    mut visit: impl Visit<B>,
 ) -> Result<Option<ControlFlow<B>>, RunError> {
     let order = quotient.order;
     let hidden = if order > 0 { accuracy.state.0 } else { 0.0 };
@@ -222,7 +267,7 @@ fn walk<B>(
         if panel.tail() > error && narrow {
             // Structure that even a narrow panel does not resolve may be noise. A shorter step
             // would not diminish that.
-            accuracy.noise = accuracy.noise.max(quotient.noise(low, high));
+            accuracy.learn(quotient.noise(low, high), &panel);
             error = accuracy.on(&panel, order);
         }
         let unresolved = panel.tail() > error && !(narrow && panel.is_far_from_zero());
@@ -265,7 +310,7 @@ fn walk<B>(
                 if local < 1.0 {
                     notice(Notice::Touch(Touch { theta, margin: value * power(theta, order) }));
                 }
-                if value.abs() * power(theta, order) <= accuracy.noise + hidden {
+                if value.abs() * power(theta, order) <= accuracy.noise_on(&panel) + hidden {
                     // It has no sign. The points that follow tell whether the guard goes through.
                     continue;
                 }
@@ -273,7 +318,7 @@ fn walk<B>(
             if value.is_nan() {
                 return Ok(None);
             }
-            let visited = visit(quotient, (theta, value), false);
+            let visited = visit(quotient, (theta, value), notice);
             if visited.is_break() {
                 return Ok(Some(visited));
             }
@@ -289,22 +334,16 @@ fn at_break<B>(
     task: &Task,
     (low, high): (f64, f64),
     notice: &mut dyn FnMut(Notice),
-    visit: &mut impl FnMut(&mut Quotient<'_>, (f64, f64), bool) -> ControlFlow<B>,
+    visit: &mut impl Visit<B>,
 ) -> Option<ControlFlow<B>> {
-    let mut at = |theta: f64| quotient.at(theta.clamp(f64::MIN_POSITIVE, 1.0));
-    let (before, after) = (at(low), if high >= 1.0 { task.end } else { at(high) });
-    let distance = AROUND * (high - low);
-    let size = |a: f64, b: f64| a.abs() + b.abs();
-    let pole = size(before, after) > 4.0 * size(at(low - distance), at(high + distance));
+    let before = quotient.at(low.max(f64::MIN_POSITIVE));
+    let after = if high >= 1.0 { task.end } else { quotient.at(high) };
     if before.is_nan() || after.is_nan() {
         return None;
     }
-    if pole && before * after < 0.0 {
-        notice(Notice::Pole(high));
-    }
     for point in [(low, before), (high, after)] {
         if point.1 != 0.0 {
-            let visited = visit(quotient, point, pole && point.0 == high);
+            let visited = visit(quotient, point, notice);
             if visited.is_break() {
                 return Some(visited);
             }

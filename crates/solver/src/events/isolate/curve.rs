@@ -61,7 +61,8 @@ impl Quotient<'_> {
     /// The errors of the quotient on the step.
     pub(super) fn accuracy(&mut self) -> Accuracy {
         let state = self.curve.rounding();
-        let mut accuracy = Accuracy { dense: 0.0, rounding: 0.0, state, noise: 0.0 };
+        let mut accuracy =
+            Accuracy { dense: 0.0, rounding: 0.0, state, noise: 0.0, noisy_part: 0.0 };
         for j in 1..16 {
             let theta = f64::from(j) / 16.0;
             let divisor = power(theta, self.order);
@@ -120,18 +121,35 @@ pub(super) struct Accuracy {
     /// largest on the step.
     pub(super) state: (f64, f64),
     /// The noise of the guard's values beyond that, if it was measured.
-    pub(super) noise: f64,
+    noise: f64,
+    /// The same, relative to the values around it. Noise is as large as the smaller of both says:
+    /// values near a pole are noisy in proportion, and values that are differences of larger ones
+    /// are equally noisy everywhere.
+    noisy_part: f64,
 }
 
 impl Accuracy {
+    /// Takes a measured noise of the values on `panel` into account.
+    pub(super) fn learn(&mut self, noise: f64, panel: &Panel) {
+        self.noise = self.noise.max(noise);
+        self.noisy_part = self.noisy_part.max(noise / panel.size());
+    }
+
+    /// The noise of the values on `panel`.
+    pub(super) fn noise_on(&self, panel: &Panel) -> f64 {
+        self.noise.min(self.noisy_part * panel.size())
+    }
+
     /// The error of the quotient on `panel`.
     pub(super) fn on(&self, panel: &Panel, order: u32) -> f64 {
         let state = self.state.0 + panel.high * self.state.1;
-        self.dense + (self.rounding + state + self.noise) / power(panel.theta(-COSINES[1]), order)
+        self.dense
+            + (self.rounding + state + self.noise_on(panel))
+                / power(panel.theta(-COSINES[1]), order)
     }
 
     /// The part of the error at the start of `panel` that a shorter step does not diminish.
     pub(super) fn lasting(&self, panel: &Panel, order: u32) -> f64 {
-        (self.state.0 + self.noise) / power(panel.theta(-COSINES[1]), order)
+        (self.state.0 + self.noise_on(panel)) / power(panel.theta(-COSINES[1]), order)
     }
 }

@@ -39,10 +39,14 @@ impl Panel {
         self.coefficients[TERMS - 1].abs() + self.coefficients[TERMS - 2].abs()
     }
 
+    /// The size of the values, as a sum of the terms.
+    pub(crate) fn size(&self) -> f64 {
+        self.coefficients.iter().map(|c| c.abs()).sum()
+    }
+
     /// Whether the values vary by much less than their distance from zero.
     pub(crate) fn is_far_from_zero(&self) -> bool {
-        let others: f64 = self.coefficients[1..].iter().map(|c| c.abs()).sum();
-        self.coefficients[0].abs() > 2.0 * others
+        3.0 * self.coefficients[0].abs() > 2.0 * self.size()
     }
 
     /// Collects points of ]low, high[ that cut this interval into monotone pieces, from left to
