@@ -23,11 +23,13 @@ const NOWHERE: f64 = 1e-20;
 /// step is.
 const REACH: f64 = 1e-3;
 
+/// A guard is steep if it changes by this part of its largest value within [`BRIDGE`].
+const STEEP: f64 = 1e-6;
 /// The part of the distance to the ends of the bracket over which it is differenced at most.
 const INSIDE: f64 = 0.1;
 /// The least part of a step over which a guard is differenced, so that rounding cannot spoil the
 /// slope.
-const LEAST_REACH: f64 = 1e-7;
+const LEAST_REACH: f64 = 1e-5;
 
 impl<S, O, const N: usize, const G: usize> Examination<'_, S, O, N, G>
 where
@@ -114,7 +116,7 @@ where
             };
             let landing = match by_newton {
                 None if high - low > 4.0 * f64::EPSILON * high => {
-                    self.search_nearby(&near, &trial, &end, (low * step.h, high * step.h))
+                    self.search_nearby(&near, step, &trial, &end, (low, high))
                 }
                 landing => landing,
             };
@@ -215,17 +217,19 @@ where
     }
 
     /// Searches for the zero of a steep guard near the end of `trial`, where the state is known by
-    /// its second derivative. The zero lies between the times `low` and `high` from the start of
-    /// the step. The result is `None` if it is farther away.
+    /// its second derivative. The zero lies between the step fractions `low` and `high`. The result
+    /// is `None` if it is farther away, or the guard is not steep.
     fn search_nearby(
         &mut self,
         near: &Near<'_, S, N, G>,
+        step: &Step<N>,
         trial: &Step<N>,
         at: &Probe<N>,
         (low, high): (f64, f64),
     ) -> Option<Landing<N>> {
         let (s, y, reach) = (trial.s + trial.h, &trial.y1, BRIDGE * trial.h);
-        let (low, high) = ((low - trial.h).max(-reach), (high - trial.h).min(reach));
+        let low = (low * step.h - trial.h).max(-reach);
+        let high = (high * step.h - trial.h).min(reach);
         let slope = at.slope_of_state;
         let ahead = self.system.field(near.mode, s + reach, &(y + slope * reach));
         let behind = self.system.field(near.mode, s - reach, &(y - slope * reach));
@@ -238,7 +242,10 @@ where
             near.value(s + moved, &state(moved))
         };
         let (before, after) = (value(low), value(high));
-        let found = (before >= 0.0 && after < 0.0)
+        // The state is known to rounding only, which a flat guard would magnify.
+        let end = near.value(step.s + step.h, &step.y1).abs();
+        let steep = before - after > STEEP * self.phase.largest[near.guard].max(end);
+        let found = (before >= 0.0 && after < 0.0 && steep)
             .then(|| narrow(&mut value, (low, before), (high, after), f64::EPSILON * trial.h));
         self.statistics.guards += count;
         let (left, right) = found?;
