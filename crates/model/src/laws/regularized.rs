@@ -19,7 +19,7 @@
 //!
 //! However short the phase is, the gap is then never the difference of two nearly equal numbers.
 
-use stickslip_solver::{Direction, Guard, HybridSystem, Method, State, Step, Trial};
+use stickslip_solver::{Direction, Guard, Method, Number, ReadableSystem, State, Step, Trial};
 
 pub(crate) mod components;
 pub(crate) mod equations;
@@ -106,17 +106,17 @@ impl Regularized {
     }
 }
 
-impl HybridSystem<STATE, GUARDS> for Regularized {
+impl ReadableSystem<STATE, GUARDS> for Regularized {
     type Mode = Phase;
 
     #[inline(always)]
-    fn field(&self, phase: Phase, _s: f64, y: &State<STATE>) -> State<STATE> {
-        let slope = if self.is_damped() {
-            self.equations.field::<true>(phase, array(y))
+    fn field<T: Number>(&self, phase: Phase, _s: T, y: &[T; STATE]) -> [T; STATE] {
+        let equations = self.equations.of::<T>();
+        if self.is_damped() {
+            equations.field::<true>(phase, y)
         } else {
-            self.equations.field::<false>(phase, array(y))
-        };
-        slope.into()
+            equations.field::<false>(phase, y)
+        }
     }
 
     /// Each right-hand side has a step that is compiled for it and knows which components are
@@ -145,13 +145,14 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
         }
     }
 
+    /// All guards are polynomials of the components, of a degree below that of the right-hand side.
     #[inline(always)]
     fn guards(&self, phase: Phase) -> [Guard; GUARDS] {
-        let end = Guard::new(Direction::Below).terminal();
+        let end = Guard::new(Direction::Below).smooth().terminal();
         // With damping both limits are 0 at the end: a spring that is there then slips first.
         let damped_stick = phase.regime == Regime::Stick && self.is_damped();
         let end = if damped_stick { end.yielding() } else { end };
-        let leave = Guard::new(Direction::Below);
+        let leave = Guard::new(Direction::Below).smooth();
         match (phase.regime, phase.progress) {
             // Without damping the contact starts at u = 0.
             (Regime::Slip, Progress::Touched) => [end.from_zero(1), leave, Guard::OFF],
@@ -164,11 +165,12 @@ impl HybridSystem<STATE, GUARDS> for Regularized {
     }
 
     #[inline(always)]
-    fn guard_values(&self, phase: Phase, _s: f64, y: &State<STATE>) -> [f64; GUARDS] {
+    fn guard_values<T: Number>(&self, phase: Phase, _s: T, y: &[T; STATE]) -> [T; GUARDS] {
+        let equations = self.equations.of::<T>();
         if self.is_damped() {
-            self.equations.guards::<true>(phase, array(y))
+            equations.guards::<true>(phase, y)
         } else {
-            self.equations.guards::<false>(phase, array(y))
+            equations.guards::<false>(phase, y)
         }
     }
 

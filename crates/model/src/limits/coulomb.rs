@@ -4,7 +4,7 @@
 //! the end of section 4.
 
 use stickslip_solver::{
-    Direction, Dop853, Guard, HybridSystem, Options, Outcome, Start, State, run,
+    Direction, Dop853, Guard, Number, Options, Outcome, ReadableSystem, Start, State, run,
 };
 
 use crate::engines::integrator::CollisionError;
@@ -100,17 +100,17 @@ enum Friction {
 struct SlidingContact(NormalLaw);
 
 /// The state is u = √x, v = ẋ and w, with dt = 2u ds: the equations are polynomials.
-impl HybridSystem<3, 2> for SlidingContact {
+impl ReadableSystem<3, 2> for SlidingContact {
     type Mode = Friction;
 
-    fn field(&self, mode: Friction, _s: f64, y: &State<3>) -> State<3> {
+    fn field<T: Number>(&self, mode: Friction, _s: T, y: &[T; 3]) -> [T; 3] {
         let (u, v) = (y[0], y[1]);
-        let force = u.powi(i32::from(self.0.half_powers)) * (u * u + self.0.damping * v);
+        let force = u.powi(i32::from(self.0.half_powers)) * (u * u + v * self.0.damping);
         let pull = match mode {
             Friction::Sliding => force,
-            Friction::Resting => 0.0,
+            Friction::Resting => T::from(0.0),
         };
-        State::from([v, -2.0 * u * force, -2.0 * u * pull])
+        [v, u * -2.0 * force, u * -2.0 * pull]
     }
 
     fn guards(&self, mode: Friction) -> [Guard; 2] {
@@ -125,9 +125,9 @@ impl HybridSystem<3, 2> for SlidingContact {
         }
     }
 
-    fn guard_values(&self, _mode: Friction, _s: f64, y: &State<3>) -> [f64; 2] {
+    fn guard_values<T: Number>(&self, _mode: Friction, _s: T, y: &[T; 3]) -> [T; 2] {
         let (u, v) = (y[0], y[1]);
-        [if self.0.damping > 0.0 { u * u + self.0.damping * v } else { u }, y[2]]
+        [if self.0.damping > 0.0 { u * u + v * self.0.damping } else { u }, y[2]]
     }
 
     fn transition(

@@ -91,7 +91,7 @@ fn phases<M: Method>(method: M, options: &Options, contact: Contact) -> Option<P
     let system = Regularized::new(contact);
     let start = Start { mode: Phase::first(&contact), s: 0.0, state: system.start() };
     let mut itinerary = Itinerary::default();
-    run(method, &system, start, f64::INFINITY, options, &mut itinerary).ok()?;
+    let _ = run(method, &system, start, f64::INFINITY, options, &mut itinerary).ok()?;
     Some(itinerary.0)
 }
 

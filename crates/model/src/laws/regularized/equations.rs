@@ -1,15 +1,11 @@
 //! The equations of the contact, for plain numbers and for numbers that carry a derivative.
 
-use num_dual::{Dual64, DualNum};
+use num_dual::Dual64;
+use stickslip_solver::Number;
 
 use super::components::{GAP, RATE, SPRING, STATE, T as TIME, U, V, W};
 use crate::contact::Contact;
 use crate::laws::phase::{GUARDS, Phase, Progress, Regime, Side};
-
-/// A number with which the equations are computed.
-pub(crate) trait Number: DualNum<Primitive = f64> + Copy {}
-
-impl<T: DualNum<Primitive = f64> + Copy> Number for T {}
 
 /// The equations with the parameters of one contact.
 #[derive(Clone, Copy, Debug)]
@@ -65,6 +61,21 @@ impl Equations<f64> {
             velocity_rate: 2.0 * omega / scale,
             spring_force: omega / scale * velocity_unit,
             velocity_unit,
+        }
+    }
+
+    /// The same equations for other numbers.
+    #[inline(always)]
+    pub fn of<T: Number>(&self) -> Equations<T> {
+        Equations {
+            kappa: T::from(self.kappa),
+            damping: T::from(self.damping),
+            scale: self.scale,
+            rate_scale: self.rate_scale,
+            spring_rate: T::from(self.spring_rate),
+            velocity_rate: T::from(self.velocity_rate),
+            spring_force: T::from(self.spring_force),
+            velocity_unit: self.velocity_unit,
         }
     }
 
