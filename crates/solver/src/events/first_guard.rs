@@ -48,14 +48,17 @@ where
         // in registers.
         let away: [bool; G] = std::array::from_fn(|guard| {
             let column = values.map(|at_node| at_node[guard]);
-            let away = || self.decides_quickly(guard) && quick::clearly_away(column);
             match self.phase.guards[guard].direction() {
                 Direction::Off => true,
-                Direction::Below => column[0] > 0.0 && away(),
-                _ => away(),
+                Direction::Below => column[0] > 0.0 && quick::clearly_away(column),
+                _ => quick::clearly_away(column),
             }
         });
-        !self.phase.at_zero && away == [true; G] && self.confirmed(step, values) == [true; G]
+        let read = S::READABLE && !self.phase.smooth;
+        !self.phase.at_zero
+            && !read
+            && away == [true; G]
+            && self.confirmed(step, values) == [true; G]
     }
 
     /// Decides which guard fires first if the quick look alone does not tell that none fires.

@@ -112,6 +112,10 @@ pub(crate) fn first_crossing(
     notice: &mut dyn FnMut(Notice),
 ) -> Result<Verdict, RunError> {
     let Beginning { theta: first, value: start, zero_order } = task.beginning;
+    // A guard that is exactly zero, and was not declared to be, fires if it falls from there.
+    let falls_from_zero = zero_order == 0 && start == 0.0 && first == 0.0;
+    let zero_order = if falls_from_zero { 1 } else { zero_order };
+    let at_start = Verdict::Crossing(Bracket::at(first));
     let mut quotient = Quotient { curve, order: zero_order };
     let mut accuracy = quotient.accuracy();
     if accuracy.dense.is_nan() {
@@ -138,17 +142,13 @@ pub(crate) fn first_crossing(
             return Ok(Verdict::TooCoarse);
         }
     }
-    if task.domain && before.is_some_and(|(_, value)| value < 0.0) {
-        return Ok(Verdict::StartsBelow);
+    if before.is_some_and(|(_, value)| value < 0.0) && (task.domain || falls_from_zero) {
+        return Ok(if task.domain { Verdict::StartsBelow } else { at_start });
     }
     let walked =
         walk(&mut quotient, &mut accuracy, task, notice, |quotient, (theta, value), notice| {
             match before {
                 Some((low, at_low)) if at_low >= 0.0 && value < 0.0 => {
-                    if at_low == 0.0 && low == first {
-                        // It is zero where it begins, and falls from there.
-                        return ControlFlow::Break(Verdict::Crossing(Bracket::at(first)));
-                    }
                     let (a, b) = ((low, at_low), (theta, value));
                     let guess = root(|theta| quotient.at(theta), a, b);
                     if is_pole(quotient, a, b, guess, task.resolution) {
@@ -163,9 +163,10 @@ pub(crate) fn first_crossing(
                     }));
                 }
                 // The first sign that can be told is that with which the curve leaves its zero.
-                None if task.domain && value < 0.0 => {
+                None if value < 0.0 && task.domain => {
                     return ControlFlow::Break(Verdict::StartsBelow);
                 }
+                None if value < 0.0 && falls_from_zero => return ControlFlow::Break(at_start),
                 _ => before = Some((theta, value)),
             }
             ControlFlow::Continue(())

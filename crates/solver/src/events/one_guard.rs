@@ -258,6 +258,7 @@ where
         let resolution = resolution(step);
         let mut found = Status::Clear;
         for &sign in signs {
+            let enclosed = !self.decides_quickly(guard) && beginning.zero_order <= 2;
             let (statistics, method) = (&mut *self.statistics, PhantomData::<M>);
             let mut along =
                 AlongStep { system, mode, guard, sign, step, dense: &dense, statistics, method };
@@ -276,7 +277,7 @@ where
                 widest: self.guard_scale / step.h,
             };
             // Zeros of higher order have no bounds.
-            let verdict = if S::READABLE && beginning.zero_order <= 2 {
+            let verdict = if enclosed {
                 let mut enclosed =
                     EnclosedAlongStep { along, path: Path::dense(&dense), local: None };
                 first_enclosed_crossing(&mut enclosed, &task, &mut notice)?

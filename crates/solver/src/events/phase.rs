@@ -11,6 +11,8 @@ use crate::method::State;
 pub(crate) struct Phase<Mode, const G: usize> {
     pub(crate) mode: Mode,
     pub(crate) guards: [Guard; G],
+    /// Whether all guards are declared to be smooth.
+    pub(crate) smooth: bool,
     /// The values of the guards.
     pub(crate) values: [f64; G],
     /// Whether any guard starts the next step from a known zero.
@@ -40,6 +42,7 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
         Ok(Self {
             mode,
             guards,
+            smooth: guards.iter().all(Guard::needs_no_look),
             values,
             at_zero: guards.iter().any(|guard| guard.zero_order() > 0),
             zero_orders: guards.map(|guard| guard.zero_order()),

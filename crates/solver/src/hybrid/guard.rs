@@ -113,6 +113,16 @@ impl Guard {
         self.terminal == 1
     }
 
+    /// Whether six values tell enough: the guard is smooth, or not part of the mode.
+    pub(crate) fn needs_no_look(&self) -> bool {
+        self.smooth || self.direction == Direction::Off
+    }
+
+    /// The guard, declared to be smooth if `other` is.
+    pub(crate) fn as_smooth_as(self, other: &Self) -> Self {
+        Self { smooth: other.smooth, ..self }
+    }
+
     /// The guard after it has fired `count` times.
     pub(crate) fn fired(self, count: u32) -> Self {
         let left = self.terminal.saturating_sub(count).max(1);

@@ -235,7 +235,7 @@ where
     fn guards(&self, at: Self::Mode) -> [Guard; G] {
         let (subject, awaited) = self.subject(&at);
         let own = self.system.guards(at.mode);
-        std::array::from_fn(|guard| {
+        let guard_of = |guard: usize| {
             // A zero at the start of the phase matters only there.
             let order = if at.progress == Progress::Start { own[guard].zero_order() } else { 0 };
             if own[guard].ends_run() {
@@ -256,7 +256,9 @@ where
                 }
                 Awaited::Nothing => Guard::new(Direction::Below).terminal(),
             }
-        })
+        };
+        // Place and rate of a smooth guard are smooth too.
+        std::array::from_fn(|guard| guard_of(guard).as_smooth_as(&own[guard]))
     }
 
     #[inline]

@@ -130,7 +130,8 @@ pub(crate) fn first_step<M: Method, const N: usize>(
     let order = M::CONTROL_ORDER as f64;
     let step =
         if largest <= 1e-15 { (h * 1e-3).max(1e-6) } else { (0.01 / largest).powf(1.0 / order) };
-    let step = if step.is_nan() { h } else { step };
+    // Numbers at the ends of the range of doubles may overflow in between.
+    let step = if step > 0.0 { step } else { h };
     step.min(100.0 * h).min(longest)
 }
 

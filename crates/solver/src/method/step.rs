@@ -97,7 +97,13 @@ impl<const N: usize> Step<N> {
         // Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, section II.10:
         // the coarse estimate corrects the fine one where that is accidentally small.
         let blend = fine_sum + 0.01 * coarse_sum;
-        self.error = if blend == 0.0 { 0.0 } else { h.abs() * fine_sum / (n * blend).sqrt() };
+        self.error = if blend == 0.0 {
+            0.0
+        } else if blend < f64::INFINITY {
+            h.abs() * fine_sum / (n * blend).sqrt()
+        } else {
+            largest_error(&fine, y0, &y1, trial)
+        };
         if M::INTERIOR_STAGES.is_none() {
             let dense = self.extend::<M>(field, k);
             for (state, theta) in self.interior.iter_mut().zip(INTERIOR_NODES) {
@@ -161,6 +167,23 @@ impl<const N: usize> Step<N> {
         }
         Dense { s: self.s, h: self.h, r, degree: M::DENSE_DEGREE }
     }
+}
+
+/// The largest error of a component relative to its tolerance, where the root mean square is out of
+/// the range of doubles.
+#[cold]
+fn largest_error<const N: usize>(
+    fine: &State<N>,
+    y0: &State<N>,
+    y1: &State<N>,
+    trial: &Trial<'_, N>,
+) -> f64 {
+    let (rtol, atol) = trial.tolerances;
+    (0..N).filter(|&i| fine[i] != 0.0).fold(0.0, |most, i| {
+        let error = fine[i].abs() * trial.h.abs() / (atol + rtol * y0[i].abs().max(y1[i].abs()));
+        // NaN stays.
+        if error <= most { most } else { error }
+    })
 }
 
 /// The derivatives at the stages of the step `trial`. The states at [`INTERIOR_NODES`] are written

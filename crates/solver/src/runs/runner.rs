@@ -151,12 +151,13 @@ where
             self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
             let error = match self.options.step_size {
                 StepSize::Adaptive => step.error,
-                StepSize::Fixed(_) => step.y1.sum() * 0.0,
+                StepSize::Fixed(_) if is_finite(&step.y1) => 0.0,
+                StepSize::Fixed(_) => f64::NAN,
             };
             // Written so that NaN rejects.
             let good = error < 1.0;
             if !good {
-                self.reject::<M>(h, error)?;
+                self.reject::<M>(h, error, is_finite(&step.y1))?;
                 continue;
             }
             self.notes.clear();
@@ -240,7 +241,7 @@ where
         }
     }
 
-    fn reject<M: Method>(&mut self, h: f64, error: f64) -> Result<(), RunError> {
+    fn reject<M: Method>(&mut self, h: f64, error: f64, finite: bool) -> Result<(), RunError> {
         self.statistics.rejected += 1;
         let step = self.statistics.tried();
         let s = self.clock.s;
@@ -249,7 +250,7 @@ where
         }
         self.h = self.controller.rejected::<M>(h, error);
         if self.h <= f64::EPSILON * s.abs().max(f64::MIN_POSITIVE) {
-            return Err(if error.is_finite() {
+            return Err(if finite {
                 RunError::Tolerance { s, h, step }
             } else {
                 RunError::Field { s, step }
@@ -337,7 +338,7 @@ where
         check_finite(s, &self.state)?;
         self.slope = self.system.field(self.phase.mode, s, &self.state);
         self.statistics.field += 1;
-        if self.slope.iter().all(|v| v.is_finite()) {
+        if is_finite(&self.slope) {
             Ok(())
         } else {
             Err(RunError::Field { s, step: self.statistics.tried() })
@@ -352,6 +353,10 @@ where
         let tolerances = (self.options.rtol, self.options.atol);
         first_step::<M, N>(&mut field, self.clock.s, &self.state, &self.slope, tolerances, longest)
     }
+}
+
+fn is_finite<const N: usize>(y: &State<N>) -> bool {
+    y.iter().all(|value| value.is_finite())
 }
 
 fn check_finite<const N: usize>(s: f64, y: &State<N>) -> Result<(), RunError> {

@@ -21,3 +21,4 @@ mod properties;
 #[cfg(feature = "serde")]
 mod serialization;
 mod smooth_problems;
+mod strangers;

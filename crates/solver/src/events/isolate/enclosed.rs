@@ -91,9 +91,9 @@ impl Search<'_> {
                 return Some((high, sign));
             }
             if zero_order < 2 && slope.is_bounded() && bend.sign() != 0.0 && width < 1e-6 {
-                // The slope starts from 0 too, within its error.
+                // The slope starts from 0 too. If it were only small, a shorter step would tell.
                 let start = self.over(first, first).slope;
-                if start.contains(0.0) {
+                if (start.lower() + start.upper()).abs() <= 1e-3 * start.width() {
                     return Some((high, bend.sign()));
                 }
             }
