@@ -8,8 +8,12 @@ pub enum RunError {
     /// An option is out of its range.
     #[error(transparent)]
     Option(#[from] InvalidOption),
-    /// The end of the run does not lie after its start, or the start is not finite.
-    #[error("cannot run from s = {from} to s = {to}: the end must lie after a finite start")]
+    /// The end of the run does not lie after its start, in the direction of the run, or the start is
+    /// not finite.
+    #[error(
+        "cannot run from s = {from} to s = {to}: the end must lie after a finite start, or before \
+         it if the run goes backwards"
+    )]
     Span {
         /// The start of the run.
         from: f64,
@@ -79,4 +83,21 @@ pub enum RunError {
         /// The size of the last step tried.
         h: f64,
     },
+}
+
+impl RunError {
+    /// The error of a run in s that failed as a run in −s.
+    pub(crate) fn reversed(mut self) -> Self {
+        match &mut self {
+            Self::Option(_) => {}
+            Self::Span { from, to } => (*from, *to) = (0.0 - *from, 0.0 - *to),
+            Self::State { s, .. }
+            | Self::Field { s, .. }
+            | Self::Tolerance { s, .. }
+            | Self::GuardNotANumber { s, .. }
+            | Self::GuardIdenticallyZero { s, .. }
+            | Self::GuardUnresolved { s, .. } => *s = 0.0 - *s,
+        }
+        self
+    }
 }

@@ -97,11 +97,14 @@ pub use hybrid::{
     Statistics, SwitchEvent, Unfinished,
 };
 pub use margin::{Exit, Hint, Margin, Margins, NearMiss, Place, margin, margins};
-pub use method::{Dense, Dop853, Dopri5, Method, Order, State, Step, Tableau, Trial, fit_order};
+pub use method::{
+    Dense, Dop853, Dopri5, Method, Order, Pair, State, Step, Tableau, Trial, UnknownPair, fit_order,
+};
 pub use number::{Enclosure, Interval, Number};
 pub use options::{InvalidOption, Options, StepSize};
 pub use runs::{
-    Recorder, Segment, Trajectory, integrate, run, run_over_switches, smooth, trajectory,
+    Closures, InvalidTimes, Recorder, Sample, Samples, Segment, Trajectory, Weighted, integrate,
+    run, run_backwards, run_over_switches, run_with, smooth, trajectory,
 };
 pub use sensitivity::{Change, Differentiable, Sensitivities, SwitchSensitivity, sensitivities};
 

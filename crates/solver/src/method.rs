@@ -2,13 +2,15 @@
 //!
 //! Start reading in `tableau` (a pair as data) and `step` (one step as a pure function). Then come
 //! `dense` (the state inside a step), `dopri5` and `dop853` (the two pairs), `control` (the step
-//! size) and `order` (orders of convergence, from measured errors).
+//! size), `order` (orders of convergence, from measured errors) and `pair` (a pair that is chosen at
+//! run time).
 
 pub(crate) mod control;
 mod dense;
 mod dop853;
 mod dopri5;
 mod order;
+mod pair;
 mod state;
 mod step;
 mod tableau;
@@ -17,6 +19,7 @@ pub use dense::Dense;
 pub use dop853::Dop853;
 pub use dopri5::Dopri5;
 pub use order::{Order, fit_order};
+pub use pair::{Pair, UnknownPair};
 pub use state::{FUSED_PRODUCTS, State};
 pub use step::{Step, Trial};
 pub use tableau::{INTERIOR_NODES, MAX_STAGES, Method, Tableau};

@@ -19,10 +19,15 @@ impl<const N: usize> Dense<N> {
         self.s
     }
 
-    /// The size of the step.
+    /// The size of the step. It is negative if the run goes backwards.
     #[must_use]
     pub fn size(&self) -> f64 {
         self.h
+    }
+
+    /// The same states, as a step in −s.
+    pub(crate) fn reversed(&self) -> Self {
+        Self { s: 0.0 - self.s, h: -self.h, ..*self }
     }
 
     /// The state at step fraction `theta`.

@@ -65,7 +65,20 @@ impl<const N: usize> Step<N> {
         field: &mut impl FnMut(f64, &State<N>) -> State<N>,
         trial: &Trial<'_, N>,
     ) {
-        let &Trial { s, y: y0, slope, h, tolerances: (rtol, atol) } = trial;
+        self.take_with::<M>(field, trial, |_| trial.tolerances);
+    }
+
+    /// Takes the step `trial` and stores it here. The error of each component is relative to the
+    /// tolerances (`rtol`, `atol`) that `tolerances` returns for its index, and not to those of the
+    /// trial.
+    #[inline(always)]
+    pub fn take_with<M: Method>(
+        &mut self,
+        field: &mut impl FnMut(f64, &State<N>) -> State<N>,
+        trial: &Trial<'_, N>,
+        tolerances: impl Fn(usize) -> (f64, f64),
+    ) {
+        let &Trial { s, y: y0, slope, h, .. } = trial;
         let mut k = stages::<M, N>(field, trial, &mut self.interior);
         self.s = s;
         self.h = h;
@@ -88,6 +101,7 @@ impl<const N: usize> Step<N> {
             if fine[i] == 0.0 && coarse[i] == 0.0 {
                 continue;
             }
+            let (rtol, atol) = tolerances(i);
             let (start, end) = (y0[i].abs(), y1[i].abs());
             let weight = 1.0 / (atol + rtol * if start > end { start } else { end });
             fine_sum += (fine[i] * weight) * (fine[i] * weight);
@@ -121,6 +135,14 @@ impl<const N: usize> Step<N> {
     pub(crate) fn shrunk_to_start(&self) -> Self {
         let (h, y1, interior) = (0.0, self.y0, [self.y0; 4]);
         Self { h, y1, interior, slope1: Some(self.slope0), ..*self }
+    }
+
+    /// Makes this the same step in −s, whose right-hand side has the other sign.
+    pub(crate) fn reverse(&mut self) {
+        self.s = 0.0 - self.s;
+        self.h = -self.h;
+        self.slope0 = -self.slope0;
+        self.slope1 = self.slope1.map(|slope| -slope);
     }
 
     /// The derivative at the end of the step. It is computed on first use.

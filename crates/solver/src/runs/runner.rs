@@ -54,6 +54,7 @@ where
         statistics: Statistics { guards: 1, ..Statistics::default() },
     };
     let outcome = runner.run::<M>()?;
+    runner.observer.on_end(runner.phase.mode, runner.clock.s, &runner.state);
     Ok(Run {
         outcome,
         s: runner.clock.s,

@@ -32,10 +32,12 @@ impl<Mode: Copy, const N: usize> Trajectory<Mode, N> {
     }
 
     /// The mode and the state at `s`, or `None` if `s` is outside the run. At a switch they are
-    /// those after it.
+    /// those after it, in the direction of the run.
     #[must_use]
     pub fn at(&self, s: f64) -> Option<(Mode, State<N>)> {
-        let after = self.segments.partition_point(|segment| segment.dense.start() <= s);
+        let after = self.segments.partition_point(|Segment { dense, .. }| {
+            if dense.size() < 0.0 { dense.start() >= s } else { dense.start() <= s }
+        });
         let segment = self.segments.get(after.checked_sub(1)?)?;
         let theta = (s - segment.dense.start()) / segment.dense.size();
         // The place of the end of the last step may be rounded.

@@ -144,6 +144,7 @@ where
             statistics.guards += 1;
         }
     };
+    observer.on_end(mode, clock.s, &state);
     Ok(Run { outcome, s: clock.s, mode, state, statistics })
 }
 

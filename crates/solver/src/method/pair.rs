@@ -1,0 +1,93 @@
+//! A pair that is chosen at run time.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::method::dop853::Dop853;
+use crate::method::dopri5::Dopri5;
+use crate::method::tableau::Method;
+
+/// A pair that is chosen at run time, for [`run_with`](crate::run_with). Its name is that of the
+/// method ([`Method::NAME`]).
+///
+/// ```
+/// use stickslip_solver::Pair;
+///
+/// let pair: Pair = "dopri5".parse()?;
+/// assert_eq!((pair, pair.order()), (Pair::Dopri5, 5));
+/// assert!(Pair::ALL.iter().all(|pair| pair.to_string().parse() == Ok(*pair)));
+/// assert!("euler".parse::<Pair>().is_err());
+/// # Ok::<(), stickslip_solver::UnknownPair>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Pair {
+    /// Dormand–Prince 5(4): [`Dopri5`].
+    Dopri5,
+    /// Dormand–Prince 8(5,3): [`Dop853`].
+    #[default]
+    Dop853,
+}
+
+impl Pair {
+    /// All pairs.
+    pub const ALL: [Self; 2] = [Self::Dopri5, Self::Dop853];
+
+    /// The usual name of the pair.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Dopri5 => Dopri5::NAME,
+            Self::Dop853 => Dop853::NAME,
+        }
+    }
+
+    /// The order of the solution that is propagated.
+    #[must_use]
+    pub const fn order(self) -> usize {
+        match self {
+            Self::Dopri5 => Dopri5::ORDER,
+            Self::Dop853 => Dop853::ORDER,
+        }
+    }
+
+    /// The number of stages of a step.
+    #[must_use]
+    pub const fn stages(self) -> usize {
+        match self {
+            Self::Dopri5 => Dopri5::STAGES,
+            Self::Dop853 => Dop853::STAGES,
+        }
+    }
+
+    /// The degree of the dense output.
+    #[must_use]
+    pub const fn dense_degree(self) -> usize {
+        match self {
+            Self::Dopri5 => Dopri5::DENSE_DEGREE,
+            Self::Dop853 => Dop853::DENSE_DEGREE,
+        }
+    }
+}
+
+impl fmt::Display for Pair {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for Pair {
+    type Err = UnknownPair;
+
+    fn from_str(name: &str) -> Result<Self, UnknownPair> {
+        let found = Self::ALL.into_iter().find(|pair| pair.name() == name);
+        found.ok_or_else(|| UnknownPair { name: name.to_owned() })
+    }
+}
+
+/// No pair has this name.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no pair is called {name:?}; expected \"dopri5\" or \"dop853\"")]
+pub struct UnknownPair {
+    /// The name.
+    pub name: String,
+}

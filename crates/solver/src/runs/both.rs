@@ -1,0 +1,59 @@
+//! Two observers of one run.
+
+use crate::hybrid::{Grazing, Observer, Pole, SwitchEvent};
+use crate::method::{Dense, State};
+
+/// Two observers of one run. The first one is called first, and the run stops if either asks for
+/// it. Segments go only to those that want them.
+///
+/// ```
+/// use stickslip_solver::{Dop853, Options, Recorder, Samples, State, integrate};
+///
+/// let mut both = (Samples::at(&[0.25])?, Recorder::default());
+/// let field = |s: f64, _: &State<1>| State::from([2.0 * s]);
+/// integrate(Dop853, field, 0.0, State::from([0.0]), 1.0, &Options::default(), &mut both)?;
+/// let (samples, recorder) = both;
+/// assert!((samples.samples[0].state[0] - 0.0625).abs() < 1e-15);
+/// assert_eq!(recorder.trajectory.at(0.25), Some(((), samples.samples[0].state)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+impl<A, B, Mode: Copy, const N: usize> Observer<Mode, N> for (A, B)
+where
+    A: Observer<Mode, N>,
+    B: Observer<Mode, N>,
+{
+    const WANTS_SEGMENTS: bool = A::WANTS_SEGMENTS || B::WANTS_SEGMENTS;
+
+    fn on_switch(&mut self, event: &SwitchEvent<Mode, N>) {
+        self.0.on_switch(event);
+        self.1.on_switch(event);
+    }
+
+    fn on_grazing(&mut self, grazing: &Grazing<Mode>) {
+        self.0.on_grazing(grazing);
+        self.1.on_grazing(grazing);
+    }
+
+    fn on_pole(&mut self, pole: &Pole<Mode>) {
+        self.0.on_pole(pole);
+        self.1.on_pole(pole);
+    }
+
+    fn stops(&self) -> bool {
+        self.0.stops() || self.1.stops()
+    }
+
+    fn on_segment(&mut self, mode: Mode, dense: &Dense<N>) {
+        if A::WANTS_SEGMENTS {
+            self.0.on_segment(mode, dense);
+        }
+        if B::WANTS_SEGMENTS {
+            self.1.on_segment(mode, dense);
+        }
+    }
+
+    fn on_end(&mut self, mode: Mode, s: f64, state: &State<N>) {
+        self.0.on_end(mode, s, state);
+        self.1.on_end(mode, s, state);
+    }
+}
