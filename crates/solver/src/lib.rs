@@ -48,11 +48,33 @@
 //! | a guard that starts from zero and must not fire there | nothing if it is exactly 0 and rises; else [`Guard::from_zero`] |
 //! | a crossing that is reported and changes nothing | [`Direction::Falling`], [`Rising`](Direction::Rising) or [`Either`](Direction::Either), and the provided transition |
 //! | switches that accumulate, as when a ball comes to rest | [`Outcome::Zeno`] |
+//! | a quick problem with one mode | [`Closures`] |
 //! | the state at any time | [`Recorder`] as the observer |
+//! | the state at given times | [`Samples`] as the observer |
+//! | two observers | a tuple of both |
 //! | only the switches | a `Vec` as the observer |
 //! | only the end of the run | `()` as the observer |
 //! | no guards at all | [`integrate`] with a closure |
+//! | a run back in time | [`run_backwards`] |
+//! | a tolerance for each component | [`Weighted`] |
+//! | a method that is named at run time | [`Pair`], [`run_with`] |
 //! | how far a run is from another sequence of switches | [`fn@margins`], and the crate `stickslip-tracer` |
+//!
+//! # Defined answers
+//!
+//! | question | answer |
+//! |---|---|
+//! | a guard starts on zero | It fires at the start if it leaves zero in its direction, and otherwise not. After [`Guard::from_zero`] it does not fire there, unless it is [`Below`](Direction::Below) and becomes negative. |
+//! | a guard touches zero | It does not fire. Where the dense output cannot tell a touch from a crossing, a step of the method decides, and [`Observer::on_grazing`] reports it. |
+//! | several guards at one place | The guard that is listed first decides the transition, unless it yields ([`Guard::yielding`]). [`SwitchEvent::simultaneous`] names the others. |
+//! | a guard crosses zero at the end of the span | It fires. The outcome is [`Outcome::EndedByGuard`] if it is terminal, and else [`Outcome::ReachedEnd`]. |
+//! | the state at an event | It always comes with the event: [`SwitchEvent::before`] lies on the guard, and [`SwitchEvent::after`] follows from the transition. |
+//! | [`Guard::terminal_after`] k events | The k-th firing ends the run at its place, without a transition, also if several lie on one step. |
+//! | an observer that stops | It is asked after every switch and every step. The run ends there, at a switch with the state after it. |
+//! | output times at switches and at the end | [`Samples`] and [`Recorder`] give the state after the switch. [`Samples`] at the end of the run gives the final state exactly. |
+//! | tolerances | Scalars in [`Options`]. [`Weighted`] has a relative and an absolute one for each component. |
+//! | the method | A type, compiled into the run. [`run_with`] chooses it at run time, with the same results bit for bit. |
+//! | backwards | [`run_backwards`]: s decreases, directions of guards hold in the direction of integration, and every reported s is the original one. |
 //!
 //! The repository's `examples` have fewer than 80 lines each and check themselves against a closed
 //! form or an independent value: `bouncing_ball` (switches that accumulate), `friction_belt`

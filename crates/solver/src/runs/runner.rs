@@ -10,6 +10,7 @@ use crate::method::control::{Controller, first_step};
 use crate::method::{Method, State, Step, Trial};
 use crate::options::{Options, StepSize};
 use crate::runs::clock::{Clock, Zeno};
+use crate::runs::last_part::last_part;
 
 /// Integrates `system` from `start` to `end`, through every switch on the way.
 ///
@@ -205,6 +206,7 @@ where
             if !self.notes.is_empty()
                 && let Some(outcome) = self.report_notes()
             {
+                last_part::<M, S, O, N, G>(system, mode, step, self.clock.s, self.observer);
                 return Ok(Some(outcome));
             }
             if let Some(event) = event {

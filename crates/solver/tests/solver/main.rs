@@ -9,9 +9,11 @@
 //! | `guard_rounding` | guards whose signs are lost in their own rounding |
 //! | `margins` | margins with a closed form |
 //! | `properties` | what holds of random systems; `checks` says it, for the fuzz targets too |
+//! | `conveniences` | what surrounds a run, and the defined answers of the documentation |
 //! | `serialization` | the JSON of results |
 
 mod checks;
+mod conveniences;
 mod event_battery;
 mod guard_rounding;
 mod margins;
