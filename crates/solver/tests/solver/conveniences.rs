@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use stickslip_solver::{
-    Closures, Direction, Dop853, Dopri5, Grazing, Guard, HybridSystem, InvalidTimes, Method,
+    Closures, Dense, Direction, Dop853, Dopri5, Grazing, Guard, HybridSystem, InvalidTimes, Method,
     Number, Observer, Options, Outcome, Pair, Pole, ReadableSystem, Recorder, Run, RunError,
     Samples, Start, State, StepSize, SwitchEvent, Unfinished, UnknownPair, Weighted, run,
     run_backwards, run_over_switches, run_with,
@@ -87,8 +87,8 @@ fn line<const G: usize>(
 }
 
 /// Checks that a run reaches the end of its span.
-fn reaches_end<Mode: std::fmt::Debug, const N: usize>(ran: Result<Run<Mode, N>, RunError>) {
-    assert!(matches!(ran, Ok(Run { outcome: Outcome::ReachedEnd, .. })), "{ran:?}");
+fn reaches_end<Mode, const N: usize>(ran: Result<Run<Mode, N>, RunError>) {
+    assert_eq!(ran.map(|run| run.outcome), Ok(Outcome::ReachedEnd));
 }
 
 fn close(found: &[f64], expected: &[f64], tolerance: f64) {
@@ -419,6 +419,14 @@ fn the_end_is_told_once_and_not_if_the_run_fails() {
 
 // Two observers.
 
+/// Counts segments that it did not ask for.
+struct Segments(usize);
+impl Observer<(), 1> for Segments {
+    fn on_segment(&mut self, (): (), _dense: &Dense<1>) {
+        self.0 += 1;
+    }
+}
+
 #[test]
 fn two_observers_see_the_same_and_either_stops() {
     let system = line([Guard::new(Direction::Either)], |s| [(4.0 * PI * s + 0.1).sin()]);
@@ -433,12 +441,6 @@ fn two_observers_see_the_same_and_either_stops() {
         assert_eq!(both.0.switches.len(), 3);
     }
     // Segments go only to those that want them.
-    struct Segments(usize);
-    impl Observer<(), 1> for Segments {
-        fn on_segment(&mut self, (): (), _dense: &stickslip_solver::Dense<1>) {
-            self.0 += 1;
-        }
-    }
     let mut both = (Segments(0), Recorder::default());
     reaches_end(run(Dop853, &system, start_of_line(), 1.0, &fixed(0.25), &mut both));
     assert_eq!((both.0.0, both.1.trajectory.segments().len()), (0, 4));
@@ -485,7 +487,7 @@ fn equal_tolerances_of_components_change_nothing() {
         let other = run_with(pair, &weighted, at(0.0, [1.0, 0.0]), 3.0, &options, &mut ());
         assert_eq!(one, other);
     }
-    assert!(<Weighted<Wave, 1> as HybridSystem<1, 1>>::READABLE);
+    const { assert!(<Weighted<Wave, 1> as HybridSystem<1, 1>>::READABLE) };
 }
 
 #[test]
@@ -576,6 +578,18 @@ fn firings_together_with_another_guard_are_counted() {
     }
 }
 
+/// Counts steps, and stops after the third.
+struct Steps(usize);
+impl Observer<(), 1> for Steps {
+    const WANTS_SEGMENTS: bool = true;
+    fn on_segment(&mut self, (): (), _dense: &Dense<1>) {
+        self.0 += 1;
+    }
+    fn stops(&self) -> bool {
+        self.0 == 3
+    }
+}
+
 #[test]
 fn an_observer_stops_the_run() {
     let wave = line([Guard::new(Direction::Either)], |s| [(20.0 * PI * (s + 0.003)).sin()]);
@@ -598,16 +612,6 @@ fn an_observer_stops_the_run() {
         (Outcome::Stopped, log.switches[1].s, log.switches[1].after)
     );
     // Without a switch, after a step.
-    struct Steps(usize);
-    impl Observer<(), 1> for Steps {
-        const WANTS_SEGMENTS: bool = true;
-        fn on_segment(&mut self, (): (), _dense: &stickslip_solver::Dense<1>) {
-            self.0 += 1;
-        }
-        fn stops(&self) -> bool {
-            self.0 == 3
-        }
-    }
     let end = run(Dop853, &line([], |_| []), start_of_line(), 2.0, &fixed(0.25), &mut Steps(0));
     let end = end.unwrap();
     assert_eq!((end.outcome, end.s), (Outcome::Stopped, 0.75));
