@@ -8,8 +8,8 @@ pub enum RunError {
     /// An option is out of its range.
     #[error(transparent)]
     Option(#[from] InvalidOption),
-    /// The end of the run does not lie after its start, in the direction of the run, or the start is
-    /// not finite.
+    /// The end of the run does not lie after its start, in the direction of the run, or the start
+    /// is not finite.
     #[error(
         "cannot run from s = {from} to s = {to}: the end must lie after a finite start, or before \
          it if the run goes backwards"

@@ -2,8 +2,8 @@
 //!
 //! Start reading in `tableau` (a pair as data) and `step` (one step as a pure function). Then come
 //! `dense` (the state inside a step), `dopri5` and `dop853` (the two pairs), `control` (the step
-//! size), `order` (orders of convergence, from measured errors) and `pair` (a pair that is chosen at
-//! run time).
+//! size), `order` (orders of convergence, from measured errors) and `pair` (a pair that is chosen
+//! at run time).
 
 pub(crate) mod control;
 mod dense;

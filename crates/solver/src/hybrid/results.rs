@@ -83,8 +83,8 @@ pub trait Observer<Mode, const N: usize> {
     /// A step was accepted, and `dense` is its dense output.
     fn on_segment(&mut self, _mode: Mode, _dense: &Dense<N>) {}
 
-    /// The run has ended at `s`, in this mode and state. It is called once, last, and not if the run
-    /// fails.
+    /// The run has ended at `s`, in this mode and state. It is called once, last, and not if the
+    /// run fails.
     fn on_end(&mut self, _mode: Mode, _s: f64, _state: &State<N>) {}
 }
 

@@ -6,8 +6,8 @@ use crate::method::{Dop853, Dopri5, Pair};
 use crate::options::Options;
 use crate::runs::runner::run;
 
-/// As [`run`](crate::run), with a pair that is chosen at run time. Results are the same, bit for bit;
-/// the code for both pairs is compiled.
+/// As [`run`](crate::run), with a pair that is chosen at run time. Results are the same, bit for
+/// bit; the code for both pairs is compiled.
 ///
 /// ```
 /// use stickslip_solver::{Closures, Options, Pair, Start, State, run_with};

@@ -12,9 +12,9 @@ type NoTransition<const N: usize> = fn(usize, f64, &State<N>) -> State<N>;
 /// A hybrid system of one mode whose parts are closures, for quick problems.
 ///
 /// `F` is the right-hand side, `V` returns the values of the guards, and `T` is the transition. The
-/// mode is `()`. Systems with several modes implement [`HybridSystem`] themselves. The solver cannot
-/// read closures ([`HybridSystem::READABLE`]): guards are sampled. Guards on a scale much shorter
-/// than the solution's need [`Options::guard_scale`](crate::Options::guard_scale) or a
+/// mode is `()`. Systems with several modes implement [`HybridSystem`] themselves. The solver
+/// cannot read closures ([`HybridSystem::READABLE`]): guards are sampled. Guards on a scale much
+/// shorter than the solution's need [`Options::guard_scale`](crate::Options::guard_scale) or a
 /// [`ReadableSystem`](crate::ReadableSystem).
 ///
 /// A ball bounces and keeps nine tenths of its speed:

@@ -21,10 +21,10 @@ pub struct Sample<Mode, const N: usize> {
 /// An observer that records the state at given times, and the switches.
 ///
 /// The times have no influence on the steps: the states come from the dense output. At a switch a
-/// sample has the mode and the state after it, or after the last one if several come at once. A time
-/// that is equal to the end of the run has the final state, wherever and why ever the run ends. Times
-/// are ascending or descending, and samples are in the order of the run, be it forwards or
-/// [backwards](crate::run_backwards).
+/// sample has the mode and the state after it, or after the last one if several come at once. A
+/// time that is equal to the end of the run has the final state, wherever and why ever the run
+/// ends. Times are ascending or descending, and samples are in the order of the run, be it forwards
+/// or [backwards](crate::run_backwards).
 ///
 /// ```
 /// use stickslip_solver::{Dop853, Options, Samples, State, integrate};
@@ -57,8 +57,8 @@ impl<Mode: Copy, const N: usize> Samples<Mode, N> {
     /// Samples at `times`.
     ///
     /// # Errors
-    /// [`InvalidTimes`] unless the times are numbers in ascending or in descending order. Equal ones
-    /// may follow each other.
+    /// [`InvalidTimes`] unless the times are numbers in ascending or in descending order. Equal
+    /// ones may follow each other.
     pub fn new(times: Vec<f64>) -> Result<Self, InvalidTimes> {
         let descending = times.iter().find(|&&s| s != times[0]).is_some_and(|&s| s < times[0]);
         let in_order = |i: usize| {
