@@ -25,10 +25,10 @@ where
         self.statistics.guards += 1;
         let (s_scale, y_scale) =
             (s.abs().max(step.s.abs()), y.zip_map(&step.y0, |a, b| a.abs().max(b.abs())));
-        for guard in 0..G {
+        for (guard, &at_end) in values.iter().enumerate() {
             let direction = self.phase.guards[guard].direction();
-            let far = self.phase.largest[guard] > 0.0
-                && values[guard].abs() > 1e-6 * self.phase.largest[guard];
+            let far =
+                self.phase.largest[guard] > 0.0 && at_end.abs() > 1e-6 * self.phase.largest[guard];
             if direction == Direction::Off || far || self.noted_since(guard, s - SAME * step.h) {
                 continue;
             }
@@ -45,7 +45,7 @@ where
                 Direction::Rising => behind < 0.0,
                 _ => behind > 0.0,
             };
-            if values[guard].abs() > hidden || !crosses || !in_direction {
+            if at_end.abs() > hidden || !crosses || !in_direction {
                 continue;
             }
             let found = Event {
@@ -54,7 +54,7 @@ where
                 slope: ((ahead - behind) / (2.0 * reach)).abs(),
                 elapsed: step.h,
                 state: step.y1,
-                residual: values[guard].abs(),
+                residual: at_end.abs(),
                 sign: behind.signum(),
                 beyond: step.h,
                 jump: false,

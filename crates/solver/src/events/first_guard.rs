@@ -103,7 +103,10 @@ where
     /// Whether an event only reports a crossing: mode and state go on unchanged.
     pub(crate) fn is_noted(&self, event: &Event<N>) -> bool {
         let about = self.phase.guards[event.guard];
-        let before = self.notes.iter().filter(|note| note.guard == event.guard).count();
+        let of_it = |note: &&SwitchEvent<S::Mode, N>| {
+            note.guard == event.guard || note.simultaneous & bit(event.guard) != 0
+        };
+        let before = self.notes.iter().filter(of_it).count();
         if about.direction() == Direction::Below
             || before + 1 == about.fires_until_end() as usize
             || !event.state.iter().all(|value| value.is_finite())

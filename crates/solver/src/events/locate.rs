@@ -62,14 +62,13 @@ where
             jump: at.jump,
             step,
         };
-        let at_start = |slope: f64, residual: f64| {
-            let (elapsed, state, jump) = (0.0, step.y0, false);
-            let landing = Landing { elapsed, state, residual, slope, jump };
+        let start = self.phase.values[guard];
+        let at_start = |slope: f64| {
+            let landing = Landing { slope, ..Landing::here(step.y0, start) };
             Ok(Some(event(landing, step.shrunk_to_start())))
         };
-        let start = self.phase.values[guard];
         if high == 0.0 {
-            return at_start(f64::INFINITY, start);
+            return at_start(f64::INFINITY);
         }
         let from_zero = start.abs() <= f64::MIN_POSITIVE && self.phase.zero_orders[guard] == 0;
         if low == 0.0 && from_zero && !self.noted_since(guard, step.s) {
@@ -79,7 +78,7 @@ where
             let probe = near.probe(step.s, &step.y0);
             self.count_probe();
             if probe.slope < 0.0 && probe.bend.abs() * reach < 0.1 * probe.slope.abs() {
-                return at_start(probe.slope, start);
+                return at_start(probe.slope);
             }
         }
         if !(theta > low && theta < high) {
@@ -99,11 +98,12 @@ where
             if end.value.is_nan() {
                 return Err(RunError::GuardNotANumber { guard, s: step.s });
             }
-            if end.value >= 0.0 {
-                (low, seen_low) = (theta, true);
-            } else {
-                (high, seen_high) = (theta, true);
-            }
+            // The bracket shrinks from the side whose sign was seen.
+            let (bound, seen) = match end.value >= 0.0 {
+                true => (&mut low, &mut seen_low),
+                false => (&mut high, &mut seen_high),
+            };
+            (*bound, *seen) = (theta, true);
             if low >= high {
                 return Ok(None);
             }
@@ -132,7 +132,7 @@ where
                 return Ok(Some(event(at, trial)));
             }
             if high * step.h <= NOWHERE * (step.s.abs() + step.h) {
-                return at_start(end.slope, start);
+                return at_start(end.slope);
             }
             if high - low <= 4.0 * f64::EPSILON * high {
                 // The zero is too flat for Newton's method, and the step ends just beyond it. Both
@@ -142,8 +142,8 @@ where
                 } else if theta < high || !seen_high {
                     theta = high;
                 } else {
-                    let (elapsed, state, residual) = (trial.h, trial.y1, end.value);
-                    let at = Landing { elapsed, state, residual, slope: end.slope, jump: false };
+                    let here = Landing::here(trial.y1, end.value);
+                    let at = Landing { elapsed: trial.h, slope: end.slope, ..here };
                     return Ok(Some(event(at, trial)));
                 }
                 continue;
@@ -272,6 +272,13 @@ struct Landing<const N: usize> {
     slope: f64,
     /// Whether the guard jumps over zero.
     jump: bool,
+}
+
+impl<const N: usize> Landing<N> {
+    /// A zero at the start of the step.
+    fn here(state: State<N>, residual: f64) -> Self {
+        Self { elapsed: 0.0, state, residual, slope: f64::INFINITY, jump: false }
+    }
 }
 
 /// A guard near its zero.

@@ -96,8 +96,8 @@ impl<const N: usize> Path<N> {
         let components = std::array::from_fn(|i| {
             let from = &self.components[i];
             let about = from.about(middle);
-            let beyond = about[3..].iter().enumerate();
-            let error: f64 = beyond.map(|(k, c)| c.abs() * radius.powi(k as i32 + 3)).sum();
+            let beyond = about[3..].iter().rev().fold(0.0, |sum, c| sum * radius + c.abs());
+            let error = beyond * radius.powi(3);
             // Steps of the method to neighbouring places do not follow the right-hand side exactly.
             let error = SAFETY * error + 8.0 * from.error * radius;
             let Band([present, ..]) = from.band(low, high, self.kind);
@@ -175,19 +175,15 @@ impl Component {
         });
         // The remainders beyond the first derivatives.
         let (mut value, mut slope, mut bend) = (0.0, 0.0, 0.0);
-        let mut power = radius;
-        for k in 1..TERMS {
-            let n = k as f64;
-            // The powers radius^k, radius^(k−1) and radius^(k−2).
-            value += c[k].abs() * power;
-            if k > 1 {
-                slope += n * c[k].abs() * power / radius.max(f64::MIN_POSITIVE);
-            }
-            if k > 2 {
-                let square = (radius * radius).max(f64::MIN_POSITIVE);
-                bend += n * (n - 1.0) * c[k].abs() * power / square;
-            }
-            power *= radius;
+        for (k, c) in c.iter().enumerate().skip(1).rev() {
+            let (n, c) = (k as f64, c.abs());
+            value = (value + c) * radius;
+            slope = slope * radius + if k > 1 { n * c } else { 0.0 };
+            bend = if k > 1 {
+                bend * radius + if k > 2 { n * (n - 1.0) * c } else { 0.0 }
+            } else {
+                bend
+            };
         }
         let Band(band) = self.band(low, high, kind);
         let around = |middle: f64, radius: f64| Interval::around(middle, radius);

@@ -63,7 +63,8 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
                 Direction::Off => false,
                 // On the right side, a bound of the domain needs no pardon.
                 Direction::Below => value < 0.0,
-                _ => value != 0.0,
+                // The guard that fired stands on its zero, also exactly.
+                _ => value != 0.0 || guard == event.guard,
             };
             if !may_be_zero || self.zero_orders[guard] > 0 {
                 continue;

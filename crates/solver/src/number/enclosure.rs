@@ -138,6 +138,8 @@ impl Mul for Enclosure {
 
 impl Div for Enclosure {
     type Output = Self;
+    // A quotient is a product with the inverse.
+    #[allow(clippy::suspicious_arithmetic_impl)]
     #[inline]
     fn div(self, other: Self) -> Self {
         self * other.inverse()

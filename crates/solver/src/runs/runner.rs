@@ -3,6 +3,8 @@
 //! `advance` takes one accepted step. The module `events` finds out whether the step contains a
 //! switch.
 
+use std::cmp::Ordering;
+
 use crate::error::RunError;
 use crate::events::{Event, Examination, Found, Phase, bit, dense_output};
 use crate::hybrid::{HybridSystem, Observer, Outcome, Run, Start, Statistics, SwitchEvent};
@@ -156,9 +158,8 @@ where
                 StepSize::Fixed(_) if is_finite(&step.y1) => 0.0,
                 StepSize::Fixed(_) => f64::NAN,
             };
-            // Written so that NaN rejects.
-            let good = error < 1.0;
-            if !good {
+            // NaN is not good.
+            if !matches!(error.partial_cmp(&1.0), Some(Ordering::Less)) {
                 self.reject::<M>(h, error, is_finite(&step.y1))?;
                 continue;
             }
@@ -194,14 +195,11 @@ where
                 }
             }
             self.statistics.accepted += 1;
-            if self.options.step_size == StepSize::Adaptive {
-                self.h = if last && event.is_none() {
-                    self.h
-                } else {
-                    self.controller.accepted::<M>(h, error)
-                };
-            } else if let StepSize::Fixed(h) = self.options.step_size {
-                self.h = h;
+            match self.options.step_size {
+                StepSize::Fixed(h) => self.h = h,
+                // The last step was cut at the end.
+                StepSize::Adaptive if last && event.is_none() => {}
+                StepSize::Adaptive => self.h = self.controller.accepted::<M>(h, error),
             }
             if !self.notes.is_empty()
                 && let Some(outcome) = self.report_notes()
@@ -210,9 +208,8 @@ where
                 return Ok(Some(outcome));
             }
             if let Some(event) = event {
-                if O::WANTS_SEGMENTS && event.step.h > 0.0 {
-                    let dense = dense_output::<_, M, N, G>(system, mode, &mut event.step);
-                    self.observer.on_segment(mode, &dense);
+                if event.step.h > 0.0 {
+                    self.show::<M>(mode, &mut event.step);
                 }
                 self.clock.advance(event.elapsed);
                 if last && event.elapsed == h {
@@ -220,10 +217,7 @@ where
                 }
                 return Ok(None);
             }
-            if O::WANTS_SEGMENTS {
-                let dense = dense_output::<_, M, N, G>(system, mode, step);
-                self.observer.on_segment(mode, &dense);
-            }
+            self.show::<M>(mode, step);
             self.state = step.y1;
             self.slope = step.finish::<M>(&mut field);
             self.statistics.field += usize::from(!M::ERROR_USES_END);
@@ -241,6 +235,15 @@ where
                 self.refresh_slope()?;
             }
             return Ok(None);
+        }
+    }
+
+    /// Shows an accepted step to the observer, if it wants to see steps.
+    #[inline(always)]
+    fn show<M: Method>(&mut self, mode: S::Mode, step: &mut Step<N>) {
+        if O::WANTS_SEGMENTS {
+            let dense = dense_output::<_, M, N, G>(self.system, mode, step);
+            self.observer.on_segment(mode, &dense);
         }
     }
 

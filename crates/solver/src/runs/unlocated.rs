@@ -214,8 +214,9 @@ mod tests {
         assert_eq!(switches(Direction::Either, pair), []);
         let mut recorder = Recorder::default();
         let options = Options { step_size: StepSize::Fixed(0.125), ..Options::default() };
-        run(Dopri5, &Planted(Direction::Either, pair), start(), 1.0, &options, &mut recorder)
-            .unwrap();
+        let located =
+            run(Dopri5, &Planted(Direction::Either, pair), start(), 1.0, &options, &mut recorder);
+        assert_eq!(located.unwrap().outcome, Outcome::ReachedEnd);
         assert_eq!(recorder.switches.len(), 2);
     }
 
