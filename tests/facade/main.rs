@@ -1,8 +1,11 @@
-//! What users of the facade rely on: runs and collisions allocate nothing, the examples hold, and
-//! atlases of the collision are those of the references.
+//! What users of the facade rely on: runs and collisions allocate nothing, the examples hold,
+//! atlases of the collision are those of the references, and the battery of events is found.
 
 mod allocations;
 mod atlas;
+mod battery;
+#[path = "../battery/cases.rs"]
+mod cases;
 #[path = "../common/mod.rs"]
 mod common;
 mod examples;

@@ -1,0 +1,108 @@
+//! The battery of event-location cases: how many events this solver, SciPy and heyoka find.
+//!
+//! Each cell has the numbers of events that are right, missed, invented and misplaced, then the
+//! largest error of a place that is right, evaluations of the right-hand side and the time. The
+//! solver runs each case three times: it reads the formulas; it only evaluates them (a black box);
+//! and as a black box that is told the scale of its guards, where the case has one. The results of
+//! SciPy and heyoka are those that `tests/battery/peers.py` wrote.
+//!
+//! Run with `cargo run --release --example battery`, or with `-- dopri5` for the other method.
+
+#[path = "../tests/battery/cases.rs"]
+mod cases;
+
+use std::error::Error;
+
+use serde_json::Value;
+use stickslip::solver::{Dop853, Dopri5};
+
+use cases::{Case, Reading, Report, cases, run_case};
+
+const READINGS: [Reading; 3] = [Reading::Readable, Reading::BlackBox, Reading::ScaledBlackBox];
+
+/// A time in a unit that suits it.
+fn time(seconds: f64) -> String {
+    match seconds {
+        s if s < 1e-3 => format!("{:.0} µs", s * 1e6),
+        s if s < 1.0 => format!("{:.1} ms", s * 1e3),
+        s => format!("{s:.1} s"),
+    }
+}
+
+/// The cell of a run of this solver.
+fn own(report: &Report) -> String {
+    let it = &report.verdict;
+    let mut cell = format!(
+        "{}/{}/{}/{}, {:.0e}, {}, {}",
+        it.right,
+        it.missed,
+        it.invented,
+        it.misplaced,
+        it.error,
+        report.field,
+        time(report.seconds)
+    );
+    if let Some(failure) = &report.failure {
+        cell = format!("{cell} ({failure})");
+    }
+    if report.is_right() { cell } else { format!("**{cell}**") }
+}
+
+/// The cell of a peer.
+fn peer(result: &Value) -> String {
+    let text = result["error_text"].as_str();
+    if result["right"].is_null() {
+        return text.unwrap_or("not run").to_owned();
+    }
+    let [right, missed, invented, misplaced] =
+        ["right", "missed", "invented", "misplaced"].map(|key| result[key].as_u64().unwrap_or(0));
+    let error = result["error"].as_f64().unwrap_or(f64::NAN);
+    let mut cell = format!("{right}/{missed}/{invented}/{misplaced}, {error:.0e}");
+    if let Some(seconds) = result["seconds"].as_f64() {
+        cell = format!("{cell}, {}", time(seconds));
+    }
+    if let Some(text) = text {
+        cell = format!("{cell} ({text})");
+    }
+    let wrong = missed + invented + misplaced > 0 || text.is_some();
+    if wrong { format!("**{cell}**") } else { cell }
+}
+
+/// Runs a case in each reading that it has.
+fn reports(case: &Case, dopri5: bool) -> [Option<Report>; 3] {
+    READINGS.map(|reading| {
+        let has = reading != Reading::ScaledBlackBox || case.guard_scale.is_some();
+        has.then(|| {
+            if dopri5 { run_case(Dopri5, case, reading) } else { run_case(Dop853, case, reading) }
+        })
+    })
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let dopri5 = match std::env::args().nth(1).as_deref() {
+        None | Some("dop853") => false,
+        Some("dopri5") => true,
+        Some(other) => return Err(format!("the method is dop853 or dopri5, not {other}").into()),
+    };
+    let peers: Value = serde_json::from_str(include_str!("../tests/battery/peers.json"))?;
+    println!("| case | readable | black box | black box with scale | SciPy | heyoka |");
+    println!("|---|---|---|---|---|---|");
+    let mut right = [0; 3];
+    let mut total = 0;
+    for case in cases() {
+        let reports = reports(&case, dopri5);
+        let cells = reports.each_ref().map(|it| it.as_ref().map_or("–".to_owned(), own));
+        for (count, report) in right.iter_mut().zip(&reports) {
+            *count +=
+                usize::from(report.as_ref().or(reports[1].as_ref()).is_some_and(Report::is_right));
+        }
+        total += 1;
+        let others = ["scipy", "heyoka"].map(|name| peer(&peers[&case.name][name]));
+        println!("| {} | {} | {} |", case.name, cells.join(" | "), others.join(" | "));
+    }
+    println!(
+        "\nAll right in {} of {total} cases if read, {} as black boxes, {} with a scale.",
+        right[0], right[1], right[2]
+    );
+    Ok(())
+}

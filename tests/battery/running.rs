@@ -1,0 +1,186 @@
+//! Runs of a case.
+
+use std::time::Instant;
+
+use stickslip::solver::{
+    Guard, HybridSystem, Method, Number, Observer, Options, Outcome, ReadableSystem, RunError,
+    Start, State, SwitchEvent, run,
+};
+
+use super::{Case, ExpectedOutcome, Place, Verdict};
+
+/// What the solver knows of the formulas of a case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reading {
+    /// It reads them.
+    Readable,
+    /// It evaluates them only.
+    BlackBox,
+    /// It evaluates them only, and is told the shortest time on which a guard changes.
+    ScaledBlackBox,
+}
+
+/// A run of a case, and what it found.
+#[derive(Clone, Debug)]
+pub struct Report {
+    /// The events that the run found, against the true ones.
+    pub verdict: Verdict,
+    /// Why the run failed, or how it ended otherwise than expected.
+    pub failure: Option<String>,
+    /// Evaluations of the right-hand side.
+    pub field: usize,
+    /// The time of the run in seconds.
+    pub seconds: f64,
+}
+
+impl Report {
+    /// Whether all events are right, and the run ended as expected.
+    pub fn is_right(&self) -> bool {
+        self.failure.is_none() && self.verdict.is_right()
+    }
+}
+
+/// Runs a case.
+///
+/// # Panics
+/// The case has more components or guards than any other so far. Another line here then helps.
+pub fn run_case<M: Method>(method: M, case: &Case, reading: Reading) -> Report {
+    // Every pair is compiled for itself, so that there are few.
+    match case.size() {
+        (1, 1) => run_as::<M, 1, 1>(method, case, reading),
+        (1, ..=4) => run_as::<M, 1, 4>(method, case, reading),
+        (1, ..=32) => run_as::<M, 1, 32>(method, case, reading),
+        (2, ..=2) => run_as::<M, 2, 2>(method, case, reading),
+        (4, ..=2) => run_as::<M, 4, 2>(method, case, reading),
+        size => panic!("{} has a size that is not compiled: {size:?}", case.name),
+    }
+}
+
+fn run_as<M: Method, const N: usize, const G: usize>(
+    method: M,
+    case: &Case,
+    reading: Reading,
+) -> Report {
+    let readable = Readable::<N, G> { case };
+    match reading {
+        Reading::Readable => run_system(method, &readable, case, None),
+        Reading::BlackBox => run_system(method, &BlackBox(readable), case, None),
+        Reading::ScaledBlackBox => run_system(method, &BlackBox(readable), case, case.guard_scale),
+    }
+}
+
+fn run_system<M, S, const N: usize, const G: usize>(
+    method: M,
+    system: &S,
+    case: &Case,
+    guard_scale: Option<f64>,
+) -> Report
+where
+    M: Method,
+    S: HybridSystem<N, G, Mode = usize>,
+{
+    let (mode, s, state) = &case.start;
+    let start = Start { mode: *mode, s: *s, state: State::from_column_slice(state) };
+    let options = Options { rtol: case.rtol, atol: case.atol, guard_scale, ..Options::default() };
+    let mut events = Events { case, found: Vec::new() };
+    let begin = Instant::now();
+    let result = run(method, system, start, case.end, &options, &mut events);
+    let seconds = begin.elapsed().as_secs_f64();
+    let field = result.as_ref().map_or(0, |run| run.statistics.field);
+    let failure = failure(case, result.map(|run| run.outcome));
+    Report { verdict: Verdict::of(case, events.found), failure, field, seconds }
+}
+
+/// How a run ended, if it did not end as expected.
+fn failure(case: &Case, outcome: Result<Outcome, RunError>) -> Option<String> {
+    let near = |a: f64, b: f64| (a - b).abs() <= case.tolerance;
+    let outcome = match outcome {
+        Ok(outcome) => outcome,
+        Err(error) => return Some(error.to_string()),
+    };
+    let expected = match (case.outcome, outcome) {
+        (ExpectedOutcome::End, Outcome::ReachedEnd)
+        | (ExpectedOutcome::Guard, Outcome::EndedByGuard { .. }) => true,
+        (ExpectedOutcome::Zeno(place), Outcome::Zeno { accumulation })
+        | (ExpectedOutcome::Stuck(place), Outcome::Zeno { accumulation }) => {
+            near(place, accumulation)
+        }
+        (ExpectedOutcome::Stuck(place), Outcome::InstantLimit { s }) => near(place, s),
+        _ => false,
+    };
+    (!expected).then(|| format!("{outcome:?} instead of {:?}", case.outcome))
+}
+
+/// Keeps the places of all events.
+struct Events<'a> {
+    case: &'a Case,
+    found: Vec<Place>,
+}
+
+impl<const N: usize> Observer<usize, N> for Events<'_> {
+    fn on_switch(&mut self, event: &SwitchEvent<usize, N>) {
+        self.found.push((event.s, event.guard));
+        let guards = &self.case.modes[event.from].guards;
+        if guards[event.guard].is_noted() && !guards[event.guard].guard.ends_run() {
+            let together = (0..guards.len()).filter(|&k| k != event.guard);
+            let fired = together.filter(|k| event.simultaneous >> k & 1 == 1);
+            self.found.extend(fired.map(|k| (event.s, k)));
+        }
+    }
+}
+
+/// A case whose formulas the solver reads.
+#[derive(Clone, Copy)]
+struct Readable<'a, const N: usize, const G: usize> {
+    case: &'a Case,
+}
+
+impl<const N: usize, const G: usize> ReadableSystem<N, G> for Readable<'_, N, G> {
+    type Mode = usize;
+
+    fn field<T: Number>(&self, mode: usize, s: T, y: &[T; N]) -> [T; N] {
+        let field = &self.case.modes[mode].field;
+        std::array::from_fn(|k| field[k].value(s, y))
+    }
+
+    fn guards(&self, mode: usize) -> [Guard; G] {
+        let guards = &self.case.modes[mode].guards;
+        std::array::from_fn(|k| guards.get(k).map_or(Guard::OFF, |guard| guard.guard))
+    }
+
+    fn guard_values<T: Number>(&self, mode: usize, s: T, y: &[T; N]) -> [T; G] {
+        let guards = &self.case.modes[mode].guards;
+        std::array::from_fn(|k| guards.get(k).map_or(T::from(1.0), |guard| guard.value.value(s, y)))
+    }
+
+    fn transition(&self, mode: usize, guard: usize, s: f64, y: &State<N>) -> (usize, State<N>) {
+        let guard = &self.case.modes[mode].guards[guard];
+        let component = |formula: &super::Expression| formula.value(s, y.as_slice());
+        let reset = guard.reset.as_ref();
+        let after = reset.map(|formulas| State::from_fn(|k, _| component(&formulas[k])));
+        (guard.to.unwrap_or(mode), after.unwrap_or(*y))
+    }
+}
+
+/// A case whose formulas the solver only evaluates.
+struct BlackBox<'a, const N: usize, const G: usize>(Readable<'a, N, G>);
+
+impl<const N: usize, const G: usize> HybridSystem<N, G> for BlackBox<'_, N, G> {
+    type Mode = usize;
+
+    fn field(&self, mode: usize, s: f64, y: &State<N>) -> State<N> {
+        HybridSystem::field(&self.0, mode, s, y)
+    }
+
+    fn guards(&self, mode: usize) -> [Guard; G] {
+        HybridSystem::guards(&self.0, mode)
+    }
+
+    fn guard_values(&self, mode: usize, s: f64, y: &State<N>) -> [f64; G] {
+        HybridSystem::guard_values(&self.0, mode, s, y)
+    }
+
+    fn transition(&self, mode: usize, guard: usize, s: f64, y: &State<N>) -> (usize, State<N>) {
+        HybridSystem::transition(&self.0, mode, guard, s, y)
+    }
+}
