@@ -100,7 +100,7 @@ def scipy_run(case, found):
         if guard["reset"]:
             y = np.array(resets[fired](t, y))
         which = which if guard["to"] is None else guard["to"]
-    return time.perf_counter() - begin
+    return time.perf_counter() - begin, t if run.status else case["end"]
 
 
 # heyoka: expressions become its own.
@@ -195,7 +195,7 @@ def heyoka_run(case, found):
             after.time = t
         after.state[:] = y
         which = following
-    return time.perf_counter() - begin
+    return time.perf_counter() - begin, integrator.time
 
 
 def judge(case, found):
@@ -244,7 +244,9 @@ def child(peer, case, pipe):
     signal.alarm(LIMIT)
     found, text, seconds = [], None, None
     try:
-        seconds = peer(case, found)
+        seconds, end = peer(case, found)
+        if "accumulation" in case and end >= case["end"]:
+            text = "passes the accumulation"
     except NotExpressible as missing:
         pipe.send({"error_text": f"not expressible: {missing}"})
         return
