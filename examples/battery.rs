@@ -16,37 +16,9 @@ use std::error::Error;
 use serde_json::Value;
 use stickslip::solver::{Dop853, Dopri5};
 
-use cases::{Case, Reading, Report, cases, run_case};
+use cases::{Case, Reading, cases, run_case};
 
 const READINGS: [Reading; 3] = [Reading::Readable, Reading::BlackBox, Reading::ScaledBlackBox];
-
-/// A time in a unit that suits it.
-fn time(seconds: f64) -> String {
-    match seconds {
-        s if s < 1e-3 => format!("{:.0} µs", s * 1e6),
-        s if s < 1.0 => format!("{:.1} ms", s * 1e3),
-        s => format!("{s:.1} s"),
-    }
-}
-
-/// The cell of a run of this solver.
-fn own(report: &Report) -> String {
-    let it = &report.verdict;
-    let mut cell = format!(
-        "{}/{}/{}/{}, {:.0e}, {}, {}",
-        it.right,
-        it.missed,
-        it.invented,
-        it.misplaced,
-        it.error,
-        report.field,
-        time(report.seconds)
-    );
-    if let Some(failure) = &report.failure {
-        cell = format!("{cell} ({failure})");
-    }
-    if report.is_right() { cell } else { format!("**{cell}**") }
-}
 
 /// The cell of a peer.
 fn peer(result: &Value) -> String {
@@ -59,7 +31,7 @@ fn peer(result: &Value) -> String {
     let error = result["error"].as_f64().unwrap_or(f64::NAN);
     let mut cell = format!("{right}/{missed}/{invented}/{misplaced}, {error:.0e}");
     if let Some(seconds) = result["seconds"].as_f64() {
-        cell = format!("{cell}, {}", time(seconds));
+        cell = format!("{cell}, {:.2} ms", 1e3 * seconds);
     }
     if let Some(text) = text {
         cell = format!("{cell} ({text})");
@@ -68,12 +40,18 @@ fn peer(result: &Value) -> String {
     if wrong { format!("**{cell}**") } else { cell }
 }
 
-/// Runs a case in each reading that it has.
-fn reports(case: &Case, dopri5: bool) -> [Option<Report>; 3] {
+/// The cells of a case in each reading that it has, and whether each is right.
+fn own(case: &Case, dopri5: bool) -> [Option<(String, bool)>; 3] {
     READINGS.map(|reading| {
         let has = reading != Reading::ScaledBlackBox || case.guard_scale.is_some();
         has.then(|| {
-            if dopri5 { run_case(Dopri5, case, reading) } else { run_case(Dop853, case, reading) }
+            let report = if dopri5 {
+                run_case(Dopri5, case, reading)
+            } else {
+                run_case(Dop853, case, reading)
+            };
+            let right = report.is_right();
+            (if right { report.to_string() } else { format!("**{report}**") }, right)
         })
     })
 }
@@ -90,13 +68,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut right = [0; 3];
     let mut total = 0;
     for case in cases() {
-        let reports = reports(&case, dopri5);
-        let cells = reports.each_ref().map(|it| it.as_ref().map_or("–".to_owned(), own));
-        for (count, report) in right.iter_mut().zip(&reports) {
+        let runs = own(&case, dopri5);
+        for (count, run) in right.iter_mut().zip(&runs) {
             // Without a scale of its own, a case counts as in the plain black box.
-            let report = report.as_ref().or(reports[1].as_ref());
-            *count += usize::from(report.is_some_and(Report::is_right));
+            *count += usize::from(run.as_ref().or(runs[1].as_ref()).is_some_and(|run| run.1));
         }
+        let cells = runs.map(|run| run.map_or("–".to_owned(), |run| run.0));
         total += 1;
         let others = ["scipy", "heyoka"].map(|name| peer(&peers[&case.name][name]));
         println!("| {} | {} | {} |", case.name, cells.join(" | "), others.join(" | "));

@@ -11,8 +11,8 @@ use serde_json::Value;
 use stickslip::solver::{Direction, Guard};
 
 use expression::Expression;
-pub use running::{Reading, Report, run_case};
-pub use verdict::Verdict;
+pub use running::{Reading, run_case};
+use verdict::Verdict;
 
 /// A system, its start, and the events that it really has.
 #[derive(Clone, Debug)]

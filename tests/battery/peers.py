@@ -2,9 +2,9 @@
 
 Both are used as their documentation says. SciPy: `solve_ivp` with DOP853 and the tolerances of the
 case, non-terminal events for what is only noted, terminal events with a restart for what changes
-mode or state. heyoka: `taylor_adaptive` with its default tolerance, `nt_event` and `t_event`; `abs`,
-`min`, `max` and `select` are written with its `select`, and there is no `floor`. Compiling heyoka's
-integrators is not part of the time.
+mode or state. heyoka: `taylor_adaptive` with its default tolerance, `nt_event` and `t_event`;
+`abs`, `min`, `max` and `select` are written with its `select`, and there is no `floor`. Compiling
+heyoka's integrators is not part of the time.
 
 Each run has a process of its own, which an alarm ends after 20 s.
 

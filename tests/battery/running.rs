@@ -1,5 +1,6 @@
 //! Runs of a case.
 
+use std::fmt;
 use std::time::Instant;
 
 use stickslip::solver::{
@@ -37,6 +38,18 @@ impl Report {
     /// Whether all events are right, and the run ended as expected.
     pub fn is_right(&self) -> bool {
         self.failure.is_none() && self.verdict.is_right()
+    }
+}
+
+/// The numbers of events that are right, missed, invented and misplaced, the largest error of a
+/// place that is right, evaluations of the right-hand side, and the time.
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Verdict { right, missed, invented, misplaced, error } = self.verdict;
+        let milliseconds = 1e3 * self.seconds;
+        write!(f, "{right}/{missed}/{invented}/{misplaced}, {error:.0e}, {}, ", self.field)?;
+        write!(f, "{milliseconds:.2} ms")?;
+        self.failure.as_ref().map_or(Ok(()), |failure| write!(f, " ({failure})"))
     }
 }
 
@@ -101,10 +114,10 @@ fn failure(case: &Case, outcome: Result<Outcome, RunError>) -> Option<String> {
     let expected = match (case.outcome, outcome) {
         (ExpectedOutcome::End, Outcome::ReachedEnd)
         | (ExpectedOutcome::Guard, Outcome::EndedByGuard { .. }) => true,
-        (ExpectedOutcome::Zeno(place), Outcome::Zeno { accumulation })
-        | (ExpectedOutcome::Stuck(place), Outcome::Zeno { accumulation }) => {
-            near(place, accumulation)
-        }
+        (
+            ExpectedOutcome::Zeno(place) | ExpectedOutcome::Stuck(place),
+            Outcome::Zeno { accumulation },
+        ) => near(place, accumulation),
         (ExpectedOutcome::Stuck(place), Outcome::InstantLimit { s }) => near(place, s),
         _ => false,
     };

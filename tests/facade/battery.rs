@@ -23,7 +23,7 @@ fn check<M: Method>(method: M, left_out: &[&str]) {
         }
         let report = run_case(method, &case, Reading::Readable);
         if report.is_right() == KNOWN_WRONG.contains(&case.name.as_str()) {
-            differ.push(format!("{}: {report:?}", case.name));
+            differ.push(format!("{}: {report}", case.name));
         }
     }
     assert!(differ.is_empty(), "{} cases differ:\n{}", differ.len(), differ.join("\n"));
@@ -37,4 +37,16 @@ fn the_battery_is_right_with_dop853() {
 #[test]
 fn the_battery_is_right_with_dopri5() {
     check(Dopri5, &TOO_LONG_FOR_DOPRI5);
+}
+
+#[test]
+fn a_black_box_has_no_event_too_many() {
+    for case in cases() {
+        for reading in [Reading::BlackBox, Reading::ScaledBlackBox] {
+            let report = run_case(Dop853, &case, reading);
+            let verdict = &report.verdict;
+            let name = &case.name;
+            assert!(verdict.invented + verdict.misplaced == 0, "{name}, {reading:?}: {report}");
+        }
+    }
 }
