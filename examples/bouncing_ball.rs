@@ -11,7 +11,7 @@ use std::error::Error;
 
 use stickslip::solver::method::FUSED_PRODUCTS;
 use stickslip::solver::{
-    Direction, Dop853, Guard, HybridSystem, Options, Outcome, Start, State, run,
+    Direction, Dop853, Guard, Number, Options, Outcome, ReadableSystem, Start, State, run,
 };
 
 const GRAVITY: f64 = 9.81;
@@ -20,18 +20,18 @@ struct Ball {
     restitution: f64,
 }
 
-impl HybridSystem<2, 1> for Ball {
+impl ReadableSystem<2, 1> for Ball {
     type Mode = ();
 
-    fn field(&self, (): (), _time: f64, y: &State<2>) -> State<2> {
-        State::from([y[1], -GRAVITY])
+    fn field<T: Number>(&self, (): (), _time: T, y: &[T; 2]) -> [T; 2] {
+        [y[1], T::from(-GRAVITY)]
     }
 
     fn guards(&self, (): ()) -> [Guard; 1] {
         [Guard::new(Direction::Below)]
     }
 
-    fn guard_values(&self, (): (), _time: f64, y: &State<2>) -> [f64; 1] {
+    fn guard_values<T: Number>(&self, (): (), _time: T, y: &[T; 2]) -> [T; 1] {
         [y[0]]
     }
 

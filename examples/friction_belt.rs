@@ -17,7 +17,9 @@
 use std::error::Error;
 use std::f64::consts::TAU;
 
-use stickslip::solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State, run};
+use stickslip::solver::{
+    Direction, Dop853, Guard, Number, Options, ReadableSystem, Start, State, run,
+};
 
 struct Belt {
     velocity: f64,
@@ -25,20 +27,20 @@ struct Belt {
     kinetic_friction: f64,
 }
 
-impl HybridSystem<2, 1> for Belt {
+impl ReadableSystem<2, 1> for Belt {
     /// Whether the mass sticks.
     type Mode = bool;
 
-    fn field(&self, sticks: bool, _time: f64, y: &State<2>) -> State<2> {
-        State::from([y[1], if sticks { 0.0 } else { self.kinetic_friction - y[0] }])
+    fn field<T: Number>(&self, sticks: bool, _time: T, y: &[T; 2]) -> [T; 2] {
+        [y[1], if sticks { T::from(0.0) } else { -y[0] + self.kinetic_friction }]
     }
 
     fn guards(&self, _sticks: bool) -> [Guard; 1] {
         [Guard::new(Direction::Below)]
     }
 
-    fn guard_values(&self, sticks: bool, _time: f64, y: &State<2>) -> [f64; 1] {
-        [if sticks { self.static_friction - y[0] } else { self.velocity - y[1] }]
+    fn guard_values<T: Number>(&self, sticks: bool, _time: T, y: &[T; 2]) -> [T; 1] {
+        [if sticks { -y[0] + self.static_friction } else { -y[1] + self.velocity }]
     }
 
     fn transition(&self, sticks: bool, _: usize, _time: f64, y: &State<2>) -> (bool, State<2>) {
@@ -58,7 +60,8 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     let start = Start { mode: true, s: 0.0, state: State::from([0.0, belt.velocity]) };
     let options = Options::with_tolerance(1e-13);
     let mut switches = Vec::new();
-    run(Dop853, &belt, start, 52.0 * period, &options, &mut switches)?;
+    let end = run(Dop853, &belt, start, 52.0 * period, &options, &mut switches)?.finished()?;
+    assert_eq!(end.s, 52.0 * period);
 
     let slips: Vec<f64> = switches.iter().filter(|event| event.from).map(|event| event.s).collect();
     let errors = slips.windows(2).map(|pair| (pair[1] - pair[0] - period).abs());

@@ -13,25 +13,27 @@ use std::error::Error;
 use std::f64::consts::TAU;
 
 use stickslip::solver::method::FUSED_PRODUCTS;
-use stickslip::solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State, run};
+use stickslip::solver::{
+    Direction, Dop853, Guard, Number, Options, ReadableSystem, Start, State, run,
+};
 
 struct Oscillator {
     restitution: f64,
 }
 
-impl HybridSystem<2, 1> for Oscillator {
+impl ReadableSystem<2, 1> for Oscillator {
     type Mode = ();
 
-    fn field(&self, (): (), _time: f64, y: &State<2>) -> State<2> {
-        State::from([y[1], -y[0]])
+    fn field<T: Number>(&self, (): (), _time: T, y: &[T; 2]) -> [T; 2] {
+        [y[1], -y[0]]
     }
 
     fn guards(&self, (): ()) -> [Guard; 1] {
         [Guard::new(Direction::Below)]
     }
 
-    fn guard_values(&self, (): (), _time: f64, y: &State<2>) -> [f64; 1] {
-        [1.0 - y[0]]
+    fn guard_values<T: Number>(&self, (): (), _time: T, y: &[T; 2]) -> [T; 1] {
+        [-y[0] + 1.0]
     }
 
     fn transition(&self, (): (), _guard: usize, _time: f64, y: &State<2>) -> ((), State<2>) {

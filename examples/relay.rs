@@ -9,27 +9,29 @@
 
 use std::error::Error;
 
-use stickslip::solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State, run};
+use stickslip::solver::{
+    Direction, Dop853, Guard, Number, Options, ReadableSystem, Start, State, run,
+};
 
 struct Relay {
     gain: f64,
     hysteresis: f64,
 }
 
-impl HybridSystem<1, 1> for Relay {
+impl ReadableSystem<1, 1> for Relay {
     /// Whether the relay is on.
     type Mode = bool;
 
-    fn field(&self, on: bool, _time: f64, y: &State<1>) -> State<1> {
-        State::from([if on { self.gain - y[0] } else { -self.gain - y[0] }])
+    fn field<T: Number>(&self, on: bool, _time: T, y: &[T; 1]) -> [T; 1] {
+        [-y[0] + if on { self.gain } else { -self.gain }]
     }
 
     fn guards(&self, _on: bool) -> [Guard; 1] {
         [Guard::new(Direction::Below)]
     }
 
-    fn guard_values(&self, on: bool, _time: f64, y: &State<1>) -> [f64; 1] {
-        [if on { self.hysteresis - y[0] } else { self.hysteresis + y[0] }]
+    fn guard_values<T: Number>(&self, on: bool, _time: T, y: &[T; 1]) -> [T; 1] {
+        [if on { -y[0] } else { y[0] } + self.hysteresis]
     }
 
     fn transition(&self, on: bool, _guard: usize, _time: f64, y: &State<1>) -> (bool, State<1>) {
@@ -48,7 +50,8 @@ pub fn main() -> Result<(), Box<dyn Error>> {
         let half = ((relay.gain + hysteresis) / (relay.gain - hysteresis)).ln();
         let start = Start { mode: true, s: 0.0, state: State::from([0.0]) };
         let mut switches = Vec::new();
-        run(Dop853, &relay, start, 100.0 * half, &options, &mut switches)?;
+        let end = run(Dop853, &relay, start, 100.0 * half, &options, &mut switches)?.finished()?;
+        assert_eq!(end.s, 100.0 * half);
 
         let times: Vec<f64> = switches.iter().map(|event| event.s).collect();
         let errors = times.windows(2).map(|pair| (pair[1] - pair[0] - half).abs());

@@ -1,6 +1,9 @@
 //! Random planted guards of every kind, and how many of them a run finds right: readable systems,
-//! black boxes, and black boxes whose guards name their time scale. `cargo run --release -p
-//! stickslip-solver --example planted -- 1000000` prints the table of docs/validation.md.
+//! black boxes, and black boxes whose guards name their time scale.
+//!
+//! `cargo run --release -p stickslip-solver --example planted -- 1000000` prints the table of
+//! docs/validation.md. Further arguments: how many wrong cases to describe for each kind, and the
+//! number of the only kind to run.
 
 #[allow(dead_code)]
 #[path = "../tests/solver/planted_kinds.rs"]
@@ -24,9 +27,6 @@ fn main() {
         for reading in [Reading::Readable, Reading::BlackBox, Reading::BlackBoxWithScale] {
             let (mut wrong, mut failed) = (0, 0);
             for seed in 0..count {
-                if shown > 9 {
-                    eprintln!("seed {seed} {reading:?}");
-                }
                 let case = random_case(kind, &mut fastrand::Rng::with_seed(seed));
                 match case.found(reading) {
                     Found::Right | Found::TooFast => {}

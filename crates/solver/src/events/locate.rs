@@ -81,9 +81,7 @@ where
                 return at_start(probe.slope);
             }
         }
-        if !(theta > low && theta < high) {
-            theta = 0.5 * (low + high);
-        }
+        theta = if theta > low && theta < high { theta } else { 0.5 * (low + high) };
         // Beyond the bracket, except at the ends of the step, the guard may turn.
         let left = if low > 0.0 { theta - low } else { f64::INFINITY };
         let right = if high < 1.0 { high - theta } else { f64::INFINITY };
@@ -98,12 +96,11 @@ where
             if end.value.is_nan() {
                 return Err(RunError::GuardNotANumber { guard, s: step.s });
             }
-            // The bracket shrinks from the side whose sign was seen.
-            let (bound, seen) = match end.value >= 0.0 {
-                true => (&mut low, &mut seen_low),
-                false => (&mut high, &mut seen_high),
-            };
-            (*bound, *seen) = (theta, true);
+            if end.value < 0.0 {
+                (high, seen_high) = (theta, true);
+            } else {
+                (low, seen_low) = (theta, true);
+            }
             if low >= high {
                 return Ok(None);
             }

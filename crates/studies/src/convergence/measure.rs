@@ -278,6 +278,8 @@ mod tests {
         max_step: f64::INFINITY,
         max_steps: 100_000,
         max_switches: 100,
+        max_at_one_instant: 1000,
+        guard_scale: None,
         zeno: 0.0,
     };
 
