@@ -2,30 +2,35 @@
 //!
 //! A hybrid system has modes. Each mode has a smooth right-hand side, guards whose zeros end the
 //! mode, and transitions to other modes. [`run`] integrates such a system with a Dormand–Prince
-//! pair. On every step it *decides* whether a guard crosses zero, and does not rely on samples:
-//! along the dense output the guard is an analytic function of the step fraction, and its monotone
-//! pieces are isolated. The time of a switch comes from steps of the method to the switch, not from
-//! the dense output.
+//! pair. The time of a switch comes from steps of the method to the switch, not from the dense
+//! output.
+//!
+//! A [`ReadableSystem`] is written once, generic in its numbers. On every step its guards are then
+//! *decided*: the solver bounds a guard and its slopes along the step by interval arithmetic, so
+//! that no crossing is missed or invented, however steep, fast or kinked the guard is. What
+//! rounding hides is reported as a [`Grazing`].
 //!
 //! ```
-//! use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State, run};
+//! use stickslip_solver::{
+//!     Direction, Dop853, Guard, Number, Options, ReadableSystem, Start, State, run,
+//! };
 //!
 //! /// A room that cools to 5 °C, or is heated towards 30 °C: on below 19, off above 21.
 //! struct Room;
 //!
 //! // One component of the state, one guard in a mode.
-//! impl HybridSystem<1, 1> for Room {
+//! impl ReadableSystem<1, 1> for Room {
 //!     /// Whether it is heated.
 //!     type Mode = bool;
 //!
-//!     fn field(&self, heated: bool, _time: f64, y: &State<1>) -> State<1> {
-//!         State::from([if heated { 30.0 - y[0] } else { 5.0 - y[0] }])
+//!     fn field<T: Number>(&self, heated: bool, _time: T, y: &[T; 1]) -> [T; 1] {
+//!         [-y[0] + if heated { 30.0 } else { 5.0 }]
 //!     }
 //!     fn guards(&self, _heated: bool) -> [Guard; 1] {
 //!         [Guard::new(Direction::Below)]
 //!     }
-//!     fn guard_values(&self, heated: bool, _time: f64, y: &State<1>) -> [f64; 1] {
-//!         [if heated { 21.0 - y[0] } else { y[0] - 19.0 }]
+//!     fn guard_values<T: Number>(&self, heated: bool, _time: T, y: &[T; 1]) -> [T; 1] {
+//!         [if heated { -y[0] + 21.0 } else { y[0] - 19.0 }]
 //!     }
 //!     fn transition(&self, heated: bool, _: usize, _time: f64, y: &State<1>) -> (bool, State<1>) {
 //!         (!heated, *y)
@@ -34,11 +39,30 @@
 //!
 //! let start = Start { mode: true, s: 0.0, state: State::from([15.0]) };
 //! let mut switches = Vec::new();
-//! run(Dop853, &Room, start, 5.0, &Options::default(), &mut switches)?;
+//! let end = run(Dop853, &Room, start, 5.0, &Options::default(), &mut switches)?.finished()?;
 //! // From 21 to 19 without heating.
 //! let cooling = switches[1].s - switches[0].s;
-//! assert!((cooling - (16.0_f64 / 14.0).ln()).abs() < 1e-11);
-//! # Ok::<(), stickslip_solver::RunError>(())
+//! assert!((cooling - (16.0_f64 / 14.0).ln()).abs() < 1e-11 && end.s == 5.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! A [`HybridSystem`] and [`Closures`] are black boxes: their guards are *sampled*. A guard that
+//! varies on the scale of the solution is found as surely as one that can be read. One that varies
+//! faster needs [`Options::guard_scale`]; without it, what happens between the samples may be
+//! missed (`docs/validation.md` has the rates).
+//!
+//! ```
+//! use stickslip_solver::{Closures, Direction, Dop853, Guard, Options, Start, State, run};
+//!
+//! let ball = Closures::new(|_time, y: &State<2>| State::from([y[1], -9.81]))
+//!     .guards([Guard::new(Direction::Below)], |_time, y| [y[0]])
+//!     .transition(|_guard, _time, y| State::from([0.0, -0.5 * y[1]]));
+//! let start = Start { mode: (), s: 0.0, state: State::from([4.905, 0.0]) };
+//! let mut bounces = Vec::new();
+//! let end = run(Dop853, &ball, start, 2.5, &Options::default(), &mut bounces)?.finished()?;
+//! assert!((bounces[0].s - 1.0).abs() < 1e-14 && (bounces[1].s - 2.0).abs() < 1e-14);
+//! # assert_eq!(end.s, 2.5);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! | you want | use |
@@ -88,6 +112,7 @@
 //! | module | content |
 //! |---|---|
 //! | [`hybrid`] | what a user writes (a system with guards), and the results of a run |
+//! | [`number`] | numbers in which a system is written once: doubles, dual numbers, enclosures |
 //! | `options`, `error` | settings of a run, and why it can fail |
 //! | `runs` | the loop from switch to switch; smooth problems, trajectories, runs without event location |
 //! | `events` | one step and its guards: which guard fires first, and where |

@@ -560,7 +560,6 @@ fn a_terminal_guard_ends_the_run_when_it_fires_often_enough() {
 }
 
 #[test]
-#[ignore = "`Examination::is_noted` does not count firings that `simultaneous` names"]
 fn firings_together_with_another_guard_are_counted() {
     for h in [1.0, 0.5, 0.125, 0.01] {
         for count in [2, 3, 4] {

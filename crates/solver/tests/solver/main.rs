@@ -18,6 +18,7 @@ mod event_battery;
 mod guard_rounding;
 mod margins;
 mod methods;
+mod planted_kinds;
 mod planted_roots;
 mod properties;
 #[cfg(feature = "serde")]

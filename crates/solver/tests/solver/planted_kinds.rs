@@ -379,3 +379,38 @@ impl Case {
         Ok(times.0)
     }
 }
+
+#[test]
+fn readable_guards_of_every_kind_are_found() {
+    for (kind, name) in Shape::KINDS.into_iter().enumerate() {
+        for seed in 0..200 {
+            let case = random_case(kind, &mut fastrand::Rng::with_seed(seed));
+            assert_eq!(case.found(Reading::Readable), Found::Right, "{name}, seed {seed}");
+        }
+    }
+}
+
+/// The stated rate for black boxes that name their time scale: none wrong, but for poles that lie
+/// closer to zeros than that scale.
+#[test]
+fn black_boxes_with_a_time_scale_are_found() {
+    for (kind, name) in Shape::KINDS.into_iter().enumerate().take(9) {
+        for seed in 0..100 {
+            let case = random_case(kind, &mut fastrand::Rng::with_seed(seed));
+            let found = case.found(Reading::BlackBoxWithScale);
+            assert!(matches!(found, Found::Right | Found::TooFast), "{name} {seed}: {found:?}");
+        }
+    }
+}
+
+/// Steep guards and jumps show both signs, so that black boxes need no scale for them.
+#[test]
+fn steep_guards_and_jumps_of_black_boxes_are_found() {
+    for kind in [0, 1, 7] {
+        for seed in 0..200 {
+            let case = random_case(kind, &mut fastrand::Rng::with_seed(seed));
+            let found = case.found(Reading::BlackBox);
+            assert_eq!(found, Found::Right, "{}, seed {seed}", Shape::KINDS[kind]);
+        }
+    }
+}

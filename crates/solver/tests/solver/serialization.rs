@@ -18,8 +18,9 @@ fn statistics() {
         guards: 5,
         resteps: 6,
         isolations: 7,
-        switches: 8,
-        grazings: 9,
+        enclosures: 8,
+        switches: 9,
+        grazings: 10,
     };
     let value = to_value(statistics).expect("JSON");
     let expected = [
@@ -30,6 +31,7 @@ fn statistics() {
         "guards",
         "resteps",
         "isolations",
+        "enclosures",
         "switches",
         "grazings",
     ];

@@ -84,11 +84,11 @@ fn sign_changes<M: Method>(method: M, system: &Observed, tolerance: f64) {
         places.len()
     };
     let (mut read, mut sampled) = (Recorder::default(), Recorder::default());
-    run(method, system, start, 20.0, &options, &mut read).unwrap().finished().unwrap();
-    run(method, &BlackBox(system), start, 20.0, &options, &mut sampled)
-        .unwrap()
-        .finished()
-        .unwrap();
+    let ends = [
+        run(method, system, start, 20.0, &options, &mut read),
+        run(method, &BlackBox(system), start, 20.0, &options, &mut sampled),
+    ];
+    assert!(ends.iter().all(|end| end.is_ok_and(|end| end.outcome == Outcome::ReachedEnd)));
     assert_eq!(check(read, "readable"), check(sampled, "black box"), "{tolerance:e}");
 }
 

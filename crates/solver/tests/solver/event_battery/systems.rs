@@ -86,7 +86,8 @@ pub fn relay<M: Method>(method: M, switches: u32) -> Score {
     let mut times = Times::default();
     let start = Start { mode: true, s: 0.0, state: State::from([-1.0]) };
     let end = (f64::from(switches) + 0.5) * span;
-    run(method, &Relay, start, end, &options, &mut times).expect("a relay");
+    let end = run(method, &Relay, start, end, &options, &mut times).expect("a relay");
+    assert_eq!(end.outcome, Outcome::ReachedEnd);
     let mut score = Score { planted: switches as usize, ..Score::default() };
     for (k, s) in (1..).zip(&times.switches) {
         score.error = score.error.max((s - f64::from(k) * span).abs());
@@ -205,7 +206,8 @@ pub fn oscillator<M: Method>(method: M, level: f64, tolerance: f64) -> Score {
     let mut times = Times::default();
     let start = Start { mode: (), s: 0.0, state: State::from([0.0, 1.0]) };
     let options = Options::with_tolerance(1e-13);
-    run(method, &Oscillator { level }, start, 100.0, &options, &mut times).expect("an oscillator");
+    let end = run(method, &Oscillator { level }, start, 100.0, &options, &mut times);
+    assert_eq!(end.expect("an oscillator").outcome, Outcome::ReachedEnd);
     let mut score = Score::default();
     score.add(&planted, &times.switches, tolerance);
     score
