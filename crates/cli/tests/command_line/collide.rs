@@ -117,6 +117,7 @@ fn json_has_the_documented_keys_in_order() {
             "guards",
             "resteps",
             "isolations",
+            "enclosures",
             "switches",
             "grazings"
         ]

@@ -138,7 +138,9 @@ pub(crate) fn first_crossing(
         before = Some((0.0, opening)).filter(|_| opening.abs() > error);
         // A shorter step diminishes the error at the opening, but not the effect of noise and
         // rounding at the start.
-        if before.is_none() && 2.0 * accuracy.lasting(&panel, zero_order) < error {
+        let lasts = 2.0 * accuracy.lasting(&panel, zero_order) >= error;
+        // A zero that was not declared may be of higher order. Then the first sign that shows counts.
+        if before.is_none() && !lasts && !falls_from_zero {
             return Ok(Verdict::TooCoarse);
         }
     }

@@ -102,7 +102,14 @@ where
                 (low, seen_low) = (theta, true);
             }
             if low >= high {
-                return Ok(None);
+                // Within rounding, either sign may be true.
+                let hidden = near.rounding(trial.s + trial.h, &trial.y1);
+                if end.value.abs() > 16.0 * hidden {
+                    return Ok(None);
+                }
+                let here = Landing::here(trial.y1, end.value);
+                let at = Landing { elapsed: trial.h, slope: end.slope, ..here };
+                return Ok(Some(event(at, trial)));
             }
             let shift = end.shift() / step.h;
             let next = theta + shift;

@@ -235,6 +235,23 @@ where
         values: &[f64; 6],
         beginning: Beginning,
     ) -> Result<Option<Status>, RunError> {
+        let found = self.isolate_from::<M>(guard, step, values, beginning)?;
+        if found.is_none() && self.phase.forgiven[guard] && beginning.zero_order > 0 {
+            // It is no zero that can be divided out, so its sign counts.
+            let beginning = Beginning { zero_order: 0, ..beginning };
+            return self.isolate_from::<M>(guard, step, values, beginning);
+        }
+        Ok(found)
+    }
+
+    /// Decides about a guard whose zero at the start is certain, if it is said to have one.
+    fn isolate_from<M: Method>(
+        &mut self,
+        guard: usize,
+        step: &mut Step<N>,
+        values: &[f64; 6],
+        beginning: Beginning,
+    ) -> Result<Option<Status>, RunError> {
         // A tiny value at the start may stand for the side from which the guard came.
         if values[0].abs() <= f64::MIN_POSITIVE && values[1..].iter().all(|&value| value == 0.0) {
             if step.h < self.trial.h {

@@ -19,6 +19,8 @@ pub(crate) struct Phase<Mode, const G: usize> {
     pub(crate) at_zero: bool,
     /// The orders of the zeros from which the guards start the next step, 0 if they do not.
     pub(crate) zero_orders: [u32; G],
+    /// Whether a guard counts as zero only because rounding may have moved it away.
+    pub(crate) forgiven: [bool; G],
     /// The largest absolute values of the guards at the ends of the phase's steps.
     pub(crate) largest: [f64; G],
 }
@@ -46,16 +48,19 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
             values,
             at_zero: guards.iter().any(|guard| guard.zero_order() > 0),
             zero_orders: guards.map(|guard| guard.zero_order()),
+            forgiven: [false; G],
             largest: values.map(f64::abs),
         })
     }
 
     /// Takes values that may be due to rounding of the state at `event`, which led here, for zeros.
+    /// The mode may be the `same` as before the event.
     pub(crate) fn forgive<S: HybridSystem<N, G, Mode = Mode>, const N: usize>(
         &mut self,
         system: &S,
         (s, y): (f64, &State<N>),
         event: &Event<N>,
+        same: bool,
     ) {
         for guard in 0..G {
             let (value, direction) = (self.values[guard], self.guards[guard].direction());
@@ -63,8 +68,8 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
                 Direction::Off => false,
                 // On the right side, a bound of the domain needs no pardon.
                 Direction::Below => value < 0.0,
-                // The guard that fired stands on its zero, also exactly.
-                _ => value != 0.0 || guard == event.guard,
+                // A guard that fired stands on its zero where its mode goes on, also exactly.
+                _ => guard == event.guard && same,
             };
             if !may_be_zero || self.zero_orders[guard] > 0 {
                 continue;
@@ -77,6 +82,7 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
             if value.abs() <= rounding(value_at, (s, y), (s_scale, &y_scale)).max(residual) {
                 self.at_zero = true;
                 self.zero_orders[guard] = 1;
+                self.forgiven[guard] = true;
             }
         }
     }
@@ -88,6 +94,7 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
         if self.at_zero {
             self.at_zero = false;
             self.zero_orders = [0; G];
+            self.forgiven = [false; G];
         }
         for (largest, value) in self.largest.iter_mut().zip(values) {
             *largest = if value.abs() > *largest { value.abs() } else { *largest };

@@ -328,7 +328,7 @@ where
         }
         self.clock.phase = 0.0;
         self.phase = Phase::enter(self.system, to, (s, &after), &self.fired)?;
-        self.phase.forgive(self.system, (s, &after), event);
+        self.phase.forgive(self.system, (s, &after), event, to == from);
         self.statistics.guards += 1;
         if self.options.step_size == StepSize::Adaptive {
             let h = self.other_h.replace(self.h).unwrap_or(self.h);

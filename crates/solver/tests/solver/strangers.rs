@@ -171,7 +171,7 @@ fn sixty_four_guards_fall_together() {
     let options = Options::default();
     let end = run(Dop853, &Together, start, 1.0, &options, &mut events).unwrap();
     assert_eq!(end.outcome, Outcome::ReachedEnd);
-    let end = run(Dopri5, &BlackBox(&Together), start, 1.0, &options, &mut sampled).unwrap();
+    let end = run(Dop853, &BlackBox(&Together), start, 1.0, &options, &mut sampled).unwrap();
     assert_eq!(end.outcome, Outcome::ReachedEnd);
     for events in [events, sampled] {
         assert!(events.iter().all(|event| (event.s - 0.7).abs() < 1e-14));
