@@ -39,6 +39,8 @@ const LIMIT: usize = 20_000;
 const GROWS: f64 = 4.0;
 /// The number of widths from a pole where it is compared with its surroundings.
 const AROUND: f64 = 64.0;
+/// On a step of which this part cannot be told from a point, time is resolved poorly.
+const SHORT: f64 = 0.01;
 /// The part of the step on which a quotient is expanded to find its value at the start.
 const OPENING: f64 = 0.25;
 
@@ -139,8 +141,10 @@ pub(crate) fn first_crossing(
         // A shorter step diminishes the error at the opening, but not the effect of noise and
         // rounding at the start.
         let lasts = 2.0 * accuracy.lasting(&panel, zero_order) >= error;
-        // A zero that was not declared may be of higher order. Then the first sign that shows counts.
-        if before.is_none() && !lasts && !falls_from_zero {
+        // A zero that was not declared may be of higher order. On a short step the first sign that
+        // shows counts then.
+        let may_be_higher = falls_from_zero && task.resolution > SHORT;
+        if before.is_none() && !lasts && !may_be_higher {
             return Ok(Verdict::TooCoarse);
         }
     }
