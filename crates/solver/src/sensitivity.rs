@@ -10,6 +10,7 @@
 use crate::error::RunError;
 use crate::hybrid::{Guard, HybridSystem, Observer, Outcome, Start, Statistics, SwitchEvent};
 use crate::method::{Method, State};
+use crate::number::Enclosure;
 use crate::options::Options;
 use crate::runs::run;
 
@@ -234,6 +235,12 @@ where
 
     fn guard_values(&self, mode: S::Mode, s: f64, y: &State<A>) -> [f64; G] {
         self.system.guard_values(mode, s, &part(y, 0))
+    }
+
+    const READABLE: bool = S::READABLE;
+
+    fn enclose_guards(&self, mode: S::Mode, s: Enclosure, y: &[Enclosure; A]) -> [Enclosure; G] {
+        self.system.enclose_guards(mode, s, &std::array::from_fn(|i| y[i]))
     }
 
     fn settle(&self, mode: S::Mode) -> S::Mode {

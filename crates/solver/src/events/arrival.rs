@@ -29,7 +29,10 @@ where
             let direction = self.phase.guards[guard].direction();
             let far =
                 self.phase.largest[guard] > 0.0 && at_end.abs() > 1e-6 * self.phase.largest[guard];
-            if direction == Direction::Off || far || self.noted_since(guard, s - SAME * step.h) {
+            if direction == Direction::Off
+                || far
+                || self.notes_of(guard).any(|note| note.s >= s - SAME * step.h)
+            {
                 continue;
             }
             let value = |s: f64, y: &_| system.guard_values(mode, s, y)[guard];

@@ -79,12 +79,13 @@ where
         let mut last: Option<f64> = None;
         loop {
             *event = None;
-            let found = self.first::<M>(step, event, values, &mut statuses, &beginnings)?;
+            let coarse = self.first::<M>(step, event, values, &mut statuses, &beginnings)?;
+            if let Some(guard) = coarse {
+                *event = None;
+                return Ok(Found::TooCoarse(guard));
+            }
             let Some(next) = event.as_ref() else {
-                return Ok(match found {
-                    Found::Nothing(_) => Found::Nothing(end_values),
-                    other => other,
-                });
+                return Ok(Found::Nothing(end_values));
             };
             let guard = next.guard;
             if !self.is_noted(next) {
@@ -103,10 +104,7 @@ where
     /// Whether an event only reports a crossing: mode and state go on unchanged.
     pub(crate) fn is_noted(&self, event: &Event<N>) -> bool {
         let about = self.phase.guards[event.guard];
-        let of_it = |note: &&SwitchEvent<S::Mode, N>| {
-            note.guard == event.guard || note.simultaneous & bit(event.guard) != 0
-        };
-        let before = self.notes.iter().filter(of_it).count();
+        let before = self.notes_of(event.guard).count();
         if about.direction() == Direction::Below
             || before + 1 == about.fires_until_end() as usize
             || !event.state.iter().all(|value| value.is_finite())
@@ -118,11 +116,11 @@ where
             == (self.phase.mode, event.state)
     }
 
-    /// Whether a guard has fired on this step, at `s` or later.
-    pub(crate) fn noted_since(&self, guard: usize, s: f64) -> bool {
+    /// The notes of a guard on this step.
+    pub(crate) fn notes_of(&self, guard: usize) -> impl Iterator<Item = &SwitchEvent<S::Mode, N>> {
         self.notes
             .iter()
-            .any(|note| (note.guard == guard || note.simultaneous & bit(guard) != 0) && note.s >= s)
+            .filter(move |note| note.guard == guard || note.simultaneous & bit(guard) != 0)
     }
 
     /// Notes an event that changes nothing. If it is `together` with the one before, both are one.
@@ -149,7 +147,9 @@ where
         });
     }
 
-    /// Finds the first guard that fires, whether or not it changes something.
+    /// Finds the first guard that fires, whether or not it changes something, and writes it to
+    /// `event`. Returns the guard for which the step is too coarse, if there is one. What isolation
+    /// finds on the `full` step is kept.
     fn first<M: Method>(
         &mut self,
         step: &mut Step<N>,
@@ -157,7 +157,7 @@ where
         full_values: &[[f64; G]; 6],
         full: &mut [Status; G],
         beginnings: &[Beginning; G],
-    ) -> Result<Found<G>, RunError> {
+    ) -> Result<Option<usize>, RunError> {
         let (mut values, mut statuses) = (*full_values, *full);
         loop {
             let first = self.earliest(&statuses);
@@ -167,23 +167,12 @@ where
                 let mut found_any = false;
                 for guard in 0..G {
                     if statuses[guard] == Status::Unclear {
-                        let column = values.map(|at_node| at_node[guard]);
                         let at_start = on.h <= TOGETHER * self.trial.h;
-                        let mut beginning = beginnings[guard];
-                        beginning.theta *= self.trial.h / on.h;
-                        let status = if beginning.theta < 1.0 {
-                            self.isolate::<M>(guard, on, &column, beginning)?
-                        } else {
-                            Some(Status::Clear)
-                        };
-                        let status = match status {
+                        let status = match self.isolate_rest::<M>(guard, on, &values, beginnings)? {
                             Some(status) => status,
                             // Whether it fires together with the event shows after the event.
                             None if at_start => Status::Clear,
-                            None => {
-                                *event = None;
-                                return Ok(Found::TooCoarse(guard));
-                            }
+                            None => return Ok(Some(guard)),
                         };
                         found_any |= status != Status::Clear;
                         statuses[guard] = status;
@@ -195,8 +184,7 @@ where
                 if found_any {
                     continue;
                 }
-                let nothing = Found::Nothing(values[5]);
-                return Ok(if event.is_some() { Found::Event } else { nothing });
+                return Ok(None);
             };
             statuses[guard] = Status::Clear;
             let on = event.as_ref().map_or(&*step, |event| &event.step);
@@ -204,12 +192,11 @@ where
                 || event.is_some()
                 || statuses.iter().any(|&status| status != Status::Clear);
             let Some(mut next) = self.locate::<M>(on, guard, &crossing, exact)? else {
-                *event = None;
-                return Ok(Found::TooCoarse(guard));
+                return Ok(Some(guard));
             };
             if next.elapsed == 0.0 {
                 *event = Some(next);
-                return Ok(Found::Event);
+                return Ok(None);
             }
             if let Some(event) = event.as_mut()
                 && next.elapsed >= (1.0 - TOGETHER) * event.elapsed
@@ -233,25 +220,34 @@ where
             }
             values = at_nodes;
             for (other, status) in statuses.iter_mut().enumerate() {
-                if *status != Status::Clear {
-                    *status = self.glance_again::<M>(other, &next.step, &values);
+                if *status == Status::Clear {
+                    continue;
                 }
+                // A quick look would find again what a guard has already been noted for.
+                *status = if self.notes_of(other).next().is_some() {
+                    Status::Unclear
+                } else {
+                    self.glance_at::<M>(other, &next.step, &values, &mut None)
+                };
             }
             *event = Some(next);
         }
     }
 
-    /// What a quick look at a shortened step tells about a guard.
-    fn glance_again<M: Method>(
+    /// Isolates a guard on a shortened step, from its beginning on the full step on.
+    fn isolate_rest<M: Method>(
         &mut self,
         guard: usize,
-        step: &Step<N>,
+        step: &mut Step<N>,
         values: &[[f64; G]; 6],
-    ) -> Status {
-        if self.noted_since(guard, f64::NEG_INFINITY) {
-            return Status::Unclear;
+        beginnings: &[Beginning; G],
+    ) -> Result<Option<Status>, RunError> {
+        let mut beginning = beginnings[guard];
+        beginning.theta *= self.trial.h / step.h;
+        if beginning.theta >= 1.0 {
+            return Ok(Some(Status::Clear));
         }
-        self.glance_at::<M>(guard, step, values, &mut None)
+        self.isolate::<M>(guard, step, &values.map(|at_node| at_node[guard]), beginning)
     }
 
     /// Whether guard `first` decides the transition if it fires together with guard `second`. The
@@ -288,21 +284,15 @@ where
         statuses: &[Status; G],
         beginnings: &[Beginning; G],
     ) -> Result<Option<Event<N>>, RunError> {
-        for first in 0..G.min(32) {
+        for (first, &status) in statuses.iter().enumerate() {
             if event.simultaneous & bit(first) == 0 || !self.precedes(first, event.guard) {
                 continue;
             }
-            let mut status = statuses[first];
-            if status == Status::Unclear {
-                let column = values.map(|at_node| at_node[first]);
-                let mut beginning = beginnings[first];
-                beginning.theta *= self.trial.h / step.h;
-                if beginning.theta < 1.0 {
-                    let isolated = self.isolate::<M>(first, step, &column, beginning)?;
-                    status = isolated.unwrap_or(Status::Unclear);
-                }
-            }
-            let Status::Fires(Crossing { sign, bracket }) = status else { continue };
+            let status = match status {
+                Status::Unclear => self.isolate_rest::<M>(first, step, values, beginnings)?,
+                known => Some(known),
+            };
+            let Some(Status::Fires(Crossing { sign, bracket })) = status else { continue };
             let guess = event.elapsed / step.h;
             let Bracket { low, high, .. } = bracket;
             if low <= (1.0 + TOGETHER) * guess && (1.0 - TOGETHER) * guess <= high {

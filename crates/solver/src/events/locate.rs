@@ -64,14 +64,15 @@ where
         };
         let start = self.phase.values[guard];
         let at_start = |slope: f64| {
-            let landing = Landing { slope, ..Landing::here(step.y0, start) };
+            let (elapsed, state, jump) = (0.0, step.y0, false);
+            let landing = Landing { elapsed, state, residual: start, slope, jump };
             Ok(Some(event(landing, step.shrunk_to_start())))
         };
         if high == 0.0 {
             return at_start(f64::INFINITY);
         }
         let from_zero = start.abs() <= f64::MIN_POSITIVE && self.phase.zero_orders[guard] == 0;
-        if low == 0.0 && from_zero && !self.noted_since(guard, step.s) {
+        if low == 0.0 && from_zero && self.notes_of(guard).next().is_none() {
             // The guard is zero at the start. If it falls from there, it crosses there.
             let reach = REACH * step.h;
             let near = Near { system, mode, guard, sign: crossing.sign, reach };
@@ -103,13 +104,10 @@ where
             }
             if low >= high {
                 // Within rounding, either sign may be true.
-                let hidden = near.rounding(trial.s + trial.h, &trial.y1);
-                if end.value.abs() > 16.0 * hidden {
+                if end.value.abs() > 16.0 * near.rounding(trial.s + trial.h, &trial.y1) {
                     return Ok(None);
                 }
-                let here = Landing::here(trial.y1, end.value);
-                let at = Landing { elapsed: trial.h, slope: end.slope, ..here };
-                return Ok(Some(event(at, trial)));
+                return Ok(Some(event(Landing::at_end(&trial, &end), trial)));
             }
             let shift = end.shift() / step.h;
             let next = theta + shift;
@@ -146,9 +144,7 @@ where
                 } else if theta < high || !seen_high {
                     theta = high;
                 } else {
-                    let here = Landing::here(trial.y1, end.value);
-                    let at = Landing { elapsed: trial.h, slope: end.slope, ..here };
-                    return Ok(Some(event(at, trial)));
+                    return Ok(Some(event(Landing::at_end(&trial, &end), trial)));
                 }
                 continue;
             }
@@ -279,9 +275,10 @@ struct Landing<const N: usize> {
 }
 
 impl<const N: usize> Landing<N> {
-    /// A zero at the start of the step.
-    fn here(state: State<N>, residual: f64) -> Self {
-        Self { elapsed: 0.0, state, residual, slope: f64::INFINITY, jump: false }
+    /// A zero at the end of a step, with what was seen of the guard there.
+    fn at_end(step: &Step<N>, end: &Probe<N>) -> Self {
+        let (elapsed, state, jump) = (step.h, step.y1, false);
+        Self { elapsed, state, residual: end.value, slope: end.slope, jump }
     }
 }
 

@@ -9,11 +9,12 @@
 //! | `guard_rounding` | guards whose signs are lost in their own rounding |
 //! | `margins` | margins with a closed form |
 //! | `properties` | what holds of random systems; `checks` says it, for the fuzz targets too |
-//! | `conveniences` | what surrounds a run, and the defined answers of the documentation |
+//! | `planted_kinds` | random guards of every kind: steep, fast, kinked, with jumps and poles |
+//! | `strangers` | systems that nobody here designed for |
+//! | `runs` | what surrounds a run: closures, runs backwards, samples, ends, defined answers |
 //! | `serialization` | the JSON of results |
 
 mod checks;
-mod conveniences;
 mod event_battery;
 mod guard_rounding;
 mod margins;
@@ -21,6 +22,7 @@ mod methods;
 mod planted_kinds;
 mod planted_roots;
 mod properties;
+mod runs;
 #[cfg(feature = "serde")]
 mod serialization;
 mod smooth_problems;
