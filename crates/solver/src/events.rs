@@ -28,7 +28,7 @@ mod path;
 mod phase;
 mod quick;
 
-pub(crate) use along_step::dense_output;
+pub(crate) use along_step::{dense_output, repeated_step};
 pub(crate) use event::{Event, Found, bit};
 pub(crate) use examination::Examination;
 pub(crate) use phase::Phase;

@@ -6,7 +6,7 @@ use crate::error::RunError;
 use crate::events::isolate::{Curve, Enclosed};
 use crate::events::path::Path;
 use crate::hybrid::{HybridSystem, Statistics};
-use crate::method::{Dense, Method, State, Step};
+use crate::method::{Dense, Method, State, Step, Trial};
 use crate::number::{Enclosure, Interval};
 
 /// The relative change of state and time with which a guard's sensitivity to them is measured.
@@ -44,7 +44,31 @@ where
     S: HybridSystem<N, G>,
     M: Method,
 {
-    step.dense::<M>(&mut |s, y| system.field(mode, s, y))
+    // Dispatched at run time, so that it is compiled once for each method and dimension.
+    let field: &mut dyn FnMut(f64, &State<N>) -> State<N> = &mut |s, y| system.field(mode, s, y);
+    step.dense::<M>(&mut &mut *field)
+}
+
+/// The step `trial` in `mode`, taken again to look at the solution more closely.
+///
+/// All callers share this one function, apart from the step of the run itself, because what it
+/// compiles to is large.
+#[inline(never)]
+pub(crate) fn repeated_step<S, M, const N: usize, const G: usize>(
+    system: &S,
+    mode: S::Mode,
+    trial: &Trial<'_, N>,
+    statistics: &mut Statistics,
+) -> Step<N>
+where
+    S: HybridSystem<N, G>,
+    M: Method,
+{
+    statistics.resteps += 1;
+    statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
+    let mut step = Step::blank();
+    system.step::<M>(mode, trial, &mut step);
+    step
 }
 
 /// A guard as a function along a step, for isolation.
@@ -73,10 +97,8 @@ where
     /// The state by a step of the method to `theta`, and the guard's value there.
     fn step_to(&mut self, theta: f64) -> Result<(State<N>, f64), RunError> {
         let (system, mode, step) = (self.system, self.mode, self.step);
-        let mut shorter = Step::blank();
-        system.step::<M>(mode, &step.shortened(theta * step.h), &mut shorter);
-        self.statistics.resteps += 1;
-        self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
+        let shorter = step.shortened(theta * step.h);
+        let shorter = repeated_step::<S, M, N, G>(system, mode, &shorter, self.statistics);
         let value = self.value(theta, &shorter.y1);
         if value.is_nan() {
             return Err(RunError::GuardNotANumber { guard: self.guard, s: step.s });
@@ -150,6 +172,7 @@ where
     fn at(&mut self, theta: f64) -> f64 {
         self.along.dense(theta)
     }
+
     fn refine(&mut self, low: f64, high: f64) -> Result<bool, RunError> {
         let AlongStep { system, mode, step, .. } = self.along;
         let (middle, reach) = (0.5 * (low + high), 0.5 * (high - low) * step.h);

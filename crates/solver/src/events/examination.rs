@@ -40,6 +40,7 @@ where
             at(1.0, &step.y1),
         ]
     }
+
     /// Whether the values of each guard between the [`NODES`] are those that the values at the nodes
     /// predict. This is asked of black boxes only, and not of guards that are declared to be smooth.
     #[inline(always)]
@@ -58,7 +59,7 @@ where
             let y = State::from_fn(|i, _| between(place, &states.map(|state| state[i])));
             let found = self.system.guard_values(self.phase.mode, step.s + theta * step.h, &y);
             for guard in 0..G {
-                let column = values.map(|at_node| at_node[guard]);
+                let column = column(values, guard);
                 let expected = between(place, &column);
                 let size = column.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
                 // NaN is not confirmed.
@@ -69,4 +70,11 @@ where
         }
         confirmed
     }
+}
+
+/// The values of one guard at the [`NODES`]. Written out, it compiles to little.
+#[inline(always)]
+pub(crate) fn column<const G: usize>(values: &[[f64; G]; 6], guard: usize) -> [f64; 6] {
+    let [a, b, c, d, e, f] = values;
+    [a[guard], b[guard], c[guard], d[guard], e[guard], f[guard]]
 }

@@ -2,7 +2,7 @@
 
 use crate::error::RunError;
 use crate::events::event::{Event, Found, bit};
-use crate::events::examination::Examination;
+use crate::events::examination::{Examination, column};
 use crate::events::isolate::{Beginning, Bracket};
 use crate::events::one_guard::{Crossing, Status};
 use crate::events::quick;
@@ -47,7 +47,7 @@ where
         // The verdicts are collected in an array, so that the loop is unrolled and the values stay
         // in registers.
         let away: [bool; G] = std::array::from_fn(|guard| {
-            let column = values.map(|at_node| at_node[guard]);
+            let column = column(values, guard);
             match self.phase.guards[guard].direction() {
                 Direction::Off => true,
                 Direction::Below => column[0] > 0.0 && quick::clearly_away(column),
@@ -247,7 +247,7 @@ where
         if beginning.theta >= 1.0 {
             return Ok(Some(Status::Clear));
         }
-        self.isolate::<M>(guard, step, &values.map(|at_node| at_node[guard]), beginning)
+        self.isolate::<M>(guard, step, &column(values, guard), beginning)
     }
 
     /// Whether guard `first` decides the transition if it fires together with guard `second`. The
@@ -323,5 +323,5 @@ where
 
 /// The largest absolute value of a guard at the nodes of a step.
 fn largest<const G: usize>(guard: usize, values: &[[f64; G]; 6]) -> f64 {
-    values.iter().fold(0.0, |size, at_node| size.max(at_node[guard].abs()))
+    column(values, guard).iter().fold(0.0, |size, value| size.max(value.abs()))
 }

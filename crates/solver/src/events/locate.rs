@@ -4,7 +4,7 @@
 //! trial place. So a switch is as accurate as any other point of the run.
 
 use crate::error::RunError;
-use crate::events::along_step::rounding;
+use crate::events::along_step::{repeated_step, rounding};
 use crate::events::event::Event;
 use crate::events::examination::Examination;
 use crate::events::isolate::{Bracket, narrow};
@@ -157,11 +157,8 @@ where
 
     /// A step of size `h` from the start of `step`.
     fn restep<M: Method>(&mut self, step: &Step<N>, h: f64) -> Step<N> {
-        self.statistics.resteps += 1;
-        self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
-        let mut shorter = Step::blank();
-        self.system.step::<M>(self.phase.mode, &step.shortened(h), &mut shorter);
-        shorter
+        let shorter = step.shortened(h);
+        repeated_step::<S, M, N, G>(self.system, self.phase.mode, &shorter, self.statistics)
     }
 
     /// Moves from the end of `trial` to the zero of the guard. The result is `None` if Newton's

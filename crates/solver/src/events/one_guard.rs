@@ -3,8 +3,8 @@
 use std::marker::PhantomData;
 
 use crate::error::RunError;
-use crate::events::along_step::{AlongStep, EnclosedAlongStep, dense_output};
-use crate::events::examination::Examination;
+use crate::events::along_step::{AlongStep, EnclosedAlongStep, dense_output, repeated_step};
+use crate::events::examination::{Examination, column};
 use crate::events::isolate::{
     Beginning, Bracket, Notice, Task, Verdict, first_crossing, first_enclosed_crossing, last_sign,
 };
@@ -92,7 +92,7 @@ where
         values: &[[f64; G]; 6],
         path: &mut Option<Path<N>>,
     ) -> Status {
-        let column = values.map(|at_node| at_node[guard]);
+        let column = column(values, guard);
         if self.phase.guards[guard].direction() == Direction::Off {
             Status::Clear
         } else if self.decides_quickly(guard) {
@@ -207,18 +207,15 @@ where
     /// the tolerance. Then it is zero only because `step` is short.
     fn leaves_zero<M: Method>(&mut self, guard: usize, step: &Step<N>) -> bool {
         let (system, mode) = (self.system, self.phase.mode);
-        let mut longer = Step::blank();
         for k in 1..=LONGER {
-            let h = step.h * 4_f64.powi(k);
-            system.step::<M>(mode, &Trial { h, ..*self.trial }, &mut longer);
-            self.statistics.resteps += 1;
-            self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
+            let longer = Trial { h: step.h * 4_f64.powi(k), ..*self.trial };
+            let longer = repeated_step::<S, M, N, G>(system, mode, &longer, self.statistics);
             // Written so that NaN ends the search.
             let good = longer.error < 1.0;
             if !good {
                 return false;
             }
-            let values = self.values_on(&longer).map(|at_node| at_node[guard]);
+            let values = column(&self.values_on(&longer), guard);
             if values[1..].iter().any(|&value| value != 0.0 && !value.is_nan()) {
                 return true;
             }
@@ -344,7 +341,7 @@ where
         let mut ends = values[5];
         for (guard, end) in ends.iter_mut().enumerate() {
             if *end == 0.0 && self.phase.guards[guard].direction() != Direction::Off {
-                let column = values.map(|at_node| at_node[guard]);
+                let column = column(values, guard);
                 *end = self.last_side::<M>(guard, step, &column);
             }
         }

@@ -204,7 +204,8 @@ where
             if !self.notes.is_empty()
                 && let Some(outcome) = self.report_notes()
             {
-                last_part::<M, S, O, N, G>(system, mode, step, self.clock.s, self.observer);
+                let (s, statistics) = (self.clock.s, &mut self.statistics);
+                last_part::<M, S, O, N, G>(system, mode, step, s, statistics, self.observer);
                 return Ok(Some(outcome));
             }
             if let Some(event) = event {

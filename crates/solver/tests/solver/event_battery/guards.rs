@@ -99,7 +99,7 @@ fn a_known_zero_at_the_start_does_not_fire_and_hides_nothing() {
     for options in step_sizes() {
         let fired = |value: fn(f64) -> f64, order: u32, direction: Direction| {
             let guard = Guard::new(direction).from_zero(order).terminal();
-            let system = Planted { value, guard };
+            let system = Planted::new(&value, guard);
             let (mut a, mut b) = (Times::default(), Times::default());
             let one = run(Dopri5, &system, start, 1.0, &options, &mut a).expect("planted");
             let other = run(Dop853, &system, start, 1.0, &options, &mut b).expect("planted");
@@ -133,10 +133,8 @@ fn a_known_zero_at_the_start_does_not_fire_and_hides_nothing() {
 fn a_guard_that_starts_negative_fires_by_its_direction() {
     for options in step_sizes() {
         let fired = |direction: Direction| {
-            let system = Planted {
-                value: |s: f64| (s - 0.31) * (0.72 - s),
-                guard: Guard::new(direction).terminal(),
-            };
+            let value = |s: f64| (s - 0.31) * (0.72 - s);
+            let system = Planted::new(&value, Guard::new(direction).terminal());
             let start = Start { mode: (), s: 0.0, state: State::from([0.0]) };
             run(Dop853, &system, start, 1.0, &options, &mut ()).expect("planted").s
         };
@@ -170,10 +168,8 @@ fn guards_without_a_meaning_are_errors() {
         }
         // The same domain, but the guard ends the run 1e-6 and 1e-12 before the domain ends.
         for margin in [1e-3, 1e-6] {
-            let system = Planted {
-                value: |s: f64| (0.5 - s).sqrt() - margin,
-                guard: Guard::new(Direction::Below).terminal(),
-            };
+            let value = |s: f64| (0.5 - s).sqrt() - margin;
+            let system = Planted::new(&value, Guard::new(Direction::Below).terminal());
             let start = Start { mode: (), s: 0.0, state: State::from([0.0]) };
             let ends = [
                 run(Dopri5, &system, start, 1.0, &options, &mut ()),

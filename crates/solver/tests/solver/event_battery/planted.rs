@@ -6,12 +6,18 @@ use stickslip_solver::{
 };
 
 /// y' = 1 with one guard, which is a function of y = s. A switch changes nothing.
-pub struct Planted<F> {
-    pub value: F,
-    pub guard: Guard,
+pub struct Planted<'a> {
+    value: &'a dyn Fn(f64) -> f64,
+    guard: Guard,
 }
 
-impl<F: Fn(f64) -> f64> HybridSystem<1, 1> for Planted<F> {
+impl<'a> Planted<'a> {
+    pub fn new(value: &'a dyn Fn(f64) -> f64, guard: Guard) -> Self {
+        Self { value, guard }
+    }
+}
+
+impl HybridSystem<1, 1> for Planted<'_> {
     type Mode = ();
 
     fn field(&self, (): (), _s: f64, _y: &State<1>) -> State<1> {
@@ -59,7 +65,7 @@ pub fn times<M: Method>(
     direction: Direction,
     options: &Options,
 ) -> Result<Times, RunError> {
-    let system = Planted { value, guard: Guard::new(direction) };
+    let system = Planted::new(&value, Guard::new(direction));
     let mut times = Times::default();
     let start = Start { mode: (), s: 0.0, state: State::from([0.0]) };
     let options = Options { max_switches: 100, max_steps: 20_000, ..*options };

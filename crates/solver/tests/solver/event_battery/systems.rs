@@ -159,7 +159,7 @@ fn limits_are_outcomes() {
     let steps = end.statistics.accepted + end.statistics.rejected + end.statistics.too_coarse;
     assert_eq!((end.outcome, steps), (Outcome::StepLimit, 50));
     // Without guards and without an end, the steps grow until their limit.
-    let system = Planted { value: |_| 1.0, guard: Guard::OFF };
+    let system = Planted::new(&|_| 1.0, Guard::OFF);
     let start = Start { mode: (), s: 0.0, state: State::from([0.0]) };
     let end = run(Dopri5, &system, start, f64::INFINITY, &options, &mut ()).expect("y' = 1");
     assert_eq!((end.outcome, end.statistics.accepted), (Outcome::StepLimit, 50));

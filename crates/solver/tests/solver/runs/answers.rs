@@ -76,7 +76,7 @@ fn the_first_guard_of_the_list_decides_unless_it_yields() {
 fn a_guard_that_crosses_at_the_end_of_the_span_fires() {
     for end in [1.0, 0.7, 3.3] {
         for options in [Options::default(), fixed(0.1), fixed(5.0)] {
-            let values = |s: f64| [end - s];
+            let values = move |s: f64| [end - s];
             let mut log = Log::default();
             let system = line([Guard::new(Direction::Falling)], values);
             reaches_end(run(Dop853, &system, start_of_line(), end, &options, &mut log));
