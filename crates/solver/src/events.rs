@@ -16,17 +16,17 @@
 //! | `locate` | the place of a switch, by steps of the method |
 //! | `arrival` | guards that are zero where the span of a run ends |
 
-mod along_step;
-mod arrival;
+pub(crate) mod along_step;
+pub(crate) mod arrival;
 mod event;
 mod examination;
-mod first_guard;
-mod isolate;
-mod locate;
-mod one_guard;
+pub(crate) mod first_guard;
+pub(crate) mod isolate;
+pub(crate) mod locate;
+pub(crate) mod one_guard;
 mod path;
 mod phase;
-mod quick;
+pub(crate) mod quick;
 
 pub(crate) use along_step::{dense_output, repeated_step};
 pub(crate) use event::{Event, Found, bit};

@@ -138,6 +138,12 @@ pub mod margin;
 
 pub mod sensitivity;
 
+pub mod dynamic;
+
+pub use dynamic::{
+    DynamicDense, DynamicEvent, DynamicObserver, DynamicRun, DynamicStart, DynamicSwitch,
+    DynamicSystem, run_dynamic, run_dynamic_backwards,
+};
 pub use error::RunError;
 pub use hybrid::{
     Direction, Grazing, Guard, HybridSystem, Observer, Outcome, Pole, ReadableSystem, Run, Start,

@@ -6,7 +6,7 @@
 //! `by_name` (pairs that are chosen at run time), `weighted` (tolerances of components) and
 //! `unlocated` (runs without event location, for comparison).
 
-mod backwards;
+pub(crate) mod backwards;
 mod both;
 mod by_name;
 pub(crate) mod clock;

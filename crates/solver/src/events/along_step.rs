@@ -10,7 +10,7 @@ use crate::method::{Dense, Method, State, Step, Trial};
 use crate::number::{Enclosure, Interval};
 
 /// The relative change of state and time with which a guard's sensitivity to them is measured.
-const SLIGHT: f64 = 1e-12;
+pub(crate) const SLIGHT: f64 = 1e-12;
 
 /// The change of a guard's `value` at (`s`, `y`) if time and state change by some units in the last
 /// place of `s_scale` and `y_scale`.

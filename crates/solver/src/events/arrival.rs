@@ -7,9 +7,9 @@ use crate::hybrid::{Direction, HybridSystem, Observer};
 use crate::method::Step;
 
 /// The part of the step over which a guard is differenced, on both sides of the end.
-const REACH: f64 = 1e-3;
+pub(crate) const REACH: f64 = 1e-3;
 /// An event this close to the end of its step is the one at the end.
-const SAME: f64 = 1e-6;
+pub(crate) const SAME: f64 = 1e-6;
 
 impl<S, O, const N: usize, const G: usize> Examination<'_, S, O, N, G>
 where

@@ -10,7 +10,7 @@ use crate::hybrid::{Direction, HybridSystem, Observer, SwitchEvent};
 use crate::method::{Method, Step};
 
 /// Guards whose zeros are closer together than this part of the step fire together.
-const TOGETHER: f64 = 1e-12;
+pub(crate) const TOGETHER: f64 = 1e-12;
 
 impl<S, O, const N: usize, const G: usize> Examination<'_, S, O, N, G>
 where

@@ -14,22 +14,22 @@ use crate::method::{Method, State, Step};
 
 /// The largest distance from the end of a repeated step to the switch, as a part of the step, that
 /// the midpoint rule bridges. Its error is the cube of this part, which is below rounding.
-const BRIDGE: f64 = 1e-5;
+pub(crate) const BRIDGE: f64 = 1e-5;
 /// A switch whose distance from the start of its step is below this part of the time counts as a
 /// switch at the start.
-const NOWHERE: f64 = 1e-20;
+pub(crate) const NOWHERE: f64 = 1e-20;
 /// The part of a step over which a guard is differenced to find its slope. The guard is known to
 /// change on the scale of the step, so that cancellation cannot spoil the slope, however short the
 /// step is.
-const REACH: f64 = 1e-3;
+pub(crate) const REACH: f64 = 1e-3;
 
 /// A guard is steep if it changes by this part of its largest value within [`BRIDGE`].
-const STEEP: f64 = 1e-6;
+pub(crate) const STEEP: f64 = 1e-6;
 /// The part of the distance to the ends of the bracket over which it is differenced at most.
-const INSIDE: f64 = 0.1;
+pub(crate) const INSIDE: f64 = 0.1;
 /// The least part of a step over which a guard is differenced, so that rounding cannot spoil the
 /// slope.
-const LEAST_REACH: f64 = 1e-5;
+pub(crate) const LEAST_REACH: f64 = 1e-5;
 
 impl<S, O, const N: usize, const G: usize> Examination<'_, S, O, N, G>
 where

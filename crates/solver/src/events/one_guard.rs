@@ -17,9 +17,9 @@ use crate::number::Enclosure;
 /// A guard that is zero throughout a step is examined on longer steps, each four times as long as
 /// the one before, at most this often. The shortest step that moves the time grows to ordinary
 /// length that way.
-const LONGER: i32 = 26;
+pub(crate) const LONGER: i32 = 26;
 /// The narrowest part of a step that is worth dividing.
-const FINEST: f64 = 1.0 / (1_u64 << 48) as f64;
+pub(crate) const FINEST: f64 = 1.0 / (1_u64 << 48) as f64;
 /// A quick look with bounds divides a step at most into 2 to this power parts.
 const HALVINGS: u32 = 3;
 
@@ -48,7 +48,7 @@ impl Crossing {
     }
 
     /// A crossing near `theta` of a guard that is monotone on the whole step.
-    fn alone(sign: f64, theta: f64) -> Status {
+    pub(crate) fn alone(sign: f64, theta: f64) -> Status {
         Status::Fires(Self { sign, bracket: Bracket { low: 0.0, high: 1.0, guess: theta } })
     }
 }

@@ -39,3 +39,9 @@ pub(super) fn add_multiple<const N: usize>(sum: &State<N>, k: &State<N>, factor:
         sum + k * factor
     }
 }
+
+/// sum + factor·k for one component, rounded as in [`add_multiple`].
+#[inline(always)]
+pub(crate) fn add_product(sum: f64, k: f64, factor: f64) -> f64 {
+    if FUSED_PRODUCTS { k.mul_add(factor, sum) } else { sum + k * factor }
+}

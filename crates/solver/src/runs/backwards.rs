@@ -60,11 +60,12 @@ where
 }
 
 /// −s. The place 0 keeps its sign.
-fn reverse(s: f64) -> f64 {
+pub(crate) fn reverse(s: f64) -> f64 {
     0.0 - s
 }
 
-fn original(outcome: Outcome) -> Outcome {
+/// The outcome of a run in s that ended so as a run in −s.
+pub(crate) fn original(outcome: Outcome) -> Outcome {
     match outcome {
         Outcome::InstantLimit { s } => Outcome::InstantLimit { s: reverse(s) },
         Outcome::Zeno { accumulation } => Outcome::Zeno { accumulation: reverse(accumulation) },

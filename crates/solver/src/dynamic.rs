@@ -1,0 +1,91 @@
+//! Systems whose dimension is known at run time only.
+//!
+//! A [`DynamicSystem`] is to [`run_dynamic`] what a [`HybridSystem`](crate::HybridSystem) is to
+//! [`run`](crate::run). States are slices, so a chain of 20 000 oscillators runs in a thread with a
+//! small stack, and a mode has as many guards as it says.
+//!
+//! ```
+//! use stickslip_solver::{
+//!     Direction, Dop853, DynamicStart, DynamicSystem, Guard, Options, run_dynamic,
+//! };
+//!
+//! /// Balls that fall on a floor, each with its height and its velocity; all keep half their
+//! /// velocity.
+//! struct Balls {
+//!     guards: Vec<Guard>,
+//! }
+//!
+//! impl DynamicSystem for Balls {
+//!     type Mode = ();
+//!
+//!     fn field(&self, (): (), _time: f64, y: &[f64], slope: &mut [f64]) {
+//!         for (ball, slope) in y.chunks_exact(2).zip(slope.chunks_exact_mut(2)) {
+//!             slope.copy_from_slice(&[ball[1], -9.81]);
+//!         }
+//!     }
+//!     fn guards(&self, (): ()) -> &[Guard] {
+//!         &self.guards
+//!     }
+//!     fn guard_values(&self, (): (), _time: f64, y: &[f64], values: &mut [f64]) {
+//!         for (ball, value) in y.chunks_exact(2).zip(values) {
+//!             *value = ball[0];
+//!         }
+//!     }
+//!     fn transition(&self, (): (), guard: usize, _time: f64, y: &mut [f64]) {
+//!         (y[2 * guard], y[2 * guard + 1]) = (0.0, -0.5 * y[2 * guard + 1]);
+//!     }
+//! }
+//!
+//! // As many as a file says; here 40, the last of which falls for one second.
+//! let heights = (1..=40).map(|k| 4.905 * f64::from(k) / 40.0);
+//! let state: Vec<f64> = heights.flat_map(|height| [height, 0.0]).collect();
+//! let balls = Balls { guards: vec![Guard::new(Direction::Below); state.len() / 2] };
+//! let start = DynamicStart { mode: (), s: 0.0, state: &state };
+//! let mut bounces = Vec::new();
+//! let options = Options::default();
+//! let end = run_dynamic(Dop853, &balls, start, 1.1, &options, &mut bounces)?.finished()?;
+//! let last = bounces.iter().find(|bounce| bounce.guard == 39).expect("it falls for one second");
+//! assert!((last.s - 1.0).abs() < 1e-12 && last.before[78].abs() < 1e-12);
+//! assert_eq!((end.s, end.state.len()), (1.1, 80));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # What is the same
+//!
+//! Methods, [`Options`](crate::Options), step-size control, outcomes, errors, and the answers of
+//! the front page's table. The steps of a run without events are those of [`run`](crate::run), bit
+//! for bit. Every guard is a black box: it is sampled, like those of a
+//! [`HybridSystem`](crate::HybridSystem), and one that varies faster than the solution needs
+//! [`Options::guard_scale`](crate::Options::guard_scale). Events are located by steps of the method,
+//! so that they are as accurate as other places of the run.
+//!
+//! # What differs
+//!
+//! - No guard is read ([`ReadableSystem`](crate::ReadableSystem)), and there are no margins and no
+//!   sensitivities.
+//! - [`DynamicEvent::simultaneous`] is a list, so that it can name any number of guards.
+//! - Up to 8 components, the effect of rounding of the state on a guard is measured component by
+//!   component; beyond that, by moving all components at once, up and down at random.
+//! - A run allocates about 90 states when it starts, and at events. It allocates nothing on steps
+//!   without event.
+
+mod arrival;
+mod backwards;
+mod curve;
+mod dense;
+mod event;
+mod first_guard;
+mod first_step;
+mod locate;
+mod one_guard;
+mod phase;
+mod results;
+mod runner;
+mod step;
+mod system;
+
+pub use backwards::run_dynamic_backwards;
+pub use dense::DynamicDense;
+pub use results::{DynamicEvent, DynamicObserver, DynamicRun, DynamicSwitch};
+pub use runner::run_dynamic;
+pub use system::{DynamicStart, DynamicSystem};

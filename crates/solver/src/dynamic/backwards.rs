@@ -1,0 +1,94 @@
+//! Runs of dynamic systems that go backwards, as runs forwards in τ = −s.
+
+use crate::dynamic::dense::DynamicDense;
+use crate::dynamic::results::{DynamicEvent, DynamicObserver, DynamicRun};
+use crate::dynamic::runner::run_dynamic;
+use crate::dynamic::system::{DynamicStart, DynamicSystem};
+use crate::error::RunError;
+use crate::hybrid::{Grazing, Guard, Pole};
+use crate::method::Method;
+use crate::options::Options;
+use crate::runs::backwards::{original, reverse};
+
+/// Integrates `system` from `start` down to `end` < `start.s`, through every switch on the way.
+///
+/// It is to [`run_dynamic`] what [`run_backwards`](crate::run_backwards) is to
+/// [`run`](crate::run): directions of guards hold in the direction of integration, transitions are
+/// applied as they are written, and every s that is reported is the original one.
+///
+/// # Errors
+/// Those of [`run_dynamic`], and [`RunError::Span`] unless `end` < `start.s`.
+pub fn run_dynamic_backwards<M, S, O>(
+    method: M,
+    system: &S,
+    start: DynamicStart<'_, S::Mode>,
+    end: f64,
+    options: &Options,
+    observer: &mut O,
+) -> Result<DynamicRun<S::Mode>, RunError>
+where
+    M: Method,
+    S: DynamicSystem,
+    O: DynamicObserver<S::Mode>,
+{
+    let reversed = DynamicStart { s: reverse(start.s), ..start };
+    let mut observer = Reversed(observer);
+    match run_dynamic(method, &Reversed(system), reversed, reverse(end), options, &mut observer) {
+        Ok(run) => Ok(DynamicRun { s: reverse(run.s), outcome: original(run.outcome), ..run }),
+        Err(error) => Err(error.reversed()),
+    }
+}
+
+/// A system as a function of τ = −s, or the observer of a run in τ that passes s on.
+struct Reversed<T>(T);
+
+impl<S: DynamicSystem> DynamicSystem for Reversed<&S> {
+    type Mode = S::Mode;
+
+    fn field(&self, mode: S::Mode, tau: f64, y: &[f64], slope: &mut [f64]) {
+        self.0.field(mode, reverse(tau), y, slope);
+        for slope in slope {
+            *slope = -*slope;
+        }
+    }
+
+    fn guards(&self, mode: S::Mode) -> &[Guard] {
+        self.0.guards(mode)
+    }
+
+    fn guard_values(&self, mode: S::Mode, tau: f64, y: &[f64], values: &mut [f64]) {
+        self.0.guard_values(mode, reverse(tau), y, values);
+    }
+
+    fn transition(&self, mode: S::Mode, guard: usize, tau: f64, y: &mut [f64]) -> S::Mode {
+        self.0.transition(mode, guard, reverse(tau), y)
+    }
+}
+
+impl<O: DynamicObserver<Mode>, Mode: Copy> DynamicObserver<Mode> for Reversed<&mut O> {
+    const WANTS_SEGMENTS: bool = O::WANTS_SEGMENTS;
+
+    fn on_switch(&mut self, event: &DynamicEvent<'_, Mode>) {
+        self.0.on_switch(&DynamicEvent { s: reverse(event.s), ..*event });
+    }
+
+    fn on_grazing(&mut self, grazing: &Grazing<Mode>) {
+        self.0.on_grazing(&Grazing { s: reverse(grazing.s), ..*grazing });
+    }
+
+    fn on_pole(&mut self, pole: &Pole<Mode>) {
+        self.0.on_pole(&Pole { s: reverse(pole.s), ..*pole });
+    }
+
+    fn stops(&self) -> bool {
+        self.0.stops()
+    }
+
+    fn on_segment(&mut self, mode: Mode, dense: &DynamicDense<'_>) {
+        self.0.on_segment(mode, &dense.reversed());
+    }
+
+    fn on_end(&mut self, mode: Mode, tau: f64, state: &[f64]) {
+        self.0.on_end(mode, reverse(tau), state);
+    }
+}
