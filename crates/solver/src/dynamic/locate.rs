@@ -241,7 +241,12 @@ impl<S: DynamicSystem, O> Examination<'_, S, O> {
                         return None;
                     }
                 }
-                return Some(Landing { elapsed: h + moved, residual, slope: at.slope, jump: false });
+                return Some(Landing {
+                    elapsed: h + moved,
+                    residual,
+                    slope: at.slope,
+                    jump: false,
+                });
             }
             let Work { state, moved: middle, slope, .. } = &mut *self.work;
             shifted(middle, state, slope, 0.5 * shift);

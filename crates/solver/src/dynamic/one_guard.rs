@@ -166,7 +166,8 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Examination<'_, S, O> {
                 resolution: resolution(self.origin.s, step.h),
                 widest: self.guard_scale / step.h,
             };
-            let verdict = first_crossing(&mut self.along::<M>(guard, sign, step), &task, &mut notice)?;
+            let verdict =
+                first_crossing(&mut self.along::<M>(guard, sign, step), &task, &mut notice)?;
             self.report(guard, sign, step.h, noticed);
             let crossing = match verdict {
                 Verdict::None => continue,

@@ -189,7 +189,11 @@ impl Step {
 
     /// Makes the states at the [`INTERIOR_NODES`] known. Returns the evaluations of the right-hand
     /// side.
-    pub(crate) fn fill_interior<M: Method>(&mut self, field: &impl Field, from: Origin<'_>) -> usize {
+    pub(crate) fn fill_interior<M: Method>(
+        &mut self,
+        field: &impl Field,
+        from: Origin<'_>,
+    ) -> usize {
         if M::INTERIOR_STAGES.is_some() {
             return 0;
         }

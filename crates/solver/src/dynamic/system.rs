@@ -35,13 +35,7 @@ pub trait DynamicSystem {
     ///
     /// The provided version changes nothing. It is for guards that end the run, and for guards that
     /// only report a crossing. A run may call this function more than once for an event.
-    fn transition(
-        &self,
-        mode: Self::Mode,
-        _guard: usize,
-        _s: f64,
-        _y: &mut [f64],
-    ) -> Self::Mode {
+    fn transition(&self, mode: Self::Mode, _guard: usize, _s: f64, _y: &mut [f64]) -> Self::Mode {
         mode
     }
 }

@@ -11,10 +11,12 @@
 //! | `properties` | what holds of random systems; `checks` says it, for the fuzz targets too |
 //! | `planted_kinds` | random guards of every kind: steep, fast, kinked, with jumps and poles |
 //! | `strangers` | systems that nobody here designed for |
+//! | `dynamic` | systems whose dimension is known at run time |
 //! | `runs` | what surrounds a run: closures, runs backwards, samples, ends, defined answers |
 //! | `serialization` | the JSON of results |
 
 mod checks;
+mod dynamic;
 mod event_battery;
 mod guard_rounding;
 mod margins;
