@@ -4,8 +4,9 @@ use std::fmt;
 use std::time::Instant;
 
 use stickslip::solver::{
-    Guard, HybridSystem, Method, Number, Observer, Options, Outcome, ReadableSystem, RunError,
-    Start, State, SwitchEvent, run,
+    DynamicEvent, DynamicObserver, DynamicStart, DynamicSystem, Guard, HybridSystem, Method,
+    Number, Observer, Options, Outcome, ReadableSystem, RunError, Start, State, SwitchEvent, run,
+    run_dynamic,
 };
 
 use super::{Case, ExpectedOutcome, Place, Verdict};
@@ -19,6 +20,10 @@ pub enum Reading {
     BlackBox,
     /// It evaluates them only, and is told the shortest time on which a guard changes.
     ScaledBlackBox,
+    /// As [`Self::BlackBox`], with a dimension that is known at run time only.
+    Dynamic,
+    /// As [`Self::ScaledBlackBox`], with a dimension that is known at run time only.
+    ScaledDynamic,
 }
 
 /// A run of a case, and what it found.
@@ -58,6 +63,11 @@ impl fmt::Display for Report {
 /// # Panics
 /// The case has more components or guards than any other so far. Another line here then helps.
 pub fn run_case<M: Method>(method: M, case: &Case, reading: Reading) -> Report {
+    match reading {
+        Reading::Dynamic => return run_free(method, case, None),
+        Reading::ScaledDynamic => return run_free(method, case, case.guard_scale),
+        Reading::Readable | Reading::BlackBox | Reading::ScaledBlackBox => {}
+    }
     // Every pair is compiled for itself, so that there are few.
     match case.size() {
         (1, 1) => run_as::<M, 1, 1>(method, case, reading),
@@ -78,7 +88,7 @@ fn run_as<M: Method, const N: usize, const G: usize>(
     match reading {
         Reading::Readable => run_system(method, &readable, case, None),
         Reading::BlackBox => run_system(method, &BlackBox(readable), case, None),
-        Reading::ScaledBlackBox => run_system(method, &BlackBox(readable), case, case.guard_scale),
+        _ => run_system(method, &BlackBox(readable), case, case.guard_scale),
     }
 }
 
@@ -94,14 +104,42 @@ where
 {
     let (mode, s, state) = &case.start;
     let start = Start { mode: *mode, s: *s, state: State::from_column_slice(state) };
-    let options = Options { rtol: case.rtol, atol: case.atol, guard_scale, ..Options::default() };
     let mut events = Events { case, found: Vec::new() };
     let begin = Instant::now();
-    let result = run(method, system, start, case.end, &options, &mut events);
+    let result = run(method, system, start, case.end, &options(case, guard_scale), &mut events);
+    let result = result.map(|run| (run.outcome, run.statistics.field));
+    report(case, events.found, result, begin)
+}
+
+/// Runs a case as a system whose dimension is known at run time only.
+fn run_free<M: Method>(method: M, case: &Case, guard_scale: Option<f64>) -> Report {
+    let (mode, s, state) = &case.start;
+    let start = DynamicStart { mode: *mode, s: *s, state };
+    let guards = |mode: &super::Mode| mode.guards.iter().map(|guard| guard.guard).collect();
+    let system = Free { case, guards: case.modes.iter().map(guards).collect() };
+    let mut events = Events { case, found: Vec::new() };
+    let begin = Instant::now();
+    let options = options(case, guard_scale);
+    let result = run_dynamic(method, &system, start, case.end, &options, &mut events);
+    let result = result.map(|run| (run.outcome, run.statistics.field));
+    report(case, events.found, result, begin)
+}
+
+fn options(case: &Case, guard_scale: Option<f64>) -> Options {
+    Options { rtol: case.rtol, atol: case.atol, guard_scale, ..Options::default() }
+}
+
+/// What a run found that began at this moment.
+fn report(
+    case: &Case,
+    found: Vec<Place>,
+    result: Result<(Outcome, usize), RunError>,
+    begin: Instant,
+) -> Report {
     let seconds = begin.elapsed().as_secs_f64();
-    let field = result.as_ref().map_or(0, |run| run.statistics.field);
-    let failure = failure(case, result.map(|run| run.outcome));
-    Report { verdict: Verdict::of(case, events.found), failure, field, seconds }
+    let field = result.as_ref().map_or(0, |&(_, field)| field);
+    let failure = failure(case, result.map(|(outcome, _)| outcome));
+    Report { verdict: Verdict::of(case, found), failure, field, seconds }
 }
 
 /// How a run ended, if it did not end as expected.
@@ -139,6 +177,51 @@ impl<const N: usize> Observer<usize, N> for Events<'_> {
             let fired = together.filter(|k| event.simultaneous >> k & 1 == 1);
             self.found.extend(fired.map(|k| (event.s, k)));
         }
+    }
+}
+
+impl DynamicObserver<usize> for Events<'_> {
+    fn on_switch(&mut self, event: &DynamicEvent<'_, usize>) {
+        self.found.push((event.s, event.guard));
+        let guards = &self.case.modes[event.from].guards;
+        if guards[event.guard].is_noted() && !guards[event.guard].guard.ends_run() {
+            self.found.extend(event.simultaneous.iter().map(|&k| (event.s, k)));
+        }
+    }
+}
+
+/// A case whose dimension the solver learns at run time.
+struct Free<'a> {
+    case: &'a Case,
+    guards: Vec<Vec<Guard>>,
+}
+
+impl DynamicSystem for Free<'_> {
+    type Mode = usize;
+
+    fn field(&self, mode: usize, s: f64, y: &[f64], slope: &mut [f64]) {
+        for (slope, formula) in slope.iter_mut().zip(&self.case.modes[mode].field) {
+            *slope = formula.value(s, y);
+        }
+    }
+
+    fn guards(&self, mode: usize) -> &[Guard] {
+        &self.guards[mode]
+    }
+
+    fn guard_values(&self, mode: usize, s: f64, y: &[f64], values: &mut [f64]) {
+        for (value, guard) in values.iter_mut().zip(&self.case.modes[mode].guards) {
+            *value = guard.value.value(s, y);
+        }
+    }
+
+    fn transition(&self, mode: usize, guard: usize, s: f64, y: &mut [f64]) -> usize {
+        let guard = &self.case.modes[mode].guards[guard];
+        if let Some(formulas) = &guard.reset {
+            let after: Vec<f64> = formulas.iter().map(|formula| formula.value(s, y)).collect();
+            y.copy_from_slice(&after);
+        }
+        guard.to.unwrap_or(mode)
     }
 }
 

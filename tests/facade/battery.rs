@@ -43,3 +43,27 @@ fn a_black_box_has_no_event_too_many() {
         }
     }
 }
+
+/// Where the black box of fixed dimension is right, that of any dimension is.
+#[test]
+fn a_dynamic_system_is_right_where_a_black_box_is() {
+    let mut right = 0;
+    for case in cases() {
+        for (fixed, free) in [
+            (Reading::BlackBox, Reading::Dynamic),
+            (Reading::ScaledBlackBox, Reading::ScaledDynamic),
+        ] {
+            let (fixed, report) = (run_case(Dop853, &case, fixed), run_case(Dop853, &case, free));
+            assert!(report.is_right() || !fixed.is_right(), "{}, {free:?}: {report}", case.name);
+            let verdict = &report.verdict;
+            assert_eq!(
+                verdict.invented + verdict.misplaced,
+                0,
+                "{}, {free:?}: {report}",
+                case.name
+            );
+            right += usize::from(report.is_right());
+        }
+    }
+    assert!(right > 90, "{right}");
+}

@@ -64,11 +64,27 @@ struct Plain<F, V> {
     values: V,
 }
 
-impl<F, V> DynamicSystem for Plain<F, V>
+impl<'a, F, V> Plain<F, V>
 where
-    F: Fn(f64, &[f64], &mut [f64]),
-    V: Fn(f64, &[f64], &mut [f64]),
+    F: Fn(f64, &[f64], &mut [f64]) + 'a,
+    V: Fn(f64, &[f64], &mut [f64]) + 'a,
 {
+    /// The same system as one type for all closures, so that runs are compiled once.
+    fn boxed(self) -> Boxed<'a> {
+        Boxed { field: Box::new(self.field), guards: self.guards, values: Box::new(self.values) }
+    }
+}
+
+type Function<'a> = Box<dyn Fn(f64, &[f64], &mut [f64]) + 'a>;
+
+/// A system of one mode.
+struct Boxed<'a> {
+    field: Function<'a>,
+    guards: Vec<Guard>,
+    values: Function<'a>,
+}
+
+impl DynamicSystem for Boxed<'_> {
     type Mode = ();
 
     fn field(&self, (): (), s: f64, y: &[f64], slope: &mut [f64]) {

@@ -42,7 +42,8 @@ fn run_chain<M: Method>(
         field: |_s, y: &[f64], f: &mut [f64]| chain(y, f),
         guards: vec![Guard::new(direction)],
         values: |_s, y: &[f64], v: &mut [f64]| v[0] = y[watched],
-    };
+    }
+    .boxed();
     let mut switches = Vec::new();
     let options = Options::with_tolerance(1e-9);
     let run = go(method, &system, &state, end, &options, &mut switches).expect("a chain");
@@ -91,7 +92,8 @@ fn allocations<M: Method>(method: M, steps: usize) -> u64 {
             v[1] = y[0];
             v[2] = 1e-3 + (s * 7.0).sin().powi(2);
         },
-    };
+    }
+    .boxed();
     let (state, _) = normal_mode(50, 3);
     let options = Options { step_size: StepSize::Fixed(0.1), ..Options::default() };
     let mut isolations = 0;

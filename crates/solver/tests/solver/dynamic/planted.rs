@@ -18,11 +18,13 @@ fn check<M: Method>(
         field: |_s, y: &[f64], f: &mut [f64]| (f[0], f[1]) = (y[1], -y[0]),
         guards: vec![Guard::new(direction)],
         values: |s, _y: &[f64], v: &mut [f64]| v[0] = guard(s),
-    };
+    }
+    .boxed();
     let options = Options { guard_scale, ..Options::default() };
     let mut found = Vec::new();
     let run = go(method, &system, &[0.0, 1.0], 1.0, &options, &mut found);
-    run.map_err(|error| error.to_string())?.finished().map_err(|error| error.to_string())?;
+    let run = run.map_err(|error| error.to_string())?;
+    assert!(run.finished().is_ok());
     let found = places(&found);
     let right = found.len() == expected.len()
         && found.iter().zip(expected).all(|((s, _), root)| (s - root).abs() <= error);

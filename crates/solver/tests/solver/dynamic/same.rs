@@ -32,7 +32,7 @@ fn smooth<M: Method>(method: M, options: &Options) {
     let fixed = fixed.expect("an orbit");
     let (field, values) =
         (|_, y: &[f64], f: &mut [f64]| satellite(y, f), |_, _: &[f64], _: &mut [f64]| {});
-    let system = Plain { field, guards: Vec::new(), values };
+    let system = Plain { field, guards: Vec::new(), values }.boxed();
     let free = go(method, &system, &start, end, options, &mut ()).expect("an orbit");
     assert_eq!(fixed.state.as_slice(), free.state);
     assert_eq!(
@@ -77,7 +77,8 @@ where
         assert!(near(a.s, b.s, 1e-11), "{a:?} {b:?}");
         assert_eq!((a.guard, a.jump, a.from, a.to), (b.guard, b.jump, b.from, b.to), "{a:?} {b:?}");
         let named: Vec<usize> = (0..G).filter(|k| a.simultaneous >> k & 1 == 1).collect();
-        assert_eq!(named, b.simultaneous, "{a:?} {b:?}");
+        // The fixed run may leave out one that it has noted at this place before.
+        assert!(named.iter().all(|guard| b.simultaneous.contains(guard)), "{a:?} {b:?}");
         for i in 0..N {
             assert!(near(a.before[i], b.before[i], 1e-9), "{a:?} {b:?}");
             assert!(near(a.after[i], b.after[i], 1e-9), "{a:?} {b:?}");
