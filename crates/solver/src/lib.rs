@@ -82,6 +82,7 @@
 //! | a run back in time | [`run_backwards`] |
 //! | a tolerance for each component | [`Weighted`] |
 //! | a method that is named at run time | [`Pair`], [`run_with`] |
+//! | a dimension that is known at run time, many components, any number of guards | [`DynamicSystem`], [`run_dynamic`] |
 //! | how far a run is from another sequence of switches | [`fn@margins`], and the crate `stickslip-tracer` |
 //!
 //! # Defined answers
@@ -99,6 +100,7 @@
 //! | tolerances | Scalars in [`Options`]. [`Weighted`] has a relative and an absolute one for each component. |
 //! | the method | A type, compiled into the run. [`run_with`] chooses it at run time, with the same results bit for bit. |
 //! | backwards | [`run_backwards`]: s decreases, directions of guards hold in the direction of integration, and every reported s is the original one. |
+//! | a [`DynamicSystem`] | The same answers. Its guards are black boxes, and [`DynamicEvent::simultaneous`] names any number of them. |
 //!
 //! The repository's `examples` have fewer than 80 lines each and check themselves against a closed
 //! form or an independent value: `bouncing_ball` (switches that accumulate), `friction_belt`
@@ -116,6 +118,7 @@
 //! | `options`, `error` | settings of a run, and why it can fail |
 //! | `runs` | the loop from switch to switch; smooth problems, trajectories, runs without event location |
 //! | `events` | one step and its guards: which guard fires first, and where |
+//! | [`mod@dynamic`] | systems whose dimension is known at run time: the loop, events and steps on buffers |
 //! | [`method`] | Runge–Kutta pairs, one step, its dense output, step-size control, measured orders |
 //! | [`mod@margin`] | how near a run came to other switches |
 //! | [`sensitivity`] | derivatives of a run with respect to parameters |

@@ -152,11 +152,10 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Examination<'_, S, O> {
         if together
             && let Some(last) = self.notes.last_mut()
             && last.guard != event.guard
+            && let Err(place) = last.simultaneous.binary_search(&event.guard)
         {
-            if let Err(place) = last.simultaneous.binary_search(&event.guard) {
-                last.simultaneous.insert(place, event.guard);
-                return;
-            }
+            last.simultaneous.insert(place, event.guard);
+            return;
         }
         self.notes.push(event);
     }

@@ -167,8 +167,9 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
             self.statistics.accepted += 1;
             match self.options.step_size {
                 StepSize::Fixed(h) => self.h = h,
-                // The step was cut at the end or at an event.
-                StepSize::Adaptive if (last && event.is_none()) || target.is_some() => {}
+                // The last step was cut at the end.
+                StepSize::Adaptive if last && event.is_none() => {}
+                // A step that was cut at an event tells on what scale guards change here.
                 StepSize::Adaptive => self.h = self.controller.accepted::<M>(h, error),
             }
             if let Some(outcome) = self.report_notes::<M>() {

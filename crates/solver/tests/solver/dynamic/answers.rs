@@ -166,12 +166,32 @@ fn backwards_finds_the_places_of_forwards() {
     let run = run_dynamic_backwards(Dop853, &system, start, 0.0, &options, &mut backwards);
     assert!(run.expect("an oscillation").state[0].abs() < 1e-9);
     let pi = std::f64::consts::PI;
+    // Up to 40, where the run starts.
     let mut expected: Vec<f64> =
-        (0..).map(|k| pi / 6.0 + 2.0 * pi * f64::from(k)).take_while(|&s| s < 40.0).collect();
+        (0..7).map(|k| pi / 6.0 + 2.0 * pi * f64::from(k)).filter(|&s| s < 40.0).collect();
     expected.reverse();
     assert_eq!(backwards.len(), expected.len());
     for (found, expected) in backwards.iter().zip(expected) {
         assert!((found.s - expected).abs() < 1e-9);
+    }
+}
+
+/// A transition that leads to below the guard, again and again.
+struct Trap(Guard);
+impl DynamicSystem for Trap {
+    type Mode = bool;
+    fn field(&self, _: bool, _s: f64, _y: &[f64], slope: &mut [f64]) {
+        slope.fill(-1.0);
+    }
+    fn guards(&self, _: bool) -> &[Guard] {
+        std::slice::from_ref(&self.0)
+    }
+    fn guard_values(&self, _: bool, _s: f64, y: &[f64], values: &mut [f64]) {
+        values[0] = y[0];
+    }
+    fn transition(&self, mode: bool, _: usize, _s: f64, y: &mut [f64]) -> bool {
+        y[0] = -1.0;
+        !mode
     }
 }
 
@@ -187,24 +207,6 @@ fn limits() {
     assert_eq!(limited.outcome, Outcome::SwitchLimit);
     assert!((limited.s - 5.0 * std::f64::consts::PI / 6.0).abs() < 1e-9);
     assert!(limited.finished().is_err());
-    // A transition that leads to below the guard, again and again.
-    struct Trap(Guard);
-    impl DynamicSystem for Trap {
-        type Mode = bool;
-        fn field(&self, _: bool, _s: f64, _y: &[f64], slope: &mut [f64]) {
-            slope.fill(-1.0);
-        }
-        fn guards(&self, _: bool) -> &[Guard] {
-            std::slice::from_ref(&self.0)
-        }
-        fn guard_values(&self, _: bool, _s: f64, y: &[f64], values: &mut [f64]) {
-            values[0] = y[0];
-        }
-        fn transition(&self, mode: bool, _: usize, _s: f64, y: &mut [f64]) -> bool {
-            y[0] = -1.0;
-            !mode
-        }
-    }
     let start = DynamicStart { mode: true, s: 0.0, state: &[0.25] };
     let trapped =
         run_dynamic(Dop853, &Trap(Guard::new(Direction::Below)), start, 1.0, &options, &mut ());

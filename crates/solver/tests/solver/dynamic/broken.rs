@@ -1,8 +1,8 @@
 //! Inputs that nobody designed for.
 
 use stickslip_solver::{
-    Direction, Dop853, Dopri5, DynamicEvent, DynamicObserver, DynamicSwitch, Grazing, Guard,
-    Options, Outcome, StepSize,
+    Direction, Dop853, Dopri5, DynamicEvent, DynamicObserver, DynamicSwitch, DynamicSystem,
+    Grazing, Guard, Options, Outcome, StepSize,
 };
 
 use super::{Plain, go, places};
@@ -206,5 +206,43 @@ fn late_times_and_short_spans() {
     for end in [1e-300, 1e-20, 1e-8] {
         let run = go(Dopri5, &system, &[0.5, 1.0], end, &Options::default(), &mut ());
         assert_eq!(run.expect("short").s, end);
+    }
+}
+
+/// The floor changes the state, the apex is only noted; steps grow beyond all flights.
+struct Ball([Guard; 2]);
+
+impl DynamicSystem for Ball {
+    type Mode = ();
+
+    fn field(&self, (): (), _s: f64, y: &[f64], slope: &mut [f64]) {
+        (slope[0], slope[1]) = (y[1], -9.81);
+    }
+    fn guards(&self, (): ()) -> &[Guard] {
+        &self.0
+    }
+    fn guard_values(&self, (): (), _s: f64, y: &[f64], values: &mut [f64]) {
+        values.copy_from_slice(y);
+    }
+    fn transition(&self, (): (), guard: usize, _s: f64, y: &mut [f64]) {
+        if guard == 0 {
+            (y[0], y[1]) = (0.0, -0.9 * y[1]);
+        }
+    }
+}
+
+#[test]
+fn a_ball_whose_apex_is_noted_comes_to_rest() {
+    let ball = Ball([Guard::new(Direction::Below), Guard::new(Direction::Falling)]);
+    let rest = (3.0_f64 / 9.81).sqrt() * 1.9 / 0.1;
+    let options = Options::default();
+    for run in [
+        go(Dop853, &ball, &[1.5, 0.0], f64::INFINITY, &options, &mut ()),
+        go(Dopri5, &ball, &[1.5, 0.0], f64::INFINITY, &options, &mut ()),
+    ] {
+        let Outcome::Zeno { accumulation } = run.expect("a ball").outcome else {
+            panic!("no accumulation")
+        };
+        assert!((accumulation / rest - 1.0).abs() < 1e-11, "{accumulation} {rest}");
     }
 }
