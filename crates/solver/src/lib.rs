@@ -145,7 +145,7 @@ pub mod dynamic;
 
 pub use dynamic::{
     DynamicDense, DynamicEvent, DynamicObserver, DynamicRun, DynamicStart, DynamicSwitch,
-    DynamicSystem, run_dynamic, run_dynamic_backwards,
+    DynamicSystem, run_dynamic, run_dynamic_backwards, run_dynamic_with,
 };
 pub use error::RunError;
 pub use hybrid::{
