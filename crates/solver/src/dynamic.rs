@@ -37,7 +37,7 @@
 //! }
 //!
 //! // As many as a file says; here 40, the last of which falls for one second.
-//! let heights = (1..=40).map(|k| 4.905 * f64::from(k) / 40.0);
+//! let heights = (1..=40).map(|k| 1.905 + 3.0 * f64::from(k) / 40.0);
 //! let state: Vec<f64> = heights.flat_map(|height| [height, 0.0]).collect();
 //! let balls = Balls { guards: vec![Guard::new(Direction::Below); state.len() / 2] };
 //! let start = DynamicStart { mode: (), s: 0.0, state: &state };
