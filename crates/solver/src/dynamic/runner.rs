@@ -91,7 +91,7 @@ struct Runner<'a, S: DynamicSystem, O> {
     slope: Vec<f64>,
     /// The size of the next step.
     h: f64,
-    /// The size of the first step of the next phase, as in [`crate::runs::runner`].
+    /// As in [`crate::runs::runner`].
     other_h: Option<f64>,
     controller: Controller,
     zeno: Zeno,
@@ -169,7 +169,6 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
                 StepSize::Fixed(h) => self.h = h,
                 // The last step was cut at the end.
                 StepSize::Adaptive if last && event.is_none() => {}
-                // A step that was cut at an event tells on what scale guards change here.
                 StepSize::Adaptive => self.h = self.controller.accepted::<M>(h, error),
             }
             if let Some(outcome) = self.report_notes::<M>() {
