@@ -30,5 +30,6 @@ pub(crate) mod quick;
 
 pub(crate) use along_step::{dense_output, repeated_step};
 pub(crate) use event::{Event, Found, bit};
-pub(crate) use examination::Examination;
+pub(crate) use examination::{Examination, Noticed, values_on};
+pub(crate) use first_guard::all_clearly_away;
 pub(crate) use phase::Phase;

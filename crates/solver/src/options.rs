@@ -75,6 +75,11 @@ impl Options {
         Self { rtol: tolerance, atol: tolerance, ..Self::default() }
     }
 
+    /// The shortest time on which a guard of a black box may change, infinite if it is not known.
+    pub(crate) fn scale_of_guards(&self) -> f64 {
+        self.guard_scale.unwrap_or(f64::INFINITY)
+    }
+
     /// Checks every field.
     ///
     /// # Errors

@@ -11,6 +11,7 @@ mod both;
 mod by_name;
 pub(crate) mod clock;
 mod closures;
+pub(crate) mod finite;
 mod last_part;
 pub(crate) mod runner;
 mod samples;

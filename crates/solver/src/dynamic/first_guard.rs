@@ -15,6 +15,7 @@ use crate::events::isolate::Beginning;
 use crate::events::one_guard::{Crossing, Status};
 use crate::hybrid::Direction;
 use crate::method::Method;
+use crate::runs::finite::is_finite;
 
 impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Examination<'_, S, O> {
     /// Finds the first guard that fires on `step` and changes something. Guards that fire before it
@@ -136,7 +137,7 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Examination<'_, S, O> {
         let before = self.notes_of(event.guard).count();
         if about.direction() == Direction::Below
             || before + 1 == about.fires_until_end() as usize
-            || !event.state.iter().all(|value| value.is_finite())
+            || !is_finite(&event.state)
         {
             return false;
         }

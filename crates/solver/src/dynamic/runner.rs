@@ -15,6 +15,7 @@ use crate::method::Method;
 use crate::method::control::Controller;
 use crate::options::{Options, StepSize};
 use crate::runs::clock::{Clock, Zeno};
+use crate::runs::finite::{check_finite, is_finite};
 
 /// Integrates `system` from `start` to `end`, through every switch on the way.
 ///
@@ -216,7 +217,7 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
             system: self.system,
             phase: &self.phase,
             origin: Origin { s: self.clock.s, y: &self.state, slope: &self.slope },
-            guard_scale: self.options.guard_scale.unwrap_or(f64::INFINITY),
+            guard_scale: self.options.scale_of_guards(),
             tolerances: (self.options.rtol, self.options.atol),
             notes: &mut self.notes,
             tables: &mut self.tables,
@@ -387,13 +388,4 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
         let Work { moved, state, .. } = &mut self.work;
         first_step::<M>(&field, origin, tolerances, longest, (moved, state))
     }
-}
-
-fn is_finite(y: &[f64]) -> bool {
-    y.iter().all(|value| value.is_finite())
-}
-
-fn check_finite(s: f64, y: &[f64]) -> Result<(), RunError> {
-    let component = y.iter().position(|value| !value.is_finite());
-    component.map_or(Ok(()), |component| Err(RunError::State { s, component }))
 }

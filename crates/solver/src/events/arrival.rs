@@ -3,7 +3,7 @@
 use crate::events::along_step::rounding;
 use crate::events::event::Event;
 use crate::events::examination::Examination;
-use crate::hybrid::{Direction, HybridSystem, Observer};
+use crate::hybrid::{Direction, HybridSystem};
 use crate::method::Step;
 
 /// The part of the step over which a guard is differenced, on both sides of the end.
@@ -11,10 +11,9 @@ pub(crate) const REACH: f64 = 1e-3;
 /// An event this close to the end of its step is the one at the end.
 pub(crate) const SAME: f64 = 1e-6;
 
-impl<S, O, const N: usize, const G: usize> Examination<'_, S, O, N, G>
+impl<S, const N: usize, const G: usize> Examination<'_, S, N, G>
 where
     S: HybridSystem<N, G>,
-    O: Observer<S::Mode, N>,
 {
     /// Finds guards that are zero at the end of `step`, to within rounding, and cross there in
     /// their direction. Such a guard fires, since no other step will find it.

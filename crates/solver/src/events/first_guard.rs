@@ -2,63 +2,41 @@
 
 use crate::error::RunError;
 use crate::events::event::{Event, Found, bit};
-use crate::events::examination::{Examination, column};
+use crate::events::examination::{Examination, column, confirmed};
 use crate::events::isolate::{Beginning, Bracket};
 use crate::events::one_guard::{Crossing, Status};
+use crate::events::phase::Phase;
 use crate::events::quick;
-use crate::hybrid::{Direction, HybridSystem, Observer, SwitchEvent};
+use crate::hybrid::{Direction, HybridSystem, Statistics, SwitchEvent};
 use crate::method::{Method, Step};
 
 /// Guards whose zeros are closer together than this part of the step fire together.
 pub(crate) const TOGETHER: f64 = 1e-12;
 
-impl<S, O, const N: usize, const G: usize> Examination<'_, S, O, N, G>
+impl<S, const N: usize, const G: usize> Examination<'_, S, N, G>
 where
     S: HybridSystem<N, G>,
-    O: Observer<S::Mode, N>,
 {
     /// Finds the first guard that fires on `step` and changes something, and writes it to `event`,
-    /// which is empty. Guards that fire before it and change nothing are noted.
-    #[inline]
+    /// which is empty. Guards that fire before it and change nothing are noted. `values` are those
+    /// of the guards at the nodes of the step, and if all are `away` from zero, none fires.
+    #[inline(never)]
     pub(crate) fn look<M: Method>(
         &mut self,
         step: &mut Step<N>,
         event: &mut Option<Event<N>>,
+        values: &[[f64; G]; 6],
+        away: bool,
     ) -> Result<Found<G>, RunError> {
-        if G == 0 {
-            return Ok(Found::Nothing(self.phase.values));
-        }
-        let values = self.values_on(step);
-        if self.all_clearly_away(step, &values) {
+        if away {
             return Ok(Found::Nothing(values[5]));
         }
-        let statuses = self.glances::<M>(step, &values);
+        let statuses = self.glances::<M>(step, values);
         if statuses.iter().all(|&status| status == Status::Clear) {
-            Ok(Found::Nothing(self.on_their_side::<M>(step, &values)))
+            Ok(Found::Nothing(self.on_their_side::<M>(step, values)))
         } else {
-            self.decide::<M>(step, event, &values, statuses)
+            self.decide::<M>(step, event, values, statuses)
         }
-    }
-
-    /// Whether all guards stay clearly on the side where they do not fire. This holds on most
-    /// steps.
-    #[inline(always)]
-    fn all_clearly_away(&mut self, step: &Step<N>, values: &[[f64; G]; 6]) -> bool {
-        // The verdicts are collected in an array, so that the loop is unrolled and the values stay
-        // in registers.
-        let away: [bool; G] = std::array::from_fn(|guard| {
-            let column = column(values, guard);
-            match self.phase.guards[guard].direction() {
-                Direction::Off => true,
-                Direction::Below => column[0] > 0.0 && quick::clearly_away(column),
-                _ => quick::clearly_away(column),
-            }
-        });
-        let read = S::READABLE && !self.phase.smooth;
-        !self.phase.at_zero
-            && !read
-            && away == [true; G]
-            && self.confirmed(step, values) == [true; G]
     }
 
     /// Decides which guard fires first if the quick look alone does not tell that none fires.
@@ -188,7 +166,7 @@ where
             };
             statuses[guard] = Status::Clear;
             let on = event.as_ref().map_or(&*step, |event| &event.step);
-            let exact = O::WANTS_SEGMENTS
+            let exact = self.wants_segments
                 || event.is_some()
                 || statuses.iter().any(|&status| status != Status::Clear);
             let Some(mut next) = self.locate::<M>(on, guard, &crossing, exact)? else {
@@ -319,6 +297,33 @@ where
             })
             .fold(0, |bits, other| bits | 1 << other)
     }
+}
+
+/// Whether all guards stay clearly on the side where they do not fire. This holds on most steps.
+#[inline(always)]
+pub(crate) fn all_clearly_away<S: HybridSystem<N, G>, const N: usize, const G: usize>(
+    system: &S,
+    phase: &Phase<S::Mode, G>,
+    guard_scale: f64,
+    step: &Step<N>,
+    values: &[[f64; G]; 6],
+    statistics: &mut Statistics,
+) -> bool {
+    // The verdicts are collected in an array, so that the loop is unrolled and the values stay in
+    // registers.
+    let away: [bool; G] = std::array::from_fn(|guard| {
+        let column = column(values, guard);
+        match phase.guards[guard].direction() {
+            Direction::Off => true,
+            Direction::Below => column[0] > 0.0 && quick::clearly_away(column),
+            _ => quick::clearly_away(column),
+        }
+    });
+    let read = S::READABLE && !phase.smooth;
+    !phase.at_zero
+        && !read
+        && away == [true; G]
+        && confirmed(system, phase, guard_scale, step, values, statistics) == [true; G]
 }
 
 /// The largest absolute value of a guard at the nodes of a step.

@@ -9,7 +9,7 @@ use crate::events::event::Event;
 use crate::events::examination::Examination;
 use crate::events::isolate::{Bracket, narrow};
 use crate::events::one_guard::Crossing;
-use crate::hybrid::{HybridSystem, Observer};
+use crate::hybrid::HybridSystem;
 use crate::method::{Method, State, Step};
 
 /// The largest distance from the end of a repeated step to the switch, as a part of the step, that
@@ -31,10 +31,9 @@ pub(crate) const INSIDE: f64 = 0.1;
 /// slope.
 pub(crate) const LEAST_REACH: f64 = 1e-5;
 
-impl<S, O, const N: usize, const G: usize> Examination<'_, S, O, N, G>
+impl<S, const N: usize, const G: usize> Examination<'_, S, N, G>
 where
     S: HybridSystem<N, G>,
-    O: Observer<S::Mode, N>,
 {
     /// Ends `step` where `guard` crosses zero inside the bracket. If `exact`, the event's step ends
     /// exactly at the crossing; otherwise it ends within a small part of itself. The result is

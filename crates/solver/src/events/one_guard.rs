@@ -4,13 +4,13 @@ use std::marker::PhantomData;
 
 use crate::error::RunError;
 use crate::events::along_step::{AlongStep, EnclosedAlongStep, dense_output, repeated_step};
-use crate::events::examination::{Examination, column};
+use crate::events::examination::{Examination, Noticed, column};
 use crate::events::isolate::{
     Beginning, Bracket, Notice, Task, Verdict, first_crossing, first_enclosed_crossing, last_sign,
 };
 use crate::events::path::Path;
 use crate::events::quick::{self, Quick};
-use crate::hybrid::{Direction, Grazing, HybridSystem, Observer, Pole};
+use crate::hybrid::{Direction, Grazing, HybridSystem, Pole};
 use crate::method::{Method, Step, Trial};
 use crate::number::Enclosure;
 
@@ -53,10 +53,9 @@ impl Crossing {
     }
 }
 
-impl<S, O, const N: usize, const G: usize> Examination<'_, S, O, N, G>
+impl<S, const N: usize, const G: usize> Examination<'_, S, N, G>
 where
     S: HybridSystem<N, G>,
-    O: Observer<S::Mode, N>,
 {
     /// Whether the six values of a guard may decide: it is declared to be smooth, or it is a black
     /// box and other values agree with them.
@@ -322,10 +321,11 @@ where
                     self.statistics.grazings += 1;
                     let s = step.s + touch.theta * step.h;
                     let margin = sign * touch.margin;
-                    self.observer.on_grazing(&Grazing { s, mode, guard, margin });
+                    (self.tell)(Noticed::Touch(Grazing { s, mode, guard, margin }));
                 }
                 Notice::Pole(theta) => {
-                    self.observer.on_pole(&Pole { s: step.s + theta * step.h, mode, guard });
+                    let s = step.s + theta * step.h;
+                    (self.tell)(Noticed::Pole(Pole { s, mode, guard }));
                 }
             }
         }

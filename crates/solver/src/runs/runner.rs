@@ -6,12 +6,15 @@
 use std::cmp::Ordering;
 
 use crate::error::RunError;
-use crate::events::{Event, Examination, Found, Phase, bit, dense_output};
+use crate::events::{
+    Event, Examination, Found, Noticed, Phase, all_clearly_away, bit, dense_output, values_on,
+};
 use crate::hybrid::{HybridSystem, Observer, Outcome, Run, Start, Statistics, SwitchEvent};
 use crate::method::control::{Controller, first_step};
 use crate::method::{Method, State, Step, Trial};
 use crate::options::{Options, StepSize};
 use crate::runs::clock::{Clock, Zeno};
+use crate::runs::finite::{check_finite, is_finite};
 use crate::runs::last_part::last_part;
 
 /// Integrates `system` from `start` to `end`, through every switch on the way.
@@ -114,7 +117,7 @@ where
                 return Ok(outcome);
             }
             if self.clock.until(self.end) <= 0.0 {
-                check_finite(self.clock.s, &self.state)?;
+                check_finite(self.clock.s, self.state.as_slice())?;
                 return Ok(Outcome::ReachedEnd);
             }
             if self.observer.stops() {
@@ -155,44 +158,32 @@ where
             self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
             let error = match self.options.step_size {
                 StepSize::Adaptive => step.error,
-                StepSize::Fixed(_) if is_finite(&step.y1) => 0.0,
+                StepSize::Fixed(_) if is_finite(step.y1.as_slice()) => 0.0,
                 StepSize::Fixed(_) => f64::NAN,
             };
             // NaN is not good.
             if !matches!(error.partial_cmp(&1.0), Some(Ordering::Less)) {
-                self.reject::<M>(h, error, is_finite(&step.y1))?;
+                self.reject::<M>(h, error, is_finite(step.y1.as_slice()))?;
                 continue;
             }
             self.notes.clear();
-            let mut examination = Examination {
-                system,
-                phase: &self.phase,
-                trial: &trial,
-                guard_scale: self.options.guard_scale.unwrap_or(f64::INFINITY),
-                notes: &mut self.notes,
-                statistics: &mut self.statistics,
-                observer: self.observer,
-            };
-            match examination.look::<M>(step, event)? {
-                Found::Nothing(values) => {
-                    if last {
-                        examination.arrive(step, event);
-                    }
-                    if event.is_none() {
-                        self.phase.advance(values);
-                    }
+            let values = values_on(system, &self.phase, step, &mut self.statistics);
+            let (phase, statistics) = (&self.phase, &mut self.statistics);
+            let scale = self.options.scale_of_guards();
+            let away = all_clearly_away(system, phase, scale, step, &values, statistics);
+            if away && !last {
+                self.phase.advance(values[5]);
+            } else if let Some(guard) =
+                self.look_closely::<M>(h, step, event, (&values, away), last)?
+            {
+                self.statistics.too_coarse += 1;
+                cuts += 1;
+                self.h = 0.2 * h;
+                // A step that does not move the time is useless.
+                if cuts > 60 || self.h <= f64::EPSILON * self.clock.s.abs() {
+                    return Err(RunError::GuardUnresolved { guard, s: self.clock.s, h });
                 }
-                Found::Event => {}
-                Found::TooCoarse(guard) => {
-                    self.statistics.too_coarse += 1;
-                    cuts += 1;
-                    self.h = 0.2 * h;
-                    // A step that does not move the time is useless.
-                    if cuts > 60 || self.h <= f64::EPSILON * self.clock.s.abs() {
-                        return Err(RunError::GuardUnresolved { guard, s: self.clock.s, h });
-                    }
-                    continue;
-                }
+                continue;
             }
             self.statistics.accepted += 1;
             match self.options.step_size {
@@ -237,6 +228,48 @@ where
             }
             return Ok(None);
         }
+    }
+
+    /// Examines a `step` of size `h` whose guards have these `values` at its nodes. Returns the
+    /// guard for which the step is too coarse, if there is one.
+    #[inline(never)]
+    fn look_closely<M: Method>(
+        &mut self,
+        h: f64,
+        step: &mut Step<N>,
+        event: &mut Option<Event<N>>,
+        (values, away): (&[[f64; G]; 6], bool),
+        last: bool,
+    ) -> Result<Option<usize>, RunError> {
+        let observer = &mut *self.observer;
+        let mut tell = |noticed: Noticed<S::Mode>| match noticed {
+            Noticed::Touch(touch) => observer.on_grazing(&touch),
+            Noticed::Pole(pole) => observer.on_pole(&pole),
+        };
+        let tolerances = (self.options.rtol, self.options.atol);
+        let trial = Trial { s: self.clock.s, y: &self.state, slope: &self.slope, h, tolerances };
+        let mut examination = Examination {
+            system: self.system,
+            phase: &self.phase,
+            trial: &trial,
+            guard_scale: self.options.scale_of_guards(),
+            notes: &mut self.notes,
+            statistics: &mut self.statistics,
+            wants_segments: O::WANTS_SEGMENTS,
+            tell: &mut tell,
+        };
+        let at_end = match examination.look::<M>(step, event, values, away)? {
+            Found::Nothing(at_end) => at_end,
+            Found::Event => return Ok(None),
+            Found::TooCoarse(guard) => return Ok(Some(guard)),
+        };
+        if last {
+            examination.arrive(step, event);
+        }
+        if event.is_none() {
+            self.phase.advance(at_end);
+        }
+        Ok(None)
     }
 
     /// Shows an accepted step to the observer, if it wants to see steps.
@@ -293,7 +326,7 @@ where
     /// Reports the switch and enters the next phase, or ends the run.
     fn switch(&mut self, event: &Event<N>) -> Result<Option<Outcome>, RunError> {
         let (s, from, guard) = (self.clock.s, self.phase.mode, event.guard);
-        check_finite(s, &event.state)?;
+        check_finite(s, event.state.as_slice())?;
         let ends = self.phase.guards[guard].ends_run();
         let (to, after) = if ends {
             (from, event.state)
@@ -342,10 +375,10 @@ where
 
     fn refresh_slope(&mut self) -> Result<(), RunError> {
         let s = self.clock.s;
-        check_finite(s, &self.state)?;
+        check_finite(s, self.state.as_slice())?;
         self.slope = self.system.field(self.phase.mode, s, &self.state);
         self.statistics.field += 1;
-        if is_finite(&self.slope) {
+        if is_finite(self.slope.as_slice()) {
             Ok(())
         } else {
             Err(RunError::Field { s, step: self.statistics.tried() })
@@ -360,13 +393,4 @@ where
         let tolerances = (self.options.rtol, self.options.atol);
         first_step::<M, N>(&mut field, self.clock.s, &self.state, &self.slope, tolerances, longest)
     }
-}
-
-fn is_finite<const N: usize>(y: &State<N>) -> bool {
-    y.iter().all(|value| value.is_finite())
-}
-
-fn check_finite<const N: usize>(s: f64, y: &State<N>) -> Result<(), RunError> {
-    let component = y.iter().position(|value| !value.is_finite());
-    component.map_or(Ok(()), |component| Err(RunError::State { s, component }))
 }
