@@ -1,8 +1,8 @@
 //! Atlases of the collision: every boundary traced, the plane subdivided, and both held against
 //! collisions, references and closed forms.
 //!
-//! `cargo run --release --example atlas_against_engines` does the same with more points, also up to
-//! κ = 1000.
+//! `cargo run --release -p validation --example atlas_against_engines` does the same with more
+//! points, also up to κ = 1000.
 
 use std::sync::LazyLock;
 

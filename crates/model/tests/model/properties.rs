@@ -1,7 +1,7 @@
 //! Properties of every collision, checked for a number of random ones.
 //!
 //! A fuzz target (`fuzz/fuzz_targets/collisions.rs`) checks them for as long as it runs, and
-//! `cargo run --release --example full_range -- 1000000` for a million collisions.
+//! `cargo run --release -p validation --example full_range -- 1000000` for a million collisions.
 
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestError, TestRng, TestRunner};

@@ -15,8 +15,8 @@ const LAYERS: [&[&str]; 8] = [
     &["stickslip-studies"],
     &["stickslip-reproduction"],
     &["stickslip", "stickslip-cli"],
-    // Tests alone.
-    &["repository"],
+    // Tests and long batteries alone.
+    &["repository", "validation"],
 ];
 
 /// Crates of programs, which no library may use: files, formats of the terminal, progress bars.

@@ -6,7 +6,7 @@ use crate::method::Method;
 /// A size for the first step, from the sizes of the state, of its derivative and of its second
 /// derivative. `moved` and `slope` are room.
 pub(crate) fn first_step<M: Method>(
-    field: &impl Field,
+    field: &dyn Field,
     from: Origin<'_>,
     (rtol, atol): (f64, f64),
     longest: f64,

@@ -4,7 +4,8 @@
 use crate::dynamic::dense::DynamicDense;
 use crate::method::{INTERIOR_NODES, MAX_STAGES, Method, Tableau, add_product};
 
-/// A right-hand side: it writes the slope at a time and a state.
+/// A right-hand side: it writes the slope at a time and a state. Steps dispatch it at run time, which
+/// slices hardly notice, and so are compiled once for each method.
 pub(crate) trait Field: Fn(f64, &[f64], &mut [f64]) {}
 
 impl<F: Fn(f64, &[f64], &mut [f64])> Field for F {}
@@ -64,7 +65,7 @@ impl Step {
     }
 
     /// Takes a step of size `h`, without its error and its interior.
-    pub(crate) fn take_end<M: Method>(&mut self, field: &impl Field, from: Origin<'_>, h: f64) {
+    pub(crate) fn take_end<M: Method>(&mut self, field: &dyn Field, from: Origin<'_>, h: f64) {
         let tableau: &'static Tableau = const { &M::TABLEAU };
         let Self { n, k, stage, interior, y1, .. } = self;
         let n = *n;
@@ -93,7 +94,7 @@ impl Step {
     /// Takes a step of size `h` with an estimate of its error.
     pub(crate) fn take<M: Method>(
         &mut self,
-        field: &impl Field,
+        field: &dyn Field,
         from: Origin<'_>,
         h: f64,
         (rtol, atol): (f64, f64),
@@ -135,7 +136,7 @@ impl Step {
     }
 
     /// Makes the slope at the end known. Returns the evaluations of the right-hand side.
-    pub(crate) fn finish<M: Method>(&mut self, field: &impl Field, from: Origin<'_>) -> usize {
+    pub(crate) fn finish<M: Method>(&mut self, field: &dyn Field, from: Origin<'_>) -> usize {
         if self.finished {
             return 0;
         }
@@ -151,7 +152,7 @@ impl Step {
     }
 
     /// Makes the dense output known. Returns the evaluations of the right-hand side.
-    pub(crate) fn extend<M: Method>(&mut self, field: &impl Field, from: Origin<'_>) -> usize {
+    pub(crate) fn extend<M: Method>(&mut self, field: &dyn Field, from: Origin<'_>) -> usize {
         if self.dense {
             return 0;
         }
@@ -191,7 +192,7 @@ impl Step {
     /// side.
     pub(crate) fn fill_interior<M: Method>(
         &mut self,
-        field: &impl Field,
+        field: &dyn Field,
         from: Origin<'_>,
     ) -> usize {
         if M::INTERIOR_STAGES.is_some() {

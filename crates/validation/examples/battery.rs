@@ -6,9 +6,11 @@
 //! and as a black box that is told the scale of its guards, where the case has one. The results of
 //! SciPy and heyoka are those that `tests/battery/peers.py` wrote.
 //!
-//! Run with `cargo run --release --example battery`, or with `-- dopri5` for the other method.
+//! Run with `cargo run --release -p validation --example battery`, or with `-- dopri5` for the other
+//! method.
 
-#[path = "../tests/battery/cases.rs"]
+#[path = "../../../tests/battery/cases.rs"]
+#[allow(dead_code, reason = "the tests of the facade use the rest")]
 mod cases;
 
 use std::error::Error;
@@ -62,7 +64,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         Some("dopri5") => true,
         Some(other) => return Err(format!("the method is dop853 or dopri5, not {other}").into()),
     };
-    let peers: Value = serde_json::from_str(include_str!("../tests/battery/peers.json"))?;
+    let peers: Value = serde_json::from_str(include_str!("../../../tests/battery/peers.json"))?;
     println!("| case | readable | black box | black box with scale | SciPy | heyoka |");
     println!("|---|---|---|---|---|---|");
     let mut right = [0; 3];

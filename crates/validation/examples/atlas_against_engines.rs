@@ -6,8 +6,8 @@
 //! solution too. Points within 1e-9 of a boundary are undecided. Fails if a point is wrong or
 //! anything speaks against an atlas.
 //!
-//! Run with `cargo run --release --example atlas_against_engines -- [COUNT] [NEAR]`; a million and
-//! a hundred thousand without arguments.
+//! Run with `cargo run --release -p validation --example atlas_against_engines -- [COUNT] [NEAR]`;
+//! a million and a hundred thousand without arguments.
 
 use std::error::Error;
 use std::time::Instant;

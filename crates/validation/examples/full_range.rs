@@ -6,8 +6,8 @@
 //! of each engine. The program prints the number of results for each part of the range, and fails
 //! if a check fails.
 //!
-//! Run with `cargo run --release --example full_range -- [COUNT] [SEED]`; 100 000 without
-//! arguments.
+//! Run with `cargo run --release -p validation --example full_range -- [COUNT] [SEED]`; 100 000
+//! without arguments.
 
 use std::collections::BTreeMap;
 use std::process::ExitCode;
@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 use stickslip::model::{Collider, Collision, Contact};
 use stickslip::solver::{Dop853, Dopri5};
 
-#[path = "../tests/checks/collision.rs"]
+#[path = "../../../tests/checks/collision.rs"]
 #[allow(dead_code, reason = "the fuzz targets and tests use the rest")]
 mod checks;
 

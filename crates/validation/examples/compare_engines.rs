@@ -5,8 +5,8 @@
 //! the least relative change of ψ that changes the itinerary of the exact engine. It fails if a
 //! collision with a margin of 1e-12 or more differs.
 //!
-//! Run with `cargo run --release --example compare_engines -- [COUNT] [SEED]`; one million without
-//! arguments.
+//! Run with `cargo run --release -p validation --example compare_engines -- [COUNT] [SEED]`; one
+//! million without arguments.
 
 use std::process::ExitCode;
 

@@ -1,12 +1,12 @@
 //! Random planted guards of every kind, and how many of them a run finds right: readable systems,
 //! black boxes, and black boxes whose guards name their time scale.
 //!
-//! `cargo run --release -p stickslip-solver --example planted -- 1000000` prints the table of
+//! `cargo run --release -p validation --example planted -- 1000000` prints the table of
 //! docs/validation.md. Further arguments: how many wrong cases to describe for each kind, and the
 //! number of the only kind to run.
 
 #[allow(dead_code)]
-#[path = "../tests/solver/planted_kinds.rs"]
+#[path = "../../solver/tests/solver/planted_kinds.rs"]
 mod planted_kinds;
 
 use planted_kinds::{Found, Reading, Shape, random_case};
