@@ -10,6 +10,7 @@
 //! | `first_guard` | which guard of a step fires first |
 //! | `one_guard` | what one guard does on a step |
 //! | `quick` | the first look at a guard, from six values that the step already has |
+//! | `by_bounds` | the first look at a guard of a readable system |
 //! | `isolate` | the decision about a guard, from its monotone pieces |
 //! | `path` | bounds for the state along a step, for the guards of readable systems |
 //! | `along_step` | a guard as a function along a step, and its rounding |
@@ -18,6 +19,7 @@
 
 pub(crate) mod along_step;
 pub(crate) mod arrival;
+mod by_bounds;
 mod event;
 mod examination;
 pub(crate) mod first_guard;

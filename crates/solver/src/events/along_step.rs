@@ -94,6 +94,13 @@ where
         self.sign * self.system.guard_values(self.mode, s, y)[self.guard]
     }
 
+    /// Bounds of the guard from bounds of time and state.
+    fn enclose(&mut self, (s, y): (Enclosure, [Enclosure; N])) -> Enclosure {
+        self.statistics.enclosures += 1;
+        let bounds = self.system.enclose_guards(self.mode, s, &y)[self.guard];
+        if self.sign < 0.0 { -bounds } else { bounds }
+    }
+
     /// The state by a step of the method to `theta`, and the guard's value there.
     fn step_to(&mut self, theta: f64) -> Result<(State<N>, f64), RunError> {
         let (system, mode, step) = (self.system, self.mode, self.step);
@@ -153,11 +160,21 @@ where
     M: Method,
 {
     fn over(&mut self, low: f64, high: f64) -> Enclosure {
-        let AlongStep { system, mode, guard, sign, .. } = self.along;
-        self.along.statistics.enclosures += 1;
-        let (s, y) = self.local.as_ref().unwrap_or(&self.path).over(low, high);
-        let bounds = system.enclose_guards(mode, s, &y)[guard];
-        if sign < 0.0 { -bounds } else { bounds }
+        let part = self.local.as_ref().unwrap_or(&self.path).part(low, high);
+        self.along.enclose(part.whole())
+    }
+
+    fn bounds(&mut self, low: f64, high: f64) -> (Enclosure, Enclosure) {
+        let part = self.local.as_ref().unwrap_or(&self.path).part(low, high);
+        let plain = self.along.enclose(part.whole());
+        if plain.value.sign() != 0.0 {
+            return (plain, plain);
+        }
+        let centre = self.along.enclose(part.centre());
+        if !plain.slope.is_bounded() {
+            return (plain, centre);
+        }
+        (plain.about(&centre, 0.5 * (high - low)), centre)
     }
 
     fn truth(&mut self, theta: f64) -> Result<(f64, Interval), RunError> {

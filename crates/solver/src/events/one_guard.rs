@@ -12,7 +12,6 @@ use crate::events::path::Path;
 use crate::events::quick::{self, Quick};
 use crate::hybrid::{Direction, Grazing, HybridSystem, Pole};
 use crate::method::{Method, Step, Trial};
-use crate::number::Enclosure;
 
 /// A guard that is zero throughout a step is examined on longer steps, each four times as long as
 /// the one before, at most this often. The shortest step that moves the time grows to ordinary
@@ -20,8 +19,6 @@ use crate::number::Enclosure;
 pub(crate) const LONGER: i32 = 26;
 /// The narrowest part of a step that is worth dividing.
 pub(crate) const FINEST: f64 = 1.0 / (1_u64 << 48) as f64;
-/// A quick look with bounds divides a step at most into 2 to this power parts.
-const HALVINGS: u32 = 3;
 
 /// What is known about a guard on the step at hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,86 +116,6 @@ where
                 _ => Status::Unclear,
             },
             Quick::Unclear => Status::Unclear,
-        }
-    }
-
-    /// What bounds of a guard along the quick path tell about it.
-    fn glance_at_bounds<M: Method>(
-        &mut self,
-        guard: usize,
-        column: &[f64; 6],
-        path: &Path<N>,
-    ) -> Status {
-        let (about, order) = (self.phase.guards[guard], self.phase.zero_orders[guard]);
-        let below = about.direction() == Direction::Below;
-        let [start, .., end] = *column;
-        if order == 0 && start == 0.0 || end == 0.0 {
-            return Status::Unclear;
-        }
-        let bounds = self.bounds(guard, path, 0.0, 1.0);
-        let monotone = bounds.slope.is_bounded() && bounds.slope.sign() != 0.0;
-        // The side on which the guard is throughout, but for a known zero at the start.
-        let side = match order {
-            0 if monotone && start * end > 0.0 => start,
-            0 => self.side(guard, path, (0.0, 1.0), HALVINGS),
-            1 if monotone => bounds.slope.sign(),
-            2 if bounds.slope.is_bounded() => bounds.bend.sign(),
-            _ => 0.0,
-        };
-        if side < 0.0 && below {
-            return Status::Fires(Crossing::at_start(1.0));
-        }
-        if side != 0.0 {
-            return Status::Clear;
-        }
-        if order == 0 && monotone {
-            if below && start < 0.0 {
-                return Status::Fires(Crossing::at_start(1.0));
-            }
-            // The guard crosses once. It is located from here if its six values tell where.
-            let fires = match about.direction() {
-                Direction::Either => true,
-                Direction::Rising => start < 0.0,
-                _ => start > 0.0,
-            };
-            return if fires { self.glance::<M>(guard, column) } else { Status::Clear };
-        }
-        Status::Unclear
-    }
-
-    /// Bounds of a guard between two step fractions, along a path.
-    fn bounds(&mut self, guard: usize, path: &Path<N>, low: f64, high: f64) -> Enclosure {
-        let mut over = |low: f64, high: f64| {
-            self.statistics.enclosures += 1;
-            let (s, y) = path.over(low, high);
-            self.system.enclose_guards(self.phase.mode, s, &y)[guard]
-        };
-        let plain = over(low, high);
-        if plain.value.sign() != 0.0 || !plain.slope.is_bounded() {
-            return plain;
-        }
-        let middle = 0.5 * (low + high);
-        plain.about(&over(middle, middle), 0.5 * (high - low))
-    }
-
-    /// The sign that a guard has between two step fractions, 0 if the bounds do not exclude zero.
-    fn side(
-        &mut self,
-        guard: usize,
-        path: &Path<N>,
-        (low, high): (f64, f64),
-        halvings: u32,
-    ) -> f64 {
-        let sign = self.bounds(guard, path, low, high).value.sign();
-        if sign != 0.0 || halvings == 0 {
-            return sign;
-        }
-        let middle = 0.5 * (low + high);
-        let left = self.side(guard, path, (low, middle), halvings - 1);
-        if left != 0.0 && self.side(guard, path, (middle, high), halvings - 1) == left {
-            left
-        } else {
-            0.0
         }
     }
 

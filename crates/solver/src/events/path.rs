@@ -6,7 +6,7 @@
 //! step, from a step of the method to that place. On a short part of the step its error is of the
 //! size of rounding.
 
-use crate::events::quick::{NODES, expand};
+use crate::events::quick::{NODES, each, expand};
 use crate::method::{Dense, State, Step};
 use crate::number::{Enclosure, Interval};
 
@@ -23,25 +23,30 @@ const NEARER: f64 = 1.0 / 16.0;
 /// The rounding of a polynomial, relative to the sum of its terms.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
-/// A component of the state along a step.
-#[derive(Clone, Copy)]
-struct Component {
-    /// The coefficients of powers of the step fraction.
-    terms: [f64; TERMS],
-    /// The sum of the terms beyond the constant one.
-    size: f64,
-    /// A bound for the error of the polynomial.
-    error: f64,
-    /// A bound for the rounding of the state at the end of the step.
-    rounding: f64,
-}
-
 /// The state along a step.
+///
+/// Terms and bounds lie component beside component, so that all components are computed at once.
 pub(crate) struct Path<const N: usize> {
     s: f64,
     h: f64,
-    components: [Component; N],
+    /// The coefficients of powers of the step fraction.
+    terms: [[f64; N]; TERMS],
+    /// The sums of the terms beyond the constant one.
+    size: [f64; N],
+    /// Bounds for the errors of the polynomials.
+    error: [f64; N],
+    /// Bounds for the rounding of the state at the end of the step.
+    rounding: [f64; N],
     kind: Kind,
+}
+
+/// A path about the middle of a part of the step.
+pub(crate) struct Part<'a, const N: usize> {
+    path: &'a Path<N>,
+    low: f64,
+    high: f64,
+    /// The coefficients about the middle.
+    terms: [[f64; N]; TERMS],
 }
 
 /// How a path is made, which says how its error varies.
@@ -53,34 +58,43 @@ enum Kind {
     Local(f64, f64),
 }
 
-/// Bounds of an error and of its first two derivatives.
-#[derive(Clone, Copy)]
-struct Band([f64; 3]);
-
 impl<const N: usize> Path<N> {
+    fn new(
+        (s, h): (f64, f64),
+        terms: [[f64; N]; TERMS],
+        error: [f64; N],
+        ends: [f64; N],
+        kind: Kind,
+    ) -> Self {
+        let size = each(|i| terms[1..].iter().map(|term| term[i].abs()).sum());
+        let rounding = ends.map(|end| 2.0 * f64::EPSILON * end);
+        Self { s, h, terms, size, error, rounding, kind }
+    }
+
     /// The path along the six states of a step. The part `trust` of the next-to-last term counts
     /// as error.
     pub(crate) fn quick(step: &Step<N>, trust: f64) -> Self {
         let [a, b, c, d] = &step.interior;
-        let states = [&step.y0, a, b, c, d, &step.y1];
-        let components = std::array::from_fn(|i| {
-            let values = states.map(|state| state[i]);
-            let (terms, error) = expand(&values, trust);
-            let mut all = [0.0; TERMS];
-            all[..NODES.len()].copy_from_slice(&terms);
-            Component::new(all, error, values[0].abs().max(values[5].abs()))
-        });
-        Self { s: step.s, h: step.h, components, kind: Kind::Quick }
+        let states = [&step.y0, a, b, c, d, &step.y1].map(|state| each(|i| state[i]));
+        let (quintic, error) = expand(&states, trust);
+        let mut terms = [[0.0; N]; TERMS];
+        terms[..NODES.len()].copy_from_slice(&quintic);
+        let ends = each(|i| states[0][i].abs().max(states[5][i].abs()));
+        Self::new((step.s, step.h), terms, error, ends, Kind::Quick)
     }
 
     /// The path along the dense output of a step.
     pub(crate) fn dense(dense: &Dense<N>) -> Self {
-        let components = std::array::from_fn(|i| {
-            let (terms, last) = dense.terms(i);
-            let ends = terms[0].abs().max(terms.iter().sum::<f64>().abs());
-            Component::new(terms, SAFETY * last, ends)
-        });
-        Self { s: dense.start(), h: dense.size(), components, kind: Kind::Dense }
+        let (mut terms, mut error, mut ends) = ([[0.0; N]; TERMS], [0.0; N], [0.0; N]);
+        for i in 0..N {
+            let (along, last) = dense.terms(i);
+            ends[i] = along[0].abs().max(along.iter().sum::<f64>().abs());
+            error[i] = SAFETY * last;
+            for (term, along) in terms.iter_mut().zip(along) {
+                term[i] = along;
+            }
+        }
+        Self::new((dense.start(), dense.size()), terms, error, ends, Kind::Dense)
     }
 
     /// The path between two step fractions from the state `y` in the middle, with its first and
@@ -92,106 +106,128 @@ impl<const N: usize> Path<N> {
         [y, slope, bend]: [&State<N>; 3],
     ) -> Option<Self> {
         let (middle, radius) = (0.5 * (low + high), 0.5 * (high - low));
-        let mut better = true;
-        let components = std::array::from_fn(|i| {
-            let from = &self.components[i];
-            let about = from.about(middle);
-            let beyond = about[3..].iter().rev().fold(0.0, |sum, c| sum * radius + c.abs());
+        let about = self.about::<TERMS>(middle);
+        let error = each(|i| {
+            let beyond = about[3..].iter().rev().fold(0.0, |sum, c| sum * radius + c[i].abs());
             let error = beyond * radius.powi(3);
             // Steps of the method to neighbouring places do not follow the right-hand side exactly.
-            let error = SAFETY * error + 8.0 * from.error * radius;
-            let Band([present, ..]) = from.band(low, high, self.kind);
-            let mut terms = [0.0; TERMS];
-            terms[..3].copy_from_slice(&[y[i], self.h * slope[i], 0.5 * self.h * self.h * bend[i]]);
-            let local = Component::new(terms, error, y[i].abs());
-            better &= local.error <= NEARER * present || local.error <= local.rounding;
-            local
+            SAFETY * error + 8.0 * self.error[i] * radius
         });
+        let mut terms = [[0.0; N]; TERMS];
+        terms[0] = each(|i| y[i]);
+        terms[1] = each(|i| self.h * slope[i]);
+        terms[2] = each(|i| 0.5 * self.h * self.h * bend[i]);
+        let ends = terms[0].map(f64::abs);
         let kind = Kind::Local(middle, radius);
-        better.then_some(Self { s: self.s, h: self.h, components, kind })
+        let local = Self::new((self.s, self.h), terms, error, ends, kind);
+        let [present, ..] = self.band(low, high);
+        let better = (0..N)
+            .all(|i| local.error[i] <= NEARER * present[i] || local.error[i] <= local.rounding[i]);
+        better.then_some(local)
     }
 
-    /// Bounds for the time and the state between two step fractions, with their derivatives by the
-    /// step fraction.
-    pub(crate) fn over(&self, low: f64, high: f64) -> (Enclosure, [Enclosure; N]) {
-        let range = Interval::new(low, high);
-        let time = Enclosure {
-            value: Interval::point(self.s).plus(range.scaled(self.h)),
-            slope: Interval::point(self.h),
-            bend: Interval::ZERO,
+    /// The part between two step fractions.
+    pub(crate) fn part(&self, low: f64, high: f64) -> Part<'_, N> {
+        let middle = 0.5 * (low + high);
+        let terms = match self.kind {
+            Kind::Quick => self.about::<{ NODES.len() }>(middle),
+            Kind::Dense => self.about::<TERMS>(middle),
+            Kind::Local(origin, _) => self.about::<3>(middle - origin),
         };
-        (time, self.components.map(|component| component.over(low, high, self.kind)))
-    }
-}
-
-impl Component {
-    fn new(terms: [f64; TERMS], error: f64, ends: f64) -> Self {
-        let size = terms[1..].iter().map(|term| term.abs()).sum();
-        Self { terms, size, error, rounding: 2.0 * f64::EPSILON * ends }
+        Part { path: self, low, high, terms }
     }
 
-    /// The bounds of the error between two step fractions.
-    fn band(&self, low: f64, high: f64, kind: Kind) -> Band {
-        let (left, right) = (high, 1.0 - low);
-        let (e, r) = (self.error, self.rounding);
-        let near = left.min(right);
-        let truncation = match kind {
-            // Markov's inequality for polynomials of degree 5.
-            Kind::Quick => [e * (50.0 * left).min(1.0), 50.0 * e, 800.0 * e],
-            // The error is at most of the size of 16 θ²(1−θ)² times `error`.
-            Kind::Dense => {
-                [e * (16.0 * near * near).min(1.0), e * (32.0 * near).min(4.0), 32.0 * e]
-            }
-            // It is of third order.
-            Kind::Local(_, radius) => [e, 3.0 * e / radius, 6.0 * e / (radius * radius)],
-        };
-        let rounding = [r * (4.0 * left * left).min(1.0), r * (8.0 * left).min(8.0), 16.0 * r];
-        let polynomial = ROUNDING * self.size;
-        Band([
-            truncation[0] + rounding[0] + polynomial * left,
-            truncation[1] + rounding[1] + 8.0 * polynomial,
-            truncation[2] + rounding[2] + 64.0 * polynomial,
-        ])
-    }
-
-    /// The coefficients about `middle`.
-    fn about(&self, middle: f64) -> [f64; TERMS] {
+    /// The first `K` coefficients about `middle`. The others are zero.
+    #[inline(always)]
+    fn about<const K: usize>(&self, middle: f64) -> [[f64; N]; TERMS] {
         // Repeated division by θ − middle.
         let mut c = self.terms;
-        for first in 0..TERMS - 1 {
-            for k in (first..TERMS - 1).rev() {
-                c[k] += middle * c[k + 1];
+        for first in 0..K - 1 {
+            for k in (first..K - 1).rev() {
+                c[k] = each(|i| c[k][i] + middle * c[k + 1][i]);
             }
         }
         c
     }
 
-    /// The component between two step fractions, by its expansion about the middle.
-    fn over(&self, low: f64, high: f64, kind: Kind) -> Enclosure {
-        let (middle, radius) = (0.5 * (low + high), 0.5 * (high - low));
-        let c = self.about(match kind {
-            Kind::Local(origin, _) => middle - origin,
-            _ => middle,
-        });
+    /// The bounds of the errors between two step fractions, and of their first two derivatives.
+    #[inline(always)]
+    fn band(&self, low: f64, high: f64) -> [[f64; N]; 3] {
+        let (left, right) = (high, 1.0 - low);
+        let near = left.min(right);
+        let truncation = match self.kind {
+            // Markov's inequality for polynomials of degree 5.
+            Kind::Quick => [(50.0 * left).min(1.0), 50.0, 800.0],
+            // The error is at most of the size of 16 θ²(1−θ)² times `error`.
+            Kind::Dense => [(16.0 * near * near).min(1.0), (32.0 * near).min(4.0), 32.0],
+            // It is of third order.
+            Kind::Local(_, radius) => [1.0, 3.0 / radius, 6.0 / (radius * radius)],
+        };
+        let rounding = [(4.0 * left * left).min(1.0), (8.0 * left).min(8.0), 16.0];
+        let polynomial = [left, 8.0, 64.0].map(|factor| ROUNDING * factor);
+        std::array::from_fn(|k| {
+            each(|i| {
+                truncation[k] * self.error[i]
+                    + rounding[k] * self.rounding[i]
+                    + polynomial[k] * self.size[i]
+            })
+        })
+    }
+}
+
+impl<const N: usize> Part<'_, N> {
+    /// Bounds for the time and the state, with their derivatives by the step fraction.
+    pub(crate) fn whole(&self) -> (Enclosure, [Enclosure; N]) {
+        let radius = 0.5 * (self.high - self.low);
+        let c = &self.terms;
         // The remainders beyond the first derivatives.
-        let (mut value, mut slope, mut bend) = (0.0, 0.0, 0.0);
-        for (k, c) in c.iter().enumerate().skip(1).rev() {
-            let (n, c) = (k as f64, c.abs());
-            value = (value + c) * radius;
-            slope = slope * radius + if k > 1 { n * c } else { 0.0 };
-            bend = if k > 1 {
-                bend * radius + if k > 2 { n * (n - 1.0) * c } else { 0.0 }
-            } else {
-                bend
-            };
+        let mut remainders = [[0.0; N]; 3];
+        for k in (1..TERMS).rev() {
+            let n = k as f64;
+            for i in 0..N {
+                let c = c[k][i].abs();
+                let [value, slope, bend] = &mut remainders;
+                value[i] = (value[i] + c) * radius;
+                if k > 1 {
+                    slope[i] = (slope[i] + n * c) * radius;
+                }
+                if k > 2 {
+                    bend[i] = (bend[i] + n * (n - 1.0) * c) * radius;
+                }
+            }
         }
-        let Band(band) = self.band(low, high, kind);
-        let around = |middle: f64, radius: f64| Interval::around(middle, radius);
-        let wide = 1.0 + 64.0 * f64::EPSILON;
-        Enclosure {
-            value: around(c[0], wide * (value + band[0])),
-            slope: around(c[1], wide * (slope + band[1])),
-            bend: around(2.0 * c[2], wide * (bend + band[2])),
-        }
+        self.around(self.low, self.high, &remainders)
+    }
+
+    /// The same bounds in the middle alone.
+    pub(crate) fn centre(&self) -> (Enclosure, [Enclosure; N]) {
+        let middle = 0.5 * (self.low + self.high);
+        self.around(middle, middle, &[[0.0; N]; 3])
+    }
+
+    #[inline(always)]
+    fn around(
+        &self,
+        low: f64,
+        high: f64,
+        remainders: &[[f64; N]; 3],
+    ) -> (Enclosure, [Enclosure; N]) {
+        let Path { s, h, .. } = *self.path;
+        let time = Enclosure {
+            value: Interval::point(s).plus(Interval::new(low, high).scaled(h)),
+            slope: Interval::point(h),
+            bend: Interval::ZERO,
+        };
+        let band = self.path.band(low, high);
+        let radius: [[f64; N]; 3] = std::array::from_fn(|k| {
+            each(|i| (1.0 + 64.0 * f64::EPSILON) * (remainders[k][i] + band[k][i]))
+        });
+        let c = &self.terms;
+        let state = std::array::from_fn(|i| Enclosure {
+            value: Interval::around(c[0][i], radius[0][i]),
+            slope: Interval::around(c[1][i], radius[1][i]),
+            bend: Interval::around(2.0 * c[2][i], radius[2][i]),
+        });
+        (time, state)
     }
 }

@@ -52,25 +52,47 @@ pub(crate) fn look(values: &[f64; COUNT], zero_order: u32, trust: f64) -> Quick 
     classify(&multiply(&QUARTIC, &quotient), error)
 }
 
-/// The coefficients of the quintic through `values` at [`NODES`] for powers of the step fraction,
-/// and a bound for its error, in which the part `trust` of the next-to-last term counts.
-pub(crate) fn expand(values: &[f64; COUNT], trust: f64) -> ([f64; COUNT], f64) {
+/// The coefficients of the quintics through `values` at [`NODES`] for powers of the step fraction,
+/// and bounds for their errors, in which the part `trust` of the next-to-last term counts. Each
+/// value has `N` components, and there is a quintic for each.
+pub(crate) fn expand<const N: usize>(
+    values: &[[f64; N]; COUNT],
+    trust: f64,
+) -> ([[f64; N]; COUNT], [f64; N]) {
     // A constant would only bring rounding.
-    let rises = values.map(|value| value - values[0]);
-    let bernstein = multiply(&QUINTIC, &rises);
-    let largest = bernstein.iter().fold(0.0_f64, |most, b| most.max(b.abs()));
-    let error = last_term(&rises, &QUINTIC_TERM) + trust * last_term(&rises, &QUARTIC_TERM);
+    let rises: [[f64; N]; COUNT] = values.map(|value| each(|i| value[i] - values[0][i]));
+    // The rise at the start is zero.
+    let mut bernstein = [[0.0; N]; COUNT];
+    let (mut last, mut before) = ([0.0; N], [0.0; N]);
+    for node in 1..COUNT {
+        for (sum, entry) in bernstein.iter_mut().zip(QUINTIC[node]) {
+            *sum = each(|i| sum[i] + entry * rises[node][i]);
+        }
+        last = each(|i| last[i] + QUINTIC_TERM[node] * rises[node][i]);
+        before = each(|i| before[i] + QUARTIC_TERM[node] * rises[node][i]);
+    }
+    let error = each(|i| {
+        let largest =
+            bernstein.iter().fold(0.0, |most, b| if b[i].abs() > most { b[i].abs() } else { most });
+        last[i].abs() + trust * before[i].abs() + ROUNDING * largest
+    });
     // The k-th differences of the coefficients, times the binomial coefficients of 5 over k.
     let mut differences = bernstein;
-    let mut terms = [0.0; COUNT];
+    let mut terms = [[0.0; N]; COUNT];
     for (k, term) in terms.iter_mut().enumerate() {
-        *term = [1.0, 5.0, 10.0, 10.0, 5.0, 1.0][k] * differences[0];
-        for i in 0..COUNT - 1 - k {
-            differences[i] = differences[i + 1] - differences[i];
+        *term = differences[0].map(|difference| [1.0, 5.0, 10.0, 10.0, 5.0, 1.0][k] * difference);
+        for j in 0..COUNT - 1 - k {
+            differences[j] = each(|i| differences[j + 1][i] - differences[j][i]);
         }
     }
     terms[0] = values[0];
-    (terms, error + ROUNDING * largest)
+    (terms, error)
+}
+
+/// A component for each entry.
+#[inline(always)]
+pub(crate) fn each<const N: usize>(value: impl FnMut(usize) -> f64) -> [f64; N] {
+    std::array::from_fn(value)
 }
 
 /// Step fractions in the gaps between the [`NODES`].
@@ -116,6 +138,17 @@ pub(crate) fn clearly_away(values: [f64; COUNT]) -> bool {
     least > bend && (start > 0.0) == (end > 0.0)
 }
 
+/// About where a guard that falls through zero once on a step does so, if it follows the quintic
+/// through its `values` closely. It may start from zero, and rise first.
+pub(crate) fn only_root(values: &[f64; COUNT], trust: f64) -> Option<f64> {
+    let bernstein = multiply(&QUINTIC, values);
+    let error = last_term(values, &QUINTIC_TERM) + trust * last_term(values, &QUARTIC_TERM);
+    let largest = values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+    let [start, .., end] = *values;
+    let chord = if start > 0.0 { start / (start - end) } else { 1.0 };
+    (error <= 1e-3 * largest).then(|| falling_root(&bernstein, chord))
+}
+
 #[inline]
 fn power(theta: f64, order: u32) -> f64 {
     (0..order).fold(1.0, |product, _| product * theta)
@@ -143,16 +176,16 @@ fn classify<const K: usize>(bernstein: &[f64; K], error: f64) -> Quick {
     let falls =
         bernstein.windows(2).all(|pair| (pair[1] - pair[0]) * (K as f64 - 1.0) < -slope_error);
     if falls && bernstein[0] > error && bernstein[K - 1] < -error {
-        return Quick::Falls { theta: falling_root(bernstein) };
+        let chord = bernstein[0] / (bernstein[0] - bernstein[K - 1]);
+        return Quick::Falls { theta: falling_root(bernstein, chord) };
     }
     Quick::Unclear
 }
 
-/// The root of a polynomial that falls through zero once. Newton's method, kept inside a bracket,
-/// goes on until the root moves by less than a thousandth of itself.
-fn falling_root<const K: usize>(bernstein: &[f64; K]) -> f64 {
+/// The root of a polynomial that falls through zero once. Newton's method from `theta` on, kept
+/// inside a bracket, goes on until the root moves by less than a thousandth of itself.
+fn falling_root<const K: usize>(bernstein: &[f64; K], mut theta: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
-    let mut theta = bernstein[0] / (bernstein[0] - bernstein[K - 1]);
     for _ in 0..30 {
         let (value, derivative) = de_casteljau(bernstein, theta);
         if value > 0.0 {

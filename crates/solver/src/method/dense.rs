@@ -58,8 +58,12 @@ impl<const N: usize> Dense<N> {
             terms[0] = self.r[k][i] + if k % 2 == 0 { 0.0 } else { terms[0] };
         }
         // The maximum of θ^a (1 − θ)^b.
-        let (a, b) = (self.degree.div_ceil(2) as f64, (self.degree / 2) as f64);
-        let most = (a / (a + b)).powf(a) * (b / (a + b)).powf(b);
+        let (a, b) = (self.degree.div_ceil(2), self.degree / 2);
+        let part = |power: usize| {
+            let base = power as f64 / self.degree as f64;
+            (0..power).fold(1.0, |product, _| product * base)
+        };
+        let most = part(a) * part(b);
         (terms, most * self.r[self.degree][i].abs())
     }
 

@@ -25,17 +25,36 @@ pub struct Interval {
 /// The relative error of a function of the standard library, as a bound.
 const FUNCTION: f64 = 4.0 * f64::EPSILON;
 
+/// The rounding of a number, relative to it, and a little more (Rump, Zimmermann, Boldo and
+/// Melquiond 2009).
+const HALF_UNIT: f64 = 0.5 * f64::EPSILON * (1.0 + f64::EPSILON);
+/// The smallest positive number.
+const LEAST: f64 = f64::from_bits(1);
+
+/// A number below `x`, mostly the next one.
+#[inline(always)]
 fn down(x: f64) -> f64 {
-    x.next_down()
+    // NaN stays.
+    let x = if f64::MAX < x { f64::MAX } else { x };
+    x - (HALF_UNIT * x.abs() + LEAST)
 }
 
+/// A number above `x`, mostly the next one.
+#[inline(always)]
 fn up(x: f64) -> f64 {
-    x.next_up()
+    -down(-x)
 }
 
-/// A product of bounds. A bound that is 0 stands for numbers near 0, also beside infinity.
-fn product(a: f64, b: f64) -> f64 {
-    if a == 0.0 || b == 0.0 { 0.0 } else { a * b }
+/// The smaller of two numbers that are not NaN.
+#[inline(always)]
+fn least(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The larger of two numbers that are not NaN.
+#[inline(always)]
+fn most(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 impl Interval {
@@ -129,14 +148,14 @@ impl Interval {
     #[must_use]
     #[inline]
     pub fn hull(self, other: Self) -> Self {
-        Self { lower: self.lower.min(other.lower), upper: self.upper.max(other.upper) }
+        Self { lower: least(self.lower, other.lower), upper: most(self.upper, other.upper) }
     }
 
     /// The common numbers. Both intervals enclose one quantity, so there are some.
     #[must_use]
     #[inline]
     pub fn meet(self, other: Self) -> Self {
-        let (lower, upper) = (self.lower.max(other.lower), self.upper.min(other.upper));
+        let (lower, upper) = (most(self.lower, other.lower), least(self.upper, other.upper));
         if lower <= upper { Self { lower, upper } } else { self }
     }
 
@@ -168,14 +187,13 @@ impl Interval {
             return Self::ZERO;
         }
         let (a, b) = (self, other);
-        let ends = [
-            product(a.lower, b.lower),
-            product(a.lower, b.upper),
-            product(a.upper, b.lower),
-            product(a.upper, b.upper),
-        ];
-        let lower = ends[0].min(ends[1]).min(ends[2].min(ends[3]));
-        let upper = ends[0].max(ends[1]).max(ends[2].max(ends[3]));
+        let mut ends = [a.lower * b.lower, a.lower * b.upper, a.upper * b.lower, a.upper * b.upper];
+        if (ends[0] + ends[1] + ends[2] + ends[3]).is_nan() {
+            // A bound that is 0 stands for numbers near 0, also beside infinity.
+            ends = ends.map(|end| if end.is_nan() { 0.0 } else { end });
+        }
+        let lower = least(least(ends[0], ends[1]), least(ends[2], ends[3]));
+        let upper = most(most(ends[0], ends[1]), most(ends[2], ends[3]));
         Self::new(down(lower), up(upper))
     }
 

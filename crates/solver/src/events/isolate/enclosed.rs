@@ -14,6 +14,9 @@ pub(crate) trait Enclosed {
     /// Bounds for value and derivatives by the step fraction, between two step fractions. They
     /// contain what steps of the method to any place in between would give.
     fn over(&mut self, low: f64, high: f64) -> Enclosure;
+    /// The same, made tight by an expansion about the middle, and the bounds in the middle. If the
+    /// values have one sign, the first bounds stand for both.
+    fn bounds(&mut self, low: f64, high: f64) -> (Enclosure, Enclosure);
     /// The value by a step of the method to `theta`, as a number and with its rounding.
     fn truth(&mut self, theta: f64) -> Result<(f64, Interval), RunError>;
     /// Makes bounds between two step fractions tighter, by a step of the method into their middle.
@@ -110,17 +113,6 @@ impl Search<'_> {
         self.curve.over(low, high)
     }
 
-    /// Bounds between two step fractions, made tight by an expansion about the middle.
-    fn bounds(&mut self, low: f64, high: f64) -> (Enclosure, Enclosure) {
-        let plain = self.over(low, high);
-        let middle = 0.5 * (low + high);
-        let centre = self.over(middle, middle);
-        if plain.value.sign() != 0.0 || !plain.slope.is_bounded() {
-            return (plain, centre);
-        }
-        (plain.about(&centre, 0.5 * (high - low)), centre)
-    }
-
     /// The value at a place, with the sign that a step of the method finds. It is 0 if rounding
     /// hides the sign.
     fn value(&mut self, theta: f64, touch: bool) -> Result<f64, RunError> {
@@ -170,7 +162,8 @@ impl Search<'_> {
                 self.curve.widen();
                 refined = None;
             }
-            let (bounds, centre) = self.bounds(low, high);
+            self.count += 1;
+            let (bounds, centre) = self.curve.bounds(low, high);
             let sign = bounds.value.sign();
             let (slope, bend) = (bounds.slope, bounds.bend);
             if sign != 0.0 {
@@ -187,14 +180,10 @@ impl Search<'_> {
             let verdict = if monotone {
                 self.follow(&[high])?
             } else if turns_once {
-                let turn = self.extremum(low, high);
                 // A maximum above zero and a minimum below it change nothing.
                 let matters = self.before.1 * bend.sign() > 0.0;
-                if matters && turn < high {
-                    self.follow(&[turn, high])?
-                } else {
-                    self.follow(&[high])?
-                }
+                let turn = if matters { self.extremum(low, high) } else { high };
+                if turn < high { self.follow(&[turn, high])? } else { self.follow(&[high])? }
             } else if blurred
                 && !narrow
                 && refined.is_none_or(|(_, width)| high - low < CLOSER * width)

@@ -1,0 +1,122 @@
+//! What one guard of a readable system does on a step, by bounds along the quick path.
+
+use crate::events::examination::Examination;
+use crate::events::one_guard::{Crossing, Status};
+use crate::events::path::Path;
+use crate::events::quick;
+use crate::hybrid::{Direction, HybridSystem, Observer};
+use crate::method::Method;
+use crate::number::Enclosure;
+
+/// A step is divided at most into 2 to this power parts.
+const HALVINGS: u32 = 3;
+
+impl<S, O, const N: usize, const G: usize> Examination<'_, S, O, N, G>
+where
+    S: HybridSystem<N, G>,
+    O: Observer<S::Mode, N>,
+{
+    /// What bounds of a guard along the quick path tell about it. Its six values on the step are
+    /// in `column`.
+    ///
+    /// A guard that is monotone or bends in one direction crosses zero once if its ends have
+    /// different signs.
+    pub(crate) fn glance_at_bounds<M: Method>(
+        &mut self,
+        guard: usize,
+        column: &[f64; 6],
+        path: &Path<N>,
+    ) -> Status {
+        let (direction, order) =
+            (self.phase.guards[guard].direction(), self.phase.zero_orders[guard]);
+        let falls = matches!(direction, Direction::Below | Direction::Falling);
+        let [start, .., end] = *column;
+        let at_zero = start == 0.0 || order > 0;
+        if end == 0.0 || start == 0.0 && order == 0 && !falls {
+            return Status::Unclear;
+        }
+        let bounds = self.bounds(guard, path, 0.0, 1.0);
+        let known = bounds.slope.is_bounded();
+        let monotone = known && bounds.slope.sign() != 0.0;
+        let bend = if known { bounds.bend.sign() } else { 0.0 };
+        // The sign with which the step begins.
+        let first = match order {
+            0 if start != 0.0 => start.signum(),
+            0 | 1 if monotone => bounds.slope.sign(),
+            0 | 1 if bend != 0.0 => self.enclosed(guard, path.part(0.0, 0.0).centre()).slope.sign(),
+            2 => bend,
+            _ => 0.0,
+        };
+        if first == 0.0 || start == 0.0 && order == 0 && first < 0.0 {
+            return Status::Unclear;
+        }
+        if first < 0.0 && direction == Direction::Below {
+            return Status::Fires(Crossing::at_start(1.0));
+        }
+        // From a zero, a guard returns only if it bends back.
+        let back = order < 2 && !monotone && bend == -first;
+        if first * end < 0.0 && if at_zero { back } else { monotone || bend != 0.0 } {
+            let fires = match direction {
+                Direction::Either => true,
+                Direction::Rising => first < 0.0,
+                _ => first > 0.0,
+            };
+            if !fires {
+                return Status::Clear;
+            }
+            let root = quick::only_root(&column.map(|value| first * value), M::QUICK_ERROR);
+            return root.map_or(Status::Unclear, |theta| Crossing::alone(first, theta));
+        }
+        let stays = monotone || bend == -first || at_zero && bend == first;
+        let clear = first * end > 0.0 && stays || !at_zero && self.same_side(guard, path, &bounds);
+        if clear { Status::Clear } else { Status::Unclear }
+    }
+
+    /// Whether a guard with these `bounds` on the step has one sign throughout.
+    fn same_side(&mut self, guard: usize, path: &Path<N>, bounds: &Enclosure) -> bool {
+        bounds.value.sign() != 0.0 || self.side_in_halves(guard, path, (0.0, 1.0), HALVINGS) != 0.0
+    }
+
+    /// Bounds of a guard from bounds of time and state.
+    fn enclosed(&mut self, guard: usize, (s, y): (Enclosure, [Enclosure; N])) -> Enclosure {
+        self.statistics.enclosures += 1;
+        self.system.enclose_guards(self.phase.mode, s, &y)[guard]
+    }
+
+    /// Bounds of a guard between two step fractions, along a path.
+    fn bounds(&mut self, guard: usize, path: &Path<N>, low: f64, high: f64) -> Enclosure {
+        let part = path.part(low, high);
+        let plain = self.enclosed(guard, part.whole());
+        if plain.value.sign() != 0.0 || !plain.slope.is_bounded() {
+            return plain;
+        }
+        plain.about(&self.enclosed(guard, part.centre()), 0.5 * (high - low))
+    }
+
+    /// The sign that a guard has in both halves between two step fractions, 0 if the bounds do not
+    /// exclude zero.
+    fn side_in_halves(
+        &mut self,
+        guard: usize,
+        path: &Path<N>,
+        (low, high): (f64, f64),
+        halvings: u32,
+    ) -> f64 {
+        if halvings == 0 {
+            return 0.0;
+        }
+        let middle = 0.5 * (low + high);
+        let left = self.side(guard, path, (low, middle), halvings - 1);
+        if left != 0.0 && self.side(guard, path, (middle, high), halvings - 1) == left {
+            left
+        } else {
+            0.0
+        }
+    }
+
+    /// The sign that a guard has between two step fractions, 0 if the bounds do not exclude zero.
+    fn side(&mut self, guard: usize, path: &Path<N>, part: (f64, f64), halvings: u32) -> f64 {
+        let sign = self.bounds(guard, path, part.0, part.1).value.sign();
+        if sign == 0.0 { self.side_in_halves(guard, path, part, halvings) } else { sign }
+    }
+}
