@@ -102,9 +102,13 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Examination<'_, S, O> {
                 Status::Fires(Crossing::at_start(sign))
             }
             Quick::Positive | Quick::Negative => Status::Clear,
+            // It fires where it leaves zero, and then once more.
+            Quick::Falls { .. } if direction == Direction::Either && column[0] == 0.0 => {
+                Status::Unclear
+            }
             Quick::Falls { theta } => Crossing::alone(sign, theta),
             Quick::Unclear if direction == Direction::Either => match look(-1.0) {
-                Quick::Falls { theta } => Crossing::alone(-1.0, theta),
+                Quick::Falls { theta } if column[0] != 0.0 => Crossing::alone(-1.0, theta),
                 _ => Status::Unclear,
             },
             Quick::Unclear => Status::Unclear,

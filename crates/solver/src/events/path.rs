@@ -223,11 +223,14 @@ impl<const N: usize> Part<'_, N> {
             each(|i| (1.0 + 64.0 * f64::EPSILON) * (remainders[k][i] + band[k][i]))
         });
         let c = &self.terms;
-        let state = std::array::from_fn(|i| Enclosure {
-            value: Interval::around(c[0][i], radius[0][i]),
-            slope: Interval::around(c[1][i], radius[1][i]),
-            bend: Interval::around(2.0 * c[2][i], radius[2][i]),
-        });
+        let mut state = [time; N];
+        for (i, component) in state.iter_mut().enumerate() {
+            *component = Enclosure {
+                value: Interval::around(c[0][i], radius[0][i]),
+                slope: Interval::around(c[1][i], radius[1][i]),
+                bend: Interval::around(2.0 * c[2][i], radius[2][i]),
+            };
+        }
         (time, state)
     }
 }

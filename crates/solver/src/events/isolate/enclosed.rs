@@ -6,7 +6,7 @@
 //! a jump, a pole, or a touch that cannot be told from a crossing pair.
 
 use crate::error::RunError;
-use crate::events::isolate::{Beginning, Bracket, Notice, Task, Touch, Verdict, root};
+use crate::events::isolate::{Beginning, Bracket, Notice, Task, Touch, Verdict, narrow, root};
 use crate::number::{Enclosure, Interval};
 
 /// A guard along a step.
@@ -32,6 +32,8 @@ pub(crate) trait Enclosed {
 const LIMIT: usize = 100_000;
 /// A refined part is refined again where the search has come this much closer.
 const CLOSER: f64 = 1.0 / 16.0;
+/// An extremum is known to this part of the part of the step in which it lies.
+const NEAR_EXTREMUM: f64 = 1e-9;
 /// Parts of a step are halved at most this often.
 const DEPTH: usize = 60;
 
@@ -250,23 +252,20 @@ impl Search<'_> {
 
     /// The extremum between two step fractions, where the second derivatives have one sign.
     fn extremum(&mut self, low: f64, high: f64) -> f64 {
-        let (mut low, mut high) = (low, high);
-        let rises = |slope: Interval| slope.lower() + slope.upper() > 0.0;
-        let at_low = rises(self.over(low, low).slope);
-        if rises(self.over(high, high).slope) == at_low {
+        let width = high - low;
+        let mut slope = |part: f64| {
+            let theta = low + part * width;
+            let Enclosure { slope, .. } = self.over(theta, theta);
+            slope.lower() + slope.upper()
+        };
+        let (at_low, at_high) = (slope(0.0), slope(1.0));
+        if (at_low > 0.0) == (at_high > 0.0) {
             return high;
         }
-        while high - low > self.task.resolution {
-            let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
-                break;
-            }
-            if rises(self.over(middle, middle).slope) == at_low {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        0.5 * (low + high)
+        let sign = if at_low > 0.0 { 1.0 } else { -1.0 };
+        let ends = ((0.0, sign * at_low), (1.0, sign * at_high));
+        // The value changes with the square of the distance from the extremum.
+        let (left, right) = narrow(|part| sign * slope(part), ends.0, ends.1, NEAR_EXTREMUM);
+        low + 0.5 * (left.0 + right.0) * width
     }
 }
