@@ -29,7 +29,7 @@ import numpy as np  # noqa: E402
 from scipy.integrate import solve_ivp  # noqa: E402
 
 ROOT = Path(__file__).parents[2]
-RUST = ["cargo", "run", "--release", "-q", "-p", "stickslip-solver", "--example", "speed", "--"]
+RUST = ["cargo", "run", "--release", "-q", "-p", "validation", "--example", "speed", "--"]
 TOLERANCES = [1e-6, 1e-9, 1e-12]
 REPEATED = 0.15
 ONLY = sys.argv[1] if len(sys.argv) > 1 else ""

@@ -4,17 +4,16 @@ use crate::events::examination::Examination;
 use crate::events::one_guard::{Crossing, Status};
 use crate::events::path::Path;
 use crate::events::quick;
-use crate::hybrid::{Direction, HybridSystem, Observer};
+use crate::hybrid::{Direction, HybridSystem};
 use crate::method::Method;
 use crate::number::Enclosure;
 
 /// A step is divided at most into 2 to this power parts.
 const HALVINGS: u32 = 3;
 
-impl<S, O, const N: usize, const G: usize> Examination<'_, S, O, N, G>
+impl<S, const N: usize, const G: usize> Examination<'_, S, N, G>
 where
     S: HybridSystem<N, G>,
-    O: Observer<S::Mode, N>,
 {
     /// What bounds of a guard along the quick path tell about it. Its six values on the step are
     /// in `column`.
