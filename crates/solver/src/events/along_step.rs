@@ -190,7 +190,7 @@ where
         self.along.dense(theta)
     }
 
-    fn refine(&mut self, low: f64, high: f64) -> Result<bool, RunError> {
+    fn refine(&mut self, low: f64, high: f64) -> Result<Option<bool>, RunError> {
         let AlongStep { system, mode, step, .. } = self.along;
         let (middle, reach) = (0.5 * (low + high), 0.5 * (high - low) * step.h);
         let (y, _) = self.along.step_to(middle)?;
@@ -199,8 +199,11 @@ where
         let away = |by: f64| system.field(mode, s + by, &(y + slope * by));
         let bend = (away(reach) - away(-reach)) / (2.0 * reach);
         self.along.statistics.field += 3;
-        self.local = self.path.local((low, high), [&y, &slope, &bend]);
-        Ok(self.local.is_some())
+        let local = self.path.local((low, high), [&y, &slope, &bend]);
+        Ok(local.map(|(local, exact)| {
+            self.local = Some(local);
+            exact
+        }))
     }
 
     fn widen(&mut self) {

@@ -98,13 +98,13 @@ impl<const N: usize> Path<N> {
     }
 
     /// The path between two step fractions from the state `y` in the middle, with its first and
-    /// second derivatives by the time. The result is `None` if it is not much more accurate than
-    /// this path.
+    /// second derivatives by the time. The result tells whether only rounding is left of its
+    /// error. It is `None` if the path is not much more accurate than this path.
     pub(crate) fn local(
         &self,
         (low, high): (f64, f64),
         [y, slope, bend]: [&State<N>; 3],
-    ) -> Option<Self> {
+    ) -> Option<(Self, bool)> {
         let (middle, radius) = (0.5 * (low + high), 0.5 * (high - low));
         let about = self.about::<TERMS>(middle);
         let error = each(|i| {
@@ -121,9 +121,10 @@ impl<const N: usize> Path<N> {
         let kind = Kind::Local(middle, radius);
         let local = Self::new((self.s, self.h), terms, error, ends, kind);
         let [present, ..] = self.band(low, high);
-        let better = (0..N)
-            .all(|i| local.error[i] <= NEARER * present[i] || local.error[i] <= local.rounding[i]);
-        better.then_some(local)
+        let exact = |i: usize| local.error[i] <= local.rounding[i];
+        let better = (0..N).all(|i| local.error[i] <= NEARER * present[i] || exact(i));
+        let all_exact = (0..N).all(exact);
+        better.then_some((local, all_exact))
     }
 
     /// The part between two step fractions.

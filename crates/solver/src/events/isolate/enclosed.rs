@@ -20,8 +20,8 @@ pub(crate) trait Enclosed {
     /// The value by a step of the method to `theta`, as a number and with its rounding.
     fn truth(&mut self, theta: f64) -> Result<(f64, Interval), RunError>;
     /// Makes bounds between two step fractions tighter, by a step of the method into their middle.
-    /// The result tells whether that helps.
-    fn refine(&mut self, low: f64, high: f64) -> Result<bool, RunError>;
+    /// The result is `None` if that does not help, and tells whether only rounding is left.
+    fn refine(&mut self, low: f64, high: f64) -> Result<Option<bool>, RunError>;
     /// Returns to the bounds on the whole step.
     fn widen(&mut self);
     /// The value by the dense output.
@@ -46,7 +46,7 @@ pub(crate) fn first_enclosed_crossing(
 ) -> Result<Verdict, RunError> {
     let Beginning { theta: first, value, zero_order } = task.beginning;
     let before = (first, value);
-    let mut search = Search { curve, notice, task, before, count: 0 };
+    let mut search = Search { curve, notice, task, before, hidden: None, count: 0 };
     if zero_order == 0 && value != 0.0 {
         if task.domain && value < 0.0 {
             return Ok(Verdict::StartsBelow);
@@ -67,6 +67,15 @@ pub(crate) fn first_enclosed_crossing(
     search.walk(theta)
 }
 
+/// A part of the step on which bounds have been refined.
+struct Refined {
+    /// Its end and its width.
+    end: f64,
+    width: f64,
+    /// Whether only rounding is left of the error of the path.
+    exact: bool,
+}
+
 /// The search for a crossing, from left to right.
 struct Search<'a> {
     curve: &'a mut dyn Enclosed,
@@ -74,6 +83,8 @@ struct Search<'a> {
     task: &'a Task,
     /// The last place where the sign was seen, and that sign.
     before: (f64, f64),
+    /// What may be hidden since that place, where rounding hid the sign.
+    hidden: Option<Notice>,
     /// The parts that were examined.
     count: usize,
 }
@@ -138,6 +149,15 @@ impl Search<'_> {
             return None;
         }
         let before = std::mem::replace(&mut self.before, (theta, value));
+        let turns = before.1 * value < 0.0;
+        match self.hidden.take() {
+            Some(pole @ Notice::Pole(_)) if turns => {
+                (self.notice)(pole);
+                return None;
+            }
+            Some(touch @ Notice::Touch(_)) if !turns => (self.notice)(touch),
+            _ => {}
+        }
         if before.1 >= 0.0 && value < 0.0 {
             let curve = &mut *self.curve;
             let low = (before.0, curve.at(before.0).max(0.0));
@@ -152,15 +172,14 @@ impl Search<'_> {
         let mut pending = [(0.0, 0.0); DEPTH + 2];
         pending[0] = (low, 1.0);
         let mut pieces = usize::from(low < 1.0);
-        // The end and the width of the part of the step on which bounds have been refined.
-        let mut refined: Option<(f64, f64)> = None;
+        let mut refined: Option<Refined> = None;
         while pieces > 0 {
             pieces -= 1;
             let (low, high) = pending[pieces];
             if self.count > LIMIT {
                 return Ok(Verdict::TooCoarse);
             }
-            if refined.is_some_and(|(end, _)| low >= end) {
+            if refined.as_ref().is_some_and(|part| low >= part.end) {
                 self.curve.widen();
                 refined = None;
             }
@@ -179,6 +198,18 @@ impl Search<'_> {
             // The error of the path, and not the guard, makes these bounds.
             let blurred = bounds.value.magnitude() <= 4.0 * centre.value.width();
             let narrow = high - low <= self.task.resolution || pieces + 2 > DEPTH;
+            if blurred && !narrow && !monotone && !turns_once {
+                let closer = |part: &Refined| !part.exact && high - low < CLOSER * part.width;
+                if refined.as_ref().is_none_or(closer)
+                    && let Some(exact) = self.curve.refine(low, high)?
+                {
+                    refined = Some(Refined { end: high, width: high - low, exact });
+                    pending[pieces] = (low, high);
+                    pieces += 1;
+                    continue;
+                }
+            }
+            let exact = narrow || refined.as_ref().is_some_and(|part| part.exact);
             let verdict = if monotone {
                 self.follow(&[high])?
             } else if turns_once {
@@ -186,19 +217,10 @@ impl Search<'_> {
                 let matters = self.before.1 * bend.sign() > 0.0;
                 let turn = if matters { self.extremum(low, high) } else { high };
                 if turn < high { self.follow(&[turn, high])? } else { self.follow(&[high])? }
-            } else if blurred
-                && !narrow
-                && refined.is_none_or(|(_, width)| high - low < CLOSER * width)
-                && self.curve.refine(low, high)?
-            {
-                refined = Some((high, high - low));
-                pending[pieces] = (low, high);
-                pieces += 1;
-                None
-            } else if blurred && slope.is_bounded() && (refined.is_some() || narrow) {
+            } else if blurred && exact && slope.is_bounded() {
                 self.follow(&[0.5 * (low + high), high])?
-            } else if narrow || blurred && refined.is_some() {
-                self.irregular(low, high, &bounds)?
+            } else if narrow {
+                self.irregular(high, &bounds)?
             } else {
                 let middle = 0.5 * (low + high);
                 pending[pieces] = (middle, high);
@@ -228,26 +250,18 @@ impl Search<'_> {
 
     /// A part that cannot be divided: a kink, a jump or a pole. The result is the crossing there,
     /// if there is one.
-    fn irregular(
-        &mut self,
-        low: f64,
-        high: f64,
-        bounds: &Enclosure,
-    ) -> Result<Option<Bracket>, RunError> {
-        let value = if high >= 1.0 { self.task.end } else { self.curve.truth(high)?.0 };
-        let turns = self.before.1 * value < 0.0;
-        if !bounds.value.is_bounded() && turns {
-            (self.notice)(Notice::Pole(high));
-        } else if self.before.1 >= 0.0 && value < 0.0 {
-            self.before = (high, value);
-            return Ok(Some(Bracket { low, high, guess: high }));
-        } else if bounds.value.is_bounded() && !turns && value != 0.0 {
-            (self.notice)(Notice::Touch(Touch { theta: high, margin: value }));
+    ///
+    /// Where rounding hides the sign at the end of the part, the first sign that shows behind it
+    /// counts. Steps of the method to places this close together need not be in order.
+    fn irregular(&mut self, high: f64, bounds: &Enclosure) -> Result<Option<Bracket>, RunError> {
+        if !bounds.value.is_bounded() {
+            self.hidden = Some(Notice::Pole(high));
+        } else if self.hidden.is_none() {
+            let margin = if high >= 1.0 { self.task.end } else { self.curve.truth(high)?.0 };
+            self.hidden = Some(Notice::Touch(Touch { theta: high, margin }));
         }
-        if value != 0.0 {
-            self.before = (high, value);
-        }
-        Ok(None)
+        let sign = if high >= 1.0 { self.task.end } else { self.over(high, high).value.sign() };
+        Ok(self.visit(high, sign))
     }
 
     /// The extremum between two step fractions, where the second derivatives have one sign.
