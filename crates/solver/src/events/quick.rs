@@ -34,19 +34,13 @@ pub(crate) enum Quick {
 /// Looks at a guard with these `values` at [`NODES`].
 ///
 /// The guard starts the step from a zero of order `zero_order`, which is 0 if there is no known
-/// zero. A guard that starts from exactly 0 falls if it rises first. The error of the expansion is its whole last term and the part `trust` of the next-to-last
+/// zero. The error of the expansion is its whole last term and the part `trust` of the next-to-last
 /// term.
 #[inline]
 pub(crate) fn look(values: &[f64; COUNT], zero_order: u32, trust: f64) -> Quick {
     if zero_order == 0 {
         let error = last_term(values, &QUINTIC_TERM) + trust * last_term(values, &QUARTIC_TERM);
-        let bernstein = multiply(&QUINTIC, values);
-        return match classify(&bernstein, error) {
-            Quick::Unclear if comes_back(&bernstein, values, error) => {
-                Quick::Falls { theta: falling_root(&bernstein, first_guess(values)) }
-            }
-            verdict => verdict,
-        };
+        return classify(&multiply(&QUINTIC, values), error);
     }
     // After division by the known zero, five values and a quartic remain.
     let mut quotient = [0.0; COUNT - 1];
@@ -162,21 +156,6 @@ pub(crate) fn only_root(values: &[f64; COUNT], trust: f64) -> Option<f64> {
 fn first_guess(values: &[f64; COUNT]) -> f64 {
     let [start, .., end] = *values;
     if start > 0.0 { start / (start - end) } else { 1.0 }
-}
-
-/// Whether a guard that starts at or above zero bends downwards throughout and ends below zero: it
-/// falls through zero once. From exactly 0 it must rise first. The guard is within `error` of the
-/// polynomial with these Bernstein coefficients.
-#[cold]
-fn comes_back(bernstein: &[f64; COUNT], values: &[f64; COUNT], error: f64) -> bool {
-    let [start, .., end] = *values;
-    let size = bernstein.iter().fold(0.0_f64, |most, b| most.max(b.abs()));
-    let error = error + ROUNDING * size;
-    // A polynomial of degree 5 and of size `error` has slopes up to 50 times `error`, and second
-    // derivatives up to 800 times (Markov). Written so that NaN is false.
-    let bends = bernstein.windows(3).all(|b| 20.0 * (b[2] - 2.0 * b[1] + b[0]) < -800.0 * error);
-    let rises = 5.0 * (bernstein[1] - bernstein[0]) > 50.0 * error;
-    bends && end < -error && (start > 0.0 || start == 0.0 && rises)
 }
 
 #[inline]
