@@ -11,7 +11,7 @@ use crate::dynamic::system::DynamicSystem;
 use crate::error::RunError;
 use crate::events::isolate::{Beginning, Notice, Task, Verdict, first_crossing, last_sign};
 use crate::events::one_guard::{Crossing, FINEST, LONGER, Status};
-use crate::events::quick::{self, BETWEEN, NODES, Quick, between};
+use crate::events::quick::{self, BETWEEN, NODES, between};
 use crate::hybrid::{Direction, Grazing, Pole};
 use crate::method::Method;
 
@@ -94,25 +94,8 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Examination<'_, S, O> {
             return Status::Unclear;
         }
         let column = self.tables.column(guard, self.phase.values.len());
-        let sign = if direction == Direction::Rising { -1.0 } else { 1.0 };
         let order = self.phase.zero_orders[guard];
-        let look = |sign: f64| quick::look(&column.map(|v| sign * v), order, M::QUICK_ERROR);
-        match look(sign) {
-            Quick::Negative if direction == Direction::Below => {
-                Status::Fires(Crossing::at_start(sign))
-            }
-            Quick::Positive | Quick::Negative => Status::Clear,
-            // It fires where it leaves zero, and then once more.
-            Quick::Falls { .. } if direction == Direction::Either && column[0] == 0.0 => {
-                Status::Unclear
-            }
-            Quick::Falls { theta } => Crossing::alone(sign, theta),
-            Quick::Unclear if direction == Direction::Either => match look(-1.0) {
-                Quick::Falls { theta } if column[0] != 0.0 => Crossing::alone(-1.0, theta),
-                _ => Status::Unclear,
-            },
-            Quick::Unclear => Status::Unclear,
-        }
+        Status::from_values(&column, direction, order, M::QUICK_ERROR)
     }
 
     /// Decides about a guard by isolation, from its beginning on. The result is `None` if the step

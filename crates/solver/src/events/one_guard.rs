@@ -50,6 +50,36 @@ impl Crossing {
     }
 }
 
+impl Status {
+    /// What the six values of a guard that starts from a zero of this `order` tell about it. The
+    /// part `trust` of the next-to-last term of their expansion counts as error.
+    pub(crate) fn from_values(
+        column: &[f64; 6],
+        direction: Direction,
+        order: u32,
+        trust: f64,
+    ) -> Self {
+        let sign = if direction == Direction::Rising { -1.0 } else { 1.0 };
+        let look = |sign: f64| quick::look(&column.map(|v| sign * v), order, trust);
+        match look(sign) {
+            Quick::Negative if direction == Direction::Below => {
+                Self::Fires(Crossing::at_start(sign))
+            }
+            Quick::Positive | Quick::Negative => Self::Clear,
+            // It fires where it leaves zero, and then once more.
+            Quick::Falls { .. } if direction == Direction::Either && column[0] == 0.0 => {
+                Self::Unclear
+            }
+            Quick::Falls { theta } => Crossing::alone(sign, theta),
+            Quick::Unclear if direction == Direction::Either => match look(-1.0) {
+                Quick::Falls { theta } if column[0] != 0.0 => Crossing::alone(-1.0, theta),
+                _ => Self::Unclear,
+            },
+            Quick::Unclear => Self::Unclear,
+        }
+    }
+}
+
 impl<S, const N: usize, const G: usize> Examination<'_, S, N, G>
 where
     S: HybridSystem<N, G>,
@@ -101,26 +131,9 @@ where
 
     /// What the six values of a guard tell about it.
     fn glance<M: Method>(&self, guard: usize, column: &[f64; 6]) -> Status {
-        let direction = self.phase.guards[guard].direction();
-        let sign = if direction == Direction::Rising { -1.0 } else { 1.0 };
-        let order = self.phase.zero_orders[guard];
-        let look = |sign: f64| quick::look(&column.map(|v| sign * v), order, M::QUICK_ERROR);
-        match look(sign) {
-            Quick::Negative if direction == Direction::Below => {
-                Status::Fires(Crossing::at_start(sign))
-            }
-            Quick::Positive | Quick::Negative => Status::Clear,
-            // It fires where it leaves zero, and then once more.
-            Quick::Falls { .. } if direction == Direction::Either && column[0] == 0.0 => {
-                Status::Unclear
-            }
-            Quick::Falls { theta } => Crossing::alone(sign, theta),
-            Quick::Unclear if direction == Direction::Either => match look(-1.0) {
-                Quick::Falls { theta } if column[0] != 0.0 => Crossing::alone(-1.0, theta),
-                _ => Status::Unclear,
-            },
-            Quick::Unclear => Status::Unclear,
-        }
+        let (direction, order) =
+            (self.phase.guards[guard].direction(), self.phase.zero_orders[guard]);
+        Status::from_values(column, direction, order, M::QUICK_ERROR)
     }
 
     /// Whether a guard that is zero throughout `step` becomes nonzero on a longer step that meets

@@ -15,7 +15,7 @@ const TERMS: usize = 8;
 
 /// The factor by which the error of the dense output may exceed its last term. A value that is too
 /// large costs steps of the method. One that is too small would make decisions wrong.
-const SAFETY: f64 = 4.0;
+pub(crate) const SAFETY: f64 = 4.0;
 
 /// The part of the error of a path that a local one may have, to be of use.
 const NEARER: f64 = 1.0 / 16.0;

@@ -3,13 +3,11 @@
 use crate::error::RunError;
 use crate::events::isolate::chebyshev::COSINES;
 use crate::events::isolate::panel::Panel;
+use crate::events::path::SAFETY;
 
 /// The width of a narrow panel, as a part of the step: what it does not resolve may be noise.
 pub(super) const NARROWEST: f64 = 1.0 / 4096.0;
 
-/// The factor by which the error of the dense output may exceed its last term. A value that is too
-/// large costs steps of the method. One that is too small would make decisions wrong.
-const SAFETY: f64 = 4.0;
 /// A value has a sign if it exceeds the standard deviation of its noise by this factor.
 const BEYOND_NOISE: f64 = 32.0;
 /// The number of points in a row from which noise is measured.
