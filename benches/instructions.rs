@@ -17,7 +17,7 @@ use std::process::Command;
 
 use stickslip::model::{Collider, Collision, exact};
 use stickslip::plane::{CollisionFamily, CollisionPlane};
-use stickslip::solver::{Dop853, Dopri5, Method};
+use stickslip::solver::Pair;
 use stickslip::tracer::{Family, TraceOptions, trace};
 
 /// What is counted: its row in the table, and a function that does it some times over and returns
@@ -25,11 +25,11 @@ use stickslip::tracer::{Family, TraceOptions, trace};
 type Workload = (&'static str, fn(usize) -> usize);
 
 const WORKLOADS: [Workload; 14] = [
-    ("collision, dop853 at 4e-13", |times| collisions(Dop853, 4e-13, times)),
-    ("collision, dop853 at 1e-12", |times| collisions(Dop853, 1e-12, times)),
-    ("collision, dop853 at 1e-9", |times| collisions(Dop853, 1e-9, times)),
-    ("collision, dopri5 at 1e-12", |times| collisions(Dopri5, 1e-12, times)),
-    ("collision, dopri5 at 1e-9", |times| collisions(Dopri5, 1e-9, times)),
+    ("collision, dop853 at 4e-13", |times| collisions(Pair::Dop853, 4e-13, times)),
+    ("collision, dop853 at 1e-12", |times| collisions(Pair::Dop853, 1e-12, times)),
+    ("collision, dop853 at 1e-9", |times| collisions(Pair::Dop853, 1e-9, times)),
+    ("collision, dopri5 at 1e-12", |times| collisions(Pair::Dopri5, 1e-12, times)),
+    ("collision, dopri5 at 1e-9", |times| collisions(Pair::Dopri5, 1e-9, times)),
     ("collision, exact", exact_collisions),
     ("free run at κ = 63, ψ = 0.5, with its margins", |times| free_runs(&integrated(), times)),
     ("prescribed run there, mean over these margins", |times| {
@@ -98,9 +98,9 @@ fn counted(index: usize, times: usize) -> Result<(u64, usize), Box<dyn Error>> {
     Ok((count, String::from_utf8(output.stdout)?.trim().parse()?))
 }
 
-fn collisions<M: Method>(method: M, tolerance: f64, times: usize) -> usize {
+fn collisions(pair: Pair, tolerance: f64, times: usize) -> usize {
     let contacts = contacts::contacts();
-    let collider = Collider::with_tolerances(method, tolerance, tolerance);
+    let collider = Collider::with_tolerances(pair, tolerance, tolerance);
     let mut collision = Collision::before(contacts[0]);
     for _ in 0..times {
         for &contact in &contacts {

@@ -5,7 +5,7 @@ use stickslip_model::exact::{self, ExactError};
 use stickslip_model::{
     Collider, Collision, CollisionError, Contact, EnergyLedger, Regime, Side, Switch,
 };
-use stickslip_solver::{Dopri5, Method};
+use stickslip_solver::Dopri5;
 
 /// Largest unbalanced energy, in units of ψ², at the default tolerances of Dormand–Prince 8(5,3).
 const BALANCE: f64 = 1e-9;
@@ -36,8 +36,8 @@ pub fn every_engine(contact: Contact) -> Result<(), String> {
 ///
 /// # Errors
 /// A description of the first property that does not hold.
-pub fn integrated<M: Method>(
-    collider: &Collider<M>,
+pub fn integrated(
+    collider: &Collider,
     contact: Contact,
 ) -> Result<Result<Collision, CollisionError>, String> {
     let result = collider.collide(contact);

@@ -67,8 +67,7 @@ pub enum EngineError {
 
 impl Tolerances {
     /// Defaults of Dormand–Prince 8(5,3), with which w is within 1e-12.
-    pub const DOP853: Self =
-        Self { rtol: Collider::<Dop853>::RTOL, atol: Collider::<Dop853>::ATOL };
+    pub const DOP853: Self = Self { rtol: Collider::RTOL, atol: Collider::ATOL };
     /// Defaults of Dormand–Prince 5(4). It would need very many steps for the accuracy of 8(5,3).
     pub const DOPRI5: Self = Self { rtol: 1e-10, atol: 1e-10 };
 }

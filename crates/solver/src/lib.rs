@@ -162,7 +162,9 @@ pub use runs::{
     Closures, InvalidTimes, Recorder, Sample, Samples, Segment, Trajectory, Weighted, integrate,
     run, run_backwards, run_over_switches, run_with, smooth, trajectory,
 };
-pub use sensitivity::{Change, Differentiable, Sensitivities, SwitchSensitivity, sensitivities};
+pub use sensitivity::{
+    Change, Differentiable, Sensitivities, SwitchSensitivity, sensitivities, sensitivities_with,
+};
 
 #[doc = include_str!("../README.md")]
 #[cfg(doctest)]

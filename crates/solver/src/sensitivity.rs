@@ -9,7 +9,7 @@
 
 use crate::error::RunError;
 use crate::hybrid::{Guard, HybridSystem, Observer, Outcome, Start, Statistics, SwitchEvent};
-use crate::method::{Method, State};
+use crate::method::{Dop853, Dopri5, Method, Pair, State};
 use crate::number::Enclosure;
 use crate::options::Options;
 use crate::runs::run;
@@ -177,6 +177,28 @@ where
         state_derivatives: derivatives(&run.state),
     });
     Ok(Sensitivities { switches, end, outcome: run.outcome, statistics: run.statistics })
+}
+
+/// As [`sensitivities`], with a pair that is chosen at run time.
+///
+/// # Errors
+/// Those of [`sensitivities`].
+pub fn sensitivities_with<S, const N: usize, const G: usize, const P: usize, const A: usize>(
+    pair: Pair,
+    system: &S,
+    start: Start<S::Mode, N>,
+    start_derivatives: [State<N>; P],
+    end: f64,
+    options: &Options,
+) -> Result<Sensitivities<S::Mode, N, P>, RunError>
+where
+    S: Differentiable<N, G, P>,
+{
+    let by = start_derivatives;
+    match pair {
+        Pair::Dopri5 => sensitivities::<_, _, N, G, P, A>(Dopri5, system, start, by, end, options),
+        Pair::Dop853 => sensitivities::<_, _, N, G, P, A>(Dop853, system, start, by, end, options),
+    }
 }
 
 /// A system together with the derivatives of its state.

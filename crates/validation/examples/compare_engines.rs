@@ -104,7 +104,7 @@ fn compare(seed: u64, cases: std::ops::Range<u64>) -> Comparison {
 }
 
 fn collide(
-    collider: &Collider<stickslip::solver::Dop853>,
+    collider: &Collider,
     kappa: f64,
     psi: f64,
 ) -> Result<(Collision, Collision), Box<dyn std::error::Error>> {

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use stickslip_solver::{
-    Dense, Method, Observer, Options, Outcome, RunError, Start, State, SwitchEvent, run,
+    Dense, Observer, Options, Outcome, Pair, RunError, Start, State, SwitchEvent, run_with,
 };
 
 use crate::contact::Contact;
@@ -99,15 +99,15 @@ impl History {
     }
 
     /// Integrates the collision of `contact` and keeps its trajectory.
-    pub(crate) fn record<M: Method>(
-        method: M,
+    pub(crate) fn record(
+        pair: Pair,
         options: &Options,
         contact: Contact,
     ) -> Result<(Self, Outcome), RunError> {
         let mut history = Self::before(contact);
         let system = history.system;
         let start = Start { mode: Phase::first(&contact), s: 0.0, state: system.start() };
-        let run = run(method, &system, start, f64::INFINITY, options, &mut history)?;
+        let run = run_with(pair, &system, start, f64::INFINITY, options, &mut history)?;
         Ok((history, run.outcome))
     }
 

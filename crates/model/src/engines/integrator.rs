@@ -1,8 +1,6 @@
 //! A collision integrated from first touch to separation: start reading here.
 
-use stickslip_solver::{
-    Dop853, Method, Observer, Options, Outcome, RunError, Start, Statistics, run,
-};
+use stickslip_solver::{Observer, Options, Outcome, Pair, RunError, Start, Statistics, run_with};
 
 mod account;
 mod last_slip;
@@ -35,7 +33,9 @@ const BRIEF: f64 = 1e-9;
 /// Most steps divided by √κ. Dormand–Prince 5(4) takes 170 at tolerances of 1e-15.
 const MOST_STEPS_PER_OSCILLATION: f64 = 400.0;
 
-/// Integrates collisions with one method and one set of options.
+/// Integrates collisions with one pair and one set of options.
+///
+/// The pair is chosen at run time, so that collisions are compiled once, in this crate.
 ///
 /// ```
 /// use stickslip_model::{Collider, Contact};
@@ -46,46 +46,47 @@ const MOST_STEPS_PER_OSCILLATION: f64 = 400.0;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct Collider<M> {
-    method: M,
+pub struct Collider {
+    pair: Pair,
     options: Options,
     refined: bool,
 }
 
-impl Default for Collider<Dop853> {
+impl Default for Collider {
     fn default() -> Self {
-        Self::new(Dop853)
+        Self::new(Pair::Dop853)
     }
 }
 
-impl<M: Method> Collider<M> {
+impl Collider {
     /// Relative tolerance with which Dormand–Prince 8(5,3) computes w to 1e-12.
     pub const RTOL: f64 = 4e-13;
     /// Absolute tolerance that goes with [`Self::RTOL`].
     pub const ATOL: f64 = 4e-13;
 
-    /// A collider with the tolerances [`Self::RTOL`] and [`Self::ATOL`], whatever the method.
+    /// A collider with the tolerances [`Self::RTOL`] and [`Self::ATOL`], whatever the pair:
+    /// [`Dop853`](stickslip_solver::Dop853), [`Dopri5`](stickslip_solver::Dopri5) or a [`Pair`].
     #[must_use]
-    pub fn new(method: M) -> Self {
-        Self::with_tolerances(method, Self::RTOL, Self::ATOL)
+    pub fn new(pair: impl Into<Pair>) -> Self {
+        Self::with_tolerances(pair, Self::RTOL, Self::ATOL)
     }
 
     /// A collider with these tolerances, which are checked when it is used.
     #[must_use]
-    pub fn with_tolerances(method: M, rtol: f64, atol: f64) -> Self {
+    pub fn with_tolerances(pair: impl Into<Pair>, rtol: f64, atol: f64) -> Self {
         let first_step = Some(LONGEST_STEP);
         let max_step = LONGEST_STEP;
         let options = Options { rtol, atol, first_step, max_step, ..Options::default() };
-        Self { method, options, refined: true }
+        Self { pair: pair.into(), options, refined: true }
     }
 
-    /// A collider with these options that returns what the method computes, for convergence
+    /// A collider with these options that returns what the pair computes, for convergence
     /// studies.
     ///
     /// The other colliders compute collisions near a graze once more with twice the digits.
     #[must_use]
-    pub fn unrefined(method: M, options: Options) -> Self {
-        Self { method, options, refined: false }
+    pub fn unrefined(pair: impl Into<Pair>, options: Options) -> Self {
+        Self { pair: pair.into(), options, refined: false }
     }
 
     /// Integrates one collision.
@@ -147,7 +148,7 @@ impl<M: Method> Collider<M> {
         let start = Start { mode: phase, s: 0.0, state: system.start() };
         let account = Account::new(system, collision, start.state);
         let mut observed = Observed { account, course };
-        let run = run(self.method, &system, start, f64::INFINITY, options, &mut observed)?;
+        let run = run_with(self.pair, &system, start, f64::INFINITY, options, &mut observed)?;
         let mut account = observed.account;
         if run.outcome != (Outcome::EndedByGuard { guard: END }) {
             let time = account.elapsed + run.state[T];
@@ -176,13 +177,13 @@ impl<M: Method> Collider<M> {
             compression_left: 0.4 * compression,
         };
         if self.refined && flatness > FLAT && run.mode.regime == Regime::Slip {
-            refine::refine(self.method, options, collision);
+            refine::refine(self.pair, options, collision);
         }
         Ok(run.statistics)
     }
 
-    pub(crate) fn method(&self) -> M {
-        self.method
+    pub(crate) fn pair(&self) -> Pair {
+        self.pair
     }
 
     /// Integrates one collision and keeps its course in time, in at most [`History::MOST_STEPS`]
@@ -192,7 +193,7 @@ impl<M: Method> Collider<M> {
     /// As [`Self::collide`].
     pub fn history(&self, contact: Contact) -> Result<History, CollisionError> {
         let options = self.recorded_options(&contact)?;
-        let (history, outcome) = History::record(self.method, &options, contact)?;
+        let (history, outcome) = History::record(self.pair, &options, contact)?;
         if outcome == (Outcome::EndedByGuard { guard: END }) {
             return Ok(history);
         }

@@ -10,7 +10,7 @@
 
 use num_dual::Dual64;
 use stickslip_solver::{
-    Change, Differentiable, Method, Outcome, Start, State, SwitchSensitivity, sensitivities,
+    Change, Differentiable, Outcome, Start, State, SwitchSensitivity, sensitivities_with,
 };
 
 use super::integrator::{Collider, CollisionError};
@@ -52,7 +52,7 @@ pub struct Sensitivity {
     pub switch_times: Vec<Derived>,
 }
 
-impl<M: Method> Collider<M> {
+impl Collider {
     /// Integrates one collision with the derivatives of its results with respect to κ, ψ and a.
     ///
     /// The derivatives are those of the collision with unchanged switches. Relative to their
@@ -82,8 +82,8 @@ impl<M: Method> Collider<M> {
         let system = Regularized::new(contact);
         let start = Start { mode: Phase::first(&contact), s: 0.0, state: system.start() };
         let by = Parameter::ALL.map(|p| State::from(system.equations.start_by(contact.psi(), p)));
-        let found = sensitivities::<_, _, STATE, GUARDS, PARAMETERS, TOGETHER>(
-            self.method(),
+        let found = sensitivities_with::<_, STATE, GUARDS, PARAMETERS, TOGETHER>(
+            self.pair(),
             &system,
             start,
             by,

@@ -66,7 +66,7 @@ pub struct UnresetCollision {
 /// [`CollisionError`]: the integration fails, or the contact does not end.
 pub fn collide(contact: Contact) -> Result<UnresetCollision, CollisionError> {
     let system = UnresetSpring::new(contact);
-    let (rtol, atol) = (Collider::<Dop853>::RTOL, Collider::<Dop853>::ATOL);
+    let (rtol, atol) = (Collider::RTOL, Collider::ATOL);
     let options =
         Options { rtol, atol, first_step: Some(0.1), max_step: 0.1, ..Options::default() };
     let start = system.start();

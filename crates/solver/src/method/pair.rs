@@ -69,6 +69,18 @@ impl Pair {
     }
 }
 
+impl From<Dopri5> for Pair {
+    fn from(Dopri5: Dopri5) -> Self {
+        Self::Dopri5
+    }
+}
+
+impl From<Dop853> for Pair {
+    fn from(Dop853: Dop853) -> Self {
+        Self::Dop853
+    }
+}
+
 impl fmt::Display for Pair {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.name())

@@ -10,8 +10,8 @@ use stickslip_model::exact;
 use stickslip_model::regularized::{self, Phase, Regularized};
 use stickslip_model::{Collider, Collision, CollisionError, Contact, EngineError, Regime, Side};
 use stickslip_solver::{
-    Dop853, HybridSystem, Method, Observer, Options, Outcome, Run, RunError, Start, Statistics,
-    SwitchEvent, run, run_over_switches,
+    Dop853, Dopri5, HybridSystem, Observer, Options, Outcome, Pair, Run, RunError, Start,
+    Statistics, SwitchEvent, run_over_switches, run_with,
 };
 
 use super::plain_time::{self, PlainTime};
@@ -28,7 +28,7 @@ pub enum Coordinates {
 /// How an integration treats switches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Switching {
-    /// Each switch ends a step: [`run`].
+    /// Each switch ends a step: [`run`](stickslip_solver::run).
     Located {
         /// Step sizes or tolerances.
         options: Options,
@@ -85,7 +85,7 @@ impl Approximation {
 /// [`EngineError`]: the exact solution or the integrator fails.
 pub fn reference(contact: Contact) -> Result<Collision, EngineError> {
     if contact.damping() > 0.0 {
-        Ok(Collider::with_tolerances(Dop853, 1e-15, 1e-15).collide(contact)?)
+        Ok(Collider::with_tolerances(Pair::Dop853, 1e-15, 1e-15).collide(contact)?)
     } else {
         Ok(exact::collide(contact)?)
     }
@@ -96,11 +96,11 @@ pub fn reference(contact: Contact) -> Result<Collision, EngineError> {
 /// ```
 /// use stickslip_model::Contact;
 /// use stickslip_studies::convergence::{Coordinates, Switching, integrate, reference};
-/// use stickslip_solver::Dop853;
+/// use stickslip_solver::Pair;
 ///
 /// let contact = Contact::new(63.0, 0.5, 0.0)?;
 /// let coarse = Switching::AtStepEnds { step_size: 1e-3, max_steps: 10_000 };
-/// let found = integrate(Dop853, contact, Coordinates::PlainTime, &coarse)?;
+/// let found = integrate(Pair::Dop853, contact, Coordinates::PlainTime, &coarse)?;
 /// let error = found.deviation(&reference(contact)?);
 /// // A switch is late by up to a step, whatever the order of the method.
 /// assert!(error.switch_times.is_some_and(|times| times.iter().any(|time| *time > 3e-4)));
@@ -109,8 +109,8 @@ pub fn reference(contact: Contact) -> Result<Collision, EngineError> {
 ///
 /// # Errors
 /// [`CollisionError`]: invalid options, or a contact that does not end within the limits.
-pub fn integrate<M: Method>(
-    method: M,
+pub fn integrate(
+    pair: Pair,
     contact: Contact,
     coordinates: Coordinates,
     switching: &Switching,
@@ -121,13 +121,13 @@ pub fn integrate<M: Method>(
         Coordinates::Regularized => {
             let system = Regularized::new(contact);
             let start = Start { mode: phase, s: 0.0, state: system.start() };
-            let run = follow(method, &system, start, switching, &mut switches)?;
+            let run = follow(pair, &system, start, switching, &mut switches)?;
             (run.outcome, system.velocity(&run.state), run.statistics)
         }
         Coordinates::PlainTime => {
             let system = PlainTime::new(contact);
             let start = Start { mode: phase, s: 0.0, state: system.start() };
-            let run = follow(method, &system, start, switching, &mut switches)?;
+            let run = follow(pair, &system, start, switching, &mut switches)?;
             (run.outcome, run.state[plain_time::W], run.statistics)
         }
     };
@@ -175,14 +175,14 @@ impl Errors {
 /// ```
 /// use stickslip_model::Contact;
 /// use stickslip_studies::convergence::{Coordinates, Switching, measure, reference};
-/// use stickslip_solver::{Dop853, Options, StepSize};
+/// use stickslip_solver::{Options, Pair, StepSize};
 ///
 /// let contacts = [Contact::new(18.0, 0.4, 0.0)?, Contact::new(63.0, 0.5, 0.0)?];
 /// let references = contacts.map(reference).into_iter().collect::<Result<Vec<_>, _>>()?;
 /// let [coarse, fine] = [0.04, 0.02].map(|h| {
 ///     let options = Options { step_size: StepSize::Fixed(h), ..Options::default() };
 ///     let located = Switching::Located { options };
-///     measure(Dop853, &references, Coordinates::Regularized, &located)
+///     measure(Pair::Dop853, &references, Coordinates::Regularized, &located)
 /// });
 /// assert!(coarse.comparable() && fine.comparable());
 /// let ratio = coarse.velocity.root_mean_square / fine.velocity.root_mean_square;
@@ -190,8 +190,8 @@ impl Errors {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[must_use]
-pub fn measure<M: Method>(
-    method: M,
+pub fn measure(
+    pair: Pair,
     references: &[Collision],
     coordinates: Coordinates,
     switching: &Switching,
@@ -199,7 +199,7 @@ pub fn measure<M: Method>(
     let (mut failed, mut other_switches, mut right_hand_sides) = (0, 0, 0);
     let (mut velocities, mut times) = (Vec::new(), Vec::new());
     for reference in references {
-        let Ok(found) = integrate(method, reference.contact, coordinates, switching) else {
+        let Ok(found) = integrate(pair, reference.contact, coordinates, switching) else {
             failed += 1;
             continue;
         };
@@ -221,24 +221,31 @@ impl Spread {
     }
 }
 
-fn follow<M, S, const N: usize, const G: usize>(
-    method: M,
+fn follow<S, const N: usize, const G: usize>(
+    pair: Pair,
     system: &S,
     start: Start<Phase, N>,
     switching: &Switching,
     switches: &mut SwitchRecord,
 ) -> Result<Run<Phase, N>, RunError>
 where
-    M: Method,
     S: HybridSystem<N, G, Mode = Phase>,
     SwitchRecord: Observer<Phase, N>,
 {
     match *switching {
         Switching::Located { options } => {
-            run(method, system, start, f64::INFINITY, &options, switches)
+            run_with(pair, system, start, f64::INFINITY, &options, switches)
         }
         Switching::AtStepEnds { step_size, max_steps } => {
-            run_over_switches(method, system, start, f64::INFINITY, step_size, max_steps, switches)
+            let (end, most) = (f64::INFINITY, max_steps);
+            match pair {
+                Pair::Dopri5 => {
+                    run_over_switches(Dopri5, system, start, end, step_size, most, switches)
+                }
+                Pair::Dop853 => {
+                    run_over_switches(Dop853, system, start, end, step_size, most, switches)
+                }
+            }
         }
     }
 }
@@ -292,7 +299,8 @@ mod tests {
     fn regularised_and_located_is_what_the_collider_does() {
         for contact in contacts() {
             let located = Switching::Located { options: FIXED };
-            let found = integrate(Dopri5, contact, Coordinates::Regularized, &located).unwrap();
+            let found =
+                integrate(Pair::Dopri5, contact, Coordinates::Regularized, &located).unwrap();
             let expected = Collider::unrefined(Dopri5, FIXED).collide(contact).unwrap();
             let error = found.deviation(&expected);
             assert_eq!((error.velocity, error.switch_times.unwrap().iter().sum()), (0.0, 0.0));
@@ -310,7 +318,7 @@ mod tests {
                 (Coordinates::PlainTime, &coarse, 2e-6, 5e-4),
                 (Coordinates::Regularized, &coarse, 5e-6, 1.1e-3),
             ] {
-                let found = integrate(Dop853, contact, coordinates, switching).unwrap();
+                let found = integrate(Pair::Dop853, contact, coordinates, switching).unwrap();
                 let error = found.deviation(&truth);
                 assert!(error.velocity < velocity, "{contact:?} {coordinates:?} {error:?}");
                 let times = error.switch_times.unwrap();
@@ -323,11 +331,11 @@ mod tests {
     fn other_switches_and_failures_are_counted() {
         let references: Vec<_> = contacts().map(|contact| reference(contact).unwrap()).collect();
         let coarse = Switching::AtStepEnds { step_size: 0.2, max_steps: 100 };
-        let errors = measure(Dopri5, &references, Coordinates::PlainTime, &coarse);
+        let errors = measure(Pair::Dopri5, &references, Coordinates::PlainTime, &coarse);
         assert!(errors.failed == 0 && errors.other_switches > 0 && !errors.comparable());
         assert!(errors.velocity.largest >= errors.velocity.root_mean_square);
         let short = Switching::AtStepEnds { step_size: 0.2, max_steps: 3 };
-        let errors = measure(Dopri5, &references, Coordinates::PlainTime, &short);
+        let errors = measure(Pair::Dopri5, &references, Coordinates::PlainTime, &short);
         assert!(errors.failed == 4 && errors.velocity.largest.is_nan() && !errors.comparable());
     }
 }

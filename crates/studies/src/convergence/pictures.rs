@@ -4,11 +4,11 @@ use stickslip_figure::Svg;
 use stickslip_figure::canvas::panel::Scale;
 use stickslip_figure::canvas::shape::Stroke;
 use stickslip_figure::pictures::chart::{self, Chart, ChartAxis, Mark, Shape};
-use stickslip_solver::Order;
+use stickslip_solver::{Order, Pair};
 
 use super::Measurement;
 use super::measure::{Coordinates, Errors, Spread};
-use super::series::{Control, ErrorRow, ErrorSeries, MethodPair, Scheme, SwitchHandling, fitted};
+use super::series::{Control, ErrorRow, ErrorSeries, Scheme, SwitchHandling, fitted};
 use crate::study::Picture;
 
 /// An error that is drawn.
@@ -148,8 +148,8 @@ fn marked_line(scheme: Scheme, remark: &str, points: Vec<(f64, f64)>) -> chart::
 /// The stroke of a pair. Its dashes let the line of the other pair show where both coincide.
 fn stroke(scheme: Scheme) -> Stroke {
     match scheme.pair {
-        MethodPair::Dopri5 => Stroke::full("#0072B2", 1.4),
-        MethodPair::Dop853 => Stroke { colour: "#D55E00", width: 1.4, dashes: "6 4" },
+        Pair::Dopri5 => Stroke::full("#0072B2", 1.4),
+        Pair::Dop853 => Stroke { colour: "#D55E00", width: 1.4, dashes: "6 4" },
     }
 }
 

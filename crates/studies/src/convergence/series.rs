@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 use stickslip_model::Collision;
-use stickslip_solver::{Dop853, Dopri5, Method, Options, Order, StepSize, fit_order};
+use stickslip_solver::{Options, Order, Pair, StepSize, fit_order};
 
 use super::measure::{Coordinates, Errors, Spread, Switching, measure};
 
@@ -25,13 +25,6 @@ const MOST_STEPS: f64 = 20_000.0;
 /// Quick measurements are repeated for this long, at most three times; the shortest time counts.
 const QUICK: Duration = Duration::from_millis(5);
 
-/// A Dormand–Prince pair.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MethodPair {
-    Dopri5,
-    Dop853,
-}
-
 /// Whether switches are located, which ends steps there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SwitchHandling {
@@ -49,7 +42,7 @@ pub enum Control {
 /// A way to integrate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scheme {
-    pub pair: MethodPair,
+    pub pair: Pair,
     pub coordinates: Coordinates,
     pub switches: SwitchHandling,
     pub control: Control,
@@ -82,25 +75,6 @@ pub struct ErrorSeries {
     pub switch_time: Option<Order>,
 }
 
-impl MethodPair {
-    pub const BOTH: [Self; 2] = [Self::Dopri5, Self::Dop853];
-
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Dopri5 => "dopri5",
-            Self::Dop853 => "dop853",
-        }
-    }
-
-    /// The order of the method on smooth problems.
-    pub fn order(self) -> usize {
-        match self {
-            Self::Dopri5 => Dopri5::ORDER,
-            Self::Dop853 => Dop853::ORDER,
-        }
-    }
-}
-
 impl Control {
     pub fn name(self) -> &'static str {
         match self {
@@ -122,7 +96,7 @@ impl Scheme {
         let mut schemes = Vec::new();
         for (control, switches) in ways {
             for coordinates in [Coordinates::Regularized, Coordinates::PlainTime] {
-                let pairs = MethodPair::BOTH;
+                let pairs = Pair::ALL;
                 schemes.extend(pairs.map(|pair| Self { pair, coordinates, switches, control }));
             }
         }
@@ -149,8 +123,7 @@ impl Scheme {
             return powers.map(|i| 0.1_f64.powf(f64::from(i) / f64::from(PER_DECADE))).collect();
         }
         let coarsest = coarsest(references);
-        let at_rounding_early =
-            (MethodPair::Dop853, Coordinates::Regularized, SwitchHandling::Located);
+        let at_rounding_early = (Pair::Dop853, Coordinates::Regularized, SwitchHandling::Located);
         let early = (self.pair, self.coordinates, self.switches) == at_rounding_early;
         let octaves = if early { 6 } else { 10 };
         (0..=octaves * PER_OCTAVE)
@@ -200,10 +173,7 @@ fn coarsest(references: &[Collision]) -> f64 {
 impl ErrorRow {
     pub fn measure(scheme: Scheme, value: f64, references: &[Collision]) -> Self {
         let switching = scheme.switching(value, coarsest(references));
-        let once = || match scheme.pair {
-            MethodPair::Dopri5 => measure(Dopri5, references, scheme.coordinates, &switching),
-            MethodPair::Dop853 => measure(Dop853, references, scheme.coordinates, &switching),
-        };
+        let once = || measure(scheme.pair, references, scheme.coordinates, &switching);
         let start = Instant::now();
         let errors = once();
         let mut shortest = start.elapsed();

@@ -1,8 +1,10 @@
 //! The study as tables.
 
+use stickslip_solver::Pair;
+
 use super::Measurement;
 use super::measure::Errors;
-use super::series::{Control, ErrorRow, ErrorSeries, MethodPair, Scheme};
+use super::series::{Control, ErrorRow, ErrorSeries, Scheme};
 use crate::study::{Cell, Column, Table};
 
 /// The table of fitted orders.
@@ -93,7 +95,7 @@ impl Measurement {
     fn collisions(&self) -> Table {
         let rows = self.accuracies.iter().flat_map(|accuracy| {
             let collision = &accuracy.reference;
-            MethodPair::BOTH.iter().zip(&accuracy.pairs).map(move |(pair, errors)| {
+            Pair::ALL.iter().zip(&accuracy.pairs).map(move |(pair, errors)| {
                 let contact = &collision.contact;
                 let numbers =
                     [contact.kappa(), contact.psi(), contact.damping(), collision.eps_t()];

@@ -7,7 +7,7 @@
 //! near 1e-21, so that times are accurate to rounding.
 
 use smallvec::SmallVec;
-use stickslip_solver::{Method, Observer, Options, Start, SwitchEvent, run};
+use stickslip_solver::{Observer, Options, Pair, Start, SwitchEvent, run_with};
 
 use crate::contact::Contact;
 use crate::laws::phase::{Phase, Regime, Side};
@@ -30,9 +30,9 @@ type Phases = SmallVec<[(Phase, f64); PHASES]>;
 ///
 /// Returns false and changes nothing if Newton's method leaves the neighbourhood of a switch that
 /// the integrator found.
-pub(crate) fn refine<M: Method>(method: M, options: &Options, collision: &mut Collision) -> bool {
+pub(crate) fn refine(pair: Pair, options: &Options, collision: &mut Collision) -> bool {
     let contact = collision.contact;
-    let Some(phases) = phases(method, options, contact) else { return false };
+    let Some(phases) = phases(pair, options, contact) else { return false };
     let mut state = FineState::start(contact);
     let mut sliding = ZERO;
     let mut ends = SmallVec::<[FineState; PHASES]>::new();
@@ -76,7 +76,7 @@ pub(crate) fn refine<M: Method>(method: M, options: &Options, collision: &mut Co
 }
 
 /// The phases that the integrator finds, with their lengths in s.
-fn phases<M: Method>(method: M, options: &Options, contact: Contact) -> Option<Phases> {
+fn phases(pair: Pair, options: &Options, contact: Contact) -> Option<Phases> {
     /// Records phases with their lengths, and where the last one ended.
     #[derive(Default)]
     struct Itinerary(Phases, f64);
@@ -91,7 +91,7 @@ fn phases<M: Method>(method: M, options: &Options, contact: Contact) -> Option<P
     let system = Regularized::new(contact);
     let start = Start { mode: Phase::first(&contact), s: 0.0, state: system.start() };
     let mut itinerary = Itinerary::default();
-    let _ = run(method, &system, start, f64::INFINITY, options, &mut itinerary).ok()?;
+    let _ = run_with(pair, &system, start, f64::INFINITY, options, &mut itinerary).ok()?;
     Some(itinerary.0)
 }
 
