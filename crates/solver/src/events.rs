@@ -15,6 +15,7 @@
 //! | `path` | bounds for the state along a step, for the guards of readable systems |
 //! | `along_step` | a guard as a function along a step, and its rounding |
 //! | `locate` | the place of a switch, by steps of the method |
+//! | `notices` | touches and poles, until the step is accepted |
 //! | `arrival` | guards that are zero where the span of a run ends |
 
 pub(crate) mod along_step;
@@ -25,6 +26,7 @@ mod examination;
 pub(crate) mod first_guard;
 pub(crate) mod isolate;
 pub(crate) mod locate;
+mod notices;
 pub(crate) mod one_guard;
 mod path;
 mod phase;
@@ -32,6 +34,7 @@ pub(crate) mod quick;
 
 pub(crate) use along_step::{dense_output, repeated_step};
 pub(crate) use event::{Event, Found, bit};
-pub(crate) use examination::{Examination, Noticed, values_on};
+pub(crate) use examination::{Examination, values_on};
 pub(crate) use first_guard::all_clearly_away;
+pub(crate) use notices::{Noticed, Notices};
 pub(crate) use phase::Phase;

@@ -4,7 +4,8 @@
 //! (problems without guards), `closures` (systems of one mode), `trajectory` (recorded runs),
 //! `samples` (output at given times), `both` (two observers), `backwards` (runs that go backwards),
 //! `by_name` (pairs that are chosen at run time), `weighted` (tolerances of components) and
-//! `unlocated` (runs without event location, for comparison).
+//! `unlocated` (runs without event location, for comparison). `finite`, `rejected` and `last_part`
+//! are what several of these need.
 
 pub(crate) mod backwards;
 mod both;
@@ -13,6 +14,7 @@ pub(crate) mod clock;
 mod closures;
 pub(crate) mod finite;
 mod last_part;
+pub(crate) mod rejected;
 pub(crate) mod runner;
 mod samples;
 pub mod smooth;

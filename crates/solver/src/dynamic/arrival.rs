@@ -3,19 +3,19 @@
 
 use crate::dynamic::curve::{Work, rounding};
 use crate::dynamic::event::{Event, Examination};
-use crate::dynamic::results::DynamicObserver;
 use crate::dynamic::step::Step;
 use crate::dynamic::system::DynamicSystem;
 use crate::events::arrival::{REACH, SAME};
 use crate::hybrid::Direction;
 
-impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Examination<'_, S, O> {
+impl<S: DynamicSystem> Examination<'_, S> {
     /// Finds guards that are zero at the end of `step`, to within rounding, and cross there in
-    /// their direction. Such a guard fires, since no other step will find it. The first one that
-    /// changes something is returned.
+    /// their direction. Such a guard fires, since no other step will find it. Of those that
+    /// change something, the one that precedes is returned.
     pub(crate) fn arrive(&mut self, step: &Step) -> Option<Event> {
         let s0 = self.origin.s;
         let s = s0 + step.h;
+        let mut event: Option<Event> = None;
         for guard in 0..self.phase.values.len() {
             let (direction, largest) =
                 (self.phase.guards[guard].direction(), self.phase.largest[guard]);
@@ -44,7 +44,8 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Examination<'_, S, O> {
                 }
                 at.value(s + by, moved, values)
             });
-            let crosses = behind * ahead < 0.0 && behind.abs().min(ahead.abs()) > 4.0 * hidden;
+            let shows = behind.abs() > 4.0 * hidden && ahead.abs() > 4.0 * hidden;
+            let crosses = shows && (behind < 0.0) != (ahead < 0.0);
             let in_direction = match direction {
                 Direction::Either => true,
                 Direction::Rising => behind < 0.0,
@@ -64,12 +65,21 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Examination<'_, S, O> {
                 beyond: step.h,
                 jump: false,
             };
-            if !self.is_noted(&found) {
-                return Some(found);
+            if self.is_noted(&found) {
+                let together = self.notes.last().is_some_and(|last| last.elapsed == step.h);
+                self.note(found, together);
+                continue;
             }
-            let together = self.notes.last().is_some_and(|last| last.elapsed == step.h);
-            self.note(found, together);
+            // Of guards that fire together the one that precedes decides, and names the others.
+            event = Some(match event {
+                None => found,
+                Some(first) => {
+                    let precedes = self.rank(guard) < self.rank(first.guard);
+                    let (first, other) = if precedes { (found, first) } else { (first, found) };
+                    first.together_with(&other)
+                }
+            });
         }
-        None
+        event
     }
 }

@@ -5,6 +5,7 @@ use crate::dynamic::phase::Phase;
 use crate::dynamic::results::DynamicEvent;
 use crate::dynamic::step::{Origin, Step};
 use crate::dynamic::system::{DynamicSystem, SignedGuard};
+use crate::events::Notices;
 use crate::events::isolate::Beginning;
 use crate::events::one_guard::Status;
 use crate::events::quick::NODES;
@@ -26,6 +27,14 @@ pub(crate) struct Event {
 }
 
 impl Event {
+    /// The event with the guards of another one, which fires together with it.
+    pub(crate) fn together_with(mut self, other: &Self) -> Self {
+        let others = other.simultaneous.iter().copied().chain([other.guard]);
+        self.simultaneous.extend(others);
+        self.simultaneous.sort_unstable();
+        self
+    }
+
     /// The guard's `largest` value in the phase over its slope.
     pub(crate) fn flatness(&self, largest: f64) -> f64 {
         // A guard that has always been zero has no size.
@@ -94,7 +103,7 @@ impl Tables {
 }
 
 /// The data that the examination of a step needs.
-pub(crate) struct Examination<'a, S: DynamicSystem, O> {
+pub(crate) struct Examination<'a, S: DynamicSystem> {
     pub(crate) system: &'a S,
     pub(crate) phase: &'a Phase<S::Mode>,
     pub(crate) origin: Origin<'a>,
@@ -107,12 +116,13 @@ pub(crate) struct Examination<'a, S: DynamicSystem, O> {
     pub(crate) tables: &'a mut Tables,
     pub(crate) work: &'a mut Work,
     pub(crate) statistics: &'a mut Statistics,
-    pub(crate) observer: &'a mut O,
+    /// The touches and poles on this step.
+    pub(crate) notices: &'a mut Notices<S::Mode>,
 }
 
-impl<'a, S: DynamicSystem, O> Examination<'a, S, O> {
+impl<'a, S: DynamicSystem> Examination<'a, S> {
     /// The right-hand side of the active mode.
-    pub(crate) fn field(&self) -> impl Fn(f64, &[f64], &mut [f64]) + use<'a, S, O> {
+    pub(crate) fn field(&self) -> impl Fn(f64, &[f64], &mut [f64]) + use<'a, S> {
         let (system, mode) = (self.system, self.phase.mode);
         move |s, y, slope| system.field(mode, s, y, slope)
     }

@@ -6,7 +6,6 @@
 //! [`crate::events::first_guard`].
 
 use crate::dynamic::event::{Event, Examination, Found};
-use crate::dynamic::results::DynamicObserver;
 use crate::dynamic::step::Step;
 use crate::dynamic::system::DynamicSystem;
 use crate::error::RunError;
@@ -17,7 +16,7 @@ use crate::hybrid::Direction;
 use crate::method::Method;
 use crate::runs::finite::is_finite;
 
-impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Examination<'_, S, O> {
+impl<S: DynamicSystem> Examination<'_, S> {
     /// Finds the first guard that fires on `step` and changes something. Guards that fire before it
     /// and change nothing are noted.
     pub(crate) fn look<M: Method>(&mut self, step: &mut Step) -> Result<Found, RunError> {
@@ -124,11 +123,15 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Examination<'_, S, O> {
     /// The index of the first event. Of those that are together, the one whose guard precedes.
     fn first_of(&self, located: &[Event]) -> Option<usize> {
         let least = located.iter().fold(f64::INFINITY, |least, event| least.min(event.elapsed));
-        let rank = |event: &Event| (self.phase.guards[event.guard].yields(), event.guard);
         let together = |event: &Event| (1.0 - TOGETHER) * event.elapsed <= least;
         (0..located.len())
             .filter(|&index| together(&located[index]))
-            .min_by_key(|&index| rank(&located[index]))
+            .min_by_key(|&index| self.rank(located[index].guard))
+    }
+
+    /// Of guards that fire together the one with the lowest rank decides.
+    pub(crate) fn rank(&self, guard: usize) -> (bool, usize) {
+        (self.phase.guards[guard].yields(), guard)
     }
 
     /// Whether an event only reports a crossing: mode and state go on unchanged.

@@ -42,7 +42,7 @@ struct Landing {
     jump: bool,
 }
 
-impl<S: DynamicSystem, O> Examination<'_, S, O> {
+impl<S: DynamicSystem> Examination<'_, S> {
     /// Finds where `guard` crosses zero inside the bracket. The result is `None` if steps of the
     /// method do not find the signs that the bracket claims.
     pub(crate) fn locate<M: Method>(
@@ -301,7 +301,9 @@ impl<S: DynamicSystem, O> Examination<'_, S, O> {
         let found = (before >= 0.0 && after < 0.0 && steep)
             .then(|| narrow(&mut curved, (low, before), (high, after), f64::EPSILON * h));
         let (left, right) = found?;
-        let jump = left.1 - right.1 > 0.1 * (before - after);
+        // Without a value in between, it jumps too.
+        let crosses = left.1 - right.1 <= 0.1 * (before - after);
+        let jump = !crosses;
         let (by, residual) = if left.1 < -right.1 && !jump { left } else { right };
         // The state at the place that was chosen.
         curved(by);

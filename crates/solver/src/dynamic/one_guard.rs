@@ -5,17 +5,17 @@ use std::marker::PhantomData;
 
 use crate::dynamic::curve::{AlongStep, Work};
 use crate::dynamic::event::Examination;
-use crate::dynamic::results::DynamicObserver;
 use crate::dynamic::step::Step;
 use crate::dynamic::system::DynamicSystem;
 use crate::error::RunError;
+use crate::events::Noticed;
 use crate::events::isolate::{Beginning, Notice, Task, Verdict, first_crossing, last_sign};
 use crate::events::one_guard::{Crossing, FINEST, LONGER, Status};
 use crate::events::quick::{self, BETWEEN, NODES, between};
-use crate::hybrid::{Direction, Grazing, Pole};
+use crate::hybrid::Direction;
 use crate::method::Method;
 
-impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Examination<'_, S, O> {
+impl<S: DynamicSystem> Examination<'_, S> {
     /// Evaluates the guards at the nodes of `step`.
     pub(crate) fn fill_nodes<M: Method>(&mut self, step: &mut Step) {
         let field = self.field();
@@ -129,6 +129,9 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Examination<'_, S, O> {
             let leaves = self.leaves_zero::<M>(guard, step.h);
             return leaves.then_some(Some(Status::Clear)).ok_or(identically);
         }
+        if column[0].is_nan() {
+            return Err(RunError::GuardNotANumber { guard, s: self.origin.s });
+        }
         self.statistics.isolations += 1;
         self.extend::<M>(step);
         let direction = self.phase.guards[guard].direction();
@@ -139,13 +142,8 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Examination<'_, S, O> {
         };
         let mut found = Status::Clear;
         for &sign in signs {
-            let mut noticed = [None; 8];
-            let mut places = noticed.iter_mut();
-            let mut notice = |found: Notice| {
-                if let Some(place) = places.next() {
-                    *place = Some(found);
-                }
-            };
+            let mut noticed = Vec::new();
+            let mut notice = |found: Notice| noticed.push(found);
             let task = Task {
                 beginning: Beginning { value: sign * beginning.value, ..beginning },
                 domain: direction == Direction::Below,
@@ -155,7 +153,7 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Examination<'_, S, O> {
             };
             let verdict =
                 first_crossing(&mut self.along::<M>(guard, sign, step), &task, &mut notice)?;
-            self.report(guard, sign, step.h, noticed);
+            self.collect(guard, sign, step.h, &noticed);
             let crossing = match verdict {
                 Verdict::None => continue,
                 Verdict::TooCoarse => return Ok(None),
@@ -217,21 +215,11 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Examination<'_, S, O> {
         false
     }
 
-    /// Reports what isolation noticed of a guard.
-    fn report(&mut self, guard: usize, sign: f64, h: f64, noticed: [Option<Notice>; 8]) {
-        let mode = self.phase.mode;
-        for notice in noticed.into_iter().flatten() {
-            match notice {
-                Notice::Touch(touch) => {
-                    self.statistics.grazings += 1;
-                    let s = self.origin.s + touch.theta * h;
-                    let margin = sign * touch.margin;
-                    self.observer.on_grazing(&Grazing { s, mode, guard, margin });
-                }
-                Notice::Pole(theta) => {
-                    self.observer.on_pole(&Pole { s: self.origin.s + theta * h, mode, guard });
-                }
-            }
+    /// Collects what isolation noticed of a guard.
+    fn collect(&mut self, guard: usize, sign: f64, h: f64, noticed: &[Notice]) {
+        for &notice in noticed {
+            let found = Noticed::of(notice, (guard, sign), self.phase.mode, (self.origin.s, h));
+            self.notices.add(found, h);
         }
     }
 

@@ -10,12 +10,14 @@ use crate::dynamic::results::{DynamicObserver, DynamicRun};
 use crate::dynamic::step::{Origin, Step};
 use crate::dynamic::system::{DynamicStart, DynamicSystem};
 use crate::error::RunError;
+use crate::events::{Noticed, Notices};
 use crate::hybrid::{Outcome, Statistics};
 use crate::method::Method;
 use crate::method::control::Controller;
 use crate::options::{Options, StepSize};
 use crate::runs::clock::{Clock, Zeno};
 use crate::runs::finite::{check_finite, is_finite};
+use crate::runs::rejected::after_rejection;
 
 /// Integrates `system` from `start` to `end`, through every switch on the way.
 ///
@@ -63,6 +65,7 @@ where
         zeno: Zeno::new(start.s),
         fired: Vec::new(),
         notes: Vec::new(),
+        notices: Notices::new(),
         step: Step::new(n),
         work: Work::new(n),
         tables: Tables::default(),
@@ -100,6 +103,8 @@ struct Runner<'a, S: DynamicSystem, O> {
     fired: Vec<u32>,
     /// The events on the present step that change nothing.
     notes: Vec<Event>,
+    /// The touches and poles on the present step.
+    notices: Notices<S::Mode>,
     step: Step,
     work: Work,
     tables: Tables,
@@ -144,7 +149,10 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
             // NaN is not good.
             if !matches!(error.partial_cmp(&1.0), Some(Ordering::Less)) {
                 target = None;
-                self.reject::<M>(h, error, is_finite(&self.step.y1))?;
+                let finite = is_finite(&self.step.y1);
+                let work = (&mut self.controller, &mut self.statistics);
+                self.h =
+                    after_rejection::<M>(work, self.options, (self.clock.s, h), error, finite)?;
                 continue;
             }
             let event = match self.examine::<M>(last)? {
@@ -176,6 +184,7 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
                 return Ok(Some(outcome));
             }
             if let Some(event) = event {
+                self.tell_until(self.clock.s + event.elapsed);
                 self.show_part::<M>(event.elapsed);
                 self.clock.advance(event.elapsed);
                 if last && event.elapsed == h {
@@ -183,6 +192,7 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
                 }
                 return self.switch(&event);
             }
+            self.tell_until(f64::INFINITY);
             self.accept::<M>(h);
             if last {
                 self.clock.arrive(self.end);
@@ -213,6 +223,7 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
         last: bool,
     ) -> Result<Result<Option<Event>, (usize, Option<f64>)>, RunError> {
         self.notes.clear();
+        self.notices.clear();
         let mut examination = Examination {
             system: self.system,
             phase: &self.phase,
@@ -223,7 +234,7 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
             tables: &mut self.tables,
             work: &mut self.work,
             statistics: &mut self.statistics,
-            observer: self.observer,
+            notices: &mut self.notices,
         };
         let event = match examination.look::<M>(&mut self.step)? {
             Found::Nothing if last => examination.arrive(&self.step),
@@ -267,24 +278,6 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
         self.observer.on_segment(mode, &part.dense::<M>(origin.s));
     }
 
-    fn reject<M: Method>(&mut self, h: f64, error: f64, finite: bool) -> Result<(), RunError> {
-        self.statistics.rejected += 1;
-        let step = self.statistics.tried();
-        let s = self.clock.s;
-        if let StepSize::Fixed(_) = self.options.step_size {
-            return Err(RunError::Field { s, step });
-        }
-        self.h = self.controller.rejected::<M>(h, error);
-        if self.h <= f64::EPSILON * s.abs().max(f64::MIN_POSITIVE) {
-            return Err(if finite {
-                RunError::Tolerance { s, h, step }
-            } else {
-                RunError::Field { s, step }
-            });
-        }
-        Ok(())
-    }
-
     /// Counts that a guard has fired.
     fn count(&mut self, guard: usize) {
         if self.fired.len() <= guard {
@@ -293,13 +286,27 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
         self.fired[guard] += 1;
     }
 
+    /// Tells of touches and poles on the step, up to the place `until`.
+    fn tell_until(&mut self, until: f64) {
+        while let Some(noticed) = self.notices.next_until(until) {
+            match noticed {
+                Noticed::Touch(touch) => {
+                    self.statistics.grazings += 1;
+                    self.observer.on_grazing(&touch);
+                }
+                Noticed::Pole(pole) => self.observer.on_pole(&pole),
+            }
+        }
+    }
+
     /// Reports the events on the step that change nothing. The run may end at one of them.
     fn report_notes<M: Method>(&mut self) -> Option<Outcome> {
         let mode = self.phase.mode;
         for index in 0..self.notes.len() {
-            let note = &self.notes[index];
-            let (elapsed, guard) = (note.elapsed, note.guard);
+            let (elapsed, guard) = (self.notes[index].elapsed, self.notes[index].guard);
             let s = self.clock.s + elapsed;
+            self.tell_until(s);
+            let note = &self.notes[index];
             let largest = self.phase.largest[guard];
             self.observer.on_switch(&note.shown(s, largest, (mode, mode), &note.state));
             for other in 0..=self.notes[index].simultaneous.len() {

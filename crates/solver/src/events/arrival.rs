@@ -1,7 +1,7 @@
 //! Guards that are zero where the span of a run ends.
 
 use crate::events::along_step::rounding;
-use crate::events::event::Event;
+use crate::events::event::{Event, bit};
 use crate::events::examination::Examination;
 use crate::hybrid::{Direction, HybridSystem};
 use crate::method::Step;
@@ -41,7 +41,8 @@ where
             let reach = REACH * step.h;
             let away = system.field(mode, s, y) * reach;
             let (behind, ahead) = (value(s - reach, &(y - away)), value(s + reach, &(y + away)));
-            let crosses = behind * ahead < 0.0 && behind.abs().min(ahead.abs()) > 4.0 * hidden;
+            let shows = behind.abs() > 4.0 * hidden && ahead.abs() > 4.0 * hidden;
+            let crosses = shows && (behind < 0.0) != (ahead < 0.0);
             let in_direction = match direction {
                 Direction::Either => true,
                 Direction::Rising => behind < 0.0,
@@ -65,10 +66,16 @@ where
             if self.is_noted(&found) {
                 let together = self.notes.last().is_some_and(|last| last.s == s);
                 self.note(&found, together);
-            } else {
-                *event = Some(found);
-                return;
+                continue;
             }
+            // Of guards that fire together the one that precedes decides, and names the others.
+            *event = Some(match event.take() {
+                None => found,
+                Some(first) if self.precedes(guard, first.guard) => {
+                    Event { simultaneous: first.simultaneous | bit(first.guard), ..found }
+                }
+                Some(first) => Event { simultaneous: first.simultaneous | bit(guard), ..first },
+            });
         }
     }
 }

@@ -30,6 +30,9 @@ where
             (self.phase.guards[guard].direction(), self.phase.zero_orders[guard]);
         let falls = matches!(direction, Direction::Below | Direction::Falling);
         let [start, .., end] = *column;
+        if column.iter().any(|value| value.is_nan()) {
+            return Status::Unclear;
+        }
         let at_zero = start == 0.0 || order > 0;
         if end == 0.0 || start == 0.0 && order == 0 && !falls {
             return Status::Unclear;

@@ -7,7 +7,7 @@ use crate::method::{State, Step};
 pub(crate) struct Event<const N: usize> {
     pub(crate) guard: usize,
     /// Further guards that are zero where the step ends, one bit each.
-    pub(crate) simultaneous: u32,
+    pub(crate) simultaneous: u64,
     /// The absolute slope of the guard where it fires.
     pub(crate) slope: f64,
     /// The time from the start of the step to the event.
@@ -18,7 +18,7 @@ pub(crate) struct Event<const N: usize> {
     pub(crate) residual: f64,
     /// The sign of the guard before it fired.
     pub(crate) sign: f64,
-    /// The time from the start of the step to a place between which and the event the guard does
+    /// The time from the start of the step to a place behind the event, up to which the guard does
     /// not cross zero again.
     pub(crate) beyond: f64,
     /// Whether the guard jumps over zero.
@@ -27,9 +27,9 @@ pub(crate) struct Event<const N: usize> {
     pub(crate) step: Step<N>,
 }
 
-/// The bit of a guard in a mask, or 0 for guards beyond the 32 that a mask can hold.
-pub(crate) fn bit(guard: usize) -> u32 {
-    if guard < 32 { 1 << guard } else { 0 }
+/// The bit of a guard in a mask, or 0 for guards beyond the 64 that a mask can hold.
+pub(crate) fn bit(guard: usize) -> u64 {
+    if guard < 64 { 1 << guard } else { 0 }
 }
 
 /// The result of examining a step.

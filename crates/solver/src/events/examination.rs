@@ -1,8 +1,9 @@
 //! What the examination of a step needs, and the values of its guards.
 
+use crate::events::notices::Notices;
 use crate::events::phase::Phase;
 use crate::events::quick::{BETWEEN, NODES, between};
-use crate::hybrid::{Grazing, HybridSystem, Pole, Statistics, SwitchEvent};
+use crate::hybrid::{HybridSystem, Statistics, SwitchEvent};
 use crate::method::{State, Step, Trial};
 
 /// The data that the examination of a step needs.
@@ -18,15 +19,8 @@ pub(crate) struct Examination<'a, S: HybridSystem<N, G>, const N: usize, const G
     pub(crate) statistics: &'a mut Statistics,
     /// Whether steps are shown, so that the step of an event must end exactly there.
     pub(crate) wants_segments: bool,
-    /// Who is told of touches and poles. It is dispatched at run time, so that this is compiled once
-    /// for all observers.
-    pub(crate) tell: &'a mut dyn FnMut(Noticed<S::Mode>),
-}
-
-/// What isolation notices of a guard besides its crossings, for the observer.
-pub(crate) enum Noticed<Mode> {
-    Touch(Grazing<Mode>),
-    Pole(Pole<Mode>),
+    /// The touches and poles on this step.
+    pub(crate) notices: &'a mut Notices<S::Mode>,
 }
 
 impl<S, const N: usize, const G: usize> Examination<'_, S, N, G>
@@ -54,7 +48,7 @@ pub(crate) fn values_on<S: HybridSystem<N, G>, const N: usize, const G: usize>(
     statistics: &mut Statistics,
 ) -> [[f64; G]; 6] {
     let at = |theta: f64, y: &State<N>| system.guard_values(phase.mode, step.s + theta * step.h, y);
-    statistics.guards += 5;
+    statistics.guards += if G > 0 { 5 } else { 0 };
     [
         phase.values,
         at(NODES[1], &step.interior[0]),

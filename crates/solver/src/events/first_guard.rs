@@ -62,14 +62,16 @@ where
                 *event = None;
                 return Ok(Found::TooCoarse(guard));
             }
-            let Some(next) = event.as_ref() else {
+            let Some(next) = event.as_mut() else {
                 return Ok(Found::Nothing(end_values));
             };
             let guard = next.guard;
             if !self.is_noted(next) {
                 return Ok(Found::Event);
             }
-            let elapsed = next.elapsed.max(last.unwrap_or(0.0));
+            // Rounding must not put it before the one before.
+            next.elapsed = next.elapsed.max(last.unwrap_or(0.0));
+            let elapsed = next.elapsed;
             self.note(next, last.is_some_and(|last| elapsed - last <= TOGETHER * step.h));
             last = Some(elapsed);
             // Whether the guard crosses again is not known beyond the bracket of this crossing.
@@ -107,6 +109,7 @@ where
             && bit(event.guard) != 0
             && let Some(last) = self.notes.last_mut()
             && last.guard != event.guard
+            && last.simultaneous & bit(event.guard) == 0
         {
             last.simultaneous |= bit(event.guard);
             return;
@@ -139,29 +142,28 @@ where
         let (mut values, mut statuses) = (*full_values, *full);
         loop {
             let first = self.earliest(&statuses);
-            let Some((guard, crossing)) = first else {
+            let starts = first.is_some_and(|(_, crossing)| crossing.bracket.high == 0.0);
+            if (first.is_none() || starts) && statuses.contains(&Status::Unclear) {
                 let shortened = event.is_some();
                 let on = event.as_mut().map_or(&mut *step, |event| &mut event.step);
-                let mut found_any = false;
+                // Whether a guard fires together with an event at the start shows after the event.
+                let may_wait = starts || on.h <= TOGETHER * self.trial.h;
                 for guard in 0..G {
                     if statuses[guard] == Status::Unclear {
-                        let at_start = on.h <= TOGETHER * self.trial.h;
                         let status = match self.isolate_rest::<M>(guard, on, &values, beginnings)? {
                             Some(status) => status,
-                            // Whether it fires together with the event shows after the event.
-                            None if at_start => Status::Clear,
+                            None if may_wait => Status::Clear,
                             None => return Ok(Some(guard)),
                         };
-                        found_any |= status != Status::Clear;
                         statuses[guard] = status;
                         if !shortened {
                             full[guard] = status;
                         }
                     }
                 }
-                if found_any {
-                    continue;
-                }
+                continue;
+            }
+            let Some((guard, crossing)) = first else {
                 return Ok(None);
             };
             statuses[guard] = Status::Clear;
@@ -173,6 +175,11 @@ where
                 return Ok(Some(guard));
             };
             if next.elapsed == 0.0 {
+                let at_start = |status: Status| match status {
+                    Status::Fires(crossing) => crossing.bracket.high == 0.0,
+                    _ => false,
+                };
+                next.simultaneous = mask(&statuses.map(at_start));
                 *event = Some(next);
                 return Ok(None);
             }
@@ -184,18 +191,18 @@ where
                 continue;
             }
             let mut at_nodes = self.values_on(&next.step);
-            next.simultaneous = self.simultaneous(guard, &at_nodes);
+            let mut together = self.together(&next, &at_nodes);
             let on = event.as_mut().map_or(&mut *step, |event| &mut event.step);
-            if let Some(preceding) =
-                self.preceding::<M>(&next, on, &values, &statuses, beginnings)?
-            {
+            let others = (&together, &statuses);
+            if let Some(preceding) = self.preceding::<M>(&next, on, &values, others, beginnings)? {
                 // Of guards that fire together the one that precedes decides, even if rounding
                 // puts another one earlier.
                 next = preceding;
                 statuses[next.guard] = Status::Clear;
                 at_nodes = self.values_on(&next.step);
-                next.simultaneous = self.simultaneous(next.guard, &at_nodes);
+                together = self.together(&next, &at_nodes);
             }
+            next.simultaneous = mask(&together);
             values = at_nodes;
             for (other, status) in statuses.iter_mut().enumerate() {
                 if *status == Status::Clear {
@@ -230,7 +237,7 @@ where
 
     /// Whether guard `first` decides the transition if it fires together with guard `second`. The
     /// guard that does not yield decides; if both yield or neither does, the one listed first.
-    fn precedes(&self, first: usize, second: usize) -> bool {
+    pub(crate) fn precedes(&self, first: usize, second: usize) -> bool {
         let rank = |guard: usize| (self.phase.guards[guard].yields(), guard);
         rank(first) < rank(second)
     }
@@ -253,17 +260,18 @@ where
     }
 
     /// The event of the first guard that fires together with the guard of `event` and precedes it.
-    /// `step` is the step before `event` shortens it; `values` and `statuses` belong to that step.
+    /// `step` is the step before `event` shortens it; `values` and the statuses of the guards belong
+    /// to that step. Which guards are zero at the event is known.
     fn preceding<M: Method>(
         &mut self,
         event: &Event<N>,
         step: &mut Step<N>,
         values: &[[f64; G]; 6],
-        statuses: &[Status; G],
+        (zero, statuses): (&[bool; G], &[Status; G]),
         beginnings: &[Beginning; G],
     ) -> Result<Option<Event<N>>, RunError> {
         for (first, &status) in statuses.iter().enumerate() {
-            if event.simultaneous & bit(first) == 0 || !self.precedes(first, event.guard) {
+            if !zero[first] || !self.precedes(first, event.guard) {
                 continue;
             }
             let status = match status {
@@ -287,16 +295,27 @@ where
         Ok(None)
     }
 
-    /// The guards other than `guard` that are zero where the step ends, one bit each.
-    fn simultaneous(&self, guard: usize, values: &[[f64; G]; 6]) -> u32 {
-        (0..G.min(32))
-            .filter(|&other| {
-                other != guard
-                    && self.phase.guards[other].direction() != Direction::Off
-                    && values[5][other].abs() <= TOGETHER * largest(other, values)
-            })
-            .fold(0, |bits, other| bits | 1 << other)
+    /// Which guards other than that of `event` are zero there. `values` are those at the nodes of
+    /// the event's step, which may end close to the event and not exactly there.
+    fn together(&mut self, event: &Event<N>, values: &[[f64; G]; 6]) -> [bool; G] {
+        let there = if G == 1 || event.step.h == event.elapsed {
+            values[5]
+        } else {
+            self.statistics.guards += 1;
+            let s = self.trial.s + event.elapsed;
+            self.system.guard_values(self.phase.mode, s, &event.state)
+        };
+        std::array::from_fn(|other| {
+            other != event.guard
+                && self.phase.guards[other].direction() != Direction::Off
+                && there[other].abs() <= TOGETHER * largest(other, values)
+        })
     }
+}
+
+/// The guards of a set, one bit each.
+fn mask<const G: usize>(guards: &[bool; G]) -> u64 {
+    guards.iter().enumerate().fold(0, |bits, (guard, &one)| bits | if one { bit(guard) } else { 0 })
 }
 
 /// Whether all guards stay clearly on the side where they do not fire. This holds on most steps.

@@ -159,8 +159,11 @@ pub(crate) fn first_crossing(
                     let guess = root(|theta| quotient.at(theta), a, b);
                     if is_pole(quotient, a, b, guess, task.resolution) {
                         notice(Notice::Pole(guess));
-                        before = Some((theta, value));
-                        return ControlFlow::Continue(());
+                        // A domain ends at a pole too.
+                        if !task.domain {
+                            before = Some((theta, value));
+                            return ControlFlow::Continue(());
+                        }
                     }
                     return ControlFlow::Break(Verdict::Crossing(Bracket {
                         low,

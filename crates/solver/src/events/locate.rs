@@ -245,7 +245,9 @@ where
             .then(|| narrow(&mut value, (low, before), (high, after), f64::EPSILON * trial.h));
         self.statistics.guards += count;
         let (left, right) = found?;
-        let jump = left.1 - right.1 > 0.1 * (before - after);
+        // Without a value in between, it jumps too.
+        let crosses = left.1 - right.1 <= 0.1 * (before - after);
+        let jump = !crosses;
         let (moved, residual) = if left.1 < -right.1 && !jump { left } else { right };
         let slope = (right.1 - left.1) / (right.0 - left.0);
         Some(Landing { elapsed: trial.h + moved, state: state(moved), residual, slope, jump })

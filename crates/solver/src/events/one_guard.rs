@@ -4,13 +4,14 @@ use std::marker::PhantomData;
 
 use crate::error::RunError;
 use crate::events::along_step::{AlongStep, EnclosedAlongStep, dense_output, repeated_step};
-use crate::events::examination::{Examination, Noticed, column};
+use crate::events::examination::{Examination, column};
 use crate::events::isolate::{
     Beginning, Bracket, Notice, Task, Verdict, first_crossing, first_enclosed_crossing, last_sign,
 };
+use crate::events::notices::Noticed;
 use crate::events::path::Path;
 use crate::events::quick::{self, Quick};
-use crate::hybrid::{Direction, Grazing, HybridSystem, Pole};
+use crate::hybrid::{Direction, HybridSystem};
 use crate::method::{Method, Step, Trial};
 
 /// A guard that is zero throughout a step is examined on longer steps, each four times as long as
@@ -66,13 +67,9 @@ impl Status {
                 Self::Fires(Crossing::at_start(sign))
             }
             Quick::Positive | Quick::Negative => Self::Clear,
-            // It fires where it leaves zero, and then once more.
-            Quick::Falls { .. } if direction == Direction::Either && column[0] == 0.0 => {
-                Self::Unclear
-            }
             Quick::Falls { theta } => Crossing::alone(sign, theta),
             Quick::Unclear if direction == Direction::Either => match look(-1.0) {
-                Quick::Falls { theta } if column[0] != 0.0 => Crossing::alone(-1.0, theta),
+                Quick::Falls { theta } => Crossing::alone(-1.0, theta),
                 _ => Self::Unclear,
             },
             Quick::Unclear => Self::Unclear,
@@ -84,11 +81,11 @@ impl<S, const N: usize, const G: usize> Examination<'_, S, N, G>
 where
     S: HybridSystem<N, G>,
 {
-    /// Whether the six values of a guard may decide: it is declared to be smooth, or it is a black
-    /// box and other values agree with them.
+    /// Whether bounds decide about a guard of a readable system. Where one asks, `S::READABLE` comes
+    /// first: it is a constant, so that black boxes are compiled without the code for bounds.
     #[inline(always)]
-    pub(crate) fn decides_quickly(&self, guard: usize) -> bool {
-        !S::READABLE || self.phase.guards[guard].is_smooth()
+    fn has_bounds(&self, guard: usize) -> bool {
+        !self.phase.guards[guard].is_smooth()
     }
 
     /// What a quick look at a step tells about each guard.
@@ -121,11 +118,11 @@ where
         let column = column(values, guard);
         if self.phase.guards[guard].direction() == Direction::Off {
             Status::Clear
-        } else if self.decides_quickly(guard) {
-            self.glance::<M>(guard, &column)
-        } else {
+        } else if S::READABLE && self.has_bounds(guard) {
             let path = path.get_or_insert_with(|| Path::quick(step, M::QUICK_ERROR));
             self.glance_at_bounds::<M>(guard, &column, path)
+        } else {
+            self.glance::<M>(guard, &column)
         }
     }
 
@@ -192,6 +189,13 @@ where
             let leaves = self.leaves_zero::<M>(guard, step);
             return leaves.then_some(Some(Status::Clear)).ok_or(identically);
         }
+        if values[0].is_nan() {
+            return Err(RunError::GuardNotANumber { guard, s: step.s });
+        }
+        if S::READABLE && values.iter().any(|value| value.is_nan()) {
+            // Bounds do not tell where a guard has no value.
+            return Ok(None);
+        }
         self.statistics.isolations += 1;
         let (system, mode) = (self.system, self.phase.mode);
         let dense = dense_output::<_, M, N, G>(system, mode, step);
@@ -205,17 +209,13 @@ where
         let resolution = resolution(step);
         let mut found = Status::Clear;
         for &sign in signs {
-            let enclosed = !self.decides_quickly(guard) && beginning.zero_order <= 2;
+            // Zeros of higher order have no bounds.
+            let bounded = self.has_bounds(guard) && beginning.zero_order <= 2;
             let (statistics, method) = (&mut *self.statistics, PhantomData::<M>);
             let mut along =
                 AlongStep { system, mode, guard, sign, step, dense: &dense, statistics, method };
-            let mut noticed = [None; 8];
-            let mut places = noticed.iter_mut();
-            let mut notice = |found: Notice| {
-                if let Some(place) = places.next() {
-                    *place = Some(found);
-                }
-            };
+            let mut noticed = Vec::new();
+            let mut notice = |found: Notice| noticed.push(found);
             let task = Task {
                 beginning: Beginning { value: sign * beginning.value, ..beginning },
                 domain: direction == Direction::Below,
@@ -223,15 +223,14 @@ where
                 resolution,
                 widest: self.guard_scale / step.h,
             };
-            // Zeros of higher order have no bounds.
-            let verdict = if enclosed {
+            let verdict = if S::READABLE && bounded {
                 let mut enclosed =
                     EnclosedAlongStep { along, path: Path::dense(&dense), local: None };
                 first_enclosed_crossing(&mut enclosed, &task, &mut notice)?
             } else {
                 first_crossing(&mut along, &task, &mut notice)?
             };
-            self.report(guard, sign, step, noticed);
+            self.collect(guard, sign, step, &noticed);
             let crossing = match verdict {
                 Verdict::None => continue,
                 Verdict::TooCoarse => return Ok(None),
@@ -246,22 +245,11 @@ where
         Ok(Some(found))
     }
 
-    /// Reports what isolation noticed of a guard.
-    fn report(&mut self, guard: usize, sign: f64, step: &Step<N>, noticed: [Option<Notice>; 8]) {
-        let mode = self.phase.mode;
-        for notice in noticed.into_iter().flatten() {
-            match notice {
-                Notice::Touch(touch) => {
-                    self.statistics.grazings += 1;
-                    let s = step.s + touch.theta * step.h;
-                    let margin = sign * touch.margin;
-                    (self.tell)(Noticed::Touch(Grazing { s, mode, guard, margin }));
-                }
-                Notice::Pole(theta) => {
-                    let s = step.s + theta * step.h;
-                    (self.tell)(Noticed::Pole(Pole { s, mode, guard }));
-                }
-            }
+    /// Collects what isolation noticed of a guard.
+    fn collect(&mut self, guard: usize, sign: f64, step: &Step<N>, noticed: &[Notice]) {
+        for &notice in noticed {
+            let found = Noticed::of(notice, (guard, sign), self.phase.mode, (step.s, step.h));
+            self.notices.add(found, step.h);
         }
     }
 

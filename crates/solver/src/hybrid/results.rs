@@ -9,14 +9,14 @@ pub struct SwitchEvent<Mode, const N: usize> {
     pub s: f64,
     /// The guard that fired.
     pub guard: usize,
-    /// Further guards of the mode that vanish at the same place, one bit each. If several guards
-    /// fire together, the guard that is listed first decides the transition, unless it yields
+    /// Further guards of the mode that vanish at the same place, one bit each; of a mode with more
+    /// than 64 guards, the first 64 are named. If several guards fire together, the guard that is listed first decides the transition, unless it yields
     /// ([`Guard::yielding`](crate::Guard::yielding)).
     ///
     /// If mode and state go on unchanged, these are the guards that cross here in their direction
     /// and change nothing either. They have fired with this event and do not fire again. All others
     /// that cross here fire next, with an event of their own at the same place.
-    pub simultaneous: u32,
+    pub simultaneous: u64,
     /// The guard's largest value in the phase divided by its slope here, in units of s. An error
     /// of the guard, relative to its largest value, moves the switch by the error times this
     /// number. It is large near a graze.

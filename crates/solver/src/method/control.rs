@@ -123,6 +123,8 @@ pub(crate) fn first_step<M: Method, const N: usize>(
     } else {
         0.01 * (state_size / slope_size).sqrt()
     };
+    // Numbers at the ends of the range of doubles may overflow in between.
+    let guess = if guess > 0.0 { guess } else { 1e-6 };
     let h = guess.min(longest);
     let f1 = field(s + h, &(y0 + f0 * h));
     let curvature = norm(&(f1 - f0)).sqrt() / h;
@@ -130,7 +132,6 @@ pub(crate) fn first_step<M: Method, const N: usize>(
     let order = M::CONTROL_ORDER as f64;
     let step =
         if largest <= 1e-15 { (h * 1e-3).max(1e-6) } else { (0.01 / largest).powf(1.0 / order) };
-    // Numbers at the ends of the range of doubles may overflow in between.
     let step = if step > 0.0 { step } else { h };
     step.min(100.0 * h).min(longest)
 }

@@ -116,7 +116,7 @@ impl<const N: usize> Step<N> {
         } else if blend < f64::INFINITY {
             h.abs() * fine_sum / (n * blend).sqrt()
         } else {
-            largest_error(&fine, y0, &y1, trial)
+            largest_error(&fine, y0, &y1, h, tolerances)
         };
         if M::INTERIOR_STAGES.is_none() {
             let dense = self.extend::<M>(field, k);
@@ -198,11 +198,12 @@ fn largest_error<const N: usize>(
     fine: &State<N>,
     y0: &State<N>,
     y1: &State<N>,
-    trial: &Trial<'_, N>,
+    h: f64,
+    tolerances: impl Fn(usize) -> (f64, f64),
 ) -> f64 {
-    let (rtol, atol) = trial.tolerances;
     (0..N).filter(|&i| fine[i] != 0.0).fold(0.0, |most, i| {
-        let error = fine[i].abs() * trial.h.abs() / (atol + rtol * y0[i].abs().max(y1[i].abs()));
+        let (rtol, atol) = tolerances(i);
+        let error = fine[i].abs() * h.abs() / (atol + rtol * y0[i].abs().max(y1[i].abs()));
         // NaN stays.
         if error <= most { most } else { error }
     })

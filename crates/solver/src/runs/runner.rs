@@ -7,7 +7,8 @@ use std::cmp::Ordering;
 
 use crate::error::RunError;
 use crate::events::{
-    Event, Examination, Found, Noticed, Phase, all_clearly_away, bit, dense_output, values_on,
+    Event, Examination, Found, Noticed, Notices, Phase, all_clearly_away, bit, dense_output,
+    values_on,
 };
 use crate::hybrid::{HybridSystem, Observer, Outcome, Run, Start, Statistics, SwitchEvent};
 use crate::method::control::{Controller, first_step};
@@ -16,10 +17,12 @@ use crate::options::{Options, StepSize};
 use crate::runs::clock::{Clock, Zeno};
 use crate::runs::finite::{check_finite, is_finite};
 use crate::runs::last_part::last_part;
+use crate::runs::rejected::after_rejection;
 
 /// Integrates `system` from `start` to `end`, through every switch on the way.
 ///
-/// `end` may be infinite if a terminal guard ends the run. A run allocates no memory.
+/// `end` may be infinite if a terminal guard ends the run. A run allocates no
+/// memory, except on steps with a touch, a pole, or an event that changes nothing.
 ///
 /// # Errors
 /// A [`RunError`] reports invalid options, a span that does not lead forward, a state or right-hand
@@ -57,6 +60,7 @@ where
         zeno: Zeno::new(start.s),
         fired: [0; G],
         notes: Vec::new(),
+        notices: Notices::new(),
         statistics: Statistics { guards: 1, ..Statistics::default() },
     };
     let outcome = runner.run::<M>()?;
@@ -92,6 +96,8 @@ struct Runner<'a, S: HybridSystem<N, G>, O, const N: usize, const G: usize> {
     fired: [u32; G],
     /// The events on the present step that change nothing.
     notes: Vec<SwitchEvent<S::Mode, N>>,
+    /// The touches and poles on the present step.
+    notices: Notices<S::Mode>,
     statistics: Statistics,
 }
 
@@ -163,7 +169,10 @@ where
             };
             // NaN is not good.
             if !matches!(error.partial_cmp(&1.0), Some(Ordering::Less)) {
-                self.reject::<M>(h, error, is_finite(step.y1.as_slice()))?;
+                let finite = is_finite(step.y1.as_slice());
+                let work = (&mut self.controller, &mut self.statistics);
+                self.h =
+                    after_rejection::<M>(work, self.options, (self.clock.s, h), error, finite)?;
                 continue;
             }
             self.notes.clear();
@@ -200,6 +209,7 @@ where
                 return Ok(Some(outcome));
             }
             if let Some(event) = event {
+                self.tell_until(self.clock.s + event.elapsed);
                 if event.step.h > 0.0 {
                     self.show::<M>(mode, &mut event.step);
                 }
@@ -209,6 +219,7 @@ where
                 }
                 return Ok(None);
             }
+            self.tell_until(f64::INFINITY);
             self.show::<M>(mode, step);
             self.state = step.y1;
             self.slope = step.finish::<M>(&mut field);
@@ -241,11 +252,7 @@ where
         (values, away): (&[[f64; G]; 6], bool),
         last: bool,
     ) -> Result<Option<usize>, RunError> {
-        let observer = &mut *self.observer;
-        let mut tell = |noticed: Noticed<S::Mode>| match noticed {
-            Noticed::Touch(touch) => observer.on_grazing(&touch),
-            Noticed::Pole(pole) => observer.on_pole(&pole),
-        };
+        self.notices.clear();
         let tolerances = (self.options.rtol, self.options.atol);
         let trial = Trial { s: self.clock.s, y: &self.state, slope: &self.slope, h, tolerances };
         let mut examination = Examination {
@@ -256,7 +263,7 @@ where
             notes: &mut self.notes,
             statistics: &mut self.statistics,
             wants_segments: O::WANTS_SEGMENTS,
-            tell: &mut tell,
+            notices: &mut self.notices,
         };
         let at_end = match examination.look::<M>(step, event, values, away)? {
             Found::Nothing(at_end) => at_end,
@@ -281,28 +288,26 @@ where
         }
     }
 
-    fn reject<M: Method>(&mut self, h: f64, error: f64, finite: bool) -> Result<(), RunError> {
-        self.statistics.rejected += 1;
-        let step = self.statistics.tried();
-        let s = self.clock.s;
-        if let StepSize::Fixed(_) = self.options.step_size {
-            return Err(RunError::Field { s, step });
+    /// Tells of touches and poles on the step, up to the place `until`.
+    #[inline]
+    fn tell_until(&mut self, until: f64) {
+        while let Some(noticed) = self.notices.next_until(until) {
+            match noticed {
+                Noticed::Touch(touch) => {
+                    self.statistics.grazings += 1;
+                    self.observer.on_grazing(&touch);
+                }
+                Noticed::Pole(pole) => self.observer.on_pole(&pole),
+            }
         }
-        self.h = self.controller.rejected::<M>(h, error);
-        if self.h <= f64::EPSILON * s.abs().max(f64::MIN_POSITIVE) {
-            return Err(if finite {
-                RunError::Tolerance { s, h, step }
-            } else {
-                RunError::Field { s, step }
-            });
-        }
-        Ok(())
     }
 
     /// Reports the events on the step that change nothing. The run may end at one of them.
     fn report_notes(&mut self) -> Option<Outcome> {
-        for note in &self.notes {
-            self.observer.on_switch(note);
+        for index in 0..self.notes.len() {
+            let note = self.notes[index];
+            self.tell_until(note.s);
+            self.observer.on_switch(&note);
             let others = (0..G).filter(|&other| note.simultaneous & bit(other) != 0);
             for guard in others.chain([note.guard]) {
                 self.fired[guard] += 1;

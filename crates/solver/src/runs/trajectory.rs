@@ -16,11 +16,13 @@ pub struct Segment<Mode, const N: usize> {
 #[derive(Clone, Debug)]
 pub struct Trajectory<Mode, const N: usize> {
     segments: Vec<Segment<Mode, N>>,
+    /// The end of the run, which may be behind a switch.
+    end: Option<(f64, Mode, State<N>)>,
 }
 
 impl<Mode, const N: usize> Default for Trajectory<Mode, N> {
     fn default() -> Self {
-        Self { segments: Vec::new() }
+        Self { segments: Vec::new(), end: None }
     }
 }
 
@@ -32,9 +34,14 @@ impl<Mode: Copy, const N: usize> Trajectory<Mode, N> {
     }
 
     /// The mode and the state at `s`, or `None` if `s` is outside the run. At a switch they are
-    /// those after it, in the direction of the run.
+    /// those after it, in the direction of the run, also at the end.
     #[must_use]
     pub fn at(&self, s: f64) -> Option<(Mode, State<N>)> {
+        if let Some((end, mode, state)) = self.end
+            && s == end
+        {
+            return Some((mode, state));
+        }
         let after = self.segments.partition_point(|Segment { dense, .. }| {
             if dense.size() < 0.0 { dense.start() >= s } else { dense.start() <= s }
         });
@@ -96,5 +103,9 @@ impl<Mode: Copy, const N: usize> Observer<Mode, N> for Recorder<Mode, N> {
 
     fn on_segment(&mut self, mode: Mode, dense: &Dense<N>) {
         self.trajectory.segments.push(Segment { mode, dense: *dense });
+    }
+
+    fn on_end(&mut self, mode: Mode, s: f64, state: &State<N>) {
+        self.trajectory.end = Some((s, mode, *state));
     }
 }

@@ -7,6 +7,7 @@ use crate::hybrid::{
 use crate::method::{Method, Step, Trial};
 use crate::options::{Options, StepSize};
 use crate::runs::clock::Clock;
+use crate::runs::finite::{check_finite, is_finite};
 
 /// Integrates `system` from `start` to `end` in steps of `step_size`, without locating switches.
 ///
@@ -72,6 +73,7 @@ where
     if !(s.is_finite() && end > s) {
         return Err(RunError::Span { from: s, to: end });
     }
+    check_finite(s, state.as_slice())?;
     let mut clock = Clock::new(s);
     let mut statistics = Statistics { field: 1, guards: 1, ..Statistics::default() };
     let mut values = system.guard_values(mode, s, &state);
@@ -87,7 +89,7 @@ where
         system.step::<M>(mode, &trial, &mut step);
         statistics.accepted += 1;
         statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
-        if !step.y1.sum().is_finite() {
+        if !is_finite(step.y1.as_slice()) {
             return Err(RunError::Field { s: clock.s, step: statistics.accepted });
         }
         clock.advance(h);

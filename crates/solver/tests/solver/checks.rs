@@ -97,7 +97,7 @@ fn is_double_root(coefficients: &[f64; COEFFICIENTS], s: f64) -> bool {
 }
 
 /// The guards that fired, one bit each, and the places where they fired.
-struct Fired(Vec<(u32, f64)>);
+struct Fired(Vec<(u64, f64)>);
 
 impl<Mode, const N: usize> Observer<Mode, N> for Fired {
     fn on_switch(&mut self, event: &SwitchEvent<Mode, N>) {

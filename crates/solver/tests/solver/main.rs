@@ -10,6 +10,7 @@
 //! | `margins` | margins with a closed form |
 //! | `properties` | what holds of random systems; `checks` says it, for the fuzz targets too |
 //! | `planted_kinds` | random guards of every kind: steep, fast, kinked, with jumps and poles |
+//! | `singular` | guards without bounds or without a value somewhere |
 //! | `strangers` | systems that nobody here designed for |
 //! | `dynamic` | systems whose dimension is known at run time |
 //! | `runs` | what surrounds a run: closures, runs backwards, samples, ends, defined answers |
@@ -27,5 +28,6 @@ mod properties;
 mod runs;
 #[cfg(feature = "serde")]
 mod serialization;
+mod singular;
 mod smooth_problems;
 mod strangers;

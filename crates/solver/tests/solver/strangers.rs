@@ -178,7 +178,7 @@ fn sixty_four_guards_fall_together() {
         let mut fired: Vec<usize> = events
             .iter()
             .flat_map(|event| {
-                let others = (0..32).filter(|other| event.simultaneous >> other & 1 == 1);
+                let others = (0..64).filter(|other| event.simultaneous >> other & 1 == 1);
                 others.chain([event.guard])
             })
             .collect();

@@ -6,7 +6,9 @@
 //! a jump, a pole, or a touch that cannot be told from a crossing pair.
 
 use crate::error::RunError;
-use crate::events::isolate::{Beginning, Bracket, Notice, Task, Touch, Verdict, narrow, root};
+use crate::events::isolate::{
+    AROUND, Beginning, Bracket, Notice, Task, Touch, Verdict, narrow, root,
+};
 use crate::number::{Enclosure, Interval};
 
 /// A guard along a step.
@@ -32,10 +34,13 @@ pub(crate) trait Enclosed {
 const LIMIT: usize = 100_000;
 /// A refined part is refined again where the search has come this much closer.
 const CLOSER: f64 = 1.0 / 16.0;
-/// An extremum is known to this part of the part of the step in which it lies.
+/// The accuracy of the place of an extremum, relative to the part of the step that is searched.
 const NEAR_EXTREMUM: f64 = 1e-9;
 /// Parts of a step are halved at most this often.
 const DEPTH: usize = 60;
+/// Values without bounds make a pole if they are larger than those around them by this factor, and
+/// otherwise a jump.
+const GROWS: f64 = 2.0;
 
 /// Finds the first crossing of an enclosed curve from ≥ 0 to < 0. What it notices before the
 /// crossing goes to `notice`.
@@ -91,7 +96,7 @@ struct Search<'a> {
 
 impl Search<'_> {
     /// A part of the step on which a guard that starts from zero has one sign, by its end, and that
-    /// sign. The sign is 0 if the guard stays at zero.
+    /// sign. The result is `None` if no sign shows.
     fn leave_zero(&mut self, first: f64, zero_order: u32) -> Option<(f64, f64)> {
         let mut width = 1.0 - first;
         for _ in 0..DEPTH {
@@ -152,8 +157,14 @@ impl Search<'_> {
         let turns = before.1 * value < 0.0;
         match self.hidden.take() {
             Some(pole @ Notice::Pole(_)) if turns => {
-                (self.notice)(pole);
-                return None;
+                // The other direction is not examined here.
+                if value < 0.0 {
+                    (self.notice)(pole);
+                }
+                // A domain ends at a pole too.
+                if !self.task.domain {
+                    return None;
+                }
             }
             Some(touch @ Notice::Touch(_)) if !turns => (self.notice)(touch),
             _ => {}
@@ -220,7 +231,7 @@ impl Search<'_> {
             } else if blurred && exact && slope.is_bounded() {
                 self.follow(&[0.5 * (low + high), high])?
             } else if narrow {
-                self.irregular(high, &bounds)?
+                self.irregular(low, high, &bounds)?
             } else {
                 let middle = 0.5 * (low + high);
                 pending[pieces] = (middle, high);
@@ -253,8 +264,13 @@ impl Search<'_> {
     ///
     /// Where rounding hides the sign at the end of the part, the first sign that shows behind it
     /// counts. Steps of the method to places this close together need not be in order.
-    fn irregular(&mut self, high: f64, bounds: &Enclosure) -> Result<Option<Bracket>, RunError> {
-        if !bounds.value.is_bounded() {
+    fn irregular(
+        &mut self,
+        low: f64,
+        high: f64,
+        bounds: &Enclosure,
+    ) -> Result<Option<Bracket>, RunError> {
+        if !bounds.value.is_bounded() && self.grows(low, high) {
             self.hidden = Some(Notice::Pole(high));
         } else if self.hidden.is_none() {
             let margin = if high >= 1.0 { self.task.end } else { self.curve.truth(high)?.0 };
@@ -262,6 +278,19 @@ impl Search<'_> {
         }
         let sign = if high >= 1.0 { self.task.end } else { self.over(high, high).value.sign() };
         Ok(self.visit(high, sign))
+    }
+
+    /// Whether values grow towards a narrow part of the step, by steps of the method.
+    fn grows(&mut self, low: f64, high: f64) -> bool {
+        let away = AROUND * (high - low);
+        let mut largest = |places: [f64; 2]| {
+            let inside = places.into_iter().filter(|theta| (0.0..=1.0).contains(theta));
+            inside.fold(0.0, |most: f64, theta| {
+                let there = self.curve.truth(theta);
+                most.max(there.map_or(f64::INFINITY, |(value, _)| value.abs()))
+            })
+        };
+        largest([low, high]) > GROWS * largest([low - away, high + away])
     }
 
     /// The extremum between two step fractions, where the second derivatives have one sign.

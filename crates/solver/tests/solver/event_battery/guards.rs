@@ -36,7 +36,7 @@ impl HybridSystem<1, 2> for Two {
 
 /// The switches of a run: the place, the guard, and the other guards that were at zero.
 #[derive(Debug, Default, PartialEq)]
-struct Fired(Vec<(f64, usize, u32)>);
+struct Fired(Vec<(f64, usize, u64)>);
 
 impl<Mode, const N: usize> Observer<Mode, N> for Fired {
     fn on_switch(&mut self, event: &SwitchEvent<Mode, N>) {
@@ -49,7 +49,7 @@ fn first_of_two<M: Method>(
     values: fn(f64) -> [f64; 2],
     guards: [Guard; 2],
     options: &Options,
-) -> (f64, usize, u32) {
+) -> (f64, usize, u64) {
     let system = Two { values, guards };
     let mut fired = Fired::default();
     let start = Start { mode: (), s: 0.0, state: State::from([0.0]) };
@@ -63,7 +63,7 @@ fn first_of_two<M: Method>(
 fn of_two_guards_the_earlier_fires_and_of_equal_ones_the_first() {
     let guard = Guard::new(Direction::Falling).terminal();
     for options in step_sizes() {
-        let check = |values, guards, expected: (f64, usize, u32)| {
+        let check = |values, guards, expected: (f64, usize, u64)| {
             for found in [
                 first_of_two(Dopri5, values, guards, &options),
                 first_of_two(Dop853, values, guards, &options),

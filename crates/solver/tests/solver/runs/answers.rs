@@ -1,10 +1,11 @@
 //! The defined answers of the documentation that have no module of their own.
 
 use stickslip_solver::{
-    Direction, Dop853, Guard, Options, Outcome, Pair, Recorder, Samples, run, run_with,
+    Closures, Direction, Dop853, Guard, Options, Outcome, Pair, Recorder, Samples, State,
+    SwitchEvent, run, run_with,
 };
 
-use super::{Log, close, fixed, line, reaches_end, start_of_line};
+use super::{Log, at, close, fixed, line, reaches_end, start_of_line, thrown};
 
 /// The places where a guard of this shape fires in any direction, by a step or by many.
 fn fires(guard: impl Fn(Direction) -> Guard, shape: fn(f64) -> f64) -> [Vec<f64>; 4] {
@@ -109,6 +110,125 @@ fn the_state_comes_up_to_the_place_where_a_note_ends_the_run() {
             );
             assert!(recorder.trajectory.at(end.s).is_some());
             assert_eq!(recorder.trajectory.at(0.75), None);
+        }
+    }
+}
+
+#[test]
+fn crossings_of_a_guard_at_the_same_place_all_count() {
+    // The second guard crosses together with the first one, and once more a hair behind.
+    let values = |s: f64| [s - 0.43, (s - 0.43) * (s - 0.43 - 1e-13)];
+    for pair in Pair::ALL {
+        let mut log = Log::default();
+        let system = line([Guard::new(Direction::Either); 2], values);
+        reaches_end(run_with(pair, &system, start_of_line(), 1.0, &fixed(1.0), &mut log));
+        let times = |guard: usize| {
+            let named = |e: &&_| fired(e, guard);
+            log.switches.iter().filter(named).count()
+        };
+        // Rounding may leave the pair a touch, but not one of the two.
+        assert_eq!((times(0), times(1) % 2), (1, 0), "{:?}", log.switches);
+        assert!(log.switches.windows(2).all(|pair| pair[0].s <= pair[1].s));
+    }
+}
+
+fn fired<const N: usize>(event: &SwitchEvent<(), N>, guard: usize) -> bool {
+    event.guard == guard || event.simultaneous >> guard & 1 == 1
+}
+
+#[test]
+fn the_list_decides_at_the_start_and_at_the_end_too() {
+    // At the start: the first guard falls from zero, and the second one is negative.
+    let guards = [Guard::new(Direction::Falling), Guard::new(Direction::Below)];
+    let system = line(guards.map(Guard::terminal), |s| [-s - s * s, -1.0 - s]);
+    let mut log = Log::default();
+    let end = run(Dop853, &system, start_of_line(), 1.0, &fixed(0.25), &mut log).unwrap();
+    assert_eq!((end.outcome, end.s), (Outcome::EndedByGuard { guard: 0 }, 0.0));
+    assert!(fired(&log.switches[0], 1));
+    // At the end of the span: the first guard yields.
+    for (first, decides, other) in [
+        (Guard::new(Direction::Falling), 0, 0b10),
+        (Guard::new(Direction::Falling).yielding(), 1, 0b01),
+    ] {
+        let guards = [first, Guard::new(Direction::Falling)].map(Guard::terminal);
+        let system = line(guards, |s| [1e-170 * (1.0 - s), 2.0 * (1.0 - s)]);
+        for options in [fixed(1.0), fixed(0.1), Options::default()] {
+            let mut log = Log::default();
+            let end = run(Dop853, &system, start_of_line(), 1.0, &options, &mut log).unwrap();
+            assert_eq!(end.outcome, Outcome::EndedByGuard { guard: decides });
+            assert_eq!((log.switches.len(), log.switches[0].simultaneous), (1, other));
+        }
+    }
+}
+
+#[test]
+fn what_others_are_named_does_not_depend_on_the_observer() {
+    // A steep guard fires where another one touches.
+    let values = |s: f64| [(1e3 * (s - 0.37)).tanh(), (s - 0.37) * (s - 0.37)];
+    let guards = [Guard::new(Direction::Rising).terminal(), Guard::new(Direction::Falling)];
+    let named = |switches: &[SwitchEvent<(), 1>]| switches[0].simultaneous;
+    let (system, mut log, mut recorder) =
+        (line(guards, values), Log::default(), Recorder::default());
+    for options in [fixed(1.0), Options::default()] {
+        let ran = run(Dop853, &system, start_of_line(), 1.0, &options, &mut log);
+        assert!(ran.unwrap().finished().is_ok());
+        let ran = run(Dop853, &system, start_of_line(), 1.0, &options, &mut recorder);
+        assert!(ran.unwrap().finished().is_ok());
+        assert_eq!(named(&log.switches), named(&recorder.switches));
+    }
+}
+
+#[test]
+fn touches_are_told_once_in_order_and_not_behind_the_end() {
+    let touches = |s: f64| 1.0 - (40.0 * s).cos();
+    let expected: Vec<f64> = (1..=6).map(|k| std::f64::consts::TAU / 40.0 * f64::from(k)).collect();
+    for pair in Pair::ALL {
+        for options in [fixed(1.0), fixed(0.3), Options::default()] {
+            // All of them, with more than a step may be expected to have.
+            for direction in [Direction::Either, Direction::Falling, Direction::Below] {
+                let system = line([Guard::new(direction)], move |s| [touches(s + 0.01)]);
+                let mut log = Log::default();
+                reaches_end(run_with(pair, &system, start_of_line(), 1.0, &options, &mut log));
+                let expected: Vec<f64> = expected.iter().map(|s| s - 0.01).collect();
+                close(&log.grazings, &expected, 1e-6);
+            }
+            // Not those behind the switch that ends the run.
+            let guards = [Guard::new(Direction::Falling).terminal(), Guard::new(Direction::Either)];
+            let system = line(guards, move |s| [0.4 - s, touches(s + 0.01)]);
+            let mut log = Log::default();
+            let end = run_with(pair, &system, start_of_line(), 1.0, &options, &mut log).unwrap();
+            assert_eq!((end.outcome, log.switches.len()), (Outcome::EndedByGuard { guard: 0 }, 1));
+            close(&log.grazings, &[expected[0] - 0.01, expected[1] - 0.01], 1e-6);
+            assert_eq!(end.statistics.grazings, 2);
+        }
+    }
+    let many = line([Guard::new(Direction::Either)], |s| [1.0 - (100.0 * (s + 0.001)).cos()]);
+    let mut log = Log::default();
+    reaches_end(run(Dop853, &many, start_of_line(), 1.0, &fixed(1.0), &mut log));
+    assert_eq!(log.grazings.len(), 15);
+}
+
+#[test]
+fn a_recorded_run_ends_behind_its_last_switch() {
+    let ball = thrown();
+    let start = at(0.0, [0.0, 9.81]);
+    let options = Options { max_switches: 1, ..Options::default() };
+    let mut recorder = Recorder::default();
+    let end = run(Dop853, &ball, start, 10.0, &options, &mut recorder).unwrap();
+    assert_eq!(end.outcome, Outcome::SwitchLimit);
+    let (_, last) = recorder.trajectory.at(end.s).unwrap();
+    assert!(last == end.state && last[1] > 0.0, "{last:?}");
+}
+
+#[test]
+fn tiny_tolerances_have_a_first_step() {
+    let circle = Closures::new(|_s, y: &State<2>| State::from([y[1], -y[0]]));
+    for pair in Pair::ALL {
+        for atol in [1e-300, f64::MIN_POSITIVE] {
+            let options = Options { rtol: 1e-8, atol, max_steps: 5000, ..Options::default() };
+            let end = run_with(pair, &circle, at(0.0, [1.0, 0.0]), 3.0, &options, &mut ()).unwrap();
+            assert_eq!(end.outcome, Outcome::ReachedEnd);
+            assert!((end.state[0] - 3.0_f64.cos()).abs() < 1e-6);
         }
     }
 }

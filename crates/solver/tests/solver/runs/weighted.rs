@@ -50,3 +50,20 @@ fn tolerances_of_components_are_checked() {
     assert!(refused([(f64::NAN, 1.0), (1e-3, 1.0)]).is_some());
     assert!(refused([(1e-3, f64::INFINITY), (1e-3, 1.0)]).is_some());
 }
+
+/// An error beyond the range of doubles is compared with the tolerances of the components too.
+#[test]
+fn a_component_may_have_a_tolerance_that_is_relative_only() {
+    // The first component stays near zero, and has an error there.
+    let field = |s: f64, y: &State<2>| State::from([1e-20 * (50.0 * s).sin(), -y[1]]);
+    let system = Closures::new(field);
+    let options = Options { rtol: 0.1, atol: 0.1, ..Options::default() };
+    for pair in Pair::ALL {
+        let tolerances = [(1e-6, f64::MIN_POSITIVE), (1e-12, 1e-12)];
+        let weighted = Weighted::new(&system, tolerances).unwrap();
+        let end = run_with(pair, &weighted, at(0.0, [0.0, 1.0]), 1.0, &options, &mut ()).unwrap();
+        assert!((end.state[1] - (-1.0_f64).exp()).abs() < 1e-11, "{end:?}");
+        let exact = 1e-20 * (1.0 - 50.0_f64.cos()) / 50.0;
+        assert!((end.state[0] / exact - 1.0).abs() < 1e-4, "{end:?}");
+    }
+}
