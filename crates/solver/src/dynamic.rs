@@ -65,11 +65,12 @@
 //!   sensitivities.
 //! - [`DynamicEvent::simultaneous`] is a list, so that it can name any number of guards.
 //! - Up to 8 components, the effect of rounding of the state on a guard is measured component by
-//!   component; beyond that, by moving all components at once, up and down at random.
+//!   component; beyond that, by moving all components at once, in eight irregular but fixed patterns.
 //! - A run allocates room for 70 states when it starts, and a little at events. It allocates
 //!   nothing on steps without event, and nothing for a right-hand side.
-//! - An event that changes something names all guards that vanish with it, also those that have
-//!   been noted at the same place.
+//! - The observers [`Recorder`](crate::Recorder), [`Samples`](crate::Samples), tuples, and
+//!   [`Weighted`](crate::Weighted) tolerances exist for fixed dimensions only, and so does
+//!   [`HybridSystem::settle`](crate::HybridSystem::settle).
 //! - Where a guard is not resolved on a step, and another one fires on it, the step is first cut at
 //!   that event. Steps behind it start from there.
 //!

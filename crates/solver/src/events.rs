@@ -26,7 +26,7 @@ mod examination;
 pub(crate) mod first_guard;
 pub(crate) mod isolate;
 pub(crate) mod locate;
-mod notices;
+pub(crate) mod notices;
 pub(crate) mod one_guard;
 mod path;
 mod phase;

@@ -86,7 +86,8 @@ pub trait HybridSystem<const N: usize, const G: usize> {
     /// The mode and state that follow when `guard` of `mode` fires at `y`.
     ///
     /// The provided version changes nothing. It is for guards that end the run, and for guards
-    /// that only report a crossing.
+    /// that only report a crossing. It may be called more than once for an event, so it should be
+    /// a function of its arguments alone.
     fn transition(
         &self,
         mode: Self::Mode,

@@ -90,8 +90,10 @@
 //! | question | answer |
 //! |---|---|
 //! | a guard starts on zero | It fires at the start if it leaves zero in its direction, and otherwise not. After [`Guard::from_zero`] it does not fire there, unless it is [`Below`](Direction::Below) and becomes negative. |
-//! | a guard touches zero | It does not fire. Where the dense output cannot tell a touch from a crossing, a step of the method decides, and [`Observer::on_grazing`] reports it. |
-//! | several guards at one place | The guard that is listed first decides the transition, unless it yields ([`Guard::yielding`]). [`SwitchEvent::simultaneous`] names the others. |
+//! | a guard touches zero | It does not fire. Where the dense output cannot tell a touch from a crossing, a step of the method decides, and [`Observer::on_grazing`] reports it, once and not before what comes first. |
+//! | a guard has a pole | It does not fire, and [`Observer::on_pole`] reports it. Where a guard is [`Below`](Direction::Below), the domain ends there, and it fires. |
+//! | a guard has no value (NaN) | An error, unless the run ends before. |
+//! | several guards at one place | The guard that is listed first decides the transition, unless it yields ([`Guard::yielding`]). [`SwitchEvent::simultaneous`] names the others, up to guard 63. |
 //! | a guard crosses zero at the end of the span | It fires. The outcome is [`Outcome::EndedByGuard`] if it is terminal, and else [`Outcome::ReachedEnd`]. |
 //! | the state at an event | It always comes with the event: [`SwitchEvent::before`] lies on the guard, and [`SwitchEvent::after`] follows from the transition. |
 //! | [`Guard::terminal_after`] k events | The k-th firing ends the run at its place, without a transition, also if several lie on one step. |

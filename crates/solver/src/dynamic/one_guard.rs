@@ -3,13 +3,15 @@
 
 use std::marker::PhantomData;
 
+use smallvec::SmallVec;
+
 use crate::dynamic::curve::{AlongStep, Work};
 use crate::dynamic::event::Examination;
 use crate::dynamic::step::Step;
 use crate::dynamic::system::DynamicSystem;
 use crate::error::RunError;
-use crate::events::Noticed;
 use crate::events::isolate::{Beginning, Notice, Task, Verdict, first_crossing, last_sign};
+use crate::events::notices::{FEW, Noticed};
 use crate::events::one_guard::{Crossing, FINEST, LONGER, Status};
 use crate::events::quick::{self, BETWEEN, NODES, between};
 use crate::hybrid::Direction;
@@ -142,7 +144,7 @@ impl<S: DynamicSystem> Examination<'_, S> {
         };
         let mut found = Status::Clear;
         for &sign in signs {
-            let mut noticed = Vec::new();
+            let mut noticed = SmallVec::<[Notice; FEW]>::new();
             let mut notice = |found: Notice| noticed.push(found);
             let task = Task {
                 beginning: Beginning { value: sign * beginning.value, ..beginning },

@@ -72,7 +72,7 @@ impl<Mode: Copy> Phase<Mode> {
     }
 
     /// Takes values that may be due to rounding of the state at `event`, which led here, for zeros.
-    /// The mode may be the `same` as before the event. The sizes of the time and of the components
+    /// `same` tells whether the mode is that before the event. The sizes of the time and of the components
     /// near the event are `s_scale` and `work.scale`.
     pub(crate) fn forgive<S: DynamicSystem<Mode = Mode>>(
         &mut self,

@@ -11,10 +11,9 @@ pub struct DynamicEvent<'a, Mode> {
     pub s: f64,
     /// The guard that fired.
     pub guard: usize,
-    /// Further guards of the mode that vanish at the same place, in ascending order. What it means
-    /// that they are listed is said at
-    /// [`SwitchEvent::simultaneous`](crate::SwitchEvent::simultaneous); here there may be any
-    /// number of them.
+    /// Further guards of the mode that vanish at the same place, in ascending order. For their
+    /// meaning see [`SwitchEvent::simultaneous`](crate::SwitchEvent::simultaneous); here there may
+    /// be any number of them.
     pub simultaneous: &'a [usize],
     /// The guard's largest value in the phase divided by its slope here, in units of s
     /// ([`SwitchEvent::flatness`](crate::SwitchEvent::flatness)).

@@ -1,11 +1,16 @@
 //! Touches and poles that are noticed on a step, until the step is accepted.
 
+use smallvec::SmallVec;
+
 use crate::events::isolate::{Notice, Touch};
 use crate::hybrid::{Grazing, Pole};
 
 /// Notices of a guard that are closer together than this part of the step are one: `Either` is
 /// examined in both directions, and shortened steps are examined again.
 const SAME: f64 = 1e-8;
+
+/// So many notices on a step allocate nothing.
+pub(crate) const FEW: usize = 4;
 
 /// What isolation notices of a guard besides its crossings, for the observer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,11 +46,11 @@ impl<Mode: Copy> Noticed<Mode> {
 
 /// The touches and poles on a step. Those behind a switch do not happen.
 #[derive(Debug)]
-pub(crate) struct Notices<Mode>(Vec<Noticed<Mode>>);
+pub(crate) struct Notices<Mode>(SmallVec<[Noticed<Mode>; FEW]>);
 
 impl<Mode: Copy> Notices<Mode> {
     pub(crate) fn new() -> Self {
-        Self(Vec::new())
+        Self(SmallVec::new())
     }
 
     pub(crate) fn clear(&mut self) {

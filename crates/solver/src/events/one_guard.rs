@@ -2,13 +2,15 @@
 
 use std::marker::PhantomData;
 
+use smallvec::SmallVec;
+
 use crate::error::RunError;
 use crate::events::along_step::{AlongStep, EnclosedAlongStep, dense_output, repeated_step};
 use crate::events::examination::{Examination, column};
 use crate::events::isolate::{
     Beginning, Bracket, Notice, Task, Verdict, first_crossing, first_enclosed_crossing, last_sign,
 };
-use crate::events::notices::Noticed;
+use crate::events::notices::{FEW, Noticed};
 use crate::events::path::Path;
 use crate::events::quick::{self, Quick};
 use crate::hybrid::{Direction, HybridSystem};
@@ -214,7 +216,7 @@ where
             let (statistics, method) = (&mut *self.statistics, PhantomData::<M>);
             let mut along =
                 AlongStep { system, mode, guard, sign, step, dense: &dense, statistics, method };
-            let mut noticed = Vec::new();
+            let mut noticed = SmallVec::<[Notice; FEW]>::new();
             let mut notice = |found: Notice| noticed.push(found);
             let task = Task {
                 beginning: Beginning { value: sign * beginning.value, ..beginning },

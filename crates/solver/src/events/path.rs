@@ -99,7 +99,7 @@ impl<const N: usize> Path<N> {
 
     /// The path between two step fractions from the state `y` in the middle, with its first and
     /// second derivatives by the time. The result tells whether only rounding is left of its
-    /// error. It is `None` if the path is not much more accurate than this path.
+    /// error. It is `None` if the path is not much more accurate than `self`.
     pub(crate) fn local(
         &self,
         (low, high): (f64, f64),

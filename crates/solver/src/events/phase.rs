@@ -54,7 +54,7 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
     }
 
     /// Takes values that may be due to rounding of the state at `event`, which led here, for zeros.
-    /// The mode may be the `same` as before the event.
+    /// `same` tells whether the mode is that before the event.
     pub(crate) fn forgive<S: HybridSystem<N, G, Mode = Mode>, const N: usize>(
         &mut self,
         system: &S,

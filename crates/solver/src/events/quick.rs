@@ -1,7 +1,9 @@
 //! The first look at a guard on a step, by a quintic through six values that the step already has.
 //!
 //! Most steps are far from any switch, and most crossings are steep. Both are recognised here for
-//! the cost of five guard evaluations, one of them at the end of the step. All other cases go to [`crate::events::isolate`].
+//! the cost of five guard evaluations, one of them at the end of the step; for black boxes that are
+//! not declared to be smooth, three more are compared with them. All other cases go to
+//! [`crate::events::isolate`].
 
 mod tables;
 

@@ -4,8 +4,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// All numbers between two bounds, which are rounded outwards.
 ///
-/// Sums, products, quotients and roots are rounded by one unit in the last place, other functions
-/// by four: the libraries of common platforms are more accurate than that. An interval over which
+/// Sums, products, quotients and roots are rounded by one or two units in the last place, other
+/// functions by four: the libraries of common platforms are more accurate than that. An interval over which
 /// a function has no value everywhere has bounds for the values that exist; if there may be none,
 /// it is [`Interval::ENTIRE`].
 ///
@@ -288,7 +288,7 @@ impl Interval {
         Self::new(self.lower.max(0.0), self.upper).rising(f64::ln)
     }
 
-    /// Whether a number offset + k·period is among the numbers, or may be.
+    /// Whether offset + k·period is among the numbers for some integer k; true if in doubt.
     fn meets(self, offset: f64, period: f64) -> bool {
         let slack = FUNCTION * (self.magnitude() + period);
         let first = ((self.lower - slack - offset) / period).ceil();

@@ -22,7 +22,8 @@ use crate::runs::rejected::after_rejection;
 /// Integrates `system` from `start` to `end`, through every switch on the way.
 ///
 /// `end` may be infinite if a terminal guard ends the run. A run allocates no
-/// memory, except on steps with a touch, a pole, or an event that changes nothing.
+/// memory, except on steps with many touches or poles, or with an event that
+/// changes nothing.
 ///
 /// # Errors
 /// A [`RunError`] reports invalid options, a span that does not lead forward, a state or right-hand
