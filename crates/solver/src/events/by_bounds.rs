@@ -70,7 +70,8 @@ where
             return root.map_or(Status::Unclear, |theta| Crossing::alone(first, theta));
         }
         let stays = monotone || bend == -first || at_zero && bend == first;
-        let clear = first * end > 0.0 && stays || !at_zero && self.same_side(guard, path, &bounds);
+        let may_stay = first * end > 0.0;
+        let clear = may_stay && (stays || !at_zero && self.same_side(guard, path, &bounds));
         if clear { Status::Clear } else { Status::Unclear }
     }
 

@@ -127,12 +127,12 @@ impl Mul for Enclosure {
     #[inline]
     fn mul(self, other: Self) -> Self {
         let (a, b) = (self, other);
-        let crossed = a.slope.times(b.slope).scaled(2.0);
-        Self {
-            value: a.value.times(b.value),
-            slope: a.slope.times(b.value).plus(a.value.times(b.slope)),
-            bend: a.bend.times(b.value).plus(crossed).plus(a.value.times(b.bend)),
-        }
+        let [value, left, right, first, crossed, last] = Interval::products(
+            [a.value, a.slope, a.value, a.bend, a.slope, a.value],
+            [b.value, b.value, b.slope, b.value, b.slope, b.bend],
+        );
+        let bend = first.plus(crossed.plus(crossed)).plus(last);
+        Self { value, slope: left.plus(right), bend }
     }
 }
 

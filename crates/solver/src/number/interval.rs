@@ -51,6 +51,12 @@ fn least(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
+/// A product of bounds: one that is 0 stands for numbers near 0, also beside infinity.
+#[inline(always)]
+fn near_zero(product: f64) -> f64 {
+    if product.is_nan() { 0.0 } else { product }
+}
+
 /// The larger of two numbers that are not NaN.
 #[inline(always)]
 fn most(a: f64, b: f64) -> f64 {
@@ -183,18 +189,30 @@ impl Interval {
     #[must_use]
     #[inline]
     pub fn times(self, other: Self) -> Self {
-        if self == Self::ZERO || other == Self::ZERO {
-            return Self::ZERO;
+        let [product] = Self::products([self], [other]);
+        product
+    }
+
+    /// The products of several pairs, which are computed side by side.
+    #[inline(always)]
+    pub(super) fn products<const K: usize>(a: [Self; K], b: [Self; K]) -> [Self; K] {
+        let (a_lower, a_upper) = (a.map(|a| a.lower), a.map(|a| a.upper));
+        let (b_lower, b_upper) = (b.map(|b| b.lower), b.map(|b| b.upper));
+        let (mut lower, mut upper) = ([0.0; K], [0.0; K]);
+        for i in 0..K {
+            let (al, au, bl, bu) = (a_lower[i], a_upper[i], b_lower[i], b_upper[i]);
+            let (p, q) = (near_zero(al * bl), near_zero(al * bu));
+            let (r, s) = (near_zero(au * bl), near_zero(au * bu));
+            let zero = (al == 0.0) & (au == 0.0) | (bl == 0.0) & (bu == 0.0);
+            let (least, most) = (least(least(p, q), least(r, s)), most(most(p, q), most(r, s)));
+            lower[i] = if zero { 0.0 } else { down(least) };
+            upper[i] = if zero { 0.0 } else { up(most) };
         }
-        let (a, b) = (self, other);
-        let mut ends = [a.lower * b.lower, a.lower * b.upper, a.upper * b.lower, a.upper * b.upper];
-        if (ends[0] + ends[1] + ends[2] + ends[3]).is_nan() {
-            // A bound that is 0 stands for numbers near 0, also beside infinity.
-            ends = ends.map(|end| if end.is_nan() { 0.0 } else { end });
+        let mut products = a;
+        for i in 0..K {
+            products[i] = Self { lower: lower[i], upper: upper[i] };
         }
-        let lower = least(least(ends[0], ends[1]), least(ends[2], ends[3]));
-        let upper = most(most(ends[0], ends[1]), most(ends[2], ends[3]));
-        Self::new(down(lower), up(upper))
+        products
     }
 
     /// The product with one number.
