@@ -44,7 +44,7 @@ impl ReadableSystem<2, 1> for Ball {
 ///
 /// # Errors
 /// The run failed.
-pub fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> Result<(), Box<dyn Error>> {
     let height = 1.5_f64;
     for restitution in [0.5, 0.7, 0.9] {
         let start = Start { mode: (), s: 0.0, state: State::from([height, 0.0]) };
@@ -64,4 +64,9 @@ pub fn main() -> Result<(), Box<dyn Error>> {
         assert!(error < if FUSED_PRODUCTS { 1.5e-14 } else { 2e-13 });
     }
     Ok(())
+}
+
+#[test]
+fn it_holds() {
+    main().expect("what it shows");
 }

@@ -52,7 +52,7 @@ impl ReadableSystem<2, 1> for Belt {
 ///
 /// # Errors
 /// The run failed.
-pub fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> Result<(), Box<dyn Error>> {
     let belt = Belt { velocity: 0.5, static_friction: 1.0, kinetic_friction: 0.6 };
     let drop = belt.static_friction - belt.kinetic_friction;
     let period = TAU - 2.0 * (drop / belt.velocity).atan() + 2.0 * drop / belt.velocity;
@@ -70,4 +70,9 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     // The measured error is 1.5e-13.
     assert!(slips.len() > 50 && largest < 3e-13);
     Ok(())
+}
+
+#[test]
+fn it_holds() {
+    main().expect("what it shows");
 }

@@ -44,7 +44,7 @@ impl ReadableSystem<2, 1> for Oscillator {
 ///
 /// # Errors
 /// The run failed.
-pub fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> Result<(), Box<dyn Error>> {
     let oscillator = Oscillator { restitution: 0.7 };
     let options = Options::with_tolerance(1e-15);
     let turn = |delta: f64| {
@@ -76,4 +76,9 @@ pub fn main() -> Result<(), Box<dyn Error>> {
         last = Some((delta, moved));
     }
     Ok(())
+}
+
+#[test]
+fn it_holds() {
+    main().expect("what it shows");
 }

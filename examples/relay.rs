@@ -43,7 +43,7 @@ impl ReadableSystem<1, 1> for Relay {
 ///
 /// # Errors
 /// The run failed.
-pub fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::with_tolerance(1e-13);
     for hysteresis in [0.9, 0.1, 1e-3] {
         let relay = Relay { gain: 1.0, hysteresis };
@@ -62,4 +62,9 @@ pub fn main() -> Result<(), Box<dyn Error>> {
         assert!(times.len() == 100 && largest < 2e-13);
     }
     Ok(())
+}
+
+#[test]
+fn it_holds() {
+    main().expect("what it shows");
 }

@@ -31,3 +31,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("ε_n = {}, ε_t = {}", collision.eps_n, collision.eps_t());
     Ok(())
 }
+
+#[test]
+fn it_holds() {
+    main().expect("what it shows");
+}

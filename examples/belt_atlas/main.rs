@@ -132,7 +132,7 @@ impl Distances {
 ///
 /// # Errors
 /// The trace failed, or its curves make no subdivision.
-pub fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::with_tolerance(1e-14);
     let family = HybridFamily { problem: Belts, method: Dop853, options, end: f64::INFINITY };
     let network = trace(&family, &WINDOW, &TraceOptions::default())?;
@@ -179,4 +179,9 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     println!("{} regions, correct at {compared} random points", plane.regions().len());
     assert!(plane.regions().len() == 5 && compared > 9990);
     Ok(())
+}
+
+#[test]
+fn it_holds() {
+    main().expect("what it shows");
 }

@@ -1,5 +1,5 @@
-//! What users of the facade rely on: runs and collisions allocate nothing, the examples hold,
-//! atlases of the collision are those of the references, and the battery of events is found.
+//! What users of the facade rely on: runs and collisions allocate nothing, atlases of
+//! the collision are those of the references, and the battery of events is found.
 
 mod allocations;
 mod atlas;
@@ -8,4 +8,3 @@ mod battery;
 mod cases;
 #[path = "../common/mod.rs"]
 mod common;
-mod examples;

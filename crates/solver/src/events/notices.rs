@@ -70,7 +70,11 @@ impl<Mode: Copy> Notices<Mode> {
     }
 
     /// Removes the first one, if it is not behind `until`.
+    #[inline]
     pub(crate) fn next_until(&mut self, until: f64) -> Option<Noticed<Mode>> {
+        if self.0.is_empty() {
+            return None;
+        }
         let place = |index: &usize| self.0[*index].about().2;
         let first = (0..self.0.len()).min_by(|a, b| place(a).total_cmp(&place(b)))?;
         (place(&first) <= until).then(|| self.0.remove(first))
