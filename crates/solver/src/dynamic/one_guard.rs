@@ -12,7 +12,7 @@ use crate::dynamic::system::DynamicSystem;
 use crate::error::RunError;
 use crate::events::isolate::{Beginning, Notice, Task, Verdict, first_crossing, last_sign};
 use crate::events::notices::{FEW, Noticed};
-use crate::events::one_guard::{Crossing, FINEST, LONGER, Status};
+use crate::events::one_guard::{Crossing, LONGER, Status, resolution, side_before};
 use crate::events::quick::{self, BETWEEN, NODES, between};
 use crate::hybrid::Direction;
 use crate::method::Method;
@@ -137,13 +137,8 @@ impl<S: DynamicSystem> Examination<'_, S> {
         self.statistics.isolations += 1;
         self.extend::<M>(step);
         let direction = self.phase.guards[guard].direction();
-        let signs: &[f64] = match direction {
-            Direction::Rising => &[-1.0],
-            Direction::Either => &[1.0, -1.0],
-            _ => &[1.0],
-        };
         let mut found = Status::Clear;
-        for &sign in signs {
+        for &sign in direction.signs() {
             let mut noticed = SmallVec::<[Notice; FEW]>::new();
             let mut notice = |found: Notice| noticed.push(found);
             let task = Task {
@@ -250,16 +245,7 @@ impl<S: DynamicSystem> Examination<'_, S> {
         match last_sign(&mut self.along::<M>(guard, 1.0, step), resolution) {
             Ok(Some(last)) if last != 0.0 => f64::MIN_POSITIVE.copysign(last),
             // Otherwise the last nonzero value at the nodes decides.
-            _ => column[..5]
-                .iter()
-                .rev()
-                .find(|&&value| value != 0.0)
-                .map_or(0.0, |value| f64::MIN_POSITIVE.copysign(*value)),
+            _ => side_before(column),
         }
     }
-}
-
-/// The narrowest part of a step that can be told from a point.
-fn resolution(s: f64, h: f64) -> f64 {
-    (2.0 * f64::EPSILON * s.abs() / h).clamp(FINEST, 1.0)
 }

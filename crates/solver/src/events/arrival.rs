@@ -43,12 +43,7 @@ where
             let (behind, ahead) = (value(s - reach, &(y - away)), value(s + reach, &(y + away)));
             let shows = behind.abs() > 4.0 * hidden && ahead.abs() > 4.0 * hidden;
             let crosses = shows && (behind < 0.0) != (ahead < 0.0);
-            let in_direction = match direction {
-                Direction::Either => true,
-                Direction::Rising => behind < 0.0,
-                _ => behind > 0.0,
-            };
-            if at_end.abs() > hidden || !crosses || !in_direction {
+            if at_end.abs() > hidden || !crosses || !direction.fires_from(behind) {
                 continue;
             }
             let found = Event {

@@ -58,12 +58,7 @@ where
         // From a zero, a guard returns only if it bends back.
         let back = order < 2 && !monotone && bend == -first;
         if first * end < 0.0 && if at_zero { back } else { monotone || bend != 0.0 } {
-            let fires = match direction {
-                Direction::Either => true,
-                Direction::Rising => first < 0.0,
-                _ => first > 0.0,
-            };
-            if !fires {
+            if !direction.fires_from(first) {
                 return Status::Clear;
             }
             let root = quick::only_root(&column.map(|value| first * value), M::QUICK_ERROR);

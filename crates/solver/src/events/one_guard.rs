@@ -21,7 +21,7 @@ use crate::method::{Method, Step, Trial};
 /// length that way.
 pub(crate) const LONGER: i32 = 26;
 /// The narrowest part of a step that is worth dividing.
-pub(crate) const FINEST: f64 = 1.0 / (1_u64 << 48) as f64;
+const FINEST: f64 = 1.0 / (1_u64 << 48) as f64;
 
 /// What is known about a guard on the step at hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -203,14 +203,9 @@ where
         let dense = dense_output::<_, M, N, G>(system, mode, step);
         self.statistics.field += M::DENSE_STAGES - 1;
         let direction = self.phase.guards[guard].direction();
-        let signs: &[f64] = match direction {
-            Direction::Rising => &[-1.0],
-            Direction::Either => &[1.0, -1.0],
-            _ => &[1.0],
-        };
-        let resolution = resolution(step);
+        let resolution = resolution(step.s, step.h);
         let mut found = Status::Clear;
-        for &sign in signs {
+        for &sign in direction.signs() {
             // Zeros of higher order have no bounds.
             let bounded = self.has_bounds(guard) && beginning.zero_order <= 2;
             let (statistics, method) = (&mut *self.statistics, PhantomData::<M>);
@@ -282,19 +277,22 @@ where
         let (sign, method) = (1.0, PhantomData);
         let mut curve: AlongStep<'_, S, M, N, G> =
             AlongStep { system, mode, guard, sign, step, dense: &dense, statistics, method };
-        match last_sign(&mut curve, resolution(step)) {
+        match last_sign(&mut curve, resolution(step.s, step.h)) {
             Ok(Some(last)) if last != 0.0 => f64::MIN_POSITIVE.copysign(last),
             // Otherwise the last nonzero value at the nodes decides.
-            _ => values[..5]
-                .iter()
-                .rev()
-                .find(|&&value| value != 0.0)
-                .map_or(0.0, |value| f64::MIN_POSITIVE.copysign(*value)),
+            _ => side_before(values),
         }
     }
 }
 
-/// The narrowest part of a step that can be told from a point.
-fn resolution<const N: usize>(step: &Step<N>) -> f64 {
-    (2.0 * f64::EPSILON * step.s.abs() / step.h).clamp(FINEST, 1.0)
+/// The narrowest part of a step from `s` of size `h` that can be told from a point.
+pub(crate) fn resolution(s: f64, h: f64) -> f64 {
+    (2.0 * f64::EPSILON * s.abs() / h).clamp(FINEST, 1.0)
+}
+
+/// The side on which a guard that is zero where a step ends has been, by its values at the other
+/// nodes.
+pub(crate) fn side_before(values: &[f64; 6]) -> f64 {
+    let last = values[..5].iter().rev().find(|&&value| value != 0.0);
+    last.map_or(0.0, |value| f64::MIN_POSITIVE.copysign(*value))
 }

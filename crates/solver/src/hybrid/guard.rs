@@ -18,6 +18,22 @@ pub enum Direction {
     Off,
 }
 
+impl Direction {
+    /// The signs with which a guard has to be multiplied, so that it fires where it falls.
+    pub(crate) fn signs(self) -> &'static [f64] {
+        match self {
+            Self::Rising => &[-1.0],
+            Self::Either => &[1.0, -1.0],
+            _ => &[1.0],
+        }
+    }
+
+    /// Whether a guard that crosses zero, and comes from this side, fires.
+    pub(crate) fn fires_from(self, before: f64) -> bool {
+        self.signs().iter().any(|sign| sign * before > 0.0)
+    }
+}
+
 /// A guard of a mode: when it fires, what it causes, and whether it starts from zero.
 ///
 /// ```

@@ -203,7 +203,8 @@ impl Interval {
             let (al, au, bl, bu) = (a_lower[i], a_upper[i], b_lower[i], b_upper[i]);
             let (p, q) = (near_zero(al * bl), near_zero(al * bu));
             let (r, s) = (near_zero(au * bl), near_zero(au * bu));
-            let zero = (al == 0.0) & (au == 0.0) | (bl == 0.0) & (bu == 0.0);
+            // Whether either factor is zero.
+            let zero = least(al.abs() + au.abs(), bl.abs() + bu.abs()) == 0.0;
             let (least, most) = (least(least(p, q), least(r, s)), most(most(p, q), most(r, s)));
             lower[i] = if zero { 0.0 } else { down(least) };
             upper[i] = if zero { 0.0 } else { up(most) };

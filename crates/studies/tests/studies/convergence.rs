@@ -45,7 +45,7 @@ fn orders(
     }
     [velocities, times].map(|errors| {
         let order = fit_order(&errors, 4.0).expect("a range");
-        println!("{}, {coordinates:?}: {order:?}", pair);
+        println!("{pair}, {coordinates:?}: {order:?}");
         order
     })
 }
