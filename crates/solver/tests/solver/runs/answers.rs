@@ -216,7 +216,7 @@ fn a_recorded_run_ends_behind_its_last_switch() {
     let mut recorder = Recorder::default();
     let end = run(Dop853, &ball, start, 10.0, &options, &mut recorder).unwrap();
     assert_eq!(end.outcome, Outcome::SwitchLimit);
-    let (_, last) = recorder.trajectory.at(end.s).unwrap();
+    let ((), last) = recorder.trajectory.at(end.s).unwrap();
     assert!(last == end.state && last[1] > 0.0, "{last:?}");
 }
 
