@@ -8,8 +8,8 @@
 //! only the guard that should end the phase may fire. The margin is then a smooth function of the
 //! parameters on both sides of zero.
 //!
-//! A minimum of a guard is a zero of its rate. It is found like any other switch: every step
-//! decides whether it contains one, and steps of the method locate it.
+//! A minimum of a guard is a zero of its rate. It is found like a zero of a black box: the rate is
+//! sampled on every step, also that of a readable system, and steps of the method locate its zeros.
 
 mod name;
 mod prescribed;
