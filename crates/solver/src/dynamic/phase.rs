@@ -72,8 +72,8 @@ impl<Mode: Copy> Phase<Mode> {
     }
 
     /// Takes values that may be due to rounding of the state at `event`, which led here, for zeros.
-    /// `same` tells whether the mode is that before the event. The sizes of the time and of the components
-    /// near the event are `s_scale` and `work.scale`.
+    /// `same` tells whether the mode is that before the event. The sizes of the time and of the
+    /// components near the event are `s_scale` and `work.scale`.
     pub(crate) fn forgive<S: DynamicSystem<Mode = Mode>>(
         &mut self,
         system: &S,

@@ -7,8 +7,9 @@ use crate::hybrid::Guard;
 /// A piecewise-smooth ODE whose number of components is known at run time only.
 ///
 /// The dimension is the length of the state from which a run starts. The slices that a run passes
-/// have these lengths: states and slopes that of the state, values that of [`Self::guards`]. So nothing can have a wrong length, unless a system expects another dimension
-/// than that of its start.
+/// have these lengths: states and slopes that of the state, values that of [`Self::guards`]. So
+/// nothing can have a wrong length, unless a system expects another dimension than that of its
+/// start.
 ///
 /// The right-hand side and the guards of a mode must also be smooth a little beyond the guards'
 /// zeros, since a trial step may end there.

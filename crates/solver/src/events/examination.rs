@@ -32,8 +32,8 @@ where
         values_on(self.system, self.phase, step, self.statistics)
     }
 
-    /// Whether the values of each guard between the [`NODES`] are those that the values at the nodes
-    /// predict.
+    /// Whether the values of each guard between the [`NODES`] are those that the values at the
+    /// nodes predict.
     pub(crate) fn confirmed(&mut self, step: &Step<N>, values: &[[f64; G]; 6]) -> [bool; G] {
         confirmed(self.system, self.phase, self.guard_scale, step, values, self.statistics)
     }

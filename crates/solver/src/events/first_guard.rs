@@ -260,8 +260,8 @@ where
     }
 
     /// The event of the first guard that fires together with the guard of `event` and precedes it.
-    /// `step` is the step before `event` shortens it; `values` and the statuses of the guards belong
-    /// to that step. Which guards are zero at the event is known.
+    /// `step` is the step before `event` shortens it; `values` and the statuses of the guards
+    /// belong to that step. Which guards are zero at the event is known.
     fn preceding<M: Method>(
         &mut self,
         event: &Event<N>,

@@ -83,8 +83,8 @@ impl<S, const N: usize, const G: usize> Examination<'_, S, N, G>
 where
     S: HybridSystem<N, G>,
 {
-    /// Whether bounds decide about a guard of a readable system. Where one asks, `S::READABLE` comes
-    /// first: it is a constant, so that black boxes are compiled without the code for bounds.
+    /// Whether bounds decide about a guard of a readable system. Where one asks, `S::READABLE`
+    /// comes first: it is a constant, so that black boxes are compiled without the code for bounds.
     #[inline(always)]
     fn has_bounds(&self, guard: usize) -> bool {
         !self.phase.guards[guard].is_smooth()

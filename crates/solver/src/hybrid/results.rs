@@ -10,7 +10,8 @@ pub struct SwitchEvent<Mode, const N: usize> {
     /// The guard that fired.
     pub guard: usize,
     /// Further guards of the mode that vanish at the same place, one bit each; of a mode with more
-    /// than 64 guards, the first 64 are named. If several guards fire together, the guard that is listed first decides the transition, unless it yields
+    /// than 64 guards, the first 64 are named. If several guards fire together, the guard that is
+    /// listed first decides the transition, unless it yields
     /// ([`Guard::yielding`](crate::Guard::yielding)).
     ///
     /// If mode and state go on unchanged, these are the guards that cross here in their direction

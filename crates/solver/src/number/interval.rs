@@ -5,9 +5,9 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// All numbers between two bounds, which are rounded outwards.
 ///
 /// Sums, products, quotients and roots are rounded by one or two units in the last place, other
-/// functions by four: the libraries of common platforms are more accurate than that. An interval over which
-/// a function has no value everywhere has bounds for the values that exist; if there may be none,
-/// it is [`Interval::ENTIRE`].
+/// functions by four: the libraries of common platforms are more accurate than that. An interval
+/// over which a function has no value everywhere has bounds for the values that exist; if there may
+/// be none, it is [`Interval::ENTIRE`].
 ///
 /// ```
 /// use stickslip_solver::Interval;
