@@ -296,9 +296,9 @@ where
     }
 
     /// Which guards other than that of `event` are zero there. `values` are those at the nodes of
-    /// the event's step, which may end close to the event and not exactly there.
+    /// the event's step, which may end beside the event.
     fn together(&mut self, event: &Event<N>, values: &[[f64; G]; 6]) -> [bool; G] {
-        let there = if G == 1 || event.step.h == event.elapsed {
+        let there = if G == 1 {
             values[5]
         } else {
             self.statistics.guards += 1;
