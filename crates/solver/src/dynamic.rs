@@ -65,7 +65,8 @@
 //!   sensitivities.
 //! - [`DynamicEvent::simultaneous`] is a list, so that it can name any number of guards.
 //! - Up to 8 components, the effect of rounding of the state on a guard is measured component by
-//!   component; beyond that, by moving all components at once, in eight irregular but fixed patterns.
+//!   component; beyond that, by moving all components at once, in eight irregular but fixed
+//!   patterns.
 //! - A run allocates room for 70 states when it starts, and a little at events. It allocates
 //!   nothing on steps without event, and nothing for a right-hand side.
 //! - The observers [`Recorder`](crate::Recorder), [`Samples`](crate::Samples), tuples, and

@@ -287,7 +287,8 @@ impl Search<'_> {
             let inside = places.into_iter().filter(|theta| (0.0..=1.0).contains(theta));
             inside.fold(0.0, |most: f64, theta| {
                 let there = self.curve.truth(theta);
-                most.max(there.map_or(f64::INFINITY, |(value, _)| value.abs()))
+                // Where there is no value, nothing grows.
+                most.max(there.map_or(0.0, |(value, _)| value.abs()))
             })
         };
         largest([low, high]) > GROWS * largest([low - away, high + away])
