@@ -6,6 +6,7 @@
 //! excluded.
 
 mod enclosure;
+mod four;
 mod interval;
 
 use std::fmt::Debug;

@@ -57,7 +57,13 @@ where
         }
         // From a zero, a guard returns only if it bends back.
         let back = order < 2 && !monotone && bend == -first;
-        if first * end < 0.0 && if at_zero { back } else { monotone || bend != 0.0 } {
+        if first * end < 0.0
+            && if at_zero {
+                back
+            } else {
+                monotone || bend != 0.0 || self.turns_once(guard, path, first)
+            }
+        {
             if !direction.fires_from(first) {
                 return Status::Clear;
             }
@@ -73,6 +79,30 @@ where
     /// Whether a guard with these `bounds` on the step has one sign throughout.
     fn same_side(&mut self, guard: usize, path: &Path<N>, bounds: &Enclosure) -> bool {
         bounds.value.sign() != 0.0 || self.side_in_halves(guard, path, (0.0, 1.0), HALVINGS) != 0.0
+    }
+
+    /// Whether a guard changes its sign once, from that of `first`: where its bounds in small parts
+    /// of the step do not exclude zero, it only moves towards the other sign.
+    fn turns_once(&mut self, guard: usize, path: &Path<N>, first: f64) -> bool {
+        self.turns_in_halves(guard, path, first, (0.0, 1.0), HALVINGS)
+    }
+
+    fn turns_in_halves(
+        &mut self,
+        guard: usize,
+        path: &Path<N>,
+        first: f64,
+        (low, high): (f64, f64),
+        halvings: u32,
+    ) -> bool {
+        let middle = 0.5 * (low + high);
+        halvings > 0
+            && [(low, middle), (middle, high)].into_iter().all(|part| {
+                let Enclosure { value, slope, .. } = self.bounds(guard, path, part.0, part.1);
+                value.sign() != 0.0
+                    || slope.is_bounded() && slope.sign() * first < 0.0
+                    || self.turns_in_halves(guard, path, first, part, halvings - 1)
+            })
     }
 
     /// Bounds of a guard from bounds of time and state.

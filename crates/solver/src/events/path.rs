@@ -220,17 +220,22 @@ impl<const N: usize> Part<'_, N> {
             bend: Interval::ZERO,
         };
         let band = self.path.band(low, high);
-        let radius: [[f64; N]; 3] = std::array::from_fn(|k| {
-            each(|i| (1.0 + 64.0 * f64::EPSILON) * (remainders[k][i] + band[k][i]))
-        });
-        let c = &self.terms;
+        let [value, slope, bend, ..] = &self.terms;
+        let middles = [*value, *slope, bend.map(|bend| 2.0 * bend)];
+        let (mut lower, mut upper) = ([[0.0; N]; 3], [[0.0; N]; 3]);
+        for k in 0..3 {
+            let radius: [f64; N] = each(|i| {
+                let radius = (1.0 + 64.0 * f64::EPSILON) * (remainders[k][i] + band[k][i]);
+                // It contains the rounding of the bounds. A constant has none.
+                if radius == 0.0 { 0.0 } else { radius + f64::EPSILON * middles[k][i].abs() }
+            });
+            lower[k] = each(|i| middles[k][i] - radius[i]);
+            upper[k] = each(|i| middles[k][i] + radius[i]);
+        }
         let mut state = [time; N];
         for (i, component) in state.iter_mut().enumerate() {
-            *component = Enclosure {
-                value: Interval::around(c[0][i], radius[0][i]),
-                slope: Interval::around(c[1][i], radius[1][i]),
-                bend: Interval::around(2.0 * c[2][i], radius[2][i]),
-            };
+            let [value, slope, bend] = [0, 1, 2].map(|k| Interval::new(lower[k][i], upper[k][i]));
+            *component = Enclosure { value, slope, bend };
         }
         (time, state)
     }

@@ -2,6 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use crate::number::four::{Four, product_rule};
 use crate::number::{Interval, Number};
 
 /// Bounds for the values, the slopes and the second derivatives of a function over an interval of
@@ -73,6 +74,18 @@ impl Enclosure {
         Self { value, slope, bend: slope }
     }
 
+    /// The product of functions with infinite bounds.
+    #[cold]
+    fn unbounded_product(self, other: Self) -> Self {
+        let (a, b) = (self, other);
+        let crossed = a.slope.times(b.slope).scaled(2.0);
+        Self {
+            value: a.value.times(b.value),
+            slope: a.slope.times(b.value).plus(a.value.times(b.slope)),
+            bend: a.bend.times(b.value).plus(crossed).plus(a.value.times(b.bend)),
+        }
+    }
+
     /// 1 divided by this function.
     fn inverse(self) -> Self {
         let inverse = self.value.inverse();
@@ -106,11 +119,9 @@ impl Add for Enclosure {
     type Output = Self;
     #[inline]
     fn add(self, other: Self) -> Self {
-        Self {
-            value: self.value.plus(other.value),
-            slope: self.slope.plus(other.slope),
-            bend: self.bend.plus(other.bend),
-        }
+        let four = |it: Self| Four::new([it.value, it.slope, it.bend, Interval::ZERO]);
+        let [value, slope, bend, _] = four(self).plus(four(other)).all();
+        Self { value, slope, bend }
     }
 }
 
@@ -126,13 +137,11 @@ impl Mul for Enclosure {
     type Output = Self;
     #[inline]
     fn mul(self, other: Self) -> Self {
-        let (a, b) = (self, other);
-        let [value, left, right, first, crossed, last] = Interval::products(
-            [a.value, a.slope, a.value, a.bend, a.slope, a.value],
-            [b.value, b.value, b.slope, b.value, b.slope, b.bend],
-        );
-        let bend = first.plus(crossed.plus(crossed)).plus(last);
-        Self { value, slope: left.plus(right), bend }
+        let parts = |it: Self| [it.value, it.slope, it.bend];
+        match product_rule(parts(self), parts(other)) {
+            Some([value, slope, bend]) => Self { value, slope, bend },
+            None => self.unbounded_product(other),
+        }
     }
 }
 

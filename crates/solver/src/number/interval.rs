@@ -27,9 +27,9 @@ const FUNCTION: f64 = 4.0 * f64::EPSILON;
 
 /// The rounding of a number, relative to it, and a little more (Rump, Zimmermann, Boldo and
 /// Melquiond 2009).
-const HALF_UNIT: f64 = 0.5 * f64::EPSILON * (1.0 + f64::EPSILON);
+pub(super) const HALF_UNIT: f64 = 0.5 * f64::EPSILON * (1.0 + f64::EPSILON);
 /// The smallest positive number.
-const LEAST: f64 = f64::from_bits(1);
+pub(super) const LEAST: f64 = f64::from_bits(1);
 
 /// A number below `x`, mostly the next one.
 #[inline(always)]
@@ -75,6 +75,12 @@ impl Interval {
     #[inline]
     pub fn new(lower: f64, upper: f64) -> Self {
         if lower <= upper { Self { lower, upper } } else { Self::ENTIRE }
+    }
+
+    /// The numbers between two bounds that are in order.
+    #[inline(always)]
+    pub(super) fn between(lower: f64, upper: f64) -> Self {
+        Self { lower, upper }
     }
 
     /// One number. It is entire if the number is NaN.
@@ -189,31 +195,15 @@ impl Interval {
     #[must_use]
     #[inline]
     pub fn times(self, other: Self) -> Self {
-        let [product] = Self::products([self], [other]);
-        product
-    }
-
-    /// The products of several pairs, which are computed side by side.
-    #[inline(always)]
-    pub(super) fn products<const K: usize>(a: [Self; K], b: [Self; K]) -> [Self; K] {
-        let (a_lower, a_upper) = (a.map(|a| a.lower), a.map(|a| a.upper));
-        let (b_lower, b_upper) = (b.map(|b| b.lower), b.map(|b| b.upper));
-        let (mut lower, mut upper) = ([0.0; K], [0.0; K]);
-        for i in 0..K {
-            let (al, au, bl, bu) = (a_lower[i], a_upper[i], b_lower[i], b_upper[i]);
-            let (p, q) = (near_zero(al * bl), near_zero(al * bu));
-            let (r, s) = (near_zero(au * bl), near_zero(au * bu));
-            // Whether either factor is zero.
-            let zero = least(al.abs() + au.abs(), bl.abs() + bu.abs()) == 0.0;
-            let (least, most) = (least(least(p, q), least(r, s)), most(most(p, q), most(r, s)));
-            lower[i] = if zero { 0.0 } else { down(least) };
-            upper[i] = if zero { 0.0 } else { up(most) };
+        let (p, q) = (near_zero(self.lower * other.lower), near_zero(self.lower * other.upper));
+        let (r, s) = (near_zero(self.upper * other.lower), near_zero(self.upper * other.upper));
+        if self == Self::ZERO || other == Self::ZERO {
+            return Self::ZERO;
         }
-        let mut products = a;
-        for i in 0..K {
-            products[i] = Self { lower: lower[i], upper: upper[i] };
+        Self {
+            lower: down(least(least(p, q), least(r, s))),
+            upper: up(most(most(p, q), most(r, s))),
         }
-        products
     }
 
     /// The product with one number.
