@@ -14,12 +14,14 @@
 //! | `isolate` | the decision about a guard, from its monotone pieces |
 //! | `path` | bounds for the state along a step, for the guards of readable systems |
 //! | `along_step` | a guard as a function along a step, and its rounding |
+//! | `aside` | places beside one where a guard has no value |
 //! | `locate` | the place of a switch, by steps of the method |
 //! | `notices` | touches and poles, until the step is accepted |
 //! | `arrival` | guards that are zero where the span of a run ends |
 
 pub(crate) mod along_step;
 pub(crate) mod arrival;
+pub(crate) mod aside;
 mod by_bounds;
 mod event;
 mod examination;

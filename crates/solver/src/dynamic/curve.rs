@@ -7,7 +7,9 @@ use crate::dynamic::step::{Origin, Step};
 use crate::dynamic::system::{DynamicSystem, SignedGuard};
 use crate::error::RunError;
 use crate::events::along_step::SLIGHT;
+use crate::events::aside::Aside;
 use crate::events::isolate::Curve;
+use crate::events::one_guard::resolution;
 use crate::hybrid::Statistics;
 use crate::method::Method;
 
@@ -153,15 +155,19 @@ impl<S: DynamicSystem, M: Method> Curve for AlongStep<'_, S, M> {
         let SignedGuard { system, mode, guard, .. } = self.at;
         let field = |s: f64, y: &[f64], slope: &mut [f64]| system.field(mode, s, y, slope);
         let Work { restep, values, .. } = &mut *self.work;
-        restep.take_end::<M>(&field, self.origin, theta * self.dense.size());
-        self.statistics.resteps += 1;
-        self.statistics.field += M::STAGES - 1;
-        self.statistics.guards += 1;
-        let s = self.origin.s + theta * self.dense.size();
-        let value = self.at.value(s, &restep.y1, values);
-        if value.is_nan() {
-            return Err(RunError::GuardNotANumber { guard, s: self.origin.s });
+        let (s, h) = (self.origin.s, self.dense.size());
+        let mut aside = Aside::new(guard, s, resolution(s, h));
+        let mut place = theta;
+        loop {
+            restep.take_end::<M>(&field, self.origin, place * h);
+            self.statistics.resteps += 1;
+            self.statistics.field += M::STAGES - 1;
+            self.statistics.guards += 1;
+            let value = self.at.value(s + place * h, &restep.y1, values);
+            if !value.is_nan() {
+                return Ok(value);
+            }
+            place = aside.of(theta)?;
         }
-        Ok(value)
     }
 }

@@ -6,9 +6,10 @@ use crate::dynamic::event::{Event, Examination};
 use crate::dynamic::step::Step;
 use crate::dynamic::system::{DynamicSystem, SignedGuard};
 use crate::error::RunError;
+use crate::events::aside::Aside;
 use crate::events::isolate::{Bracket, narrow};
-use crate::events::locate::{BRIDGE, INSIDE, LEAST_REACH, NOWHERE, REACH, STEEP};
-use crate::events::one_guard::Crossing;
+use crate::events::locate::{AT_HOLE, BRIDGE, INSIDE, LEAST_REACH, NOWHERE, REACH, STEEP, room};
+use crate::events::one_guard::{Crossing, resolution};
 use crate::method::Method;
 
 /// A guard's value at a place, and its derivatives along the solution.
@@ -75,29 +76,28 @@ impl<S: DynamicSystem> Examination<'_, S> {
         if high == 0.0 {
             return at_start(f64::INFINITY);
         }
-        let from_zero = start.abs() <= f64::MIN_POSITIVE && self.phase.zero_orders[guard] == 0;
-        if low == 0.0 && from_zero && self.notes_of(guard).next().is_none() {
-            // The guard is zero at the start. If it falls from there, it crosses there.
-            let reach = REACH * step.h;
-            self.work.state.copy_from_slice(y0);
-            let probe = self.probe(&at, s0, reach);
-            if probe.slope < 0.0 && probe.bend.abs() * reach < 0.1 * probe.slope.abs() {
-                return at_start(probe.slope);
-            }
+        if low == 0.0
+            && let Some(slope) = self.falls_from_start(&at, s0, REACH * step.h)
+        {
+            return at_start(slope);
         }
         theta = if theta > low && theta < high { theta } else { 0.5 * (low + high) };
-        // Beyond the bracket, except at the ends of the step, the guard may turn.
-        let left = if low > 0.0 { theta - low } else { f64::INFINITY };
-        let right = if high < 1.0 { high - theta } else { f64::INFINITY };
-        let width = left.min(right) * step.h;
+        let width = room((low, high), theta) * step.h;
         let mut last_value = f64::INFINITY;
+        let resolution = resolution(s0, step.h);
+        let mut aside = Aside::new(guard, s0, resolution);
         loop {
             let h = self.restep::<M>(theta * step.h);
             let reach = (REACH * h).min((INSIDE * width).max(LEAST_REACH * h));
             let end = self.probe(&at, s0 + h, reach);
             self.work.end_slope.copy_from_slice(&self.work.slope);
             if end.value.is_nan() {
-                return Err(RunError::GuardNotANumber { guard, s: s0 });
+                if high - low <= AT_HOLE * resolution {
+                    let landing = self.landing_at_hole(&at, s0, (h, reach), resolution * step.h);
+                    return Ok(Some(event(landing, &self.work.restep.y1)));
+                }
+                theta = aside.of(theta)?;
+                continue;
             }
             if end.value < 0.0 {
                 (high, seen_high) = (theta, true);
@@ -199,6 +199,37 @@ impl<S: DynamicSystem> Examination<'_, S> {
         let value = at.value(s, state, values);
         let bend = (0.5 * (ahead + behind) - value) / (reach * reach);
         Probe { value, slope: (ahead - behind) / (2.0 * reach), bend }
+    }
+
+    /// The slope of a guard that is zero at the start of the step and falls from there.
+    fn falls_from_start(&mut self, at: &SignedGuard<'_, S>, s0: f64, reach: f64) -> Option<f64> {
+        let from_zero = self.phase.values[at.guard].abs() <= f64::MIN_POSITIVE
+            && self.phase.zero_orders[at.guard] == 0;
+        if !from_zero || self.notes_of(at.guard).next().is_some() {
+            return None;
+        }
+        self.work.state.copy_from_slice(self.origin.y);
+        let probe = self.probe(at, s0, reach);
+        let falls = probe.slope < 0.0 && probe.bend.abs() * reach < 0.1 * probe.slope.abs();
+        falls.then_some(probe.slope)
+    }
+
+    /// A zero at the end of the trial step, of size `h`, where the guard has no value, but close
+    /// behind it.
+    fn landing_at_hole(
+        &mut self,
+        at: &SignedGuard<'_, S>,
+        s0: f64,
+        (h, reach): (f64, f64),
+        least: f64,
+    ) -> Landing {
+        let Work { restep, moved, end_slope, values, .. } = &mut *self.work;
+        let mut behind = |by: f64| {
+            shifted(moved, &restep.y1, end_slope, by);
+            at.value(s0 + h + by, moved, values)
+        };
+        let jump = behind(AT_HOLE * least) < 0.1 * behind(reach.max(1e4 * least));
+        Landing { elapsed: h, residual: 0.0, slope: f64::INFINITY, jump }
     }
 
     /// The guard's value at (`s`, `work.state`).
@@ -313,7 +344,7 @@ impl<S: DynamicSystem> Examination<'_, S> {
 }
 
 /// y + slope·by.
-fn shifted(moved: &mut [f64], y: &[f64], slope: &[f64], by: f64) {
+pub(crate) fn shifted(moved: &mut [f64], y: &[f64], slope: &[f64], by: f64) {
     for ((moved, y), slope) in moved.iter_mut().zip(y).zip(slope) {
         *moved = y + slope * by;
     }

@@ -3,7 +3,9 @@
 use std::marker::PhantomData;
 
 use crate::error::RunError;
+use crate::events::aside::Aside;
 use crate::events::isolate::{Curve, Enclosed};
+use crate::events::one_guard::resolution;
 use crate::events::path::Path;
 use crate::hybrid::{HybridSystem, Statistics};
 use crate::method::{Dense, Method, State, Step, Trial};
@@ -101,16 +103,26 @@ where
         if self.sign < 0.0 { -bounds } else { bounds }
     }
 
-    /// The state by a step of the method to `theta`, and the guard's value there.
-    fn step_to(&mut self, theta: f64) -> Result<(State<N>, f64), RunError> {
-        let (system, mode, step) = (self.system, self.mode, self.step);
-        let shorter = step.shortened(theta * step.h);
-        let shorter = repeated_step::<S, M, N, G>(system, mode, &shorter, self.statistics);
-        let value = self.value(theta, &shorter.y1);
-        if value.is_nan() {
-            return Err(RunError::GuardNotANumber { guard: self.guard, s: step.s });
+    /// The state by a step of the method to `theta`.
+    fn state_at(&mut self, theta: f64) -> State<N> {
+        let shorter = self.step.shortened(theta * self.step.h);
+        repeated_step::<S, M, N, G>(self.system, self.mode, &shorter, self.statistics).y1
+    }
+
+    /// `theta`, or a place beside it if the guard has no value there, with the state by a step of
+    /// the method and the guard's value.
+    fn step_to(&mut self, theta: f64) -> Result<(f64, State<N>, f64), RunError> {
+        let step = self.step;
+        let mut aside = Aside::new(self.guard, step.s, resolution(step.s, step.h));
+        let mut place = theta;
+        loop {
+            let state = self.state_at(place);
+            let value = self.value(place, &state);
+            if !value.is_nan() {
+                return Ok((place, state, value));
+            }
+            place = aside.of(theta)?;
         }
-        Ok((shorter.y1, value))
     }
 }
 
@@ -138,7 +150,7 @@ where
     }
 
     fn truth(&mut self, theta: f64) -> Result<f64, RunError> {
-        self.step_to(theta).map(|(_, value)| value)
+        self.step_to(theta).map(|(.., value)| value)
     }
 }
 
@@ -178,7 +190,7 @@ where
     }
 
     fn truth(&mut self, theta: f64) -> Result<(f64, Interval), RunError> {
-        let (y, value) = self.along.step_to(theta)?;
+        let (theta, y, value) = self.along.step_to(theta)?;
         let AlongStep { system, mode, guard, sign, step, .. } = self.along;
         let s = Enclosure::from(step.s + theta * step.h);
         let state = std::array::from_fn(|i| Enclosure::from(y[i]));
@@ -193,7 +205,7 @@ where
     fn refine(&mut self, low: f64, high: f64) -> Result<Option<bool>, RunError> {
         let AlongStep { system, mode, step, .. } = self.along;
         let (middle, reach) = (0.5 * (low + high), 0.5 * (high - low) * step.h);
-        let (y, _) = self.along.step_to(middle)?;
+        let y = self.along.state_at(middle);
         let s = step.s + middle * step.h;
         let slope = system.field(mode, s, &y);
         let away = |by: f64| system.field(mode, s + by, &(y + slope * by));

@@ -5,10 +5,11 @@
 
 use crate::error::RunError;
 use crate::events::along_step::{repeated_step, rounding};
+use crate::events::aside::Aside;
 use crate::events::event::Event;
 use crate::events::examination::Examination;
 use crate::events::isolate::{Bracket, narrow};
-use crate::events::one_guard::Crossing;
+use crate::events::one_guard::{Crossing, resolution};
 use crate::hybrid::HybridSystem;
 use crate::method::{Method, State, Step};
 
@@ -22,6 +23,9 @@ pub(crate) const NOWHERE: f64 = 1e-20;
 /// change on the scale of the step, so that cancellation cannot spoil the slope, however short the
 /// step is.
 pub(crate) const REACH: f64 = 1e-3;
+/// A place without a value is that of the switch if it is in a bracket of this width, in parts of
+/// the step that can barely be told from a point.
+pub(crate) const AT_HOLE: f64 = 16.0;
 
 /// A guard is steep if it changes by this part of its largest value within [`BRIDGE`].
 pub(crate) const STEEP: f64 = 1e-6;
@@ -70,23 +74,16 @@ where
         if high == 0.0 {
             return at_start(f64::INFINITY);
         }
-        let from_zero = start.abs() <= f64::MIN_POSITIVE && self.phase.zero_orders[guard] == 0;
-        if low == 0.0 && from_zero && self.notes_of(guard).next().is_none() {
-            // The guard is zero at the start. If it falls from there, it crosses there.
-            let reach = REACH * step.h;
-            let near = Near { system, mode, guard, sign: crossing.sign, reach };
-            let probe = near.probe(step.s, &step.y0);
-            self.count_probe();
-            if probe.slope < 0.0 && probe.bend.abs() * reach < 0.1 * probe.slope.abs() {
-                return at_start(probe.slope);
-            }
+        if low == 0.0
+            && let Some(slope) = self.falls_from_start(step, guard, crossing.sign)
+        {
+            return at_start(slope);
         }
         theta = if theta > low && theta < high { theta } else { 0.5 * (low + high) };
-        // Beyond the bracket, except at the ends of the step, the guard may turn.
-        let left = if low > 0.0 { theta - low } else { f64::INFINITY };
-        let right = if high < 1.0 { high - theta } else { f64::INFINITY };
-        let width = left.min(right) * step.h;
+        let width = room((low, high), theta) * step.h;
         let mut last_value = f64::INFINITY;
+        let resolution = resolution(step.s, step.h);
+        let mut aside = Aside::new(guard, step.s, resolution);
         loop {
             let mut trial = self.restep::<M>(step, theta * step.h);
             let reach = (REACH * trial.h).min((INSIDE * width).max(LEAST_REACH * trial.h));
@@ -94,7 +91,12 @@ where
             let end = near.probe(trial.s + trial.h, &trial.y1);
             self.count_probe();
             if end.value.is_nan() {
-                return Err(RunError::GuardNotANumber { guard, s: step.s });
+                if high - low <= AT_HOLE * resolution {
+                    let landing = near.landing_at_hole(&trial, &end, resolution * step.h);
+                    return Ok(Some(event(landing, trial)));
+                }
+                theta = aside.of(theta)?;
+                continue;
             }
             if end.value < 0.0 {
                 (high, seen_high) = (theta, true);
@@ -152,6 +154,20 @@ where
             last_value = end.value.abs();
             theta = if progress && next > low && next < high { next } else { 0.5 * (low + high) };
         }
+    }
+
+    /// The slope of a guard that is zero at the start of `step` and falls from there.
+    fn falls_from_start(&mut self, step: &Step<N>, guard: usize, sign: f64) -> Option<f64> {
+        let from_zero = self.phase.values[guard].abs() <= f64::MIN_POSITIVE
+            && self.phase.zero_orders[guard] == 0;
+        if !from_zero || self.notes_of(guard).next().is_some() {
+            return None;
+        }
+        let (system, mode, reach) = (self.system, self.phase.mode, REACH * step.h);
+        let probe = Near { system, mode, guard, sign, reach }.probe(step.s, &step.y0);
+        self.count_probe();
+        let falls = probe.slope < 0.0 && probe.bend.abs() * reach < 0.1 * probe.slope.abs();
+        falls.then_some(probe.slope)
     }
 
     /// A step of size `h` from the start of `step`.
@@ -259,6 +275,14 @@ where
     }
 }
 
+/// The distance from `theta` to the ends of a bracket. Beyond them the guard may turn, except where
+/// the step ends too.
+pub(crate) fn room((low, high): (f64, f64), theta: f64) -> f64 {
+    let left = if low > 0.0 { theta - low } else { f64::INFINITY };
+    let right = if high < 1.0 { high - theta } else { f64::INFINITY };
+    left.min(right)
+}
+
 /// Where a guard is zero.
 struct Landing<const N: usize> {
     /// The time from the start of the step.
@@ -315,6 +339,15 @@ impl<const N: usize> Probe<N> {
 impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Near<'_, S, N, G> {
     fn value(&self, s: f64, y: &State<N>) -> f64 {
         self.sign * self.system.guard_values(self.mode, s, y)[self.guard]
+    }
+
+    /// A zero at the end of a step where the guard has no value, but close behind it.
+    fn landing_at_hole(&self, step: &Step<N>, end: &Probe<N>, least: f64) -> Landing<N> {
+        let behind =
+            |by: f64| self.value(step.s + step.h + by, &(step.y1 + end.slope_of_state * by));
+        let jump = behind(AT_HOLE * least) < 0.1 * behind(self.reach.max(1e4 * least));
+        let (elapsed, state) = (step.h, step.y1);
+        Landing { elapsed, state, residual: 0.0, slope: f64::INFINITY, jump }
     }
 
     fn rounding(&self, s: f64, y: &State<N>) -> f64 {

@@ -290,9 +290,9 @@ pub(crate) fn resolution(s: f64, h: f64) -> f64 {
     (2.0 * f64::EPSILON * s.abs() / h).clamp(FINEST, 1.0)
 }
 
-/// The side on which a guard that is zero where a step ends has been, by its values at the other
-/// nodes.
+/// The side on which a guard that is zero or has no value where a step ends has been, by its values
+/// at the other nodes.
 pub(crate) fn side_before(values: &[f64; 6]) -> f64 {
-    let last = values[..5].iter().rev().find(|&&value| value != 0.0);
+    let last = values[..5].iter().rev().find(|value| value.abs() > 0.0);
     last.map_or(0.0, |value| f64::MIN_POSITIVE.copysign(*value))
 }

@@ -53,7 +53,7 @@ pub(super) fn product_rule(a: [Interval; 3], b: [Interval; 3]) -> Option<[Interv
     };
     // Infinities leave NaN or infinities in these sums.
     let sums = (sum_left + sum_right) + (rounded.lower + rounded.upper);
-    let finite = (sums - sums).simd_eq(f64x4::ZERO).all();
+    let finite = sums.abs().simd_lt(f64x4::from(f64::INFINITY)).all();
     let [value, slope, bend, _] = rounded.all();
     finite.then_some([value, slope, bend])
 }

@@ -68,7 +68,6 @@ fn each(mut check: impl FnMut(Pair, f64, Options)) {
 
 #[test]
 fn a_jump_by_division_fires() {
-    let (mut found, mut without_value) = (0, 0);
     each(|pair, place, options| {
         for (shape, direction) in
             [(Shape::Ratio, Direction::Rising), (Shape::Root, Direction::Either)]
@@ -76,23 +75,14 @@ fn a_jump_by_division_fires() {
             let mut log = Log::default();
             let system = Shaped(shape, place, Guard::new(direction));
             let end = run_with(pair, &system, start_of_line(), 1.0, &options, &mut log);
-            match end {
-                Ok(end) => {
-                    found += 1;
-                    assert_eq!(end.outcome, Outcome::ReachedEnd);
-                    close(&log.places(), &[place], 1e-14);
-                    assert!(log.poles.is_empty());
-                    assert_eq!(log.switches[0].jump, shape == Shape::Ratio, "{system:?}");
-                }
-                // 0/0, exactly at the place.
-                Err(RunError::GuardNotANumber { .. }) => without_value += 1,
-                Err(error) => panic!("{error}"),
-            }
+            let end =
+                end.unwrap_or_else(|error| panic!("{pair:?} {system:?} {options:?}: {error}"));
+            assert_eq!(end.outcome, Outcome::ReachedEnd);
+            close(&log.places(), &[place], 1e-14);
+            assert!(log.poles.is_empty());
+            assert_eq!(log.switches[0].jump, shape == Shape::Ratio, "{system:?}");
         }
     });
-    // Both pairs, four places, three kinds of steps, two shapes. The rest is refused, since the
-    // search meets the very place where there is no value.
-    assert!(found >= 33 && found + without_value == 48, "{found}");
 }
 
 #[test]

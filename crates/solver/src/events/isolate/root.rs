@@ -27,6 +27,10 @@ pub(crate) fn root(mut curve: impl FnMut(f64) -> f64, low: (f64, f64), high: (f6
     theta.clamp(low.0, high.0)
 }
 
+/// The places, in widths, that are looked at beside one where there is no value.
+const ASIDE: [f64; 8] = [1.0, -1.0, 16.0, -16.0, 256.0, -256.0, FARTHEST, -FARTHEST];
+const FARTHEST: f64 = 4096.0;
+
 /// The zero between `low`, where the curve is ≥ 0, and `high`, where it is < 0, between two places
 /// that are at most `width` apart, each with its value.
 pub(crate) fn narrow(
@@ -54,7 +58,18 @@ pub(crate) fn narrow(
         if next <= a.0 || next >= b.0 {
             break;
         }
-        let value = curve(next);
+        let (mut next, mut value) = (next, curve(next));
+        if value.is_nan() {
+            // The value beside it counts. Time may be resolved less finely than `width`.
+            let places = ASIDE.map(|aside| next + aside * width).into_iter();
+            let inside = places.filter(|&place| place > a.0 && place < b.0);
+            let known =
+                inside.map(|place| (place, curve(place))).find(|(_, value)| !value.is_nan());
+            if known.is_none() && b.0 - a.0 <= FARTHEST * width {
+                break;
+            }
+            (next, value) = known.unwrap_or((next, value));
+        }
         if value < 0.0 {
             b = (next, value);
             (weight_a, weight_b) = (0.5 * weight_a, value);

@@ -2,7 +2,7 @@
 
 use stickslip_solver::{
     Direction, Dop853, Dopri5, DynamicEvent, DynamicObserver, DynamicSwitch, DynamicSystem,
-    Grazing, Guard, Options, Outcome, StepSize,
+    Grazing, Guard, Method, Options, Outcome, StepSize,
 };
 
 use super::{Plain, go, places};
@@ -244,5 +244,36 @@ fn a_ball_whose_apex_is_noted_comes_to_rest() {
             panic!("no accumulation")
         };
         assert!((accumulation / rest - 1.0).abs() < 1e-11, "{accumulation} {rest}");
+    }
+}
+
+/// Guards that divide by the distance from their place have no value there, and fire.
+#[test]
+fn a_jump_by_division_fires() {
+    fn fires<M: Method>(method: M, place: f64, options: &Options, root: bool) {
+        let system = Plain {
+            field: |_s, _y: &[f64], f: &mut [f64]| f[0] = 1.0,
+            guards: vec![Guard::new(Direction::Rising)],
+            values: move |_s, y: &[f64], g: &mut [f64]| {
+                let d = y[0] - place;
+                g[0] = if root { d / d.abs().sqrt() } else { d / d.abs() };
+            },
+        };
+        let mut switches = Switches::new();
+        let end = go(method, &system.boxed(), &[0.0], 1.0, options, &mut switches);
+        let end = end.unwrap_or_else(|error| panic!("{place} {options:?}: {error}"));
+        assert_eq!(end.outcome, Outcome::ReachedEnd);
+        let found = places(&switches);
+        assert!(found.len() == 1 && (found[0].0 - place).abs() < 1e-14, "{place} {found:?}");
+        assert_eq!(switches[0].jump, !root, "{place} {options:?}");
+    }
+    for place in [0.3, 0.5, 0.613, 0.999] {
+        for step_size in [StepSize::Adaptive, StepSize::Fixed(1.0), StepSize::Fixed(0.1)] {
+            let options = Options { step_size, ..Options::default() };
+            for root in [false, true] {
+                fires(Dop853, place, &options, root);
+                fires(Dopri5, place, &options, root);
+            }
+        }
     }
 }

@@ -1,0 +1,38 @@
+//! Places beside one where a guard has no value.
+
+use crate::error::RunError;
+
+/// The places that are tried before a guard counts as without value.
+const PLACES: i32 = 8;
+
+/// Moves aside from places where a guard has no value: d/|d| has none where d is 0, and what it
+/// does there is known from the values beside it.
+pub(crate) struct Aside {
+    /// The narrowest part of the step that can be told from a point.
+    resolution: f64,
+    nowhere: RunError,
+    tried: i32,
+}
+
+impl Aside {
+    /// `resolution` is the narrowest part of the step from `s` that can be told from a point.
+    pub(crate) fn new(guard: usize, s: f64, resolution: f64) -> Self {
+        Self { resolution, nowhere: RunError::GuardNotANumber { guard, s }, tried: 0 }
+    }
+
+    /// A step fraction beside `theta`, alternately behind it and before it, and farther away each
+    /// time.
+    ///
+    /// # Errors
+    ///
+    /// It fails if too many have been tried.
+    pub(crate) fn of(&mut self, theta: f64) -> Result<f64, RunError> {
+        if self.tried == PLACES {
+            return Err(self.nowhere);
+        }
+        let away = 4_f64.powi(self.tried) * self.resolution.max(f64::EPSILON * theta);
+        let before = self.tried % 2 != 0 || theta + away > 1.0;
+        self.tried += 1;
+        Ok(if before { (theta - away).abs() } else { theta + away })
+    }
+}
