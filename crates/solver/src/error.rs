@@ -69,11 +69,11 @@ pub enum RunError {
         /// Where the step started.
         s: f64,
     },
-    /// A guard has more structure than any step can resolve. Either it is not smooth there, or it
-    /// does not start from the zero that [`Guard::from_zero`](crate::Guard::from_zero) declares.
+    /// A guard has more structure than any step can resolve. It is not smooth there, or it starts
+    /// from a zero of another order than [`Guard::from_zero`](crate::Guard::from_zero) declares.
     #[error(
-        "guard {guard} cannot be resolved near s = {s} by a step of {h:e}: either it is not \
-         smooth, or it does not start from the zero that was declared for it"
+        "guard {guard} cannot be resolved near s = {s} by a step of {h:e}: it is not smooth there, \
+         or starts from a zero of another order than was declared for it"
     )]
     GuardUnresolved {
         /// The guard's index.
@@ -86,6 +86,16 @@ pub enum RunError {
 }
 
 impl RunError {
+    /// No step from `s`, the last one of size `h`, resolves a guard. `known` tells whether it has
+    /// values there.
+    pub(crate) fn unresolved(guard: usize, (s, h): (f64, f64), known: bool) -> Self {
+        if known {
+            Self::GuardUnresolved { guard, s, h }
+        } else {
+            Self::GuardNotANumber { guard, s }
+        }
+    }
+
     /// The error of a run in s that failed as a run in −s.
     pub(crate) fn reversed(mut self) -> Self {
         match &mut self {

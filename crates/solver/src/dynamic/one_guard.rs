@@ -180,6 +180,9 @@ impl<S: DynamicSystem> Examination<'_, S> {
             let crossing = match verdict {
                 Verdict::None => continue,
                 Verdict::TooCoarse => return Ok(None),
+                Verdict::Flat => {
+                    return Err(RunError::GuardIdenticallyZero { guard, s: self.origin.s });
+                }
                 Verdict::StartsBelow => Crossing::at_start(sign),
                 Verdict::Crossing(bracket) => Crossing { sign, bracket },
             };

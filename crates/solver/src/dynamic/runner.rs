@@ -142,9 +142,8 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
             if self.statistics.tried() >= self.options.max_steps {
                 return Ok(Some(Outcome::StepLimit));
             }
-            let left = self.clock.until(self.end);
             let h = target.unwrap_or(self.h.min(self.options.max_step));
-            let (h, last) = if h >= left { (left, true) } else { (h, false) };
+            let (h, last) = self.clock.step_towards(self.end, h);
             let error = self.take::<M>(h);
             // NaN is not good.
             if !matches!(error.partial_cmp(&1.0), Some(Ordering::Less)) {
@@ -168,7 +167,9 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
                     }
                     // A step that does not move the time is useless.
                     if cuts > 60 || self.h <= f64::EPSILON * self.clock.s.abs() {
-                        return Err(RunError::GuardUnresolved { guard, s: self.clock.s, h });
+                        let column = self.tables.column(guard, self.phase.values.len());
+                        let known = !column.iter().any(|value| value.is_nan());
+                        return Err(RunError::unresolved(guard, (self.clock.s, h), known));
                     }
                     continue;
                 }
@@ -362,8 +363,9 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
         let (system, place) = (self.system, (s, &self.state[..]));
         self.phase.enter(system, to, place, &self.fired)?;
         self.statistics.guards += 1;
+        let same = to == from || self.is_same_guard(from, s, event);
         self.statistics.guards +=
-            self.phase.forgive(system, place, event, to == from, s_scale, &mut self.work);
+            self.phase.forgive(system, (s, &self.state), event, same, s_scale, &mut self.work);
         if self.options.step_size == StepSize::Adaptive {
             let h = self.other_h.replace(self.h).unwrap_or(self.h);
             self.h = h;
@@ -371,6 +373,20 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
         }
         self.refresh_slope()?;
         Ok(None)
+    }
+
+    /// Whether the guard that fired in the mode `from` seems to be one of the new mode too: where
+    /// the state goes on unchanged, it has the same value.
+    fn is_same_guard(&mut self, from: S::Mode, s: f64, event: &Event) -> bool {
+        let guard = event.guard;
+        if !self.phase.is_from_nowhere(guard) || self.state != event.state {
+            return false;
+        }
+        self.statistics.guards += 1;
+        let values = &mut self.work.values;
+        values.resize(self.system.guards(from).len(), f64::NAN);
+        self.system.guard_values(from, s, &event.state, values);
+        values[guard] == self.phase.values[guard]
     }
 
     fn refresh_slope(&mut self) -> Result<(), RunError> {

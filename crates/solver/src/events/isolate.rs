@@ -24,7 +24,7 @@ use crate::events::isolate::curve::{Accuracy, NARROWEST, Quotient, power};
 use crate::events::isolate::panel::{Panel, Points};
 
 pub(crate) use curve::Curve;
-pub(crate) use enclosed::{Enclosed, first_enclosed_crossing};
+pub(crate) use enclosed::{Enclosed, first_enclosed_crossing, last_enclosed_sign};
 pub(crate) use root::narrow;
 use root::root;
 
@@ -41,6 +41,9 @@ const GROWS: f64 = 4.0;
 const AROUND: f64 = 64.0;
 /// On a step of which this part cannot be told from a point, time is resolved poorly.
 const SHORT: f64 = 0.01;
+/// The least part of the step that may be a plateau. Differences of a guard are zero on shorter ones
+/// by their rounding.
+const PLATEAU: f64 = 1e-6;
 /// The part of the step on which a quotient is expanded to find its value at the start.
 const OPENING: f64 = 0.25;
 
@@ -89,6 +92,8 @@ pub(crate) enum Verdict {
     Crossing(Bracket),
     /// The guard bounds a domain and is negative from the start.
     StartsBelow,
+    /// The guard is exactly zero over a part of the step from its start on.
+    Flat,
     /// The guard is not resolved on this step, so that a shorter one is needed.
     TooCoarse,
 }
@@ -122,6 +127,9 @@ pub(crate) fn first_crossing(
     let mut accuracy = quotient.accuracy();
     if accuracy.dense.is_nan() {
         return Ok(Verdict::TooCoarse);
+    }
+    if falls_from_zero && is_flat(&mut quotient, accuracy.state.0) {
+        return Ok(Verdict::Flat);
     }
     // The last point whose sign is known, and the value there.
     let mut before = Some((first, start));
@@ -185,6 +193,25 @@ pub(crate) fn first_crossing(
         Some(ControlFlow::Continue(())) => Verdict::None,
         None => Verdict::TooCoarse,
     })
+}
+
+/// Whether a curve is exactly zero from the start of the step on, for longer than rounding of the
+/// state explains, which changes it by `rounding`.
+fn is_flat(quotient: &mut Quotient<'_>, rounding: f64) -> bool {
+    let mut places = (0..=6).rev().map(|k| 0.5_f64.powi(k));
+    let Some(theta) = places.find(|&theta| quotient.curve.dense(theta) != 0.0) else {
+        return false;
+    };
+    let (mut zero, mut other) = (0.0, theta);
+    for _ in 0..DEPTH {
+        let middle = 0.5 * (zero + other);
+        if quotient.curve.dense(middle) == 0.0 {
+            zero = middle;
+        } else {
+            other = middle;
+        }
+    }
+    zero > PLATEAU && quotient.curve.dense(theta).abs() * (zero / theta) > 16.0 * rounding
 }
 
 /// Whether a curve changes its sign between two places at a pole: its values grow towards `guess`,
@@ -263,6 +290,8 @@ fn walk<B>(
     pending[0] = (task.beginning.theta, 1.0);
     let mut count = 1;
     let mut examined = 0;
+    // The sign that was seen last.
+    let mut side = if order == 0 { task.beginning.value } else { 0.0 };
     while count > 0 {
         count -= 1;
         examined += 1;
@@ -325,9 +354,17 @@ fn walk<B>(
                     continue;
                 }
             }
+            if value * side <= 0.0 && !at_end && quotient.at(theta) * value <= 0.0 {
+                // The expansion overshoots behind a kink that it does not resolve.
+                value = quotient.truth(theta)?;
+                if value == 0.0 {
+                    continue;
+                }
+            }
             if value.is_nan() {
                 return Ok(None);
             }
+            side = value;
             let visited = visit(quotient, (theta, value), notice);
             if visited.is_break() {
                 return Ok(Some(visited));

@@ -8,7 +8,8 @@ use crate::error::RunError;
 use crate::events::along_step::{AlongStep, EnclosedAlongStep, dense_output, repeated_step};
 use crate::events::examination::{Examination, column};
 use crate::events::isolate::{
-    Beginning, Bracket, Notice, Task, Verdict, first_crossing, first_enclosed_crossing, last_sign,
+    Beginning, Bracket, Notice, Task, Verdict, first_crossing, first_enclosed_crossing,
+    last_enclosed_sign, last_sign,
 };
 use crate::events::notices::{FEW, Noticed};
 use crate::events::path::Path;
@@ -231,6 +232,9 @@ where
             let crossing = match verdict {
                 Verdict::None => continue,
                 Verdict::TooCoarse => return Ok(None),
+                Verdict::Flat => {
+                    return Err(RunError::GuardIdenticallyZero { guard, s: step.s });
+                }
                 Verdict::StartsBelow => Crossing::at_start(sign),
                 Verdict::Crossing(bracket) => Crossing { sign, bracket },
             };
@@ -270,14 +274,21 @@ where
     /// The smallest number with the sign that a guard had last, if it is zero where the step ends.
     /// The result is 0 if the guard shows no sign.
     fn last_side<M: Method>(&mut self, guard: usize, step: &mut Step<N>, values: &[f64; 6]) -> f64 {
+        let bounded = self.has_bounds(guard);
         let (system, mode) = (self.system, self.phase.mode);
         let dense = dense_output::<_, M, N, G>(system, mode, step);
         self.statistics.field += M::DENSE_STAGES - 1;
-        let statistics = &mut *self.statistics;
-        let (sign, method) = (1.0, PhantomData);
-        let mut curve: AlongStep<'_, S, M, N, G> =
+        let (sign, resolution) = (1.0, resolution(step.s, step.h));
+        let (statistics, method) = (&mut *self.statistics, PhantomData::<M>);
+        let mut along =
             AlongStep { system, mode, guard, sign, step, dense: &dense, statistics, method };
-        match last_sign(&mut curve, resolution(step.s, step.h)) {
+        let last = if S::READABLE && bounded {
+            let mut enclosed = EnclosedAlongStep { along, path: Path::dense(&dense), local: None };
+            last_enclosed_sign(&mut enclosed, values[0], resolution).map(Some)
+        } else {
+            last_sign(&mut along, resolution)
+        };
+        match last {
             Ok(Some(last)) if last != 0.0 => f64::MIN_POSITIVE.copysign(last),
             // Otherwise the last nonzero value at the nodes decides.
             _ => side_before(values),

@@ -53,8 +53,14 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
         })
     }
 
+    /// Whether a guard fires where it crosses zero, and has no zero that is declared.
+    pub(crate) fn is_from_nowhere(&self, guard: usize) -> bool {
+        let crosses = !matches!(self.guards[guard].direction(), Direction::Off | Direction::Below);
+        crosses && self.zero_orders[guard] == 0
+    }
+
     /// Takes values that may be due to rounding of the state at `event`, which led here, for zeros.
-    /// `same` tells whether the mode is that before the event.
+    /// `same` tells whether the guard that fired is the same as before the event.
     pub(crate) fn forgive<S: HybridSystem<N, G, Mode = Mode>, const N: usize>(
         &mut self,
         system: &S,
@@ -68,7 +74,7 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
                 Direction::Off => false,
                 // On the right side, a bound of the domain needs no pardon.
                 Direction::Below => value < 0.0,
-                // A guard that fired stands on its zero where its mode goes on, also exactly.
+                // A guard that fired stands on its zero where it goes on, also exactly.
                 _ => guard == event.guard && same,
             };
             if !may_be_zero || self.zero_orders[guard] > 0 {

@@ -3,6 +3,9 @@
 use crate::hybrid::Outcome;
 use crate::options::Options;
 
+/// The last step may be longer than it should by this part of itself.
+const SLIGHTLY: f64 = 1e-3;
+
 /// The independent variable as a sum with compensation, so that many short steps add up.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Clock {
@@ -32,6 +35,15 @@ impl Clock {
     /// matter.
     pub(crate) fn arrive(&mut self, end: f64) {
         (self.s, self.rest) = (end, 0.0);
+    }
+
+    /// The size of a step that should be `h`, and whether it is the last one before `end`. What
+    /// would remain behind it within rounding belongs to it.
+    pub(crate) fn step_towards(&self, end: f64, h: f64) -> (f64, bool) {
+        let left = self.until(end);
+        let rounding = 4.0 * f64::EPSILON * self.s.abs().max(end.abs());
+        let remains = left - h > rounding.min(SLIGHTLY * h);
+        if remains { (h, false) } else { (left, true) }
     }
 
     /// The time that remains until `end`.
@@ -79,11 +91,14 @@ impl Zeno {
         if self.count < self.gaps.len() {
             return None;
         }
-        let sum = |first: usize| -> f64 {
-            (0..Self::HALF).map(|i| self.gaps[(self.count + first + i) % self.gaps.len()]).sum()
+        let sum = |first: usize, count: usize| -> f64 {
+            (0..count).map(|i| self.gaps[(self.count + first + i) % self.gaps.len()]).sum()
         };
-        let (before, last) = (sum(0), sum(Self::HALF));
-        let ratio = last / before;
+        let (half, quarter) = (Self::HALF, Self::HALF / 2);
+        let (before, last) = (sum(0, half), sum(half, half));
+        // Gaps that only follow a long rest are not shorter and shorter.
+        let lately = sum(half + quarter, quarter) / sum(half, quarter);
+        let ratio = (last / before).max(lately * lately);
         let left = last * ratio / (1.0 - ratio);
         let soon = ratio < 1.0 && left <= options.zeno * (s - self.start);
         soon.then_some(Outcome::Zeno { accumulation: s + left })

@@ -151,9 +151,8 @@ where
             if self.statistics.tried() >= self.options.max_steps {
                 return Ok(Some(Outcome::StepLimit));
             }
-            let left = self.clock.until(self.end);
             let h = self.h.min(self.options.max_step);
-            let (h, last) = if h >= left { (left, true) } else { (h, false) };
+            let (h, last) = self.clock.step_towards(self.end, h);
             let trial = Trial {
                 s: self.clock.s,
                 y: &self.state,
@@ -191,7 +190,8 @@ where
                 self.h = 0.2 * h;
                 // A step that does not move the time is useless.
                 if cuts > 60 || self.h <= f64::EPSILON * self.clock.s.abs() {
-                    return Err(RunError::GuardUnresolved { guard, s: self.clock.s, h });
+                    let known = values.iter().all(|value| !value[guard].is_nan());
+                    return Err(RunError::unresolved(guard, (self.clock.s, h), known));
                 }
                 continue;
             }
@@ -368,7 +368,8 @@ where
         }
         self.clock.phase = 0.0;
         self.phase = Phase::enter(self.system, to, (s, &after), &self.fired)?;
-        self.phase.forgive(self.system, (s, &after), event, to == from);
+        let same = to == from || self.is_same_guard(from, s, event);
+        self.phase.forgive(self.system, (s, &after), event, same);
         self.statistics.guards += 1;
         if self.options.step_size == StepSize::Adaptive {
             let h = self.other_h.replace(self.h).unwrap_or(self.h);
@@ -377,6 +378,17 @@ where
         }
         self.refresh_slope()?;
         Ok(None)
+    }
+
+    /// Whether the guard that fired in the mode `from` seems to be one of the new mode too: where
+    /// the state goes on unchanged, it has the same value.
+    fn is_same_guard(&mut self, from: S::Mode, s: f64, event: &Event<N>) -> bool {
+        if !self.phase.is_from_nowhere(event.guard) || self.state != event.state {
+            return false;
+        }
+        self.statistics.guards += 1;
+        let before = self.system.guard_values(from, s, &event.state);
+        before[event.guard] == self.phase.values[event.guard]
     }
 
     fn refresh_slope(&mut self) -> Result<(), RunError> {

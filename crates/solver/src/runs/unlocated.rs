@@ -83,8 +83,7 @@ where
         if statistics.accepted >= max_steps {
             break Outcome::StepLimit;
         }
-        let left = clock.until(end);
-        let (h, last) = if step_size >= left { (left, true) } else { (step_size, false) };
+        let (h, last) = clock.step_towards(end, step_size);
         let trial = Trial { s: clock.s, y: &state, slope: &slope, h, tolerances: (1.0, 1.0) };
         system.step::<M>(mode, &trial, &mut step);
         statistics.accepted += 1;

@@ -6,6 +6,7 @@
 //! | `smooth_problems` | published results, the DETEST problems, work counters |
 //! | `event_battery` | guards with known zeros, and systems with known switches |
 //! | `planted_roots` | random polynomials with planted roots as guards |
+//! | `plateaus` | guards that are zero on a stretch, or touch or leave zero without a slope |
 //! | `guard_rounding` | guards whose signs are lost in their own rounding |
 //! | `margins` | margins with a closed form |
 //! | `properties` | what holds of random systems; `checks` says it, for the fuzz targets too |
@@ -24,6 +25,7 @@ mod margins;
 mod methods;
 mod planted_kinds;
 mod planted_roots;
+mod plateaus;
 mod properties;
 mod runs;
 #[cfg(feature = "serde")]

@@ -51,7 +51,7 @@ pub(crate) fn first_enclosed_crossing(
 ) -> Result<Verdict, RunError> {
     let Beginning { theta: first, value, zero_order } = task.beginning;
     let before = (first, value);
-    let mut search = Search { curve, notice, task, before, hidden: None, count: 0 };
+    let mut search = Search { curve, notice, task, before, hidden: None, through: false, count: 0 };
     if zero_order == 0 && value != 0.0 {
         if task.domain && value < 0.0 {
             return Ok(Verdict::StartsBelow);
@@ -72,6 +72,22 @@ pub(crate) fn first_enclosed_crossing(
     search.walk(theta)
 }
 
+/// The last sign that an enclosed curve shows on a step at whose end it is zero, if it starts with
+/// `value`. The result is 0 if bounds do not tell.
+pub(crate) fn last_enclosed_sign(
+    curve: &mut dyn Enclosed,
+    value: f64,
+    resolution: f64,
+) -> Result<f64, RunError> {
+    let beginning = Beginning { theta: 0.0, value, zero_order: 0 };
+    let task = Task { beginning, domain: false, end: 0.0, resolution, widest: 1.0 };
+    let (notice, before) = (&mut |_| {}, (0.0, value));
+    let mut search =
+        Search { curve, notice, task: &task, before, hidden: None, through: true, count: 0 };
+    let known = search.walk(0.0)? == Verdict::None && search.before.1 != 0.0;
+    Ok(if known { search.before.1.signum() } else { 0.0 })
+}
+
 /// A part of the step on which bounds have been refined.
 struct Refined {
     /// Its end and its width.
@@ -90,6 +106,8 @@ struct Search<'a> {
     before: (f64, f64),
     /// What may be hidden since that place, where rounding hid the sign.
     hidden: Option<Notice>,
+    /// Whether it goes on over crossings.
+    through: bool,
     /// The parts that were examined.
     count: usize,
 }
@@ -123,7 +141,23 @@ impl Search<'_> {
             }
             width *= 0.25;
         }
-        None
+        self.leave_zero_by_values(first)
+    }
+
+    /// The same, from bounds of the values on parts that grow from the narrowest one on. They also
+    /// tell the sign of a guard whose slope is zero or unbounded where it starts.
+    fn leave_zero_by_values(&mut self, first: f64) -> Option<(f64, f64)> {
+        let (mut known, mut away) = (None, self.task.resolution);
+        while first + away < 1.0 {
+            let (low, high) = (first + away, (first + 4.0 * away).min(1.0));
+            let sign = self.over(low, high).value.sign();
+            if sign == 0.0 || known.is_some_and(|(_, before)| before != sign) {
+                break;
+            }
+            known = Some((high, sign));
+            away *= 4.0;
+        }
+        known
     }
 
     fn over(&mut self, low: f64, high: f64) -> Enclosure {
@@ -169,7 +203,7 @@ impl Search<'_> {
             Some(touch @ Notice::Touch(_)) if !turns => (self.notice)(touch),
             _ => {}
         }
-        if before.1 >= 0.0 && value < 0.0 {
+        if before.1 >= 0.0 && value < 0.0 && !self.through {
             let curve = &mut *self.curve;
             let low = (before.0, curve.at(before.0).max(0.0));
             let high = (theta, curve.at(theta).min(-f64::MIN_POSITIVE));
