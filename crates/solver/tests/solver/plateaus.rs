@@ -165,6 +165,25 @@ fn a_guard_leaves_zero_without_a_slope() {
     }
 }
 
+#[test]
+fn a_black_box_that_leaves_an_undeclared_double_zero_does_not_fire_there() {
+    for tolerance in [1e-4, 1e-8, 1e-12] {
+        for pair in Pair::ALL {
+            for direction in [Direction::Below, Direction::Falling] {
+                let options = Options::with_tolerance(tolerance);
+                let system = black_box(direction, |y| 1.0 - y.cos());
+                match places(pair, &system, (0.0, 3.0), &options) {
+                    Ok(found) => assert!(found.is_empty(), "{found:?} {direction:?} {tolerance}"),
+                    // Its first values are zero by rounding.
+                    Err(error) => {
+                        assert!(matches!(error, RunError::GuardIdenticallyZero { .. }), "{error}");
+                    }
+                }
+            }
+        }
+    }
+}
+
 /// Steps whose sum is the span only to within rounding end exactly at its end.
 #[test]
 fn a_guard_fires_at_the_end_of_a_span_that_steps_divide() {
