@@ -6,6 +6,9 @@ use crate::events::event::Event;
 use crate::hybrid::{Direction, Guard, HybridSystem};
 use crate::method::State;
 
+/// The part of its largest value that a guard may have where it has just fired.
+pub(crate) const NEAR_ZERO: f64 = 1e-6;
+
 /// The active mode, and what is known about its guards at the start of the next step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Phase<Mode, const G: usize> {
@@ -53,21 +56,32 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
         })
     }
 
-    /// Whether a guard fires where it crosses zero, and has no zero that is declared.
-    pub(crate) fn is_from_nowhere(&self, guard: usize) -> bool {
-        let crosses = !matches!(self.guards[guard].direction(), Direction::Off | Direction::Below);
-        crosses && self.zero_orders[guard] == 0
+    /// Whether the guard that fired in the mode `from` seems to be one of this mode too: where the
+    /// state `y` goes on unchanged, it has the same value.
+    #[inline(never)]
+    fn is_same_guard<S: HybridSystem<N, G, Mode = Mode>, const N: usize>(
+        &self,
+        system: &S,
+        (s, y): (f64, &State<N>),
+        event: &Event<N>,
+        from: Mode,
+    ) -> bool {
+        *y == event.state
+            && system.guard_values(from, s, y)[event.guard] == self.values[event.guard]
     }
 
     /// Takes values that may be due to rounding of the state at `event`, which led here, for zeros.
-    /// `same` tells whether the guard that fired is the same as before the event.
+    /// `from` is the mode before the event, and `largest` the largest value there of the guard that
+    /// fired.
     pub(crate) fn forgive<S: HybridSystem<N, G, Mode = Mode>, const N: usize>(
         &mut self,
         system: &S,
         (s, y): (f64, &State<N>),
         event: &Event<N>,
-        same: bool,
-    ) {
+        (from, largest): (Mode, f64),
+    ) where
+        Mode: PartialEq,
+    {
         for guard in 0..G {
             let (value, direction) = (self.values[guard], self.guards[guard].direction());
             let may_be_zero = match direction {
@@ -75,7 +89,12 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
                 // On the right side, a bound of the domain needs no pardon.
                 Direction::Below => value < 0.0,
                 // A guard that fired stands on its zero where it goes on, also exactly.
-                _ => guard == event.guard && same,
+                _ => {
+                    guard == event.guard
+                        && (from == self.mode
+                            || value.abs() <= NEAR_ZERO * largest
+                                && self.is_same_guard(system, (s, y), event, from))
+                }
             };
             if !may_be_zero || self.zero_orders[guard] > 0 {
                 continue;

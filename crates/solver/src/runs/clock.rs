@@ -41,8 +41,8 @@ impl Clock {
     /// would remain behind it within rounding belongs to it.
     pub(crate) fn step_towards(&self, end: f64, h: f64) -> (f64, bool) {
         let left = self.until(end);
-        let rounding = 4.0 * f64::EPSILON * self.s.abs().max(end.abs());
-        let remains = left - h > rounding.min(SLIGHTLY * h);
+        let rounding = || 4.0 * f64::EPSILON * self.s.abs().max(end.abs());
+        let remains = left > h + h || left - h > rounding().min(SLIGHTLY * h);
         if remains { (h, false) } else { (left, true) }
     }
 

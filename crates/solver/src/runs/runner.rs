@@ -368,8 +368,7 @@ where
         }
         self.clock.phase = 0.0;
         self.phase = Phase::enter(self.system, to, (s, &after), &self.fired)?;
-        let same = to == from || self.is_same_guard(from, s, event);
-        self.phase.forgive(self.system, (s, &after), event, same);
+        self.phase.forgive(self.system, (s, &after), event, (from, largest));
         self.statistics.guards += 1;
         if self.options.step_size == StepSize::Adaptive {
             let h = self.other_h.replace(self.h).unwrap_or(self.h);
@@ -378,17 +377,6 @@ where
         }
         self.refresh_slope()?;
         Ok(None)
-    }
-
-    /// Whether the guard that fired in the mode `from` seems to be one of the new mode too: where
-    /// the state goes on unchanged, it has the same value.
-    fn is_same_guard(&mut self, from: S::Mode, s: f64, event: &Event<N>) -> bool {
-        if !self.phase.is_from_nowhere(event.guard) || self.state != event.state {
-            return false;
-        }
-        self.statistics.guards += 1;
-        let before = self.system.guard_values(from, s, &event.state);
-        before[event.guard] == self.phase.values[event.guard]
     }
 
     fn refresh_slope(&mut self) -> Result<(), RunError> {
