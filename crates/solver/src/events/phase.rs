@@ -92,7 +92,7 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
                 _ => {
                     guard == event.guard
                         && (from == self.mode
-                            || value.abs() <= NEAR_ZERO * largest
+                            || value.abs() <= NEAR_ZERO * largest.max(event.slope * event.step.h)
                                 && self.is_same_guard(system, (s, y), event, from))
                 }
             };
