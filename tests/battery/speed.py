@@ -1,8 +1,8 @@
 """Times runs with and without switches beside SciPy and heyoka, and prints the tables of
 docs/validation.md.
 
-The runs of stickslip are those of crates/validation/examples/speed.rs. SciPy: `solve_ivp` with RK45 and
-DOP853, and with restarts where an event changes the state. heyoka: `taylor_adaptive` in its default
+The runs of stickslip are those of crates/validation/examples/speed.rs. SciPy: `solve_ivp` with RK45
+and DOP853, and with restarts where an event changes the state. heyoka: `taylor_adaptive` in its default
 mode, which is not compact and with high_accuracy=False, and with high_accuracy=True; `nt_event` for
 what is only noted, `t_event` with a callback where the state changes. Both tolerances are equal
 everywhere. Compiling, of Rust as of heyoka's integrators, is not part of the time. Each time is

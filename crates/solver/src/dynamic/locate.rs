@@ -344,7 +344,7 @@ impl<S: DynamicSystem> Examination<'_, S> {
 }
 
 /// y + slope·by.
-pub(crate) fn shifted(moved: &mut [f64], y: &[f64], slope: &[f64], by: f64) {
+fn shifted(moved: &mut [f64], y: &[f64], slope: &[f64], by: f64) {
     for ((moved, y), slope) in moved.iter_mut().zip(y).zip(slope) {
         *moved = y + slope * by;
     }

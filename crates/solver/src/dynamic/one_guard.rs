@@ -7,7 +7,6 @@ use smallvec::SmallVec;
 
 use crate::dynamic::curve::{AlongStep, Work};
 use crate::dynamic::event::Examination;
-use crate::dynamic::locate::shifted;
 use crate::dynamic::step::Step;
 use crate::dynamic::system::DynamicSystem;
 use crate::error::RunError;
@@ -35,31 +34,6 @@ impl<S: DynamicSystem> Examination<'_, S> {
             self.system.guard_values(self.phase.mode, s, state, values);
         }
         self.statistics.guards += NODES.len() - 1;
-        let end = (NODES.len() - 1) * count;
-        if self.tables.nodes[end..].iter().any(|value| value.is_nan()) {
-            self.fill_sides_at_end(step);
-        }
-    }
-
-    /// A guard that has no value exactly where the step ends, but behind it, has the smallest value
-    /// there on the side that it comes from.
-    #[cold]
-    fn fill_sides_at_end(&mut self, step: &Step) {
-        let (count, s) = (self.phase.values.len(), self.origin.s + step.h);
-        let away = 4.0 * resolution(self.origin.s, step.h) * step.h;
-        let Work { moved, slope, values, .. } = &mut *self.work;
-        self.system.field(self.phase.mode, s, &step.y1, slope);
-        shifted(moved, &step.y1, slope, away);
-        self.system.guard_values(self.phase.mode, s + away, moved, values);
-        self.statistics.field += 1;
-        self.statistics.guards += 1;
-        for guard in 0..count {
-            let column = self.tables.column(guard, count);
-            if column[5].is_nan() && !self.work.values[guard].is_nan() {
-                let end = (NODES.len() - 1) * count + guard;
-                self.tables.nodes[end] = side_before(&column);
-            }
-        }
     }
 
     /// Whether all guards stay clearly on the side where they do not fire. This holds on most

@@ -71,16 +71,9 @@ impl<Mode: Copy> Phase<Mode> {
         Ok(())
     }
 
-    /// Whether a guard fires where it crosses zero, and has no zero that is declared.
-    pub(crate) fn is_from_nowhere(&self, guard: usize) -> bool {
-        let direction = self.guards.get(guard).map(Guard::direction);
-        let crosses = !matches!(direction, None | Some(Direction::Off | Direction::Below));
-        crosses && self.zero_orders[guard] == 0
-    }
-
     /// Takes values that may be due to rounding of the state at `event`, which led here, for zeros.
-    /// `same` tells whether the guard that fired is the same as before the event. The sizes of the time and of the
-    /// components near the event are `s_scale` and `work.scale`.
+    /// `same` tells whether the guard that fired is the same as before the event. The sizes of the
+    /// time and of the components near the event are `s_scale` and `work.scale`.
     pub(crate) fn forgive<S: DynamicSystem<Mode = Mode>>(
         &mut self,
         system: &S,

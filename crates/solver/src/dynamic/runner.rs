@@ -378,15 +378,14 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
     /// Whether the guard that fired in the mode `from` seems to be one of the new mode too: where
     /// the state goes on unchanged, it has the same value.
     fn is_same_guard(&mut self, from: S::Mode, s: f64, event: &Event) -> bool {
-        let guard = event.guard;
-        if !self.phase.is_from_nowhere(guard) || self.state != event.state {
+        if self.state != event.state {
             return false;
         }
         self.statistics.guards += 1;
         let values = &mut self.work.values;
         values.resize(self.system.guards(from).len(), f64::NAN);
         self.system.guard_values(from, s, &event.state, values);
-        values[guard] == self.phase.values[guard]
+        self.phase.values.get(event.guard) == Some(&values[event.guard])
     }
 
     fn refresh_slope(&mut self) -> Result<(), RunError> {

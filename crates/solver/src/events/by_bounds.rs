@@ -19,7 +19,7 @@ where
     /// in `column`.
     ///
     /// A guard that is monotone or bends in one direction crosses zero once if its ends have
-    /// different signs.
+    /// different signs. Otherwise bounds on parts of the step may tell that.
     pub(crate) fn glance_at_bounds<M: Method>(
         &mut self,
         guard: usize,
@@ -61,7 +61,9 @@ where
             && if at_zero {
                 back
             } else {
-                monotone || bend != 0.0 || self.turns_once(guard, path, first)
+                monotone
+                    || bend != 0.0
+                    || self.crosses_once(guard, path, first, (0.0, 1.0), HALVINGS)
             }
         {
             if !direction.fires_from(first) {
@@ -81,13 +83,9 @@ where
         bounds.value.sign() != 0.0 || self.side_in_halves(guard, path, (0.0, 1.0), HALVINGS) != 0.0
     }
 
-    /// Whether a guard changes its sign once, from that of `first`: where its bounds in small parts
-    /// of the step do not exclude zero, it only moves towards the other sign.
-    fn turns_once(&mut self, guard: usize, path: &Path<N>, first: f64) -> bool {
-        self.turns_in_halves(guard, path, first, (0.0, 1.0), HALVINGS)
-    }
-
-    fn turns_in_halves(
+    /// Whether a guard changes its sign once between two step fractions, from that of `first`:
+    /// where its bounds on small parts do not exclude zero, it moves towards the other sign.
+    fn crosses_once(
         &mut self,
         guard: usize,
         path: &Path<N>,
@@ -101,7 +99,7 @@ where
                 let Enclosure { value, slope, .. } = self.bounds(guard, path, part.0, part.1);
                 value.sign() != 0.0
                     || slope.is_bounded() && slope.sign() * first < 0.0
-                    || self.turns_in_halves(guard, path, first, part, halvings - 1)
+                    || self.crosses_once(guard, path, first, part, halvings - 1)
             })
     }
 

@@ -4,7 +4,7 @@ use crate::error::RunError;
 use crate::events::event::{Event, Found, bit};
 use crate::events::examination::{Examination, column, confirmed};
 use crate::events::isolate::{Beginning, Bracket};
-use crate::events::one_guard::{Crossing, Status, resolution, side_before};
+use crate::events::one_guard::{Crossing, Status};
 use crate::events::phase::Phase;
 use crate::events::quick;
 use crate::hybrid::{Direction, HybridSystem, Statistics, SwitchEvent};
@@ -31,38 +31,12 @@ where
         if away {
             return Ok(Found::Nothing(values[5]));
         }
-        let known;
-        let values = if values[5].iter().any(|value| value.is_nan()) {
-            known = self.with_sides_at_end(step, values);
-            &known
-        } else {
-            values
-        };
         let statuses = self.glances::<M>(step, values);
         if statuses.iter().all(|&status| status == Status::Clear) {
             Ok(Found::Nothing(self.on_their_side::<M>(step, values)))
         } else {
             self.decide::<M>(step, event, values, statuses)
         }
-    }
-
-    /// The values of the guards at the nodes of a step. A guard that has no value exactly where the
-    /// step ends, but behind it, has the smallest value there on the side that it comes from.
-    #[cold]
-    fn with_sides_at_end(&mut self, step: &Step<N>, values: &[[f64; G]; 6]) -> [[f64; G]; 6] {
-        let (mode, s) = (self.phase.mode, step.s + step.h);
-        let away = 4.0 * resolution(step.s, step.h) * step.h;
-        let slope = self.system.field(mode, s, &step.y1);
-        let behind = self.system.guard_values(mode, s + away, &(step.y1 + slope * away));
-        self.statistics.field += 1;
-        self.statistics.guards += 1;
-        let mut values = *values;
-        for guard in 0..G {
-            if values[5][guard].is_nan() && !behind[guard].is_nan() {
-                values[5][guard] = side_before(&column(&values, guard));
-            }
-        }
-        values
     }
 
     /// Decides which guard fires first if the quick look alone does not tell that none fires.

@@ -145,7 +145,7 @@ pub(crate) fn first_crossing(
             accuracy.learn(quotient.noise(0.5 * OPENING, 0.5 * OPENING + NARROWEST), &panel);
         }
         let error = accuracy.on(&panel, zero_order);
-        // A zero that was not declared may be of higher order, and the opening rounding.
+        // A zero that was not declared may be of higher order. The opening is only rounding then.
         let shown = !falls_from_zero
             || [0.01, 0.03, 0.1].iter().all(|&theta| quotient.at(theta) * opening > 0.0);
         before = Some((0.0, opening)).filter(|_| shown && opening.abs() > error);

@@ -2,8 +2,8 @@
 //! along y' = 1.
 
 use stickslip_solver::{
-    Closures, Direction, Dop853, Dopri5, Guard, HybridSystem, Number, Options, Outcome, Pair,
-    ReadableSystem, RunError, State, StepSize, run_with,
+    Closures, Direction, Guard, HybridSystem, Number, Options, Outcome, Pair, ReadableSystem,
+    RunError, State, run_with,
 };
 
 use super::runs::{Log, at, close, fixed};
@@ -113,8 +113,8 @@ fn a_black_box_that_starts_on_a_plateau_is_an_error_or_right() {
                 let system = black_box(direction, |y| (y - 0.25).max(0.0));
                 match places(pair, &system, (0.05, 1.0), &options) {
                     Ok(found) => {
-                        let right =
-                            found.is_empty() || found.iter().all(|s| (s - 0.2).abs() < 1e-9);
+                        let rises = direction != Direction::Falling;
+                        let right = found.iter().all(|s| rises && (s - 0.2).abs() < 1e-9);
                         assert!(right, "{found:?} {direction:?} {step}");
                     }
                     Err(error) => {
@@ -182,120 +182,4 @@ fn a_black_box_that_leaves_an_undeclared_double_zero_does_not_fire_there() {
             }
         }
     }
-}
-
-/// Steps whose sum is the span only to within rounding end exactly at its end.
-#[test]
-fn a_guard_fires_at_the_end_of_a_span_that_steps_divide() {
-    for n in 1..=100 {
-        let steps = f64::from(n);
-        for (h, end) in [(0.1, 0.1 * steps), (1.0 / steps, 1.0)] {
-            let along = Options { max_step: h, first_step: Some(h), ..Options::default() };
-            for options in [fixed(h), along] {
-                for pair in Pair::ALL {
-                    let system = Closures::new(|_s, _y: &State<1>| State::from([1.0]))
-                        .guards([Guard::new(Direction::Rising).terminal()], move |s, _y| [s - end]);
-                    let found = run_with(pair, &system, at(0.0, [0.0]), end, &options, &mut ());
-                    let outcome = found.unwrap().outcome;
-                    assert_eq!(outcome, Outcome::EndedByGuard { guard: 0 }, "{n} {options:?}");
-                }
-            }
-        }
-    }
-}
-
-/// A mode counts what a guard does that all modes share.
-#[derive(Clone, Copy, Debug)]
-struct Counts(bool, Direction);
-
-impl HybridSystem<1, 1> for Counts {
-    type Mode = usize;
-
-    fn field(&self, _mode: usize, _s: f64, _y: &State<1>) -> State<1> {
-        State::from([1.0])
-    }
-
-    fn guards(&self, _mode: usize) -> [Guard; 1] {
-        [Guard::new(self.1)]
-    }
-
-    fn guard_values(&self, _mode: usize, _s: f64, y: &State<1>) -> [f64; 1] {
-        [if self.0 { y[0].sin() } else { y[0] - 1.0 }]
-    }
-
-    fn transition(&self, mode: usize, _: usize, _s: f64, y: &State<1>) -> (usize, State<1>) {
-        (mode + 1, *y)
-    }
-}
-
-#[test]
-fn a_guard_that_all_modes_share_fires_once() {
-    for pair in Pair::ALL {
-        for tolerance in [1e-4, 1e-6, 1e-8, 1e-10, 1e-12] {
-            for step_size in [StepSize::Adaptive, StepSize::Fixed(0.37)] {
-                let options = Options { step_size, ..Options::with_tolerance(tolerance) };
-                for (system, end, count) in [
-                    (Counts(true, Direction::Falling), 100.0, 16),
-                    (Counts(true, Direction::Either), 100.0, 31),
-                    (Counts(false, Direction::Rising), 2.0, 1),
-                    (Counts(false, Direction::Either), 2.0, 1),
-                ] {
-                    let start =
-                        stickslip_solver::Start { mode: 0, s: 0.0, state: State::from([0.5]) };
-                    let run = run_with(pair, &system, start, end, &options, &mut ()).unwrap();
-                    assert_eq!((run.outcome, run.mode), (Outcome::ReachedEnd, count), "{system:?}");
-                }
-            }
-        }
-    }
-}
-
-/// A long rest and then a relay, which switches at equal distances.
-struct Relay(f64, f64);
-
-impl HybridSystem<1, 1> for Relay {
-    type Mode = i8;
-
-    fn field(&self, mode: i8, _s: f64, _y: &State<1>) -> State<1> {
-        State::from([f64::from(mode)])
-    }
-
-    fn guards(&self, _mode: i8) -> [Guard; 1] {
-        [Guard::new(Direction::Below)]
-    }
-
-    fn guard_values(&self, mode: i8, s: f64, y: &State<1>) -> [f64; 1] {
-        [match mode {
-            0 => self.0 - s,
-            1 => self.1 - y[0],
-            _ => y[0] + self.1,
-        }]
-    }
-
-    fn transition(&self, mode: i8, _: usize, _s: f64, y: &State<1>) -> (i8, State<1>) {
-        (if mode == 1 { -1 } else { 1 }, *y)
-    }
-}
-
-#[test]
-fn equal_gaps_after_a_rest_do_not_accumulate() {
-    for (rest, band, end) in
-        [(1000.0, 5e-6, 1000.001), (1.0, 5e-9, 1.000_001), (1e5, 5e-4, 1e5 + 0.1)]
-    {
-        let start = stickslip_solver::Start { mode: 0, s: 0.0, state: State::from([0.0]) };
-        let system = Relay(rest, band);
-        let run = stickslip_solver::run(Dop853, &system, start, end, &Options::default(), &mut ());
-        let run = run.unwrap();
-        assert_eq!(run.outcome, Outcome::ReachedEnd);
-        assert!((95..=105).contains(&run.statistics.switches), "{:?}", run.statistics);
-    }
-}
-
-#[test]
-fn a_guard_without_a_value_is_called_so() {
-    let system = black_box(Direction::Falling, |y| (0.5 - y).sqrt() + 1.0);
-    let run =
-        stickslip_solver::run(Dopri5, &system, at(0.0, [0.0]), 1.0, &Options::default(), &mut ());
-    let error = run.unwrap_err();
-    assert!(matches!(error, RunError::GuardNotANumber { guard: 0, .. }), "{error}");
 }

@@ -1,5 +1,6 @@
 //! What surrounds a run, and the systems with which it is tested.
 
+mod after_switches;
 mod answers;
 mod backwards;
 mod closures;

@@ -136,3 +136,11 @@ fn a_guard_without_a_value_is_an_error() {
         }
     }
 }
+
+#[test]
+fn a_guard_without_a_value_is_called_so() {
+    let system = line([Guard::new(Direction::Falling)], |s| [(0.5 - s).sqrt() + 1.0]);
+    let run = run(Dopri5, &system, at(0.0, [0.0]), 1.0, &Options::default(), &mut ());
+    let error = run.unwrap_err();
+    assert!(matches!(error, RunError::GuardNotANumber { guard: 0, .. }), "{error}");
+}

@@ -28,7 +28,7 @@ pub(crate) fn root(mut curve: impl FnMut(f64) -> f64, low: (f64, f64), high: (f6
 }
 
 /// The places, in widths, that are looked at beside one where there is no value.
-const ASIDE: [f64; 8] = [1.0, -1.0, 16.0, -16.0, 256.0, -256.0, FARTHEST, -FARTHEST];
+const BESIDE: [f64; 8] = [1.0, -1.0, 16.0, -16.0, 256.0, -256.0, FARTHEST, -FARTHEST];
 const FARTHEST: f64 = 4096.0;
 
 /// The zero between `low`, where the curve is ≥ 0, and `high`, where it is < 0, between two places
@@ -61,7 +61,7 @@ pub(crate) fn narrow(
         let (mut next, mut value) = (next, curve(next));
         if value.is_nan() {
             // The value beside it counts. Time may be resolved less finely than `width`.
-            let places = ASIDE.map(|aside| next + aside * width).into_iter();
+            let places = BESIDE.map(|widths| next + widths * width).into_iter();
             let inside = places.filter(|&place| place > a.0 && place < b.0);
             let known =
                 inside.map(|place| (place, curve(place))).find(|(_, value)| !value.is_nan());

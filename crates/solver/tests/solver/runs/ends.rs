@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use stickslip_solver::{
-    Closures, Dense, Direction, Dop853, Guard, Observer, Options, Outcome, State, Unfinished, run,
-    run_backwards,
+    Closures, Dense, Direction, Dop853, Guard, Observer, Options, Outcome, Pair, State, Unfinished,
+    run, run_backwards, run_with,
 };
 
 use super::{Log, at, ball, bounce, fixed, line, start_of_line, thrown};
@@ -144,4 +144,24 @@ fn only_regular_ends_are_finished() {
     let error = zeno.finished().unwrap_err();
     assert_eq!((error.outcome, error.s), (zeno.outcome, zeno.s));
     assert!(error.to_string().contains("ended early"));
+}
+
+/// Steps whose sum is the span only to within rounding end exactly at its end.
+#[test]
+fn a_guard_fires_at_the_end_of_a_span_that_steps_divide() {
+    for n in 1..=100 {
+        let steps = f64::from(n);
+        for (h, end) in [(0.1, 0.1 * steps), (1.0 / steps, 1.0)] {
+            let along = Options { max_step: h, first_step: Some(h), ..Options::default() };
+            for options in [fixed(h), along] {
+                for pair in Pair::ALL {
+                    let system = Closures::new(|_s, _y: &State<1>| State::from([1.0]))
+                        .guards([Guard::new(Direction::Rising).terminal()], move |s, _y| [s - end]);
+                    let found = run_with(pair, &system, at(0.0, [0.0]), end, &options, &mut ());
+                    let outcome = found.unwrap().outcome;
+                    assert_eq!(outcome, Outcome::EndedByGuard { guard: 0 }, "{n} {options:?}");
+                }
+            }
+        }
+    }
 }
