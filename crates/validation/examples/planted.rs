@@ -3,8 +3,8 @@
 //!
 //! `cargo run --release -p validation --example planted -- 1000000 10000` prints the table of
 //! docs/validation.md: a million readable systems and ten thousand black boxes of each kind. Further
-//! arguments: how many wrong cases to describe for each kind, and the number of the only kind to
-//! run.
+//! arguments: how many wrong cases to describe for each kind, the number of the only kind to run,
+//! and the number of the first case, so that a long list can be run in parts.
 
 #[allow(dead_code, reason = "the tests of the solver use the rest")]
 #[path = "../../solver/tests/solver/planted_kinds.rs"]
@@ -20,6 +20,7 @@ fn main() {
     let count = number(0).unwrap_or(1000);
     let black_boxes = number(1).unwrap_or(count);
     let shown = number(2).unwrap_or(0);
+    let first = number(4).unwrap_or(0);
     println!("{count} readable systems and {black_boxes} black boxes of each kind:");
     println!("wrong, and refused with an error\n");
     println!("| guard | readable | | black box | | with its scale | |");
@@ -34,7 +35,7 @@ fn main() {
             (Reading::BlackBox, black_boxes),
             (Reading::BlackBoxWithScale, black_boxes),
         ] {
-            let cases = (0..count).into_par_iter();
+            let cases = (first..first + count).into_par_iter();
             let (wrong, refused): (Vec<_>, Vec<_>) = cases
                 .flat_map_iter(|seed| not_right(kind, seed, reading))
                 .partition(|(is_wrong, _)| *is_wrong);
