@@ -14,9 +14,11 @@
 //! | `singular` | guards without bounds or without a value somewhere |
 //! | `strangers` | systems that nobody here designed for |
 //! | `dynamic` | systems whose dimension is known at run time |
+//! | `any` | black boxes as one type, so that runs along them are compiled once |
 //! | `runs` | what surrounds a run: closures, runs backwards, samples, ends, defined answers |
 //! | `serialization` | the JSON of results |
 
+mod any;
 mod checks;
 mod dynamic;
 mod event_battery;

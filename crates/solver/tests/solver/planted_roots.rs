@@ -11,6 +11,8 @@ use stickslip_solver::{
     State, StepSize, SwitchEvent, run,
 };
 
+use crate::any::{BlackBox, any};
+
 /// y' = 1 with the guard Π (y − rᵢ) · (1 + c y²) · sign.
 struct Planted<'a> {
     roots: &'a [f64],
@@ -78,7 +80,8 @@ impl Planted<'_> {
         let options = Options { step_size, max_switches: 100, ..Options::default() };
         let start = Start { mode: (), s: 0.0, state: State::from([0.0]) };
         let mut times = Times(Vec::new());
-        let end = run(method, self, start, 1.0, &options, &mut times).expect("a polynomial");
+        let end = run(method, &any(BlackBox(self)), start, 1.0, &options, &mut times)
+            .expect("a polynomial");
         assert_eq!(end.outcome, Outcome::ReachedEnd, "{:?}", times.0);
         times.0
     }

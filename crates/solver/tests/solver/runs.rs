@@ -17,6 +17,8 @@ use stickslip_solver::{
     ReadableSystem, Run, RunError, Start, State, StepSize, SwitchEvent,
 };
 
+use crate::any::{Any, any};
+
 /// A start in the only mode.
 pub fn at<const N: usize>(s: f64, state: [f64; N]) -> Start<(), N> {
     Start { mode: (), s, state: State::from(state) }
@@ -66,17 +68,17 @@ impl<const N: usize> Observer<(), N> for Log<N> {
 }
 
 /// A ball that keeps nine tenths of its speed.
-pub fn ball() -> impl HybridSystem<2, 1, Mode = ()> {
-    Closures::new(|_s, y: &State<2>| State::from([y[1], -9.81]))
+pub fn ball() -> Any<'static, 2, 1> {
+    any(Closures::new(|_s, y: &State<2>| State::from([y[1], -9.81]))
         .guards([Guard::new(Direction::Below)], |_s, y| [y[0]])
-        .transition(|_guard, _s, y| State::from([0.0, -0.9 * y[1]]))
+        .transition(|_guard, _s, y| State::from([0.0, -0.9 * y[1]])))
 }
 
 /// The same ball, if it starts from the ground.
-pub fn thrown() -> impl HybridSystem<2, 1, Mode = ()> {
-    Closures::new(|_s, y: &State<2>| State::from([y[1], -9.81]))
+pub fn thrown() -> Any<'static, 2, 1> {
+    any(Closures::new(|_s, y: &State<2>| State::from([y[1], -9.81]))
         .guards([Guard::new(Direction::Below).from_zero(1)], |_s, y| [y[0]])
-        .transition(|_guard, _s, y| State::from([0.0, -0.9 * y[1]]))
+        .transition(|_guard, _s, y| State::from([0.0, -0.9 * y[1]])))
 }
 
 /// The place where the ball that falls from 1 bounces, counted from 0.

@@ -5,6 +5,8 @@ use stickslip_solver::{
     RunError, Start, State, StepSize, SwitchEvent, run,
 };
 
+use crate::any::{BlackBox, any};
+
 /// y' = 1 with one guard, which is a function of y = s. A switch changes nothing.
 pub struct Planted<'a> {
     value: &'a dyn Fn(f64) -> f64,
@@ -69,7 +71,7 @@ pub fn times<M: Method>(
     let mut times = Times::default();
     let start = Start { mode: (), s: 0.0, state: State::from([0.0]) };
     let options = Options { max_switches: 100, max_steps: 20_000, ..*options };
-    let end = run(method, &system, start, 1.0, &options, &mut times)?;
+    let end = run(method, &any(BlackBox(&system)), start, 1.0, &options, &mut times)?;
     assert_eq!(end.outcome, Outcome::ReachedEnd, "{direction:?} {options:?}");
     Ok(times)
 }
