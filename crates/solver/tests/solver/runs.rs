@@ -13,8 +13,8 @@ mod weighted;
 use std::f64::consts::PI;
 
 use stickslip_solver::{
-    Closures, Direction, Grazing, Guard, HybridSystem, Number, Observer, Options, Outcome, Pole,
-    ReadableSystem, Run, RunError, Start, State, StepSize, SwitchEvent,
+    Closures, Direction, Grazing, Guard, Number, Observer, Options, Outcome, Pole, ReadableSystem,
+    Run, RunError, Start, State, StepSize, SwitchEvent,
 };
 
 use crate::any::{Any, any};
@@ -87,34 +87,13 @@ pub fn bounce(n: i32) -> f64 {
     (2.0_f64 / 9.81).sqrt() * (1.0 + 2.0 * flights)
 }
 
-/// y' = 1, so that s and y are the same, with guards that change nothing. It is one type, whatever
-/// the guards are, so that runs along it are compiled once.
-pub struct Line<const G: usize> {
-    guards: [Guard; G],
-    values: Box<dyn Fn(f64) -> [f64; G]>,
-}
-
+/// y' = 1, so that s and y are the same, with guards that change nothing.
 pub fn line<const G: usize>(
     guards: [Guard; G],
     values: impl Fn(f64) -> [f64; G] + 'static,
-) -> Line<G> {
-    Line { guards, values: Box::new(values) }
-}
-
-impl<const G: usize> HybridSystem<1, G> for Line<G> {
-    type Mode = ();
-
-    fn field(&self, (): (), _s: f64, _y: &State<1>) -> State<1> {
-        State::from([1.0])
-    }
-
-    fn guards(&self, (): ()) -> [Guard; G] {
-        self.guards
-    }
-
-    fn guard_values(&self, (): (), s: f64, _y: &State<1>) -> [f64; G] {
-        (self.values)(s)
-    }
+) -> Any<'static, 1, G> {
+    any(Closures::new(|_s, _y: &State<1>| State::from([1.0]))
+        .guards(guards, move |s, _y| values(s)))
 }
 
 /// Checks that a run reaches the end of its span.
