@@ -90,8 +90,16 @@ pub enum Failure {
         first: String,
     },
     /// Another process makes the same map.
-    #[error("{}: another process is making this map", .0.display())]
-    Busy(PathBuf),
+    #[error(
+        "{}: another process{} is making this map; expected another --out, or to wait",
+        directory.display(), holder.map(|id| format!(" ({id})")).unwrap_or_default()
+    )]
+    Busy {
+        /// The directory of its tiles.
+        directory: PathBuf,
+        /// The number of the process, if it is known.
+        holder: Option<u32>,
+    },
     /// An output file cannot be written.
     #[error("{}: cannot be written: {source}", path.display())]
     Output {
@@ -119,9 +127,14 @@ pub enum Failure {
 impl Failure {
     /// An input file that cannot be used.
     pub fn input(path: &Path, reason: impl Display) -> Self {
+        const MOST_BYTES: usize = 2000;
         // The reason may quote the file, and what it quotes must not break the line.
         let mut shown = String::new();
         for character in reason.to_string().chars() {
+            if shown.len() > MOST_BYTES {
+                shown.push('…');
+                break;
+            }
             if character.is_control() {
                 shown.extend(character.escape_default());
             } else {

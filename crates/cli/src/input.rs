@@ -1,8 +1,8 @@
 //! What is read: texts of options, and files.
 //!
 //! Start reading in `number`; then, in this order: `range` (intervals and sizes), `parameter` (the
-//! parameters of a collision), `recipe` (from options and columns to a collision), `rows` (CSV
-//! files of collisions), `json`, `bodies` and `atlas` (JSON files).
+//! parameters of a collision), `recipe` (from options and columns to a collision), `source` (files
+//! and standard input), `rows` (CSV files of collisions), `json`, `bodies` and `atlas` (JSON files).
 
 pub mod atlas;
 pub mod bodies;
@@ -12,3 +12,4 @@ pub mod parameter;
 pub mod range;
 pub mod recipe;
 pub mod rows;
+pub mod source;

@@ -22,6 +22,7 @@ mod threads;
 mod version;
 
 use std::ffi::OsString;
+use std::io;
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -38,12 +39,12 @@ use version::NAME;
 pub fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
-        Err(reply) => {
-            // Nobody may read the help text any more. That is not a failure.
-            let _ = reply.print();
-            return ExitCode::from(u8::try_from(reply.exit_code()).unwrap_or(2));
-        }
+        Err(reply) => return answer(&reply),
     };
+    #[cfg(unix)]
+    if let Err(error) = output::partial::remove_on_signals() {
+        say(format_args!("warning: signals cannot be watched: {error}"));
+    }
     match carry_out(&arguments) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
@@ -53,6 +54,21 @@ pub fn main() -> ExitCode {
             }
             ExitCode::from(failure.code())
         }
+    }
+}
+
+/// Shows a help text, the version, or what is wrong with the arguments.
+fn answer(reply: &clap::Error) -> ExitCode {
+    match reply.print() {
+        // If standard error is closed, nobody wants to know.
+        _ if reply.use_stderr() => ExitCode::from(u8::try_from(reply.exit_code()).unwrap_or(2)),
+        // Nobody may read the help text any more. That is not a failure.
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            let failure = Failure::Stdout(error);
+            say(format_args!("error: {failure}"));
+            ExitCode::from(failure.code())
+        }
+        _ => ExitCode::SUCCESS,
     }
 }
 

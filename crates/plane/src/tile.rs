@@ -22,7 +22,7 @@ impl Tile {
     /// Numbers are little-endian. The label names the map and the place of the tile in it.
     #[must_use]
     pub fn to_bytes(&self, label: &str) -> Vec<u8> {
-        let mut bytes = Vec::with_capacity(length(label, self.eps_t.len()));
+        let mut bytes = Vec::with_capacity(Self::length(label, self.eps_t.len()));
         bytes.extend_from_slice(label.as_bytes());
         bytes.extend(self.eps_t.iter().flat_map(|value| value.to_le_bytes()));
         bytes.extend(self.switch_count.iter().flat_map(|count| count.to_le_bytes()));
@@ -30,11 +30,17 @@ impl Tile {
         bytes
     }
 
+    /// The number of bytes that a tile of `points` points has with `label`.
+    #[must_use]
+    pub fn length(label: &str, points: usize) -> usize {
+        label.len() + points * (8 + 4) + 16
+    }
+
     /// Reads a tile of `points` points. It is `None` unless [`Self::to_bytes`] wrote `bytes` with
     /// the same label.
     #[must_use]
     pub fn from_bytes(bytes: &[u8], label: &str, points: usize) -> Option<Self> {
-        if points > bytes.len() || bytes.len() != length(label, points) {
+        if points > bytes.len() || bytes.len() != Self::length(label, points) {
             return None;
         }
         let (content, checksum) = bytes.split_last_chunk()?;
@@ -50,11 +56,6 @@ impl Tile {
             switch_count: switch_count.map(|bytes| i32::from_le_bytes(*bytes)).collect(),
         })
     }
-}
-
-/// Number of bytes of a tile with `points` points.
-fn length(label: &str, points: usize) -> usize {
-    label.len() + points * (8 + 4) + 16
 }
 
 #[cfg(test)]

@@ -43,7 +43,7 @@ pub struct CollideArguments {
     #[arg(value_parser = shared::picture())]
     pub plot: Option<PictureFile>,
 
-    /// CSV file with a header row and one collision per row
+    /// CSV file with a header row and one collision per row; - is standard input
     #[arg(long, value_name = "IN.csv", help_heading = "Batch", requires = "out")]
     pub batch: Option<PathBuf>,
 

@@ -9,7 +9,8 @@ pub struct LocateArguments {
     #[arg(long, value_name = "ATLAS.json", help_heading = "Input")]
     pub atlas: PathBuf,
 
-    /// CSV file with a header row that names kappa and psi, and one point per row
+    /// CSV file with a header row that names kappa and psi, and one point per row; - is standard
+    /// input
     #[arg(long, value_name = "POINTS.csv", help_heading = "Input")]
     pub batch: PathBuf,
 

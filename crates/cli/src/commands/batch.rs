@@ -28,12 +28,14 @@ pub fn run(plan: &BatchPlan) -> Result<(), Failure> {
         events.write(|out| out.write_record(EVENTS))?;
     }
 
-    let bar = Bar::bytes(input.progress().0);
+    let bar = Bar::bytes(input.size());
     let (mut count, mut failed) = (0, 0);
     let (mut portion, mut computed) = (Vec::new(), Vec::new());
     loop {
         input.read_portion(&mut portion)?;
-        if portion.is_empty() {
+        if portion.is_empty()
+            || [Some(&results), events.as_ref()].into_iter().flatten().all(CsvFile::is_unheard)
+        {
             break;
         }
         pool.install(|| compute(plan.engine, &portion, events.is_some(), &mut computed));
@@ -47,7 +49,7 @@ pub fn run(plan: &BatchPlan) -> Result<(), Failure> {
             failed += u64::from(result.is_err());
             count += 1;
         }
-        bar.reach(input.progress().1);
+        bar.reach(input.position());
     }
     drop(bar);
 

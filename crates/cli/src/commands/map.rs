@@ -45,8 +45,9 @@ pub fn run(plan: &MapPlan) -> Result<(), Failure> {
 
     let found = tiles.find().map_err(|error| unreadable(&tiles, &error))?;
     report(&tiles, &found);
-    let bar = Bar::points(found.missing.iter().map(|index| tiles.task().range(*index).len()).sum());
-    for index in found.missing {
+    let kept: usize = found.kept.iter().map(|index| tiles.task().range(*index).len()).sum();
+    let bar = Bar::points(plan.grid.points() - kept);
+    for index in (0..tiles.task().tiles()).filter(|index| !found.kept.contains(index)) {
         let points = tiles.task().range(index);
         let tile = pool.install(|| sweep::compute(&plan.grid, plan.engine, points));
         tiles.keep(index, &tile)?;
@@ -89,7 +90,7 @@ fn task(plan: &MapPlan) -> Task {
     };
     // The digits read back as the same numbers, so that equal texts mean equal tasks.
     let description = format!(
-        "program: {}, tiles 1\n{grid}method: {}{method}\npoints a tile: {tile_points}\n",
+        "program: {}, tiles 2\n{grid}method: {}{method}\npoints a tile: {tile_points}\n",
         version::program(),
         plan.engine.name(),
     );
@@ -109,7 +110,7 @@ fn draw(plan: &MapPlan, tiles: &Tiles, plot: &PictureFile) -> Result<StoredFile,
 
 /// Says on standard error which tiles were found, if the map was begun before.
 fn report(tiles: &Tiles, found: &Found) {
-    let Found { kept, damaged, .. } = found;
+    let (kept, damaged) = (found.kept.len(), found.damaged);
     if kept + damaged == 0 {
         return;
     }

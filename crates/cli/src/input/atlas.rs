@@ -1,13 +1,15 @@
 //! JSON files of atlases.
 
-use std::fs;
 use std::path::Path;
 
 use serde::Deserialize;
 use stickslip_plane::atlas::{Atlas, Document, SCHEMA};
 
-use super::json;
+use super::{json, source};
 use crate::error::Failure;
+
+/// Largest number of bytes of a file. Atlases of large windows have some ten million.
+const MOST_BYTES: u64 = 1 << 30;
 
 /// The field that is read before the others.
 #[derive(Deserialize)]
@@ -15,13 +17,13 @@ struct Schema {
     schema: String,
 }
 
-/// Reads an atlas.
+/// Reads an atlas; `-` is standard input.
 ///
 /// # Errors
 /// [`Failure::Input`]: the file cannot be read, does not hold an atlas, or contradicts itself.
 pub fn read(path: &Path) -> Result<Atlas, Failure> {
-    let unusable = |reason: String| Failure::input(path, reason);
-    let text = fs::read(path).map_err(|error| unusable(format!("cannot be read: {error}")))?;
+    let unusable = |reason: String| Failure::input(source::shown(path), reason);
+    let text = source::read(path, MOST_BYTES)?;
     let Schema { schema } = json::parse(&text).map_err(unusable)?;
     if schema != SCHEMA {
         return Err(unusable(format!(

@@ -7,12 +7,11 @@
 mod field;
 mod file;
 
-use std::fs;
-use std::io::{self, Read};
 use std::path::Path;
 
 use stickslip_model::{Body, Encounter, Pair};
 
+use super::source;
 use crate::error::Failure;
 use file::{Bodies, Other};
 
@@ -55,29 +54,20 @@ pub fn read_encounter(path: &Path) -> Result<Encounter, Failure> {
     })
 }
 
-/// The name of the file at `path` in messages.
-pub fn shown(path: &Path) -> &Path {
-    if is_standard_input(path) { Path::new("standard input") } else { path }
-}
-
-fn is_standard_input(path: &Path) -> bool {
-    path == Path::new("-")
-}
+/// Largest number of bytes of a file.
+const MOST_BYTES: u64 = 1 << 20;
 
 fn read<T>(path: &Path, make: impl FnOnce(Bodies) -> Result<T, String>) -> Result<T, Failure> {
-    let unusable = |reason: String| Failure::input(shown(path), reason);
-    let mut text = Vec::new();
-    let read = if is_standard_input(path) {
-        io::stdin().lock().read_to_end(&mut text)
-    } else {
-        fs::File::open(path).and_then(|mut file| file.read_to_end(&mut text))
-    };
-    read.map_err(|error| unusable(format!("cannot be read: {error}")))?;
-    Bodies::parse(&text).and_then(make).map_err(unusable)
+    let text = source::read(path, MOST_BYTES)?;
+    Bodies::parse(&text)
+        .and_then(make)
+        .map_err(|reason| Failure::input(source::shown(path), reason))
 }
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use serde_json::{Value, json};
     use stickslip_model::{Material, Surface};
 

@@ -1,13 +1,12 @@
 //! A CSV file of collisions, read in portions.
 //!
-//! Start reading here; then, in this order: `columns` (which of them have a meaning) and `lines`
-//! (on which line a row begins).
+//! Start reading here; then, in this order: `columns` (which of them have a meaning) and `scan` (on
+//! which line a row begins, and what no CSV file has).
 
 mod columns;
-mod lines;
+mod scan;
 
-use std::fs::File;
-use std::io;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use csv::ByteRecord;
@@ -15,14 +14,16 @@ use stickslip_model::Contact;
 
 use crate::error::Failure;
 use crate::input::recipe::{Given, Recipe};
+use crate::input::source::{self, Source};
 pub use columns::Columns;
-use lines::CountedFile;
+use scan::Scanned;
 
 /// A CSV file of collisions. Its header has been read.
-#[derive(Debug)]
 pub struct Input {
     path: PathBuf,
-    reader: csv::Reader<CountedFile>,
+    /// The size of the file in bytes, if it is known.
+    size: Option<u64>,
+    reader: csv::Reader<Scanned<Box<dyn Read>>>,
     header: ByteRecord,
     recipe: Recipe,
 }
@@ -43,21 +44,21 @@ impl Input {
     /// is then bounded even if a single collision has a million switches.
     const SWITCHES: f64 = 4e6;
 
-    /// Opens `path` and reads the header.
+    /// Opens `path`, or standard input if it is `-`, and reads the header.
     ///
     /// # Errors
     /// [`Failure::Input`]: the file cannot be read or is empty, or its columns do not make a
     /// collision together with the values `given` as options.
     pub fn open(path: &Path, given: &Given, columns: &Columns) -> Result<Self, Failure> {
-        let unreadable =
-            |error: io::Error| Failure::input(path, format!("cannot be read: {error}"));
-        let file = File::open(path).map_err(unreadable)?;
-        let mut reader =
-            csv::ReaderBuilder::new().flexible(true).from_reader(CountedFile::new(file));
-        let header = reader.byte_headers().map_err(|e| unreadable(e.into()))?.clone();
+        let Source { bytes, size } = source::open(path)?;
+        let path = source::shown(path);
+        let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(Scanned::new(bytes));
+        let header = reader.byte_headers().map_err(|error| unreadable(path, error))?;
+        let header = header.clone();
+        reader.get_mut().next_row();
         let recipe =
             columns.recipe(&header, given).map_err(|reason| Failure::input(path, reason))?;
-        Ok(Self { path: path.to_owned(), reader, header, recipe })
+        Ok(Self { path: path.to_owned(), size, reader, header, recipe })
     }
 
     /// The names of the columns.
@@ -65,9 +66,14 @@ impl Input {
         &self.header
     }
 
-    /// The size of the file and the part of it that has been read, in bytes.
-    pub fn progress(&self) -> (u64, u64) {
-        (self.reader.get_ref().size(), self.reader.position().byte())
+    /// The size of the file in bytes, if it is known.
+    pub fn size(&self) -> Option<u64> {
+        self.size
+    }
+
+    /// How many bytes have been read.
+    pub fn position(&self) -> u64 {
+        self.reader.position().byte()
     }
 
     /// Reads the next portion into `rows`. It is empty at the end of the file.
@@ -87,17 +93,12 @@ impl Input {
     }
 
     fn read_row(&mut self) -> Result<Option<Row>, Failure> {
-        let start = self.reader.position().clone();
         let mut fields = ByteRecord::new();
-        let more = self.reader.read_byte_record(&mut fields).map_err(|error| {
-            let error = io::Error::from(error);
-            Failure::input(&self.path, format!("line {}: cannot be read: {error}", start.line()))
-        })?;
-        if !more {
+        let more = self.reader.read_byte_record(&mut fields);
+        if !more.map_err(|error| unreadable(&self.path, error))? {
             return Ok(None);
         }
-        let end = self.reader.position().byte();
-        let line = start.line() + self.reader.get_mut().consume(start.byte(), end);
+        let line = self.reader.get_mut().next_row().unwrap_or_default();
         let contact = self.contact(&fields).map_err(|reason| format!("line {line}: {reason}"));
         if fields.len() != self.header.len() {
             let blanks = std::iter::repeat(&[] as &[u8]);
@@ -116,5 +117,17 @@ impl Input {
         }
         // The recipe's columns are columns of the header.
         self.recipe.contact(|column| &fields[column]).map_err(|error| error.to_string())
+    }
+}
+
+fn unreadable(path: &Path, error: csv::Error) -> Failure {
+    match error.into_kind() {
+        // The scan says by itself what is wrong, and where.
+        csv::ErrorKind::Io(error) if error.kind() == io::ErrorKind::InvalidData => {
+            Failure::input(path, error)
+        }
+        csv::ErrorKind::Io(error) => source::unreadable(path, &error),
+        // Rows of bytes have no other errors.
+        other => Failure::input(path, format!("cannot be read: {other:?}")),
     }
 }

@@ -37,6 +37,11 @@ impl CsvFile {
         written.map_err(|error| self.0.get_ref().failure(error))
     }
 
+    /// Whether it is a pipe that nobody reads any more.
+    pub fn is_unheard(&self) -> bool {
+        self.0.get_ref().is_unheard()
+    }
+
     /// The file with all rows.
     ///
     /// # Errors

@@ -4,20 +4,25 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::{Builder, NamedTempFile};
+use tempfile::NamedTempFile;
 
+use super::partial::Partial;
 use crate::error::Failure;
 
-/// How the name of an incomplete file ends.
-pub const PARTIAL: &str = ".partial";
-
-/// The file that is replaced when `path` is written. If `path` is a symbolic link, this is the file
-/// to which the link points. A device or a pipe has its own name.
+/// The file that is written when `path` is. If `path` is a symbolic link, this is the file to which
+/// the link points, whether it exists or not. A device or a pipe has its own name.
 pub fn target(path: &Path) -> PathBuf {
-    match fs::canonicalize(path) {
-        Ok(target) if path.is_symlink() && !is_stream(path) => target,
-        _ => path.to_owned(),
+    const MOST_LINKS: usize = 40;
+    let mut target = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        match fs::read_link(&target) {
+            Ok(link) if !is_stream(&target) => {
+                target = target.parent().unwrap_or(Path::new("")).join(link);
+            }
+            _ => return target,
+        }
     }
+    path.to_owned()
 }
 
 /// A file that is written beside its target and gets the target's name when it is complete.
@@ -38,8 +43,8 @@ pub struct StoredFile(OutputFile);
 
 #[derive(Debug)]
 enum Destination {
-    Beside { partial: NamedTempFile, target: PathBuf },
-    Direct(File),
+    Beside { partial: Partial<NamedTempFile>, target: PathBuf },
+    Direct { stream: File, unheard: bool },
 }
 
 impl OutputFile {
@@ -81,14 +86,19 @@ impl OutputFile {
     /// # Errors
     /// [`Failure::Output`]: the disk is full or fails.
     pub fn store(mut self) -> Result<StoredFile, Failure> {
-        let stored = match &mut self.destination {
+        let stored = match &self.destination {
             Destination::Beside { partial, .. } => partial.as_file().sync_all(),
-            Destination::Direct(device) => device.flush(),
+            Destination::Direct { .. } => self.flush(),
         };
         match stored {
             Ok(()) => Ok(StoredFile(self)),
             Err(error) => Err(self.failure(error)),
         }
+    }
+
+    /// Whether it is a pipe that nobody reads any more: the reader has seen enough.
+    pub fn is_unheard(&self) -> bool {
+        matches!(self.destination, Destination::Direct { unheard: true, .. })
     }
 
     /// The failure to write this file.
@@ -104,11 +114,10 @@ impl OutputFile {
 pub fn publish(files: impl IntoIterator<Item = StoredFile>) -> Result<(), Failure> {
     files.into_iter().try_for_each(|StoredFile(OutputFile { path, destination })| match destination
     {
-        Destination::Beside { partial, target } => match partial.persist(target) {
-            Ok(_) => Ok(()),
-            Err(failed) => Err(Failure::output(&path, failed.error)),
-        },
-        Destination::Direct(_) => Ok(()),
+        Destination::Beside { partial, target } => {
+            partial.publish(&target).map_err(|error| Failure::output(&path, error))
+        }
+        Destination::Direct { .. } => Ok(()),
     })
 }
 
@@ -133,24 +142,16 @@ pub fn write_unsynchronised(path: &Path, content: &[u8]) -> Result<(), Failure> 
 
 impl Destination {
     fn new(directory: &Path, path: &Path) -> io::Result<Self> {
-        if is_stream(path) {
-            // Bytes are appended, because another program may have written before.
-            return Ok(Self::Direct(OpenOptions::new().append(true).open(path)?));
+        let target = target(path);
+        if is_stream(&target) {
+            return Ok(Self::Direct { stream: stream(&target)?, unheard: false });
         }
-        if path.is_dir() {
+        if target.is_dir() {
             return Err(io::ErrorKind::IsADirectory.into());
         }
-        let target = target(path);
         fs::metadata(directory)?;
         let name = target.file_name().ok_or(io::ErrorKind::InvalidFilename)?;
-        let prefix = format!(".{}.", name.to_string_lossy());
-        let mut builder = Builder::new();
-        builder.prefix(&prefix).suffix(PARTIAL);
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        // The whole error would show the temporary name, which the user does not know.
-        let partial = builder.tempfile_in(directory).map_err(|error| error.kind())?;
-        Ok(Self::Beside { partial, target })
+        Ok(Self::Beside { partial: Partial::file(directory, name)?, target })
     }
 }
 
@@ -159,23 +160,56 @@ impl Write for OutputFile {
         match &mut self.destination {
             // Writing to the `NamedTempFile` itself would add the temporary name to the error.
             Destination::Beside { partial, .. } => partial.as_file_mut().write(bytes),
-            Destination::Direct(device) => device.write(bytes),
+            Destination::Direct { unheard: true, .. } => Ok(bytes.len()),
+            Destination::Direct { stream, unheard } => match stream.write(bytes) {
+                Err(error) if error.kind() == io::ErrorKind::BrokenPipe => {
+                    *unheard = true;
+                    Ok(bytes.len())
+                }
+                written => written,
+            },
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
         match &mut self.destination {
             Destination::Beside { partial, .. } => partial.as_file_mut().flush(),
-            Destination::Direct(device) => device.flush(),
+            Destination::Direct { stream, .. } => stream.flush(),
         }
     }
 }
 
+/// The stream to which `path` leads. A stream of the process is written where it stands.
+fn stream(path: &Path) -> io::Result<File> {
+    #[cfg(unix)]
+    {
+        use std::os::fd::AsFd;
+        let own = |number: &str| OWN.iter().any(|own| path == Path::new(own).join(number));
+        if path == Path::new("/dev/stdout") || own("1") {
+            return Ok(io::stdout().as_fd().try_clone_to_owned()?.into());
+        }
+        if path == Path::new("/dev/stderr") || own("2") {
+            return Ok(io::stderr().as_fd().try_clone_to_owned()?.into());
+        }
+    }
+    // Another program may have written before.
+    let stream = OpenOptions::new().append(true).open(path)?;
+    if stream.metadata()?.is_file() {
+        return Err(io::Error::other(
+            "is a file that another program has opened; expected its name",
+        ));
+    }
+    Ok(stream)
+}
+
+/// Where a process finds its streams by their numbers.
+const OWN: [&str; 2] = ["/dev/fd", "/proc/self/fd"];
+
 /// Whether `path` leads to a device, a pipe or a stream of the process. A file must not replace
 /// these.
 fn is_stream(path: &Path) -> bool {
-    let own = ["/dev/stdout", "/dev/stderr", "/dev/fd", "/proc/self/fd"];
-    own.iter().any(|stream| path.starts_with(stream))
+    let own = ["/dev/stdout", "/dev/stderr"];
+    own.iter().chain(&OWN).any(|stream| path.starts_with(stream))
         || fs::metadata(path).is_ok_and(|existing| !existing.is_file() && !existing.is_dir())
 }
 

@@ -15,9 +15,12 @@ impl Bar {
         Self::new(None, "{bar:25} {percent}%, {eta} left")
     }
 
-    /// A bar that counts the bytes of an input of `length` bytes.
-    pub fn bytes(length: u64) -> Self {
-        Self::new(Some(length), "{bar:40} {percent}% of {total_bytes}, {eta} left")
+    /// A bar that counts the bytes of an input of `length` bytes, if that is known.
+    pub fn bytes(length: Option<u64>) -> Self {
+        match length {
+            Some(_) => Self::new(length, "{bar:40} {percent}% of {total_bytes}, {eta} left"),
+            None => Self::new(None, "{spinner} {bytes}, {bytes_per_sec}"),
+        }
     }
 
     /// A bar that counts the points of a map, of which `points` are still missing.

@@ -5,7 +5,7 @@ use stickslip_model::{Encounter, Engine};
 use super::engine::engine_for_bodies;
 use crate::args::{Format, ImpactArguments};
 use crate::error::Failure;
-use crate::input::bodies;
+use crate::input::{bodies, source};
 
 /// An impact to be computed.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +28,7 @@ impl ImpactPlan {
         let ImpactArguments { file, method, format } = arguments;
         let encounter = bodies::read_encounter(file)?;
         let damping_time_s = encounter.impact.pair.surface.damping_time_s;
-        let engine = engine_for_bodies(method, bodies::shown(file), damping_time_s)?;
+        let engine = engine_for_bodies(method, source::shown(file), damping_time_s)?;
         Ok(Self { encounter, engine, format: *format })
     }
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use super::files::require_different;
 use crate::args::LocateArguments;
 use crate::error::Failure;
+use crate::input::source::is_standard_input;
 
 /// Points to be located in an atlas.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +25,10 @@ impl LocatePlan {
     /// [`Failure::Usage`]: the output is one of the inputs.
     pub fn new(arguments: &LocateArguments) -> Result<Self, Failure> {
         let LocateArguments { atlas, batch, out } = arguments;
+        if is_standard_input(atlas) && is_standard_input(batch) {
+            let both = "--atlas - and --batch - are both standard input; expected one of them";
+            return Err(Failure::Usage(both.to_owned()));
+        }
         require_different(("--out", out), ("--batch", batch))?;
         require_different(("--out", out), ("--atlas", atlas))?;
         Ok(Self { atlas: atlas.clone(), input: batch.clone(), out: out.clone() })

@@ -7,10 +7,11 @@ use stickslip_plane::atlas::RatioRange;
 use stickslip_plane::{Coordinates, Grid, GridAxis, Range};
 
 use super::engine::{engine, engine_for_bodies};
+use super::files::require_different;
 use super::window::{ImpactRange, KappaWindow};
 use crate::args::MapArguments;
 use crate::error::Failure;
-use crate::input::bodies;
+use crate::input::{bodies, source};
 use crate::output::picture::PictureFile;
 
 /// A map to be computed.
@@ -46,8 +47,17 @@ impl MapPlan {
     /// [`Failure::Usage`] says which options contradict each other. [`Failure::Input`]: the file of
     /// the bodies cannot be used.
     pub fn new(arguments: &MapArguments) -> Result<Self, Failure> {
-        let MapArguments { size, out, .. } = arguments;
-        let MapAxes { columns, rows, coordinates, engine } = match &arguments.bodies {
+        let MapArguments { size, out, plot, bodies, .. } = arguments;
+        if let Some(bodies) = bodies {
+            require_different(("--out", out), ("--bodies", bodies))?;
+        }
+        if let Some(plot) = plot {
+            require_different(("--plot", plot.path()), ("--out", out))?;
+            if let Some(bodies) = bodies {
+                require_different(("--plot", plot.path()), ("--bodies", bodies))?;
+            }
+        }
+        let MapAxes { columns, rows, coordinates, engine } = match bodies {
             Some(file) => MapAxes::of_bodies(arguments, file)?,
             None => MapAxes::scaled(arguments)?,
         };
@@ -60,7 +70,7 @@ impl MapPlan {
             engine,
             out: out.clone(),
             format: format(out)?,
-            plot: arguments.plot.clone(),
+            plot: plot.clone(),
             threads: arguments.threads,
         })
     }
@@ -98,7 +108,7 @@ impl MapAxes {
         };
         let pair = bodies::read_pair(file)?;
         let damping_time_s = pair.surface.damping_time_s;
-        let engine = engine_for_bodies(&arguments.method, bodies::shown(file), damping_time_s)?;
+        let engine = engine_for_bodies(&arguments.method, source::shown(file), damping_time_s)?;
         Ok(Self { columns, rows, coordinates: Coordinates::Velocities { pair }, engine })
     }
 }

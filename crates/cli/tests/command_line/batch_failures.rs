@@ -142,6 +142,58 @@ fn lines_are_counted_right_in_a_long_file() {
     }
 }
 
+/// What no CSV file of collisions has is refused with its line, and nothing is written.
+#[test]
+fn sizes_are_bounded() {
+    let rows = "18,0.5\n".repeat(1000);
+    let wide = |columns: usize| {
+        format!("kappa,psi{}\n18,0.5{}\n", ",x".repeat(columns - 2), ",1".repeat(columns - 2))
+    };
+    for (input, parts) in [
+        (format!("kappa,psi\n18,1\n18,\"0.5\n{rows}"), ["line 3:", "quote", "within 100 lines"]),
+        ("kappa,psi\n\n18,1\n\"18,1\n".to_owned(), ["line 4:", "quote", "not closed"]),
+        ("\"kappa,psi\n18,1\n".to_owned(), ["line 1:", "quote", "not closed"]),
+        ("\u{feff}\"kappa,psi\n18,1\n".to_owned(), ["line 1:", "quote", "not closed"]),
+        (format!("kappa,psi\r\n18,{}", "1".repeat(2_000_000)), ["line 2:", "field", "1048576"]),
+        (format!("kappa,psi{}1,1\n", "\n".repeat(1_000_002)), ["line", "blank lines", "1000000"]),
+        (wide(10_001), ["line 1:", "fields", "at most 10000"]),
+        (
+            format!("kappa,psi\n18,1{}\n", ",".repeat(10_000)),
+            ["line 2:", "fields", "at most 10000"],
+        ),
+    ] {
+        let workspace = Workspace::with_input(&input);
+        let ran = workspace.run(BATCH);
+        assert_eq!(ran.code, 2, "{parts:?}: {}", ran.stderr);
+        for part in parts {
+            assert!(ran.stderr.contains(part), "no {part:?} in {}", ran.stderr);
+        }
+        assert_eq!(workspace.names(), ["in.csv"]);
+    }
+    // What is just inside.
+    for input in [
+        format!("kappa,psi,note\n18,1,\"{}\"\n", "line\n".repeat(99)),
+        "\u{feff}\"kappa\",psi,note\n18,1,\"a \"\"quote\"\"\"\n".to_owned(),
+        "kappa,psi,note\n18,1,5\" of rain\n18,1,\"\"\n".to_owned(),
+        format!("kappa,psi,note\n18,1,{}", "x".repeat(1 << 20)),
+    ] {
+        let workspace = Workspace::with_input(&input);
+        let ran = workspace.run(&format!("{BATCH} --method exact"));
+        assert_eq!(ran.code, 0, "{}", ran.stderr);
+    }
+}
+
+/// The message about columns does not repeat thousands of them.
+#[test]
+fn a_header_of_many_columns_is_shown_shortened() {
+    let header: Vec<_> = (0..9_000).map(|column| format!("c{column}")).collect();
+    let workspace = Workspace::with_input(&format!("{},psi\n", header.join(",")));
+    let ran = workspace.run(BATCH);
+    assert_eq!(ran.code, 2);
+    assert!(ran.stderr.contains("kappa is missing") && ran.stderr.contains('…'), "{}", ran.stderr);
+    assert!(ran.stderr.len() < 3000);
+}
+
 #[test]
 fn a_row_that_the_method_cannot_compute() {
     let workspace = Workspace::with_input("kappa,psi,damping\n18,1,0.1\n1e17,1,0\n18,1,0\n");

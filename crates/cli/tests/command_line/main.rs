@@ -24,6 +24,8 @@ mod notebooks_data;
 mod pictures;
 
 mod reproduce;
+#[cfg(unix)]
+mod streams;
 mod usage;
 mod version;
 

@@ -179,7 +179,12 @@ fn a_second_process_is_refused() {
     }
     let second = workspace.run(LINE);
     assert_eq!(second.code, 1);
-    assert_eq!(second.stderr, format!("error: {DIRECTORY}: another process is making this map\n"));
+    let holder = first.id();
+    let expected = format!(
+        "error: {DIRECTORY}: another process ({holder}) is making this map; \
+         expected another --out, or to wait\n"
+    );
+    assert_eq!(second.stderr, expected);
     assert!(first.wait().unwrap().success());
     assert_eq!(workspace.names(), ["m.npz"]);
     assert!(fs::read(workspace.path("m.npz")).unwrap() == whole());
@@ -188,11 +193,80 @@ fn a_second_process_is_refused() {
 #[test]
 fn only_its_own_files_are_removed() {
     let workspace = Workspace::new();
-    fs::create_dir(workspace.path(DIRECTORY)).unwrap();
-    for name in ["notes.txt", "0.tile.partial", ".m.npz.x.partial"] {
+    interrupt(&workspace, 2, Duration::ZERO, "-9");
+    let kept = tiles(&workspace).len();
+    let theirs = [".m.npz.x-.partial", "0.tile.partial", "00.tile", "79.tile", "notes.txt"];
+    for name in theirs.into_iter().chain([".m.npz.x.partial", ".7.tile.Ab3.partial"]) {
         workspace.write(&format!("{DIRECTORY}/{name}"), "");
     }
-    assert_eq!(workspace.run(LINE).code, 0);
+    finish_beside(&workspace, kept);
+    assert_eq!(workspace.names_in(DIRECTORY), theirs);
+}
+
+/// Finishes the map in a directory that stays, because it has files of others.
+fn finish_beside(workspace: &Workspace, kept: usize) {
+    let ran = workspace.run(LINE);
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    assert_eq!(ran.stderr, format!("{DIRECTORY}: going on with {kept} of {TILES} tiles\n"));
     assert_eq!(workspace.names(), ["m.npz", DIRECTORY]);
-    assert_eq!(workspace.names_in(DIRECTORY), ["notes.txt"]);
+}
+
+/// A directory that the program did not make stays as it is, byte for byte.
+#[test]
+fn a_directory_of_others_is_refused() {
+    let refused = |workspace: &Workspace, code: i32, what: &str| {
+        let ran = workspace.run(LINE);
+        assert_eq!(ran.code, code, "{}", ran.stderr);
+        let expected = format!("error: {DIRECTORY}: {what}; expected a directory that stickslip");
+        assert!(ran.stderr.starts_with(&expected), "{}", ran.stderr);
+    };
+    let workspace = Workspace::new();
+    fs::create_dir(workspace.path(DIRECTORY)).unwrap();
+    refused(&workspace, 2, "is not a directory of tiles");
+    for name in ["lock", "0.tile", ".m.npz.x.partial"] {
+        workspace.write(&format!("{DIRECTORY}/{name}"), "theirs");
+    }
+    refused(&workspace, 2, "is not a directory of tiles");
+    workspace.write(&format!("{DIRECTORY}/task"), "theirs");
+    let ran = workspace.run(LINE);
+    assert!(ran.code == 2 && ran.stderr.contains("'theirs'"), "{}", ran.stderr);
+    // A pipe would block whoever opens it.
+    fs::remove_file(workspace.path(&format!("{DIRECTORY}/task"))).unwrap();
+    let pipe = workspace.path(&format!("{DIRECTORY}/task"));
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    refused(&workspace, 2, "is not a directory of tiles");
+    for name in ["lock", "0.tile", ".m.npz.x.partial"] {
+        assert_eq!(workspace.read(&format!("{DIRECTORY}/{name}")), "theirs");
+    }
+    // Nor is a link followed, wherever it leads.
+    let other = Workspace::new();
+    std::os::unix::fs::symlink(workspace.path(DIRECTORY), other.path(DIRECTORY)).unwrap();
+    refused(&other, 1, "cannot be written: it is not a directory");
+}
+
+#[test]
+fn links_in_the_place_of_files_are_not_followed() {
+    for name in ["0.tile", "lock", "task"] {
+        let workspace = Workspace::new();
+        interrupt(&workspace, 2, Duration::ZERO, "-9");
+        let path = workspace.path(&format!("{DIRECTORY}/{name}"));
+        fs::remove_file(&path).unwrap();
+        let theirs = Workspace::with_input("theirs");
+        std::os::unix::fs::symlink(theirs.path("in.csv"), &path).unwrap();
+        let ran = workspace.run(LINE);
+        assert_ne!(ran.code, 0, "{name}");
+        let what = if name == "task" { "not a directory of tiles" } else { "not a regular file" };
+        assert!(ran.stderr.contains(what), "{name}: {}", ran.stderr);
+        assert_eq!(theirs.read("in.csv"), "theirs");
+        assert!(fs::symlink_metadata(&path).unwrap().is_symlink());
+    }
+}
+
+/// The first tiles of a map of 10¹⁰ points come as soon as those of a small one.
+#[test]
+fn a_huge_map_begins_at_once() {
+    let workspace = Workspace::new();
+    let line = LINE.replace("100x200", "100000x100000").replace("0:1e6", "1:2");
+    interrupt_line(&workspace, &line, 2, Duration::ZERO, "-15");
+    assert!(workspace.names_in(DIRECTORY).iter().all(|name| !name.contains("partial")));
 }

@@ -52,6 +52,8 @@ pub struct TooNarrow {
     pub height: f64,
 }
 
+/// The smallest distance between a boundary and its curve, in traced coordinates.
+const FINEST: f64 = 1e-11;
 /// The least width and height of a window in traced coordinates.
 const NARROWEST: f64 = 0.01;
 
@@ -69,7 +71,8 @@ impl Frame {
     /// `tolerance` in ψ.
     #[must_use]
     pub fn interpolation(&self, tolerance: f64) -> f64 {
-        tolerance / (1.0 + self.psi.high)
+        // The finest tolerance may be lost by rounding.
+        (tolerance / (1.0 + self.psi.high)).max(FINEST)
     }
 
     /// The distance from a curve within which the side of a point is left open. It is ten times the
@@ -83,7 +86,7 @@ impl Frame {
     #[must_use]
     pub fn tolerances(&self) -> ToleranceRange {
         let shorter = self.window().extent().min().min(1.0);
-        let [finest, usual, coarsest] = [1e-11, (1e-10 * shorter).max(1e-11), 1e-9 * shorter]
+        let [finest, usual, coarsest] = [FINEST, (1e-10 * shorter).max(FINEST), 1e-9 * shorter]
             .map(|part| part * (1.0 + self.psi.high));
         ToleranceRange { finest, usual, coarsest }
     }

@@ -180,3 +180,15 @@ fn a_damped_window_is_traced_by_integration() {
     let itinerary = verified.atlas.itinerary(0);
     assert_eq!(switch_count(itinerary) % 2, 1, "a damped contact begins in stick: {itinerary}");
 }
+
+/// The window's own finest tolerance is not lost by rounding.
+#[test]
+fn narrow_windows_have_their_usual_tolerance() {
+    for psi in [(1.9, 2.1), (1.93, 1.97), (0.3, 0.35), (2.2, 2.33)] {
+        let window = frame((18.0, 19.0), psi);
+        let tolerances = window.tolerances();
+        for tolerance in [tolerances.finest, tolerances.usual, tolerances.coarsest] {
+            assert!(trace(window, tolerance, SILENT).is_ok(), "{psi:?} {tolerance:e}");
+        }
+    }
+}

@@ -1,14 +1,18 @@
 //! The directory in which the finished tiles of a map are stored until the map is complete.
 
-use std::fs::{self, File, TryLockError};
-use std::io;
+use std::collections::BTreeSet;
+use std::ffi::OsStr;
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, Read, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use same_file::Handle;
 use stickslip_plane::Tile;
 
 use crate::error::Failure;
 use crate::output::file;
+use crate::output::partial::{self, Partial};
 
 /// A map, divided into tiles of successive points, row by row.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -44,6 +48,10 @@ impl Task {
 }
 
 /// The tiles of one task. No other process makes them at the same time.
+///
+/// They are in a directory that has the description of the task from its first moment. A directory
+/// without it is not the program's, and nothing in it is touched. In the directory, names that the
+/// program does not give are left alone, and links are not followed.
 #[derive(Debug)]
 pub struct Tiles {
     directory: PathBuf,
@@ -55,12 +63,10 @@ pub struct Tiles {
 /// What was found of a map that was begun before.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Found {
-    /// The number of finished tiles.
-    pub kept: usize,
+    /// The finished tiles.
+    pub kept: BTreeSet<usize>,
     /// The number of tiles that are not what was written.
     pub damaged: usize,
-    /// The tiles that have to be made, damaged tiles included.
-    pub missing: Vec<usize>,
 }
 
 impl Tiles {
@@ -70,8 +76,8 @@ impl Tiles {
     /// Opens the directory of the tiles of `out`, `OUT.tiles`, and creates it if it is missing.
     ///
     /// # Errors
-    /// The directory cannot be created, another process works there, or its tiles are those of
-    /// another task.
+    /// The directory cannot be created, another process works there, its tiles are those of another
+    /// task, or the program did not make it.
     pub fn open(out: &Path, task: Task) -> Result<Self, Failure> {
         if out.is_dir() {
             return Err(Failure::output(out, io::ErrorKind::IsADirectory));
@@ -79,28 +85,23 @@ impl Tiles {
         let mut directory = file::target(out).into_os_string();
         directory.push(".tiles");
         let directory = PathBuf::from(directory);
-        match fs::create_dir(&directory) {
-            Err(error) if error.kind() != io::ErrorKind::AlreadyExists => {
-                return Err(Failure::output(out, error));
+        loop {
+            if fs::symlink_metadata(&directory).is_err() {
+                create(&directory, &task).map_err(|error| Failure::output(out, error))?;
             }
-            _ => {}
-        }
-        let unusable = |error: io::Error| Failure::output(&directory, error);
-        let lock = File::create(directory.join(Self::LOCK)).map_err(unusable)?;
-        // Where files cannot be locked, two processes do the same work twice, which does no harm.
-        if let Err(TryLockError::WouldBlock) = lock.try_lock() {
-            return Err(Failure::Busy(directory));
-        }
-        match fs::read(directory.join(Self::TASK)) {
-            Ok(kept) => require_same(&directory, &kept, &task.description)?,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                // A power cut must not damage it: unlike a tile, it could not be made again.
-                file::write(&directory.join(Self::TASK), task.description.as_bytes())?;
+            let opened = require_own(&directory, &task).and_then(|()| take_lock(&directory));
+            match opened {
+                Ok(Some(lock)) => {
+                    let tiles = Self { directory, task, lock };
+                    tiles.remove_partial(out).map_err(|e| Failure::output(&tiles.directory, e))?;
+                    return Ok(tiles);
+                }
+                // Another process has just finished this map, and has removed the directory.
+                Ok(None) => {}
+                Err(_) if fs::symlink_metadata(&directory).is_err() => {}
+                Err(failure) => return Err(failure),
             }
-            Err(error) => return Err(unusable(error)),
         }
-        remove_partial(&directory).map_err(unusable)?;
-        Ok(Self { directory, task, lock })
     }
 
     /// The directory in which the tiles are.
@@ -119,16 +120,14 @@ impl Tiles {
     /// A tile cannot be read.
     pub fn find(&self) -> io::Result<Found> {
         let mut found = Found::default();
-        for index in 0..self.task.tiles() {
-            match self.bytes(index)? {
-                Some(bytes) if self.decode(index, &bytes).is_some() => {
-                    found.kept += 1;
-                    continue;
-                }
-                Some(_) => found.damaged += 1,
-                None => {}
+        for entry in fs::read_dir(&self.directory)? {
+            let Some(index) = self.index(&entry?.file_name()) else { continue };
+            if self.read(index).is_ok() {
+                found.kept.insert(index);
+            } else {
+                require_file(&self.path(index))?;
+                found.damaged += 1;
             }
-            found.missing.push(index);
         }
         Ok(found)
     }
@@ -148,53 +147,148 @@ impl Tiles {
     /// # Errors
     /// The tile cannot be read, or is not what was written.
     pub fn read(&self, index: usize) -> io::Result<Tile> {
-        let bytes = self.bytes(index)?.unwrap_or_default();
-        self.decode(index, &bytes).ok_or_else(|| {
-            let path = self.path(index);
-            io::Error::other(format!("{} has changed since it was checked", path.display()))
-        })
+        let (path, label) = (self.path(index), self.task.label(index));
+        let points = self.task.range(index).len();
+        let length = Tile::length(&label, points) as u64;
+        let tile = if require_file(&path)? == length {
+            Tile::from_bytes(&fs::read(&path)?, &label, points)
+        } else {
+            None
+        };
+        tile.ok_or_else(|| io::Error::other(format!("{} is not what was written", path.display())))
     }
 
     /// Removes the program's own files, and then the directory if it is empty.
     ///
     /// If something cannot be removed, that does no harm, because the map is complete.
     pub fn remove(self) {
-        for index in 0..self.task.tiles() {
-            let _ = fs::remove_file(self.path(index));
+        let entries = || fs::read_dir(&self.directory).into_iter().flatten().flatten();
+        for entry in entries().filter(|entry| self.index(&entry.file_name()).is_some()) {
+            let _ = fs::remove_file(entry.path());
         }
-        let _ = fs::remove_file(self.directory.join(Self::TASK));
+        let own = [Self::TASK, Self::LOCK];
+        let mut rest = entries().map(|entry| entry.file_name());
+        // It goes at once, so that nobody finds it without its task.
+        if rest.all(|name| own.iter().any(|own| name == *own))
+            && let Ok(away) = Partial::directory(&self.directory)
+            && fs::rename(&self.directory, away.path()).is_ok()
+        {
+            return;
+        }
         // Some systems do not remove an open file.
         drop(self.lock);
-        let _ = fs::remove_file(self.directory.join(Self::LOCK));
+        for name in own {
+            let _ = fs::remove_file(self.directory.join(name));
+        }
         let _ = fs::remove_dir(&self.directory);
     }
 
     fn path(&self, index: usize) -> PathBuf {
-        self.directory.join(format!("{index}.tile"))
+        self.directory.join(Self::name(index))
     }
 
-    fn bytes(&self, index: usize) -> io::Result<Option<Vec<u8>>> {
-        match fs::read(self.path(index)) {
-            Ok(bytes) => Ok(Some(bytes)),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-            Err(error) => Err(error),
+    fn name(index: usize) -> String {
+        format!("{index}.tile")
+    }
+
+    /// The index of the tile that is stored under `name`.
+    fn index(&self, name: &OsStr) -> Option<usize> {
+        let index = name.to_str()?.strip_suffix(".tile")?.parse().ok()?;
+        (index < self.task.tiles() && name == OsStr::new(&Self::name(index))).then_some(index)
+    }
+
+    /// Removes files that a killed process has left incomplete: those of tiles and of `out`.
+    fn remove_partial(&self, out: &Path) -> io::Result<()> {
+        let out = file::target(out);
+        for entry in fs::read_dir(&self.directory)? {
+            let entry = entry?;
+            let name = entry.file_name();
+            let is_own = partial::completed(&name).is_some_and(|complete| {
+                Some(OsStr::new(complete)) == out.file_name()
+                    || self.index(complete.as_ref()).is_some()
+            });
+            if is_own && entry.file_type()?.is_file() {
+                fs::remove_file(entry.path())?;
+            }
         }
-    }
-
-    fn decode(&self, index: usize, bytes: &[u8]) -> Option<Tile> {
-        Tile::from_bytes(bytes, &self.task.label(index), self.task.range(index).len())
+        Ok(())
     }
 }
 
-/// Removes files that a killed process has left incomplete.
-fn remove_partial(directory: &Path) -> io::Result<()> {
-    for entry in fs::read_dir(directory)? {
-        let path = entry?.path();
-        if path.as_os_str().as_encoded_bytes().ends_with(file::PARTIAL.as_bytes()) {
-            fs::remove_file(path)?;
-        }
+/// Makes `directory` with the description of its task. It is not there without it.
+fn create(directory: &Path, task: &Task) -> io::Result<()> {
+    let beside = Partial::directory(directory)?;
+    let mut marker = File::create_new(beside.path().join(Tiles::TASK))?;
+    marker.write_all(task.description.as_bytes())?;
+    // A power cut must not damage it: unlike a tile, it could not be made again.
+    marker.sync_all()?;
+    match beside.publish(directory) {
+        // Another process has been quicker.
+        Err(error) if is_taken(error.kind()) => Ok(()),
+        published => published,
     }
-    Ok(())
+}
+
+/// Whether there is a directory with the name already.
+fn is_taken(error: io::ErrorKind) -> bool {
+    matches!(error, io::ErrorKind::AlreadyExists | io::ErrorKind::DirectoryNotEmpty)
+}
+
+/// Refuses a directory that the program did not make for `task`.
+fn require_own(directory: &Path, task: &Task) -> Result<(), Failure> {
+    const MOST_BYTES: u64 = 1 << 16;
+    const EXPECTED: &str =
+        "expected a directory that stickslip map began, another --out, or no such name";
+    if !fs::symlink_metadata(directory).is_ok_and(|metadata| metadata.is_dir()) {
+        let error = io::Error::other(format!("it is not a directory; {EXPECTED}"));
+        return Err(Failure::output(directory, error));
+    }
+    let marker = directory.join(Tiles::TASK);
+    if !require_file(&marker).is_ok_and(|length| length <= MOST_BYTES) {
+        return Err(Failure::input(directory, format!("is not a directory of tiles; {EXPECTED}")));
+    }
+    let kept = fs::read(&marker).map_err(|error| Failure::output(directory, error))?;
+    require_same(directory, &kept, &task.description)
+}
+
+/// Locks the directory and says who holds it, or `None` if it has been removed.
+fn take_lock(directory: &Path) -> Result<Option<File>, Failure> {
+    let unusable = |error: io::Error| Failure::output(directory, error);
+    let path = directory.join(Tiles::LOCK);
+    if fs::symlink_metadata(&path).is_ok() {
+        require_file(&path).map_err(unusable)?;
+    }
+    let open = OpenOptions::new().create(true).truncate(false).read(true).write(true).open(&path);
+    let mut lock = match open {
+        Ok(lock) => lock,
+        Err(_) if fs::symlink_metadata(directory).is_err() => return Ok(None),
+        Err(error) => return Err(unusable(error)),
+    };
+    // Where files cannot be locked, two processes do the same work twice, which does no harm.
+    if let Err(TryLockError::WouldBlock) = lock.try_lock() {
+        let mut holder = String::new();
+        // If it cannot be read, the message says less.
+        let _ = lock.take(64).read_to_string(&mut holder);
+        let holder = holder.trim().parse().ok();
+        return Err(Failure::Busy { directory: directory.to_owned(), holder });
+    }
+    let locked = lock.try_clone().and_then(Handle::from_file).map_err(unusable)?;
+    if !Handle::from_path(&path).is_ok_and(|there| there == locked) {
+        return Ok(None);
+    }
+    let written = lock.set_len(0).and_then(|()| write!(lock, "{}", std::process::id()));
+    written.map_err(unusable)?;
+    Ok(Some(lock))
+}
+
+/// The length of the regular file at `path`. A link is not one.
+fn require_file(path: &Path) -> io::Result<u64> {
+    let metadata = fs::symlink_metadata(path)?;
+    if metadata.is_file() {
+        Ok(metadata.len())
+    } else {
+        Err(io::Error::other(format!("{} is not a regular file", path.display())))
+    }
 }
 
 /// Refuses a directory whose task is `kept`, unless that is the task with `description`.

@@ -1,5 +1,7 @@
 //! The columns of a CSV file that have a meaning.
 
+use std::collections::HashSet;
+
 use csv::ByteRecord;
 
 use crate::input::parameter::Parameter;
@@ -44,9 +46,10 @@ impl Columns {
             return Err("is empty; expected a header row, for example kappa,psi".to_owned());
         }
         let names: Vec<&[u8]> = header.iter().map(<[u8]>::trim_ascii).collect();
-        for (index, name) in names.iter().enumerate() {
+        let mut seen = HashSet::new();
+        for name in &names {
             let shown = String::from_utf8_lossy(name);
-            if names[..index].contains(name) {
+            if !seen.insert(name) {
                 return Err(format!("two columns are named '{shown}'; expected different names"));
             }
             if self.results.iter().any(|result| result.as_bytes() == *name) {
