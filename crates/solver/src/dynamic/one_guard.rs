@@ -143,6 +143,7 @@ impl<S: DynamicSystem> Examination<'_, S> {
             let mut notice = |found: Notice| noticed.push(found);
             let task = Task {
                 beginning: Beginning { value: sign * beginning.value, ..beginning },
+                both: false,
                 domain: direction == Direction::Below,
                 end: sign * column[5],
                 resolution: resolution(self.origin.s, step.h),
@@ -159,6 +160,7 @@ impl<S: DynamicSystem> Examination<'_, S> {
                 }
                 Verdict::StartsBelow => Crossing::at_start(sign),
                 Verdict::Crossing(bracket) => Crossing { sign, bracket },
+                Verdict::Rise(bracket) => Crossing { sign: -sign, bracket },
             };
             found = match found {
                 Status::Fires(other) if other.bracket.low <= crossing.bracket.low => found,

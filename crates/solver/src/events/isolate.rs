@@ -90,6 +90,8 @@ pub(crate) enum Verdict {
     None,
     /// The first crossing of the guard.
     Crossing(Bracket),
+    /// The first crossing of the guard, if it is one upwards and those were asked for too.
+    Rise(Bracket),
     /// The guard bounds a domain and is negative from the start.
     StartsBelow,
     /// The guard is exactly zero over a part of the step from its start on.
@@ -103,6 +105,8 @@ pub(crate) struct Task {
     pub(crate) beginning: Beginning,
     /// Whether it bounds a domain, so that a negative start counts too.
     pub(crate) domain: bool,
+    /// Whether it fires where it rises, too. Only a search by bounds can find both at once.
+    pub(crate) both: bool,
     /// The value at the end of the step.
     pub(crate) end: f64,
     /// The narrowest part of the step that can be told from a point.
@@ -252,12 +256,20 @@ pub(crate) fn last_sign(curve: &mut dyn Curve, resolution: f64) -> Result<Option
     }
     let mut last = 0.0;
     let beginning = Beginning { theta: 0.0, value: 0.0, zero_order: 0 };
-    let task = Task { beginning, domain: false, end: 0.0, resolution, widest: 1.0 };
+    let (domain, both) = (false, false);
+    let task = Task { beginning, domain, both, end: 0.0, resolution, widest: 1.0 };
     let walked = walk(&mut quotient, &mut accuracy, &task, &mut |_| {}, |_, (_, value), _| {
         last = value.signum();
         ControlFlow::<()>::Continue(())
     })?;
     Ok(walked.map(|_| last))
+}
+
+impl Verdict {
+    /// A crossing to values with the sign of `value`.
+    fn crossing(value: f64, bracket: Bracket) -> Self {
+        if value < 0.0 { Self::Crossing(bracket) } else { Self::Rise(bracket) }
+    }
 }
 
 impl Bracket {

@@ -206,9 +206,13 @@ where
         let direction = self.phase.guards[guard].direction();
         let resolution = resolution(step.s, step.h);
         let mut found = Status::Clear;
-        for &sign in direction.signs() {
-            // Zeros of higher order have no bounds.
-            let bounded = self.has_bounds(guard) && beginning.zero_order <= 2;
+        // Zeros of higher order have no bounds.
+        let bounded = S::READABLE && self.has_bounds(guard) && beginning.zero_order <= 2;
+        // One search by bounds finds both directions. A second one would resolve all poles of the
+        // step again after each event.
+        let both = bounded && direction == Direction::Either;
+        let signs = if both { &[1.0] } else { direction.signs() };
+        for &sign in signs {
             let (statistics, method) = (&mut *self.statistics, PhantomData::<M>);
             let mut along =
                 AlongStep { system, mode, guard, sign, step, dense: &dense, statistics, method };
@@ -217,11 +221,12 @@ where
             let task = Task {
                 beginning: Beginning { value: sign * beginning.value, ..beginning },
                 domain: direction == Direction::Below,
+                both,
                 end: sign * values[5],
                 resolution,
                 widest: self.guard_scale / step.h,
             };
-            let verdict = if S::READABLE && bounded {
+            let verdict = if bounded {
                 let mut enclosed =
                     EnclosedAlongStep { along, path: Path::dense(&dense), local: None };
                 first_enclosed_crossing(&mut enclosed, &task, &mut notice)?
@@ -237,6 +242,7 @@ where
                 }
                 Verdict::StartsBelow => Crossing::at_start(sign),
                 Verdict::Crossing(bracket) => Crossing { sign, bracket },
+                Verdict::Rise(bracket) => Crossing { sign: -sign, bracket },
             };
             found = match found {
                 Status::Fires(other) if other.bracket.low <= crossing.bracket.low => found,

@@ -42,8 +42,8 @@ const DEPTH: usize = 60;
 /// otherwise a jump.
 const GROWS: f64 = 2.0;
 
-/// Finds the first crossing of an enclosed curve from ≥ 0 to < 0. What it notices before the
-/// crossing goes to `notice`.
+/// Finds the first crossing of an enclosed curve from ≥ 0 to < 0, or of both directions. What it
+/// notices before the crossing goes to `notice`.
 pub(crate) fn first_enclosed_crossing(
     curve: &mut dyn Enclosed,
     task: &Task,
@@ -64,9 +64,9 @@ pub(crate) fn first_enclosed_crossing(
     if sign < 0.0 && task.domain {
         return Ok(Verdict::StartsBelow);
     }
-    if sign < 0.0 && zero_order == 0 {
-        // It is zero where it begins, and falls from there.
-        return Ok(Verdict::Crossing(Bracket::at(first)));
+    if zero_order == 0 && (sign < 0.0 || task.both) {
+        // It is zero where it begins, and leaves from there.
+        return Ok(Verdict::crossing(sign, Bracket::at(first)));
     }
     search.before = (theta, sign);
     search.walk(theta)
@@ -80,7 +80,8 @@ pub(crate) fn last_enclosed_sign(
     resolution: f64,
 ) -> Result<f64, RunError> {
     let beginning = Beginning { theta: 0.0, value, zero_order: 0 };
-    let task = Task { beginning, domain: false, end: 0.0, resolution, widest: 1.0 };
+    let (domain, both) = (false, false);
+    let task = Task { beginning, domain, both, end: 0.0, resolution, widest: 1.0 };
     let (notice, before) = (&mut |_| {}, (0.0, value));
     let mut search =
         Search { curve, notice, task: &task, before, hidden: None, through: true, count: 0 };
@@ -183,7 +184,7 @@ impl Search<'_> {
     }
 
     /// Notes the value at a place. The result is the crossing that it completes, if there is one.
-    fn visit(&mut self, theta: f64, value: f64) -> Option<Bracket> {
+    fn visit(&mut self, theta: f64, value: f64) -> Option<Verdict> {
         if value == 0.0 {
             return None;
         }
@@ -191,8 +192,8 @@ impl Search<'_> {
         let turns = before.1 * value < 0.0;
         match self.hidden.take() {
             Some(pole @ Notice::Pole(_)) if turns => {
-                // The other direction is not examined here.
-                if value < 0.0 {
+                // The other direction may be examined by another search.
+                if value < 0.0 || self.task.both {
                     (self.notice)(pole);
                 }
                 // A domain ends at a pole too.
@@ -203,12 +204,16 @@ impl Search<'_> {
             Some(touch @ Notice::Touch(_)) if !turns => (self.notice)(touch),
             _ => {}
         }
-        if before.1 >= 0.0 && value < 0.0 && !self.through {
-            let curve = &mut *self.curve;
-            let low = (before.0, curve.at(before.0).max(0.0));
-            let high = (theta, curve.at(theta).min(-f64::MIN_POSITIVE));
-            let guess = root(|theta| curve.at(theta), low, high);
-            return Some(Bracket { low: before.0, high: theta, guess });
+        let falls = before.1 >= 0.0 && value < 0.0;
+        let rises = self.task.both && before.1 <= 0.0 && value > 0.0;
+        if (falls || rises) && !self.through {
+            let (curve, side) = (&mut *self.curve, -value.signum());
+            let mut at = |theta: f64| side * curve.at(theta);
+            let low = (before.0, at(before.0).max(0.0));
+            let high = (theta, at(theta).min(-f64::MIN_POSITIVE));
+            let guess = root(at, low, high);
+            let bracket = Bracket { low: before.0, high: theta, guess };
+            return Some(Verdict::crossing(value, bracket));
         }
         None
     }
@@ -233,8 +238,8 @@ impl Search<'_> {
             let sign = bounds.value.sign();
             let (slope, bend) = (bounds.slope, bounds.bend);
             if sign != 0.0 {
-                if let Some(bracket) = self.visit(high, sign) {
-                    return Ok(Verdict::Crossing(bracket));
+                if let Some(crossing) = self.visit(high, sign) {
+                    return Ok(crossing);
                 }
                 continue;
             }
@@ -255,7 +260,7 @@ impl Search<'_> {
                 }
             }
             let exact = narrow || refined.as_ref().is_some_and(|part| part.exact);
-            let verdict = if monotone {
+            let crossing = if monotone {
                 self.follow(&[high])?
             } else if turns_once {
                 // A maximum above zero and a minimum below it change nothing.
@@ -273,8 +278,8 @@ impl Search<'_> {
                 pieces += 2;
                 None
             };
-            if let Some(bracket) = verdict {
-                return Ok(Verdict::Crossing(bracket));
+            if let Some(crossing) = crossing {
+                return Ok(crossing);
             }
         }
         Ok(Verdict::None)
@@ -282,7 +287,7 @@ impl Search<'_> {
 
     /// Notes the values at places between which the guard is monotone. All but the last are
     /// extrema. The result is the crossing that they complete, if there is one.
-    fn follow(&mut self, places: &[f64]) -> Result<Option<Bracket>, RunError> {
+    fn follow(&mut self, places: &[f64]) -> Result<Option<Verdict>, RunError> {
         for (index, &theta) in places.iter().enumerate() {
             let value = self.value(theta, index + 1 < places.len())?;
             let crossing = self.visit(theta, value);
@@ -303,7 +308,7 @@ impl Search<'_> {
         low: f64,
         high: f64,
         bounds: &Enclosure,
-    ) -> Result<Option<Bracket>, RunError> {
+    ) -> Result<Option<Verdict>, RunError> {
         if !bounds.value.is_bounded() && self.grows(low, high) {
             self.hidden = Some(Notice::Pole(high));
         } else if self.hidden.is_none() {
