@@ -144,3 +144,36 @@ fn a_guard_without_a_value_is_called_so() {
     let error = run.unwrap_err();
     assert!(matches!(error, RunError::GuardNotANumber { guard: 0, .. }), "{error}");
 }
+
+/// The work for each pole and zero of a step does not grow with their number.
+#[test]
+fn poles_cost_the_same_however_many_a_step_has() {
+    /// tan ωy along y' = 1.
+    struct Tan(f64);
+
+    impl ReadableSystem<1, 1> for Tan {
+        type Mode = ();
+
+        fn field<T: Number>(&self, (): (), _s: T, _y: &[T; 1]) -> [T; 1] {
+            [T::from(1.0)]
+        }
+
+        fn guards(&self, (): ()) -> [Guard; 1] {
+            [Guard::new(Direction::Either)]
+        }
+
+        fn guard_values<T: Number>(&self, (): (), _s: T, y: &[T; 1]) -> [T; 1] {
+            [((y[0] - 0.1) * self.0).tan()]
+        }
+    }
+
+    let bounds = |periods: u32| {
+        let system = Tan(std::f64::consts::PI * f64::from(periods));
+        let mut log = Log::default();
+        let run = run(Dop853, &system, start_of_line(), 1.0, &fixed(1.0), &mut log).unwrap();
+        assert_eq!((log.switches.len(), log.poles.len()), (periods as usize, periods as usize));
+        run.statistics.enclosures as f64 / f64::from(periods)
+    };
+    let (few, many) = (bounds(10), bounds(160));
+    assert!(many < 1.2 * few, "{many} {few}");
+}
