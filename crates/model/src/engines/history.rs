@@ -9,7 +9,7 @@ use stickslip_solver::{
 use crate::contact::Contact;
 use crate::laws::phase::{END, Phase, Regime, Side};
 use crate::laws::regularized::Regularized;
-use crate::laws::regularized::components::{STATE, T, U, V};
+use crate::laws::regularized::components::{STATE, T, U};
 
 /// A collision at one moment, in scaled and reduced variables.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -169,7 +169,7 @@ impl History {
         Snapshot {
             time: record.since + state[T],
             compression: state[U] * state[U],
-            normal_velocity: state[V],
+            normal_velocity: self.system.compression_rate(state),
             normal_force: self.system.normal_force(state),
             spring,
             tangential_force: -self.system.contact().kappa() * spring,

@@ -12,7 +12,7 @@ use super::history::History;
 use crate::contact::Contact;
 use crate::laws::phase::{END, Phase, Regime};
 use crate::laws::regularized::Regularized;
-use crate::laws::regularized::components::{DAMPING, STATE, T, U, V};
+use crate::laws::regularized::components::{DAMPING, STATE, T, U};
 use crate::result::{Collision, EnergyLedger};
 use account::{Account, Observed};
 
@@ -164,7 +164,7 @@ impl Collider {
         }
         // Without damping the contact ends at u = 0, and rounding may make u negative.
         let compression = run.state[U].max(0.0).powi(5);
-        collision.eps_n = -run.state[V];
+        collision.eps_n = -system.compression_rate(&run.state);
         collision.final_velocity = system.velocity(&run.state);
         collision.energy = EnergyLedger {
             tangential_initial: 0.5 * contact.psi() * contact.psi(),
@@ -172,7 +172,7 @@ impl Collider {
             sliding,
             spring_left: 0.0,
             normal_initial: 0.5,
-            normal_final: 0.5 * run.state[V] * run.state[V],
+            normal_final: 0.5 * collision.eps_n * collision.eps_n,
             damping: run.state[DAMPING],
             compression_left: 0.4 * compression,
         };

@@ -119,7 +119,7 @@ impl Collider {
         let sticks = end.mode.regime == Regime::Stick;
         let switches = found.switches.len() + usize::from(sticks);
         Ok(Sensitivity {
-            eps_n: derived(component(end, V).map(|part| -part)),
+            eps_n: derived(compression_rate(&system, end).map(|part| -part)),
             eps_t: final_velocity.over_psi(contact.psi()),
             final_velocity,
             contact_time: Derived { damping: contact_time.damping - earlier, ..contact_time },
@@ -149,6 +149,20 @@ fn component(
 ) -> [f64; 1 + PARAMETERS] {
     let [a, b, c] = end.state_derivatives.map(|derivative| derivative[index]);
     [end.state[index], a, b, c]
+}
+
+/// The rate of the compression at the end of a phase, and its derivatives.
+fn compression_rate(
+    system: &Regularized,
+    end: &SwitchSensitivity<Phase, STATE, PARAMETERS>,
+) -> [f64; 1 + PARAMETERS] {
+    let mut rate = [system.compression_rate(&end.state); 1 + PARAMETERS];
+    for (index, part) in rate[1..].iter_mut().enumerate() {
+        let change = Change { s: 0.0, parameter: Some(index), y: end.state_derivatives[index] };
+        let (equations, y) = system.along(&end.state, &change);
+        *part = equations.compression_rate::<true>(y[U], y[V]).eps;
+    }
+    rate
 }
 
 fn add<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {

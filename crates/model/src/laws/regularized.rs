@@ -18,6 +18,9 @@
 //! ```
 //!
 //! However short the phase is, the gap is then never the difference of two nearly equal numbers.
+//!
+//! For the same reason a³(v + u²/a) is integrated instead of v where a ≥ 1: the contact ends where
+//! it vanishes.
 
 use stickslip_solver::{Direction, Guard, Method, Number, ReadableSystem, State, Step, Trial};
 
@@ -62,6 +65,13 @@ impl Regularized {
     #[must_use]
     pub fn velocity(&self, y: &State<STATE>) -> f64 {
         self.equations.velocity(array(y))
+    }
+
+    /// Rate v of the scaled compression.
+    #[inline(always)]
+    #[must_use]
+    pub fn compression_rate(&self, y: &State<STATE>) -> f64 {
+        if self.is_damped() { self.equations.compression_rate::<true>(y[U], y[V]) } else { y[V] }
     }
 
     /// Scaled normal force F = x^{3/2} + a √x v.
@@ -178,10 +188,14 @@ impl ReadableSystem<STATE, GUARDS> for Regularized {
     /// out: they do not vanish where the contact ends.
     fn guard_rates(&self, phase: Phase, _s: f64, y: &State<STATE>) -> [f64; GUARDS] {
         let a = self.contact.damping();
-        let (u, v) = (y[U], y[V]);
-        let dv = self.equations.deceleration::<true>(u, v);
+        let (u, v) = (y[U], self.compression_rate(y));
+        let dv = if a > 0.0 {
+            self.equations.deceleration::<true>(u, y[V])
+        } else {
+            self.equations.deceleration::<false>(u, v)
+        };
         let end = if a > 0.0 { 2.0 * u * v + a * dv } else { v };
-        let force = self.force(u, v);
+        let force = self.force(u, y[V]);
         match phase.regime {
             Regime::Slip => {
                 // s κ w' = κ dv, with w' = −2s u F = s dv.

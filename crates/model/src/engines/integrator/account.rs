@@ -5,7 +5,7 @@ use stickslip_solver::{Dense, Observer, State, SwitchEvent};
 use super::{last_slip, reversals};
 use crate::laws::phase::{END, Phase, Regime};
 use crate::laws::regularized::Regularized;
-use crate::laws::regularized::components::{STATE, T, V};
+use crate::laws::regularized::components::{STATE, T};
 use crate::result::{Collision, Switch};
 
 /// The running account of a collision.
@@ -41,7 +41,8 @@ impl<'a> Account<'a> {
     /// Closes a phase that ends in state `y` with the elongation `spring`.
     fn leave(&mut self, phase: Phase, y: &State<STATE>, spring: f64) {
         let kappa = self.collision.contact.kappa();
-        let (v0, w0) = (self.entered[V], self.system.velocity(&self.entered));
+        let [v0, v1] = [&self.entered, y].map(|y| self.system.compression_rate(y));
+        let w0 = self.system.velocity(&self.entered);
         let w1 = self.system.velocity(y);
         self.collision.reversals += match phase.regime {
             Regime::Slip => usize::from(reversals::changed(w0, w1)),
@@ -49,7 +50,7 @@ impl<'a> Account<'a> {
         };
         if phase.regime == Regime::Slip {
             // With s w = s w₀ + v − v₀ and F dt = −dv, ∫ F (s w − dL/dt) dt is made of differences.
-            let work = (v0 - y[V]) * (phase.side.sign() * w0 + 0.5 * (y[V] - v0));
+            let work = (v0 - v1) * (phase.side.sign() * w0 + 0.5 * (v1 - v0));
             self.sliding += work - 0.5 * kappa * (spring * spring - self.spring * self.spring);
         }
         self.spring = spring;

@@ -10,7 +10,7 @@ use stickslip_solver::State;
 
 use crate::laws::phase::{Phase, Regime, Side};
 use crate::laws::regularized::Regularized;
-use crate::laws::regularized::components::{STATE, U, V};
+use crate::laws::regularized::components::{STATE, U};
 
 /// Part of the time scale at the end of contact below which τ is computed from the spring. There
 /// the terms after the leading one are below 1e-8 of τ, and so is an integrated τ's error by
@@ -22,7 +22,7 @@ const SHORT: f64 = 1e-8;
 pub(crate) fn time_left(system: &Regularized, end: &State<STATE>, spring: f64) -> Option<f64> {
     let pull = system.contact().kappa() * spring.abs();
     let a = system.contact().damping();
-    let (u, v) = (end[U], end[V].abs());
+    let (u, v) = (end[U], system.compression_rate(end).abs());
     let (left, scale) = if a > 0.0 {
         // The force changes from τ to τ^{3/2} on the scale a, and its rate changes at the rate a u.
         (pull / (u * v), a.min(1.0 / (a * u)))

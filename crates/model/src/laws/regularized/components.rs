@@ -7,7 +7,9 @@ pub const STATE: usize = 8;
 
 /// u = √x, the root of the compression.
 pub const U: usize = 0;
-/// v = dx/dt, the rate of the compression.
+/// v = dx/dt, the rate of the compression, where the damping a is below 1, and otherwise
+/// a³(v + u²/a), whose zero ends the contact; see
+/// [`Regularized::compression_rate`](super::Regularized::compression_rate).
 pub const V: usize = 1;
 /// c ω y/σ while sticking, with c = max(1, κ^{1/4}) and σ = min(1, ψ): these factors make errors of
 /// y and of switch times comparable to those of w.

@@ -12,6 +12,7 @@ use crate::laws::phase::{GUARDS, Phase, Progress, Regime, Side};
 pub(crate) struct Equations<T> {
     kappa: T,
     damping: T,
+    rate: Rate<T>,
     /// The factor c of [`SPRING`].
     pub scale: f64,
     /// 1/c².
@@ -24,6 +25,33 @@ pub(crate) struct Equations<T> {
     pub spring_force: T,
     /// σ = min(1, ψ), the size of the velocity.
     pub velocity_unit: f64,
+}
+
+/// How the component V stands for the rate v of the compression and for the force, where there is
+/// damping: v = by_v·V + by_uu·u², and u² + a v = force_by_v·V + force_by_uu·u².
+#[derive(Clone, Copy, Debug)]
+struct Rate<T> {
+    by_v: T,
+    by_uu: T,
+    force_by_v: T,
+    force_by_uu: f64,
+}
+
+/// The least damping for which V is a³(v + u²/a).
+///
+/// Under strong damping the force falls to the part a⁻⁴ of what it was before it ends. The sum u² + a
+/// v would then be rounding and errors of steps alone. As a component, with its own unit, it is
+/// accurate to the end.
+const STRONG: f64 = 1.0;
+
+impl Rate<f64> {
+    fn new(a: f64) -> Self {
+        if a < STRONG {
+            return Self { by_v: 1.0, by_uu: 0.0, force_by_v: a, force_by_uu: 1.0 };
+        }
+        let by_v = a.powi(-3);
+        Self { by_v, by_uu: -1.0 / a, force_by_v: a * by_v, force_by_uu: 0.0 }
+    }
 }
 
 /// The force F and its first two derivatives with respect to s.
@@ -55,6 +83,7 @@ impl Equations<f64> {
         Self {
             kappa: contact.kappa(),
             damping: contact.damping(),
+            rate: Rate::new(contact.damping()),
             scale,
             rate_scale: 1.0 / (scale * scale),
             spring_rate: 2.0 * omega * scale,
@@ -70,6 +99,12 @@ impl Equations<f64> {
         Equations {
             kappa: T::from(self.kappa),
             damping: T::from(self.damping),
+            rate: Rate {
+                by_v: T::from(self.rate.by_v),
+                by_uu: T::from(self.rate.by_uu),
+                force_by_v: T::from(self.rate.force_by_v),
+                force_by_uu: self.rate.force_by_uu,
+            },
             scale: self.scale,
             rate_scale: self.rate_scale,
             spring_rate: T::from(self.spring_rate),
@@ -79,8 +114,8 @@ impl Equations<f64> {
         }
     }
 
-    /// The same equations with their derivatives with respect to a parameter. The units c and σ are
-    /// kept constant.
+    /// The same equations with their derivatives with respect to a parameter. The units c, σ and
+    /// that of V are kept constant.
     pub fn by(&self, parameter: Option<Parameter>) -> Equations<Dual64> {
         let by_kappa = f64::from(parameter == Some(Parameter::LnKappa));
         let by_damping = f64::from(parameter == Some(Parameter::Damping));
@@ -89,6 +124,12 @@ impl Equations<f64> {
         Equations {
             kappa: Dual64::new(self.kappa, by_kappa * self.kappa),
             damping: Dual64::new(self.damping, by_damping),
+            rate: Rate {
+                by_v: Dual64::from(self.rate.by_v),
+                by_uu: Dual64::new(self.rate.by_uu, by_damping * self.rate.by_uu.powi(2)),
+                force_by_v: Dual64::new(self.rate.force_by_v, by_damping * self.rate.by_v),
+                force_by_uu: self.rate.force_by_uu,
+            },
             scale: self.scale,
             rate_scale: self.rate_scale,
             spring_rate: like_root(self.spring_rate),
@@ -101,7 +142,7 @@ impl Equations<f64> {
     /// The state at the start of contact.
     pub fn start(&self, psi: f64) -> [f64; STATE] {
         let mut y = [0.0; STATE];
-        y[V] = 1.0;
+        y[V] = 1.0 / self.rate.by_v;
         y[W] = psi / self.velocity_unit;
         y[RATE] = self.rate_scale * self.damping;
         y
@@ -126,13 +167,27 @@ impl<T: Number> Equations<T> {
         y[W] * self.velocity_unit
     }
 
-    /// The normal force and its derivatives.
+    /// The rate v of the compression, by the components U and V.
+    #[inline(always)]
+    pub fn compression_rate<const DAMPED: bool>(&self, u: T, v: T) -> T {
+        if DAMPED { self.rate.by_v * v + self.rate.by_uu * (u * u) } else { v }
+    }
+
+    /// F/u by the components U and V. The contact ends where it vanishes.
+    #[inline(always)]
+    pub fn push<const DAMPED: bool>(&self, u: T, v: T) -> T {
+        let uu = u * u;
+        if DAMPED { uu * self.rate.force_by_uu + self.rate.force_by_v * v } else { uu }
+    }
+
+    /// The normal force and its derivatives, by the components U and V.
     #[inline(always)]
     pub fn force<const DAMPED: bool>(&self, u: T, v: T) -> Force<T> {
         let uu = u * u;
         if DAMPED {
             let a = self.damping;
-            let f1 = uu + a * v;
+            let f1 = self.push::<true>(u, v);
+            let v = self.compression_rate::<true>(u, v);
             let dv = uu * -2.0 * f1;
             let df1 = u * 2.0 * v + a * dv;
             let ddv = u * -2.0 * (v * 2.0 * f1 + u * df1);
@@ -151,28 +206,33 @@ impl<T: Number> Equations<T> {
     /// The right-hand side of slip.
     #[inline(always)]
     pub fn slip<const DAMPED: bool>(&self, side: Side, y: &[T; STATE]) -> [T; STATE] {
-        let (u, v, zero) = (y[U], y[V], T::from(0.0));
-        let dv = self.deceleration::<DAMPED>(u, v);
+        let (u, zero) = (y[U], T::from(0.0));
+        let v = self.compression_rate::<DAMPED>(u, y[V]);
+        let dv = self.deceleration::<DAMPED>(u, y[V]);
         let pull = dv * (side.sign() / self.velocity_unit);
-        [v, dv, zero, pull, u * 2.0, self.loss::<DAMPED>(u, v), zero, zero]
+        let slope = self.component_rate::<DAMPED>(u, v, dv);
+        [v, slope, zero, pull, u * 2.0, self.loss::<DAMPED>(u, v), zero, zero]
     }
 
     /// The right-hand side of stick.
     #[inline(always)]
     pub fn stick<const DAMPED: bool>(&self, y: &[T; STATE]) -> [T; STATE] {
-        let (u, v, zero) = (y[U], y[V], T::from(0.0));
-        let dv = self.deceleration::<DAMPED>(u, v);
+        let (u, zero) = (y[U], T::from(0.0));
+        let v = self.compression_rate::<DAMPED>(u, y[V]);
+        let dv = self.deceleration::<DAMPED>(u, y[V]);
+        let slope = self.component_rate::<DAMPED>(u, v, dv);
         let stretch = self.spring_rate * u * y[W];
         let pull = -(self.velocity_rate * u) * y[SPRING];
-        [v, dv, stretch, pull, u * 2.0, self.loss::<DAMPED>(u, v), zero, zero]
+        [v, slope, stretch, pull, u * 2.0, self.loss::<DAMPED>(u, v), zero, zero]
     }
 
     /// The right-hand side of the first step of a stick phase, with its gap.
     #[inline(always)]
     pub fn first_stick<const DAMPED: bool>(&self, side: Side, y: &[T; STATE]) -> [T; STATE] {
-        let (u, v, w) = (y[U], y[V], self.velocity(y));
+        let (u, w) = (y[U], self.velocity(y));
+        let v = self.compression_rate::<DAMPED>(u, y[V]);
         let pull = self.spring_force * y[SPRING];
-        let rate = self.force::<DAMPED>(u, v).second
+        let rate = self.force::<DAMPED>(u, y[V]).second
             + self.kappa * (2.0 * side.sign()) * (u * 2.0 * u * pull - v * w);
         let mut slope = self.stick::<DAMPED>(y);
         slope[GAP] = y[RATE] * self.scale;
@@ -180,11 +240,16 @@ impl<T: Number> Equations<T> {
         slope
     }
 
-    /// dv/ds.
+    /// dv/ds, by the components U and V.
     #[inline(always)]
     pub fn deceleration<const DAMPED: bool>(&self, u: T, v: T) -> T {
-        let uu = u * u;
-        if DAMPED { uu * -2.0 * (uu + self.damping * v) } else { uu * uu * -2.0 }
+        u * u * -2.0 * self.push::<DAMPED>(u, v)
+    }
+
+    /// The rate of the component V, by u, the rate v and dv/ds.
+    #[inline(always)]
+    fn component_rate<const DAMPED: bool>(&self, u: T, v: T, dv: T) -> T {
+        if DAMPED { (dv - self.rate.by_uu * 2.0 * (u * v)) / self.rate.by_v } else { dv }
     }
 
     /// The rate in s of the energy that damping takes.
@@ -214,7 +279,7 @@ impl<T: Number> Equations<T> {
     #[inline(always)]
     pub fn guards<const DAMPED: bool>(&self, phase: Phase, y: &[T; STATE]) -> [T; GUARDS] {
         let (u, v) = (y[U], y[V]);
-        let end = if DAMPED { u * u + self.damping * v } else { u };
+        let end = if DAMPED { self.push::<true>(u, v) } else { u };
         match phase.regime {
             Regime::Slip => {
                 let pull = self.stretching(phase.side, y);
@@ -228,7 +293,7 @@ impl<T: Number> Equations<T> {
             Regime::Stick => {
                 let pull = (self.spring_force * y[SPRING]) * phase.side.sign();
                 if phase.progress == Progress::Settled {
-                    let force = u * (u * u + self.damping * v);
+                    let force = u * self.push::<DAMPED>(u, v);
                     [end, force - pull, force + pull]
                 } else if DAMPED {
                     // A phase may begin so late that u² + a v is rounding alone. The force is
