@@ -73,6 +73,16 @@ pub trait HybridSystem<const N: usize, const G: usize> {
         mode
     }
 
+    /// How far the first step after a switch to `mode` may go, in adaptive runs.
+    ///
+    /// The error of a step is controlled for the state. Where guards depend on differences that are
+    /// much smaller than the state, because a singular end is near for example, this function names
+    /// the length on which they change.
+    #[inline]
+    fn longest_first_step(&self, _mode: Self::Mode, _s: f64, _y: &State<N>) -> f64 {
+        f64::INFINITY
+    }
+
     /// Takes the step `trial` in `mode`.
     ///
     /// The provided version works for every system. If the right-hand sides of the modes differ

@@ -265,6 +265,10 @@ where
         self.system.enclose_guards(mode, s, &std::array::from_fn(|i| y[i]))
     }
 
+    fn longest_first_step(&self, mode: S::Mode, s: f64, y: &State<A>) -> f64 {
+        self.system.longest_first_step(mode, s, &part(y, 0))
+    }
+
     fn settle(&self, mode: S::Mode) -> S::Mode {
         self.system.settle(mode)
     }

@@ -26,6 +26,16 @@ const FLAT: f64 = 30.0;
 /// error. There the step is limited to the length on which u bends elsewhere.
 const LONGEST_STEP: f64 = 0.1;
 
+/// Impact ratio ψ below which steps are shorter. The change of v is part of w, and what the estimates
+/// miss of it counts in units of ψ: as h¹⁰ of a step at the ends of contact.
+const SMALL: f64 = 0.01;
+
+/// Stiffness κ above which the tolerances are finer than asked for: their errors add up over √κ
+/// oscillations.
+const STIFF: f64 = 3e3;
+/// The finest tolerance that this may give.
+const FINEST: f64 = 1e-15;
+
 /// Length in s of the first stick phase of a damped contact below which the first step is as short
 /// as that phase.
 const BRIEF: f64 = 1e-9;
@@ -211,6 +221,14 @@ impl Collider {
         domain::integrated(contact)?;
         let mut options = self.options;
         if self.refined {
+            let small = (contact.psi() / SMALL).min(1.0).powf(0.1);
+            let stiff = (STIFF / contact.kappa()).min(1.0).sqrt();
+            options.max_step *= small;
+            options.first_step = options.first_step.map(|h| h * small);
+            for tolerance in [&mut options.rtol, &mut options.atol] {
+                // What is finer than rounding stays as it is.
+                *tolerance = (*tolerance * stiff).max(FINEST).min(*tolerance);
+            }
             // Where rounding keeps a contact from ending, the general limit would take hours.
             #[expect(
                 clippy::cast_possible_truncation,

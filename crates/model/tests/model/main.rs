@@ -16,3 +16,4 @@ mod sensitivities;
 #[cfg(feature = "serde")]
 mod serialization;
 mod spheres;
+mod whole_range;

@@ -64,6 +64,12 @@ pub trait ReadableSystem<const N: usize, const G: usize> {
         self.guard_values(mode, Dual64::new(s, 1.0), &along).map(|value| value.eps)
     }
 
+    /// As [`HybridSystem::longest_first_step`].
+    #[inline]
+    fn longest_first_step(&self, _mode: Self::Mode, _s: f64, _y: &State<N>) -> f64 {
+        f64::INFINITY
+    }
+
     /// As [`HybridSystem::settle`].
     #[inline]
     fn settle(&self, mode: Self::Mode) -> Self::Mode {
@@ -120,6 +126,11 @@ impl<S: ReadableSystem<N, G>, const N: usize, const G: usize> HybridSystem<N, G>
 
     fn guard_rates(&self, mode: S::Mode, s: f64, y: &State<N>) -> [f64; G] {
         ReadableSystem::guard_rates(self, mode, s, y)
+    }
+
+    #[inline]
+    fn longest_first_step(&self, mode: S::Mode, s: f64, y: &State<N>) -> f64 {
+        ReadableSystem::longest_first_step(self, mode, s, y)
     }
 
     #[inline]

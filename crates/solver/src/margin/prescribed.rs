@@ -276,6 +276,10 @@ where
         values
     }
 
+    fn longest_first_step(&self, at: Self::Mode, s: f64, y: &State<N>) -> f64 {
+        self.system.longest_first_step(at.mode, s, y)
+    }
+
     fn settle(&self, at: Self::Mode) -> Self::Mode {
         PhaseMode { mode: self.system.settle(at.mode), ..at }
     }

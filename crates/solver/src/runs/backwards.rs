@@ -111,6 +111,10 @@ where
         self.0.enclose_guards(mode, -tau, y)
     }
 
+    fn longest_first_step(&self, mode: S::Mode, tau: f64, y: &State<N>) -> f64 {
+        self.0.longest_first_step(mode, reverse(tau), y)
+    }
+
     fn settle(&self, mode: S::Mode) -> S::Mode {
         self.0.settle(mode)
     }

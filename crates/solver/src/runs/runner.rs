@@ -372,7 +372,7 @@ where
         self.statistics.guards += 1;
         if self.options.step_size == StepSize::Adaptive {
             let h = self.other_h.replace(self.h).unwrap_or(self.h);
-            self.h = h;
+            self.h = h.min(self.system.longest_first_step(to, s, &after));
             self.controller.begin();
         }
         self.refresh_slope()?;

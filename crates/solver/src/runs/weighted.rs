@@ -85,6 +85,10 @@ where
         self.system.enclose_guards(mode, s, y)
     }
 
+    fn longest_first_step(&self, mode: S::Mode, s: f64, y: &State<N>) -> f64 {
+        self.system.longest_first_step(mode, s, y)
+    }
+
     fn settle(&self, mode: S::Mode) -> S::Mode {
         self.system.settle(mode)
     }
