@@ -400,6 +400,15 @@ fn what_is_narrower_than_the_error_of_the_path_is_found() {
     }
 }
 
+/// Steps to places beside these poles end some roundings away, on the other side of the pole.
+#[test]
+fn poles_that_rounding_moves_are_poles() {
+    for seed in [21518, 160619, 471661] {
+        let case = random_case(10, &mut fastrand::Rng::with_seed(seed));
+        assert_eq!(case.found(Reading::Readable), Found::Right, "{seed}");
+    }
+}
+
 /// The stated rate for black boxes that name their time scale: none wrong, but for poles that lie
 /// closer to zeros than that scale.
 #[test]

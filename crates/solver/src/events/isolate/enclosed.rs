@@ -238,6 +238,7 @@ impl Search<'_> {
             let sign = bounds.value.sign();
             let (slope, bend) = (bounds.slope, bounds.bend);
             if sign != 0.0 {
+                self.look_between(low, sign);
                 if let Some(crossing) = self.visit(high, sign) {
                     return Ok(crossing);
                 }
@@ -317,6 +318,17 @@ impl Search<'_> {
         }
         let sign = if high >= 1.0 { self.task.end } else { self.over(high, high).value.sign() };
         Ok(self.visit(high, sign))
+    }
+
+    /// Looks at a place between two parts of opposite signs, whose bounds both exclude zero: a jump,
+    /// or a pole that rounding has put into neither part.
+    fn look_between(&mut self, place: f64, sign: f64) {
+        let width = self.task.resolution;
+        let (last, before) = self.before;
+        let turns = before * sign < 0.0 && last >= place && place > self.task.beginning.theta;
+        if turns && self.hidden.is_none() && self.grows(place - width, place + width) {
+            self.hidden = Some(Notice::Pole(place));
+        }
     }
 
     /// Whether values grow towards a narrow part of the step, by steps of the method.
