@@ -77,7 +77,7 @@ pub trait HybridSystem<const N: usize, const G: usize> {
     ///
     /// The error of a step is controlled for the state. Where guards depend on differences that are
     /// much smaller than the state, because a singular end is near for example, this function names
-    /// the length on which they change.
+    /// the length on which they change. A length that is not positive counts as none.
     #[inline]
     fn longest_first_step(&self, _mode: Self::Mode, _s: f64, _y: &State<N>) -> f64 {
         f64::INFINITY

@@ -73,11 +73,10 @@ impl CollidePlan {
             return Ok(Self::Single(SinglePlan { contact, engine, format, plot }));
         };
         let events = arguments.events.as_ref();
-        require_different(("--out", out), ("--batch", input))?;
-        if let Some(events) = events {
-            require_different(("--events", events), ("--batch", input))?;
-            require_different(("--events", events), ("--out", out))?;
-        }
+        require_different(
+            &[("--out", Some(out)), ("--events", arguments.events.as_deref())],
+            &[("--batch", Some(input))],
+        )?;
         Ok(Self::Batch(BatchPlan {
             input: input.clone(),
             out: out.clone(),

@@ -9,21 +9,29 @@ use crate::error::Failure;
 use crate::input::source::is_standard_input;
 use crate::output::file::target;
 
-/// Refuses two options with their paths, of which the first is an output, if they name the same
-/// file.
+/// An option that names a file, and the file, if it is given.
+pub type Named<'a> = (&'a str, Option<&'a Path>);
+
+/// Refuses an output that is the same file as an input, or as an output before it.
 ///
 /// # Errors
-/// [`Failure::Usage`]: they do.
-pub fn require_different(output: (&str, &Path), other: (&str, &Path)) -> Result<(), Failure> {
-    if is_standard_input(other.1) || Place::of(output.1) != Place::of(other.1) {
-        return Ok(());
+/// [`Failure::Usage`] names the two options.
+pub fn require_different<'a>(outputs: &[Named<'a>], inputs: &[Named<'a>]) -> Result<(), Failure> {
+    let given = |named: &[Named<'a>]| -> Vec<_> {
+        named.iter().filter_map(|&(option, path)| Some((option, path?))).collect()
+    };
+    let (outputs, inputs) = (given(outputs), given(inputs));
+    for (index, (option, path)) in outputs.iter().enumerate() {
+        let others = inputs.iter().filter(|(_, input)| !is_standard_input(input));
+        let mut others = others.chain(&outputs[..index]);
+        if let Some((other, _)) = others.find(|(_, other)| Place::of(other) == Place::of(path)) {
+            return Err(Failure::Usage(format!(
+                "{option} {} is the same file as {other}; expected a file of its own",
+                path.display()
+            )));
+        }
     }
-    Err(Failure::Usage(format!(
-        "{} {} is the same file as {}; expected a file of its own",
-        output.0,
-        output.1.display(),
-        other.0
-    )))
+    Ok(())
 }
 
 /// Where a file is, whether it exists or not.

@@ -29,8 +29,8 @@ impl LocatePlan {
             let both = "--atlas - and --batch - are both standard input; expected one of them";
             return Err(Failure::Usage(both.to_owned()));
         }
-        require_different(("--out", out), ("--batch", batch))?;
-        require_different(("--out", out), ("--atlas", atlas))?;
+        let inputs = [("--batch", Some(&**batch)), ("--atlas", Some(&**atlas))];
+        require_different(&[("--out", Some(out))], &inputs)?;
         Ok(Self { atlas: atlas.clone(), input: batch.clone(), out: out.clone() })
     }
 }

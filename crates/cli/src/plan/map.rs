@@ -48,15 +48,11 @@ impl MapPlan {
     /// the bodies cannot be used.
     pub fn new(arguments: &MapArguments) -> Result<Self, Failure> {
         let MapArguments { size, out, plot, bodies, .. } = arguments;
-        if let Some(bodies) = bodies {
-            require_different(("--out", out), ("--bodies", bodies))?;
-        }
-        if let Some(plot) = plot {
-            require_different(("--plot", plot.path()), ("--out", out))?;
-            if let Some(bodies) = bodies {
-                require_different(("--plot", plot.path()), ("--bodies", bodies))?;
-            }
-        }
+        let picture = plot.as_ref().map(PictureFile::path);
+        require_different(
+            &[("--out", Some(out)), ("--plot", picture)],
+            &[("--bodies", bodies.as_deref())],
+        )?;
         let MapAxes { columns, rows, coordinates, engine } = match bodies {
             Some(file) => MapAxes::of_bodies(arguments, file)?,
             None => MapAxes::scaled(arguments)?,

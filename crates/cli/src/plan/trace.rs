@@ -38,15 +38,10 @@ impl TracePlan {
         let TraceArguments { out, plot, geojson, .. } = arguments;
         let frame = frame(arguments)?;
         let tolerance = arguments.tolerance.unwrap_or_else(|| frame.tolerances().usual);
-        if let Some(geojson) = geojson {
-            require_different(("--geojson", geojson), ("--out", out))?;
-        }
-        if let Some(plot) = plot {
-            require_different(("--plot", plot.path()), ("--out", out))?;
-            if let Some(geojson) = geojson {
-                require_different(("--plot", plot.path()), ("--geojson", geojson))?;
-            }
-        }
+        let picture = plot.as_ref().map(PictureFile::path);
+        let outputs =
+            [("--out", Some(&**out)), ("--geojson", geojson.as_deref()), ("--plot", picture)];
+        require_different(&outputs, &[])?;
         Ok(Self {
             frame,
             tolerance,

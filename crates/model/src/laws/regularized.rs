@@ -231,7 +231,7 @@ impl ReadableSystem<STATE, GUARDS> for Regularized {
     /// far below the tolerance.
     fn longest_first_step(&self, _phase: Phase, _s: f64, y: &State<STATE>) -> f64 {
         let v = self.compression_rate(y);
-        if v < 0.0 { (BEYOND * y[U] / -v).max(f64::MIN_POSITIVE) } else { f64::INFINITY }
+        if v < 0.0 { BEYOND * y[U] / -v } else { f64::INFINITY }
     }
 
     #[inline(always)]

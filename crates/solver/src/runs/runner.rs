@@ -372,7 +372,9 @@ where
         self.statistics.guards += 1;
         if self.options.step_size == StepSize::Adaptive {
             let h = self.other_h.replace(self.h).unwrap_or(self.h);
-            self.h = h.min(self.system.longest_first_step(to, s, &after));
+            let longest = self.system.longest_first_step(to, s, &after);
+            // A length that is none would keep the run where it is.
+            self.h = if longest > 0.0 { h.min(longest) } else { h };
             self.controller.begin();
         }
         self.refresh_slope()?;
