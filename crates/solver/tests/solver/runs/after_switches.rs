@@ -1,9 +1,12 @@
-//! What follows a switch: a guard that the next mode has too, and equal gaps between switches.
+//! What follows a switch: a guard that the next mode has too, equal gaps between switches, and how
+//! long the first step may be.
 
 use stickslip_solver::{
     Direction, Dop853, Guard, HybridSystem, Options, Outcome, Pair, Start, State, StepSize, run,
     run_with,
 };
+
+use super::at;
 
 /// A mode counts what a guard does that all modes share.
 #[derive(Clone, Copy, Debug)]
@@ -89,4 +92,45 @@ fn equal_gaps_after_a_rest_do_not_accumulate() {
         assert_eq!(run.outcome, Outcome::ReachedEnd);
         assert!((95..=105).contains(&run.statistics.switches), "{:?}", run.statistics);
     }
+}
+
+/// A step of no length would keep the run where it is.
+#[test]
+fn a_longest_first_step_that_is_none_is_ignored() {
+    /// y' = 1, which starts again from 0 where it reaches 1.
+    struct Again(f64);
+
+    impl HybridSystem<1, 1> for Again {
+        type Mode = ();
+
+        fn field(&self, (): (), _s: f64, _y: &State<1>) -> State<1> {
+            State::from([1.0])
+        }
+
+        fn guards(&self, (): ()) -> [Guard; 1] {
+            [Guard::new(Direction::Rising)]
+        }
+
+        fn guard_values(&self, (): (), _s: f64, y: &State<1>) -> [f64; 1] {
+            [y[0] - 1.0]
+        }
+
+        fn longest_first_step(&self, (): (), _s: f64, _y: &State<1>) -> f64 {
+            self.0
+        }
+
+        fn transition(&self, (): (), _: usize, _s: f64, _y: &State<1>) -> ((), State<1>) {
+            ((), State::from([0.0]))
+        }
+    }
+
+    let steps = |longest: f64| {
+        let start = at(0.0, [0.0]);
+        let run = run(Dop853, &Again(longest), start, 9.5, &Options::default(), &mut ()).unwrap();
+        assert_eq!((run.outcome, run.statistics.switches), (Outcome::ReachedEnd, 9));
+        run.statistics.accepted
+    };
+    let free = steps(f64::INFINITY);
+    assert!([0.0, -1.0, f64::NAN].iter().all(|none| steps(*none) == free));
+    assert!(steps(1e-3) > free);
 }
