@@ -5,6 +5,7 @@
 use stickslip_solver::{Dop853, Dopri5, Statistics};
 
 pub(crate) mod domain;
+mod estimate;
 pub mod exact;
 pub mod history;
 pub mod integrator;
@@ -12,6 +13,7 @@ pub mod sensitivity;
 
 use crate::contact::Contact;
 use crate::result::{Collision, NotFinite};
+pub use estimate::Estimate;
 use exact::ExactError;
 use history::History;
 use integrator::{Collider, CollisionError};

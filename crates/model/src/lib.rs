@@ -48,7 +48,7 @@ pub use engines::history::{History, PhaseHistory, Snapshot};
 pub use engines::integrator as collision;
 pub use engines::integrator::{Collider, CollisionError};
 pub use engines::sensitivity::{Derived, Sensitivity};
-pub use engines::{Engine, EngineError, Tolerances};
+pub use engines::{Engine, EngineError, Estimate, Tolerances};
 pub use engines::{exact, history, integrator, sensitivity};
 pub use laws::phase::{Regime, Side};
 pub use laws::regularized;

@@ -1,80 +1,94 @@
 //! Random contacts over the whole range, κ from 1e-6 to 1e6, ψ from 1e-10 to 10 and damping up to
-//! 1e4, by both pairs at their default tolerances: failures, itineraries that differ, and errors.
+//! 1e4, by every method at its default tolerances: failures, itineraries that differ, errors, and
+//! whether the estimates of the errors cover them.
 //!
-//! Without damping the exact solution is the reference. With damping the pairs are compared with
-//! each other, which share the coordinates of the law but neither steps nor tolerances.
+//! Without damping the exact solution is the reference, and double-double numbers are that of the
+//! exact solution. With damping the reference of Dormand–Prince 8(5,3) has double-double numbers,
+//! and that of Dormand–Prince 5(4) is Dormand–Prince 8(5,3).
 //!
 //! `cargo run --release -p validation --example accuracy -- 1000000` prints the figures of
-//! docs/validation.md. Two further arguments: the number of the first contact, so that a long list
-//! can be run in parts, and how many contacts to describe of those that differ.
+//! docs/validation.md. Three further arguments: the number of the first contact, so that a long list
+//! can be run in parts, how many contacts to describe of those that differ, and the only row of the
+//! table that is wanted, counted from 0.
+
+use std::collections::BTreeMap;
 
 use rayon::prelude::*;
-use stickslip_model::{Collision, Contact, Engine, Tolerances};
+use stickslip_model::{Collider, Collision, Contact, Engine, Estimate, Tolerances};
 
-/// The contacts of one kind.
+/// What is compared: an engine, with or without damping, and its reference.
 #[derive(Clone, Copy)]
-enum Kind {
-    Undamped,
-    Damped,
+struct Task {
+    damped: bool,
+    engine: Engine,
+    reference: Reference,
 }
 
-/// What two engines made of a contact.
+#[derive(Clone, Copy)]
+enum Reference {
+    Engine(Engine),
+    DoubleDouble,
+}
+
+/// What an engine and its reference made of a contact.
 struct Compared {
     contact: Contact,
-    /// Why it failed, if it did.
-    failure: Option<String>,
     same_itinerary: bool,
     /// The errors of ε_t, of the contact time relative to itself, and of ε_n relative to itself.
     errors: [f64; 3],
+    estimate: Estimate,
 }
 
 fn main() {
     let arguments = std::env::args().skip(1);
     let numbers: Vec<u64> = arguments.filter_map(|argument| argument.parse().ok()).collect();
     let number = |index: usize, usual| numbers.get(index).copied().unwrap_or(usual);
-    let (count, first, shown) = (number(0, 10_000), number(1, 0), number(2, 3));
-    println!("{count} contacts of each kind:\n");
-    println!("| kind | engines | failed | other itineraries | ε_t | contact time | ε_n |");
-    println!("|---|---|---|---|---|---|---|");
+    let (count, first, shown) = (number(0, 1000), number(1, 0), number(2, 3));
     let dop853 = Engine::Dop853(Tolerances::DOP853);
     let dopri5 = Engine::Dopri5(Tolerances::DOPRI5);
-    for (kind, name, engine, reference) in [
-        (Kind::Undamped, "undamped", dop853, Engine::Exact),
-        (Kind::Undamped, "undamped", dopri5, Engine::Exact),
-        (Kind::Damped, "damped", dopri5, dop853),
-    ] {
+    let task = |damped, engine, reference| Task { damped, engine, reference };
+    println!(
+        "| damping | method | contacts | failed | other itineraries, certain | ε_t | time | ε_n | not covered | estimate/error, median |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|---|");
+    let tasks = [
+        task(false, Engine::Exact, Reference::DoubleDouble),
+        task(false, dop853, Reference::Engine(Engine::Exact)),
+        task(false, dopri5, Reference::Engine(Engine::Exact)),
+        task(true, dop853, Reference::DoubleDouble),
+        task(true, dopri5, Reference::Engine(dop853)),
+    ];
+    let wanted = (0..).zip(tasks).filter(|(index, _)| number(3, *index) == *index);
+    for (_, task) in wanted {
         let cases = (first..first + count).into_par_iter();
-        let compared: Vec<_> =
-            cases.map(|seed| compare(random(kind, seed), engine, reference)).collect();
-        let engines = format!("{}, {}", engine.name(), reference.name());
-        report(name, &engines, &compared, shown);
+        let compared: Vec<_> = cases.map(|seed| task.compare(random(task.damped, seed))).collect();
+        report(&task, &compared, shown);
     }
 }
 
-fn random(kind: Kind, seed: u64) -> Contact {
+fn random(damped: bool, seed: u64) -> Contact {
     let mut random = fastrand::Rng::with_seed(seed);
     let mut power = |low: f64, high: f64| 10_f64.powf(low + (high - low) * random.f64());
     let (kappa, psi) = (power(-6.0, 6.0), power(-10.0, 1.0));
-    let damping = match kind {
-        Kind::Undamped => 0.0,
-        Kind::Damped => power(-6.0, 4.0),
-    };
+    let damping = if damped { power(-6.0, 4.0) } else { 0.0 };
     Contact::new(kappa, psi, damping).expect("positive numbers")
 }
 
-fn compare(contact: Contact, engine: Engine, reference: Engine) -> Compared {
-    let [found, expected] = [engine, reference].map(|engine| engine.collide(contact));
-    match (found, expected) {
-        (Ok((found, _)), Ok((expected, _))) => Compared {
-            contact,
-            failure: None,
-            same_itinerary: found.itinerary() == expected.itinerary(),
-            errors: errors(&found, &expected),
-        },
-        (Err(error), _) | (_, Err(error)) => {
-            let failure = Some(error.to_string());
-            Compared { contact, failure, same_itinerary: true, errors: [0.0; 3] }
-        }
+impl Task {
+    fn compare(&self, contact: Contact) -> Result<Compared, String> {
+        let by = |engine: Engine| engine.collide(contact).map_err(|error| error.to_string());
+        let (found, _) = by(self.engine)?;
+        let expected = match self.reference {
+            Reference::Engine(engine) => by(engine)?.0,
+            Reference::DoubleDouble => {
+                let finest = Collider::default().collide_finely(contact);
+                let finest = finest.map_err(|error| error.to_string())?;
+                finest.ok_or("no double-double reference")?
+            }
+        };
+        let estimate = self.engine.estimate(&found).map_err(|error| error.to_string())?;
+        let same_itinerary = found.itinerary() == expected.itinerary();
+        Ok(Compared { contact, same_itinerary, errors: errors(&found, &expected), estimate })
     }
 }
 
@@ -87,20 +101,45 @@ fn errors(found: &Collision, expected: &Collision) -> [f64; 3] {
 }
 
 /// Prints a row of the table, and describes some contacts that failed or differ.
-fn report(name: &str, engines: &str, compared: &[Compared], shown: u64) {
-    let failed: Vec<_> = compared.iter().filter(|one| one.failure.is_some()).collect();
-    let differ: Vec<_> = compared.iter().filter(|one| !one.same_itinerary).collect();
-    let agree = || compared.iter().filter(|one| one.failure.is_none() && one.same_itinerary);
-    let largest = |index: usize| agree().map(|one| one.errors[index]).fold(0.0, f64::max);
-    let [eps_t, time, eps_n] = [0, 1, 2].map(largest);
-    println!(
-        "| {name} | {engines} | {} | {} | {eps_t:.1e} | {time:.1e} | {eps_n:.1e} |",
-        failed.len(),
-        differ.len()
-    );
-    for one in [failed, differ].iter().flat_map(|all| all.iter().zip(0..shown)).map(|(one, _)| one)
-    {
-        let what = one.failure.as_deref().unwrap_or("other itinerary");
-        eprintln!("{engines}: {:?}: {what}", one.contact);
+fn report(task: &Task, compared: &[Result<Compared, String>], shown: u64) {
+    let good: Vec<_> = compared.iter().flatten().collect();
+    let mut failures = BTreeMap::<&str, usize>::new();
+    for reason in compared.iter().filter_map(|one| one.as_ref().err()) {
+        // The numbers of a message differ, its end does not.
+        *failures.entry(reason.rsplit(": ").next().unwrap_or(reason)).or_default() += 1;
     }
+    let differ: Vec<_> = good.iter().filter(|one| !one.same_itinerary).collect();
+    let certain = differ.iter().filter(|one| one.estimate.distance > one.estimate.eps_t_error);
+    let largest = |index: usize| {
+        let agree = good.iter().filter(|one| one.same_itinerary);
+        agree.map(|one| one.errors[index]).fold(0.0, f64::max)
+    };
+    let uncovered: Vec<_> =
+        good.iter().filter(|one| one.errors[0] > one.estimate.eps_t_error).collect();
+    let with_error = good.iter().filter(|one| one.errors[0] > 0.0);
+    let mut ratios: Vec<f64> =
+        with_error.map(|one| one.estimate.eps_t_error / one.errors[0]).collect();
+    ratios.sort_by(f64::total_cmp);
+    println!(
+        "| {} | {} | {} | {} {failures:?} | {}, {} | {:.1e} | {:.1e} | {:.1e} | {} | {:.1} |",
+        if task.damped { "1e-6 … 1e4" } else { "0" },
+        task.engine.name(),
+        compared.len(),
+        compared.len() - good.len(),
+        differ.len(),
+        certain.count(),
+        largest(0),
+        largest(1),
+        largest(2),
+        uncovered.len(),
+        ratios.get(ratios.len() / 2).unwrap_or(&f64::NAN),
+    );
+    let described = |what: &str, some: &[&&Compared]| {
+        for one in some.iter().zip(0..shown).map(|(one, _)| one) {
+            let name = task.engine.name();
+            eprintln!("{name}: {:?}: {what}: {:?}, {:?}", one.contact, one.errors, one.estimate);
+        }
+    };
+    described("other itinerary", &differ);
+    described("not covered", &uncovered);
 }

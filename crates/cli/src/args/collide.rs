@@ -38,6 +38,10 @@ pub struct CollideArguments {
     #[arg(conflicts_with = "batch")]
     pub format: Format,
 
+    /// Add the expected error of ε_t and the distance of the itinerary from changing
+    #[arg(long, help_heading = "Output")]
+    pub estimate: bool,
+
     /// Picture of the forces and the velocity of one collision, which is printed as well
     #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output", conflicts_with = "batch")]
     #[arg(value_parser = shared::picture())]

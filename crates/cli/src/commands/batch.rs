@@ -2,16 +2,21 @@
 //! of the input.
 
 use rayon::prelude::*;
-use stickslip_model::{Engine, Switch};
 
 use crate::error::Failure;
 use crate::input::rows::{Columns, Input, Row};
-use crate::output::csv::CsvFile;
+use crate::output::csv::{CsvFile, Rows};
 use crate::output::file::publish;
 use crate::output::progress::Bar;
-use crate::output::rows::{self, EVENTS, Summary};
+use crate::output::rows::{self, ESTIMATES, EVENTS, RESULTS};
 use crate::plan::BatchPlan;
 use crate::threads;
+
+/// The number of rows that are computed as one piece of work.
+const ROWS_AT_ONCE: usize = 128;
+/// Rows are computed together until their collisions have about this many switches, which take 100
+/// MB as text. Memory is then bounded even if a single collision has a million switches.
+const SWITCHES: f64 = 1e6;
 
 /// Computes every row of the input.
 ///
@@ -19,35 +24,40 @@ use crate::threads;
 /// The input cannot be used, an output cannot be written, or some rows have no result. In the last
 /// case the outputs are complete.
 pub fn run(plan: &BatchPlan) -> Result<(), Failure> {
-    let mut input = Input::open(&plan.input, &plan.given, &Columns::COLLISIONS)?;
+    let names: &[&str] = if plan.estimate { &ESTIMATED } else { &RESULTS };
+    let mut input = Input::open(&plan.input, &plan.given, &Columns::of_collisions(names))?;
     let pool = threads::pool(plan.threads)?;
     let mut results = CsvFile::create(&plan.out)?;
     let mut events = plan.events.as_deref().map(CsvFile::create).transpose()?;
-    results.write(|out| rows::write_header(out, input.header()))?;
+    results
+        .write(&header(input.header().iter().chain(names.iter().map(|name| name.as_bytes()))))?;
     if let Some(events) = &mut events {
-        events.write(|out| out.write_record(EVENTS))?;
+        events.write(&header(EVENTS))?;
     }
 
     let bar = Bar::bytes(input.size());
     let (mut count, mut failed) = (0, 0);
     let (mut portion, mut computed) = (Vec::new(), Vec::new());
     loop {
-        input.read_portion(&mut portion)?;
+        pool.install(|| input.read_portion(&mut portion))?;
         if portion.is_empty()
             || [Some(&results), events.as_ref()].into_iter().flatten().all(CsvFile::is_unheard)
         {
             break;
         }
-        pool.install(|| compute(plan.engine, &portion, events.is_some(), &mut computed));
-        for (row, result) in portion.iter().zip(&computed) {
-            let summary = result.as_ref().map(|(summary, _)| summary);
-            results
-                .write(|out| rows::write_row(out, &row.fields, summary.map_err(String::as_str)))?;
-            if let (Some(events), Ok((_, switches))) = (&mut events, result) {
-                events.write(|out| rows::write_switches(out, count, switches))?;
+        let mut rest = &portion[..];
+        while !rest.is_empty() {
+            let (present, later) = rest.split_at(together(rest));
+            pool.install(|| compute(plan, present, count, &mut computed));
+            for part in &computed {
+                results.write(&part.results)?;
+                if let Some(events) = &mut events {
+                    events.write(&part.events)?;
+                }
+                failed += part.failed;
             }
-            failed += u64::from(result.is_err());
-            count += 1;
+            count += present.len() as u64;
+            rest = later;
         }
         bar.reach(input.position());
     }
@@ -61,20 +71,79 @@ pub fn run(plan: &BatchPlan) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The results of a row with its switches, if they are wanted, or the reason why it has none.
-type Computed = Result<(Summary, Vec<Switch>), String>;
+/// The columns of results with estimates.
+const ESTIMATED: [&str; RESULTS.len() + ESTIMATES.len()] = {
+    let mut names = [""; RESULTS.len() + ESTIMATES.len()];
+    names.split_at_mut(RESULTS.len()).0.copy_from_slice(&RESULTS);
+    names.split_at_mut(RESULTS.len()).1.copy_from_slice(&ESTIMATES);
+    names
+};
 
-/// Computes a portion. Rows do not depend on each other, and so results do not depend on the order
-/// of the work.
-fn compute(engine: Engine, portion: &[Row], with_switches: bool, computed: &mut Vec<Computed>) {
-    portion
-        .par_iter()
-        .map(|row| {
-            let contact = row.contact.clone()?;
-            let (collision, _) = engine.collide(contact).map_err(|e| e.to_string())?;
-            let summary = Summary::from(&collision);
-            let switches = if with_switches { collision.switches.to_vec() } else { Vec::new() };
-            Ok((summary, switches))
-        })
-        .collect_into_vec(computed);
+/// The header of a file.
+fn header<T: AsRef<[u8]>>(names: impl IntoIterator<Item = T>) -> Rows {
+    let mut header = Rows::default();
+    header.fields(names);
+    header.end();
+    header
+}
+
+/// The number of the first `rows` that are computed together.
+fn together(rows: &[Row]) -> usize {
+    let mut switches = 0.0;
+    let fits = rows.iter().take_while(|row| {
+        let before = switches;
+        // Without damping the number of switches grows as √κ t_c/π.
+        switches += row.contact.as_ref().map_or(0.0, |contact| contact.kappa().sqrt());
+        before < SWITCHES
+    });
+    fits.count()
+}
+
+/// What successive rows of the input make.
+#[derive(Default)]
+struct Computed {
+    results: Rows,
+    events: Rows,
+    /// The number of rows without a result.
+    failed: u64,
+}
+
+/// Computes `rows`, the first of which is the case `first`. Rows do not depend on each other, and so
+/// results do not depend on the order of the work.
+fn compute(plan: &BatchPlan, rows: &[Row], first: u64, computed: &mut Vec<Computed>) {
+    let work = rows.par_chunks(ROWS_AT_ONCE).enumerate().map(|(index, rows)| {
+        let mut part = Computed::default();
+        for (row, case) in rows.iter().zip(first + (index * ROWS_AT_ONCE) as u64..) {
+            part.results.fields(&row.fields);
+            if let Err(reason) = part.add(plan, row, case) {
+                rows::write_failure(&mut part.results, &reason);
+                if plan.estimate {
+                    part.results.fields([""; ESTIMATES.len()]);
+                }
+                part.failed += 1;
+            }
+            part.results.end();
+        }
+        part
+    });
+    work.collect_into_vec(computed);
+}
+
+impl Computed {
+    /// Adds what the row of the input with the number `case` makes, or adds nothing and returns the
+    /// reason.
+    fn add(&mut self, plan: &BatchPlan, row: &Row, case: u64) -> Result<(), String> {
+        let contact = row.contact.clone()?;
+        let (collision, _) = plan.engine.collide(contact).map_err(|error| error.to_string())?;
+        let estimate = || plan.engine.estimate(&collision).map_err(|error| error.to_string());
+        let estimate = plan.estimate.then(estimate).transpose()?;
+        rows::write_collision(&mut self.results, &collision);
+        if let Some(estimate) = estimate {
+            rows::write_estimate(&mut self.results, &estimate);
+        }
+        if plan.events.is_some() {
+            rows::write_switches(&mut self.events, case, &collision);
+        }
+        Ok(())
+    }
 }

@@ -16,7 +16,7 @@ use crate::schema;
 /// # Errors
 /// The collision cannot be computed, or the picture or standard output cannot be written.
 pub fn run(plan: &SinglePlan) -> Result<(), Failure> {
-    let SinglePlan { contact, engine, format, plot } = plan;
+    let SinglePlan { contact, engine, format, plot, estimate } = plan;
     let failed = |source| CollisionFailure::new(contact, source);
     if let Some(plot) = plot {
         plot.probe()?;
@@ -29,12 +29,13 @@ pub fn run(plan: &SinglePlan) -> Result<(), Failure> {
         (collision, statistics, None)
     };
     collision.energy.require_finite().map_err(|error| failed(error.into()))?;
+    let estimate = estimate.then(|| engine.estimate(&collision)).transpose().map_err(failed)?;
     if let (Some(plot), Some(history)) = (plot, &history) {
         publish([plot.write(Ok(pictures::collision::draw(&collision, history)))?])?;
     }
-    let statistics = statistics.as_ref();
+    let estimates = (estimate.as_ref(), statistics.as_ref());
     print(|out| match format {
-        Format::Json => json::write(out, schema::COLLISION, &collision, engine, statistics),
-        Format::Table => text::write(out, engine, &collision, statistics),
+        Format::Json => json::write(out, schema::COLLISION, &collision, engine, estimates),
+        Format::Table => text::write(out, engine, &collision, estimates),
     })
 }

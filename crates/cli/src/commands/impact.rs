@@ -25,7 +25,7 @@ pub fn run(plan: &ImpactPlan) -> Result<(), Failure> {
     impact.require_finite().map_err(|error| failed(error.into()))?;
     let statistics = statistics.as_ref();
     print(|out| match format {
-        Format::Json => json::write(out, schema::IMPACT, &impact, engine, statistics),
+        Format::Json => json::write(out, schema::IMPACT, &impact, engine, (None, statistics)),
         Format::Table => table::write(out, engine, &impact, statistics),
     })
 }

@@ -6,9 +6,9 @@ use crate::error::Failure;
 use crate::input::atlas;
 use crate::input::recipe::Given;
 use crate::input::rows::{Columns, Input};
-use crate::output::csv::{CsvFile, number};
+use crate::output::csv::{CsvFile, Rows};
 use crate::output::file::publish;
-use crate::output::rows::{LOCATED, write_fields};
+use crate::output::rows::LOCATED;
 use crate::plan::LocatePlan;
 
 /// Locates every point of the input.
@@ -20,10 +20,13 @@ pub fn run(plan: &LocatePlan) -> Result<(), Failure> {
     let atlas = atlas::read(&plan.atlas)?;
     let mut input = Input::open(&plan.input, &Given::default(), &Columns::POINTS)?;
     let mut table = CsvFile::create(&plan.out)?;
-    table.write(|out| write_fields(out, input.header(), LOCATED))?;
+    let mut text = Rows::default();
+    text.fields(input.header().iter().chain(LOCATED.iter().map(|name| name.as_bytes())));
+    text.end();
     let (mut rows, mut failed, mut first) = (0, 0, None);
     let mut portion = Vec::new();
     loop {
+        table.write(&std::mem::take(&mut text))?;
         input.read_portion(&mut portion)?;
         if portion.is_empty() {
             break;
@@ -31,19 +34,24 @@ pub fn run(plan: &LocatePlan) -> Result<(), Failure> {
         for row in &portion {
             let located = row.contact.as_ref().map(|contact| atlas.locate(contact));
             let distance = located.as_ref().ok().and_then(|located| located.distance);
-            let distance = distance.map(number).unwrap_or_default();
             let region = match located {
                 Ok(located) => located.region.map_err(|why| format!("row {}: {why}", rows + 1)),
                 Err(reason) => Err(reason.clone()),
             };
-            let fields = match &region {
-                Ok(region) => {
-                    let itinerary = atlas.itinerary(*region).to_owned();
-                    [switch_count(&itinerary).to_string(), itinerary, region.to_string(), distance]
-                }
-                Err(_) => [String::new(), String::new(), String::new(), distance],
-            };
-            table.write(|out| write_fields(out, &row.fields, fields.each_ref().map(|f| &**f)))?;
+            text.fields(&row.fields);
+            if let Ok(region) = region {
+                let itinerary = atlas.itinerary(region);
+                text.count(switch_count(itinerary));
+                text.field(itinerary);
+                text.field(region.to_string());
+            } else {
+                text.fields([""; LOCATED.len() - 1]);
+            }
+            match distance {
+                Some(distance) => text.number(distance),
+                None => text.field(""),
+            }
+            text.end();
             rows += 1;
             if let Err(reason) = region {
                 failed += 1;

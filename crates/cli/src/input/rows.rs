@@ -1,29 +1,36 @@
 //! A CSV file of collisions, read in portions.
 //!
-//! Start reading here; then, in this order: `columns` (which of them have a meaning) and `scan` (on
-//! which line a row begins, and what no CSV file has).
+//! Start reading here; then, in this order: `columns` (which of them have a meaning), `portions` (the
+//! text of whole rows) and `scan` (where a row begins, and what no CSV file has).
 
 mod columns;
+mod portions;
 mod scan;
 
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use csv::ByteRecord;
+use rayon::prelude::*;
 use stickslip_model::Contact;
 
 use crate::error::Failure;
 use crate::input::recipe::{Given, Recipe};
 use crate::input::source::{self, Source};
 pub use columns::Columns;
-use scan::Scanned;
+use portions::{Portion, Portions};
+
+/// Largest number of rows in a portion.
+const ROWS: usize = 8192;
+/// The number of rows that are read as one piece of work.
+const ROWS_AT_ONCE: usize = 256;
 
 /// A CSV file of collisions. Its header has been read.
 pub struct Input {
     path: PathBuf,
     /// The size of the file in bytes, if it is known.
     size: Option<u64>,
-    reader: csv::Reader<Scanned<Box<dyn Read>>>,
+    portions: Portions<Box<dyn Read + Send>>,
     header: ByteRecord,
     recipe: Recipe,
 }
@@ -38,12 +45,6 @@ pub struct Row {
 }
 
 impl Input {
-    /// Largest number of rows in a portion.
-    const ROWS: usize = 4096;
-    /// A portion ends when its collisions have about this many switches, which take 200 MB. Memory
-    /// is then bounded even if a single collision has a million switches.
-    const SWITCHES: f64 = 4e6;
-
     /// Opens `path`, or standard input if it is `-`, and reads the header.
     ///
     /// # Errors
@@ -52,13 +53,13 @@ impl Input {
     pub fn open(path: &Path, given: &Given, columns: &Columns) -> Result<Self, Failure> {
         let Source { bytes, size } = source::open(path)?;
         let path = source::shown(path);
-        let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(Scanned::new(bytes));
-        let header = reader.byte_headers().map_err(|error| unreadable(path, error))?;
-        let header = header.clone();
-        reader.get_mut().next_row();
+        let mut portions = Portions::new(bytes);
+        let mut header = ByteRecord::new();
+        let first = portions.next(1).map_err(|error| unreadable(path, &error))?;
+        first.records().read(&mut header);
         let recipe =
             columns.recipe(&header, given).map_err(|reason| Failure::input(path, reason))?;
-        Ok(Self { path: path.to_owned(), size, reader, header, recipe })
+        Ok(Self { path: path.to_owned(), size, portions, header, recipe })
     }
 
     /// The names of the columns.
@@ -73,61 +74,56 @@ impl Input {
 
     /// How many bytes have been read.
     pub fn position(&self) -> u64 {
-        self.reader.position().byte()
+        self.portions.position()
     }
 
-    /// Reads the next portion into `rows`. It is empty at the end of the file.
+    /// Reads the next portion into `rows`, on all threads of the present pool. It is empty at the
+    /// end of the file.
     ///
     /// # Errors
     /// The file cannot be read.
     pub fn read_portion(&mut self, rows: &mut Vec<Row>) -> Result<(), Failure> {
-        rows.clear();
-        let mut switches = 0.0;
-        while rows.len() < Self::ROWS && switches < Self::SWITCHES {
-            let Some(row) = self.read_row()? else { break };
-            // Without damping the number of switches grows as √κ t_c/π.
-            switches += row.contact.as_ref().map_or(0.0, |contact| contact.kappa().sqrt());
-            rows.push(row);
-        }
+        let portion = self.portions.next(ROWS).map_err(|error| unreadable(&self.path, &error))?;
+        let blank = || Row { fields: ByteRecord::new(), contact: Err(String::new()) };
+        rows.resize_with(portion.rows(), blank);
+        let (columns, recipe) = (self.header.len(), &self.recipe);
+        let parts = portion.parts(ROWS_AT_ONCE);
+        rows.par_chunks_mut(ROWS_AT_ONCE).zip(parts).for_each(|(rows, part)| {
+            read_rows(&part, rows, columns, recipe);
+        });
         Ok(())
-    }
-
-    fn read_row(&mut self) -> Result<Option<Row>, Failure> {
-        let mut fields = ByteRecord::new();
-        let more = self.reader.read_byte_record(&mut fields);
-        if !more.map_err(|error| unreadable(&self.path, error))? {
-            return Ok(None);
-        }
-        let line = self.reader.get_mut().next_row().unwrap_or_default();
-        let contact = self.contact(&fields).map_err(|reason| format!("line {line}: {reason}"));
-        if fields.len() != self.header.len() {
-            let blanks = std::iter::repeat(&[] as &[u8]);
-            fields = fields.iter().chain(blanks).take(self.header.len()).collect();
-        }
-        Ok(Some(Row { fields, contact }))
-    }
-
-    fn contact(&self, fields: &ByteRecord) -> Result<Contact, String> {
-        if fields.len() != self.header.len() {
-            return Err(format!(
-                "{} fields; expected one for each column of the header, {}",
-                fields.len(),
-                self.header.len()
-            ));
-        }
-        // The recipe's columns are columns of the header.
-        self.recipe.contact(|column| &fields[column]).map_err(|error| error.to_string())
     }
 }
 
-fn unreadable(path: &Path, error: csv::Error) -> Failure {
-    match error.into_kind() {
-        // The scan says by itself what is wrong, and where.
-        csv::ErrorKind::Io(error) if error.kind() == io::ErrorKind::InvalidData => {
-            Failure::input(path, error)
+/// Reads the rows of `part` into `rows`, by the `recipe` for so many columns.
+fn read_rows(part: &Portion, rows: &mut [Row], columns: usize, recipe: &Recipe) {
+    let mut records = part.records();
+    for Row { fields, contact } in rows {
+        let line = records.read(fields).unwrap_or_default();
+        let read = read_contact(fields, columns, recipe);
+        *contact = read.map_err(|reason| format!("line {line}: {reason}"));
+        if fields.len() != columns {
+            let blanks = std::iter::repeat(&[] as &[u8]);
+            *fields = fields.iter().chain(blanks).take(columns).collect();
         }
-        csv::ErrorKind::Io(error) => source::unreadable(path, &error),
-        // Rows of bytes have no other errors.
-        other => Failure::input(path, format!("cannot be read: {other:?}")),
+    }
+}
+
+fn read_contact(fields: &ByteRecord, columns: usize, recipe: &Recipe) -> Result<Contact, String> {
+    if fields.len() != columns {
+        let found = fields.len();
+        return Err(format!(
+            "{found} fields; expected one for each column of the header, {columns}"
+        ));
+    }
+    // The recipe's columns are columns of the header.
+    recipe.contact(|column| &fields[column]).map_err(|error| error.to_string())
+}
+
+fn unreadable(path: &Path, error: &io::Error) -> Failure {
+    match error.kind() {
+        // The scan says by itself what is wrong, and where.
+        io::ErrorKind::InvalidData => Failure::input(path, error),
+        _ => source::unreadable(path, error),
     }
 }

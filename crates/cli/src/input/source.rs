@@ -9,7 +9,7 @@ use crate::error::Failure;
 /// Something to read.
 pub struct Source {
     /// Its bytes.
-    pub bytes: Box<dyn Read>,
+    pub bytes: Box<dyn Read + Send>,
     /// How many there are, if that is known.
     pub size: Option<u64>,
 }

@@ -4,12 +4,12 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 use serde_json::{Map, Value, json, to_value};
-use stickslip_model::Engine;
+use stickslip_model::{Engine, Estimate};
 use stickslip_solver::Statistics;
 
 /// Writes `result` as one JSON object with the layout `schema`, and ends the line. The object also
-/// says what computed the result: the engine after the parameters, and the integrator's work at the
-/// end, which is an empty object for the exact solution.
+/// says what computed the result: the engine after the parameters, and at the end the estimate of the
+/// error, if there is one, and the integrator's work, which is an empty object for the exact solution.
 ///
 /// # Errors
 /// `out` cannot be written.
@@ -18,7 +18,7 @@ pub fn write(
     schema: &str,
     result: &impl Serialize,
     engine: &Engine,
-    statistics: Option<&Statistics>,
+    (estimate, statistics): (Option<&Estimate>, Option<&Statistics>),
 ) -> io::Result<()> {
     let mut object = Map::from_iter([("schema".to_owned(), schema.into())]);
     let method = to_value(engine)?;
@@ -30,6 +30,9 @@ pub fn write(
                 object.insert("method".to_owned(), method.clone());
             }
         }
+    }
+    if let Some(estimate) = estimate {
+        object.insert("estimate".to_owned(), to_value(estimate)?);
     }
     let statistics = statistics.map_or(Ok(json!({})), to_value)?;
     object.insert("statistics".to_owned(), statistics);

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use stickslip_model::{Collision, Engine, Switch};
+use stickslip_model::{Collision, Engine, Estimate, Switch};
 use stickslip_solver::Statistics;
 
 /// The number of digits that are shown. `--format json` shows all of them.
@@ -16,7 +16,7 @@ pub fn write(
     out: &mut dyn Write,
     engine: &Engine,
     collision: &Collision,
-    statistics: Option<&Statistics>,
+    (estimate, statistics): (Option<&Estimate>, Option<&Statistics>),
 ) -> io::Result<()> {
     let contact = &collision.contact;
     writeln!(
@@ -48,6 +48,16 @@ pub fn write(
             ("itinerary", collision.itinerary()),
         ],
     )?;
+    if let Some(Estimate { eps_t_error, distance }) = estimate {
+        writeln!(out)?;
+        pairs(
+            out,
+            &[
+                ("expected error of ε_t", format!("{eps_t_error:.1e}")),
+                ("distance from other switches", format!("{distance:.1e}")),
+            ],
+        )?;
+    }
     energy(out, collision)?;
     if let Some(statistics) = statistics {
         work(out, statistics)?;

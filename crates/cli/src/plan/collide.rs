@@ -32,6 +32,8 @@ pub struct SinglePlan {
     pub format: Format,
     /// The file of its picture, if it is drawn.
     pub plot: Option<PictureFile>,
+    /// Whether the error is estimated.
+    pub estimate: bool,
 }
 
 /// A file of collisions.
@@ -49,6 +51,8 @@ pub struct BatchPlan {
     pub engine: Engine,
     /// The number of threads; `None` is one for each core.
     pub threads: Option<u16>,
+    /// Whether errors are estimated.
+    pub estimate: bool,
 }
 
 impl CollidePlan {
@@ -70,7 +74,8 @@ impl CollidePlan {
         let (Some(input), Some(out)) = (&arguments.batch, &arguments.out) else {
             let contact = contact(&given)?;
             let (format, plot) = (arguments.format, arguments.plot.clone());
-            return Ok(Self::Single(SinglePlan { contact, engine, format, plot }));
+            let estimate = arguments.estimate;
+            return Ok(Self::Single(SinglePlan { contact, engine, format, plot, estimate }));
         };
         let events = arguments.events.as_ref();
         require_different(
@@ -84,6 +89,7 @@ impl CollidePlan {
             given,
             engine,
             threads: arguments.threads,
+            estimate: arguments.estimate,
         }))
     }
 }

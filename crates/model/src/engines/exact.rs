@@ -14,6 +14,7 @@
 //! Source of the law: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008).
 
 mod boundaries;
+mod distance;
 mod error;
 mod flank;
 mod limit;
@@ -32,6 +33,7 @@ use crate::contact::Contact;
 use crate::laws::phase::{Regime, Side};
 use crate::result::{Collision, Switch};
 pub use boundaries::{small_impact_boundary, top_boundary};
+pub use distance::distance;
 pub use error::ExactError;
 use error::{too_many, undamped};
 pub use margin::{Margins, margin, margins, moved};

@@ -4,6 +4,7 @@ use stickslip_solver::{Observer, Options, Outcome, Pair, RunError, Start, Statis
 
 mod account;
 mod last_slip;
+mod nearest;
 mod refine;
 mod reversals;
 
@@ -15,6 +16,7 @@ use crate::laws::regularized::Regularized;
 use crate::laws::regularized::components::{DAMPING, STATE, T, U};
 use crate::result::{Collision, EnergyLedger};
 use account::{Account, Observed};
+use nearest::Nearest;
 
 /// Flatness of a switch, in s, above which its time would be clearly less accurate than the state.
 /// Such a collision is refined.
@@ -26,6 +28,9 @@ const FLAT: f64 = 30.0;
 /// error. There the step is limited to the length on which u bends elsewhere.
 const LONGEST_STEP: f64 = 0.1;
 
+/// The longest step of a second opinion, as part of that of the first one.
+const FINER_STEP: f64 = 0.75;
+
 /// Impact ratio ψ below which steps are shorter. The change of v is part of w, and what the estimates
 /// miss of it counts in units of ψ: as h¹⁰ of a step at the ends of contact.
 const SMALL: f64 = 0.01;
@@ -33,6 +38,8 @@ const SMALL: f64 = 0.01;
 /// Stiffness κ above which the tolerances are finer than asked for: their errors add up over √κ
 /// oscillations.
 const STIFF: f64 = 3e3;
+/// Stiffness κ above which they are still finer: the errors of that many steps have one sign.
+const VERY_STIFF: f64 = 1e5;
 /// The finest tolerance that this may give.
 const FINEST: f64 = 1e-15;
 
@@ -126,6 +133,31 @@ impl Collider {
         self.observe(contact, &options, collision, &mut ())
     }
 
+    /// As [`Self::collide`], and then follows the same switches once more by a Taylor method with
+    /// twice the digits: all results but the energies are the true ones, rounded. This is for
+    /// references; it takes a hundred times as long.
+    ///
+    /// `None` if a switch is not found again.
+    ///
+    /// ```
+    /// use stickslip_model::{Collider, Contact};
+    ///
+    /// let contact = Contact::new(63.0, 0.5, 0.01)?;
+    /// let collider = Collider::default();
+    /// let error = collider.collide(contact)?.eps_t() - 0.19866671668174;
+    /// let finest = collider.collide_finely(contact)?.expect("its switches are found again");
+    /// assert!(error.abs() < 2e-11 && (finest.eps_t() - 0.19866671668174).abs() < 1e-15);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Self::collide`].
+    pub fn collide_finely(&self, contact: Contact) -> Result<Option<Collision>, CollisionError> {
+        let mut collision = self.collide(contact)?;
+        let options = self.options_for(&contact)?;
+        Ok(refine::refine(self.pair, &options, &mut collision).then_some(collision))
+    }
+
     /// Integrates one collision and keeps its course in time, both with one run.
     ///
     /// The collision is bit for bit that of [`Self::collide`], and the course that of
@@ -142,6 +174,27 @@ impl Collider {
         let (mut collision, mut history) = (Collision::before(contact), History::before(contact));
         let statistics = self.observe(contact, &options, &mut collision, &mut history)?;
         Ok((collision, statistics, history))
+    }
+
+    /// The velocity w at the end of a damped contact, and how far, as a velocity, its switches are
+    /// from changing.
+    pub(crate) fn second_opinion(
+        &self,
+        contact: Contact,
+    ) -> Result<(f64, f64, usize), CollisionError> {
+        let mut options = self.options_for(&contact)?;
+        for tolerance in [&mut options.rtol, &mut options.atol] {
+            *tolerance = tolerance.max(FINEST);
+        }
+        options.max_step *= FINER_STEP;
+        let system = Regularized::new(contact);
+        let start = Start { mode: Phase::first(&contact), s: 0.0, state: system.start() };
+        let mut nearest = Nearest::new(system);
+        let run = run_with(self.pair, &system, start, f64::INFINITY, &options, &mut nearest)?;
+        if run.outcome != (Outcome::EndedByGuard { guard: END }) {
+            return Err(CollisionError::Unfinished { outcome: run.outcome, time: run.state[T] });
+        }
+        Ok((system.velocity(&run.state), nearest.velocity(), run.statistics.accepted))
     }
 
     /// Integrates one collision into `collision`, while `course` observes the run too.
@@ -222,7 +275,8 @@ impl Collider {
         let mut options = self.options;
         if self.refined {
             let small = (contact.psi() / SMALL).min(1.0).powf(0.1);
-            let stiff = (STIFF / contact.kappa()).min(1.0).sqrt();
+            let above = |stiff: f64| (stiff / contact.kappa()).min(1.0).sqrt();
+            let stiff = above(STIFF) * above(VERY_STIFF);
             options.max_step *= small;
             options.first_step = options.first_step.map(|h| h * small);
             for tolerance in [&mut options.rtol, &mut options.atol] {

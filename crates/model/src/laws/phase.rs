@@ -24,12 +24,20 @@ pub enum Regime {
     Stick,
 }
 
-impl fmt::Display for Regime {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+impl Regime {
+    /// `slip` or `stick`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
             Self::Slip => "slip",
             Self::Stick => "stick",
-        })
+        }
+    }
+}
+
+impl fmt::Display for Regime {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
     }
 }
 

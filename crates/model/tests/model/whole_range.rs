@@ -72,6 +72,18 @@ fn damped_contacts_end_when_they_should() {
     }
 }
 
+/// A slip that begins with the contact, by a tiny spring, is not one just before the end.
+#[test]
+fn a_contact_of_one_slip_has_its_length() {
+    let damping = 1.3416016022105013e-6;
+    for (collider, _) in colliders() {
+        let found = collide(&collider, 106065.88068271137, 4.540747178410921, damping);
+        assert_eq!(found.itinerary(), "o+");
+        assert!((found.contact_time - exact::CONTACT_TIME).abs() < 1e-5, "{found:?}");
+        assert!((found.switches[0].time_left / found.contact_time - 1.0).abs() < 1e-12);
+    }
+}
+
 /// Contacts whose end used to be missed: ε_n was off by 17 %, or ε_t had the wrong sign.
 #[test]
 fn strong_damping_ends_a_contact() {

@@ -6,7 +6,7 @@ use csv::ByteRecord;
 
 use crate::input::parameter::Parameter;
 use crate::input::recipe::{Given, Recipe, RecipeError};
-use crate::output::rows::{LOCATED, RESULTS};
+use crate::output::rows::LOCATED;
 
 /// The columns that have a meaning.
 #[derive(Clone, Copy, Debug)]
@@ -20,19 +20,21 @@ pub struct Columns {
 }
 
 impl Columns {
-    /// The columns of a file of collisions.
-    pub const COLLISIONS: Self = Self {
-        parameters: &[
-            Parameter::Kappa,
-            Parameter::Psi,
-            Parameter::Ratio,
-            Parameter::Mu,
-            Parameter::Alpha,
-            Parameter::Damping,
-        ],
-        options: true,
-        results: &RESULTS,
-    };
+    /// The columns of a file of collisions whose results are these.
+    pub const fn of_collisions(results: &'static [&'static str]) -> Self {
+        Self { parameters: Self::COLLISION, options: true, results }
+    }
+
+    /// The parameters of a collision.
+    const COLLISION: &[Parameter] = &[
+        Parameter::Kappa,
+        Parameter::Psi,
+        Parameter::Ratio,
+        Parameter::Mu,
+        Parameter::Alpha,
+        Parameter::Damping,
+    ];
+
     /// The columns of a file of points (κ, ψ) that are located in an atlas.
     pub const POINTS: Self =
         Self { parameters: &[Parameter::Kappa, Parameter::Psi], options: false, results: &LOCATED };

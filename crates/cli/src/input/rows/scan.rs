@@ -1,8 +1,7 @@
-//! What a CSV file looks like before its rows are known: on which lines they begin, and whether
-//! quotes, fields and rows have a sensible size.
+//! What a CSV file looks like before its rows are known: where they begin, and whether quotes, fields
+//! and rows have a sensible size.
 
-use std::collections::VecDeque;
-use std::io::{self, Read};
+use std::io;
 
 /// Most lines that a quoted field may have. A quote that is not closed would swallow all rows after
 /// it.
@@ -17,18 +16,22 @@ const BLANK_LINES: u64 = 1_000_000;
 /// The byte order mark of UTF-8, which some programs write first.
 const MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// A source of CSV text, scanned as it is read. Reading fails where the text has no sensible size,
-/// before the reader of rows has to hold it.
-#[derive(Debug)]
-pub struct Scanned<R> {
-    source: R,
-    scan: Scan,
+/// Where a row begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Begin {
+    /// The byte with which it begins, counted from 0.
+    pub byte: u64,
+    /// The line on which it begins, counted from 1.
+    pub line: u64,
 }
 
-/// How far the text has been scanned.
+/// How far the text has been scanned. Scanning fails where the text has no sensible size, before
+/// anything has to hold a row.
 #[derive(Debug)]
-struct Scan {
+pub struct Scan {
     state: State,
+    /// The number of bytes so far.
+    bytes: u64,
     /// The line of the next byte, counted from 1.
     line: u64,
     /// Whether the last byte was a carriage return, of which a line feed may be the other half.
@@ -36,8 +39,6 @@ struct Scan {
     field_bytes: usize,
     fields: usize,
     blank_lines: u64,
-    /// The lines on which rows begin that have not been asked for.
-    begins: VecDeque<u64>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,48 +57,51 @@ enum State {
     Closing { line: u64 },
 }
 
-impl<R: Read> Scanned<R> {
-    pub fn new(source: R) -> Self {
-        let scan = Scan {
+impl Scan {
+    /// Nothing has been scanned yet.
+    pub fn new() -> Self {
+        Self {
             state: State::Mark { bytes: 0 },
+            bytes: 0,
             line: 1,
             after_return: false,
             field_bytes: 0,
             fields: 0,
             blank_lines: 0,
-            begins: VecDeque::new(),
-        };
-        Self { source, scan }
-    }
-
-    /// The line on which the next row begins, of those that have not been asked for.
-    pub fn next_row(&mut self) -> Option<u64> {
-        self.scan.begins.pop_front()
-    }
-}
-
-impl<R: Read> Read for Scanned<R> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let count = self.source.read(buffer)?;
-        if count == 0 && !buffer.is_empty() {
-            self.scan.end()?;
         }
-        self.scan.take(&buffer[..count])?;
-        Ok(count)
-    }
-}
-
-impl Scan {
-    fn take(&mut self, bytes: &[u8]) -> io::Result<()> {
-        bytes.iter().try_for_each(|byte| self.step(*byte))
     }
 
-    fn step(&mut self, byte: u8) -> io::Result<()> {
+    /// Scans the next bytes, and adds the rows that begin there to `begins`.
+    ///
+    /// # Errors
+    /// What has no sensible size, and on which line.
+    pub fn take(&mut self, mut bytes: &[u8], begins: &mut Vec<Begin>) -> io::Result<()> {
+        while let Some((byte, rest)) = bytes.split_first() {
+            self.step(*byte, begins)?;
+            bytes = rest;
+            if self.state == State::Field {
+                let more = bytes.iter().position(|byte| matches!(byte, b',' | b'\r' | b'\n'));
+                let more = more.unwrap_or(bytes.len());
+                self.bytes += more as u64;
+                self.field_bytes += more;
+                self.check_field(self.line)?;
+                self.after_return &= more == 0;
+                bytes = &bytes[more..];
+            }
+        }
+        Ok(())
+    }
+
+    fn step(&mut self, byte: u8, begins: &mut Vec<Begin>) -> io::Result<()> {
+        let mut at = self.bytes;
+        self.bytes += 1;
         if let State::Mark { bytes } = self.state {
             if MARK.get(bytes) == Some(&byte) {
                 self.state = State::Mark { bytes: bytes + 1 };
                 return Ok(());
             }
+            // A part of a mark belongs to the first field.
+            at -= if bytes < MARK.len() { bytes as u64 } else { 0 };
             self.state = State::Between;
         }
         let begins_on = self.line;
@@ -115,7 +119,7 @@ impl Scan {
                     format!("more than {BLANK_LINES} blank lines; expected rows")
                 });
             }
-            self.begins.push_back(begins_on);
+            begins.push(Begin { byte: at, line: begins_on });
             (self.fields, self.blank_lines) = (0, 0);
             self.state = State::Start;
         }
@@ -141,15 +145,23 @@ impl Scan {
         } else {
             self.field_bytes += 1;
         }
-        within(self.field_bytes <= FIELD_BYTES, begins_on, || {
-            format!("a field with more than {FIELD_BYTES} bytes; expected a CSV file")
-        })?;
+        self.check_field(begins_on)?;
         within(self.fields < FIELDS, begins_on, || {
             format!("a row with more than {FIELDS} fields; expected at most {FIELDS}")
         })
     }
 
-    fn end(&self) -> io::Result<()> {
+    fn check_field(&self, line: u64) -> io::Result<()> {
+        within(self.field_bytes <= FIELD_BYTES, line, || {
+            format!("a field with more than {FIELD_BYTES} bytes; expected a CSV file")
+        })
+    }
+
+    /// The end of the text.
+    ///
+    /// # Errors
+    /// The text ends in a quoted field, which begins on the line that is named.
+    pub fn end(&self) -> io::Result<()> {
         match self.state {
             State::Quoted { line } => Err(refused(line, &unclosed("is not closed"))),
             _ => Ok(()),

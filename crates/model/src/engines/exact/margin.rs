@@ -167,7 +167,7 @@ fn follow_exits(contact: &Contact, which: &Margin, on_exit: &mut impl FnMut(Exit
 const CREST: Place = Place::Minimum { near: Hint(0.0), number: 0 };
 
 /// C − h at the crest, if the phase passes the crest before the largest compression.
-fn crest_margin(slide: &Slide, sliding: &SlipPhase) -> Option<f64> {
+pub fn crest_margin(slide: &Slide, sliding: &SlipPhase) -> Option<f64> {
     let Crest { root, height } = slide.crest?;
     let passes = sliding.start.is_before(Moment { half: Half::Compression, root });
     passes.then(|| sliding.at_start() - height)
@@ -230,7 +230,7 @@ fn flank_of(exit: &Exit) -> (u32, bool) {
 }
 
 /// The stick phase that starts at `onset`.
-fn swing(slide: &Slide, sliding: &SlipPhase, onset: Moment) -> Swing {
+pub fn swing(slide: &Slide, sliding: &SlipPhase, onset: Moment) -> Swing {
     let normal = NormalMotion::at(onset);
     Swing::new(slide, onset, normal, sliding.velocity_at(onset, normal))
 }

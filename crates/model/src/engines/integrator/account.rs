@@ -2,7 +2,8 @@
 
 use stickslip_solver::{Dense, Observer, State, SwitchEvent};
 
-use super::{last_slip, reversals};
+use super::last_slip::{self, LastStick};
+use super::reversals;
 use crate::laws::phase::{END, Phase, Regime};
 use crate::laws::regularized::Regularized;
 use crate::laws::regularized::components::{STATE, T};
@@ -68,13 +69,37 @@ impl<'a> Account<'a> {
                 (slip, 0.0)
             }
         };
+        if let Some(stick) = last_slip::stick(&self.system, slip, y) {
+            self.stick(&stick, y);
+            self.leave(slip, y, 0.0);
+            return stick.ends[1].0;
+        }
         let short = match self.collision.switches.last() {
-            Some(switch) => last_slip::time_left(&self.system, y, switch.spring),
+            Some(switch) => last_slip::time_left(&self.system, y, switch.spring, length),
             None => None,
         };
         // At the end the spring is at its limit, which is 0.
         self.leave(slip, y, 0.0);
         short.unwrap_or(length)
+    }
+
+    /// Records the switches of a stick phase just before the end, whose state is `y`.
+    fn stick(&mut self, LastStick { side, ends: [start, end] }: &LastStick, y: &State<STATE>) {
+        let lengths = [y[T] - start.0, start.0 - end.0];
+        let switches = [(Regime::Stick, *side, start), (Regime::Slip, side.opposite(), end)];
+        for ((to, side, (_, spring)), length) in switches.into_iter().zip(lengths) {
+            self.elapsed += length;
+            let velocity = self.system.velocity(y);
+            let time = self.elapsed;
+            self.collision.switches.push(Switch {
+                time,
+                time_left: length,
+                to,
+                side,
+                spring: *spring,
+                velocity,
+            });
+        }
     }
 
     /// Records the switch from phase `from` to phase `to` in state `y`.

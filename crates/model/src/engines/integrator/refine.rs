@@ -49,15 +49,19 @@ pub(crate) fn refine(pair: Pair, options: &Options, collision: &mut Collision) -
         return false;
     };
     let spring = last.spring(contact, *phase).nearest();
+    // The last of the phases ends with the contact. After these switches there may be others that are
+    // too short for the integrator.
+    let switched = &ends[..ends.len() - 1];
     let mut time = DoubleDouble(0.0, 0.0);
-    for (switch, end) in collision.switches.iter_mut().zip(&ends) {
+    for (switch, end) in collision.switches.iter_mut().zip(switched) {
         time = time.plus(end.t);
         switch.time = time.nearest();
         switch.velocity = end.w.nearest();
     }
     collision.contact_time = time.plus(last.t).nearest();
     let mut left = last.t;
-    for ((switch, end), (phase, _)) in collision.switches.iter_mut().zip(&ends).zip(&phases).rev() {
+    let ended = collision.switches.iter_mut().zip(switched).zip(&phases);
+    for ((switch, end), (phase, _)) in ended.rev() {
         switch.time_left = left.nearest();
         left = left.plus(end.t);
         switch.spring = end.spring(contact, *phase).nearest();

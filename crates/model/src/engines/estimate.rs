@@ -1,0 +1,115 @@
+//! The error to expect of a collision, and how far its itinerary is from changing.
+
+use stickslip_solver::Pair;
+
+use super::integrator::Collider;
+use super::{Engine, EngineError, Tolerances, exact};
+use crate::contact::Contact;
+use crate::laws::phase::Regime;
+use crate::result::Collision;
+
+/// How good a collision is.
+///
+/// The spring and its limit form a system that never lets two motions move apart: for contacts with
+/// the same normal motion, the norm √(w² + κy²) of their difference never grows. Therefore both
+/// numbers are in the same unit, and an itinerary is certain where `distance` is above
+/// `eps_t_error`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Estimate {
+    /// Expected largest error of ε_t.
+    pub eps_t_error: f64,
+    /// Part of ψ by which w would have to differ, at any moment, for another itinerary. The
+    /// itinerary is the same for all ψ that are nearer than this, relative to ψ.
+    pub distance: f64,
+}
+
+/// How many times the difference from a second opinion the error may be. The second opinion is
+/// better than the first: this covers what its own error takes away from the difference.
+const SAFETY: f64 = 2.0;
+
+/// The tolerance of a second opinion by Dormand–Prince 8(5,3), as part of that of a run by itself
+/// and by Dormand–Prince 5(4), which is ten times as accurate at the same tolerance.
+const FINER: f64 = 1.0 / 30.0;
+const FINER_THAN_DOPRI5: f64 = 1.0 / 300.0;
+
+impl Engine {
+    /// The error to expect of `collision`, which this engine has computed, by a second opinion: the
+    /// exact solution where there is one, and otherwise a run of Dormand–Prince 8(5,3) with a finer
+    /// tolerance. Rounding is added, also that of the exact solution itself.
+    ///
+    /// Cost: that of the exact solution, or three runs.
+    ///
+    /// ```
+    /// use stickslip_model::{Contact, Engine, Tolerances};
+    ///
+    /// let contact = Contact::new(63.0, 0.5, 0.01)?;
+    /// let engine = Engine::Dopri5(Tolerances { rtol: 1e-6, atol: 1e-6 });
+    /// let (rough, _) = engine.collide(contact)?;
+    /// let (fine, _) = Engine::Auto.collide(contact)?;
+    /// let estimate = engine.estimate(&rough)?;
+    /// let error = (rough.eps_t() - fine.eps_t()).abs();
+    /// assert!(error < estimate.eps_t_error && estimate.eps_t_error < 10.0 * error);
+    /// assert!(estimate.distance > estimate.eps_t_error, "its switches are the right ones");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Self::collide`].
+    pub fn estimate(&self, collision: &Collision) -> Result<Estimate, EngineError> {
+        let contact = collision.contact;
+        let undamped =
+            |eps_t| Ok(Opinion { eps_t, distance: exact::distance(&contact)?, steps: 0 });
+        let second = match self.resolved(&contact) {
+            Self::Exact | Self::Auto => undamped(collision.eps_t()),
+            Self::Dop853(_) | Self::Dopri5(_) if contact.damping() == 0.0 => {
+                undamped(exact::collide(contact)?.eps_t())
+            }
+            Self::Dop853(tolerances) => Opinion::of_run(contact, tolerances, FINER),
+            Self::Dopri5(tolerances) => Opinion::of_run(contact, tolerances, FINER_THAN_DOPRI5),
+        }?;
+        let difference = (collision.eps_t() - second.eps_t).abs();
+        let eps_t_error = SAFETY * difference + rounding(collision, second.steps);
+        Ok(Estimate { eps_t_error, distance: second.distance })
+    }
+}
+
+/// What another computation says of a contact.
+struct Opinion {
+    eps_t: f64,
+    distance: f64,
+    /// The number of steps, 0 for the exact solution.
+    steps: usize,
+}
+
+impl Opinion {
+    /// The opinion of a run whose tolerances are the part `finer` of these.
+    fn of_run(
+        contact: Contact,
+        Tolerances { rtol, atol }: Tolerances,
+        finer: f64,
+    ) -> Result<Self, EngineError> {
+        let collider = Collider::with_tolerances(Pair::Dop853, rtol * finer, atol * finer);
+        let (velocity, distance, steps) = collider.second_opinion(contact)?;
+        let psi = contact.psi();
+        Ok(Self { eps_t: velocity / psi, distance: distance / psi, steps })
+    }
+}
+
+/// What rounding makes of ε_t: a few units in its last place, and the rounding of the angle by which
+/// the spring swings, which adds up over the `steps` of an integrator.
+fn rounding(collision: &Collision, steps: usize) -> f64 {
+    let omega = collision.contact.kappa().sqrt();
+    let psi = collision.contact.psi();
+    // The start counts as a switch with the velocity ψ and no elongation.
+    let switches = collision.switches.iter();
+    let begins = switches
+        .clone()
+        .map(|switch| (switch.to, switch.time, switch.velocity.hypot(omega * switch.spring) / psi));
+    let ends = switches.map(|switch| switch.time).chain([collision.contact_time]);
+    let phases = std::iter::once((collision.start, 0.0, 1.0)).chain(begins).zip(ends);
+    let swings = phases.filter(|((regime, ..), _)| *regime == Regime::Stick);
+    let angles: f64 = swings.map(|((_, begin, speed), end)| omega * (end - begin) * speed).sum();
+    let growth = 1.0 + 0.25 * (steps as f64).sqrt();
+    f64::EPSILON * (4.0 + collision.eps_t().abs() + 2.0 * angles * growth)
+}
