@@ -1,14 +1,15 @@
 //! CSV files, and the text of their rows.
 
 use std::io::Write;
+use std::ops::Range;
 use std::path::Path;
 
 use super::file::{OutputFile, StoredFile};
 use crate::error::Failure;
 
-/// Numbers whose shortest digits [`ryu`] writes as [`f64`]'s `Debug` does; it has its own rule for
-/// the smaller ones.
-const LEAST_PLAIN: f64 = 1e-4;
+/// Sizes of numbers whose shortest digits [`ryu`] writes as [`f64`]'s `Debug` does. It has its own
+/// rule for smaller ones.
+const PLAIN: Range<f64> = 1e-4..f64::INFINITY;
 
 /// The shortest digits that read back as `value`.
 pub fn number(value: f64) -> String {
@@ -47,8 +48,7 @@ impl Rows {
 
     /// Adds a number with the shortest digits that read back as it, as [`number`] does.
     pub fn number(&mut self, value: f64) {
-        let size = value.abs();
-        if size >= LEAST_PLAIN && size < f64::INFINITY {
+        if PLAIN.contains(&value.abs()) {
             self.plain(ryu::Buffer::new().format_finite(value).as_bytes());
         } else {
             self.plain(number(value).as_bytes());

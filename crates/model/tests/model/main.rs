@@ -7,6 +7,7 @@ mod checks;
 #[path = "../../../../tests/common/mod.rs"]
 mod common;
 
+mod estimates;
 mod exact;
 mod impacts;
 mod margins;

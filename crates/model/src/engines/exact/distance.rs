@@ -1,12 +1,14 @@
 //! How far a collision is from other switches, as one number.
 
+use std::f64::consts::FRAC_PI_2;
+
 use super::error::{ExactError, undamped};
 use super::flank::Flanks;
 use super::margin::{crest_margin, swing};
 use super::release::Release;
 use super::slide::{Slide, SlipPhase};
 use super::swing::Swing;
-use super::trajectory::NormalMotion;
+use super::trajectory::{Half, Moment, NormalMotion};
 use crate::contact::Contact;
 
 /// The distance of `contact`, which must have no damping, from other switches.
@@ -42,6 +44,7 @@ pub fn distance(contact: &Contact) -> Result<f64, ExactError> {
         let swing = swing(&slide, &sliding, onset);
         let release = Release::of(&swing, crest);
         let gaps = half_swings(release.half_swing).filter_map(|k| top_gap(&swing, crest, k));
+        let gaps = gaps.chain(bend_gap(&swing, crest, &release));
         least = gaps.fold(least, |least, gap| least.min(swing.omega * gap.abs()));
         let velocity = super::swing::half_swing_sign(release.half_swing) * release.velocity;
         sliding = SlipPhase::new(release.moment, release.normal, velocity);
@@ -59,4 +62,15 @@ fn half_swings(last: u32) -> impl Iterator<Item = u32> {
 fn top_gap(swing: &Swing, crest: Option<f64>, k: u32) -> Option<f64> {
     let top = Flanks::of(swing, crest, k)?.top(swing)?;
     Some(swing.gap(k, top, NormalMotion::at(top)).value)
+}
+
+/// The gap where it bends upwards again on the first half swing, if the phase does not end before.
+/// There it may fall to 0 if the phase starts a little earlier or later.
+fn bend_gap(swing: &Swing, crest: Option<f64>, release: &Release) -> Option<f64> {
+    let bend = Moment { half: Half::Decompression, root: crest? };
+    let reached = swing.start.is_before(bend) && bend.is_before(release.moment);
+    let angle = swing.omega * swing.start.time_until(bend);
+    // A difference δ of w at the start is a difference δ sin θ/ω of the gap at the angle θ.
+    let part = if angle < FRAC_PI_2 { angle.sin() } else { 1.0 };
+    reached.then(|| swing.gap(0, bend, NormalMotion::at(bend)).value / part)
 }

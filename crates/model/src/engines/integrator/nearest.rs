@@ -29,7 +29,12 @@ struct Prolonged {
     side: f64,
     /// Time, rate of compression, elongation and velocity at the end.
     end: [f64; 4],
-    /// How far below 0 the guard has come, as a velocity.
+    /// The end in s.
+    s: f64,
+    /// The slope of the guard at the end as a velocity by s, and a bound of its bend afterwards.
+    slope: f64,
+    bend: f64,
+    /// How far below 0 the guard comes, as a velocity.
     depth: f64,
 }
 
@@ -62,9 +67,8 @@ impl Nearest {
         HybridSystem::guard_values(&self.system, phase, 0.0, y)
     }
 
-    /// How far below 0 the guard that ended a phase at `event` falls at least, by its slope and a
-    /// bound of its bend.
-    fn dip(&self, event: &SwitchEvent<Phase, STATE>) -> f64 {
+    /// The slope of the guard that ended a phase at `event`, and a bound of its bend afterwards.
+    fn slope_and_bend(&self, event: &SwitchEvent<Phase, STATE>) -> (f64, f64) {
         /// Part of the scale of s on which a difference is taken.
         const REACH: f64 = 1e-5;
         let (phase, y) = (event.from, &event.before);
@@ -79,11 +83,12 @@ impl Nearest {
             let speed = self.system.velocity(y).hypot(self.omega * elongation);
             bend += self.omega * self.omega * speed * (2.0 * v + 4.0 * u * u * self.omega);
         }
-        0.5 * slope * slope / bend * self.unit(phase, y)
+        (slope.abs(), bend)
     }
 
-    /// Goes on with the phases that are over to the state `y`, where the spring's limit is `limit`.
-    fn prolong(&mut self, y: &State<STATE>, limit: f64) {
+    /// Goes on with the phases that are over to the state `y` at `s`, where the spring's limit is
+    /// `limit`.
+    fn prolong(&mut self, s: f64, y: &State<STATE>, limit: f64) {
         let (time, v) = (self.since + y[T], self.system.compression_rate(y));
         let limit_rate = self.system.limit_rate(y);
         let (omega, least) = (self.omega, &mut self.least);
@@ -97,10 +102,11 @@ impl Nearest {
                 // s w − v is constant.
                 Regime::Slip => limit_rate - (phase.side * velocity + v - v0),
             };
-            let falls = below > phase.depth;
-            if falls {
-                phase.depth = below;
-            } else {
+            let length = (s - phase.s).min(phase.slope / phase.bend);
+            let at_least = length * (phase.slope - 0.5 * phase.bend * length);
+            let falls = below.max(at_least) > phase.depth;
+            phase.depth = phase.depth.max(below).max(at_least);
+            if !falls {
                 *least = least.min(phase.depth);
             }
             falls
@@ -145,7 +151,8 @@ impl Observer<Phase, STATE> for Nearest {
             }
         }
         let y = step.at(1.0);
-        self.prolong(&y, self.system.normal_force(&y) / self.system.contact().kappa());
+        let limit = self.system.normal_force(&y) / self.system.contact().kappa();
+        self.prolong(step.start() + step.size(), &y, limit);
     }
 
     fn on_switch(&mut self, event: &SwitchEvent<Phase, STATE>) {
@@ -155,14 +162,22 @@ impl Observer<Phase, STATE> for Nearest {
             self.since += y[T];
             let end =
                 [self.since, self.system.compression_rate(y), elongation, self.system.velocity(y)];
-            let side = elongation.signum();
-            let depth = self.dip(event);
-            self.prolonged.push(Prolonged { regime: phase.regime, side, end, depth });
+            let (slope, bend) = self.slope_and_bend(event);
+            let unit = self.unit(phase, y);
+            self.prolonged.push(Prolonged {
+                regime: phase.regime,
+                side: elongation.signum(),
+                end,
+                s: event.s,
+                slope: slope * unit,
+                bend: bend * unit,
+                depth: 0.0,
+            });
         }
     }
 
-    fn on_end(&mut self, phase: Phase, _s: f64, y: &State<STATE>) {
-        self.prolong(y, 0.0);
+    fn on_end(&mut self, phase: Phase, s: f64, y: &State<STATE>) {
+        self.prolong(s, y, 0.0);
         let at_end = match phase.regime {
             Regime::Slip => self.values(phase, y)[SAME_SIDE].abs() * self.unit(phase, y),
             // The last slip is too short for the integrator.
