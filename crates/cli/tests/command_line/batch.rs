@@ -212,3 +212,23 @@ fn the_reference_collisions_in_one_file() {
         assert_eq!(row[5].len(), row[4].parse::<usize>().unwrap() + 1);
     }
 }
+
+#[test]
+fn estimates_follow_the_results() {
+    let workspace = Workspace::with_input("kappa,psi,damping\n18,1.99,0\n18,-1,0\n63,0.5,0.01\n");
+    let ran = workspace.run("collide --batch in.csv --out out.csv --estimate");
+    assert_eq!(ran.code, 1);
+    let table = rows(&workspace.read("out.csv"));
+    assert_eq!(table[0].join(","), format!("kappa,psi,damping,{HEADER},eps_t_error,distance"));
+    assert_eq!(table[2][10..], ["", ""]);
+    for row in [&table[1], &table[3]] {
+        let [error, distance] = [10, 11].map(|column| row[column].parse::<f64>().unwrap());
+        assert!(error > 0.0 && error < 2e-11 && distance > error, "{row:?}");
+    }
+    // A column may have the name of an estimate that is not wanted.
+    let workspace = Workspace::with_input("kappa,psi,distance\n18,1,7\n");
+    assert_eq!(workspace.run("collide --batch in.csv --out o").code, 0);
+    let ran = workspace.run("collide --batch in.csv --out o --estimate");
+    assert_eq!(ran.code, 2);
+    assert!(ran.stderr.contains("column distance has the name of a result"), "{}", ran.stderr);
+}

@@ -4,7 +4,7 @@ use std::process::{Command, Stdio};
 
 use assert_cmd::cargo::cargo_bin;
 use serde_json::Value;
-use stickslip_model::{Collider, Collision, Contact, exact};
+use stickslip_model::{Collider, Collision, Contact, Engine, Tolerances, exact};
 use stickslip_solver::{Dop853, Dopri5};
 
 use crate::{Ran, decimal, reference, stickslip};
@@ -236,4 +236,21 @@ fn a_full_standard_output_is_a_failure() {
         .unwrap();
     assert_eq!(output.status.code(), Some(1));
     assert!(String::from_utf8(output.stderr).unwrap().contains("standard output"));
+}
+
+#[test]
+fn estimates_are_those_of_the_library() {
+    let line = "--kappa 18 --psi 1.99 --method dopri5 --estimate";
+    let object = json(line);
+    let contact = Contact::new(18.0, 1.99, 0.0).unwrap();
+    let engine = Engine::Dopri5(Tolerances::DOPRI5);
+    let expected = engine.estimate(&engine.collide(contact).unwrap().0).unwrap();
+    let estimate = &object["estimate"];
+    assert_eq!(bits(&estimate["eps_t_error"]), expected.eps_t_error.to_bits());
+    assert_eq!(bits(&estimate["distance"]), expected.distance.to_bits());
+    // ψ = 2 is a boundary.
+    assert!((expected.distance - 0.01 / 1.99).abs() < 1e-5);
+    let table = stickslip(&format!("collide {line}")).stdout;
+    assert!(table.contains("distance from other switches  5.0e-3"), "{table}");
+    assert!(json("--kappa 18 --psi 1.99").get("estimate").is_none());
 }
