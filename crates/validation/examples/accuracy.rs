@@ -112,7 +112,7 @@ fn report(task: &Task, compared: &[Result<Compared, String>], shown: u64) {
         *failures.entry(reason.rsplit(": ").next().unwrap_or(reason)).or_default() += 1;
     }
     let differ: Vec<_> = good.iter().filter(|one| !one.same_itinerary).collect();
-    let certain = differ.iter().filter(|one| one.estimate.distance > one.estimate.eps_t_error);
+    let certain = differ.iter().filter(|one| one.estimate.certain);
     let largest = |index: usize| {
         let agree = good.iter().filter(|one| one.same_itinerary);
         agree.map(|one| one.errors[index]).fold(0.0, f64::max)

@@ -21,9 +21,9 @@ pub use columns::Columns;
 use portions::{Portion, Portions};
 
 /// Largest number of rows in a portion.
-const ROWS: usize = 8192;
+const ROWS: usize = 16_384;
 /// The number of rows that are read as one piece of work.
-const ROWS_AT_ONCE: usize = 256;
+const ROWS_AT_ONCE: usize = 1024;
 
 /// A CSV file of collisions. Its header has been read.
 pub struct Input {

@@ -9,7 +9,7 @@ pub const RESULTS: [&str; 7] =
     ["eps_n", "eps_t", "switch_count", "itinerary", "contact_time", "reversals", "status"];
 
 /// The columns of estimates, which follow the columns of results if they are wanted.
-pub const ESTIMATES: [&str; 2] = ["eps_t_error", "distance"];
+pub const ESTIMATES: [&str; 3] = ["eps_t_error", "distance", "certain"];
 
 /// The columns of results where points are located in an atlas.
 pub const LOCATED: [&str; 4] = ["switch_count", "itinerary", "region", "distance"];
@@ -33,6 +33,7 @@ pub fn write_collision(rows: &mut Rows, collision: &Collision) {
 pub fn write_estimate(rows: &mut Rows, estimate: &Estimate) {
     rows.number(estimate.eps_t_error);
     rows.number(estimate.distance);
+    rows.field(if estimate.certain { "true" } else { "false" });
 }
 
 /// Writes `reason` instead of results, which it takes the place of as the status.

@@ -48,13 +48,14 @@ pub fn write(
             ("itinerary", collision.itinerary()),
         ],
     )?;
-    if let Some(Estimate { eps_t_error, distance }) = estimate {
+    if let Some(Estimate { eps_t_error, distance, certain }) = estimate {
         writeln!(out)?;
         pairs(
             out,
             &[
                 ("expected error of ε_t", format!("{eps_t_error:.1e}")),
                 ("distance from other switches", format!("{distance:.1e}")),
+                ("itinerary is certain", if *certain { "yes" } else { "no" }.to_owned()),
             ],
         )?;
     }

@@ -219,11 +219,15 @@ fn estimates_follow_the_results() {
     let ran = workspace.run("collide --batch in.csv --out out.csv --estimate");
     assert_eq!(ran.code, 1);
     let table = rows(&workspace.read("out.csv"));
-    assert_eq!(table[0].join(","), format!("kappa,psi,damping,{HEADER},eps_t_error,distance"));
-    assert_eq!(table[2][10..], ["", ""]);
+    assert_eq!(
+        table[0].join(","),
+        format!("kappa,psi,damping,{HEADER},eps_t_error,distance,certain")
+    );
+    assert_eq!(table[2][10..], ["", "", ""]);
     for row in [&table[1], &table[3]] {
         let [error, distance] = [10, 11].map(|column| row[column].parse::<f64>().unwrap());
-        assert!(error > 0.0 && error < 2e-11 && distance > error, "{row:?}");
+        assert!(error > 0.0 && error < 2e-11 && distance > 1e-3, "{row:?}");
+        assert_eq!(row[12], "true");
     }
     // A column may have the name of an estimate that is not wanted.
     let workspace = Workspace::with_input("kappa,psi,distance\n18,1,7\n");

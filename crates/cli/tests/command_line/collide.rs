@@ -248,6 +248,7 @@ fn estimates_are_those_of_the_library() {
     let estimate = &object["estimate"];
     assert_eq!(bits(&estimate["eps_t_error"]), expected.eps_t_error.to_bits());
     assert_eq!(bits(&estimate["distance"]), expected.distance.to_bits());
+    assert_eq!(estimate["certain"], true);
     // ψ = 2 is a boundary.
     assert!((expected.distance - 0.01 / 1.99).abs() < 1e-5);
     let table = stickslip(&format!("collide {line}")).stdout;

@@ -29,7 +29,7 @@ const FLAT: f64 = 30.0;
 const LONGEST_STEP: f64 = 0.1;
 
 /// The longest step of a second opinion, as part of that of the first one.
-const FINER_STEP: f64 = 0.75;
+const FINER_STEP: f64 = 0.6;
 
 /// Impact ratio ψ below which steps are shorter. The change of v is part of w, and what the estimates
 /// miss of it counts in units of ψ: as h¹⁰ of a step at the ends of contact.
@@ -38,8 +38,10 @@ const SMALL: f64 = 0.01;
 /// Stiffness κ above which the tolerances are finer than asked for: their errors add up over √κ
 /// oscillations.
 const STIFF: f64 = 3e3;
-/// Stiffness κ above which they are still finer: the errors of that many steps have one sign.
+/// Stiffness κ above which they are still finer, since the errors of so many steps have one sign. Far
+/// above it steps would be too many.
 const VERY_STIFF: f64 = 1e5;
+const STILL_FINER: f64 = 0.3;
 /// The finest tolerance that this may give.
 const FINEST: f64 = 1e-15;
 
@@ -276,7 +278,7 @@ impl Collider {
         if self.refined {
             let small = (contact.psi() / SMALL).min(1.0).powf(0.1);
             let above = |stiff: f64| (stiff / contact.kappa()).min(1.0).sqrt();
-            let stiff = above(STIFF) * above(VERY_STIFF);
+            let stiff = above(STIFF) * above(VERY_STIFF).max(STILL_FINER);
             options.max_step *= small;
             options.first_step = options.first_step.map(|h| h * small);
             for tolerance in [&mut options.rtol, &mut options.atol] {

@@ -50,8 +50,7 @@ fn errors_are_covered_and_not_exaggerated() {
             uncovered += u32::from(error > estimate.eps_t_error);
             // What is below the rounding of ε_t is not an error of the engine.
             ratios.push(estimate.eps_t_error / error.max(1.1e-16));
-            let certain = estimate.distance > estimate.eps_t_error;
-            assert!(!certain || found.itinerary() == expected, "{engine:?} {contact:?}");
+            assert!(!estimate.certain || found.itinerary() == expected, "{engine:?} {contact:?}");
         }
         assert!(ratios.len() > 200 && uncovered <= 1, "{engine:?}: {uncovered}");
         ratios.sort_by(f64::total_cmp);
