@@ -37,18 +37,16 @@ pub fn run(plan: &BatchPlan) -> Result<(), Failure> {
 
     let bar = Bar::bytes(input.size());
     let (mut count, mut failed) = (0, 0);
-    let (mut portion, mut computed) = (Vec::new(), Vec::new());
-    loop {
-        pool.install(|| input.read_portion(&mut portion))?;
-        if portion.is_empty()
-            || [Some(&results), events.as_ref()].into_iter().flatten().all(CsvFile::is_unheard)
-        {
-            break;
-        }
+    let (mut portion, mut next, mut computed) = (Vec::new(), Vec::new(), Vec::new());
+    pool.install(|| input.read_portion(&mut portion))?;
+    while !portion.is_empty() {
         let mut rest = &portion[..];
         while !rest.is_empty() {
             let (present, later) = rest.split_at(together(rest));
-            pool.install(|| compute(plan, present, count, &mut computed));
+            // The next portion is read while the last rows of this one are computed.
+            let compute = || compute(plan, present, count, &mut computed);
+            let read = || if later.is_empty() { input.read_portion(&mut next) } else { Ok(()) };
+            pool.join(compute, read).1?;
             for part in &computed {
                 results.write(&part.results)?;
                 if let Some(events) = &mut events {
@@ -59,6 +57,10 @@ pub fn run(plan: &BatchPlan) -> Result<(), Failure> {
             count += present.len() as u64;
             rest = later;
         }
+        if [Some(&results), events.as_ref()].into_iter().flatten().all(CsvFile::is_unheard) {
+            break;
+        }
+        std::mem::swap(&mut portion, &mut next);
         bar.reach(input.position());
     }
     drop(bar);
@@ -111,8 +113,12 @@ struct Computed {
 /// Computes `rows`, the first of which is the case `first`. Rows do not depend on each other, and so
 /// results do not depend on the order of the work.
 fn compute(plan: &BatchPlan, rows: &[Row], first: u64, computed: &mut Vec<Computed>) {
-    let work = rows.par_chunks(ROWS_AT_ONCE).enumerate().map(|(index, rows)| {
-        let mut part = Computed::default();
+    computed.resize_with(rows.len().div_ceil(ROWS_AT_ONCE), Computed::default);
+    let work = computed.par_iter_mut().zip(rows.par_chunks(ROWS_AT_ONCE)).enumerate();
+    work.for_each(|(index, (part, rows))| {
+        part.results.clear();
+        part.events.clear();
+        part.failed = 0;
         for (row, case) in rows.iter().zip(first + (index * ROWS_AT_ONCE) as u64..) {
             part.results.fields(&row.fields);
             if let Err(reason) = part.add(plan, row, case) {
@@ -124,9 +130,7 @@ fn compute(plan: &BatchPlan, rows: &[Row], first: u64, computed: &mut Vec<Comput
             }
             part.results.end();
         }
-        part
     });
-    work.collect_into_vec(computed);
 }
 
 impl Computed {

@@ -25,6 +25,12 @@ pub struct Rows {
 }
 
 impl Rows {
+    /// Drops all rows, and keeps the memory.
+    pub fn clear(&mut self) {
+        self.text.clear();
+        self.begun = false;
+    }
+
     /// Adds a field, in quotes if it needs them.
     pub fn field(&mut self, field: impl AsRef<[u8]>) {
         let field = field.as_ref();
