@@ -4,12 +4,13 @@
 //!
 //! Without damping the exact solution is the reference, and double-double numbers are that of the
 //! exact solution. With damping the reference of Dormand–Prince 8(5,3) has double-double numbers,
-//! and that of Dormand–Prince 5(4) is Dormand–Prince 8(5,3).
+//! and that of Dormand–Prince 5(4) is Dormand–Prince 8(5,3). The last rows are those of the contacts
+//! with 25 digits in tests/data.
 //!
 //! `cargo run --release -p validation --example accuracy -- 1000000` prints the figures of
 //! docs/validation.md. Four further arguments: the number of the first contact, so that a long list
 //! can be run in parts, how many contacts to describe of those that differ, the only row of the
-//! table that is wanted, counted from 0, or 9 for all of them, and the tolerance of both pairs.
+//! table that is wanted, counted from 0, or 99 for all of them, and the tolerance of both pairs.
 
 use std::collections::BTreeMap;
 
@@ -44,7 +45,7 @@ fn main() {
     let number = |index: usize, usual| {
         arguments.get(index).and_then(|number| number.parse().ok()).unwrap_or(usual)
     };
-    let (count, first, shown, row) = (number(0, 1000), number(1, 0), number(2, 3), number(3, 9));
+    let (count, first, shown, row) = (number(0, 1000), number(1, 0), number(2, 3), number(3, 99));
     let tolerance = arguments.get(4).and_then(|number| number.parse().ok());
     let tolerances = |usual| tolerance.map_or(usual, |rtol| Tolerances { rtol, atol: rtol });
     let dop853 = Engine::Dop853(tolerances(Tolerances::DOP853));
@@ -61,12 +62,46 @@ fn main() {
         task(true, dop853, Reference::DoubleDouble),
         task(true, dopri5, Reference::Engine(Engine::Auto)),
     ];
-    let wanted = (0..).zip(tasks).filter(|(index, _)| row == 9 || row == *index);
-    for (_, task) in wanted {
+    let wanted = |index: &u64| row == 99 || row == *index;
+    for (_, task) in (0..).zip(&tasks).filter(|(index, _)| wanted(index)) {
         let cases = (first..first + count).into_par_iter();
         let compared: Vec<_> = cases.map(|seed| task.compare(random(task.damped, seed))).collect();
-        report(&task, &compared, shown);
+        report(task.damped, &task.engine, &compared, shown);
     }
+    let with_series =
+        [(false, Engine::Exact), (false, dop853), (false, dopri5), (true, dop853), (true, dopri5)];
+    for (_, (damped, engine)) in (5..).zip(with_series).filter(|(index, _)| wanted(index)) {
+        report(damped, &engine, &series(damped, engine), shown);
+    }
+}
+
+/// Compares an engine with the contacts whose results have 25 digits.
+fn series(damped: bool, engine: Engine) -> Vec<Result<Compared, String>> {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/contacts_40_digits.json");
+    let text = std::fs::read_to_string(path).expect("the repository has this file");
+    let file: serde_json::Value = serde_json::from_str(&text).expect("it is JSON");
+    let cases = file["cases"].as_array().expect("it has contacts").par_iter();
+    let compared = cases.map(|case| {
+        let [kappa, psi, damping] =
+            [0, 1, 2].map(|column| case[column].as_f64().expect("a number"));
+        let [eps_t, eps_n, time] = [4, 5, 6].map(|column| {
+            let text = case[column].as_str().expect("digits");
+            text.parse::<f64>().expect("a number")
+        });
+        let contact = Contact::new(kappa, psi, damping).expect("positive numbers");
+        (damped == (damping > 0.0)).then(|| {
+            let (found, _) = engine.collide(contact).map_err(|error| error.to_string())?;
+            let estimate = engine.estimate(&found).map_err(|error| error.to_string())?;
+            let errors = [
+                (found.eps_t() - eps_t).abs(),
+                (found.contact_time / time - 1.0).abs(),
+                (found.eps_n / eps_n - 1.0).abs(),
+            ];
+            let same_itinerary = case[3] == found.itinerary();
+            Ok(Compared { contact, same_itinerary, errors, estimate })
+        })
+    });
+    compared.flatten_iter().collect()
 }
 
 fn random(damped: bool, seed: u64) -> Contact {
@@ -104,7 +139,7 @@ fn errors(found: &Collision, expected: &Collision) -> [f64; 3] {
 }
 
 /// Prints a row of the table, and describes some contacts that failed or differ.
-fn report(task: &Task, compared: &[Result<Compared, String>], shown: u64) {
+fn report(damped: bool, engine: &Engine, compared: &[Result<Compared, String>], shown: u64) {
     let good: Vec<_> = compared.iter().flatten().collect();
     let mut failures = BTreeMap::<&str, usize>::new();
     for reason in compared.iter().filter_map(|one| one.as_ref().err()) {
@@ -125,8 +160,8 @@ fn report(task: &Task, compared: &[Result<Compared, String>], shown: u64) {
     ratios.sort_by(f64::total_cmp);
     println!(
         "| {} | {} | {} | {} {failures:?} | {}, {} | {:.1e} | {:.1e} | {:.1e} | {} | {:.1} |",
-        if task.damped { "1e-6 … 1e4" } else { "0" },
-        task.engine.name(),
+        if damped { "1e-6 … 1e4" } else { "0" },
+        engine.name(),
         compared.len(),
         compared.len() - good.len(),
         differ.len(),
@@ -139,7 +174,7 @@ fn report(task: &Task, compared: &[Result<Compared, String>], shown: u64) {
     );
     let described = |what: &str, some: &[&&Compared]| {
         for one in some.iter().zip(0..shown).map(|(one, _)| one) {
-            let name = task.engine.name();
+            let name = engine.name();
             eprintln!("{name}: {:?}: {what}: {:?}, {:?}", one.contact, one.errors, one.estimate);
         }
     };

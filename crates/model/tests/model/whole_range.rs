@@ -42,11 +42,80 @@ fn undamped_contacts_have_the_switches_of_the_exact_solution() {
         for (collider, tolerance) in colliders() {
             let found = collide(&collider, kappa, psi, 0.0);
             assert_eq!(found.itinerary(), expected.itinerary(), "{kappa} {psi} {collider:?}");
+            assert_eq!(found.reversals, expected.reversals, "{kappa} {psi} {collider:?}");
             let error = (found.eps_t() - expected.eps_t()).abs();
             let tolerance = if kappa > 1e6 { 10.0 * tolerance } else { tolerance };
             assert!(error < tolerance, "{kappa} {psi} {collider:?}: {error:e}");
         }
     }
+}
+
+/// Beside a boundary of kind *end of contact* the last two switches are nearer to the end than the
+/// rounding of the state. They are there as long as w is accurate enough to tell on which side of the
+/// boundary the contact is.
+#[test]
+fn switches_just_before_the_end_are_there() {
+    let mut numbers = fastrand::Rng::with_seed(13);
+    let mut signed = |low: f64, high: f64| {
+        let size = 10_f64.powf(low + (high - low) * numbers.f64());
+        if numbers.bool() { size } else { -size }
+    };
+    for index in 0..400 {
+        let (kappa, psi) = if index % 2 == 0 {
+            // The boundary ψ = 2 of every stiffness above 0.57.
+            (signed(0.0, 4.0).abs(), 2.0 + signed(-12.0, -6.0))
+        } else {
+            // Boundaries that end at κ_n as ψ → 0, for odd n.
+            let kappa = exact::small_impact_boundary(1 + 2 * (index % 5));
+            (kappa * (1.0 + signed(-9.0, -3.0)), signed(-12.9, -5.0).abs())
+        };
+        let contact = Contact::new(kappa, psi, 0.0).unwrap();
+        let expected = exact::collide(contact).unwrap();
+        for (collider, tolerance) in colliders() {
+            let found = collide(&collider, kappa, psi, 0.0);
+            if exact::distance(&contact).unwrap() > tolerance {
+                assert_eq!(found.itinerary(), expected.itinerary(), "{kappa} {psi:e} {collider:?}");
+                assert_eq!(found.reversals, expected.reversals, "{kappa} {psi:e} {collider:?}");
+            }
+        }
+    }
+}
+
+/// Contacts log-uniform over the whole range, by a Taylor series that decides on switches by
+/// Descartes' rule.
+#[test]
+fn contacts_have_the_switches_and_digits_of_an_independent_series() {
+    let mut compared = [0; 3];
+    for (index, case) in file("contacts_40_digits")["cases"].as_array().unwrap().iter().enumerate()
+    {
+        let [kappa, psi, damping] = [0, 1, 2].map(|column| case[column].as_f64().unwrap());
+        let [eps_t, eps_n, time] = [4, 5, 6].map(|column| number(&case[column]));
+        let check = |found: &Collision, tolerances: [f64; 2]| {
+            let place = format!("{kappa} {psi:e} {damping:e}");
+            assert_eq!(case[3], found.itinerary(), "{place}");
+            let error = (found.eps_t() - eps_t).abs();
+            assert!(error < tolerances[0], "{place}: {error:e}");
+            for (found, expected) in [(found.eps_n, eps_n), (found.contact_time, time)] {
+                assert!((found / expected - 1.0).abs() < tolerances[1], "{place}: {found}");
+            }
+        };
+        if damping == 0.0 {
+            let found = exact::collide(Contact::new(kappa, psi, damping).unwrap()).unwrap();
+            check(&found, [1e-15 * (1.0 + kappa.sqrt()), 1e-15]);
+            compared[0] += 1;
+        }
+        // The stiffest ones take most of the time.
+        if kappa < 3e3 && index % 3 == 0 {
+            let [dop853, dopri5] = colliders().map(|(collider, _)| collider);
+            check(&collide(&dop853, kappa, psi, damping), [2e-11, 4e-12]);
+            compared[1] += 1;
+            if index % 9 == 0 {
+                check(&collide(&dopri5, kappa, psi, damping), [1e-7, 1e-9]);
+                compared[2] += 1;
+            }
+        }
+    }
+    assert!(compared[0] >= 300 && compared[1] > 500 && compared[2] > 150, "{compared:?}");
 }
 
 /// Contact time and ε_n depend on the damping alone.
