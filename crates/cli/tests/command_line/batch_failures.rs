@@ -281,3 +281,27 @@ fn devices_are_written_and_stay_devices() {
         assert!(std::fs::metadata(device).unwrap().file_type().is_char_device(), "{device}");
     }
 }
+
+/// A part of a byte order mark is text of the first field, wherever that ends.
+#[test]
+fn a_part_of_a_mark_belongs_to_the_header() {
+    let header = |bytes: &[u8]| [bytes, b"\"x,kappa,psi\n\"a\",18,1\nb,18,1\n"].concat();
+    for (input, rows, message) in [
+        (header(b"\xef"), 2, ""),
+        (header(b"\xef\xbb"), 2, ""),
+        (b"\xef\nkappa,psi\n18,1\n".to_vec(), 0, "kappa is missing"),
+        (b"\xef\xbb\r\nkappa,psi\n18,1\n".to_vec(), 0, "kappa is missing"),
+        (b"\xef\xbb".to_vec(), 0, "kappa is missing"),
+        (b"\xef\xbb\xbf".to_vec(), 0, "is empty"),
+    ] {
+        let workspace = Workspace::new();
+        workspace.write("in.csv", &input);
+        let ran = workspace.run(BATCH);
+        assert_eq!(ran.code, if rows > 0 { 0 } else { 2 }, "{input:?}: {}", ran.stderr);
+        assert!(ran.stderr.contains(message), "{}", ran.stderr);
+        if rows > 0 {
+            let written = std::fs::read(workspace.path("out.csv")).unwrap();
+            assert_eq!(written.split(|byte| *byte == b'\n').count(), rows + 2);
+        }
+    }
+}

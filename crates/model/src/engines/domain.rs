@@ -64,8 +64,8 @@ const UNDAMPED: Domain = Domain {
 const DAMPED: Domain = Domain {
     engine: "the integrator",
     kappa: (1e-20, 1e10),
-    psi: (1e-20, 1e12),
-    pull: (1e-40, 1e22),
+    psi: (1e-13, 1e12),
+    pull: (1e-33, 1e22),
     damping: (1e-12, 1e4),
 };
 

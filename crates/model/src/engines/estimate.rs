@@ -18,8 +18,8 @@ use crate::result::Collision;
 pub struct Estimate {
     /// Expected largest error of ε_t.
     pub eps_t_error: f64,
-    /// Part of ψ by which w would have to differ, at any moment, for another itinerary. The
-    /// itinerary is the same for all ψ that are nearer than this, relative to ψ.
+    /// Part of ψ by which w would have to differ, at any moment, for another itinerary; at most 1.
+    /// The itinerary is the same for all ψ that are nearer than this, relative to ψ.
     pub distance: f64,
     /// Whether the itinerary is certain: the distance is above the error of w at any moment. That may
     /// be larger than the error that is left at the end, and is below 100 tolerances.

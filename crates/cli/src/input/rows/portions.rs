@@ -62,7 +62,7 @@ impl<R: Read> Portions<R> {
             self.scan.take(&self.text[read..], &mut self.begins)?;
         }
         if self.ended {
-            self.scan.end()?;
+            self.scan.end(&mut self.begins)?;
         }
         let whole = if self.ended { self.begins.len() } else { self.begins.len() - 1 };
         self.used = whole.min(rows);

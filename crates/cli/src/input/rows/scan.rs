@@ -93,17 +93,16 @@ impl Scan {
     }
 
     fn step(&mut self, byte: u8, begins: &mut Vec<Begin>) -> io::Result<()> {
-        let mut at = self.bytes;
-        self.bytes += 1;
         if let State::Mark { bytes } = self.state {
             if MARK.get(bytes) == Some(&byte) {
                 self.state = State::Mark { bytes: bytes + 1 };
+                self.bytes += 1;
                 return Ok(());
             }
-            // A part of a mark belongs to the first field.
-            at -= if bytes < MARK.len() { bytes as u64 } else { 0 };
-            self.state = State::Between;
+            self.end_mark(bytes, begins)?;
         }
+        let at = self.bytes;
+        self.bytes += 1;
         let begins_on = self.line;
         let ends_line = match byte {
             b'\n' => !self.after_return,
@@ -151,6 +150,16 @@ impl Scan {
         })
     }
 
+    /// The byte order mark ends after so many of its bytes. A part of it is text of the first field.
+    fn end_mark(&mut self, bytes: usize, begins: &mut Vec<Begin>) -> io::Result<()> {
+        self.state = State::Between;
+        if bytes < MARK.len() {
+            self.bytes = 0;
+            MARK[..bytes].iter().try_for_each(|byte| self.step(*byte, begins))?;
+        }
+        Ok(())
+    }
+
     fn check_field(&self, line: u64) -> io::Result<()> {
         within(self.field_bytes <= FIELD_BYTES, line, || {
             format!("a field with more than {FIELD_BYTES} bytes; expected a CSV file")
@@ -161,8 +170,9 @@ impl Scan {
     ///
     /// # Errors
     /// The text ends in a quoted field, which begins on the line that is named.
-    pub fn end(&self) -> io::Result<()> {
+    pub fn end(&mut self, begins: &mut Vec<Begin>) -> io::Result<()> {
         match self.state {
+            State::Mark { bytes } => self.end_mark(bytes, begins),
             State::Quoted { line } => Err(refused(line, &unclosed("is not closed"))),
             _ => Ok(()),
         }

@@ -39,10 +39,10 @@ struct Prolonged {
 }
 
 impl Nearest {
-    /// Nothing has been observed yet.
+    /// Nothing has been observed yet. A margin above ψ, at which the contact starts, does not count.
     pub fn new(system: Regularized) -> Self {
-        let omega = system.contact().kappa().sqrt();
-        Self { system, omega, least: f64::INFINITY, since: 0.0, prolonged: Vec::new() }
+        let (omega, least) = (system.contact().kappa().sqrt(), system.contact().psi());
+        Self { system, omega, least, since: 0.0, prolonged: Vec::new() }
     }
 
     /// The least margin, as a velocity.
@@ -109,7 +109,8 @@ impl Nearest {
             if !falls {
                 *least = least.min(phase.depth);
             }
-            falls
+            // A guard that is below all margins so far is not the nearest one.
+            falls && phase.depth < *least
         });
     }
 
