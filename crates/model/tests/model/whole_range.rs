@@ -105,17 +105,17 @@ fn contacts_have_the_switches_and_digits_of_an_independent_series() {
             compared[0] += 1;
         }
         // The stiffest ones take most of the time.
-        if kappa < 3e3 && index % 3 == 0 {
+        if kappa < 3e3 && index % 5 == 0 {
             let [dop853, dopri5] = colliders().map(|(collider, _)| collider);
             check(&collide(&dop853, kappa, psi, damping), [2e-11, 4e-12]);
             compared[1] += 1;
-            if index % 9 == 0 {
+            if index % 10 == 0 {
                 check(&collide(&dopri5, kappa, psi, damping), [1e-7, 1e-9]);
                 compared[2] += 1;
             }
         }
     }
-    assert!(compared[0] >= 300 && compared[1] > 500 && compared[2] > 150, "{compared:?}");
+    assert!(compared[0] >= 300 && compared[1] > 300 && compared[2] > 150, "{compared:?}");
 }
 
 /// Contact time and ε_n depend on the damping alone.
