@@ -4,8 +4,8 @@
 //!
 //! Without damping the exact solution is the reference, and double-double numbers are that of the
 //! exact solution. With damping the reference of Dormand–Prince 8(5,3) has double-double numbers,
-//! and that of Dormand–Prince 5(4) is Dormand–Prince 8(5,3). The last rows are those of the contacts
-//! with 25 digits in tests/data.
+//! and that of Dormand–Prince 5(4) is Dormand–Prince 8(5,3). The last rows are those of the
+//! contacts with 25 digits in tests/data.
 //!
 //! `cargo run --release -p validation --example accuracy -- 1000000` prints the figures of
 //! docs/validation.md. Four further arguments: the number of the first contact, so that a long list
@@ -77,7 +77,7 @@ fn main() {
 
 /// Compares an engine with the contacts whose results have 25 digits.
 fn series(damped: bool, engine: Engine) -> Vec<Result<Compared, String>> {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/contacts_40_digits.json");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/contacts_series.json");
     let text = std::fs::read_to_string(path).expect("the repository has this file");
     let file: serde_json::Value = serde_json::from_str(&text).expect("it is JSON");
     let cases = file["cases"].as_array().expect("it has contacts").par_iter();

@@ -12,10 +12,10 @@ use crate::output::rows::{self, ESTIMATES, EVENTS, RESULTS};
 use crate::plan::BatchPlan;
 use crate::threads;
 
-/// The number of rows that are computed as one piece of work.
+/// Largest number of rows that are computed as one piece of work.
 const ROWS_AT_ONCE: usize = 128;
-/// Rows are computed together until their collisions have about this many switches, which take 100
-/// MB as text. Memory is then bounded even if a single collision has a million switches.
+/// Rows are computed together until their collisions have about this many switches, which take
+/// 100 MB as text. The memory of more rows is then that of the largest collision.
 const SWITCHES: f64 = 1e6;
 
 /// Computes every row of the input.
@@ -40,13 +40,14 @@ pub fn run(plan: &BatchPlan) -> Result<(), Failure> {
     let (mut portion, mut next, mut computed) = (Vec::new(), Vec::new(), Vec::new());
     pool.install(|| input.read_portion(&mut portion))?;
     while !portion.is_empty() {
+        let position = input.position();
         let mut rest = &portion[..];
         while !rest.is_empty() {
             let (present, later) = rest.split_at(together(rest));
             // The next portion is read while the last rows of this one are computed.
             let compute = || compute(plan, present, count, &mut computed);
             let read = || if later.is_empty() { input.read_portion(&mut next) } else { Ok(()) };
-            pool.join(compute, read).1?;
+            let ((), read) = pool.join(compute, read);
             for part in &computed {
                 results.write(&part.results)?;
                 if let Some(events) = &mut events {
@@ -54,6 +55,7 @@ pub fn run(plan: &BatchPlan) -> Result<(), Failure> {
                 }
                 failed += part.failed;
             }
+            read?;
             count += present.len() as u64;
             rest = later;
         }
@@ -61,7 +63,7 @@ pub fn run(plan: &BatchPlan) -> Result<(), Failure> {
             break;
         }
         std::mem::swap(&mut portion, &mut next);
-        bar.reach(input.position());
+        bar.reach(position);
     }
     drop(bar);
 
@@ -110,16 +112,17 @@ struct Computed {
     failed: u64,
 }
 
-/// Computes `rows`, the first of which is the case `first`. Rows do not depend on each other, and so
-/// results do not depend on the order of the work.
+/// Computes `rows`, the first of which is the case `first`. Rows do not depend on each other, and
+/// so results do not depend on the order of the work.
 fn compute(plan: &BatchPlan, rows: &[Row], first: u64, computed: &mut Vec<Computed>) {
-    computed.resize_with(rows.len().div_ceil(ROWS_AT_ONCE), Computed::default);
-    let work = computed.par_iter_mut().zip(rows.par_chunks(ROWS_AT_ONCE)).enumerate();
+    let piece = piece(rows.len(), rayon::current_num_threads());
+    computed.resize_with(rows.len().div_ceil(piece), Computed::default);
+    let work = computed.par_iter_mut().zip(rows.par_chunks(piece)).enumerate();
     work.for_each(|(index, (part, rows))| {
         part.results.clear();
         part.events.clear();
         part.failed = 0;
-        for (row, case) in rows.iter().zip(first + (index * ROWS_AT_ONCE) as u64..) {
+        for (row, case) in rows.iter().zip(first + (index * piece) as u64..) {
             part.results.fields(&row.fields);
             if let Err(reason) = part.add(plan, row, case) {
                 rows::write_failure(&mut part.results, &reason);
@@ -133,21 +136,47 @@ fn compute(plan: &BatchPlan, rows: &[Row], first: u64, computed: &mut Vec<Comput
     });
 }
 
+/// The number of rows in a piece of work, so that `threads` have several pieces each even where few
+/// `rows` are computed together.
+fn piece(rows: usize, threads: usize) -> usize {
+    (rows / (4 * threads)).clamp(1, ROWS_AT_ONCE)
+}
+
 impl Computed {
     /// Adds what the row of the input with the number `case` makes, or adds nothing and returns the
     /// reason.
     fn add(&mut self, plan: &BatchPlan, row: &Row, case: u64) -> Result<(), String> {
         let contact = row.contact.clone()?;
         let (collision, _) = plan.engine.collide(contact).map_err(|error| error.to_string())?;
-        let estimate = || plan.engine.estimate(&collision).map_err(|error| error.to_string());
-        let estimate = plan.estimate.then(estimate).transpose()?;
-        rows::write_collision(&mut self.results, &collision);
-        if let Some(estimate) = estimate {
-            rows::write_estimate(&mut self.results, &estimate);
+        let estimate = plan.estimate.then(|| plan.engine.estimate(&collision));
+        match estimate {
+            None => rows::write_collision(&mut self.results, &collision, "ok"),
+            Some(Ok(estimate)) => {
+                rows::write_collision(&mut self.results, &collision, "ok");
+                rows::write_estimate(&mut self.results, &estimate);
+            }
+            Some(Err(error)) => {
+                let status = format!("no estimate: {error}");
+                rows::write_collision(&mut self.results, &collision, &status);
+                self.results.fields([""; ESTIMATES.len()]);
+                self.failed += 1;
+            }
         }
         if plan.events.is_some() {
             rows::write_switches(&mut self.events, case, &collision);
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_rows_are_several_pieces() {
+        for (rows, threads, expected) in [(1, 8, 1), (110, 4, 6), (16_384, 2, 128), (40, 1, 10)] {
+            assert_eq!(piece(rows, threads), expected);
+        }
     }
 }

@@ -10,6 +10,7 @@ use crate::output::csv::{CsvFile, Rows};
 use crate::output::file::publish;
 use crate::output::rows::LOCATED;
 use crate::plan::LocatePlan;
+use crate::threads;
 
 /// Locates every point of the input.
 ///
@@ -19,6 +20,7 @@ use crate::plan::LocatePlan;
 pub fn run(plan: &LocatePlan) -> Result<(), Failure> {
     let atlas = atlas::read(&plan.atlas)?;
     let mut input = Input::open(&plan.input, &Given::default(), &Columns::POINTS)?;
+    let pool = threads::pool(Some(1))?;
     let mut table = CsvFile::create(&plan.out)?;
     let mut text = Rows::default();
     text.fields(input.header().iter().chain(LOCATED.iter().map(|name| name.as_bytes())));
@@ -27,7 +29,7 @@ pub fn run(plan: &LocatePlan) -> Result<(), Failure> {
     let mut portion = Vec::new();
     loop {
         table.write(&std::mem::take(&mut text))?;
-        input.read_portion(&mut portion)?;
+        pool.install(|| input.read_portion(&mut portion))?;
         if portion.is_empty() {
             break;
         }

@@ -1,7 +1,7 @@
 //! A CSV file of collisions, read in portions.
 //!
-//! Start reading here; then, in this order: `columns` (which of them have a meaning), `portions` (the
-//! text of whole rows) and `scan` (where a row begins, and what no CSV file has).
+//! Start reading here; then, in this order: `columns` (which of them have a meaning), `portions`
+//! (the text of whole rows) and `scan` (where a row begins, and what no CSV file has).
 
 mod columns;
 mod portions;

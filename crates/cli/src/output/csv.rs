@@ -16,6 +16,9 @@ pub fn number(value: f64) -> String {
     format!("{value:?}")
 }
 
+/// The number of bytes that rows keep when they are dropped.
+const MOST_KEPT: usize = 1 << 20;
+
 /// Rows of a CSV file as text.
 #[derive(Debug, Default)]
 pub struct Rows {
@@ -25,9 +28,10 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// Drops all rows, and keeps the memory.
+    /// Drops all rows, and keeps the memory unless it is much.
     pub fn clear(&mut self) {
         self.text.clear();
+        self.text.shrink_to(MOST_KEPT);
         self.begun = false;
     }
 

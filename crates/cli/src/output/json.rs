@@ -8,8 +8,9 @@ use stickslip_model::{Engine, Estimate};
 use stickslip_solver::Statistics;
 
 /// Writes `result` as one JSON object with the layout `schema`, and ends the line. The object also
-/// says what computed the result: the engine after the parameters, and at the end the estimate of the
-/// error, if there is one, and the integrator's work, which is an empty object for the exact solution.
+/// says what computed the result: the engine after the parameters, and at the end the estimate of
+/// the error, if there is one, and the integrator's work, which is an empty object for the exact
+/// solution.
 ///
 /// # Errors
 /// `out` cannot be written.

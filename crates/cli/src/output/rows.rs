@@ -18,15 +18,15 @@ pub const LOCATED: [&str; 4] = ["switch_count", "itinerary", "region", "distance
 pub const EVENTS: [&str; 8] =
     ["case", "index", "time", "time_left", "to", "side", "spring", "velocity"];
 
-/// Writes the results of a collision. They follow the fields of the input.
-pub fn write_collision(rows: &mut Rows, collision: &Collision) {
+/// Writes the results of a collision with their `status`. They follow the fields of the input.
+pub fn write_collision(rows: &mut Rows, collision: &Collision, status: &str) {
     rows.number(collision.eps_n);
     rows.number(collision.eps_t());
     rows.count(collision.switches.len());
     rows.field(collision.itinerary());
     rows.number(collision.contact_time);
     rows.count(collision.reversals);
-    rows.field("ok");
+    rows.field(status);
 }
 
 /// Writes the estimates of a collision. They follow its results.

@@ -133,12 +133,12 @@ fn lines_are_counted_right_in_a_long_file() {
     for end in ["\n", "\r\n"] {
         // Each row takes three lines. One of them is blank.
         let row = format!("\"two{end}lines\",18,3{end}{end}");
-        let input = format!("note,kappa,psi{end}{}last,18,?{end}", row.repeat(3000));
+        let input = format!("note,kappa,psi{end}{}last,18,?{end}", row.repeat(20_000));
         let workspace = Workspace::with_input(&input);
         assert_eq!(workspace.run(&format!("{BATCH} --method exact")).code, 1);
         let table = rows(&workspace.read("out.csv"));
-        assert!(table[3001][9].starts_with("line 9002: psi = '?'"), "{:?}", table[3001]);
-        assert_eq!(table[3000][0], format!("two{end}lines"));
+        assert!(table[20_001][9].starts_with("line 60002: psi = '?'"), "{:?}", table[20_001]);
+        assert_eq!(table[20_000][0], format!("two{end}lines"));
     }
 }
 

@@ -46,8 +46,7 @@ const EXACT: Domain = Domain {
 
 /// The range of the integrators without damping.
 ///
-/// A slip that has turned round sticks once more, at u = (2/3)κ|w|, before the contact ends at u =
-/// 0. The two moments can be distinguished only down to |w| ≈ 1e-12 ψ^{1/3}.
+/// Below this ψ, rounding of v costs too many digits of w.
 const UNDAMPED: Domain = Domain {
     engine: "the integrator",
     kappa: (1e-20, 1e10),

@@ -16,13 +16,14 @@ use crate::result::Collision;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Estimate {
-    /// Expected largest error of ε_t.
+    /// The error of ε_t to expect: 999 of 1000 errors are below it.
     pub eps_t_error: f64,
-    /// Part of ψ by which w would have to differ, at any moment, for another itinerary; at most 1.
-    /// The itinerary is the same for all ψ that are nearer than this, relative to ψ.
+    /// Part of ψ, at most 1, by which w would have to differ, at any moment, for another itinerary.
+    /// Up to 0.1, the itinerary is the same for all ψ that are nearer than this, relative to ψ;
+    /// above, this holds to its order of magnitude only.
     pub distance: f64,
-    /// Whether the itinerary is certain: the distance is above the error of w at any moment. That may
-    /// be larger than the error that is left at the end, and is below 100 tolerances.
+    /// Whether the itinerary is certain: the distance is above the larger of `eps_t_error` and 100
+    /// tolerances, since errors of w may be larger at some moment than what is left at the end.
     pub certain: bool,
 }
 
@@ -33,6 +34,10 @@ const SAFETY: f64 = 3.0;
 /// How many tolerances the velocity may be off. Over the range of docs/validation.md, ε_t is off by
 /// at most 40 with Dormand–Prince 8(5,3) and 70 with 5(4).
 const MOST_TOLERANCES: f64 = 100.0;
+/// The stiffness κ above which there are more, as √κ.
+const MEASURED: f64 = 1e6;
+/// The least tolerance that counts: below it rounding does.
+const LEAST_TOLERANCE: f64 = 1e-14;
 
 /// The tolerance of a second opinion by Dormand–Prince 8(5,3), as part of that of a run by itself
 /// and by Dormand–Prince 5(4), which is ten times as accurate at the same tolerance.
@@ -77,8 +82,11 @@ impl Engine {
         }?;
         let difference = (collision.eps_t() - second.eps_t).abs();
         let eps_t_error = SAFETY * difference + rounding(collision, second.steps);
-        let tolerance = engine.tolerances().map_or(0.0, |Tolerances { rtol, atol }| rtol.max(atol));
-        let certain = second.distance > eps_t_error.max(MOST_TOLERANCES * tolerance);
+        let most = MOST_TOLERANCES * (contact.kappa() / MEASURED).max(1.0).sqrt();
+        let of_steps = engine
+            .tolerances()
+            .map_or(0.0, |Tolerances { rtol, atol }| most * rtol.max(atol).max(LEAST_TOLERANCE));
+        let certain = second.distance > eps_t_error.max(of_steps);
         Ok(Estimate { eps_t_error, distance: second.distance, certain })
     }
 }
@@ -105,8 +113,8 @@ impl Opinion {
     }
 }
 
-/// What rounding makes of ε_t: a few units in its last place, and the rounding of the angle by which
-/// the spring swings, which adds up over the `steps` of an integrator.
+/// What rounding makes of ε_t: a few units in its last place, and the rounding of the angle by
+/// which the spring swings, which adds up over the `steps` of an integrator.
 fn rounding(collision: &Collision, steps: usize) -> f64 {
     let omega = collision.contact.kappa().sqrt();
     let psi = collision.contact.psi();

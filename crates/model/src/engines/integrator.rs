@@ -31,15 +31,15 @@ const LONGEST_STEP: f64 = 0.1;
 /// The longest step of a second opinion, as part of that of the first one.
 const FINER_STEP: f64 = 0.6;
 
-/// Impact ratio ψ below which steps are shorter. The change of v is part of w, and what the estimates
-/// miss of it counts in units of ψ: as h¹⁰ of a step at the ends of contact.
+/// Impact ratio ψ below which steps are shorter. The change of v is part of w, and what the
+/// estimates miss of it counts in units of ψ: as h¹⁰ of a step at the ends of contact.
 const SMALL: f64 = 0.01;
 
 /// Stiffness κ above which the tolerances are finer than asked for: their errors add up over √κ
 /// oscillations.
 const STIFF: f64 = 3e3;
-/// Stiffness κ above which they are still finer, since the errors of so many steps have one sign. Far
-/// above it steps would be too many.
+/// Stiffness κ above which they are still finer, since the errors of so many steps have one sign.
+/// Far above it steps would be too many.
 const VERY_STIFF: f64 = 1e5;
 const STILL_FINER: f64 = 0.3;
 /// The finest tolerance that this may give.
@@ -136,8 +136,9 @@ impl Collider {
     }
 
     /// As [`Self::collide`], and then follows the same switches once more by a Taylor method with
-    /// twice the digits: all results but the energies are the true ones, rounded. This is for
-    /// references; it takes a hundred times as long.
+    /// twice the digits: all results but the energy taken by damping are the true ones, rounded.
+    /// Only switches too short for the integrator, just before the end, stay as they are. This is
+    /// for references; it takes a hundred times as long.
     ///
     /// `None` if a switch is not found again.
     ///
@@ -178,8 +179,8 @@ impl Collider {
         Ok((collision, statistics, history))
     }
 
-    /// The velocity w at the end of a damped contact, and how far, as a velocity, its switches are
-    /// from changing.
+    /// The velocity w at the end of a damped contact, how far, as a velocity, its switches are from
+    /// changing, and the number of steps.
     pub(crate) fn second_opinion(
         &self,
         contact: Contact,

@@ -28,7 +28,7 @@ fn itinerary(contact: Contact) -> String {
 
 /// Of the contacts with 25 digits, those that take little time.
 fn reference() -> impl Iterator<Item = (Contact, String, f64)> {
-    let cases = file("contacts_40_digits")["cases"].as_array().unwrap().clone();
+    let cases = file("contacts_series")["cases"].as_array().unwrap().clone();
     cases.into_iter().filter_map(|case| {
         let [kappa, psi, damping] = [0, 1, 2].map(|index| case[index].as_f64().unwrap());
         let contact = Contact::new(kappa, psi, damping).unwrap();

@@ -51,8 +51,8 @@ fn undamped_contacts_have_the_switches_of_the_exact_solution() {
 }
 
 /// Beside a boundary of kind *end of contact* the last two switches are nearer to the end than the
-/// rounding of the state. They are there as long as w is accurate enough to tell on which side of the
-/// boundary the contact is.
+/// rounding of the state. They are there as long as w is accurate enough to tell on which side of
+/// the boundary the contact is.
 #[test]
 fn switches_just_before_the_end_are_there() {
     let mut numbers = fastrand::Rng::with_seed(13);
@@ -86,8 +86,7 @@ fn switches_just_before_the_end_are_there() {
 #[test]
 fn contacts_have_the_switches_and_digits_of_an_independent_series() {
     let mut compared = [0; 3];
-    for (index, case) in file("contacts_40_digits")["cases"].as_array().unwrap().iter().enumerate()
-    {
+    for (index, case) in file("contacts_series")["cases"].as_array().unwrap().iter().enumerate() {
         let [kappa, psi, damping] = [0, 1, 2].map(|column| case[column].as_f64().unwrap());
         let [eps_t, eps_n, time] = [4, 5, 6].map(|column| number(&case[column]));
         let check = |found: &Collision, tolerances: [f64; 2]| {

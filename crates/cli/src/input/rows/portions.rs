@@ -128,3 +128,50 @@ impl Records<'_> {
         self.reader.read_byte_record(fields).is_ok_and(|read| read).then_some(begin.line)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A source that gives few bytes at a time.
+    struct Trickle<'a>(&'a [u8], usize);
+
+    impl Read for Trickle<'_> {
+        fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+            let count = self.1.min(self.0.len()).min(buffer.len());
+            buffer[..count].copy_from_slice(&self.0[..count]);
+            self.0 = &self.0[count..];
+            Ok(count)
+        }
+    }
+
+    #[test]
+    fn portions_of_any_size_have_the_same_rows() {
+        let text = b"\xef\xbb\xbfa,b\r\n\r\n1,\"x\r\ny\"\n\xef\xbb\xbf2,\"\"\"\"\n\n\n,\r3,4";
+        let expected: [(u64, [&[u8]; 2]); 5] = [
+            (1, [b"a", b"b"]),
+            (3, [b"1", b"x\r\ny"]),
+            (5, [b"\xef\xbb\xbf2", b"\""]),
+            (8, [b"", b""]),
+            (9, [b"3", b"4"]),
+        ];
+        for (bytes, rows) in (1..8).flat_map(|bytes| (1..7).map(move |rows| (bytes, rows))) {
+            let mut portions = Portions::new(Trickle(text, bytes));
+            let mut found = Vec::new();
+            loop {
+                let portion = portions.next(rows).unwrap();
+                if portion.rows() == 0 {
+                    break;
+                }
+                for part in portion.parts(2) {
+                    let (mut records, mut fields) = (part.records(), csv::ByteRecord::new());
+                    while let Some(line) = records.read(&mut fields) {
+                        found.push((line, fields.clone()));
+                    }
+                }
+            }
+            let expected = expected.map(|(line, fields)| (line, fields.into_iter().collect()));
+            assert_eq!(found, expected, "{bytes} bytes, {rows} rows");
+        }
+    }
+}

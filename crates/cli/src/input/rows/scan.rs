@@ -1,5 +1,5 @@
-//! What a CSV file looks like before its rows are known: where they begin, and whether quotes, fields
-//! and rows have a sensible size.
+//! What a CSV file looks like before its rows are known: where they begin, and whether quotes,
+//! fields and rows have a sensible size.
 
 use std::io;
 
@@ -85,7 +85,6 @@ impl Scan {
                 self.bytes += more as u64;
                 self.field_bytes += more;
                 self.check_field(self.line)?;
-                self.after_return &= more == 0;
                 bytes = &bytes[more..];
             }
         }
@@ -150,7 +149,8 @@ impl Scan {
         })
     }
 
-    /// The byte order mark ends after so many of its bytes. A part of it is text of the first field.
+    /// The byte order mark ends after so many of its bytes. A part of it is text of the first
+    /// field.
     fn end_mark(&mut self, bytes: usize, begins: &mut Vec<Begin>) -> io::Result<()> {
         self.state = State::Between;
         if bytes < MARK.len() {

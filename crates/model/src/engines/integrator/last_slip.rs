@@ -47,8 +47,8 @@ pub(crate) struct LastStick {
     pub ends: [(f64, f64); 2],
 }
 
-/// The stick phase with which a contact without damping ends that has been in `slip` up to its `end`,
-/// where the body moves away from the side of the slip; `None` if it moves to that side.
+/// The stick phase with which a contact without damping ends that has been in `slip` up to its
+/// `end`, where the body moves away from the side of the slip; `None` if it moves to that side.
 ///
 /// A slip on side s that has turned round, s w < 0, sticks once more at u₀ = (2/3)κ|w|, where its
 /// limit u³/κ falls as fast as w. That place may be so close to u = 0 that the integrator does not

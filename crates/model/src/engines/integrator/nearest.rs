@@ -1,8 +1,8 @@
 //! How far an integrated collision is from other switches.
 //!
 //! A guard that does not fire is nearest to doing so at its minima, and at the end of contact. A
-//! guard that fires is as far from not doing so as it would fall below 0 if its phase went on, which
-//! the normal motion of the rest of the run tells.
+//! guard that fires is as far from not doing so as it would fall below 0 if its phase went on,
+//! which the normal motion of the rest of the run tells.
 
 use stickslip_solver::{Dense, HybridSystem, Observer, State, SwitchEvent};
 
@@ -39,7 +39,8 @@ struct Prolonged {
 }
 
 impl Nearest {
-    /// Nothing has been observed yet. A margin above ψ, at which the contact starts, does not count.
+    /// Nothing has been observed yet. A margin above ψ, at which the contact starts, does not
+    /// count.
     pub fn new(system: Regularized) -> Self {
         let (omega, least) = (system.contact().kappa().sqrt(), system.contact().psi());
         Self { system, omega, least, since: 0.0, prolonged: Vec::new() }
@@ -118,7 +119,8 @@ impl Nearest {
     fn minimum(&self, phase: Phase, step: &Dense<STATE>, guard: usize) -> f64 {
         let rate = |theta: f64| self.rates(phase, &step.at(theta))[guard];
         let [mut low, mut high] = [0.0, 1.0].map(|theta| (theta, rate(theta)));
-        // The Illinois method. The guard is flat here: half of the digits of θ suffice.
+        // Regula falsi, which halves the value at the end that stays. The guard is flat here: half
+        // of the digits of θ suffice.
         for _ in 0..30 {
             if high.0 - low.0 < 1e-9 || high.1 - low.1 <= 0.0 {
                 break;

@@ -49,8 +49,8 @@ pub(crate) fn refine(pair: Pair, options: &Options, collision: &mut Collision) -
         return false;
     };
     let spring = last.spring(contact, *phase).nearest();
-    // The last of the phases ends with the contact. After these switches there may be others that are
-    // too short for the integrator.
+    // The last of the phases ends with the contact. After these switches there may be others that
+    // are too short for the integrator.
     let switched = &ends[..ends.len() - 1];
     let mut time = DoubleDouble(0.0, 0.0);
     for (switch, end) in collision.switches.iter_mut().zip(switched) {

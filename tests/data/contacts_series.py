@@ -14,7 +14,7 @@ construction (the start of contact, the double zero where stick starts) are divi
 The series are of degree 64, with 66 digits and a truncation error of 1e-52. `Arithmetic` may be made
 finer to check the results. Uses gmpy2 if it is there, which is some ten times faster than mpmath.
 
-Run:  python contacts_40_digits.py > contacts_40_digits.json
+Run:  python contacts_series.py > contacts_series.json
 """
 
 import json
