@@ -17,7 +17,7 @@ use crate::contact::Contact;
 /// It is the least margin of the collision as a velocity, in units of ψ. The norm √(w² + κy²) of
 /// the difference of two contacts with the same normal motion never grows, so that the switches are
 /// the same at every ψ' with |ψ' − ψ| below the distance times ψ, as long as the distance is below
-/// 0.1. It is at most 1. The cost is that of [`collide`](super::collide), for κ above 1e8 less.
+/// 0.1. It is at most 1.
 ///
 /// ```
 /// use stickslip_model::{Contact, exact};
