@@ -49,7 +49,7 @@ impl Engine {
     /// exact solution where there is one, and otherwise a run of Dormand–Prince 8(5,3) with a finer
     /// tolerance. Rounding is added, also that of the exact solution itself.
     ///
-    /// Cost: that of the exact solution, or three runs.
+    /// Cost: 1.3 exact collisions, or with damping two and a half runs.
     ///
     /// ```
     /// use stickslip_model::{Contact, Engine, Tolerances};
