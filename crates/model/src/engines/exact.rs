@@ -17,16 +17,14 @@ mod boundaries;
 mod distance;
 mod error;
 mod flank;
-mod limit;
 mod margin;
+mod normal;
 mod onset;
-mod refined_exit;
-mod refined_onset;
+mod phases;
 mod release;
 mod slide;
 mod swing;
 mod totals;
-mod trajectory;
 
 pub use super::domain::MOST_STIFFNESS;
 use crate::contact::Contact;
@@ -35,14 +33,15 @@ use crate::result::{Collision, Switch};
 pub use boundaries::{small_impact_boundary, top_boundary};
 pub use distance::distance;
 pub use error::ExactError;
-use error::{too_many, undamped};
+use error::{checked, too_many};
 pub use margin::{Margins, margin, margins, moved};
+pub use normal::undamped::CONTACT_TIME;
+use normal::{At, Moment, Trajectory};
+use phases::{Phase, Task, with_trajectory};
 use release::Release;
 use slide::{Slide, SlipPhase};
 use swing::Swing;
 use totals::Totals;
-pub use trajectory::CONTACT_TIME;
-use trajectory::{Moment, NormalMotion};
 
 /// Most switches that [`collide`] lists for one collision; they take about 170 MB.
 ///
@@ -119,58 +118,90 @@ fn collide_within(
     limit: usize,
 ) -> Result<(), ExactError> {
     collision.reset(contact);
-    undamped(&contact)?;
-    let switches = &mut collision.switches;
-    let slide = Slide::new(contact.kappa());
-    let mut totals = Totals::default();
-    let mut side = Side::Positive;
-    let mut sliding = SlipPhase::at_impact(contact.psi());
-    while let Some(onset) = slide.stick_onset(&sliding) {
-        if switches.len() + 2 > limit {
-            return Err(too_many(&contact, limit, onset));
-        }
-        let normal = NormalMotion::at(onset);
-        let velocity = sliding.velocity_at(onset, normal);
-        totals.slip(&sliding, onset, normal, velocity.0);
-        let swing = Swing::new(&slide, onset, normal, velocity);
-        let release = Release::of(&swing, slide.crest.map(|crest| crest.root));
-        let released = slide.limit(release.normal);
-        totals.stick(slide.kappa, swing.elongation, released);
-        totals.reversals += release.reversals;
+    checked(&contact)?;
+    with_trajectory(&contact, Collide { collision, limit })
+}
 
-        let orientation = side.sign();
-        switches.push(Switch {
-            time: onset.time(),
-            time_left: onset.time_left(),
-            to: Regime::Stick,
+/// Computes a whole collision.
+struct Collide<'c> {
+    collision: &'c mut Collision,
+    /// Most switches.
+    limit: usize,
+}
+
+impl Task for Collide<'_> {
+    type Output = Result<(), ExactError>;
+
+    fn run<T: Trajectory>(self, slide: &Slide<T>, contact: &Contact) -> Result<(), ExactError> {
+        let Self { collision, limit } = self;
+        let path = slide.path;
+        let unit = path.time_unit();
+        let switches = &mut collision.switches;
+        let switch = |at: &At<T::Motion>, to, side, spring: f64, velocity| Switch {
+            time: path.time(at) * unit,
+            time_left: path.time_left(at) * unit,
+            to,
             side,
-            spring: orientation * swing.elongation,
-            velocity: orientation * velocity.0,
-        });
-        if !release.half_swing.is_multiple_of(2) {
-            side = side.opposite();
-        }
-        let velocity = orientation * release.velocity;
-        switches.push(Switch {
-            time: release.moment.time(),
-            time_left: release.moment.time_left(),
-            to: Regime::Slip,
-            side,
-            spring: side.sign() * released,
+            spring: spring * unit,
             velocity,
-        });
-        sliding = SlipPhase::new(release.moment, release.normal, side.sign() * velocity);
+        };
+        let mut totals = Totals::default();
+        let mut side = Side::Positive;
+        let mut phase = Phase::first(slide, contact.psi());
+        let final_velocity = loop {
+            phase = match phase {
+                Phase::Stick(swing) => {
+                    let release = Release::of(&swing);
+                    let released = slide.limit(&release.end);
+                    totals.stick(slide.spring.kappa, swing.elongation, released);
+                    totals.reversals += release.reversals;
+                    let velocity = side.sign() * release.velocity;
+                    if !release.half_swing.is_multiple_of(2) {
+                        side = side.opposite();
+                    }
+                    let sign = side.sign();
+                    switches.push(switch(
+                        &release.end,
+                        Regime::Slip,
+                        side,
+                        sign * released,
+                        velocity,
+                    ));
+                    Phase::Slip(SlipPhase::new(path, &release.end, sign * velocity))
+                }
+                Phase::Slip(sliding) => {
+                    let Some(onset) = slide.stick_onset(&sliding) else {
+                        let end = path.at(Moment::END);
+                        let velocity = sliding.velocity_at(&end).0;
+                        totals.slip(&sliding, &end, velocity);
+                        break side.sign() * velocity;
+                    };
+                    if switches.len() + 2 > limit {
+                        return Err(too_many(contact, limit, slide, onset));
+                    }
+                    let start = path.at(onset);
+                    let velocity = sliding.velocity_at(&start);
+                    totals.slip(&sliding, &start, velocity.0);
+                    let swing = Swing::new(slide, start, velocity);
+                    let sign = side.sign();
+                    switches.push(switch(
+                        &start,
+                        Regime::Stick,
+                        side,
+                        sign * swing.elongation,
+                        sign * velocity.0,
+                    ));
+                    Phase::Stick(swing)
+                }
+            };
+        };
+        collision.eps_n = path.restitution();
+        collision.final_velocity = final_velocity;
+        collision.contact_time = path.contact_time() * unit;
+        collision.reversals = totals.reversals;
+        collision.energy = totals.ledger(contact.psi(), final_velocity, path.energy());
+        Ok(())
     }
-    let end = NormalMotion::at(Moment::END);
-    let velocity = sliding.velocity_at(Moment::END, end).0;
-    totals.slip(&sliding, Moment::END, end, velocity);
-    let final_velocity = side.sign() * velocity;
-    collision.eps_n = 1.0;
-    collision.final_velocity = final_velocity;
-    collision.contact_time = CONTACT_TIME;
-    collision.reversals = totals.reversals;
-    collision.energy = totals.ledger(contact.psi(), final_velocity);
-    Ok(())
 }
 
 #[cfg(test)]

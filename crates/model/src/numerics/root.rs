@@ -62,6 +62,38 @@ pub fn bracketed(
     x
 }
 
+/// The root between `positive`, where f > 0, and `negative`, where f ≤ 0, without derivatives: by
+/// the secant through both ends, where the weight of an end that stays is halved (the Illinois
+/// method), and by bisection where that is too slow.
+pub fn crossing(mut positive: f64, mut negative: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let (mut above, mut below) = (f(positive), f(negative));
+    let mut moved = 0.0;
+    for step in 0..MOST_STEPS {
+        let secant = (positive * below - negative * above) / (below - above);
+        let middle = 0.5 * (positive + negative);
+        let inside = (secant - positive) * (secant - negative) < 0.0;
+        let x = if inside && step % 4 != 3 { secant } else { middle };
+        if (x - positive) * (x - negative) >= 0.0 {
+            return x;
+        }
+        let value = f(x);
+        if value > 0.0 {
+            below = if moved > 0.0 { 0.5 * below } else { below };
+            (positive, above) = (x, value);
+        } else if value < 0.0 {
+            above = if moved < 0.0 { 0.5 * above } else { above };
+            (negative, below) = (x, value);
+        } else {
+            return x;
+        }
+        moved = value;
+        if (positive - negative).abs() <= 4.0 * f64::EPSILON * x.abs() {
+            return x;
+        }
+    }
+    0.5 * (positive + negative)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,7 +1,7 @@
 //! Boundaries on which the number of switches changes, as far as they have closed forms.
 
+use super::normal::undamped::{CONTACT_TIME, Undamped};
 use super::slide::Slide;
-use super::trajectory::CONTACT_TIME;
 
 /// The largest ψ with a switch at stiffness `kappa` > 0, without damping. Above it the whole
 /// contact is sliding, and ε_t = 1 − 2/ψ.
@@ -23,7 +23,7 @@ use super::trajectory::CONTACT_TIME;
 /// ```
 #[must_use]
 pub fn top_boundary(kappa: f64) -> f64 {
-    Slide::new(kappa).crest.map_or(2.0, |crest| crest.height.max(2.0))
+    Slide::new(&Undamped, kappa).highest().map_or(2.0, |height| height.max(2.0))
 }
 
 /// κ_n = (nπ/(2 t_c))², at which the `n`-th boundary ends as ψ → 0, without damping.

@@ -3,13 +3,14 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::MOST_SWITCHES;
-use super::error::{ExactError, too_many, undamped};
+use super::error::{ExactError, checked, too_many};
 use super::flank::Flanks;
-use super::margin::{crest_margin, swing};
+use super::margin::swing;
+use super::normal::Trajectory;
+use super::phases::{Phase, Task, with_trajectory};
 use super::release::Release;
 use super::slide::{Slide, SlipPhase};
 use super::swing::Swing;
-use super::trajectory::{Half, Moment, NormalMotion};
 use crate::contact::Contact;
 
 /// The distance of `contact`, which must have no damping, from other switches.
@@ -31,49 +32,71 @@ use crate::contact::Contact;
 /// # Errors
 /// As [`collide`](super::collide).
 pub fn distance(contact: &Contact) -> Result<f64, ExactError> {
-    undamped(contact)?;
-    let slide = Slide::new(contact.kappa());
-    let crest = slide.crest.map(|crest| crest.root);
-    let mut sliding = SlipPhase::at_impact(contact.psi());
-    let mut least = contact.psi();
-    for _ in 0..MOST_SWITCHES {
-        let at_crest = crest_margin(&slide, &sliding);
-        // A slip that ends before the crest would not have lasted to the end of contact.
-        let passes = at_crest.is_none_or(|margin| margin >= 0.0);
-        let at_end = passes.then(|| sliding.at_end());
-        least = at_crest.into_iter().chain(at_end).fold(least, |least, m| least.min(m.abs()));
-        let Some(onset) = slide.stick_onset(&sliding) else { return Ok(least / contact.psi()) };
-        let swing = swing(&slide, &sliding, onset);
-        let release = Release::of(&swing, crest);
-        let gaps = half_swings(release.half_swing).filter_map(|k| top_gap(&swing, crest, k));
-        let gaps = gaps.chain(bend_gap(&swing, crest, &release));
-        least = gaps.fold(least, |least, gap| least.min(swing.omega * gap.abs()));
-        let velocity = super::swing::half_swing_sign(release.half_swing) * release.velocity;
-        sliding = SlipPhase::new(release.moment, release.normal, velocity);
+    checked(contact)?;
+    with_trajectory(contact, Nearest)
+}
+
+/// Finds the least margin.
+struct Nearest;
+
+impl Task for Nearest {
+    type Output = Result<f64, ExactError>;
+
+    fn run<T: Trajectory>(self, slide: &Slide<T>, contact: &Contact) -> Self::Output {
+        let mut least = contact.psi();
+        let mut sliding = match Phase::first(slide, contact.psi()) {
+            Phase::Slip(sliding) => sliding,
+            Phase::Stick(swing) => passed(&swing, &mut least),
+        };
+        for _ in 0..MOST_SWITCHES {
+            let at_turn = slide.turn_margin(&sliding);
+            // A slip that ends before the turn would not have lasted to the end of contact.
+            let passes = at_turn.is_none_or(|margin| margin >= 0.0);
+            let at_end = passes.then(|| slide.end_margin(&sliding));
+            least = at_turn.into_iter().chain(at_end).fold(least, |least, m| least.min(m.abs()));
+            let Some(onset) = slide.stick_onset(&sliding) else {
+                return Ok(least / contact.psi());
+            };
+            sliding = passed(&swing(slide, &sliding, onset), &mut least);
+        }
+        Err(too_many(contact, MOST_SWITCHES, slide, sliding.start))
     }
-    Err(too_many(contact, MOST_SWITCHES, sliding.start))
 }
 
-/// The half swings up to the `last` one on which the spring may come nearest to its limit. The
-/// limit rises and then falls: they are among the first and the last ones.
-fn half_swings(last: u32) -> impl Iterator<Item = u32> {
+/// The slip phase after `swing`; `least` becomes the least of itself and the gaps.
+fn passed<T: Trajectory>(swing: &Swing<T>, least: &mut f64) -> SlipPhase {
+    let release = Release::of(swing);
+    let halves = half_swings(swing.first, release.half_swing);
+    let gaps = halves.flat_map(|k| top_gaps(swing, k)).flatten();
+    let gaps = gaps.chain(bend_gap(swing, &release));
+    *least = gaps.fold(*least, |least, gap| least.min(swing.spring.omega * gap.abs()));
+    let velocity = super::swing::half_swing_sign(release.half_swing) * release.velocity;
+    SlipPhase::new(swing.path, &release.end, velocity)
+}
+
+/// The half swings from the `first` to the `last` one on which the spring may come nearest to its
+/// limit. The limit rises and then falls: they are among the first and the last ones.
+fn half_swings(first: u32, last: u32) -> impl Iterator<Item = u32> {
     const ENDS: u32 = 3;
-    (0..=last.min(ENDS)).chain((last.saturating_sub(ENDS)..=last).filter(|&k| k > ENDS))
+    let early = first + ENDS;
+    (first..=last.min(early)).chain((last.saturating_sub(ENDS)..=last).filter(move |&k| k > early))
 }
 
-/// The gap D where the spring is nearest to its limit on half swing `k`, relative to the limit.
-fn top_gap(swing: &Swing, crest: Option<f64>, k: u32) -> Option<f64> {
-    let top = Flanks::of(swing, crest, k)?.top(swing)?;
-    Some(swing.gap(k, top, NormalMotion::at(top)).value)
+/// The gap D where the spring is nearest to its limit on half swing `k`.
+fn top_gaps<T: Trajectory>(swing: &Swing<T>, k: u32) -> [Option<f64>; 2] {
+    let Some(flanks) = Flanks::of(swing, k) else { return [None; 2] };
+    [flanks.top(swing), flanks.second_top(swing)]
+        .map(|top| Some(swing.gap(k, &swing.path.at(top?)).value))
 }
 
 /// The gap where it bends upwards again on the first half swing, if the phase does not end before.
 /// There it may fall to 0 if the phase starts a little earlier or later.
-fn bend_gap(swing: &Swing, crest: Option<f64>, release: &Release) -> Option<f64> {
-    let bend = Moment { half: Half::Decompression, root: crest? };
-    let reached = swing.start.is_before(bend) && bend.is_before(release.moment);
-    let angle = swing.omega * swing.start.time_until(bend);
+fn bend_gap<T: Trajectory>(swing: &Swing<T>, release: &Release<T::Motion>) -> Option<f64> {
+    let [_, bend] = swing.turns?;
+    let reached = swing.start.moment.is_before(bend) && bend.is_before(release.end.moment);
+    let bend = swing.path.at(bend);
+    let angle = swing.spring.omega * swing.elapsed(&bend);
     // A difference δ of w at the start is a difference δ sin θ/ω of the gap at the angle θ.
     let part = if angle < FRAC_PI_2 { angle.sin() } else { 1.0 };
-    reached.then(|| swing.gap(0, bend, NormalMotion::at(bend)).value / part)
+    (reached && swing.first == 0).then(|| swing.gap(0, &bend).value / part)
 }

@@ -1,18 +1,13 @@
 //! Collisions that the exact engine does not compute.
 
-use super::trajectory::Moment;
+use super::normal::{Moment, Trajectory};
+use super::slide::Slide;
 use crate::contact::Contact;
 use crate::engines::domain::{self, OutOfDomain};
 
 /// The reason why the exact engine does not compute a collision.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ExactError {
-    /// The contact is damped, and there is no closed form.
-    #[error("the exact solution holds without damping; the scaled damping is {damping}")]
-    Damped {
-        /// Scaled damping of the contact.
-        damping: f64,
-    },
     /// The contact is out of range.
     #[error(transparent)]
     Domain(#[from] OutOfDomain),
@@ -33,16 +28,20 @@ pub enum ExactError {
     },
 }
 
-/// Checks that `contact` has no damping and is in the range of the engine.
-pub fn undamped(contact: &Contact) -> Result<(), ExactError> {
-    if contact.damping() != 0.0 {
-        return Err(ExactError::Damped { damping: contact.damping() });
-    }
+/// Checks that `contact` is in the range of the engine.
+pub fn checked(contact: &Contact) -> Result<(), ExactError> {
     Ok(domain::exact(contact)?)
 }
 
 /// The error of a collision that has more than `limit` switches, the first of them at `onset`.
-pub fn too_many(contact: &Contact, limit: usize, onset: Moment) -> ExactError {
+pub fn too_many<T: Trajectory>(
+    contact: &Contact,
+    limit: usize,
+    slide: &Slide<T>,
+    onset: Moment,
+) -> ExactError {
     let (kappa, psi) = (contact.kappa(), contact.psi());
-    ExactError::TooManySwitches { limit, kappa, psi, time_left: onset.time_left() }
+    let path = slide.path;
+    let time_left = path.time_left(&path.at(onset)) * path.time_unit();
+    ExactError::TooManySwitches { limit, kappa, psi, time_left }
 }

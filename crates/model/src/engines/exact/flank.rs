@@ -4,23 +4,22 @@
 //! On a half swing q = ±y > 0. The ratio R = q/L rises where W = L q̇ − L̇ q is positive and falls
 //! where it is negative, and
 //!
-//! dW/dt = −q (κL + L̈).
+//! dW/dt = −q P with P = κL + L̈.
 //!
-//! For κ ≥ 1.568… the bracket is positive. Otherwise it is negative between the two crests of
-//! [`Slide`](super::slide::Slide) and positive outside. Therefore W is monotone on known pieces,
-//! and R is monotone between the zeros of W. Whether R reaches 1 is decided by its values at the
-//! ends of these pieces; where it does, the root is the only one in a known bracket.
+//! P is positive at the end of contact, and changes its sign at known [turns](Trajectory::turns).
+//! Therefore W is monotone on known pieces, and R is monotone between the zeros of W. Whether R
+//! reaches 1 is decided by its values at the ends of these pieces; where it does, the root is the
+//! only one in a known bracket.
 //!
-//! The phase starts with R = 1 and W = 0. As long as the bracket is positive, R falls from there:
-//! on the first half swing the spring cannot reach its limit again on the side where the phase
-//! started.
+//! A phase after slip starts with R = 1 and W = 0, where P is positive. As long as it is, R falls
+//! from there: on the first half swing the spring cannot reach its limit again on the side where
+//! the phase started. Every other half swing starts with q = 0 and W > 0. There P may be negative
+//! at first: W then rises before it falls, which changes nothing.
 
 use std::f64::consts::PI;
 
-use super::limit::pull;
-use super::refined_exit::refined_exit;
+use super::normal::{At, Half, Moment, Motion, Trajectory};
 use super::swing::{Swing, half_swing_sign};
-use super::trajectory::{Half, MIDDLE_ROOT, Moment, NormalMotion};
 use crate::numerics::root::{Jet, bracketed};
 
 /// Ratio of dD/dt to dq/dt below which an exit is improved. At this ratio the rounding of the angle
@@ -35,92 +34,121 @@ pub struct Flanks {
     /// R has its top between these places; if there are none, it rises to infinity at the end of
     /// contact.
     turn: Option<[Moment; 2]>,
-    /// After the top R falls, turns round once more between these places, and rises to infinity at
-    /// the end of contact.
-    again: Option<[Moment; 2]>,
+    /// After the top R falls and rises once more.
+    again: Option<Again>,
 }
 
 /// The place where R starts to rise on a half swing.
 enum Low {
     /// The moment at which the spring passes 0.
     Zero(Moment),
-    /// On the first half swing, somewhere between the two zeros of κL + L̈.
+    /// On the first half swing, somewhere between the two turns.
     Between(Moment, Moment),
 }
 
+/// The second time that R rises on a half swing.
+struct Again {
+    /// R has its minimum between these places.
+    bottom: [Moment; 2],
+    /// R has its second top between these places; if there are none, it rises to infinity at the
+    /// end of contact.
+    top: Option<[Moment; 2]>,
+}
+
 impl Flanks {
-    /// The pieces of half swing `k`, if there are any. `crest` is the root coordinate of the two
-    /// zeros of κL + L̈, if there are any.
-    pub fn of(swing: &Swing, crest: Option<f64>, k: u32) -> Option<Self> {
-        match (crest, k) {
+    /// The pieces of half swing `k`, if there are any.
+    pub fn of<T: Trajectory>(swing: &Swing<T>, k: u32) -> Option<Self> {
+        match (swing.turns, k) {
             (None, 0) => None,
-            (None, _) => Self::fast(swing, k),
-            (Some(crest), 0) => Self::first(swing, crest),
-            (Some(crest), 1) => Self::second(swing, crest),
-            (Some(_), _) => None,
+            (None, _) => Self::with_one_top(swing, k),
+            (Some(turns), 0) => Self::after_slip(swing, turns),
+            (Some(turns), _) => Self::with_turns(swing, turns, k),
         }
     }
 
-    /// For κ ≥ 1.568…, R rises to one top and falls.
-    fn fast(swing: &Swing, half_swing: u32) -> Option<Self> {
+    /// Without turns, R rises to one top and falls.
+    fn with_one_top<T: Trajectory>(swing: &Swing<T>, half_swing: u32) -> Option<Self> {
         let angle = |quarters: f64| swing.moment_at_angle(0.5 * PI * quarters);
         let past = 2.0 * f64::from(half_swing);
         let (start, peak, zero) = (angle(past - 2.0), angle(past - 1.0), angle(past));
         if start == Moment::END {
             return None;
         }
-        let rises = || swing.gap(half_swing, peak, NormalMotion::at(peak)).turning() > 0.0;
+        let rises = || swing.gap(half_swing, &swing.path.at(peak)).turning() > 0.0;
         let turn = if peak == Moment::END || rises() { [peak, zero] } else { [start, peak] };
         let turn = (turn[1] != Moment::END).then_some(turn);
         Some(Self { half_swing, low: Low::Zero(start), turn, again: None })
     }
 
-    /// The first half swing for κ < 1.568…. W falls from 0 until the first crest, rises until the
-    /// second, and falls again. R can only come back to 1 if W is positive at the second crest.
-    fn first(swing: &Swing, crest: f64) -> Option<Self> {
-        let [rise, fall] = crests(crest);
+    /// The first half swing after slip, with turns. W falls from 0 until the first turn, rises
+    /// until the second, and falls again. R can only come back to 1 if W is positive at the second
+    /// turn.
+    fn after_slip<T: Trajectory>(swing: &Swing<T>, [rise, fall]: [Moment; 2]) -> Option<Self> {
         let zero = swing.moment_at_angle(0.0);
-        let may_rise = !rise.is_before(swing.start) && fall.is_before(zero);
-        if !(may_rise && swing.gap(0, fall, NormalMotion::at(fall)).turning() > 0.0) {
+        let may_rise = !rise.is_before(swing.start.moment) && fall.is_before(zero);
+        if !(may_rise && turning_at(swing, 0, fall) > 0.0) {
             return None;
         }
         let turn = (zero != Moment::END).then_some([fall, zero]);
         Some(Self { half_swing: 0, low: Low::Between(rise, fall), turn, again: None })
     }
 
-    /// The second half swing for κ < 1.568…. It lasts to the end of contact, where W → 0 from above
-    /// and R → ∞. R can only have a top before the first crest.
-    fn second(swing: &Swing, crest: f64) -> Option<Self> {
-        let [rise, fall] = crests(crest);
-        let zero = swing.moment_at_angle(0.0);
-        if zero == Moment::END {
+    /// A later half swing, with turns. W is positive at its start, smallest at the first turn,
+    /// largest at the second, and falls again. It is negative at the end of the half swing, or
+    /// positive at the end of contact, where R → ∞.
+    fn with_turns<T: Trajectory>(
+        swing: &Swing<T>,
+        [rise, fall]: [Moment; 2],
+        half_swing: u32,
+    ) -> Option<Self> {
+        let start = swing.moment_at_angle(f64::from(half_swing - 1) * PI);
+        if start == Moment::END {
             return None;
         }
-        let turns =
-            zero.is_before(rise) && swing.gap(1, rise, NormalMotion::at(rise)).turning() < 0.0;
-        Some(Self {
-            half_swing: 1,
-            low: Low::Zero(zero),
-            turn: turns.then_some([zero, rise]),
-            again: turns.then_some([rise, fall]),
-        })
+        let zero = swing.moment_at_angle(f64::from(half_swing) * PI);
+        let last = (zero != Moment::END).then_some(zero);
+        let within = |turn: Moment| start.is_before(turn) && turn.is_before(zero);
+        let low = Low::Zero(start);
+        if !(within(rise) && turning_at(swing, half_swing, rise) < 0.0) {
+            // W is positive up to the second turn, or, if the half swing ends before that, has the
+            // zero somewhere on it.
+            let turn = last.map(|zero| [if within(fall) { fall } else { start }, zero]);
+            return Some(Self { half_swing, low, turn, again: None });
+        }
+        let rises_again = !within(fall) || turning_at(swing, half_swing, fall) > 0.0;
+        let again = match last {
+            None => Some(Again { bottom: [rise, fall], top: None }),
+            Some(zero) if within(fall) && rises_again => {
+                Some(Again { bottom: [rise, fall], top: Some([fall, zero]) })
+            }
+            Some(_) => None,
+        };
+        Some(Self { half_swing, low, turn: Some([start, rise]), again })
     }
 
-    /// The top of R.
-    pub fn top(&self, swing: &Swing) -> Option<Moment> {
-        self.turn.map(|[low, high]| top(swing, self.half_swing, low, high))
+    /// The first top of R.
+    pub fn top<T: Trajectory>(&self, swing: &Swing<T>) -> Option<Moment> {
+        self.turn.map(|[low, high]| top(swing, self.half_swing, low, high, None))
+    }
+
+    /// The second top of R.
+    pub fn second_top<T: Trajectory>(&self, swing: &Swing<T>) -> Option<Moment> {
+        let [low, high] = self.again.as_ref()?.top?;
+        Some(top(swing, self.half_swing, low, high, None))
     }
 
     /// The moment at which D falls through 0, and whether that is after the top. If there are two
     /// such moments, `after_top` says which one is wanted.
-    pub fn exit(&self, swing: &Swing, after_top: bool) -> Option<(Moment, bool)> {
+    pub fn exit<T: Trajectory>(&self, swing: &Swing<T>, after_top: bool) -> Option<(Moment, bool)> {
         let k = self.half_swing;
         let after = || {
-            let [rise, fall] = self.again?;
+            let &Again { bottom: [rise, fall], top: turn } = self.again.as_ref()?;
             let below = |&low: &Moment| !exceeds_limit(swing, k, low);
             let low = Some(rise).filter(below);
             let low = low.or_else(|| Some(bottom(swing, k, rise, fall)).filter(below))?;
-            Some((exit(swing, k, low, Moment::END, None), true))
+            let high = turn.map(|[low, high]| top(swing, k, low, high, None));
+            let reached = high.is_none_or(|top| exceeds_limit(swing, k, top));
+            reached.then(|| (exit(swing, k, low, high.unwrap_or(Moment::END), None), true))
         };
         let before = || {
             let low = match self.low {
@@ -137,51 +165,67 @@ impl Flanks {
     }
 }
 
-/// The zeros of κL + L̈ in the two halves of the contact.
-fn crests(root: f64) -> [Moment; 2] {
-    [Half::Compression, Half::Decompression].map(|half| Moment { half, root })
+/// W on half swing `k` at `moment`.
+fn turning_at<T: Trajectory>(swing: &Swing<T>, k: u32, moment: Moment) -> f64 {
+    swing.gap(k, &swing.path.at(moment)).turning()
 }
 
 /// The top of R, between `low`, where W > 0, and `high`, where W < 0.
-pub fn top(swing: &Swing, k: u32, low: Moment, high: Moment) -> Moment {
-    root_between(low, high, None, |moment, normal| turning(swing, k, moment, normal))
+pub fn top<T: Trajectory>(
+    swing: &Swing<T>,
+    k: u32,
+    low: Moment,
+    high: Moment,
+    guess: Option<Moment>,
+) -> Moment {
+    root_between(swing.path, low, high, guess, |at| turning(swing, k, at))
 }
 
 /// The minimum of R, between `low`, where W < 0, and `high`, where W > 0.
-fn bottom(swing: &Swing, k: u32, low: Moment, high: Moment) -> Moment {
-    root_between(low, high, None, |moment, normal| {
-        let Jet { value, slope, curvature } = turning(swing, k, moment, normal);
+fn bottom<T: Trajectory>(swing: &Swing<T>, k: u32, low: Moment, high: Moment) -> Moment {
+    root_between(swing.path, low, high, None, |at| {
+        let Jet { value, slope, curvature } = turning(swing, k, at);
         Jet { value: -value, slope: -slope, curvature: -curvature }
     })
 }
 
 /// W as a function of the root coordinate.
-fn turning(swing: &Swing, k: u32, moment: Moment, normal: NormalMotion) -> Jet {
-    let gap = swing.gap(k, moment, normal);
-    along_root(moment, gap.turning(), -gap.q * pull(swing.bend, normal.u), 0.0)
+fn turning<T: Trajectory>(swing: &Swing<T>, k: u32, at: &At<T::Motion>) -> Jet {
+    let gap = swing.gap(k, at);
+    let pull = at.motion.pull(&swing.spring);
+    along_root(swing.path, at, gap.turning(), -gap.q * pull, 0.0)
 }
 
 /// Whether R > 1 at `moment`.
-pub fn exceeds_limit(swing: &Swing, k: u32, moment: Moment) -> bool {
-    swing.gap(k, moment, NormalMotion::at(moment)).value < 0.0
+pub fn exceeds_limit<T: Trajectory>(swing: &Swing<T>, k: u32, moment: Moment) -> bool {
+    swing.gap(k, &swing.path.at(moment)).value < 0.0
 }
 
 /// The only zero of D on half swing `k` between `low`, where D > 0, and `high`, where D < 0.
-pub fn exit(swing: &Swing, k: u32, low: Moment, high: Moment, guess: Option<Moment>) -> Moment {
-    let guess = guess.or_else(|| (high == Moment::END).then(|| guess_before_end(swing)));
-    let moment = root_between(low, high, guess, |moment, normal| {
-        let gap = swing.gap(k, moment, normal);
-        along_root(moment, gap.value, gap.rate, gap.acceleration)
+pub fn exit<T: Trajectory>(
+    swing: &Swing<T>,
+    k: u32,
+    low: Moment,
+    high: Moment,
+    guess: Option<Moment>,
+) -> Moment {
+    let guess = guess.or_else(|| (high == Moment::END).then(|| guess_before_end(swing)).flatten());
+    let moment = root_between(swing.path, low, high, guess, |at| {
+        let gap = swing.gap(k, at);
+        along_root(swing.path, at, gap.value, gap.rate, gap.acceleration)
     });
     settled(swing, k, moment)
 }
 
 /// The zero `moment` of D, improved if D falls through 0 slowly. That is the case beside a graze,
 /// where rounding in D has moved the zero.
-fn settled(swing: &Swing, k: u32, moment: Moment) -> Moment {
-    let gap = swing.gap(k, moment, NormalMotion::at(moment));
+fn settled<T: Trajectory>(swing: &Swing<T>, k: u32, moment: Moment) -> Moment {
+    if !T::REFINES {
+        return moment;
+    }
+    let gap = swing.gap(k, &swing.path.at(moment));
     if gap.rate.abs() < SLOW * gap.q_rate.abs() {
-        refined_exit(swing, half_swing_sign(k), moment, gap.rate)
+        swing.path.refined_exit(swing, half_swing_sign(k), moment, gap.rate)
     } else {
         moment
     }
@@ -191,33 +235,37 @@ fn settled(swing: &Swing, k: u32, moment: Moment) -> Moment {
 ///
 /// D has a double zero at the start of the phase. Therefore the root of D/τ² is solved for. Its
 /// value and its derivatives are all multiplied by τ, which changes no step towards the root.
-fn first_exit(swing: &Swing, rise: Moment, fall: Moment) -> Moment {
+fn first_exit<T: Trajectory>(swing: &Swing<T>, rise: Moment, fall: Moment) -> Moment {
     // D̈ falls through 0 at `rise`. If D̈ were linear, the phase would be three times as long as the
     // time until then.
-    let guess = swing.start.after(3.0 * swing.start.time_until(rise));
-    let moment = root_between(rise, fall, Some(guess), |moment, normal| {
-        let gap = swing.gap(0, moment, normal);
-        let tau = swing.start.time_until(moment);
+    let path = swing.path;
+    let guess = path.after(&swing.start, 3.0 * swing.elapsed(&path.at(rise)), f64::INFINITY);
+    let moment = root_between(path, rise, fall, Some(guess), |at| {
+        let gap = swing.gap(0, at);
+        let tau = swing.elapsed(at);
         let scaled = gap.value / tau;
         let rate = (gap.rate - 2.0 * scaled) / tau;
         let acceleration = (gap.acceleration - (4.0 * gap.rate - 6.0 * scaled) / tau) / tau;
-        along_root(moment, scaled, rate, acceleration)
+        along_root(path, at, scaled, rate, acceleration)
     });
-    if swing.is_onset(0, moment) { moment } else { settled(swing, 0, moment) }
+    if swing.is_onset(0, &path.at(moment)) { moment } else { settled(swing, 0, moment) }
 }
 
-/// The exit of a spring that stands still at its last elongation, with the limit r³/κ.
-fn guess_before_end(swing: &Swing) -> Moment {
-    let (end, _) = swing.motion(swing.start.time_left());
-    let root = (swing.kappa * end.abs()).cbrt().min(MIDDLE_ROOT);
-    Moment { half: Half::Decompression, root }
+/// The exit of a spring that stands still at its last elongation.
+fn guess_before_end<T: Trajectory>(swing: &Swing<T>) -> Option<Moment> {
+    let (end, _) = swing.motion(swing.path.time_left(&swing.start));
+    swing.path.last_time_at(swing.spring.kappa * end.abs())
 }
 
 /// The derivatives of a function in time as derivatives in the root coordinate.
-fn along_root(moment: Moment, value: f64, rate: f64, acceleration: f64) -> Jet {
-    let time_per_root = moment.time_per_root();
-    // d²t/dr² = (dt/dr)/r
-    let bend = if moment.half == Half::Compression { 2.0 } else { -2.0 };
+pub fn along_root<T: Trajectory>(
+    path: &T,
+    at: &At<T::Motion>,
+    value: f64,
+    rate: f64,
+    acceleration: f64,
+) -> Jet {
+    let [time_per_root, bend] = path.time_along_root(at);
     Jet {
         value,
         slope: rate * time_per_root,
@@ -226,16 +274,18 @@ fn along_root(moment: Moment, value: f64, rate: f64, acceleration: f64) -> Jet {
 }
 
 /// The root between `low`, where f > 0, and `high`, where f < 0, which may be in different halves.
-fn root_between(
+pub fn root_between<T: Trajectory>(
+    path: &T,
     mut low: Moment,
     mut high: Moment,
     guess: Option<Moment>,
-    f: impl Fn(Moment, NormalMotion) -> Jet,
+    f: impl Fn(&At<T::Motion>) -> Jet,
 ) -> Moment {
     if low.half != high.half {
-        let middle = Moment { half: Half::Decompression, root: MIDDLE_ROOT };
-        if f(middle, NormalMotion::at(middle)).value < 0.0 {
-            high = Moment { half: Half::Compression, ..middle };
+        let [early, late] = path.middle();
+        let middle = Moment { half: Half::Decompression, root: late };
+        if f(&path.at(middle)).value < 0.0 {
+            high = Moment { half: Half::Compression, root: early };
         } else {
             low = middle;
         }
@@ -245,9 +295,6 @@ fn root_between(
         Some(moment) if moment.half == half => moment.root,
         _ => 0.5 * (low.root + high.root),
     };
-    let root = bracketed(low.root, high.root, guess, |root| {
-        let moment = Moment { half, root };
-        f(moment, NormalMotion::at(moment))
-    });
+    let root = bracketed(low.root, high.root, guess, |root| f(&path.at(Moment { half, root })));
     Moment { half, root }
 }

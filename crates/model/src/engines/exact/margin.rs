@@ -15,13 +15,13 @@
 
 use stickslip_solver::{Exit, Hint, Margin, Place};
 
-use super::error::{ExactError, too_many, undamped};
+use super::error::{ExactError, checked, too_many};
 use super::flank::Flanks;
-use super::limit::Crest;
+use super::normal::{At, Moment, Trajectory};
+use super::phases::{Phase, Task, with_trajectory};
 use super::release::Release;
 use super::slide::{Slide, SlipPhase};
-use super::swing::{Gap, Swing, half_swing_sign};
-use super::trajectory::{Half, Moment, NormalMotion};
+use super::swing::{Gap, Swing};
 use crate::contact::Contact;
 use crate::laws::phase::{OTHER_SIDE, SAME_SIDE};
 
@@ -59,38 +59,61 @@ pub struct Margins {
 /// # Errors
 /// As [`collide`](super::collide), and [`ExactError::TooManySwitches`] for more than 1000 switches.
 pub fn margins(contact: &Contact) -> Result<Margins, ExactError> {
-    undamped(contact)?;
-    let slide = Slide::new(contact.kappa());
-    let mut found = Margins { fired: Vec::new(), near_misses: Vec::new() };
-    let mut exits = Vec::new();
-    let mut sliding = SlipPhase::at_impact(contact.psi());
-    loop {
-        let onset = slide.stick_onset(&sliding);
-        let passed = crest_margin(&slide, &sliding).filter(|&value| value >= 0.0);
-        let lasts = onset.is_none().then(|| sliding.at_end());
-        for (place, value) in [(CREST, passed), (Place::End, lasts)] {
-            let margin = || Margin { exits: exits.clone(), guard: SAME_SIDE, place };
-            found.near_misses.extend(value.map(|value| (margin(), value)));
+    checked(contact)?;
+    with_trajectory(contact, All)
+}
+
+/// Finds all margins.
+struct All;
+
+impl Task for All {
+    type Output = Result<Margins, ExactError>;
+
+    fn run<T: Trajectory>(self, slide: &Slide<T>, contact: &Contact) -> Self::Output {
+        let mut found = Margins { fired: Vec::new(), near_misses: Vec::new() };
+        let mut exits = Vec::new();
+        let mut sliding = match Phase::first(slide, contact.psi()) {
+            Phase::Slip(sliding) => sliding,
+            Phase::Stick(swing) => passed(&swing, &mut exits, &mut found),
+        };
+        loop {
+            let onset = slide.stick_onset(&sliding);
+            let at_turn = slide.turn_margin(&sliding).filter(|&value| value >= 0.0);
+            let lasts = onset.is_none().then(|| slide.end_margin(&sliding));
+            for (place, value) in [(TURN, at_turn), (Place::End, lasts)] {
+                let margin = || Margin { exits: exits.clone(), guard: SAME_SIDE, place };
+                found.near_misses.extend(value.map(|value| (margin(), value)));
+            }
+            let Some(onset) = onset else { return Ok(found) };
+            if found.fired.len() + 2 > MOST_SWITCHES {
+                return Err(too_many(contact, MOST_SWITCHES, slide, onset));
+            }
+            exits.push(slip_exit(slide, onset));
+            found.fired.push(SAME_SIDE);
+            sliding = passed(&swing(slide, &sliding, onset), &mut exits, &mut found);
         }
-        let Some(onset) = onset else { return Ok(found) };
-        if found.fired.len() + 2 > MOST_SWITCHES {
-            return Err(too_many(contact, MOST_SWITCHES, onset));
-        }
-        exits.push(slip_exit(onset));
-        let swing = swing(&slide, &sliding, onset);
-        let release = Release::of(&swing, slide.crest.map(|crest| crest.root));
-        let mut after_top = false;
-        for k in 0..=release.half_swing {
-            let value = top_margin(&slide, &swing, k).filter(|&value| value >= 0.0);
-            let place = top_place(k);
+    }
+}
+
+/// The slip phase after `swing`, whose margins are added to `found` and its exit to `exits`.
+fn passed<T: Trajectory>(
+    swing: &Swing<T>,
+    exits: &mut Vec<Exit>,
+    found: &mut Margins,
+) -> SlipPhase {
+    let release = Release::of(swing);
+    let mut after_top = false;
+    for k in swing.first..=release.half_swing {
+        let [first, second] = top_margins(swing, k).map(|top| top.filter(|&value| value >= 0.0));
+        for (place, value) in [(top_place(k), first), (second_top_place(k), second)] {
             let margin = || Margin { exits: exits.clone(), guard: guard(k), place };
             found.near_misses.extend(value.map(|value| (margin(), value)));
-            after_top = value.is_some();
         }
-        exits.push(stick_exit(release.half_swing, after_top));
-        found.fired.extend([SAME_SIDE, guard(release.half_swing)]);
-        sliding = released(&swing, release.half_swing, release.moment);
+        after_top = first.is_some();
     }
+    exits.push(stick_exit(release.half_swing, after_top));
+    found.fired.push(guard(release.half_swing));
+    released(swing, release.half_swing, release.end)
 }
 
 /// The margin `which`, one of the [`margins`] of any contact, of the collision of `contact` with
@@ -130,66 +153,90 @@ pub fn moved(contact: &Contact, which: &Margin) -> Result<Margin, ExactError> {
 fn follow(
     contact: &Contact,
     which: &Margin,
-    mut on_exit: impl FnMut(Exit),
+    on_exit: impl FnMut(Exit),
 ) -> Result<Option<f64>, ExactError> {
-    undamped(contact)?;
-    Ok(follow_exits(contact, which, &mut on_exit))
+    checked(contact)?;
+    Ok(with_trajectory(contact, Prescribed { which, on_exit }))
 }
 
-fn follow_exits(contact: &Contact, which: &Margin, on_exit: &mut impl FnMut(Exit)) -> Option<f64> {
-    let slide = Slide::new(contact.kappa());
-    let mut sliding = SlipPhase::at_impact(contact.psi());
-    let mut exits = which.exits.iter();
-    while let Some(onset) = exits.next() {
-        let onset = prescribed_onset(&slide, &sliding, onset)?;
-        on_exit(slip_exit(onset));
-        let swing = swing(&slide, &sliding, onset);
-        let Some(exit) = exits.next() else {
-            let &Margin { guard: side, place: Place::Minimum { number, .. }, .. } = which else {
-                return None;
+/// Finds one margin with the switches that it prescribes.
+struct Prescribed<'m, E> {
+    which: &'m Margin,
+    on_exit: E,
+}
+
+impl<E: FnMut(Exit)> Task for Prescribed<'_, E> {
+    type Output = Option<f64>;
+
+    fn run<T: Trajectory>(mut self, slide: &Slide<T>, contact: &Contact) -> Option<f64> {
+        let which = self.which;
+        let mut exits = which.exits.iter();
+        let mut phase = Phase::first(slide, contact.psi());
+        loop {
+            let sliding = match phase {
+                Phase::Slip(sliding) => sliding,
+                Phase::Stick(swing) => {
+                    let Some(exit) = exits.next() else { return margin_of_stick(&swing, which) };
+                    let (k, after_top) = flank_of(exit);
+                    let flanks = if k < swing.first { None } else { Flanks::of(&swing, k) };
+                    let (moment, after_top) = flanks?.exit(&swing, after_top)?;
+                    (self.on_exit)(stick_exit(k, after_top));
+                    released(&swing, k, slide.path.at(moment))
+                }
             };
-            let even = u32::try_from(number).ok()?.checked_mul(2)?;
-            return top_margin(&slide, &swing, even + u32::from(side == OTHER_SIDE));
-        };
-        let (k, after_top) = flank_of(exit);
-        let crest = slide.crest.map(|crest| crest.root);
-        let (moment, after_top) = Flanks::of(&swing, crest, k)?.exit(&swing, after_top)?;
-        on_exit(stick_exit(k, after_top));
-        sliding = released(&swing, k, moment);
-    }
-    match which.place {
-        Place::End => Some(sliding.at_end()),
-        Place::Minimum { .. } => crest_margin(&slide, &sliding),
+            let Some(exit) = exits.next() else {
+                return match which.place {
+                    Place::End => Some(slide.end_margin(&sliding)),
+                    Place::Minimum { .. } => slide.turn_margin(&sliding),
+                };
+            };
+            let onset = prescribed_onset(slide, &sliding, exit)?;
+            (self.on_exit)(slip_exit(slide, onset));
+            phase = Phase::Stick(swing(slide, &sliding, onset));
+        }
     }
 }
 
-/// The place of the only crest of a slip phase.
-const CREST: Place = Place::Minimum { near: Hint(0.0), number: 0 };
+/// The place of the first turn of a slip phase.
+const TURN: Place = Place::Minimum { near: Hint(0.0), number: 0 };
 
-/// C − h at the crest, if the phase passes the crest before the largest compression.
-pub fn crest_margin(slide: &Slide, sliding: &SlipPhase) -> Option<f64> {
-    let Crest { root, height } = slide.crest?;
-    let passes = sliding.start.is_before(Moment { half: Half::Compression, root });
-    passes.then(|| sliding.at_start() - height)
-}
-
-/// 1/R² − 1 at the top of R on half swing `k`.
+/// 1/R² − 1 at the tops of R on half swing `k`.
 ///
-/// On the first half swing this number has a double zero at the start of the phase. It is divided
-/// by the square of the angle since then, so that it is not flat where the length of the phase goes
-/// to 0.
-fn top_margin(slide: &Slide, swing: &Swing, k: u32) -> Option<f64> {
-    let flanks = Flanks::of(swing, slide.crest.map(|crest| crest.root), k)?;
-    let top = flanks.top(swing)?;
-    let Gap { value, q, .. } = swing.gap(k, top, NormalMotion::at(top));
-    let excess = value / q * (value / q + 2.0);
-    let angle = swing.omega * swing.start.time_until(top);
-    Some(if k == 0 { excess / (angle * angle) } else { excess })
+/// On the first half swing after slip this number has a double zero at the start of the phase. It
+/// is divided by the square of the angle since then, so that it is not flat where the length of the
+/// phase goes to 0.
+fn top_margins<T: Trajectory>(swing: &Swing<T>, k: u32) -> [Option<f64>; 2] {
+    let Some(flanks) = Flanks::of(swing, k) else { return [None; 2] };
+    [flanks.top(swing), flanks.second_top(swing)].map(|top| {
+        let top = swing.path.at(top?);
+        let Gap { value, q, .. } = swing.gap(k, &top);
+        let excess = value / q * (value / q + 2.0);
+        let angle = swing.spring.omega * swing.elapsed(&top);
+        Some(if k == 0 { excess / (angle * angle) } else { excess })
+    })
 }
 
-/// The place of the top of half swing `k` among the tops on its side.
+/// The place of the first top of half swing `k` among the tops on its side.
 fn top_place(k: u32) -> Place {
     Place::Minimum { near: Hint(f64::from(k)), number: (k / 2) as usize }
+}
+
+/// The place of the second top of half swing `k`.
+fn second_top_place(k: u32) -> Place {
+    Place::Minimum { near: Hint(f64::from(k)), number: SECOND + (k / 2) as usize }
+}
+
+/// What the numbers of second tops are counted from: more than there are half swings with two tops.
+const SECOND: usize = 1 << 20;
+
+/// The margin `which`, of the phase `swing`.
+fn margin_of_stick<T: Trajectory>(swing: &Swing<T>, which: &Margin) -> Option<f64> {
+    let &Margin { guard: side, place: Place::Minimum { number, .. }, .. } = which else {
+        return None;
+    };
+    let (number, second) = if number < SECOND { (number, 0) } else { (number - SECOND, 1) };
+    let k = u32::try_from(number).ok()?.checked_mul(2)? + u32::from(side == OTHER_SIDE);
+    if k < swing.first { None } else { top_margins(swing, k)[second] }
 }
 
 /// The guard that fires on half swing `k`.
@@ -197,22 +244,26 @@ fn guard(k: u32) -> usize {
     if k.is_multiple_of(2) { SAME_SIDE } else { OTHER_SIDE }
 }
 
-/// The exit at the end of a slip phase; its hint is 0 before the crest and 1 after it.
-fn slip_exit(onset: Moment) -> Exit {
-    let after = if onset.half == Half::Compression { 0.0 } else { 1.0 };
+/// The exit at the end of a slip phase; its hint is 0 before the split of the turns and 1 after it.
+fn slip_exit<T: Trajectory>(slide: &Slide<T>, onset: Moment) -> Exit {
+    let after = if onset.is_before(slide.path.split()) { 0.0 } else { 1.0 };
     Exit { guard: SAME_SIDE, after: Hint(after), part: Hint(0.0) }
 }
 
 /// The moment at which the slip phase ends as `exit` prescribes.
-fn prescribed_onset(slide: &Slide, sliding: &SlipPhase, exit: &Exit) -> Option<Moment> {
-    if slide.crest.is_none() {
-        return slide.stick_onset(sliding);
-    }
+fn prescribed_onset<T: Trajectory>(
+    slide: &Slide<T>,
+    sliding: &SlipPhase,
+    exit: &Exit,
+) -> Option<Moment> {
+    let Some([_, turn]) = slide.turns else { return slide.stick_onset(sliding) };
     if exit.after.0 < 0.5 {
-        return slide.onset_before_crest(sliding);
+        return slide.onset_before_turn(sliding);
     }
-    let within = -sliding.at_end() <= slide.highest().height;
-    if within { slide.onset_after_crest(sliding) } else { None }
+    // After the second turn g falls: it must still be positive there.
+    let low = sliding.start.or_later(turn);
+    let within = slide.guard(sliding, &slide.path.at(low)) >= 0.0;
+    if within { slide.onset_after_turn(sliding) } else { None }
 }
 
 /// The exit at the end of a stick phase; its hint is the number of the half swing, and 1/2 more
@@ -230,13 +281,17 @@ fn flank_of(exit: &Exit) -> (u32, bool) {
 }
 
 /// The stick phase that starts at `onset`.
-pub fn swing(slide: &Slide, sliding: &SlipPhase, onset: Moment) -> Swing {
-    let normal = NormalMotion::at(onset);
-    Swing::new(slide, onset, normal, sliding.velocity_at(onset, normal))
+pub fn swing<'t, T: Trajectory>(
+    slide: &Slide<'t, T>,
+    sliding: &SlipPhase,
+    onset: Moment,
+) -> Swing<'t, T> {
+    let start = slide.path.at(onset);
+    Swing::new(slide, start, sliding.velocity_at(&start))
 }
 
 /// The slip phase that starts where `swing` ends on half swing `k`.
-fn released(swing: &Swing, k: u32, moment: Moment) -> SlipPhase {
-    let (_, velocity) = swing.motion(swing.start.time_until(moment));
-    SlipPhase::new(moment, NormalMotion::at(moment), half_swing_sign(k) * velocity)
+fn released<T: Trajectory>(swing: &Swing<T>, k: u32, end: At<T::Motion>) -> SlipPhase {
+    let (_, velocity) = swing.motion(swing.elapsed(&end));
+    SlipPhase::new(swing.path, &end, super::swing::half_swing_sign(k) * velocity)
 }

@@ -1,14 +1,14 @@
 //! The first instants of a stick phase, where the spring and its limit are almost equal.
 //!
 //! D = L − s·y starts with D = Ḋ = 0. Beside a slip graze the whole phase is so short that L and
-//! s·y agree to all digits. The Taylor series of D, which starts with τ², keeps the digits.
+//! s·y agree to all digits; so is the last phase beside the boundary at which slip lasts to the end
+//! of contact. The Taylor series of D, which starts with τ², keeps the digits.
 
-use super::limit::pull;
-use super::trajectory::{Half, Moment, NormalMotion};
+use super::normal::{At, Moment, Motion, ORDER, Spring, Trajectory};
 
-/// Number of Taylor coefficients, for a phase that is shorter than a sixteenth of the time at which
-/// it starts. The series converges up to that time: the remainder is below 16⁻¹⁴ of the whole.
-const TERMS: usize = 16;
+/// Number of Taylor coefficients, for a phase that is shorter than a sixteenth of the time within
+/// which the series converges: the remainder is below 16⁻¹⁴ of the whole.
+const TERMS: usize = ORDER - 2;
 
 /// The Taylor series of D around the start of a stick phase.
 #[derive(Clone, Copy, Debug)]
@@ -21,18 +21,20 @@ pub struct Onset {
 
 impl Onset {
     /// The series for a phase that starts at `start`, if it may be short. Its length is three times
-    /// the time to the crest, whose root coordinate is `crest`.
-    pub fn new(
-        kappa: f64,
-        start: Moment,
-        normal: NormalMotion,
+    /// the time to the first turn, or ends with the contact.
+    pub fn new<T: Trajectory>(
+        path: &T,
+        spring: &Spring,
+        start: &At<T::Motion>,
         velocity: f64,
-        crest: f64,
+        turns: Option<[Moment; 2]>,
     ) -> Option<Self> {
-        let age = start.time();
-        let crest = Moment { half: Half::Compression, root: crest };
-        let short = start.half == Half::Compression && start.time_until(crest) < age / 64.0;
-        short.then(|| Self { series: series(kappa, normal, velocity), reach: age / 16.0 })
+        let radius = path.series_radius(start);
+        let near_turn = turns.is_some_and(|[turn, _]| {
+            start.moment.is_before(turn) && path.elapsed(start, &path.at(turn)) < radius / 64.0
+        });
+        let short = near_turn || path.time_left(start) < radius / 64.0;
+        short.then(|| Self { series: series(path, spring, start, velocity), reach: radius / 16.0 })
     }
 
     /// D, dD/dt and d²D/dt² a time `tau` after the start, if that is within reach.
@@ -51,67 +53,69 @@ impl Onset {
     }
 }
 
-/// Coefficients of τ², τ³, … in L − s·y, from ẋ = v, v̇ = −F, xḞ = (3/2) F v and ÿ = −κ y.
-fn series(kappa: f64, normal: NormalMotion, velocity: f64) -> [f64; TERMS] {
-    const ORDER: usize = TERMS + 2;
-    let numbered = || (0_u8..).map(f64::from).enumerate();
-    let NormalMotion { u, v: speed, .. } = normal;
-    let [mut x, mut v, mut f, mut y] = [[0.0; ORDER]; 4];
-    x[0] = u * u;
-    v[0] = speed;
-    f[0] = u * u * u;
-    y[0] = f[0] / kappa;
+/// Coefficients of τ², τ³, … in L − s·y, from ÿ = −κ y.
+fn series<T: Trajectory>(
+    path: &T,
+    spring: &Spring,
+    start: &At<T::Motion>,
+    velocity: f64,
+) -> [f64; TERMS] {
+    let force = path.force_series(start);
+    let mut y = [0.0; ORDER];
+    y[0] = force[0] / spring.kappa;
     y[1] = velocity;
-    for (n, order) in numbered().take(ORDER - 1) {
-        x[n + 1] = v[n] / (order + 1.0);
-        v[n + 1] = -f[n] / (order + 1.0);
-        // (n + 1) x₀ F_{n+1} = (3/2) Σ_j F_j v_{n−j} − Σ_j j F_j x_{n+1−j}
-        let terms = numbered().take(n + 1);
-        let sum: f64 = terms.map(|(j, power)| f[j] * (1.5 * v[n - j] - power * x[n + 1 - j])).sum();
-        f[n + 1] = sum / ((order + 1.0) * x[0]);
-        if n + 2 < ORDER {
-            y[n + 2] = -kappa * y[n] / ((order + 1.0) * (order + 2.0));
-        }
+    for (n, order) in (0_u8..).map(f64::from).enumerate().take(TERMS) {
+        y[n + 2] = -spring.kappa * y[n] / ((order + 1.0) * (order + 2.0));
     }
     let mut series = [0.0; TERMS];
     for (n, coefficient) in series.iter_mut().enumerate() {
-        *coefficient = f[n + 2] / kappa - y[n + 2];
+        *coefficient = force[n + 2] / spring.kappa - y[n + 2];
     }
     // The first coefficient is small: its closed form keeps the digits.
-    series[0] = 0.5 * pull(1.5 / kappa, u);
+    series[0] = 0.5 * start.motion.pull(spring);
     series
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::trajectory::MIDDLE_ROOT;
+    use super::super::normal::Half;
+    use super::super::normal::undamped::Undamped;
     use super::*;
+
+    /// A phase that starts before a turn, at rest relative to its limit.
+    fn phase(kappa: f64) -> (Spring, At<<Undamped as Trajectory>::Motion>, f64) {
+        let spring = Spring::new(kappa);
+        let start = Undamped.at(Moment { half: Half::Compression, root: 0.95 });
+        let velocity = start.motion.limit_rate(&spring);
+        (spring, start, velocity)
+    }
+
+    fn turns(root: f64) -> Option<[Moment; 2]> {
+        Some([Half::Compression, Half::Decompression].map(|half| Moment { half, root }))
+    }
 
     #[test]
     fn series_is_the_difference_of_limit_and_spring() {
-        let kappa: f64 = 1.0;
-        let start = Moment { half: Half::Compression, root: 0.95 };
-        let normal = NormalMotion::at(start);
-        let velocity = 1.5 / kappa * normal.u * normal.v;
-        let elongation = normal.u * normal.u * normal.u / kappa;
-        let onset = Onset::new(kappa, start, normal, velocity, 0.955).unwrap();
+        let (spring, start, velocity) = phase(1.0);
+        let elongation = start.motion.limit(&spring);
+        let onset = Onset::new(&Undamped, &spring, &start, velocity, turns(0.955)).unwrap();
         for part in [0.25, 0.5, 1.0] {
             let tau = part * onset.reach;
             let (value, ..) = onset.gap(tau).unwrap();
-            let u = NormalMotion::at(start.after(tau)).u;
-            let (sin, cos) = (kappa.sqrt() * tau).sin_cos();
-            let direct = u * u * u / kappa - elongation * cos - velocity / kappa.sqrt() * sin;
+            let limit = Undamped.at(Undamped.after(&start, tau, 0.0)).motion.limit(&spring);
+            let (sin, cos) = (spring.omega * tau).sin_cos();
+            let direct = limit - elongation * cos - velocity / spring.omega * sin;
             assert!((value - direct).abs() < 4e-16, "{value} {direct}");
         }
         assert!(onset.gap(1.01 * onset.reach).is_none());
-        assert!(Onset::new(kappa, start, normal, velocity, MIDDLE_ROOT).is_none());
+        let far = turns(Undamped.middle()[0]);
+        assert!(Onset::new(&Undamped, &spring, &start, velocity, far).is_none());
     }
 
     #[test]
     fn derivatives_belong_to_the_value() {
-        let start = Moment { half: Half::Compression, root: 0.95 };
-        let normal = NormalMotion::at(start);
-        let onset = Onset::new(1.0, start, normal, 1.5 * normal.u * normal.v, 0.955).unwrap();
+        let (spring, start, velocity) = phase(1.0);
+        let onset = Onset::new(&Undamped, &spring, &start, velocity, turns(0.955)).unwrap();
         let (tau, step) = (0.5 * onset.reach, 1e-5);
         let at = |tau| onset.gap(tau).unwrap();
         let (before, here, after) = (at(tau - step), at(tau), at(tau + step));

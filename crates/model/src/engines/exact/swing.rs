@@ -1,34 +1,40 @@
 //! The motion of the spring in a stick phase, compared with its limit.
 
-use super::limit::pull;
+use super::normal::{At, Moment, Motion, Spring, Trajectory};
 use super::onset::Onset;
 use super::slide::Slide;
-use super::trajectory::{CONTACT_TIME, Moment, NormalMotion};
 use crate::numerics::double_double::DoubleDouble;
 
 /// One stick phase, in the orientation in which it starts on side +1: y = A cos θ, where θ grows at
 /// the rate ω = √κ.
-#[derive(Clone, Copy, Debug)]
-pub struct Swing {
-    /// Scaled stiffness κ.
-    pub kappa: f64,
-    /// ω = √κ.
-    pub omega: f64,
-    /// b = 3/(2κ).
-    pub bend: f64,
+#[derive(Debug)]
+pub struct Swing<'t, T: Trajectory> {
+    /// The normal motion.
+    pub path: &'t T,
+    /// The spring.
+    pub spring: Spring,
+    /// The moments at which P changes its sign, if it falls through 0 anywhere.
+    pub turns: Option<[Moment; 2]>,
     /// The moment at which the phase starts.
-    pub start: Moment,
+    pub start: At<T::Motion>,
     /// y at the start, where it is equal to the limit L.
     pub elongation: f64,
     /// w at the start, with twice the digits.
     pub velocity: DoubleDouble,
     /// The amplitude A.
     pub amplitude: f64,
-    /// The angle from the start to the first y = 0, between 0 and π.
+    /// The angle from the start to the first y = 0, between 0 and π. It is −π for a phase with
+    /// which the contact starts, so that its first half swing has the number [`AT_IMPACT`].
     pub first_zero: f64,
+    /// The number of the half swing with which the phase starts.
+    pub first: u32,
     /// The series of D just after the start, for a phase that may be very short.
     onset: Option<Onset>,
 }
+
+/// The number of the half swing with which a contact starts, if it starts in stick. It is on side
+/// +1, and the spring is 0 at its start, as on every half swing but number 0.
+pub const AT_IMPACT: u32 = 2;
 
 /// The spring and its limit at one moment of a half swing, on which q = ±y is positive.
 #[derive(Clone, Copy, Debug)]
@@ -53,68 +59,103 @@ impl Gap {
     }
 }
 
-impl Swing {
-    /// The phase that starts at `start`, where the normal motion is `normal` and w is `velocity`.
-    pub fn new(slide: &Slide, start: Moment, normal: NormalMotion, velocity: DoubleDouble) -> Self {
-        let kappa = slide.kappa;
-        let omega = kappa.sqrt();
-        let elongation = normal.u * normal.u * normal.u / kappa;
-        let across = velocity.0 / omega;
+impl<'t, T: Trajectory> Swing<'t, T> {
+    /// The phase that starts at `start`, where w is `velocity`, after slip.
+    pub fn new(slide: &Slide<'t, T>, start: At<T::Motion>, velocity: DoubleDouble) -> Self {
+        let &Slide { path, spring, turns, .. } = slide;
+        let elongation = start.motion.limit(&spring);
+        let across = velocity.0 / spring.omega;
         Self {
-            kappa,
-            omega,
-            bend: slide.bend,
+            path,
+            spring,
+            turns,
             start,
             elongation,
             velocity,
             amplitude: elongation.hypot(across),
             first_zero: elongation.atan2(-across),
-            onset: slide
-                .crest
-                .and_then(|crest| Onset::new(kappa, start, normal, velocity.0, crest.root)),
+            first: 0,
+            onset: Onset::new(path, &spring, &start, velocity.0, turns),
         }
+    }
+
+    /// The phase with which the contact starts.
+    pub fn at_impact(slide: &Slide<'t, T>, psi: f64) -> Self {
+        let &Slide { path, spring, turns, .. } = slide;
+        Self {
+            path,
+            spring,
+            turns,
+            start: path.at(Moment::START),
+            elongation: 0.0,
+            velocity: DoubleDouble(psi, 0.0),
+            amplitude: psi / spring.omega,
+            first_zero: -std::f64::consts::PI,
+            first: AT_IMPACT,
+            onset: None,
+        }
+    }
+
+    /// Time from the start until `at`.
+    pub fn elapsed(&self, at: &At<T::Motion>) -> f64 {
+        self.path.elapsed(&self.start, at)
     }
 
     /// y and w a time `tau` after the start.
     pub fn motion(&self, tau: f64) -> (f64, f64) {
-        let (sin, cos) = (self.omega * tau).sin_cos();
+        let omega = self.spring.omega;
+        let (sin, cos) = (omega * tau).sin_cos();
         (
-            self.elongation * cos + self.velocity.0 / self.omega * sin,
-            self.velocity.0 * cos - self.elongation * self.omega * sin,
+            self.elongation * cos + self.velocity.0 / omega * sin,
+            self.velocity.0 * cos - self.elongation * omega * sin,
         )
     }
 
-    /// The gap on half swing `k` at `moment`, where the normal motion is `normal`.
-    pub fn gap(&self, k: u32, moment: Moment, normal: NormalMotion) -> Gap {
-        let tau = self.start.time_until(moment);
+    /// The gap on half swing `k` at `at`.
+    pub fn gap(&self, k: u32, at: &At<T::Motion>) -> Gap {
+        let tau = self.elapsed(at);
         let sign = half_swing_sign(k);
         let (y, w) = self.motion(tau);
         let (q, q_rate) = (sign * y, sign * w);
-        if k == 0
-            && let Some((value, rate, acceleration)) = self.onset.and_then(|onset| onset.gap(tau))
-        {
-            return Gap { value, rate, acceleration, q, q_rate };
+        let limit = at.motion.limit(&self.spring);
+        let (value, rate) = (limit - q, at.motion.limit_rate(&self.spring) - q_rate);
+        let pull = at.motion.pull(&self.spring);
+        let plain = Gap { value, rate, acceleration: pull - self.spring.kappa * value, q, q_rate };
+        let Some((value, rate, acceleration)) = self.onset.and_then(|onset| onset.gap(tau)) else {
+            return plain;
+        };
+        if k == 0 {
+            return Gap { value, rate, acceleration, ..plain };
         }
-        let NormalMotion { u, v, .. } = normal;
-        let value = u * u * u / self.kappa - q;
+        // L + y = 2L − (L − y)
+        let limit_rate = plain.rate + q_rate;
+        let limit_acceleration = pull - self.spring.kappa * limit;
         Gap {
-            value,
-            rate: self.bend * u * v - q_rate,
-            acceleration: pull(self.bend, u) - self.kappa * value,
-            q,
-            q_rate,
+            value: 2.0 * limit - value,
+            rate: 2.0 * limit_rate - rate,
+            acceleration: 2.0 * limit_acceleration - acceleration,
+            ..plain
         }
     }
 
-    /// Whether [`Swing::gap`] is a series at `moment`, and therefore free of cancellation.
-    pub fn is_onset(&self, k: u32, moment: Moment) -> bool {
-        k == 0 && self.onset.is_some_and(|onset| self.start.time_until(moment) <= onset.reach)
+    /// Whether [`Swing::gap`] is a series at `at`, and therefore free of cancellation.
+    pub fn is_onset(&self, k: u32, at: &At<T::Motion>) -> bool {
+        k == 0 && self.onset.is_some_and(|onset| self.elapsed(at) <= onset.reach)
     }
 
     /// The moment an angle `past_zero` after the first y = 0, at most [`Moment::END`].
     pub fn moment_at_angle(&self, past_zero: f64) -> Moment {
-        let duration = (self.first_zero + past_zero) / self.omega;
-        if duration < CONTACT_TIME { self.start.after(duration) } else { Moment::END }
+        self.moment_near_angle(past_zero, 1e-6)
+    }
+
+    /// As [`Self::moment_at_angle`], with an error of the angle below `slack`.
+    pub fn moment_near_angle(&self, past_zero: f64, slack: f64) -> Moment {
+        let duration = (self.first_zero + past_zero) / self.spring.omega;
+        if duration < self.path.contact_time() {
+            self.path.after(&self.start, duration, slack / self.spring.omega)
+        } else {
+            Moment::END
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Totals over the phases of a collision: the work of sliding, and the reversals of the motion.
 
+use super::normal::{At, Motion};
 use super::slide::SlipPhase;
-use super::trajectory::{Half, Moment, NormalMotion};
 use crate::result::EnergyLedger;
 
 /// The totals over the phases so far.
@@ -14,16 +14,11 @@ pub struct Totals {
 }
 
 impl Totals {
-    /// Adds a slip phase up to `end`, where the normal motion is `normal` and s·w is `velocity`.
+    /// Adds a slip phase up to `end`, where s·w is `velocity`.
     ///
     /// With F dt = −dv and s·w linear in v, ∫ F s·w dt is the impulse times the mean of s·w.
-    pub fn slip(&mut self, sliding: &SlipPhase, end: Moment, normal: NormalMotion, velocity: f64) {
-        let impulse = match (sliding.start.half, end.half) {
-            (Half::Compression, Half::Compression) => normal.deficit - sliding.deficit,
-            (Half::Decompression, _) => sliding.deficit - normal.deficit,
-            (Half::Compression, Half::Decompression) => 2.0 - sliding.deficit - normal.deficit,
-        };
-        self.sliding += 0.5 * impulse * (sliding.velocity + velocity);
+    pub fn slip<M: Motion>(&mut self, sliding: &SlipPhase, end: &At<M>, velocity: f64) {
+        self.sliding += 0.5 * sliding.impulse_until(end) * (sliding.velocity + velocity);
         self.reversals += usize::from((sliding.velocity > 0.0) != (velocity > 0.0));
     }
 
@@ -35,18 +30,15 @@ impl Totals {
         self.sliding += 0.5 * kappa * (released - stuck) * (released + stuck);
     }
 
-    /// The energy ledger of a collision without damping whose w is `psi` at the start and
-    /// `final_velocity` at the end.
-    pub fn ledger(&self, psi: f64, final_velocity: f64) -> EnergyLedger {
+    /// The energy ledger of a collision whose w is `psi` at the start and `final_velocity` at the
+    /// end, with the energy of its normal motion.
+    pub fn ledger(&self, psi: f64, final_velocity: f64, normal: EnergyLedger) -> EnergyLedger {
         EnergyLedger {
             tangential_initial: 0.5 * psi * psi,
             tangential_final: 0.5 * final_velocity * final_velocity,
             sliding: self.sliding,
             spring_left: 0.0,
-            normal_initial: 0.5,
-            normal_final: 0.5,
-            damping: 0.0,
-            compression_left: 0.0,
+            ..normal
         }
     }
 }

@@ -2,26 +2,29 @@
 //!
 //! As in `refined_onset`, one Newton step with the guard in [`DoubleDouble`] numbers removes them.
 
-use super::swing::Swing;
-use super::trajectory::{CONTACT_TIME, CONTACT_TIME_REST, Half, Moment, NormalMotion};
+use super::{CONTACT_TIME, CONTACT_TIME_REST, NormalMotion, Undamped};
+use crate::engines::exact::normal::{Half, Moment, Trajectory};
+use crate::engines::exact::swing::Swing;
 use crate::numerics::double_double::DoubleDouble;
 
 /// The moment at which a stick phase ends on the side `sign`: `moment`, improved.
 ///
 /// `rate` is d(L − sign·y)/dt at `moment`. Most of the rounding is in the angle √κ·τ of the spring.
-pub fn refined_exit(swing: &Swing, sign: f64, moment: Moment, rate: f64) -> Moment {
+pub fn refined_exit(swing: &Swing<Undamped>, sign: f64, moment: Moment, rate: f64) -> Moment {
+    let spring = swing.spring;
     let omega = DoubleDouble(
-        swing.omega,
-        (-swing.omega).mul_add(swing.omega, swing.kappa) / (2.0 * swing.omega),
+        spring.omega,
+        (-spring.omega).mul_add(spring.omega, spring.kappa) / (2.0 * spring.omega),
     );
-    let angle = omega.times(elapsed(swing.start, moment));
+    let angle = omega.times(elapsed(swing.start.moment, moment));
     let (sin, cos) = angle.0.sin_cos();
     let (sin, cos) =
         (DoubleDouble::sum(sin, angle.1 * cos), DoubleDouble::sum(cos, -angle.1 * sin));
-    let elongation = limit(swing.kappa, swing.start);
+    let elongation = limit(spring.kappa, swing.start.moment);
     let y = elongation.times(cos).plus(swing.velocity.over(omega).times(sin));
-    let gap = limit(swing.kappa, moment).minus(DoubleDouble(sign * y.0, sign * y.1));
-    let root = moment.root - gap.nearest() / rate / moment.time_per_root();
+    let gap = limit(spring.kappa, moment).minus(DoubleDouble(sign * y.0, sign * y.1));
+    let root =
+        moment.root - gap.nearest() / rate / Undamped.time_along_root(&Undamped.at(moment))[0];
     // At a touch within rounding the rate is too small to divide by.
     if (root - moment.root).abs() < 1e-6 * moment.root { Moment { root, ..moment } } else { moment }
 }

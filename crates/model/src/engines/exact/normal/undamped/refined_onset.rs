@@ -3,8 +3,8 @@
 //! If a guard falls through 0 at the rate δ, an error of 1e-16 in the guard becomes an error of
 //! 1e-16/δ in the switch. One Newton step with the guard in [`DoubleDouble`] numbers removes it.
 
-use super::limit::pull;
-use super::trajectory::{Half, Moment, NormalMotion};
+use super::{NormalMotion, pull};
+use crate::engines::exact::normal::{Half, Moment};
 use crate::numerics::double_double::DoubleDouble;
 
 /// The root coordinate at which a slip phase in the compression ends: `root`, improved if it is

@@ -6,6 +6,17 @@
 //! the largest compression. Two short polynomials therefore give them to rounding, and small
 //! quantities near either end keep their relative accuracy.
 
+mod crest;
+mod meeting;
+mod refined_exit;
+mod refined_onset;
+
+use super::{At, Half, Moment, Motion, ORDER, Slide, SlipPhase, Spring, Swing, Trajectory};
+use crate::result::EnergyLedger;
+use crest::crest;
+use meeting::meeting;
+use refined_exit::refined_exit;
+
 /// Duration of the contact, t_c = (4/5)(5/4)^{2/5} B(2/5, 1/2).
 pub const CONTACT_TIME: f64 = 3.21806545971904308453593;
 
@@ -72,116 +83,10 @@ const TIME_OVER_X: [f64; 11] = [
     0.00481755702258528943,
 ];
 
-/// A half of the contact.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Half {
-    /// The compression increases: time is counted from the start.
-    Compression,
-    /// The compression decreases: time is counted back from the end.
-    Decompression,
-}
-
-impl Half {
-    fn other(self) -> Self {
-        match self {
-            Self::Compression => Self::Decompression,
-            Self::Decompression => Self::Compression,
-        }
-    }
-}
-
-/// A time of the contact, held as the square root of the time to the nearer end.
-///
-/// Near both ends the motion is smooth in this root, not in time. Moments that are closer together
-/// than neighbouring floating-point numbers around t_c are still distinguished.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Moment {
-    /// The half of the contact, which tells the nearer end.
-    pub half: Half,
-    /// The root coordinate r, √(time to the nearer end), from 0 to [`MIDDLE_ROOT`].
-    pub root: f64,
-}
-
-impl Moment {
-    /// The first moment of contact.
-    pub const START: Self = Self { half: Half::Compression, root: 0.0 };
-    /// The last moment of contact.
-    pub const END: Self = Self { half: Half::Decompression, root: 0.0 };
-
-    /// Time since the start of contact.
-    pub fn time(self) -> f64 {
-        let near = self.root * self.root;
-        match self.half {
-            Half::Compression => near,
-            Half::Decompression => CONTACT_TIME - near,
-        }
-    }
-
-    /// Time until the end of contact.
-    pub fn time_left(self) -> f64 {
-        let near = self.root * self.root;
-        match self.half {
-            Half::Compression => CONTACT_TIME - near,
-            Half::Decompression => near,
-        }
-    }
-
-    /// Time from this moment until `later`, exact to rounding within one half.
-    pub fn time_until(self, later: Self) -> f64 {
-        match (self.half, later.half) {
-            (Half::Compression, Half::Compression) => {
-                (later.root - self.root) * (later.root + self.root)
-            }
-            (Half::Decompression, Half::Decompression) => {
-                (self.root - later.root) * (self.root + later.root)
-            }
-            _ => self.time_left() - later.time_left(),
-        }
-    }
-
-    /// The moment a time `duration` ≥ 0 later, at most [`Moment::END`].
-    pub fn after(self, duration: f64) -> Self {
-        let time = self.time() + duration;
-        if time < 0.5 * CONTACT_TIME {
-            Self { half: Half::Compression, root: time.sqrt() }
-        } else {
-            let left = self.time_left() - duration;
-            Self { half: Half::Decompression, root: left.max(0.0).sqrt().min(MIDDLE_ROOT) }
-        }
-    }
-
-    /// The moment a time `duration` ≥ 0 earlier, at least [`Moment::START`].
-    pub fn before(self, duration: f64) -> Self {
-        let mirrored = Self { half: self.half.other(), ..self }.after(duration);
-        Self { half: mirrored.half.other(), ..mirrored }
-    }
-
-    /// The moment in `half` at which √x = `u`; its error is 1e-8 of the time to the nearer end.
-    pub fn near_compression(half: Half, u: f64) -> Self {
-        let speed = speed_at(u);
-        let ratio =
-            TIME_OVER_X.iter().rev().fold(0.0, |sum, coefficient| sum * speed + coefficient);
-        Self { half, root: (u * ratio.sqrt()).min(MIDDLE_ROOT) }
-    }
-
-    /// Whether this moment lies before `other`.
-    pub fn is_before(self, other: Self) -> bool {
-        match (self.half, other.half) {
-            (Half::Compression, Half::Decompression) => true,
-            (Half::Decompression, Half::Compression) => false,
-            (Half::Compression, Half::Compression) => self.root < other.root,
-            (Half::Decompression, Half::Decompression) => self.root > other.root,
-        }
-    }
-
-    /// The rate dt/dr of time along the root coordinate.
-    pub fn time_per_root(self) -> f64 {
-        match self.half {
-            Half::Compression => 2.0 * self.root,
-            Half::Decompression => -2.0 * self.root,
-        }
-    }
-}
+/// The normal motion without damping. The root coordinate of a moment is the square root of the time
+/// to the nearer end of contact.
+#[derive(Clone, Copy, Debug)]
+pub struct Undamped;
 
 /// The normal motion at a moment.
 #[derive(Clone, Copy, Debug)]
@@ -217,8 +122,170 @@ impl NormalMotion {
     }
 }
 
+impl Motion for NormalMotion {
+    fn deficit(&self) -> f64 {
+        self.deficit
+    }
+
+    fn limit(&self, spring: &Spring) -> f64 {
+        self.u * self.u * self.u / spring.kappa
+    }
+
+    fn limit_rate(&self, spring: &Spring) -> f64 {
+        spring.bend * self.u * self.v
+    }
+
+    fn pull(&self, spring: &Spring) -> f64 {
+        pull(spring.bend, self.u)
+    }
+}
+
+/// κL + L̈ = u³ + b (1/(2u) − (7/5) u⁴).
+pub fn pull(bend: f64, u: f64) -> f64 {
+    u * u * u + bend * (0.5 / u - 1.4 * (u * u) * (u * u))
+}
+
+impl Trajectory for Undamped {
+    type Motion = NormalMotion;
+
+    const STARTS_IN_SLIP: bool = true;
+    const REFINES: bool = true;
+
+    fn motion(&self, moment: Moment) -> NormalMotion {
+        NormalMotion::at(moment)
+    }
+
+    fn middle(&self) -> [f64; 2] {
+        [MIDDLE_ROOT; 2]
+    }
+
+    fn restitution(&self) -> f64 {
+        1.0
+    }
+
+    fn energy(&self) -> EnergyLedger {
+        EnergyLedger { normal_initial: 0.5, normal_final: 0.5, ..EnergyLedger::default() }
+    }
+
+    fn contact_time(&self) -> f64 {
+        CONTACT_TIME
+    }
+
+    fn impulse(&self) -> f64 {
+        2.0
+    }
+
+    fn near_time(&self, at: &At<NormalMotion>) -> f64 {
+        at.moment.root * at.moment.root
+    }
+
+    fn elapsed(&self, from: &At<NormalMotion>, to: &At<NormalMotion>) -> f64 {
+        let (first, last) = (from.moment.root, to.moment.root);
+        match (from.moment.half, to.moment.half) {
+            (Half::Compression, Half::Compression) => (last - first) * (last + first),
+            (Half::Decompression, Half::Decompression) => (first - last) * (first + last),
+            _ => self.time_left(from) - self.time_left(to),
+        }
+    }
+
+    fn time_along_root(&self, at: &At<NormalMotion>) -> [f64; 2] {
+        let sign = at.moment.half.sign();
+        [sign * 2.0 * at.moment.root, sign * 2.0]
+    }
+
+    fn after(&self, from: &At<NormalMotion>, duration: f64, _: f64) -> Moment {
+        let time = self.time(from) + duration;
+        if time < 0.5 * CONTACT_TIME {
+            Moment { half: Half::Compression, root: time.sqrt() }
+        } else {
+            let left = self.time_left(from) - duration;
+            let root = left.max(0.0).sqrt().min(MIDDLE_ROOT);
+            Moment { half: Half::Decompression, root }
+        }
+    }
+
+    fn before(&self, until: &At<NormalMotion>, duration: f64, _: f64) -> Moment {
+        let mirrored = Moment { half: until.moment.half.other(), ..until.moment };
+        let mirrored = self.after(&At { moment: mirrored, ..*until }, duration, 0.0);
+        Moment { half: mirrored.half.other(), ..mirrored }
+    }
+
+    fn exit_after_impact(&self, _: &Spring, _: f64) -> Option<Moment> {
+        None
+    }
+
+    fn above(&self, force: f64, _: f64) -> Option<[Moment; 2]> {
+        // The moments are known to 1e-8 only: a slightly larger force is on the safe side.
+        let u = (force * (1.0 + 1e-7)).cbrt();
+        (u < LARGEST_U).then(|| {
+            let root = root_near(u);
+            [Half::Compression, Half::Decompression].map(|half| Moment { half, root })
+        })
+    }
+
+    fn last_time_at(&self, force: f64) -> Option<Moment> {
+        // √x is about the root coordinate.
+        let root = force.cbrt().min(MIDDLE_ROOT);
+        Some(Moment { half: Half::Decompression, root })
+    }
+
+    fn turns(&self, spring: &Spring) -> Option<[Moment; 2]> {
+        crest(spring)
+            .map(|root| [Half::Compression, Half::Decompression].map(|half| Moment { half, root }))
+    }
+
+    fn split(&self) -> Moment {
+        Moment { half: Half::Compression, root: MIDDLE_ROOT }
+    }
+
+    fn meeting(
+        &self,
+        slide: &Slide<Self>,
+        sliding: &SlipPhase,
+        low: Moment,
+        high: Moment,
+    ) -> Moment {
+        meeting(slide, sliding, low, high)
+    }
+
+    fn refined_exit(&self, swing: &Swing<Self>, sign: f64, end: Moment, rate: f64) -> Moment {
+        refined_exit(swing, sign, end, rate)
+    }
+
+    fn series_radius(&self, at: &At<NormalMotion>) -> f64 {
+        self.near_time(at)
+    }
+
+    /// From ẋ = v, v̇ = −F and xḞ = (3/2) F v.
+    fn force_series(&self, at: &At<NormalMotion>) -> [f64; ORDER] {
+        let numbered = || (0_u8..).map(f64::from).enumerate();
+        let NormalMotion { u, v: speed, .. } = at.motion;
+        let [mut x, mut v, mut f] = [[0.0; ORDER]; 3];
+        x[0] = u * u;
+        v[0] = speed;
+        f[0] = u * u * u;
+        for (n, order) in numbered().take(ORDER - 1) {
+            x[n + 1] = v[n] / (order + 1.0);
+            v[n + 1] = -f[n] / (order + 1.0);
+            // (n + 1) x₀ F_{n+1} = (3/2) Σ_j F_j v_{n−j} − Σ_j j F_j x_{n+1−j}
+            let terms = numbered().take(n + 1);
+            let sum: f64 =
+                terms.map(|(j, power)| f[j] * (1.5 * v[n - j] - power * x[n + 1 - j])).sum();
+            f[n + 1] = sum / ((order + 1.0) * x[0]);
+        }
+        f
+    }
+}
+
+/// The root coordinate at which √x = `u`; its error is 1e-8 of the time to the nearer end.
+fn root_near(u: f64) -> f64 {
+    let speed = speed_at(u);
+    let ratio = TIME_OVER_X.iter().rev().fold(0.0, |sum, coefficient| sum * speed + coefficient);
+    (u * ratio.sqrt()).min(MIDDLE_ROOT)
+}
+
 /// |v| at √x = `u`, with an error of 1e-16/|v|.
-pub fn speed_at(u: f64) -> f64 {
+fn speed_at(u: f64) -> f64 {
     (1.0 - 0.8 * u * (u * u) * (u * u)).max(0.0).sqrt()
 }
 
@@ -285,18 +352,20 @@ mod tests {
     #[test]
     fn moments_move_both_ways() {
         for moment in moments() {
+            let from = Undamped.at(moment);
             for duration in [1e-9, 0.1, 1.7, 3.0] {
-                let later = moment.after(duration);
-                assert!(
-                    (later.time() - moment.time() - duration).abs() < 1e-15 || later == Moment::END
-                );
-                if later != Moment::END {
-                    assert!((moment.time_until(later) - duration).abs() < 1e-15);
-                    assert!((later.before(duration).time() - moment.time()).abs() < 2e-15);
+                let later = Undamped.at(Undamped.after(&from, duration, 0.0));
+                let passed = Undamped.time(&later) - Undamped.time(&from);
+                let ended = later.moment == Moment::END;
+                assert!((passed - duration).abs() < 1e-15 || ended);
+                if !ended {
+                    assert!((Undamped.elapsed(&from, &later) - duration).abs() < 1e-15);
+                    let back = Undamped.at(Undamped.before(&later, duration, 0.0));
+                    assert!((Undamped.time(&back) - Undamped.time(&from)).abs() < 2e-15);
                 }
             }
-            let near = Moment::near_compression(moment.half, NormalMotion::at(moment).u);
-            assert!((near.root - moment.root).abs() <= 1e-8 * moment.root, "{moment:?}");
+            let near = root_near(from.motion.u);
+            assert!((near - moment.root).abs() <= 1e-8 * moment.root, "{moment:?}");
         }
     }
 }
