@@ -23,11 +23,11 @@ use integrator::{Collider, CollisionError};
 /// ```
 /// use stickslip_model::{Contact, Engine};
 ///
-/// let contact = Contact::new(63.0, 0.5, 0.0)?;
+/// let contact = Contact::new(63.0, 0.5, 0.1)?;
 /// let (collision, statistics) = Engine::Auto.collide(contact)?;
-/// // Without damping there is an exact solution, which takes no steps.
+/// // There is an exact solution, which takes no steps.
 /// assert_eq!(Engine::Auto.resolved(&contact), Engine::Exact);
-/// assert_eq!(collision.itinerary(), "+o-o+o-");
+/// assert_eq!(collision.itinerary(), "o+o-o+o-");
 /// assert!(statistics.is_none());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -37,10 +37,10 @@ pub enum Engine {
     Dop853(Tolerances),
     /// Dormand–Prince 5(4).
     Dopri5(Tolerances),
-    /// The exact solution, which only contacts without damping have.
+    /// The exact solution.
     Exact,
-    /// The exact solution for a contact without damping, and Dormand–Prince 8(5,3) at its default
-    /// tolerances for a contact with damping.
+    /// The exact solution wherever there is one, and Dormand–Prince 8(5,3) at its default tolerances
+    /// elsewhere.
     Auto,
 }
 
@@ -99,7 +99,7 @@ impl Engine {
     #[must_use]
     pub fn resolved(self, contact: &Contact) -> Self {
         match self {
-            Self::Auto if contact.damping() == 0.0 => Self::Exact,
+            Self::Auto if exact::covers(contact) => Self::Exact,
             Self::Auto => Self::Dop853(Tolerances::DOP853),
             chosen => chosen,
         }

@@ -36,7 +36,7 @@ pub struct CollisionPlane {
 /// Collisions as a family of runs. The label of a run is the list of the guards that fired.
 #[derive(Clone, Copy, Debug)]
 pub enum CollisionFamily {
-    /// Computed by the exact solution, without damping.
+    /// Computed by the exact solution.
     Exact(CollisionPlane),
     /// Computed by integration.
     Integrated(HybridFamily<CollisionPlane, Dop853, STATE, GUARDS>),
@@ -96,8 +96,8 @@ impl CollisionPlane {
         Contact::new(kappa, psi.max(0.5 * self.low.psi()), self.low.damping())
     }
 
-    /// The collisions as a family: by the exact solution if there is no damping, which makes a
-    /// trace ten times as fast, and by integration otherwise.
+    /// The collisions as a family: by the exact solution wherever there is one, which makes a trace
+    /// ten times as fast, and by integration elsewhere.
     #[must_use]
     pub fn family(self) -> CollisionFamily {
         match Engine::Auto.resolved(&self.low) {

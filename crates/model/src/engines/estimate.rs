@@ -1,10 +1,6 @@
 //! The error to expect of a collision, and how far its itinerary is from changing.
 
-use stickslip_solver::Pair;
-
-use super::integrator::Collider;
 use super::{Engine, EngineError, Tolerances, exact};
-use crate::contact::Contact;
 use crate::laws::phase::Regime;
 use crate::result::Collision;
 
@@ -39,17 +35,11 @@ const MEASURED: f64 = 1e6;
 /// The least tolerance that counts: below it rounding does.
 const LEAST_TOLERANCE: f64 = 1e-14;
 
-/// The tolerance of a second opinion by Dormand–Prince 8(5,3), as part of that of a run by itself
-/// and by Dormand–Prince 5(4), which is ten times as accurate at the same tolerance.
-const FINER: f64 = 1.0 / 30.0;
-const FINER_THAN_DOPRI5: f64 = 1.0 / 300.0;
-
 impl Engine {
     /// The error to expect of `collision`, which this engine has computed, by a second opinion: the
-    /// exact solution where there is one, and otherwise a run of Dormand–Prince 8(5,3) with a finer
-    /// tolerance. Rounding is added, also that of the exact solution itself.
+    /// exact solution. Rounding is added, also that of the exact solution itself.
     ///
-    /// Cost: 1.3 exact collisions, or with damping two and a half runs.
+    /// Cost: 1.3 exact collisions, and one more after an integration.
     ///
     /// ```
     /// use stickslip_model::{Contact, Engine, Tolerances};
@@ -69,53 +59,27 @@ impl Engine {
     /// As [`Self::collide`].
     pub fn estimate(&self, collision: &Collision) -> Result<Estimate, EngineError> {
         let contact = collision.contact;
-        let undamped =
-            |eps_t| Ok(Opinion { eps_t, distance: exact::distance(&contact)?, steps: 0 });
         let engine = self.resolved(&contact);
-        let second = match engine {
-            Self::Exact | Self::Auto => undamped(collision.eps_t()),
-            Self::Dop853(_) | Self::Dopri5(_) if contact.damping() == 0.0 => {
-                undamped(exact::collide(contact)?.eps_t())
+        let distance = exact::distance(&contact)?;
+        let difference = match engine {
+            Self::Exact | Self::Auto => 0.0,
+            Self::Dop853(_) | Self::Dopri5(_) => {
+                (collision.eps_t() - exact::collide(contact)?.eps_t()).abs()
             }
-            Self::Dop853(tolerances) => Opinion::of_run(contact, tolerances, FINER),
-            Self::Dopri5(tolerances) => Opinion::of_run(contact, tolerances, FINER_THAN_DOPRI5),
-        }?;
-        let difference = (collision.eps_t() - second.eps_t).abs();
-        let eps_t_error = SAFETY * difference + rounding(collision, second.steps);
+        };
+        let eps_t_error = SAFETY * difference + rounding(collision);
         let most = MOST_TOLERANCES * (contact.kappa() / MEASURED).max(1.0).sqrt();
         let of_steps = engine
             .tolerances()
             .map_or(0.0, |Tolerances { rtol, atol }| most * rtol.max(atol).max(LEAST_TOLERANCE));
-        let certain = second.distance > eps_t_error.max(of_steps);
-        Ok(Estimate { eps_t_error, distance: second.distance, certain })
-    }
-}
-
-/// What another computation says of a contact.
-struct Opinion {
-    eps_t: f64,
-    distance: f64,
-    /// The number of steps, 0 for the exact solution.
-    steps: usize,
-}
-
-impl Opinion {
-    /// The opinion of a run whose tolerances are the part `finer` of these.
-    fn of_run(
-        contact: Contact,
-        Tolerances { rtol, atol }: Tolerances,
-        finer: f64,
-    ) -> Result<Self, EngineError> {
-        let collider = Collider::with_tolerances(Pair::Dop853, rtol * finer, atol * finer);
-        let (velocity, distance, steps) = collider.second_opinion(contact)?;
-        let psi = contact.psi();
-        Ok(Self { eps_t: velocity / psi, distance: distance / psi, steps })
+        let certain = distance > eps_t_error.max(of_steps);
+        Ok(Estimate { eps_t_error, distance, certain })
     }
 }
 
 /// What rounding makes of ε_t: a few units in its last place, and the rounding of the angle by
-/// which the spring swings, which adds up over the `steps` of an integrator.
-fn rounding(collision: &Collision, steps: usize) -> f64 {
+/// which the spring swings.
+fn rounding(collision: &Collision) -> f64 {
     let omega = collision.contact.kappa().sqrt();
     let psi = collision.contact.psi();
     // The start counts as a switch with the velocity ψ and no elongation.
@@ -127,6 +91,5 @@ fn rounding(collision: &Collision, steps: usize) -> f64 {
     let phases = std::iter::once((collision.start, 0.0, 1.0)).chain(begins).zip(ends);
     let swings = phases.filter(|((regime, ..), _)| *regime == Regime::Stick);
     let angles: f64 = swings.map(|((_, begin, speed), end)| omega * (end - begin) * speed).sum();
-    let growth = 1.0 + 0.25 * (steps as f64).sqrt();
-    f64::EPSILON * (4.0 + collision.eps_t().abs() + 2.0 * angles * growth)
+    f64::EPSILON * (4.0 + collision.eps_t().abs() + 2.0 * angles)
 }

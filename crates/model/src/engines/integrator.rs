@@ -4,7 +4,6 @@ use stickslip_solver::{Observer, Options, Outcome, Pair, RunError, Start, Statis
 
 mod account;
 mod last_slip;
-mod nearest;
 mod refine;
 mod reversals;
 
@@ -16,7 +15,6 @@ use crate::laws::regularized::Regularized;
 use crate::laws::regularized::components::{DAMPING, STATE, T, U};
 use crate::result::{Collision, EnergyLedger};
 use account::{Account, Observed};
-use nearest::Nearest;
 
 /// Flatness of a switch, in s, above which its time would be clearly less accurate than the state.
 /// Such a collision is refined.
@@ -27,9 +25,6 @@ const FLAT: f64 = 30.0;
 /// Close to both ends of contact u is nearly linear, and the embedded estimates miss most of the
 /// error. There the step is limited to the length on which u bends elsewhere.
 const LONGEST_STEP: f64 = 0.1;
-
-/// The longest step of a second opinion, as part of that of the first one.
-const FINER_STEP: f64 = 0.6;
 
 /// Impact ratio ψ below which steps are shorter. The change of v is part of w, and what the
 /// estimates miss of it counts in units of ψ: as h¹⁰ of a step at the ends of contact.
@@ -179,27 +174,6 @@ impl Collider {
         let (mut collision, mut history) = (Collision::before(contact), History::before(contact));
         let statistics = self.observe(contact, &options, &mut collision, &mut history)?;
         Ok((collision, statistics, history))
-    }
-
-    /// The velocity w at the end of a damped contact, how far, as a velocity, its switches are from
-    /// changing, and the number of steps.
-    pub(crate) fn second_opinion(
-        &self,
-        contact: Contact,
-    ) -> Result<(f64, f64, usize), CollisionError> {
-        let mut options = self.options_for(&contact)?;
-        for tolerance in [&mut options.rtol, &mut options.atol] {
-            *tolerance = tolerance.max(FINEST);
-        }
-        options.max_step *= FINER_STEP;
-        let system = Regularized::new(contact);
-        let start = Start { mode: Phase::first(&contact), s: 0.0, state: system.start() };
-        let mut nearest = Nearest::new(system);
-        let run = run_with(self.pair, &system, start, f64::INFINITY, &options, &mut nearest)?;
-        if run.outcome != (Outcome::EndedByGuard { guard: END }) {
-            return Err(CollisionError::Unfinished { outcome: run.outcome, time: run.state[T] });
-        }
-        Ok((system.velocity(&run.state), nearest.velocity(), run.statistics.accepted))
     }
 
     /// Integrates one collision into `collision`, while `course` observes the run too.

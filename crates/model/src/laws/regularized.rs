@@ -83,11 +83,6 @@ impl Regularized {
         self.force(y[U], y[V]).value
     }
 
-    /// The rate dL/dt of the spring's limit.
-    pub(crate) fn limit_rate(&self, y: &State<STATE>) -> f64 {
-        self.force(y[U], y[V]).first / (2.0 * y[U] * self.contact.kappa())
-    }
-
     /// Reduced elongation y of the spring in a state of `phase`.
     #[must_use]
     pub fn spring(&self, phase: Phase, y: &State<STATE>) -> f64 {

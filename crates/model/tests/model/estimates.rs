@@ -42,7 +42,7 @@ fn errors_are_covered_and_not_exaggerated() {
     for engine in engines() {
         let (mut uncovered, mut ratios) = (0, Vec::new());
         for (index, (contact, expected, eps_t)) in reference().enumerate() {
-            if contact.damping() > 0.0 && (engine == Engine::Exact || index % 8 != 0) {
+            if contact.damping() > 0.0 && engine != Engine::Exact && index % 8 != 0 {
                 continue;
             }
             let (found, estimate) = estimated(engine, contact);

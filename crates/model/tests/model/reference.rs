@@ -91,6 +91,16 @@ fn exact_engine() {
 }
 
 #[test]
+fn exact_engine_with_damping() {
+    let errors =
+        errors("damped_random", 1e-15, |case| exact::collide(case.contact).expect("a collision"));
+    assert!(errors.velocity <= 1e-14 && errors.velocity_stiff <= 1e-14, "{errors:?}");
+    assert!(errors.time.max(errors.time_left) <= 1e-13, "{errors:?}");
+    assert!(errors.contact_time <= 1e-15 && errors.eps_n <= 1e-15, "{errors:?}");
+    assert!(errors.unbalanced <= 4e-15, "{errors:?}");
+}
+
+#[test]
 fn dopri5_at_1e_10() {
     let collider = Collider::with_tolerances(Dopri5, 1e-10, 1e-10);
     for name in ["undamped_paper", "undamped_random", "damped_random"] {

@@ -6,14 +6,14 @@ use super::MOST_SWITCHES;
 use super::error::{ExactError, checked, too_many};
 use super::flank::Flanks;
 use super::margin::swing;
-use super::normal::Trajectory;
+use super::normal::{At, Trajectory};
 use super::phases::{Phase, Task, with_trajectory};
 use super::release::Release;
 use super::slide::{Slide, SlipPhase};
-use super::swing::Swing;
+use super::swing::{AT_IMPACT, Swing};
 use crate::contact::Contact;
 
-/// The distance of `contact`, which must have no damping, from other switches.
+/// The distance of `contact` from other switches.
 ///
 /// It is the least margin of the collision as a velocity, in units of ψ. The norm √(w² + κy²) of
 /// the difference of two contacts with the same normal motion never grows, so that the switches are
@@ -63,15 +63,24 @@ impl Task for Nearest {
     }
 }
 
-/// The slip phase after `swing`; `least` becomes the least of itself and the gaps.
+/// The slip phase after `swing`; `least` becomes the least of itself and the gaps as velocities.
 fn passed<T: Trajectory>(swing: &Swing<T>, least: &mut f64) -> SlipPhase {
     let release = Release::of(swing);
     let halves = half_swings(swing.first, release.half_swing);
-    let gaps = halves.flat_map(|k| top_gaps(swing, k)).flatten();
-    let gaps = gaps.chain(bend_gap(swing, &release));
-    *least = gaps.fold(*least, |least, gap| least.min(swing.spring.omega * gap.abs()));
+    let tops = halves.flat_map(|k| top_gaps(swing, k)).flatten();
+    *least = tops.chain(bend_gap(swing, &release)).fold(*least, |least, gap| least.min(gap.abs()));
     let velocity = super::swing::half_swing_sign(release.half_swing) * release.velocity;
     SlipPhase::new(swing.path, &release.end, velocity)
+}
+
+/// The velocity by which w would have to differ for another `gap` at `at`, as far as that is 0.
+///
+/// A difference δ of w at the start of the phase is a difference δ sin θ/ω of the gap at the angle
+/// θ. If the spring may differ too, the gap differs by at most δ/ω, where √(w² + κy²) does by δ.
+fn as_velocity<T: Trajectory>(swing: &Swing<T>, at: &At<T::Motion>, gap: f64, alone: bool) -> f64 {
+    let angle = swing.spring.omega * swing.elapsed(at);
+    let part = if alone && angle < FRAC_PI_2 { angle.sin() } else { 1.0 };
+    swing.spring.omega * gap / part
 }
 
 /// The half swings from the `first` to the `last` one on which the spring may come nearest to its
@@ -82,21 +91,23 @@ fn half_swings(first: u32, last: u32) -> impl Iterator<Item = u32> {
     (first..=last.min(early)).chain((last.saturating_sub(ENDS)..=last).filter(move |&k| k > early))
 }
 
-/// The gap D where the spring is nearest to its limit on half swing `k`.
+/// The gaps D, as velocities, where the spring is nearest to its limit on half swing `k`.
 fn top_gaps<T: Trajectory>(swing: &Swing<T>, k: u32) -> [Option<f64>; 2] {
     let Some(flanks) = Flanks::of(swing, k) else { return [None; 2] };
-    [flanks.top(swing), flanks.second_top(swing)]
-        .map(|top| Some(swing.gap(k, &swing.path.at(top?)).value))
+    [flanks.top(swing), flanks.second_top(swing)].map(|top| {
+        let at = swing.path.at(top?);
+        // At impact the spring is 0 without any error.
+        Some(as_velocity(swing, &at, swing.gap(k, &at).value, swing.first == AT_IMPACT))
+    })
 }
 
-/// The gap where it bends upwards again on the first half swing, if the phase does not end before.
-/// There it may fall to 0 if the phase starts a little earlier or later.
+/// The gap, as a velocity, where it bends upwards again on the first half swing after slip, if the
+/// phase does not end before. There it may fall to 0 if the phase starts a little earlier or later.
 fn bend_gap<T: Trajectory>(swing: &Swing<T>, release: &Release<T::Motion>) -> Option<f64> {
     let [_, bend] = swing.turns?;
-    let reached = swing.start.moment.is_before(bend) && bend.is_before(release.end.moment);
+    let start = swing.start.moment;
+    let reached = start.is_before(bend) && bend.is_before(release.end.moment);
     let bend = swing.path.at(bend);
-    let angle = swing.spring.omega * swing.elapsed(&bend);
-    // A difference δ of w at the start is a difference δ sin θ/ω of the gap at the angle θ.
-    let part = if angle < FRAC_PI_2 { angle.sin() } else { 1.0 };
-    (reached && swing.first == 0).then(|| swing.gap(0, &bend).value / part)
+    let velocity = || as_velocity(swing, &bend, swing.gap(0, &bend).value, true);
+    (reached && swing.first != AT_IMPACT).then(velocity)
 }

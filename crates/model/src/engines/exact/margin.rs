@@ -4,13 +4,14 @@
 //! [`mod@stickslip_solver::margin`]). The exact engine decides by three numbers. They are its
 //! margins:
 //!
-//! - A slip phase passes a crest of h if C − h > 0 at the crest.
-//! - A slip phase lasts to the end of contact if s·w > 0 at the end.
-//! - A stick phase passes a half swing if (L/|y|)² − 1 > 0 where |y|/L is largest. Near the end of
-//!   contact this number is linear in the time at which y vanishes; the gap L − |y| is not.
+//! - A slip phase passes the first turn of P = κL + L̈ if g = s·w − dL/dt > 0 there.
+//! - A slip phase lasts to the end of contact if g > 0 at the end.
+//! - A stick phase passes a half swing if (L/|y|)² − 1 > 0 where |y|/L is largest, and at its second
+//!   top if it has two. Near the end of contact this number is linear in the time at which y
+//!   vanishes; the gap L − |y| is not.
 //!
 //! Each margin is smooth through 0 as long as the switches before it are prescribed. A switch that
-//! ends slip is prescribed as before or after the crest, a switch that ends stick by the number of
+//! ends slip is prescribed as before or after the turns, a switch that ends stick by the number of
 //! the half swing.
 
 use stickslip_solver::{Exit, Hint, Margin, Place};
@@ -38,7 +39,7 @@ pub struct Margins {
     pub near_misses: Vec<(Margin, f64)>,
 }
 
-/// All margins of the collision of `contact`, which must have no damping.
+/// All margins of the collision of `contact`.
 ///
 /// Margins of slip are in units of the reduced velocity w; margins of stick are (L/|y|)² − 1. Up to
 /// κ = 400 their zeros are within 1e-15 of the boundaries in ψ.
@@ -133,7 +134,7 @@ fn passed<T: Trajectory>(
 /// ```
 ///
 /// # Errors
-/// [`ExactError::Damped`] and [`ExactError::Domain`] as [`margins`].
+/// [`ExactError::Domain`] as [`margins`].
 pub fn margin(contact: &Contact, which: &Margin) -> Result<Option<f64>, ExactError> {
     follow(contact, which, |_| ())
 }

@@ -260,7 +260,8 @@ impl Trajectory for Viscoelastic {
         let (normal_initial, v) = (0.5, self.restitution());
         let normal_final = 0.5 * v * v;
         let compression_left = 0.4 * self.scale.strengths.alpha * u * (u * u) * (u * u);
-        let damping = normal_initial - normal_final - compression_left;
+        // For a weak damping this is rounding, which may have either sign.
+        let damping = (normal_initial - normal_final - compression_left).max(0.0);
         EnergyLedger {
             normal_initial,
             normal_final,
