@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use super::MOST_SWITCHES;
 use super::error::{ExactError, checked, too_many};
 use super::flank::Flanks;
-use super::margin::swing;
+use super::margin::{end_margin, swing};
 use super::normal::{At, Trajectory};
 use super::phases::{Phase, Task, with_trajectory};
 use super::release::Release;
@@ -68,7 +68,8 @@ fn passed<T: Trajectory>(swing: &Swing<T>, least: &mut f64) -> SlipPhase {
     let release = Release::of(swing);
     let halves = half_swings(swing.first, release.half_swing);
     let tops = halves.flat_map(|k| top_gaps(swing, k)).flatten();
-    *least = tops.chain(bend_gap(swing, &release)).fold(*least, |least, gap| least.min(gap.abs()));
+    let gaps = tops.chain(bend_gap(swing, &release)).chain(end_margin(swing, release.half_swing));
+    *least = gaps.fold(*least, |least, gap| least.min(gap.abs()));
     let velocity = super::swing::half_swing_sign(release.half_swing) * release.velocity;
     SlipPhase::new(swing.path, &release.end, velocity)
 }

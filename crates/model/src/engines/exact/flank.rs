@@ -131,6 +131,11 @@ impl Flanks {
         self.turn.map(|[low, high]| top(swing, self.half_swing, low, high, None))
     }
 
+    /// Whether R rises twice.
+    pub fn rises_again(&self) -> bool {
+        self.again.is_some()
+    }
+
     /// The second top of R.
     pub fn second_top<T: Trajectory>(&self, swing: &Swing<T>) -> Option<Moment> {
         let [low, high] = self.again.as_ref()?.top?;

@@ -8,21 +8,25 @@
 //! - A slip phase lasts to the end of contact if g > 0 at the end.
 //! - A stick phase passes a half swing if (L/|y|)² − 1 > 0 where |y|/L is largest, and at its second
 //!   top if it has two. Near the end of contact this number is linear in the time at which y
-//!   vanishes; the gap L − |y| is not.
+//!   vanishes; the gap L − |y| is not. With damping it is the other way round.
+//! - With damping, a last stick phase ends on the side on which it does if |y| > 0 at the end of
+//!   contact.
 //!
 //! Each margin is smooth through 0 as long as the switches before it are prescribed. A switch that
 //! ends slip is prescribed as before or after the turns, a switch that ends stick by the number of
 //! the half swing.
 
+use std::f64::consts::PI;
+
 use stickslip_solver::{Exit, Hint, Margin, Place};
 
 use super::error::{ExactError, checked, too_many};
-use super::flank::Flanks;
-use super::normal::{At, Moment, Trajectory};
+use super::flank::{Flanks, along_root, root_between};
+use super::normal::{At, Moment, Motion, Trajectory};
 use super::phases::{Phase, Task, with_trajectory};
 use super::release::Release;
 use super::slide::{Slide, SlipPhase};
-use super::swing::{Gap, Swing};
+use super::swing::{Gap, Swing, half_swing_sign};
 use crate::contact::Contact;
 use crate::laws::phase::{OTHER_SIDE, SAME_SIDE};
 
@@ -112,6 +116,11 @@ fn passed<T: Trajectory>(
         }
         after_top = first.is_some();
     }
+    let missed = end_margin(swing, release.half_swing);
+    found.near_misses.extend(missed.map(|value| {
+        let guard = guard(release.half_swing + 1);
+        (Margin { exits: exits.clone(), guard, place: Place::End }, value)
+    }));
     exits.push(stick_exit(release.half_swing, after_top));
     found.fired.push(guard(release.half_swing));
     released(swing, release.half_swing, release.end)
@@ -201,20 +210,61 @@ impl<E: FnMut(Exit)> Task for Prescribed<'_, E> {
 /// The place of the first turn of a slip phase.
 const TURN: Place = Place::Minimum { near: Hint(0.0), number: 0 };
 
-/// 1/R² − 1 at the tops of R on half swing `k`.
+/// 1/R² − 1 at the tops of R on half swing `k`, or what [`late_margin`] has instead of the last.
 ///
 /// On the first half swing after slip this number has a double zero at the start of the phase. It
 /// is divided by the square of the angle since then, so that it is not flat where the length of the
 /// phase goes to 0.
 fn top_margins<T: Trajectory>(swing: &Swing<T>, k: u32) -> [Option<f64>; 2] {
     let Some(flanks) = Flanks::of(swing, k) else { return [None; 2] };
-    [flanks.top(swing), flanks.second_top(swing)].map(|top| {
+    let at_top = |top: Option<Moment>| {
         let top = swing.path.at(top?);
         let Gap { value, q, .. } = swing.gap(k, &top);
         let excess = value / q * (value / q + 2.0);
         let angle = swing.spring.omega * swing.elapsed(&top);
         Some(if k == 0 { excess / (angle * angle) } else { excess })
-    })
+    };
+    let late = late_margin(swing, k);
+    if flanks.rises_again() {
+        let second = late.unwrap_or_else(|| at_top(flanks.second_top(swing)));
+        [at_top(flanks.top(swing)), second]
+    } else {
+        [late.unwrap_or_else(|| at_top(flanks.top(swing))), None]
+    }
+}
+
+/// The margin of half swing `k` if R has its last top after the peak of the spring and after the
+/// turns, with damping: (1 + D/A)² − 1 where the gap D is least.
+///
+/// If the top is at the peak, this is 1/R² − 1. But where the top is close to the end of contact,
+/// R is no smooth function of the parameters. D is, since L falls to 0 at an even rate.
+fn late_margin<T: Trajectory>(swing: &Swing<T>, k: u32) -> Option<Option<f64>> {
+    /// How far, in the root coordinate, the motion is continued beyond the end of contact.
+    const BEYOND: f64 = 0.05;
+    if T::STARTS_IN_SLIP || k == 0 {
+        return None;
+    }
+    let path = swing.path;
+    let peak = swing.moment_at_angle((f64::from(k) - 0.5) * PI);
+    let first = swing.turns.map_or(peak, |[_, turn]| peak.or_later(turn));
+    let zero = swing.moment_at_angle(f64::from(k) * PI);
+    if peak == Moment::END || !first.is_before(zero) {
+        return None;
+    }
+    let rate = |moment: Moment| swing.gap(k, &path.at(moment)).rate;
+    if swing.gap(k, &path.at(first)).turning() <= 0.0 || rate(first) >= 0.0 {
+        return None;
+    }
+    let beyond = Moment { root: -BEYOND, ..Moment::END };
+    let turned = [zero, Moment::END, beyond].into_iter().find(|&moment| rate(moment) > 0.0);
+    Some(turned.map(|high| {
+        let least = root_between(path, first, high, None, |at| {
+            let Gap { rate, acceleration, .. } = swing.gap(k, at);
+            along_root(path, at, -rate, -acceleration, 0.0)
+        });
+        let part = swing.gap(k, &path.at(least)).value / swing.amplitude;
+        part * (part + 2.0)
+    }))
 }
 
 /// The place of the first top of half swing `k` among the tops on its side.
@@ -232,12 +282,31 @@ const SECOND: usize = 1 << 20;
 
 /// The margin `which`, of the phase `swing`.
 fn margin_of_stick<T: Trajectory>(swing: &Swing<T>, which: &Margin) -> Option<f64> {
-    let &Margin { guard: side, place: Place::Minimum { number, .. }, .. } = which else {
-        return None;
+    let Place::Minimum { number, .. } = which.place else {
+        let side = if which.guard == SAME_SIDE { -1.0 } else { 1.0 };
+        return Some(side * swing.spring.omega * at_end(swing).0);
     };
     let (number, second) = if number < SECOND { (number, 0) } else { (number - SECOND, 1) };
-    let k = u32::try_from(number).ok()?.checked_mul(2)? + u32::from(side == OTHER_SIDE);
+    let k = u32::try_from(number).ok()?.checked_mul(2)? + u32::from(which.guard == OTHER_SIDE);
     if k < swing.first { None } else { top_margins(swing, k)[second] }
+}
+
+/// ω|y| at the end of contact, if the phase would last until then without its exit on half swing
+/// `k`, and if the exit is as late as the contact's end where y vanishes there.
+///
+/// That is so if the spring is slower than its limit there. Beyond that place the exit is on the
+/// other side.
+pub fn end_margin<T: Trajectory>(swing: &Swing<T>, k: u32) -> Option<f64> {
+    let sign = half_swing_sign(k);
+    let limit_rate = swing.path.motion(Moment::END).limit_rate(&swing.spring);
+    let (y, w) = at_end(swing);
+    let last = swing.moment_at_angle(f64::from(k) * PI) == Moment::END;
+    (last && limit_rate < 0.0 && sign * w > limit_rate).then(|| sign * swing.spring.omega * y)
+}
+
+/// y and w at the end of contact, if the phase lasted until then.
+fn at_end<T: Trajectory>(swing: &Swing<T>) -> (f64, f64) {
+    swing.motion(swing.path.time_left(&swing.start))
 }
 
 /// The guard that fires on half swing `k`.
@@ -294,5 +363,5 @@ pub fn swing<'t, T: Trajectory>(
 /// The slip phase that starts where `swing` ends on half swing `k`.
 fn released<T: Trajectory>(swing: &Swing<T>, k: u32, end: At<T::Motion>) -> SlipPhase {
     let (_, velocity) = swing.motion(swing.elapsed(&end));
-    SlipPhase::new(swing.path, &end, super::swing::half_swing_sign(k) * velocity)
+    SlipPhase::new(swing.path, &end, half_swing_sign(k) * velocity)
 }
