@@ -294,14 +294,19 @@ fn margin_of_stick<T: Trajectory>(swing: &Swing<T>, which: &Margin) -> Option<f6
 /// ω|y| at the end of contact, if the phase would last until then without its exit on half swing
 /// `k`, and if the exit is as late as the contact's end where y vanishes there.
 ///
-/// That is so if the spring is slower than its limit there. Beyond that place the exit is on the
-/// other side.
+/// That is so if the spring is slower than its limit there, and if both half swings between which y
+/// changes its sign can have an exit. On the first one after slip R only falls. There y vanishes
+/// without a change of its sign, with the length of the phase.
 pub fn end_margin<T: Trajectory>(swing: &Swing<T>, k: u32) -> Option<f64> {
     let sign = half_swing_sign(k);
     let limit_rate = swing.path.motion(Moment::END).limit_rate(&swing.spring);
     let (y, w) = at_end(swing);
     let last = swing.moment_at_angle(f64::from(k) * PI) == Moment::END;
-    (last && limit_rate < 0.0 && sign * w > limit_rate).then(|| sign * swing.spring.omega * y)
+    let rises_at_first = swing.turns.is_some_and(|[turn, _]| swing.start.moment.is_before(turn));
+    let least = if rises_at_first { 0 } else { swing.first.max(1) };
+    let possible = sign * w < 0.0 || k > least;
+    (last && possible && limit_rate < 0.0 && sign * w > limit_rate)
+        .then(|| sign * swing.spring.omega * y)
 }
 
 /// y and w at the end of contact, if the phase lasted until then.
