@@ -72,14 +72,13 @@ impl Slabs {
     }
 
     /// Whether the middle between the pieces at `gap` and `gap` + 1 of a slab is farther than
-    /// `reach` from every piece that is not vertical. Also true if there are no two such pieces.
+    /// `reach` from every piece. Also true if there are no two such pieces.
     pub(crate) fn is_wide(&self, slab: usize, gap: usize, reach: f64) -> bool {
         let pieces = self.of(slab);
         gap + 1 >= pieces.len() || {
             let x = self.middle(slab);
             let [low, high] = [gap, gap + 1].map(|k| self.pieces[pieces[k]].y_at(x));
-            self.nearest(&Point::new(x, 0.5 * (low + high)), reach, |piece| !piece.is_vertical())
-                .is_none()
+            self.nearest(&Point::new(x, 0.5 * (low + high)), reach, |_| true).is_none()
         }
     }
 

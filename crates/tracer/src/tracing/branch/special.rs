@@ -109,7 +109,9 @@ pub(crate) fn give_up<F: Family>(
             None => length = middle,
         }
     }
-    Ok(degenerate(track, point, 1e-7 * scale, true))
+    // Beside a cusp a margin exists in a wedge that is too narrow to follow to its tip.
+    const TIP: f64 = 3e-7;
+    Ok(degenerate(track, point, TIP * scale, true))
 }
 
 fn degenerate<F: Family>(
