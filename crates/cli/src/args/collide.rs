@@ -85,7 +85,7 @@ Batch files:
 Accuracy at the default tolerances, for kappa 1e-6 to 1e6, psi 1e-10 to 10, damping up to 1e4:
   dop853  2e-11 in eps_t; 4e-12 in contact_time and eps_n, relative
   dopri5  1e-7 in eps_t; 1e-9 in contact_time and eps_n, relative
-  exact   1e-15 (1 + sqrt(kappa)) in eps_t; damping must be 0
+  exact   1e-15 (1 + sqrt(kappa)) in eps_t, 1e-15 in the others
   Errors are proportional to the tolerance. --estimate tells the error to expect of a collision.
 
 Examples:

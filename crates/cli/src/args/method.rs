@@ -9,9 +9,9 @@ use crate::input::number;
 /// What computes a collision, and with which tolerances.
 #[derive(Clone, Debug, clap::Args)]
 pub struct MethodArguments {
-    /// What computes a collision
-    #[arg(long, value_enum, default_value_t = Method::Dop853, help_heading = "Method")]
-    pub method: Method,
+    /// What computes a collision [default: auto for maps, dop853 otherwise]
+    #[arg(long, value_enum, help_heading = "Method")]
+    pub method: Option<Method>,
 
     /// Relative tolerance of a step; 1e-15 to 0.1
     #[arg(long, help = tolerance_help("Relative", "1e-15 to 0.1", |tolerances| tolerances.rtol))]
@@ -33,8 +33,10 @@ pub enum Method {
     Dopri5,
     /// Dormand–Prince 8(5,3)
     Dop853,
-    /// The exact solution, only without damping
+    /// The exact solution
     Exact,
+    /// The exact solution, or dop853 if a tolerance is given
+    Auto,
 }
 
 fn tolerance_help(name: &str, range: &str, tolerance: fn(&Tolerances) -> f64) -> String {

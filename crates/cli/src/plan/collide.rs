@@ -7,7 +7,7 @@ use stickslip_model::{Contact, Engine};
 use super::collision::contact;
 use super::engine::engine;
 use super::files::require_different;
-use crate::args::{CollideArguments, CollisionArguments, Format};
+use crate::args::{CollideArguments, CollisionArguments, Format, Method};
 use crate::error::Failure;
 use crate::input::recipe::Given;
 use crate::output::picture::PictureFile;
@@ -62,7 +62,7 @@ impl CollidePlan {
     /// [`Failure::Usage`] says which options contradict each other.
     pub fn new(arguments: &CollideArguments) -> Result<Self, Failure> {
         let CollisionArguments { mu, alpha, damping } = arguments.collision;
-        let engine = engine(&arguments.method, damping)?;
+        let engine = engine(&arguments.method, Method::Dop853)?;
         let given = Given {
             kappa: arguments.kappa,
             psi: arguments.psi,

@@ -2,10 +2,10 @@
 
 use stickslip_model::{Encounter, Engine};
 
-use super::engine::engine_for_bodies;
-use crate::args::{Format, ImpactArguments};
+use super::engine::engine;
+use crate::args::{Format, ImpactArguments, Method};
 use crate::error::Failure;
-use crate::input::{bodies, source};
+use crate::input::bodies;
 
 /// An impact to be computed.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,8 +27,7 @@ impl ImpactPlan {
     pub fn new(arguments: &ImpactArguments) -> Result<Self, Failure> {
         let ImpactArguments { file, method, format } = arguments;
         let encounter = bodies::read_encounter(file)?;
-        let damping_time_s = encounter.impact.pair.surface.damping_time_s;
-        let engine = engine_for_bodies(method, source::shown(file), damping_time_s)?;
+        let engine = engine(method, Method::Dop853)?;
         Ok(Self { encounter, engine, format: *format })
     }
 }

@@ -6,12 +6,12 @@ use stickslip_model::Engine;
 use stickslip_plane::atlas::RatioRange;
 use stickslip_plane::{Coordinates, Grid, GridAxis, Range};
 
-use super::engine::{engine, engine_for_bodies};
+use super::engine::engine;
 use super::files::require_different;
 use super::window::{ImpactRange, KappaWindow};
-use crate::args::MapArguments;
+use crate::args::{MapArguments, Method};
 use crate::error::Failure;
-use crate::input::{bodies, source};
+use crate::input::bodies;
 use crate::output::picture::PictureFile;
 
 /// A map to be computed.
@@ -85,7 +85,7 @@ impl MapAxes {
     fn scaled(arguments: &MapArguments) -> Result<Self, Failure> {
         let MapArguments { kappa, psi, ratio, collisions, ref method, .. } = *arguments;
         let window = KappaWindow::new(kappa, psi, ratio, collisions)?;
-        let engine = engine(method, collisions.damping)?;
+        let engine = engine(method, Method::Auto)?;
         let damping = collisions.damping.unwrap_or(0.0);
         let (rows, coordinates) = match window.impact {
             ImpactRange::Psi(psi) => (psi, Coordinates::Psi { damping }),
@@ -103,8 +103,7 @@ impl MapAxes {
             return Err(Failure::Usage(message.to_owned()));
         };
         let pair = bodies::read_pair(file)?;
-        let damping_time_s = pair.surface.damping_time_s;
-        let engine = engine_for_bodies(&arguments.method, source::shown(file), damping_time_s)?;
+        let engine = engine(&arguments.method, Method::Auto)?;
         Ok(Self { columns, rows, coordinates: Coordinates::Velocities { pair }, engine })
     }
 }

@@ -14,7 +14,14 @@ fn centre(low: f64, high: f64, index: u32, cells: u32) -> f64 {
 #[test]
 fn every_cell_is_the_collision_at_its_centre() {
     let workspace = Workspace::new();
-    let ran = workspace.run("map --kappa 0:70 --psi 0.1:2.9 --size 7x5 --damping 0.01 --out m.npz");
+    let line = "map --kappa 0:70 --psi 0.1:2.9 --size 7x5 --damping 0.01 --out m.npz";
+    // Without a method it is the exact solution.
+    let ran = workspace.run(line);
+    assert_eq!((ran.code, ran.stdout.as_str(), ran.stderr.as_str()), (0, "", ""));
+    let exact = npz(&workspace.path("m.npz"));
+    assert_eq!(exact[5].1.fields(), ["exact"]);
+    let (exact, counts) = (exact[2].1.doubles(), exact[3].1.integers());
+    let ran = workspace.run(&format!("{line} --method dop853"));
     assert_eq!((ran.code, ran.stdout.as_str(), ran.stderr.as_str()), (0, "", ""));
     assert_eq!(workspace.names(), ["m.npz"]);
     let map = npz(&workspace.path("m.npz"));
@@ -45,6 +52,9 @@ fn every_cell_is_the_collision_at_its_centre() {
             let point = (7 * row + column) as usize;
             assert_eq!(eps_t[point], collision.eps_t(), "{contact:?}");
             assert_eq!(usize::try_from(switch_count[point]), Ok(collision.switches.len()));
+            let solved = stickslip_model::exact::collide(contact).unwrap();
+            assert_eq!(exact[point], solved.eps_t(), "{contact:?}");
+            assert_eq!(usize::try_from(counts[point]), Ok(solved.switches.len()));
         }
     }
 }
@@ -156,7 +166,8 @@ fn a_map_of_two_bodies_in_the_plane_of_their_velocities() {
     let workspace = Workspace::new();
     let file = fs::read_to_string("../../examples/steel_pair.json").unwrap();
     workspace.write("pair.json", file.replace("\"damping_time_s\": 0", "\"damping_time_s\": 1e-7"));
-    let line = "map --bodies pair.json --normal 0:200 --tangential 0:100 --size 4x3 --out";
+    let line = "map --bodies pair.json --normal 0:200 --tangential 0:100 --size 4x3 \
+                --method dop853 --out";
     for name in ["m.npz", "m.csv"] {
         let ran = workspace.run(&format!("{line} {name}"));
         assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));

@@ -74,13 +74,6 @@ fn options_without_effect() {
 }
 
 #[test]
-fn the_exact_solution_with_damping() {
-    refused("--kappa 1 --psi 1 --method exact --damping 0.1", &["--damping", "0.1", "exact"]);
-    let ran = stickslip("collide --kappa 1 --psi 1 --method exact --damping 0");
-    assert_eq!(ran.code, 0, "{}", ran.stderr);
-}
-
-#[test]
 fn a_psi_that_overflows() {
     refused("--kappa 1 --ratio 1e308 --mu 1e-9", &["ratio·alpha/mu", "inf", "above 0"]);
     refused("--kappa 1 --ratio 1e-308 --mu 1e300", &["ratio·alpha/mu", "0", "above 0"]);

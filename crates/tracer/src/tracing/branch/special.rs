@@ -110,7 +110,7 @@ pub(crate) fn give_up<F: Family>(
         }
     }
     // Beside a cusp a margin exists in a wedge that is too narrow to follow to its tip.
-    const TIP: f64 = 3e-7;
+    const TIP: f64 = 1.5e-7;
     Ok(degenerate(track, point, TIP * scale, true))
 }
 
