@@ -210,7 +210,8 @@ impl<E: FnMut(Exit)> Task for Prescribed<'_, E> {
 /// The place of the first turn of a slip phase.
 const TURN: Place = Place::Minimum { near: Hint(0.0), number: 0 };
 
-/// 1/R² − 1 at the tops of R on half swing `k`, or what [`late_margin`] has instead of the last.
+/// 1/R² − 1 at the tops of R on half swing `k`, or what a [`LateHalfSwing`] has instead of
+/// the last.
 ///
 /// On the first half swing after slip this number has a double zero at the start of the phase. It
 /// is divided by the square of the angle since then, so that it is not flat where the length of the
@@ -224,47 +225,62 @@ fn top_margins<T: Trajectory>(swing: &Swing<T>, k: u32) -> [Option<f64>; 2] {
         let angle = swing.spring.omega * swing.elapsed(&top);
         Some(if k == 0 { excess / (angle * angle) } else { excess })
     };
-    let late = late_margin(swing, k);
+    let late = LateHalfSwing::of(swing, k);
+    let last = |top: Option<Moment>| match &late {
+        Some(late) => late.margin(swing),
+        None => at_top(top),
+    };
     if flanks.rises_again() {
-        let second = late.unwrap_or_else(|| at_top(flanks.second_top(swing)));
-        [at_top(flanks.top(swing)), second]
+        [at_top(flanks.top(swing)), last(flanks.second_top(swing))]
     } else {
-        [late.unwrap_or_else(|| at_top(flanks.top(swing))), None]
+        [last(flanks.top(swing)), None]
     }
 }
 
-/// The margin of half swing `k` if R has its last top after the peak of the spring and after the
-/// turns, with damping: (1 + D/A)² − 1 where the gap D is least.
-///
-/// If the top is at the peak, this is 1/R² − 1. But where the top is close to the end of contact,
-/// R is no smooth function of the parameters. D is, since L falls to 0 at an even rate.
-fn late_margin<T: Trajectory>(swing: &Swing<T>, k: u32) -> Option<Option<f64>> {
-    /// How far, in the root coordinate, the motion is continued beyond the end of contact.
-    const BEYOND: f64 = 0.05;
-    if T::STARTS_IN_SLIP || k == 0 {
-        return None;
+/// A half swing, with damping, on which R has its last top after the peak of the spring and after
+/// the turns.
+struct LateHalfSwing {
+    k: u32,
+    /// The peak or the last turn, where R rises and the gap D falls.
+    first: Moment,
+    /// The end of the half swing.
+    zero: Moment,
+}
+
+impl LateHalfSwing {
+    fn of<T: Trajectory>(swing: &Swing<T>, k: u32) -> Option<Self> {
+        if T::STARTS_IN_SLIP || k == 0 {
+            return None;
+        }
+        let peak = swing.moment_at_angle((f64::from(k) - 0.5) * PI);
+        let first = swing.turns.map_or(peak, |[_, turn]| peak.or_later(turn));
+        let zero = swing.moment_at_angle(f64::from(k) * PI);
+        if peak == Moment::END || !first.is_before(zero) {
+            return None;
+        }
+        let gap = swing.gap(k, &swing.path.at(first));
+        (gap.turning() > 0.0 && gap.rate < 0.0).then_some(Self { k, first, zero })
     }
-    let path = swing.path;
-    let peak = swing.moment_at_angle((f64::from(k) - 0.5) * PI);
-    let first = swing.turns.map_or(peak, |[_, turn]| peak.or_later(turn));
-    let zero = swing.moment_at_angle(f64::from(k) * PI);
-    if peak == Moment::END || !first.is_before(zero) {
-        return None;
-    }
-    let rate = |moment: Moment| swing.gap(k, &path.at(moment)).rate;
-    if swing.gap(k, &path.at(first)).turning() <= 0.0 || rate(first) >= 0.0 {
-        return None;
-    }
-    let beyond = Moment { root: -BEYOND, ..Moment::END };
-    let turned = [zero, Moment::END, beyond].into_iter().find(|&moment| rate(moment) > 0.0);
-    Some(turned.map(|high| {
+
+    /// (1 + D/A)² − 1 where the gap D is least.
+    ///
+    /// If the top of R is at the peak, this is 1/R² − 1. But where the top is close to the end of
+    /// contact, R is no smooth function of the parameters. D is, since L falls to 0 at an even rate.
+    fn margin<T: Trajectory>(&self, swing: &Swing<T>) -> Option<f64> {
+        /// How far, in the root coordinate, the motion is continued beyond the end of contact.
+        const BEYOND: f64 = 0.05;
+        let &Self { k, first, zero } = self;
+        let path = swing.path;
+        let rises = |&moment: &Moment| swing.gap(k, &path.at(moment)).rate > 0.0;
+        let beyond = Moment { root: -BEYOND, ..Moment::END };
+        let high = [zero, Moment::END, beyond].into_iter().find(rises)?;
         let least = root_between(path, first, high, None, |at| {
             let Gap { rate, acceleration, .. } = swing.gap(k, at);
             along_root(path, at, -rate, -acceleration, 0.0)
         });
         let part = swing.gap(k, &path.at(least)).value / swing.amplitude;
-        part * (part + 2.0)
-    }))
+        Some(part * (part + 2.0))
+    }
 }
 
 /// The place of the first top of half swing `k` among the tops on its side.
@@ -306,7 +322,7 @@ pub fn end_margin<T: Trajectory>(swing: &Swing<T>, k: u32) -> Option<f64> {
     let least = if rises_at_first { 0 } else { swing.first.max(1) };
     let possible = sign * w < 0.0 || k > least;
     (last && possible && limit_rate < 0.0 && sign * w > limit_rate)
-        .then(|| sign * swing.spring.omega * y)
+        .then_some(sign * swing.spring.omega * y)
 }
 
 /// y and w at the end of contact, if the phase lasted until then.

@@ -90,15 +90,15 @@ mod tests {
         (spring, start, velocity)
     }
 
-    fn turns(root: f64) -> Option<[Moment; 2]> {
-        Some([Half::Compression, Half::Decompression].map(|half| Moment { half, root }))
+    fn turns(root: f64) -> [Moment; 2] {
+        [Half::Compression, Half::Decompression].map(|half| Moment { half, root })
     }
 
     #[test]
     fn series_is_the_difference_of_limit_and_spring() {
         let (spring, start, velocity) = phase(1.0);
         let elongation = start.motion.limit(&spring);
-        let onset = Onset::new(&Undamped, &spring, &start, velocity, turns(0.955)).unwrap();
+        let onset = Onset::new(&Undamped, &spring, &start, velocity, Some(turns(0.955))).unwrap();
         for part in [0.25, 0.5, 1.0] {
             let tau = part * onset.reach;
             let (value, ..) = onset.gap(tau).unwrap();
@@ -109,13 +109,13 @@ mod tests {
         }
         assert!(onset.gap(1.01 * onset.reach).is_none());
         let far = turns(Undamped.middle()[0]);
-        assert!(Onset::new(&Undamped, &spring, &start, velocity, far).is_none());
+        assert!(Onset::new(&Undamped, &spring, &start, velocity, Some(far)).is_none());
     }
 
     #[test]
     fn derivatives_belong_to_the_value() {
         let (spring, start, velocity) = phase(1.0);
-        let onset = Onset::new(&Undamped, &spring, &start, velocity, turns(0.955)).unwrap();
+        let onset = Onset::new(&Undamped, &spring, &start, velocity, Some(turns(0.955))).unwrap();
         let (tau, step) = (0.5 * onset.reach, 1e-5);
         let at = |tau| onset.gap(tau).unwrap();
         let (before, here, after) = (at(tau - step), at(tau), at(tau + step));

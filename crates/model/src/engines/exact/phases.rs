@@ -8,6 +8,7 @@ use super::swing::Swing;
 use crate::contact::Contact;
 
 /// A phase at its start.
+#[expect(clippy::large_enum_variant, reason = "one is alive at a time, and a box would allocate")]
 pub enum Phase<'t, T: Trajectory> {
     /// Coulomb sliding.
     Slip(SlipPhase),

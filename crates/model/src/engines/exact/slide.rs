@@ -148,7 +148,7 @@ impl<'t, T: Trajectory> Slide<'t, T> {
             Half::Compression => sliding.at_start(),
             Half::Decompression => sliding.at_end(),
         };
-        sliding.start.is_before(turn).then(|| carried + self.rest)
+        sliding.start.is_before(turn).then_some(carried + self.rest)
     }
 
     /// g at the end of contact.

@@ -79,6 +79,9 @@ pub(crate) fn give_up<F: Family>(
     from: &FootholdOf<F>,
     h: f64,
 ) -> Traced<Special<F::Margin>, F> {
+    /// The error of the place, as a fraction of the window's shorter extent: beside a cusp a margin
+    /// exists in a wedge that is too narrow to follow to its tip.
+    const TIP: f64 = 1.5e-7;
     let scale = track.runs.scale;
     let place = |length: f64| -> Traced<Option<Point>, F> {
         let guess = track.predict(&from.node, length);
@@ -109,8 +112,6 @@ pub(crate) fn give_up<F: Family>(
             None => length = middle,
         }
     }
-    // Beside a cusp a margin exists in a wedge that is too narrow to follow to its tip.
-    const TIP: f64 = 1.5e-7;
     Ok(degenerate(track, point, TIP * scale, true))
 }
 

@@ -57,7 +57,7 @@ struct Pieces {
     inner: usize,
     nodes: [Place; MOST_NODES],
     /// The series around the nodes, computed when they are needed.
-    series: [OnceCell<Series>; MOST_NODES],
+    series: Vec<OnceCell<Series>>,
 }
 
 /// What is known of a node.
@@ -76,7 +76,7 @@ impl Pieces {
             grid: Grid::WEAK,
             inner: 0,
             nodes: [Place { state, deficit: 0.0, near_time: 0.0 }; MOST_NODES],
-            series: [const { OnceCell::new() }; MOST_NODES],
+            series: (0..MOST_NODES).map(|_| OnceCell::new()).collect(),
         }
     }
 }

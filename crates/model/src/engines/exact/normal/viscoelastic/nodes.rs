@@ -218,7 +218,7 @@ fn interval(root: f64) -> usize {
 /// The ends of an interval.
 fn bounds(interval: usize) -> (f64, f64) {
     let bound = |halves: usize| {
-        let octave = 0.25 * (1_u32 << (halves / 2)) as f64;
+        let octave = 0.25 * f64::from(1_u32 << (halves / 2));
         if halves.is_multiple_of(2) { octave } else { 1.5 * octave }
     };
     interval.checked_sub(1).map_or((0.0, 0.25), |halves| (bound(halves), bound(halves + 1)))
