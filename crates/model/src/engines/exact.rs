@@ -69,9 +69,9 @@ pub const MOST_SWITCHES: usize = 4_000_000;
 /// Numbers keep their accuracy as long as κψ, the scale of √x at the first switch, is above about
 /// 1e-100.
 ///
-/// Cost: without damping 0.2 µs for each switch at every stiffness, with damping 0.5 µs, and 1.5 µs
-/// more for a damping that is not that of the thread's last collision. The result is a pure
-/// function of `contact`.
+/// Cost: without damping 0.2 µs for each switch at every stiffness, with damping two to three times
+/// that, and twice as much again with a damping that is not that of the thread's last collision. The
+/// result is a pure function of `contact`.
 ///
 /// ```
 /// use stickslip_model::{Contact, exact};

@@ -13,8 +13,8 @@
 use super::{Moment, Motion, Spring, Trajectory, Viscoelastic};
 use crate::numerics::root::crossing;
 
-/// A number above the maximum of K for every damping, which is largest, 1.862…, for a = 0.228…
-/// (docs/physics.md).
+/// A number above the maximum of K for every damping. It is largest, 1.8620002…, where the extremes
+/// merge, at a = 0.587758755… (computed; docs/physics.md).
 pub const LARGEST_MAXIMUM: f64 = 1.8622;
 
 /// p\*, a zero of the resultant in docs/physics.md.
