@@ -30,6 +30,19 @@ fn random_collisions(criterion: &mut Criterion) {
             }
         });
     });
+    for (name, contacts) in [
+        ("exact, damping 0.1", contacts::damped()),
+        ("exact, each with another damping", contacts::damped_differently()),
+    ] {
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| {
+                for &contact in &contacts {
+                    exact::collide_into(black_box(contact), &mut collision).expect("a collision");
+                    black_box(collision.final_velocity);
+                }
+            });
+        });
+    }
     group.bench_function("exact", |bencher| {
         bencher.iter(|| {
             for &contact in &contacts {

@@ -15,7 +15,7 @@ use std::error::Error;
 use std::hint::black_box;
 use std::process::Command;
 
-use stickslip::model::{Collider, Collision, exact};
+use stickslip::model::{Collider, Collision, Contact, exact};
 use stickslip::plane::{CollisionFamily, CollisionPlane};
 use stickslip::solver::Pair;
 use stickslip::tracer::{Family, TraceOptions, trace};
@@ -24,13 +24,20 @@ use stickslip::tracer::{Family, TraceOptions, trace};
 /// how many units one time has.
 type Workload = (&'static str, fn(usize) -> usize);
 
-const WORKLOADS: [Workload; 14] = [
+const WORKLOADS: [Workload; 17] = [
     ("collision, dop853 at 4e-13", |times| collisions(Pair::Dop853, 4e-13, times)),
     ("collision, dop853 at 1e-12", |times| collisions(Pair::Dop853, 1e-12, times)),
     ("collision, dop853 at 1e-9", |times| collisions(Pair::Dop853, 1e-9, times)),
     ("collision, dopri5 at 1e-12", |times| collisions(Pair::Dopri5, 1e-12, times)),
     ("collision, dopri5 at 1e-9", |times| collisions(Pair::Dopri5, 1e-9, times)),
-    ("collision, exact", exact_collisions),
+    ("collision, exact", |times| exact_collisions(&contacts::contacts(), times)),
+    ("collision with the damping 0.1, dop853 at 4e-13", |times| {
+        integrated_collisions(&contacts::damped(), Pair::Dop853, 4e-13, times)
+    }),
+    ("the same, exact", |times| exact_collisions(&contacts::damped(), times)),
+    ("the same, exact, each with another damping", |times| {
+        exact_collisions(&contacts::damped_differently(), times)
+    }),
     ("free run at κ = 63, ψ = 0.5, with its margins", |times| free_runs(&integrated(), times)),
     ("prescribed run there, mean over these margins", |times| {
         prescribed_runs(&integrated(), times)
@@ -99,11 +106,14 @@ fn counted(index: usize, times: usize) -> Result<(u64, usize), Box<dyn Error>> {
 }
 
 fn collisions(pair: Pair, tolerance: f64, times: usize) -> usize {
-    let contacts = contacts::contacts();
+    integrated_collisions(&contacts::contacts(), pair, tolerance, times)
+}
+
+fn integrated_collisions(contacts: &[Contact], pair: Pair, tolerance: f64, times: usize) -> usize {
     let collider = Collider::with_tolerances(pair, tolerance, tolerance);
     let mut collision = Collision::before(contacts[0]);
     for _ in 0..times {
-        for &contact in &contacts {
+        for &contact in contacts {
             collider.collide_into(black_box(contact), &mut collision).expect("a collision");
             black_box(collision.final_velocity);
         }
@@ -111,11 +121,10 @@ fn collisions(pair: Pair, tolerance: f64, times: usize) -> usize {
     contacts.len()
 }
 
-fn exact_collisions(times: usize) -> usize {
-    let contacts = contacts::contacts();
+fn exact_collisions(contacts: &[Contact], times: usize) -> usize {
     let mut collision = Collision::before(contacts[0]);
     for _ in 0..times {
-        for &contact in &contacts {
+        for &contact in contacts {
             exact::collide_into(black_box(contact), &mut collision).expect("a collision");
             black_box(collision.final_velocity);
         }

@@ -2,6 +2,25 @@
 
 use stickslip::model::Contact;
 
+/// The 200 collisions of tests/data/undamped_random.json, with the damping 0.1.
+pub fn damped() -> Vec<Contact> {
+    with_damping(|_| 0.1)
+}
+
+/// The same, each with a damping of its own from 0.01 to 1.
+pub fn damped_differently() -> Vec<Contact> {
+    with_damping(|index| 10_f64.powf(-2.0 + 0.01 * index as f64))
+}
+
+fn with_damping(damping: impl Fn(usize) -> f64) -> Vec<Contact> {
+    let contacts = contacts().into_iter().enumerate();
+    contacts
+        .filter_map(|(index, contact)| {
+            Contact::new(contact.kappa(), contact.psi(), damping(index)).ok()
+        })
+        .collect()
+}
+
 /// The 200 collisions of tests/data/undamped_random.json.
 pub fn contacts() -> Vec<Contact> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/undamped_random.json");

@@ -1,6 +1,6 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use stickslip_model::{Contact, exact};
+use stickslip_model::{Collider, Contact, exact};
 use stickslip_plane::atlas::{AtlasError, BoundaryKind, Frame, Unlocated, switch_count, trace};
 use stickslip_plane::progress::{Progress, SILENT};
 use stickslip_plane::{CollisionPlane, Range};
@@ -77,6 +77,32 @@ fn regions_have_the_switches_of_their_collisions() {
         assert!((located.distance.unwrap() - nearest.unwrap()).abs() < 1e-9);
     }
     assert_eq!(seen, [true; 4]);
+}
+
+/// The window has a cusp of slip grazes, late half swings with two tops, and a boundary on which a
+/// contact that is all stick changes the side of its end: there √κ t_c = π.
+#[test]
+fn damped_boundaries_have_the_integrators_switches_beside_them() {
+    let damping = 0.1;
+    let verified = traced(Frame { damping, ..frame((0.7, 1.9), (0.1, 1.1)) });
+    assert_eq!(verified.report.objection(), None, "{:?}", verified.report);
+    let atlas = &verified.atlas;
+    assert!(atlas.regions.regions().len() > 4);
+    let damped = |kappa, psi| Contact::new(kappa, psi, damping).unwrap();
+    for step in 0..100 {
+        let (column, row) = (step % 10, step / 10);
+        let contact = damped(0.76 + 0.12 * f64::from(column), 0.15 + 0.1 * f64::from(row));
+        let region = atlas.locate(&contact).region.unwrap();
+        let collision = Collider::default().collide(contact).unwrap();
+        assert_eq!(atlas.itinerary(region), collision.itinerary(), "{contact:?}");
+    }
+    let contact_time = exact::collide(damped(1.0, 0.1)).unwrap().contact_time;
+    let kappa = (std::f64::consts::PI / contact_time).powi(2);
+    let beside = [1.0 - 1e-8, 1.0 + 1e-8].map(|part| {
+        let region = atlas.locate(&damped(kappa * part, 0.11)).region.unwrap();
+        atlas.itinerary(region)
+    });
+    assert_eq!(beside, ["o+", "o-"]);
 }
 
 #[test]
