@@ -6,7 +6,7 @@ use stickslip_model::exact::{self, CONTACT_TIME};
 use stickslip_model::{Collision, Contact};
 
 fn exact(contact: Contact) -> Collision {
-    exact::collide(contact).expect("an undamped collision")
+    exact::collide(contact).expect("a collision")
 }
 
 /// Largest errors of the switches of one collision: the absolute error of times, springs and
@@ -66,5 +66,63 @@ fn counts_change_at_the_switch_boundaries() {
                 assert_eq!(Some(count), boundary[key].as_u64(), "{boundary}, {distance}");
             }
         }
+    }
+}
+
+/// Against a Taylor series with 66 digits, over the whole range of κ, ψ and a.
+#[test]
+fn damped_contacts_with_25_digits() {
+    let cases = file("contacts_series")["cases"].as_array().expect("an array").clone();
+    let mut count = 0;
+    for case in cases {
+        let [kappa, psi, damping] = [0, 1, 2].map(|column| case[column].as_f64().unwrap());
+        if damping == 0.0 {
+            continue;
+        }
+        count += 1;
+        let [eps_t, eps_n, contact_time] = [4, 5, 6].map(|column| number(&case[column]));
+        let found = exact(Contact::new(kappa, psi, damping).unwrap());
+        assert_eq!(case[3], found.itinerary(), "{case}");
+        assert!((found.eps_t() - eps_t).abs() < 2e-15 * (1.0 + kappa.sqrt()), "{case}");
+        assert!((found.eps_n / eps_n - 1.0).abs() < 1e-15, "{case}");
+        assert!((found.contact_time / contact_time - 1.0).abs() < 1e-15, "{case}");
+        let left = found.energy.tangential_unbalanced() / found.energy.tangential_initial;
+        assert!(left.abs() < 1e-13 * (1.0 + kappa.sqrt()), "{case}: {left}");
+    }
+    assert_eq!(count, 2000);
+}
+
+/// The normal motion is tabulated on intervals of √a, and changes its units at a = 1.
+#[test]
+fn nothing_jumps_where_intervals_of_the_damping_meet() {
+    for octave in 0..9 {
+        for quarter in 0..4 {
+            let root = 0.25 * f64::from(1 << octave) * (1.0 + 0.25 * f64::from(quarter));
+            for (kappa, psi) in [(0.9, 0.4), (18.0, 1.0), (400.0, 0.03)] {
+                let at = |damping: f64| exact(Contact::new(kappa, psi, damping).unwrap());
+                let edge = (root * root).min(1e4);
+                let [below, above] = [at(edge.next_down().next_down()), at(edge)];
+                assert_eq!(below.itinerary(), above.itinerary(), "{edge}");
+                for (one, other) in [
+                    (below.eps_t(), above.eps_t()),
+                    (below.eps_n, above.eps_n),
+                    (below.contact_time, above.contact_time),
+                ] {
+                    assert!((one - other).abs() < 3e-14, "a = {edge}, κ = {kappa}: {one} {other}");
+                }
+            }
+        }
+    }
+}
+
+/// A damping of nothing is no damping: a contact that sticks for an instant at its start.
+#[test]
+fn the_weakest_damping_is_none() {
+    for (kappa, psi) in [(0.3, 0.5), (1.2, 1.0), (18.0, 0.4), (63.0, 0.5), (1e4, 1.7)] {
+        let none = exact(Contact::new(kappa, psi, 0.0).unwrap());
+        let weak = exact(Contact::new(kappa, psi, 1e-60).unwrap());
+        assert_eq!(weak.itinerary(), format!("o{}", none.itinerary()));
+        assert!((weak.eps_t() - none.eps_t()).abs() < 1e-14 * (1.0 + kappa.sqrt()), "{kappa}");
+        assert!((weak.contact_time - none.contact_time).abs() < 1e-15 && weak.eps_n == 1.0);
     }
 }
