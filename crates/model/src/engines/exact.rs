@@ -121,12 +121,6 @@ pub fn collide_into(contact: Contact, collision: &mut Collision) -> Result<(), E
     collide_within(contact, collision, MOST_SWITCHES)
 }
 
-/// Whether `contact` is in the range of [`collide`].
-#[must_use]
-pub fn covers(contact: &Contact) -> bool {
-    checked(contact).is_ok()
-}
-
 fn collide_within(
     contact: Contact,
     collision: &mut Collision,

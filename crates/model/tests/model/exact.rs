@@ -126,3 +126,29 @@ fn the_weakest_damping_is_none() {
         assert!((weak.contact_time - none.contact_time).abs() < 1e-15 && weak.eps_n == 1.0);
     }
 }
+
+/// Under a weak damping the first slip begins at √t = 2a/(κψ + √(κ²ψ² − 4a)) if κψ > 2√a, and else the
+/// contact sticks on.
+#[test]
+fn the_first_slip_under_the_weakest_damping() {
+    for damping in [1e-60, 1e-40, 1e-20, 1e-18, 1e-16, 1e-12, 1e-10] {
+        for part in [-1.0_f64, -1e-5, 1e-5, 1.0] {
+            let kappa = 2.0 * f64::sqrt(damping);
+            let psi = 1.0 + 0.5 * part;
+            let found = exact(Contact::new(kappa, psi, damping).unwrap());
+            if part < 0.0 {
+                assert_eq!(found.itinerary(), "o+", "{damping:e} {psi}");
+                continue;
+            }
+            assert_eq!(found.itinerary(), "o+o+", "{damping:e} {psi}");
+            let pull = kappa * psi;
+            let root = 2.0 * damping / (pull + (pull * pull - 4.0 * damping).sqrt());
+            let off = found.switches[0].time / (root * root) - 1.0;
+            // The motion up to then changes the limit by parts of a and of √a κ.
+            assert!(
+                off.abs() < 1e-9 + 1e4 * damping.sqrt().min(1e-12),
+                "{damping:e} {psi}: {off:e}"
+            );
+        }
+    }
+}

@@ -159,16 +159,18 @@ impl Viscoelastic {
         (self.end, self.contact_time, self.impulse) = (end, contact_time, impulse);
         self.middle = middle(self.scale.strong);
         let lengths = self.middle();
-        let starts = [(1.0, -1.0, None), (end_v, 1.0, Some(end_u))];
+        let starts = [(1.0, -1.0, 0.0, beta), (end_v, 1.0, end_u, 0.0)];
         let mut rows = &rows[1..];
         for (index, half) in self.halves.iter_mut().enumerate() {
             let (grid, count) = (table.grids[index], table.counts[index]);
-            let (first_v, sign, first_u) = starts[index];
+            let (first_v, sign, first_u, first_q) = starts[index];
             half.grid = grid;
             half.inner = grid.within(lengths[index]);
             let (mut deficit, mut near_time) = (0.0, 0.0);
             for (index, &[u, q, change, time]) in rows[..count].iter().enumerate() {
-                let u = first_u.filter(|_| index == 0).unwrap_or(u);
+                // At both ends U and Q are known without a table. The first switch under a weak
+                // damping and the last one depend on their digits.
+                let (u, q) = if index == 0 { (first_u, first_q) } else { (u, q) };
                 let rough = first_v + sign * deficit;
                 let v = if self.scale.strong { q - alpha * (u * u) } else { rough };
                 half.nodes[index] = Place { state: State { u, v, q }, deficit, near_time };
