@@ -91,5 +91,7 @@ fn rounding(collision: &Collision) -> f64 {
     let phases = std::iter::once((collision.start, 0.0, 1.0)).chain(begins).zip(ends);
     let swings = phases.filter(|((regime, ..), _)| *regime == Regime::Stick);
     let angles: f64 = swings.map(|((_, begin, speed), end)| omega * (end - begin) * speed).sum();
-    f64::EPSILON * (4.0 + collision.eps_t().abs() + 2.0 * angles)
+    // With damping the normal motion is a sum over pieces.
+    let units = if collision.contact.damping() > 0.0 { 8.0 } else { 4.0 };
+    f64::EPSILON * (units + collision.eps_t().abs() + 2.0 * angles)
 }
