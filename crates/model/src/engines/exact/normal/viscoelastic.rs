@@ -23,7 +23,7 @@ use crate::result::EnergyLedger;
 
 /// Orders of the series around a node.
 ///
-/// Half of the distance to the next node is at most a tenth of the distance within which the terms
+/// Half of the distance to the next node is about a tenth of the distance within which the terms
 /// do not grow.
 const ORDERS: usize = 17;
 
