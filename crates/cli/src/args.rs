@@ -8,6 +8,7 @@ mod collide;
 mod completions;
 mod converge;
 mod impact;
+mod join;
 mod locate;
 mod man;
 mod map;
@@ -25,6 +26,7 @@ pub use collide::CollideArguments;
 pub use completions::CompletionsArguments;
 pub use converge::ConvergeArguments;
 pub use impact::ImpactArguments;
+pub use join::JoinArguments;
 pub use locate::LocateArguments;
 pub use man::ManArguments;
 pub use map::MapArguments;
@@ -55,6 +57,9 @@ pub enum Command {
     /// Compute the restitution and the number of switches on a plane
     #[command(long_about = map::ABOUT, after_long_help = map::EXAMPLES)]
     Map(MapArguments),
+    /// Join the parts of a map
+    #[command(long_about = join::ABOUT, after_long_help = join::EXAMPLES)]
+    Join(JoinArguments),
     /// Trace every boundary in a window on which the switches change
     #[command(long_about = trace::ABOUT, after_long_help = trace::EXAMPLES)]
     Trace(TraceArguments),

@@ -5,6 +5,7 @@ pub mod batch;
 pub mod collide;
 pub mod completions;
 pub mod impact;
+pub mod join;
 pub mod locate;
 pub mod man;
 pub mod map;

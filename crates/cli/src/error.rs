@@ -163,7 +163,9 @@ impl From<AtlasError> for Failure {
     /// The failure of an atlas whose window comes from options.
     fn from(error: AtlasError) -> Self {
         match error {
-            AtlasError::Parameter(_) | AtlasError::Narrow(_) => Self::Usage(error.to_string()),
+            AtlasError::Parameter(_) | AtlasError::Narrow(_) | AtlasError::Unverifiable(_) => {
+                Self::Usage(error.to_string())
+            }
             AtlasError::Tolerance { .. } => Self::Usage(format!("--tolerance: {error}")),
             error => Self::Trace(error),
         }

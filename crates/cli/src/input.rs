@@ -1,6 +1,6 @@
 //! What is read: texts of options, and files.
 //!
-//! Start reading in `number`; then, in this order: `range` (intervals and sizes), `parameter` (the
+//! Start reading in `number`; then, in this order: `range` (intervals and sizes), `part` (parts of maps), `parameter` (the
 //! parameters of a collision), `recipe` (from options and columns to a collision), `source` (files
 //! and standard input), `rows` (CSV files of collisions), `json`, `bodies` and `atlas` (JSON files).
 
@@ -9,6 +9,7 @@ pub mod bodies;
 pub mod json;
 pub mod number;
 pub mod parameter;
+pub mod part;
 pub mod range;
 pub mod recipe;
 pub mod rows;

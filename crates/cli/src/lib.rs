@@ -31,7 +31,9 @@ use stickslip_studies::{convergence, stiff_springs};
 use args::{Arguments, Command};
 pub use error::Failure;
 use output::console::say;
-use plan::{CollidePlan, ImpactPlan, LocatePlan, MapPlan, ReproducePlan, StudyPlan, TracePlan};
+use plan::{
+    CollidePlan, ImpactPlan, JoinPlan, LocatePlan, MapPlan, ReproducePlan, StudyPlan, TracePlan,
+};
 use version::NAME;
 
 /// Carries out the command line of this process and reports what went wrong.
@@ -92,6 +94,7 @@ fn carry_out(arguments: &Arguments) -> Result<(), Failure> {
         },
         Command::Impact(arguments) => commands::impact::run(&ImpactPlan::new(arguments)?),
         Command::Map(arguments) => commands::map::run(&MapPlan::new(arguments)?),
+        Command::Join(arguments) => commands::join::run(&JoinPlan::new(arguments)?),
         Command::Trace(arguments) => commands::trace::run(&TracePlan::new(arguments)?),
         Command::Locate(arguments) => commands::locate::run(&LocatePlan::new(arguments)?),
         Command::Reproduce(arguments) => match ReproducePlan::new(arguments) {

@@ -9,6 +9,7 @@ mod collision;
 mod engine;
 mod files;
 mod impact;
+mod join;
 mod locate;
 mod map;
 mod reproduce;
@@ -18,8 +19,9 @@ mod window;
 
 pub use collide::{BatchPlan, CollidePlan, SinglePlan};
 pub use impact::ImpactPlan;
+pub use join::JoinPlan;
 pub use locate::LocatePlan;
-pub use map::{MapFormat, MapPlan};
+pub use map::{MapFormat, MapOutput, MapPlan};
 pub use reproduce::{PagePlan, ReproducePlan, StatementsPlan};
 pub use studies::StudyPlan;
 pub use trace::TracePlan;

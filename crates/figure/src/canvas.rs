@@ -11,6 +11,7 @@ pub mod markup;
 pub mod number;
 pub mod panel;
 mod placement;
+#[cfg(feature = "png")]
 pub mod raster;
 pub mod shape;
 pub mod style;

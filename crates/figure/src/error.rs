@@ -34,6 +34,7 @@ pub enum FigureError {
     #[error("the image cannot be written as PNG: {0}")]
     Png(#[from] png::EncodingError),
     /// The SVG cannot be read.
+    #[cfg(feature = "png")]
     #[error("the SVG cannot be read: {0}")]
     Svg(#[from] resvg::usvg::Error),
     /// A picture has no size.

@@ -2,11 +2,12 @@
 //!
 //! This file has the types whose objects differ from their fields; other types derive `Serialize`.
 
+use serde::de::{self, Deserialize, Deserializer};
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
 use crate::Vector3;
 use crate::contact::Contact;
-use crate::engines::Engine;
+use crate::engines::{Engine, Tolerances};
 use crate::laws::phase::Side;
 use crate::result::Collision;
 use crate::spheres::encounter::{Encounter, Motion};
@@ -25,6 +26,30 @@ impl Serialize for Engine {
             object.serialize_field("atol", &tolerances.atol)?;
         }
         object.end()
+    }
+}
+
+/// The object that [`Engine`] serialises as.
+#[derive(serde::Deserialize)]
+struct EngineFields {
+    name: String,
+    rtol: Option<f64>,
+    atol: Option<f64>,
+}
+
+impl<'de> Deserialize<'de> for Engine {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let EngineFields { name, rtol, atol } = EngineFields::deserialize(deserializer)?;
+        let tolerances = rtol.zip(atol).map(|(rtol, atol)| Tolerances { rtol, atol });
+        match (name.as_str(), tolerances) {
+            ("dop853", Some(tolerances)) => Ok(Self::Dop853(tolerances)),
+            ("dopri5", Some(tolerances)) => Ok(Self::Dopri5(tolerances)),
+            ("exact", None) => Ok(Self::Exact),
+            ("auto", None) => Ok(Self::Auto),
+            _ => Err(de::Error::custom(
+                "not an engine; expected dop853 or dopri5 with rtol and atol, or exact or auto",
+            )),
+        }
     }
 }
 

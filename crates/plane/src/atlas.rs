@@ -33,7 +33,7 @@ pub use document::{
 };
 pub use frame::{Frame, RatioRange, ToleranceRange, TooNarrow};
 #[cfg(feature = "geojson")]
-pub use geojson::geojson;
+pub use geojson::{document_geojson, geojson};
 pub use locate::{Located, Unlocated};
 pub use regions::{Atlas, Regions, switch_count};
 pub use tracing::{AtlasError, VerifiedAtlas, trace};

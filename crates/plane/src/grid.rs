@@ -8,6 +8,7 @@ use crate::range::Range;
 
 /// An interval divided into cells of equal width.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GridAxis {
     /// The interval.
     pub range: Range,
@@ -29,6 +30,7 @@ impl GridAxis {
 
 /// A window divided into cells, with a collision at the centre of each.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Grid {
     /// The axis along a row.
     pub columns: GridAxis,
@@ -40,6 +42,8 @@ pub struct Grid {
 
 /// What the axes of a grid mean: columns first, rows second.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Coordinates {
     /// κ and ψ.
     Psi {

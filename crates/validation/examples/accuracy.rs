@@ -7,8 +7,9 @@
 //!
 //! `cargo run --release -p validation --example accuracy -- 1000000` prints the figures of
 //! docs/validation.md. Four further arguments: the number of the first contact, so that a long list
-//! can be run in parts, how many contacts to describe of those that differ, the only row of the
-//! table that is wanted, counted from 0, or 99 for all of them, and the tolerance of both pairs.
+//! can be run in parts, how many contacts to describe of those that differ and of those with the
+//! largest errors, the only row of the table that is wanted, counted from 0, or 99 for all of them,
+//! and the tolerance of both pairs.
 
 use std::collections::BTreeMap;
 
@@ -179,4 +180,7 @@ fn report(damped: bool, engine: &Engine, compared: &[Result<Compared, String>], 
     };
     described("other itinerary", &differ);
     described("not covered", &uncovered);
+    let mut worst: Vec<_> = good.iter().filter(|one| one.same_itinerary).collect();
+    worst.sort_by(|a, b| b.errors[0].total_cmp(&a.errors[0]));
+    described("large error", &worst);
 }

@@ -6,6 +6,7 @@ use stickslip_plane::Range;
 
 use super::method::MethodArguments;
 use super::shared::{self, CollisionArguments};
+use crate::input::part::MapPart;
 use crate::input::range::{self, Size};
 use crate::output::picture::PictureFile;
 
@@ -59,6 +60,12 @@ pub struct MapArguments {
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub out: PathBuf,
 
+    /// Compute only part K of N of the map, 1 <= K <= N <= 1000000; FILE is then for the command
+    /// join, and may have any name
+    #[arg(long, value_name = "K/N", help_heading = "Output", allow_hyphen_values = true)]
+    #[arg(value_parser = MapPart::parse, conflicts_with = "plot")]
+    pub part: Option<MapPart>,
+
     /// Picture of ε_t in colours, and of the regions with equal numbers of switches
     #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
     #[arg(value_parser = shared::picture())]
@@ -91,7 +98,7 @@ Results:
   of the bodies; rtol and atol; method and version. FILE.csv has the same names as columns and one
   row per point. A point that cannot be computed is NaN and -1, and the exit code is 1.
 
-  Finished parts are kept in FILE.npz.tiles until the map is complete. After an interruption the
+  Finished tiles are kept in FILE.npz.tiles until the map is complete. After an interruption the
   same command continues where it stopped, and the result is the same, bit for bit.
 
 Examples:
@@ -100,5 +107,19 @@ Examples:
   stickslip map --kappa 17:19 --psi 0:2 --method exact --size 2000x2000 --out map.npz
   stickslip map --kappa 0:70 --psi 0:2.9 --damping 0.05 --size 500x500 --out damped.npz
   stickslip map --bodies pair.json --normal 0:200 --tangential 0:200 --size 500x500 --out si.npz
+
+A map in parts, as a job array of Slurm:
+  #!/bin/sh
+  #SBATCH --array=1-64
+  #SBATCH --cpus-per-task=8
+  #SBATCH --requeue
+  stickslip map --kappa 0:70 --psi 0:2.9 --size 20000x20000 --part $SLURM_ARRAY_TASK_ID/64 \\
+    --threads $SLURM_CPUS_PER_TASK --out map-$SLURM_ARRAY_TASK_ID.part
+
+  When all parts are there, the whole map is made by
+  stickslip join map-*.part --out map.npz
+
+  Each part needs its own FILE. A job that was stopped goes on when it is started again, and one
+  whose part is there has nothing to do.
 
 Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

@@ -29,11 +29,11 @@ pub struct MethodArguments {
 /// What computes a collision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Method {
-    /// Dormand–Prince 5(4)
+    /// Dormand–Prince 5(4); damping 0, or 1e-8 to 1e4
     Dopri5,
-    /// Dormand–Prince 8(5,3)
+    /// Dormand–Prince 8(5,3); damping 0, or 1e-8 to 1e4
     Dop853,
-    /// The exact solution
+    /// The exact solution; damping 0, or 1e-60 to 1e4
     Exact,
     /// The exact solution, or dop853 if a tolerance is given
     Auto,

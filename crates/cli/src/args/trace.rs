@@ -63,7 +63,7 @@ Trace every boundary in a window of the (κ, ψ) plane on which the switches of 
 Find where boundaries meet or turn into others (crossing, degenerate, graze-at-end, \
 vanishing-phase), where they are extremal in κ or ψ, and the regions between them.
 
-The regions are verified: collisions at 20 000 random points of the window, and at 40 points beside \
+The regions are verified by integration, so that damping is 0 or 1e-8 to 1e4: collisions at 20 000 random points of the window, and at 40 points beside \
 each boundary, must have the switches of their region. If one of them has others, or if a question \
 remained open, the atlas is written and says so, and the exit code is 1.";
 

@@ -1,18 +1,23 @@
 //! A map of collisions. It is computed and stored tile by tile, and put together at the end.
 //!
-//! Start reading here; then, in this order: `tiles` and `results` (what is stored, and where),
-//! `provenance` (what a map says about itself), `npz` and `csv` (the finished map), `thumbnail`
-//! (the part of it that is drawn).
+//! Start reading here; then, in this order: `task` (what is computed, divided into tiles), `tiles`
+//! and `results` (what is stored, and where), `part_file` and `parts` (a map that is computed in
+//! parts), `provenance` (what a map says about itself), `npz` and `csv` (the finished map),
+//! `thumbnail` (what of it is drawn).
 
 mod csv;
 mod npz;
+mod part_file;
+mod parts;
 mod provenance;
 mod results;
+mod task;
 mod thumbnail;
 mod tiles;
 
-use std::io;
+use std::path::Path;
 
+use rayon::ThreadPool;
 use stickslip_figure::pictures::grid;
 use stickslip_plane::sweep::{self, FailureCount};
 
@@ -21,18 +26,21 @@ use crate::output::console::say;
 use crate::output::file::{OutputFile, StoredFile, publish};
 use crate::output::picture::PictureFile;
 use crate::output::progress::Bar;
-use crate::plan::{MapFormat, MapPlan};
-use crate::{threads, version};
+use crate::plan::{MapFormat, MapOutput, MapPlan};
+use crate::threads;
 use provenance::Provenance;
 use results::Results;
-use tiles::{Found, Task, Tiles};
+use task::Task;
+use tiles::{Found, Tiles};
 
 pub use npz::archive;
+pub use parts::Parts;
+pub use results::Stored;
 
 /// Largest number of columns, and of rows, in the picture.
 const MOST_PIXELS: usize = 1000;
 
-/// Computes the map, or the rest of one that was begun before.
+/// Computes the map or a part of it, or the rest of one that was begun before.
 ///
 /// # Errors
 /// Files cannot be written, another process makes the same map, or some points have no result. In
@@ -40,72 +48,103 @@ const MOST_PIXELS: usize = 1000;
 pub fn run(plan: &MapPlan) -> Result<(), Failure> {
     plan.plot.as_ref().map(PictureFile::probe).transpose()?;
     let pool = threads::pool(plan.threads)?;
-    let tiles = Tiles::open(&plan.out, task(plan))?;
+    let task = Task::new(plan.grid, plan.engine);
+    let part = match plan.output {
+        MapOutput::Part(part) => Some(part),
+        MapOutput::Whole(_) => None,
+    };
+    if let Some(part) = part
+        && let Some(there) = part_file::find(&plan.out, part, &task)?
+        && let Ok(failures) = there.failures()
+    {
+        say(format_args!("{}: has part {part} already", plan.out.display()));
+        // A process that was killed in its last moment has left them.
+        Tiles::open(&plan.out, task, Some(part)).map(Tiles::remove).ok();
+        return require_all(&failures, &there, &plan.out);
+    }
+    let tiles = Tiles::open(&plan.out, task, part)?;
     let mut file = OutputFile::create_in(tiles.directory(), &plan.out)?;
+    compute(&tiles, &pool)?;
+    let failures = tiles.failures().map_err(|error| tiles.unreadable(&error))?;
+    let files = match plan.output {
+        MapOutput::Whole(format) => finish(&tiles, file, format, plan.plot.as_ref())?,
+        MapOutput::Part(part) => {
+            part_file::write(&mut file, part, &tiles).map_err(|error| file.failure(error))?;
+            vec![file.store()?]
+        }
+    };
+    publish(files)?;
+    if let Some(part) = part.filter(|_| tiles.tiles().is_empty()) {
+        let (out, count) = (plan.out.display(), tiles.task().tiles());
+        say(format_args!("{out}: part {part} is empty, because the map has {count} tiles only"));
+    }
+    let outcome = require_all(&failures, &tiles, &plan.out);
+    tiles.remove();
+    outcome
+}
 
-    let found = tiles.find().map_err(|error| unreadable(&tiles, &error))?;
-    report(&tiles, &found);
-    let kept: usize = found.kept.iter().map(|index| tiles.task().range(*index).len()).sum();
-    let bar = Bar::points(plan.grid.points() - kept);
-    for index in (0..tiles.task().tiles()).filter(|index| !found.kept.contains(index)) {
-        let points = tiles.task().range(index);
-        let tile = pool.install(|| sweep::compute(&plan.grid, plan.engine, points));
+/// Computes all tiles that are not there yet.
+fn compute(tiles: &Tiles, pool: &ThreadPool) -> Result<(), Failure> {
+    let found = tiles.find().map_err(|error| tiles.unreadable(&error))?;
+    report(tiles, &found);
+    let task = tiles.task();
+    let kept: usize = found.kept.iter().map(|index| task.range(*index).len()).sum();
+    let bar = Bar::points(task.points_of(&tiles.tiles()) - kept);
+    for index in tiles.tiles().filter(|index| !found.kept.contains(index)) {
+        let points = task.range(index);
+        let tile = pool.install(|| sweep::compute(&task.grid, task.engine, points));
         tiles.keep(index, &tile)?;
         bar.advance(tile.eps_t.len());
     }
-    drop(bar);
+    Ok(())
+}
 
-    let provenance = Provenance::new(&plan.grid, &plan.engine);
-    let written = match plan.format {
-        MapFormat::Npz => npz::write(&mut file, &plan.grid, &provenance, &tiles),
-        MapFormat::Csv => csv::write(&mut file, &plan.grid, &provenance, &tiles),
+/// Writes the map whose results are `stored`, and its picture, completely, except for the names of
+/// the files.
+///
+/// # Errors
+/// A file cannot be written, or a tile cannot be read.
+pub fn finish(
+    stored: &impl Stored,
+    mut file: OutputFile,
+    format: MapFormat,
+    plot: Option<&PictureFile>,
+) -> Result<Vec<StoredFile>, Failure> {
+    let Task { grid, engine, .. } = stored.task();
+    let provenance = Provenance::new(grid, engine);
+    let written = match format {
+        MapFormat::Npz => npz::write(&mut file, grid, &provenance, stored),
+        MapFormat::Csv => csv::write(&mut file, grid, &provenance, stored),
     };
     written.map_err(|error| file.failure(error))?;
-    let picture = plan.plot.as_ref().map(|plot| draw(plan, &tiles, plot)).transpose()?;
-    let mut count = FailureCount::default();
-    let counted = tiles.each(|points, tile| {
-        count.add(points.start, tile);
-        Ok(())
-    });
-    counted.map_err(|error| unreadable(&tiles, &error))?;
-    publish([file.store()?].into_iter().chain(picture))?;
-    tiles.remove();
-    match count.failed(&plan.grid, plan.engine) {
+    let picture = plot.map(|plot| draw(stored, plot)).transpose()?;
+    Ok([file.store()?].into_iter().chain(picture).collect())
+}
+
+/// Tells which of the points in the finished file `out` have no result.
+///
+/// # Errors
+/// [`Failure::Points`] names the first of them.
+pub fn require_all(
+    failures: &FailureCount,
+    stored: &impl Stored,
+    out: &Path,
+) -> Result<(), Failure> {
+    let task = stored.task();
+    match failures.failed(&task.grid, task.engine) {
         Some(failed) => {
-            let (path, points) = (plan.out.clone(), plan.grid.points());
+            let (path, points) = (out.to_owned(), task.points_of(&stored.tiles()));
             Err(Failure::Points { failed: Box::new(failed), points, path })
         }
         None => Ok(()),
     }
 }
 
-fn task(plan: &MapPlan) -> Task {
-    let grid = &plan.grid;
-    // Up to κ = 64 a tile takes one core 0.3 s. Beyond, work grows as √κ.
-    let halvings = (0..9).filter(|n| grid.largest_stiffness() > 64.0 * 4.0_f64.powi(*n));
-    let tile_points = 32768 >> halvings.count();
-    let method = match plan.engine.tolerances() {
-        Some(tolerances) => format!(", rtol {:?}, atol {:?}", tolerances.rtol, tolerances.atol),
-        None => String::new(),
-    };
-    // The digits read back as the same numbers, so that equal texts mean equal tasks.
-    let description = format!(
-        "program: {}, tiles 2\n{grid}method: {}{method}\npoints a tile: {tile_points}\n",
-        version::program(),
-        plan.engine.name(),
-    );
-    Task { description, points: grid.points(), tile_points }
-}
-
-fn unreadable(tiles: &Tiles, error: &io::Error) -> Failure {
-    Failure::input(tiles.directory(), format!("cannot be read: {error}"))
-}
-
 /// Writes the picture completely, except for the name of its file.
-fn draw(plan: &MapPlan, tiles: &Tiles, plot: &PictureFile) -> Result<StoredFile, Failure> {
-    let thumbnail = thumbnail::read(&plan.grid, tiles, MOST_PIXELS);
-    let (size, results) = thumbnail.map_err(|error| unreadable(tiles, &error))?;
-    plot.write(grid::draw(&plan.grid, size, &results))
+fn draw(stored: &impl Stored, plot: &PictureFile) -> Result<StoredFile, Failure> {
+    let thumbnail = thumbnail::read(stored, MOST_PIXELS);
+    let (size, results) = thumbnail.map_err(|error| stored.unreadable(&error))?;
+    plot.write(grid::draw(&stored.task().grid, size, &results))
 }
 
 /// Says on standard error which tiles were found, if the map was begun before.
@@ -115,7 +154,7 @@ fn report(tiles: &Tiles, found: &Found) {
         return;
     }
     let directory = tiles.directory().display();
-    let tiles = tiles.task().tiles();
+    let tiles = tiles.tiles().len();
     let damaged = match damaged {
         0 => String::new(),
         _ => format!(", {damaged} damaged and made again"),

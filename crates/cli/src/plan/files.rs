@@ -37,7 +37,7 @@ pub fn require_different<'a>(outputs: &[Named<'a>], inputs: &[Named<'a>]) -> Res
 /// Where a file is, whether it exists or not.
 #[derive(Debug)]
 struct Place {
-    /// The file, if it exists.
+    /// The file, if it exists and is a regular one.
     file: Option<Handle>,
     /// Its directory, if that exists.
     directory: Option<Handle>,
@@ -53,7 +53,8 @@ impl Place {
             _ => Path::new("."),
         };
         Self {
-            file: Handle::from_path(&path).ok(),
+            // To open a pipe is to wait for its writer, and to lose what it has written.
+            file: path.is_file().then(|| Handle::from_path(&path).ok()).flatten(),
             directory: Handle::from_path(directory).ok(),
             name: path.file_name().map(OsString::from),
             path,

@@ -12,6 +12,8 @@ use super::window::{ImpactRange, KappaWindow};
 use crate::args::{MapArguments, Method};
 use crate::error::Failure;
 use crate::input::bodies;
+use crate::input::part::MapPart;
+use crate::input::source::is_standard_input;
 use crate::output::picture::PictureFile;
 
 /// A map to be computed.
@@ -23,12 +25,21 @@ pub struct MapPlan {
     pub engine: Engine,
     /// The file of the map.
     pub out: PathBuf,
-    /// The format of that file.
-    pub format: MapFormat,
+    /// What that file holds.
+    pub output: MapOutput,
     /// The file of a picture, if the map is drawn.
     pub plot: Option<PictureFile>,
     /// The number of threads; `None` is one for each core.
     pub threads: Option<u16>,
+}
+
+/// What a map is written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MapOutput {
+    /// The whole map.
+    Whole(MapFormat),
+    /// One of its parts, which are to be joined.
+    Part(MapPart),
 }
 
 /// The format of a map.
@@ -53,6 +64,7 @@ impl MapPlan {
             &[("--out", Some(out)), ("--plot", picture)],
             &[("--bodies", bodies.as_deref())],
         )?;
+        let output = MapOutput::new(arguments)?;
         let MapAxes { columns, rows, coordinates, engine } = match bodies {
             Some(file) => MapAxes::of_bodies(arguments, file)?,
             None => MapAxes::scaled(arguments)?,
@@ -65,10 +77,41 @@ impl MapPlan {
             },
             engine,
             out: out.clone(),
-            format: format(out)?,
+            output,
             plot: plot.clone(),
             threads: arguments.threads,
         })
+    }
+}
+
+impl MapOutput {
+    fn new(arguments: &MapArguments) -> Result<Self, Failure> {
+        let MapArguments { part, out, .. } = arguments;
+        match part {
+            None => MapFormat::of(out).map(Self::Whole),
+            Some(_) if is_standard_input(out) => {
+                let message = "--out -: a part is not written to standard output; expected a file";
+                Err(Failure::Usage(message.to_owned()))
+            }
+            Some(part) => Ok(Self::Part(*part)),
+        }
+    }
+}
+
+impl MapFormat {
+    /// The format that the name of the file `out` tells.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`]: the name tells none.
+    pub fn of(out: &Path) -> Result<Self, Failure> {
+        match out.extension().and_then(|extension| extension.to_str()) {
+            Some("npz") => Ok(Self::Npz),
+            Some("csv") => Ok(Self::Csv),
+            _ => Err(Failure::Usage(format!(
+                "--out {}: the name does not tell the format; expected FILE.npz or FILE.csv",
+                out.display()
+            ))),
+        }
     }
 }
 
@@ -105,17 +148,5 @@ impl MapAxes {
         let pair = bodies::read_pair(file)?;
         let engine = engine(&arguments.method, Method::Auto)?;
         Ok(Self { columns, rows, coordinates: Coordinates::Velocities { pair }, engine })
-    }
-}
-
-/// The format that the name of the file tells.
-fn format(out: &Path) -> Result<MapFormat, Failure> {
-    match out.extension().and_then(|extension| extension.to_str()) {
-        Some("npz") => Ok(MapFormat::Npz),
-        Some("csv") => Ok(MapFormat::Csv),
-        _ => Err(Failure::Usage(format!(
-            "--out {}: the name does not tell the format; expected FILE.npz or FILE.csv",
-            out.display()
-        ))),
     }
 }

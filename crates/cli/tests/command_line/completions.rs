@@ -4,10 +4,11 @@ use std::process::Command;
 
 use crate::{Workspace, stickslip};
 
-const COMMANDS: [&str; 10] = [
+const COMMANDS: [&str; 11] = [
     "collide",
     "impact",
     "map",
+    "join",
     "trace",
     "locate",
     "reproduce",

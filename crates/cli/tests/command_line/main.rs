@@ -21,6 +21,10 @@ mod map_failures;
 #[cfg(unix)]
 mod map_interrupted;
 mod notebooks_data;
+mod parts;
+mod parts_failures;
+#[cfg(unix)]
+mod parts_interrupted;
 mod pictures;
 
 mod reproduce;

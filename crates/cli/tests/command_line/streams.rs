@@ -45,6 +45,18 @@ fn a_batch_from_standard_input_is_that_from_a_file() {
     assert!(both.code == 2 && both.stderr.contains("--atlas - and --batch -"), "{}", both.stderr);
 }
 
+#[test]
+fn a_named_pipe_is_read_as_a_file() {
+    let workspace = Workspace::new();
+    assert!(Command::new("mkfifo").arg(workspace.path("pipe")).status().unwrap().success());
+    let line = "collide --batch pipe --out out.csv --events ev.csv";
+    let child = stickslip(&workspace, line).stderr(Stdio::piped()).spawn().unwrap();
+    fs::write(workspace.path("pipe"), ROWS).unwrap();
+    let ran = Ran::from(child.wait_with_output().unwrap());
+    assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
+    assert_eq!(workspace.read("out.csv").lines().count(), 3);
+}
+
 /// A shell writes a line before the program and one after it into the same file.
 #[test]
 fn standard_output_is_written_where_it_stands() {

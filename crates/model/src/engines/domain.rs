@@ -67,9 +67,9 @@ const UNDAMPED: Domain = Domain {
 
 /// The range of the integrators with damping.
 ///
-/// The first stick phase is (a/κψ)² long. With a weaker damping it may be lost or invented, within the
-/// tolerance of a step. The force at the end is rounded to 1e-16: a stronger damping leaves a force of −x/a² at the end, which Dormand–Prince 5(4) does not distinguish from
-/// 0: the contact would not end.
+/// The first stick phase is (a/κψ)² long: with a weaker damping it may be lost or invented, within
+/// the tolerance of a step. A stronger damping leaves a force of −x/a² at the end, which
+/// Dormand–Prince 5(4) does not distinguish from 0: the contact would not end.
 const DAMPED: Domain = Domain {
     engine: "the integrator",
     kappa: (1e-20, 1e10),

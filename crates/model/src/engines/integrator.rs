@@ -35,8 +35,8 @@ const SMALL: f64 = 0.01;
 const STIFF: f64 = 3e3;
 /// Stiffness κ above which they are still finer, since the errors of so many steps have one sign.
 /// Far above it steps would be too many.
-const VERY_STIFF: f64 = 1e5;
-const STILL_FINER: f64 = 0.3;
+const VERY_STIFF: f64 = 4e4;
+const STILL_FINER: f64 = 0.2;
 /// The finest tolerance that this may give.
 const FINEST: f64 = 1e-15;
 
@@ -246,6 +246,14 @@ impl Collider {
     fn recorded_options(&self, contact: &Contact) -> Result<Options, OutOfDomain> {
         let options = self.options_for(contact)?;
         Ok(Options { max_steps: options.max_steps.min(History::MOST_STEPS), ..options })
+    }
+
+    /// Checks that `contact` is in the range of the integrators.
+    ///
+    /// # Errors
+    /// [`OutOfDomain`] names the parameter and its range.
+    pub fn require(contact: &Contact) -> Result<(), OutOfDomain> {
+        domain::integrated(contact)
     }
 
     /// The options for `contact`, if it can be integrated.

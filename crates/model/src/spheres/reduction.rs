@@ -12,6 +12,7 @@
 /// assert!((reduction.psi(2.8) - 2.0).abs() < 1e-15);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Reduction {
     /// Coulomb's coefficient of friction μ.
     pub mu: f64,

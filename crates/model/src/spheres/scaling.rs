@@ -11,6 +11,7 @@ const POSITIVE: &str = "a finite number above 0";
 
 /// The properties of the two surfaces together.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Surface {
     /// Coulomb's coefficient of friction μ.
     pub friction: f64,
@@ -46,6 +47,7 @@ impl Surface {
 /// # Ok::<(), stickslip_model::InvalidParameter>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Pair {
     /// Effective mass m = m_i m_j/(m_i + m_j) in kg.
     pub effective_mass_kg: f64,

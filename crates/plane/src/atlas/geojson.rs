@@ -5,7 +5,7 @@ use serde_json::json;
 use stickslip_tracer::{Side, Stretch};
 
 use super::document::Document;
-use super::regions::Regions;
+use super::regions::{Atlas, Regions};
 use super::tracing::VerifiedAtlas;
 use crate::family::CollisionPlane;
 
@@ -17,7 +17,12 @@ type Ring = Vec<[f64; 2]>;
 /// The coordinates are (κ, ψ).
 #[must_use]
 pub fn geojson(verified: &VerifiedAtlas) -> FeatureCollection {
-    let (atlas, document) = (&verified.atlas, Document::new(verified));
+    document_geojson(&verified.atlas, &Document::new(verified))
+}
+
+/// As [`geojson`], of an atlas with its document.
+#[must_use]
+pub fn document_geojson(atlas: &Atlas, document: &Document) -> FeatureCollection {
     let lines = atlas.polylines();
     let regions = document.regions.iter().map(|region| {
         let properties = json!({

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use stickslip_model::{Contact, InvalidParameter};
+use stickslip_model::{Collider, Contact, InvalidParameter, OutOfDomain};
 use stickslip_solver::Margin;
 use stickslip_tracer::{
     Curve, Extremum, Network, Node, Point, Subdivision, SubdivisionError, TraceError, TraceOptions,
@@ -36,6 +36,9 @@ pub enum AtlasError {
     /// The window is too narrow.
     #[error(transparent)]
     Narrow(#[from] TooNarrow),
+    /// The window is out of the range of the integrator, which verifies an atlas.
+    #[error("an atlas is verified by integration: {0}")]
+    Unverifiable(#[from] OutOfDomain),
     /// The boundaries cannot have this accuracy in the window.
     #[error(
         "the tolerance {tolerance:?} is out of range; expected {finest:e} to {coarsest:e} in this window"
@@ -98,6 +101,9 @@ pub fn trace(
     let plane = frame.plane()?;
     let window = plane.window();
     let any = plane.contact(&window.low)?;
+    for corner in [&any, &plane.contact(&window.high)?] {
+        Collider::require(corner)?;
+    }
     let family = plane.family();
     let options =
         TraceOptions { interpolation: frame.interpolation(tolerance), ..TraceOptions::default() };

@@ -56,6 +56,15 @@ fn a_window_without_collisions_is_refused() {
 }
 
 #[test]
+fn a_window_that_cannot_be_verified_is_refused_first() {
+    let weakly_damped = Frame { damping: 1e-9, ..frame((5.0, 20.0), (0.2, 2.0)) };
+    for frame in [weakly_damped, frame((5.0, 1e11), (0.2, 2.0))] {
+        let error = trace(frame, 1e-10, SILENT).unwrap_err();
+        assert!(matches!(error, AtlasError::Unverifiable(_)), "{error}");
+    }
+}
+
+#[test]
 fn regions_have_the_switches_of_their_collisions() {
     let verified = crossing();
     assert!(verified.report.agrees, "{:?}", verified.report);

@@ -14,7 +14,7 @@ const LAYERS: [&[&str]; 8] = [
     &["stickslip-figure"],
     &["stickslip-studies"],
     &["stickslip-reproduction"],
-    &["stickslip", "stickslip-cli"],
+    &["stickslip", "stickslip-cli", "stickslip-python"],
     // Tests and long batteries alone.
     &["repository", "validation"],
 ];

@@ -1,26 +1,57 @@
-//! The results of a whole map, in parts.
+//! The results of a map, in tiles.
 
 use std::io;
 use std::ops::Range;
 
 use stickslip_plane::Tile;
+use stickslip_plane::sweep::FailureCount;
 
-use super::tiles::Tiles;
+use super::task::Task;
+use crate::error::Failure;
 
-/// All results of a map.
+/// All results of a map or of a part of it.
 pub trait Results {
-    /// Passes each part with its points to `take`, one after the other in order.
+    /// Passes each tile with its points to `take`, one after the other in order.
     ///
     /// # Errors
-    /// A part cannot be read, or `take` fails.
+    /// A tile cannot be read, or `take` fails.
     fn each(&self, take: impl FnMut(Range<usize>, &Tile) -> io::Result<()>) -> io::Result<()>;
+
+    /// The points without a result.
+    ///
+    /// # Errors
+    /// A tile cannot be read.
+    fn failures(&self) -> io::Result<FailureCount> {
+        let mut count = FailureCount::default();
+        self.each(|points, tile| {
+            count.add(points.start, tile);
+            Ok(())
+        })?;
+        Ok(count)
+    }
 }
 
-/// The results are stored in files.
-impl Results for Tiles {
+/// The results of successive tiles of a task, which are stored in files.
+pub trait Stored {
+    /// The task whose tiles these are.
+    fn task(&self) -> &Task;
+
+    /// Which tiles these are.
+    fn tiles(&self) -> Range<usize>;
+
+    /// Reads a tile.
+    ///
+    /// # Errors
+    /// The tile cannot be read, or is not what was written.
+    fn read(&self, index: usize) -> io::Result<Tile>;
+
+    /// The failure to read a tile.
+    fn unreadable(&self, error: &io::Error) -> Failure;
+}
+
+impl<S: Stored> Results for S {
     fn each(&self, mut take: impl FnMut(Range<usize>, &Tile) -> io::Result<()>) -> io::Result<()> {
-        let task = self.task();
-        (0..task.tiles()).try_for_each(|index| take(task.range(index), &self.read(index)?))
+        self.tiles().try_for_each(|index| take(self.task().range(index), &self.read(index)?))
     }
 }
 

@@ -2,29 +2,30 @@
 
 use std::io;
 
-use stickslip_plane::{Grid, GridAxis, Tile};
+use stickslip_plane::{GridAxis, Tile};
 
-use super::tiles::Tiles;
+use super::results::Stored;
 
-/// The size (columns and rows) of a picture of a map, and the results of its pixels, row by row
-/// from the lower edge.
+/// The size (columns and rows) of a picture of the map with all of its tiles `stored`, and the
+/// results of its pixels, row by row from the lower edge.
 ///
 /// A pixel shows the cell at its centre. There are at most `most` × `most` pixels, and not more
 /// than the map has cells. One tile at a time is in memory.
 ///
 /// # Errors
 /// A tile cannot be read.
-pub fn read(grid: &Grid, tiles: &Tiles, most: usize) -> io::Result<((usize, usize), Tile)> {
+pub fn read(stored: &impl Stored, most: usize) -> io::Result<((usize, usize), Tile)> {
+    let grid = stored.task().grid;
     let [columns, rows] = [grid.columns, grid.rows].map(|axis| centres(axis, most));
     let size = (columns.len(), rows.len());
     let mut thumbnail = Tile { eps_t: Vec::new(), switch_count: Vec::new() };
     let mut current: Option<(usize, Tile)> = None;
     for row in rows {
         for column in &columns {
-            let (index, offset) = tiles.task().place(grid.point(*column, row));
+            let (index, offset) = stored.task().place(grid.point(*column, row));
             let tile = match current.take() {
                 Some((read, tile)) if read == index => tile,
-                _ => tiles.read(index)?,
+                _ => stored.read(index)?,
             };
             thumbnail.eps_t.push(tile.eps_t[offset]);
             thumbnail.switch_count.push(tile.switch_count[offset]);
@@ -42,9 +43,11 @@ fn centres(axis: GridAxis, most: usize) -> Vec<usize> {
 
 #[cfg(test)]
 mod tests {
-    use stickslip_plane::{Coordinates, Range};
+    use stickslip_model::Engine;
+    use stickslip_plane::{Coordinates, Grid, Range};
 
-    use super::super::tiles::Task;
+    use super::super::task::Task;
+    use super::super::tiles::Tiles;
     use super::*;
 
     #[test]
@@ -58,20 +61,20 @@ mod tests {
         // Both results of a point are its number. Tiles end in the middle of rows.
         let coordinates = Coordinates::Psi { damping: 0.0 };
         let grid = Grid { columns: axis(7), rows: axis(5), coordinates };
-        let task = Task { description: String::new(), points: 35, tile_points: 4 };
+        let task = Task { tile_points: 4, ..Task::new(grid, Engine::Exact) };
         let directory = tempfile::tempdir().unwrap();
-        let tiles = Tiles::open(&directory.path().join("map.npz"), task).unwrap();
+        let tiles = Tiles::open(&directory.path().join("map.npz"), task, None).unwrap();
         for index in 0..9 {
             let points = tiles.task().range(index);
             let eps_t = points.clone().map(|point| point as f64).collect();
             let switch_count = points.map(|point| i32::try_from(point).unwrap()).collect();
             tiles.keep(index, &Tile { eps_t, switch_count }).unwrap();
         }
-        let (size, thumbnail) = read(&grid, &tiles, 3).unwrap();
+        let (size, thumbnail) = read(&tiles, 3).unwrap();
         assert_eq!(size, (3, 3));
         assert_eq!(thumbnail.switch_count, [1, 3, 5, 15, 17, 19, 29, 31, 33]);
         assert_eq!(thumbnail.eps_t[8], 33.0);
-        let (_, all) = read(&grid, &tiles, 100).unwrap();
+        let (_, all) = read(&tiles, 100).unwrap();
         assert_eq!(all.switch_count, (0..35).collect::<Vec<_>>());
     }
 }

@@ -10,44 +10,14 @@ use std::path::{Path, PathBuf};
 use same_file::Handle;
 use stickslip_plane::Tile;
 
+use super::results::Stored;
+use super::task::{Task, difference};
 use crate::error::Failure;
+use crate::input::part::MapPart;
 use crate::output::file;
 use crate::output::partial::{self, Partial};
 
-/// A map, divided into tiles of successive points, row by row.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Task {
-    /// Everything on which the results depend, one fact per line.
-    pub description: String,
-    /// The number of points.
-    pub points: usize,
-    /// The number of points in each tile. The last tile may have fewer.
-    pub tile_points: usize,
-}
-
-impl Task {
-    /// The number of tiles.
-    pub fn tiles(&self) -> usize {
-        self.points.div_ceil(self.tile_points)
-    }
-
-    /// The points of tile `index`.
-    pub fn range(&self, index: usize) -> Range<usize> {
-        let start = index * self.tile_points;
-        start..(start + self.tile_points).min(self.points)
-    }
-
-    /// The index of the tile that has `point`, and the point's index in it.
-    pub fn place(&self, point: usize) -> (usize, usize) {
-        (point / self.tile_points, point % self.tile_points)
-    }
-
-    fn label(&self, index: usize) -> String {
-        format!("{}tile: {index}\n", self.description)
-    }
-}
-
-/// The tiles of one task. No other process makes them at the same time.
+/// The tiles of one task, or of one part of it. No other process makes them at the same time.
 ///
 /// They are in a directory that has the description of the task from its first moment. A directory
 /// without it is not the program's, and nothing in it is touched. In the directory, names that the
@@ -56,6 +26,8 @@ impl Task {
 pub struct Tiles {
     directory: PathBuf,
     task: Task,
+    /// The tiles that are made here.
+    share: Range<usize>,
     /// The lock is held until the directory is removed or the process ends, however it ends.
     lock: File,
 }
@@ -73,26 +45,32 @@ impl Tiles {
     const LOCK: &str = "lock";
     const TASK: &str = "task";
 
-    /// Opens the directory of the tiles of `out`, `OUT.tiles`, and creates it if it is missing.
+    /// Opens the directory of the tiles of `out`, `OUT.tiles`, and creates it if it is missing. The
+    /// tiles are those of a `part` of the task, or of all of it.
     ///
     /// # Errors
     /// The directory cannot be created, another process works there, its tiles are those of another
-    /// task, or the program did not make it.
-    pub fn open(out: &Path, task: Task) -> Result<Self, Failure> {
+    /// task or part, or the program did not make it.
+    pub fn open(out: &Path, task: Task, part: Option<MapPart>) -> Result<Self, Failure> {
         if out.is_dir() {
             return Err(Failure::output(out, io::ErrorKind::IsADirectory));
         }
         let mut directory = file::target(out).into_os_string();
         directory.push(".tiles");
         let directory = PathBuf::from(directory);
+        let share = part.map_or(0..task.tiles(), |part| part.share(task.tiles()));
+        let marker = match part {
+            Some(part) => format!("{}part: {part}\n", task.description),
+            None => task.description.clone(),
+        };
         loop {
             if fs::symlink_metadata(&directory).is_err() {
-                create(&directory, &task).map_err(|error| Failure::output(out, error))?;
+                create(&directory, &marker).map_err(|error| Failure::output(out, error))?;
             }
-            let opened = require_own(&directory, &task).and_then(|()| take_lock(&directory));
+            let opened = require_own(&directory, &marker).and_then(|()| take_lock(&directory));
             match opened {
                 Ok(Some(lock)) => {
-                    let tiles = Self { directory, task, lock };
+                    let tiles = Self { directory, task, share, lock };
                     tiles.remove_partial(out).map_err(|e| Failure::output(&tiles.directory, e))?;
                     return Ok(tiles);
                 }
@@ -107,11 +85,6 @@ impl Tiles {
     /// The directory in which the tiles are.
     pub fn directory(&self) -> &Path {
         &self.directory
-    }
-
-    /// The task whose tiles these are.
-    pub fn task(&self) -> &Task {
-        &self.task
     }
 
     /// Looks for finished tiles and checks each of them.
@@ -140,22 +113,6 @@ impl Tiles {
         let bytes = tile.to_bytes(&self.task.label(index));
         // If a power cut leaves a tile incomplete, its checksum tells.
         file::write_unsynchronised(&self.path(index), &bytes)
-    }
-
-    /// Reads a finished tile.
-    ///
-    /// # Errors
-    /// The tile cannot be read, or is not what was written.
-    pub fn read(&self, index: usize) -> io::Result<Tile> {
-        let (path, label) = (self.path(index), self.task.label(index));
-        let points = self.task.range(index).len();
-        let length = Tile::length(&label, points) as u64;
-        let tile = if require_file(&path)? == length {
-            Tile::from_bytes(&fs::read(&path)?, &label, points)
-        } else {
-            None
-        };
-        tile.ok_or_else(|| io::Error::other(format!("{} is not what was written", path.display())))
     }
 
     /// Removes the program's own files, and then the directory if it is empty.
@@ -194,7 +151,7 @@ impl Tiles {
     /// The index of the tile that is stored under `name`.
     fn index(&self, name: &OsStr) -> Option<usize> {
         let index = name.to_str()?.strip_suffix(".tile")?.parse().ok()?;
-        (index < self.task.tiles() && name == OsStr::new(&Self::name(index))).then_some(index)
+        (self.share.contains(&index) && name == OsStr::new(&Self::name(index))).then_some(index)
     }
 
     /// Removes files that a killed process has left incomplete: those of tiles and of `out`.
@@ -215,11 +172,37 @@ impl Tiles {
     }
 }
 
+impl Stored for Tiles {
+    fn task(&self) -> &Task {
+        &self.task
+    }
+
+    fn tiles(&self) -> Range<usize> {
+        self.share.clone()
+    }
+
+    fn read(&self, index: usize) -> io::Result<Tile> {
+        let (path, label) = (self.path(index), self.task.label(index));
+        let points = self.task.range(index).len();
+        let length = Tile::length(&label, points) as u64;
+        let tile = if require_file(&path)? == length {
+            Tile::from_bytes(&fs::read(&path)?, &label, points)
+        } else {
+            None
+        };
+        tile.ok_or_else(|| io::Error::other(format!("{} is not what was written", path.display())))
+    }
+
+    fn unreadable(&self, error: &io::Error) -> Failure {
+        Failure::input(&self.directory, format!("cannot be read: {error}"))
+    }
+}
+
 /// Makes `directory` with the description of its task. It is not there without it.
-fn create(directory: &Path, task: &Task) -> io::Result<()> {
+fn create(directory: &Path, description: &str) -> io::Result<()> {
     let beside = Partial::directory(directory)?;
     let mut marker = File::create_new(beside.path().join(Tiles::TASK))?;
-    marker.write_all(task.description.as_bytes())?;
+    marker.write_all(description.as_bytes())?;
     // A power cut must not damage it: unlike a tile, it could not be made again.
     marker.sync_all()?;
     match beside.publish(directory) {
@@ -234,8 +217,8 @@ fn is_taken(error: io::ErrorKind) -> bool {
     matches!(error, io::ErrorKind::AlreadyExists | io::ErrorKind::DirectoryNotEmpty)
 }
 
-/// Refuses a directory that the program did not make for `task`.
-fn require_own(directory: &Path, task: &Task) -> Result<(), Failure> {
+/// Refuses a directory that the program did not make for the task with `description`.
+fn require_own(directory: &Path, description: &str) -> Result<(), Failure> {
     const MOST_BYTES: u64 = 1 << 16;
     const EXPECTED: &str =
         "expected a directory that stickslip map began, another --out, or no such name";
@@ -248,7 +231,7 @@ fn require_own(directory: &Path, task: &Task) -> Result<(), Failure> {
         return Err(Failure::input(directory, format!("is not a directory of tiles; {EXPECTED}")));
     }
     let kept = fs::read(&marker).map_err(|error| Failure::output(directory, error))?;
-    require_same(directory, &kept, &task.description)
+    require_same(directory, &kept, description)
 }
 
 /// Locks the directory and says who holds it, or `None` if it has been removed.
@@ -297,12 +280,11 @@ fn require_same(directory: &Path, kept: &[u8], description: &str) -> Result<(), 
         return Ok(());
     }
     let kept = String::from_utf8_lossy(kept);
-    let mut lines = kept.lines().chain(std::iter::repeat("")).zip(description.lines());
-    let (theirs, ours) = lines.find(|(theirs, ours)| theirs != ours).unwrap_or(("", ""));
+    let (theirs, ours) = difference(&kept, description);
     Err(Failure::input(
         directory,
         format!(
-            "holds the tiles of another map, with '{theirs}' where this one has '{ours}'; \
+            "holds the tiles of another map or part, with '{theirs}' where this one has '{ours}'; \
              expected the command that began it, another --out, or no such directory"
         ),
     ))

@@ -152,8 +152,8 @@ impl Flanks {
             let low = Some(rise).filter(below);
             let low = low.or_else(|| Some(bottom(swing, k, rise, fall)).filter(below))?;
             let high = turn.map(|[low, high]| top(swing, k, low, high, None));
-            let reached = high.is_none_or(|top| exceeds_limit(swing, k, top));
-            reached.then(|| (exit(swing, k, low, high.unwrap_or(Moment::END), None), true))
+            let high = high.map_or(Some(Moment::END), |top| passed(swing, k, top))?;
+            Some((exit(swing, k, low, high, None), true))
         };
         let before = || {
             let low = match self.low {
@@ -162,9 +162,8 @@ impl Flanks {
                 }
                 Low::Zero(low) | Low::Between(_, low) => low,
             };
-            let high = self.top(swing);
-            let reached = high.is_none_or(|top| exceeds_limit(swing, k, top));
-            reached.then(|| (exit(swing, k, low, high.unwrap_or(Moment::END), None), false))
+            let high = self.top(swing).map_or(Some(Moment::END), |top| passed(swing, k, top))?;
+            Some((exit(swing, k, low, high, None), false))
         };
         if after_top { after().or_else(before) } else { before().or_else(after) }
     }
@@ -201,6 +200,34 @@ fn turning<T: Trajectory>(swing: &Swing<T>, k: u32, at: &At<T::Motion>) -> Jet {
     along_root(swing.path, at, gap.turning(), -gap.q * pull, 0.0)
 }
 
+/// A moment at which R > 1 on the flank of half swing `k` that ends at its top, if there is one.
+///
+/// Just before the end of contact, where q and L vanish together, rounding hides their difference;
+/// a top that is there is not known well either. R rises to it: what is above 1 a little earlier
+/// stays so.
+pub fn passed<T: Trajectory>(swing: &Swing<T>, k: u32, top: Moment) -> Option<Moment> {
+    let at_top = swing.path.at(top);
+    if swing.path.time_left(&at_top) * swing.spring.omega < hidden_angle(swing) {
+        let earlier = before_end(swing);
+        if exceeds_limit(swing, k, earlier) {
+            return Some(earlier);
+        }
+    }
+    (swing.gap(k, &at_top).value < 0.0).then_some(top)
+}
+
+/// The angle of the swing before the end of contact in which rounding may hide what vanishes there.
+/// The angle itself is known to 1e-16 of its whole.
+fn hidden_angle<T: Trajectory>(swing: &Swing<T>) -> f64 {
+    4e-8 * (1.0 + swing.spring.omega * swing.path.contact_time()).sqrt()
+}
+
+/// The moment at which the hidden angle begins.
+fn before_end<T: Trajectory>(swing: &Swing<T>) -> Moment {
+    let duration = hidden_angle(swing) / swing.spring.omega;
+    swing.path.before(&swing.path.at(Moment::END), duration, 0.0)
+}
+
 /// Whether R > 1 at `moment`.
 pub fn exceeds_limit<T: Trajectory>(swing: &Swing<T>, k: u32, moment: Moment) -> bool {
     swing.gap(k, &swing.path.at(moment)).value < 0.0
@@ -210,10 +237,19 @@ pub fn exceeds_limit<T: Trajectory>(swing: &Swing<T>, k: u32, moment: Moment) ->
 pub fn exit<T: Trajectory>(
     swing: &Swing<T>,
     k: u32,
-    low: Moment,
-    high: Moment,
+    mut low: Moment,
+    mut high: Moment,
     guess: Option<Moment>,
 ) -> Moment {
+    if high == Moment::END {
+        let (y, _) = swing.motion(swing.path.time_left(&swing.start));
+        if y.abs() < hidden_angle(swing) * swing.amplitude {
+            // q vanishes at the end of contact as well, or nearly.
+            let earlier = before_end(swing);
+            let passed = exceeds_limit(swing, k, earlier);
+            (low, high) = if passed { (low, earlier) } else { (earlier, high) };
+        }
+    }
     let guess = guess.or_else(|| (high == Moment::END).then(|| guess_before_end(swing)).flatten());
     let moment = root_between(swing.path, low, high, guess, |at| {
         let gap = swing.gap(k, at);

@@ -5,7 +5,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::flank::{Flanks, exceeds_limit, exit, top};
+use super::flank::{Flanks, exit, passed, top};
 use super::normal::{At, Moment, Motion, Trajectory};
 use super::swing::{AT_IMPACT, Swing, half_swing_sign};
 
@@ -92,8 +92,8 @@ fn release_without_turns<T: Trajectory>(swing: &Swing<T>) -> (Moment, u32) {
                 path.before(&at_peak, -until, f64::INFINITY)
             };
             let top = top(swing, k, low, high, Some(guess));
-            if exceeds_limit(swing, k, top) {
-                return (exit(swing, k, low, top, None), k);
+            if let Some(high) = passed(swing, k, top) {
+                return (exit(swing, k, low, high, None), k);
             }
         }
         (from, k) = calm.skip(swing, zero, k + 1);

@@ -370,3 +370,44 @@ fn integrated_histories_follow_the_closed_form() {
     let limits = [1e-11, 4e-12, 4e-12, 4e-12];
     assert!(largest.iter().zip(limits).all(|(&error, limit)| error < limit), "{largest:?}");
 }
+
+/// The last half swing of a stick phase ends with the contact, within rounding: the spring and its
+/// limit vanish together, and the phase ends before that.
+#[test]
+fn a_half_swing_that_ends_with_the_contact() {
+    // κ, ψ, damping, and ε_t with 15 digits, from series with 60 digits (tests/data/README.md).
+    for (kappa, psi, damping, expected) in [
+        (9.10861736788427_f64, 0.08338591833869062, 0.15980234487731435, -0.815827184943248),
+        (10.55781673943056, 0.0445066032235727, 0.6133306067792448, -0.922265028521188),
+        (41.91443754977041, 0.010975119883917863, 0.587818608535903, 0.897419709840706),
+        (8.647982381711758, 0.03394040446067769, 0.019138307299234297, -0.9959537571763449),
+    ] {
+        for ulps in -8..=8_i64 {
+            let kappa = f64::from_bits(kappa.to_bits().wrapping_add_signed(ulps));
+            let found = collide(Contact::new(kappa, psi, damping).unwrap()).unwrap();
+            assert!((found.eps_t() - expected).abs() < 1e-13, "{kappa} {psi} {}", found.eps_t());
+        }
+    }
+}
+
+/// The same for the first stick phase of many contacts, against integration.
+#[test]
+fn contacts_whose_first_swing_ends_with_them() {
+    for damping in [1e-4, 0.019, 0.16, 0.37, 0.588, 0.613, 1.3, 7.0, 200.0] {
+        let contact_time = collide(Contact::new(1.0, 1.0, damping).unwrap()).unwrap().contact_time;
+        for half_swings in 1..=12_u32 {
+            let kappa = (f64::from(half_swings) * PI / contact_time).powi(2);
+            for part in [0.03, 0.4, 0.98, 1.02] {
+                let psi = part * 2.0 * damping.sqrt() / kappa;
+                let at = |kappa| Contact::new(kappa, psi, damping).unwrap();
+                let integrated = crate::Collider::default().collide(at(kappa)).unwrap();
+                for ulps in -3..=3_i64 {
+                    let kappa = f64::from_bits(kappa.to_bits().wrapping_add_signed(ulps));
+                    let found = collide(at(kappa)).unwrap();
+                    let off = (found.eps_t() - integrated.eps_t()).abs();
+                    assert!(off < 2e-11, "{kappa:?} {psi:?} {damping:?}: {off:e}");
+                }
+            }
+        }
+    }
+}

@@ -376,36 +376,4 @@ fn monomial(points: &[f64], mut values: Vec<DoubleDouble>) -> Vec<f64> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Between the points the table has the digits of a trajectory of its own.
-    #[test]
-    fn the_table_is_as_good_as_a_trajectory() {
-        let mut worst = [0.0_f64; 2];
-        for interval in 0..INTERVALS {
-            let (low, high) = bounds(interval);
-            for part in [0.003, 0.11, 0.37, 0.64, 0.83, 0.995] {
-                // With 20 binary digits the damping is known without rounding.
-                let root = ((low + (high - low) * part) * 8192.0).round() / 8192.0;
-                let table = Nodes::of(root);
-                let found = table.at(root);
-                let expected = Solved::new(root, table.grids[0]).rows(table.grids, table.counts);
-                for (index, (found, expected)) in found.iter().zip(&expected).enumerate() {
-                    for lane in 0..4 {
-                        let off = (found[lane] - expected[lane].nearest()).abs();
-                        // The first row, U and time are relative to their scale, Q and the changes
-                        // of V to themselves.
-                        let relative = index > 0 && (lane == 1 || lane == 2);
-                        let scale = if relative { expected[lane].nearest().abs() } else { 1.0 };
-                        let worst = &mut worst[usize::from(relative)];
-                        if off > 0.0 && scale > 0.0 {
-                            *worst = worst.max(off / scale);
-                        }
-                    }
-                }
-            }
-        }
-        assert!(worst[0] < 4e-15 && worst[1] < 1e-14, "{worst:?}");
-    }
-}
+mod tests;

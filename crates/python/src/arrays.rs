@@ -1,0 +1,252 @@
+//! Collisions of arrays of parameters.
+
+use std::collections::HashMap;
+
+use numpy::{IntoPyArray, PyReadonlyArray1};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+use stickslip_model::{Collision, Contact, Engine, Regime};
+
+use crate::engines::Choice;
+use crate::failure::Failure;
+use crate::parallel::Threads;
+
+/// Parameters of collisions: κ, ψ and damping, each with one value for all or for each.
+pub struct Points {
+    columns: [Vec<f64>; 3],
+    count: usize,
+}
+
+/// Three arrays of numbers. Python's are copied, because other threads may write to them.
+#[derive(FromPyObject)]
+pub struct Parameters<'py>(
+    PyReadonlyArray1<'py, f64>,
+    PyReadonlyArray1<'py, f64>,
+    PyReadonlyArray1<'py, f64>,
+);
+
+impl Points {
+    pub fn new(parameters: &Parameters<'_>) -> Self {
+        let Parameters(kappa, psi, damping) = parameters;
+        let columns = [kappa, psi, damping].map(|column| column.as_array().to_vec());
+        let count = columns.iter().map(Vec::len).find(|&length| length != 1).unwrap_or(1);
+        Self { columns, count }
+    }
+
+    fn parameters(&self, index: usize) -> [f64; 3] {
+        let value = |column: &Vec<f64>| if column.len() == 1 { column[0] } else { column[index] };
+        [0, 1, 2].map(|column| value(&self.columns[column]))
+    }
+
+    fn collide(&self, engine: Engine, index: usize) -> Result<Collision, Failure> {
+        let [kappa, psi, damping] = self.parameters(index);
+        let contact = Contact::new(kappa, psi, damping)?;
+        Ok(engine.collide(contact)?.0)
+    }
+
+    /// The place of a case, for messages.
+    fn place(&self, index: usize) -> String {
+        let [kappa, psi, damping] = self.parameters(index);
+        let number = if self.count == 1 { String::new() } else { format!("[{index}] ") };
+        format!("{number}kappa = {kappa:?}, psi = {psi:?}, damping = {damping:?}: ")
+    }
+}
+
+/// Cases without a result: their numbers and the reasons.
+type Failures = Vec<(usize, Failure)>;
+
+/// The first of the failures as an exception, if `strict`.
+fn refuse(points: &Points, strict: bool, failures: &Failures) -> PyResult<()> {
+    match failures.first() {
+        Some((index, failure)) if strict => Err(failure.exception(&points.place(*index))),
+        _ => Ok(()),
+    }
+}
+
+/// ε_t and the number of switches of each collision; NaN and −1 where there is none, and the numbers
+/// and reasons of those.
+#[pyfunction]
+pub fn eps_t<'py>(
+    py: Python<'py>,
+    parameters: Parameters<'py>,
+    engine: Choice,
+    strict: bool,
+    threads: usize,
+) -> PyResult<Bound<'py, PyTuple>> {
+    let (points, engine) = (Points::new(&parameters), engine.engine()?);
+    let (mut eps_t, mut counts) = (Vec::new(), Vec::new());
+    eps_t.reserve_exact(points.count);
+    counts.reserve_exact(points.count);
+    let mut failures = Vec::new();
+    let work = |part: std::ops::Range<usize>| {
+        let mut failed = Failures::new();
+        let results: Vec<(f64, i32)> = part
+            .map(|index| match points.collide(engine, index) {
+                Ok(found) => {
+                    (found.eps_t(), i32::try_from(found.switches.len()).unwrap_or(i32::MAX))
+                }
+                Err(failure) => {
+                    failed.push((index, failure));
+                    (f64::NAN, -1)
+                }
+            })
+            .collect();
+        (results, failed)
+    };
+    Threads::new(threads, points.count)?.each(py, points.count, work, |(results, failed)| {
+        refuse(&points, strict, &failed)?;
+        failures.extend(failed);
+        eps_t.extend(results.iter().map(|result| result.0));
+        counts.extend(results.iter().map(|result| result.1));
+        Ok(())
+    })?;
+    (eps_t.into_pyarray(py), counts.into_pyarray(py), messages(&failures)).into_pyobject(py)
+}
+
+fn messages(failures: &Failures) -> Vec<(usize, String)> {
+    failures.iter().map(|(index, failure)| (*index, failure.message())).collect()
+}
+
+/// Results of successive collisions, as columns.
+#[derive(Default)]
+struct Columns {
+    eps_t: Vec<f64>,
+    eps_n: Vec<f64>,
+    final_velocity: Vec<f64>,
+    contact_time: Vec<f64>,
+    reversals: Vec<i64>,
+    /// Numbers of itineraries, −1 where there is no collision.
+    itinerary: Vec<i32>,
+    itineraries: Vec<String>,
+    numbers: HashMap<String, i32>,
+    /// Numbers of switches.
+    counts: Vec<i64>,
+    times: Vec<f64>,
+    times_left: Vec<f64>,
+    stick: Vec<bool>,
+    sides: Vec<i8>,
+    springs: Vec<f64>,
+    velocities: Vec<f64>,
+    failures: Failures,
+}
+
+impl Columns {
+    fn of(points: &Points, engine: Engine, part: std::ops::Range<usize>) -> Self {
+        let mut columns = Self::default();
+        for index in part {
+            match points.collide(engine, index) {
+                Ok(collision) => columns.push(&collision),
+                Err(failure) => columns.push_failure(index, failure),
+            }
+        }
+        columns
+    }
+
+    fn push(&mut self, collision: &Collision) {
+        self.eps_t.push(collision.eps_t());
+        self.eps_n.push(collision.eps_n);
+        self.final_velocity.push(collision.final_velocity);
+        self.contact_time.push(collision.contact_time);
+        self.reversals.push(i64::try_from(collision.reversals).unwrap_or(i64::MAX));
+        let number = self.number(collision.itinerary());
+        self.itinerary.push(number);
+        self.counts.push(i64::try_from(collision.switches.len()).unwrap_or(i64::MAX));
+        for switch in &collision.switches {
+            self.times.push(switch.time);
+            self.times_left.push(switch.time_left);
+            self.stick.push(switch.to == Regime::Stick);
+            self.sides.push(if switch.side.sign() > 0.0 { 1 } else { -1 });
+            self.springs.push(switch.spring);
+            self.velocities.push(switch.velocity);
+        }
+    }
+
+    fn push_failure(&mut self, index: usize, failure: Failure) {
+        for column in
+            [&mut self.eps_t, &mut self.eps_n, &mut self.final_velocity, &mut self.contact_time]
+        {
+            column.push(f64::NAN);
+        }
+        self.reversals.push(-1);
+        self.itinerary.push(-1);
+        self.counts.push(0);
+        self.failures.push((index, failure));
+    }
+
+    /// The number of an itinerary.
+    fn number(&mut self, itinerary: String) -> i32 {
+        let next = i32::try_from(self.itineraries.len()).unwrap_or(i32::MAX);
+        *self.numbers.entry(itinerary).or_insert_with_key(|itinerary| {
+            self.itineraries.push(itinerary.clone());
+            next
+        })
+    }
+
+    /// Adds the results of the collisions that follow.
+    fn append(&mut self, part: Self) {
+        let numbers: Vec<i32> = part.itineraries.into_iter().map(|one| self.number(one)).collect();
+        let number = |index: &i32| usize::try_from(*index).map_or(-1, |index| numbers[index]);
+        self.itinerary.extend(part.itinerary.iter().map(number));
+        self.eps_t.extend(part.eps_t);
+        self.eps_n.extend(part.eps_n);
+        self.final_velocity.extend(part.final_velocity);
+        self.contact_time.extend(part.contact_time);
+        self.reversals.extend(part.reversals);
+        self.counts.extend(part.counts);
+        self.times.extend(part.times);
+        self.times_left.extend(part.times_left);
+        self.stick.extend(part.stick);
+        self.sides.extend(part.sides);
+        self.springs.extend(part.springs);
+        self.velocities.extend(part.velocities);
+        self.failures.extend(part.failures);
+    }
+
+    /// A dictionary of arrays.
+    fn into_dictionary(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+        let mut offset = 0;
+        let starts = self.counts.iter().map(|count| {
+            offset += count;
+            offset
+        });
+        let offsets: Vec<i64> = std::iter::once(0).chain(starts).collect();
+        let arrays = PyDict::new(py);
+        arrays.set_item("eps_t", self.eps_t.into_pyarray(py))?;
+        arrays.set_item("eps_n", self.eps_n.into_pyarray(py))?;
+        arrays.set_item("w_final", self.final_velocity.into_pyarray(py))?;
+        arrays.set_item("contact_time", self.contact_time.into_pyarray(py))?;
+        arrays.set_item("reversals", self.reversals.into_pyarray(py))?;
+        arrays.set_item("itinerary", self.itinerary.into_pyarray(py))?;
+        arrays.set_item("itineraries", self.itineraries)?;
+        arrays.set_item("offsets", offsets.into_pyarray(py))?;
+        arrays.set_item("time", self.times.into_pyarray(py))?;
+        arrays.set_item("time_left", self.times_left.into_pyarray(py))?;
+        arrays.set_item("stick", self.stick.into_pyarray(py))?;
+        arrays.set_item("side", self.sides.into_pyarray(py))?;
+        arrays.set_item("spring", self.springs.into_pyarray(py))?;
+        arrays.set_item("velocity", self.velocities.into_pyarray(py))?;
+        arrays.set_item("failures", messages(&self.failures))?;
+        Ok(arrays)
+    }
+}
+
+/// All results of each collision as a dictionary of arrays; switches lie one after another, those of
+/// collision i from `offsets[i]` up to `offsets[i + 1]`.
+#[pyfunction]
+pub fn collide_many<'py>(
+    py: Python<'py>,
+    parameters: Parameters<'py>,
+    engine: Choice,
+    strict: bool,
+    threads: usize,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (points, engine) = (Points::new(&parameters), engine.engine()?);
+    let mut columns = Columns::default();
+    let work = |part| Columns::of(&points, engine, part);
+    Threads::new(threads, points.count)?.each(py, points.count, work, |part| {
+        refuse(&points, strict, &part.failures)?;
+        columns.append(part);
+        Ok(())
+    })?;
+    columns.into_dictionary(py)
+}

@@ -1,0 +1,118 @@
+//! One collision.
+
+use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1};
+use pyo3::prelude::*;
+use stickslip_figure::pictures;
+use stickslip_model::{Collider, Contact, Derived, Engine, History, Snapshot};
+use stickslip_solver::Statistics;
+
+use crate::engines::{Choice, document};
+use crate::failure::{Failure, bad_input};
+
+/// A collision with what computed it.
+#[pyclass(frozen, module = "stickslip._native")]
+pub struct Collision {
+    result: stickslip_model::Collision,
+    engine: Engine,
+    statistics: Option<Statistics>,
+}
+
+#[pymethods]
+impl Collision {
+    #[new]
+    fn new(py: Python<'_>, kappa: f64, psi: f64, damping: f64, engine: Choice) -> PyResult<Self> {
+        let engine = engine.engine()?;
+        let contact = Contact::new(kappa, psi, damping).map_err(Failure::from)?;
+        let place = || format!("kappa = {kappa:?}, psi = {psi:?}, damping = {damping:?}: ");
+        let (result, statistics) = py
+            .detach(|| engine.collide(contact))
+            .map_err(|error| Failure::from(error).exception(&place()))?;
+        Ok(Self { result, engine, statistics })
+    }
+
+    /// The collision as the JSON that the program prints.
+    fn json(&self) -> PyResult<String> {
+        document("stickslip.collision/1", &self.result, &self.engine, self.statistics.as_ref())
+    }
+
+    /// The error of ε_t to expect, and the distance from other switches.
+    fn estimate(&self, py: Python<'_>) -> PyResult<(f64, f64, bool)> {
+        let found = py.detach(|| self.engine.estimate(&self.result)).map_err(Failure::from)?;
+        Ok((found.eps_t_error, found.distance, found.certain))
+    }
+
+    /// The course at `times`, a row for each; NaN outside the contact. Without times, a number of
+    /// moments of each phase.
+    fn history<'py>(
+        &self,
+        py: Python<'py>,
+        times: Option<PyReadonlyArray1<'py, f64>>,
+        moments: usize,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        if moments == 0 {
+            return Err(bad_input("moments = 0; expected at least 1"));
+        }
+        let times = times.map(|times| times.as_array().to_vec());
+        let history = py.detach(|| self.course()).map_err(Failure::from)?;
+        let rows: Vec<[f64; 7]> = match times {
+            Some(times) => {
+                let at = |time| history.at(time).map_or(outside(time), |moment| row(&moment));
+                times.into_iter().map(at).collect()
+            }
+            None => history
+                .phases()
+                .flat_map(|phase| phase.samples(moments).map(|one| row(&one)).collect::<Vec<_>>())
+                .collect(),
+        };
+        let count = rows.len();
+        let flat: Vec<f64> = rows.into_iter().flatten().collect();
+        flat.into_pyarray(py).reshape([count, 7])
+    }
+
+    /// Derivatives of ε_n, ε_t, w, the contact time and the times of switches: a row for each, with
+    /// its value and its derivatives with respect to κ, ψ and damping.
+    fn sensitivity(&self, py: Python<'_>) -> PyResult<Vec<[f64; 4]>> {
+        let contact = self.result.contact;
+        let found = py
+            .detach(|| Collider::default().sensitivity(contact))
+            .map_err(|error| Failure::Engine(error.into()))?;
+        let rows = [found.eps_n, found.eps_t, found.final_velocity, found.contact_time];
+        Ok(rows.iter().chain(&found.switch_times).map(derivatives).collect())
+    }
+
+    /// The picture as SVG.
+    fn picture(&self, py: Python<'_>) -> PyResult<String> {
+        let history = py.detach(|| self.course()).map_err(Failure::from)?;
+        Ok(pictures::collision::draw(&self.result, &history).document())
+    }
+}
+
+impl Collision {
+    fn course(&self) -> Result<History, stickslip_model::EngineError> {
+        self.engine.history(self.result.contact)
+    }
+}
+
+fn row(moment: &Snapshot) -> [f64; 7] {
+    let Snapshot {
+        time,
+        compression,
+        normal_velocity,
+        normal_force,
+        spring,
+        tangential_force,
+        velocity,
+    } = *moment;
+    [time, compression, normal_velocity, normal_force, spring, tangential_force, velocity]
+}
+
+/// A moment at which there is no contact.
+fn outside(time: f64) -> [f64; 7] {
+    let mut row = [f64::NAN; 7];
+    row[0] = time;
+    row
+}
+
+fn derivatives(quantity: &Derived) -> [f64; 4] {
+    [quantity.value, quantity.kappa, quantity.psi, quantity.damping]
+}

@@ -1,0 +1,90 @@
+//! Errors of the libraries as Python's exceptions.
+
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::{PyErr, create_exception};
+use stickslip_model::exact::ExactError;
+use stickslip_model::{CollisionError, EngineError, InvalidParameter};
+use stickslip_plane::atlas::AtlasError;
+
+create_exception!(
+    _native,
+    ComputationError,
+    PyRuntimeError,
+    "A collision, an atlas or a study has no result, though its parameters are in range."
+);
+
+/// The exception for bad input.
+pub fn bad_input(error: impl ToString) -> PyErr {
+    PyValueError::new_err(error.to_string())
+}
+
+/// The exception for a computation that failed.
+pub fn failed(error: impl ToString) -> PyErr {
+    ComputationError::new_err(error.to_string())
+}
+
+/// The reason why a contact has no result.
+#[derive(Clone, Copy)]
+pub enum Failure {
+    /// No collision has these parameters.
+    Parameter(InvalidParameter),
+    /// The engine has no result.
+    Engine(EngineError),
+}
+
+impl Failure {
+    /// Whether a parameter is out of range, and nothing was computed.
+    fn is_bad_input(&self) -> bool {
+        matches!(
+            self,
+            Self::Parameter(_)
+                | Self::Engine(
+                    EngineError::Collision(CollisionError::Domain(_))
+                        | EngineError::Exact(ExactError::Domain(_))
+                )
+        )
+    }
+
+    /// The reason in words.
+    pub fn message(&self) -> String {
+        match self {
+            Self::Parameter(error) => error.to_string(),
+            Self::Engine(error) => error.to_string(),
+        }
+    }
+
+    /// The exception, whose message begins with the `place`.
+    pub fn exception(&self, place: &str) -> PyErr {
+        let message = format!("{place}{}", self.message());
+        if self.is_bad_input() { bad_input(message) } else { failed(message) }
+    }
+}
+
+impl From<InvalidParameter> for Failure {
+    fn from(error: InvalidParameter) -> Self {
+        Self::Parameter(error)
+    }
+}
+
+impl From<EngineError> for Failure {
+    fn from(error: EngineError) -> Self {
+        Self::Engine(error)
+    }
+}
+
+impl From<Failure> for PyErr {
+    fn from(failure: Failure) -> Self {
+        failure.exception("")
+    }
+}
+
+/// The exception for a window without atlas.
+pub fn of_atlas(error: &AtlasError) -> PyErr {
+    match error {
+        AtlasError::Parameter(_)
+        | AtlasError::Narrow(_)
+        | AtlasError::Unverifiable(_)
+        | AtlasError::Tolerance { .. } => bad_input(error),
+        _ => failed(error),
+    }
+}

@@ -1,0 +1,172 @@
+//! Systems of one's own: modes, guards and transitions as functions of Python or of C.
+//!
+//! In reading order: `arguments` (what Python passes), `system` (what the solver sees), `function`
+//! (a call) and `numbers` (what comes back), `record` (what a run finds), `segments` (dense output
+//! that is kept), `ending` (how a run ended).
+
+mod arguments;
+mod ending;
+mod function;
+mod numbers;
+mod record;
+mod segments;
+mod system;
+
+use std::cell::Cell;
+
+use pyo3::exceptions::PyRecursionError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+use stickslip_solver::{
+    Dop853, Dopri5, DynamicObserver, DynamicRun, DynamicStart, Options, Outcome, Pair, RunError,
+    Statistics, run_dynamic_backwards, run_dynamic_with,
+};
+
+use crate::failure::bad_input;
+use arguments::{ModeArguments, Output, Settings, Start};
+use ending::Ending;
+use record::Record;
+pub use segments::evaluate_dense;
+use system::System;
+
+/// Runs inside each other, at most: their stack is that of the thread, which may be small.
+const DEEPEST: usize = 16;
+
+thread_local! {
+    /// Runs that are under way inside each other.
+    static DEPTH: Cell<usize> = const { Cell::new(0) };
+}
+
+/// Counts a run that is under way, as long as it lives.
+struct Level;
+
+impl Level {
+    fn enter() -> PyResult<Self> {
+        let depth = DEPTH.get();
+        if depth >= DEEPEST {
+            return Err(PyRecursionError::new_err(format!("{DEEPEST} runs inside each other")));
+        }
+        DEPTH.set(depth + 1);
+        Ok(Self)
+    }
+}
+
+impl Drop for Level {
+    fn drop(&mut self) {
+        DEPTH.set(DEPTH.get() - 1);
+    }
+}
+
+/// Runs the system of `modes` from `start` to `end`. Returns what the run found, as columns.
+///
+/// The interpreter's lock is released if all functions are compiled.
+#[pyfunction]
+pub fn run_hybrid<'py>(
+    py: Python<'py>,
+    modes: Vec<ModeArguments>,
+    args: Bound<'py, PyTuple>,
+    start: Start<'py>,
+    end: f64,
+    settings: Settings,
+    output: Output<'py>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let _level = Level::enter()?;
+    let (pair, options) = settings.checked()?;
+    let system = System::new(modes, &args)?;
+    let (times, dense) = output.owned();
+    let job = Job { system, pair, options, start: start.owned(), end };
+    // Dense output costs three evaluations a step, so it is made only if anybody reads it.
+    if dense || times.as_ref().is_none_or(|times| !times.is_empty()) {
+        let record = Record::<true>::new(&job, times, dense);
+        finish(py, job, record)
+    } else {
+        let record = Record::<false>::new(&job, times, dense);
+        finish(py, job, record)
+    }
+}
+
+/// A run that is to be done.
+struct Job {
+    system: System,
+    pair: Pair,
+    options: Options,
+    /// The mode, the time and the state at the start.
+    start: (usize, f64, Vec<f64>),
+    end: f64,
+}
+
+impl Job {
+    fn forwards(&self) -> bool {
+        self.end > self.start.1
+    }
+
+    /// Whether the run ends where it starts.
+    fn is_empty(&self) -> bool {
+        !self.forwards() && self.end >= self.start.1
+    }
+
+    /// Runs the system. If a guard starts from a zero whose order is not known, the orders are
+    /// tried.
+    fn run<const SEGMENTS: bool>(
+        &mut self,
+        record: &mut Record<SEGMENTS>,
+    ) -> Result<DynamicRun<usize>, RunError> {
+        let (mode, s, ref state) = self.start;
+        self.system.find_zeros(mode, s, state);
+        loop {
+            let run = self.run_once(record);
+            match run {
+                Err(RunError::GuardUnresolved { guard, .. })
+                    if record.is_empty() && self.system.raise_zero(mode, guard) => {}
+                run => return run,
+            }
+        }
+    }
+
+    fn run_once<const SEGMENTS: bool>(
+        &self,
+        record: &mut Record<SEGMENTS>,
+    ) -> Result<DynamicRun<usize>, RunError> {
+        let (mode, s, ref state) = self.start;
+        let start = DynamicStart { mode, s, state };
+        let (system, options, end) = (&self.system, &self.options, self.end);
+        if self.is_empty() {
+            record.on_end(mode, s, state);
+            let (outcome, statistics) = (Outcome::ReachedEnd, Statistics::default());
+            return Ok(DynamicRun { outcome, s, mode, state: state.clone(), statistics });
+        }
+        if self.forwards() {
+            return run_dynamic_with(self.pair, system, start, end, options, record);
+        }
+        match self.pair {
+            Pair::Dopri5 => run_dynamic_backwards(Dopri5, system, start, end, options, record),
+            Pair::Dop853 => run_dynamic_backwards(Dop853, system, start, end, options, record),
+        }
+    }
+}
+
+/// Does the job, and turns what was recorded into columns.
+fn finish<const SEGMENTS: bool>(
+    py: Python<'_>,
+    mut job: Job,
+    mut record: Record<SEGMENTS>,
+) -> PyResult<Bound<'_, PyDict>> {
+    let compiled = job.system.is_compiled();
+    let work = move || {
+        let run = job.run(&mut record);
+        (job, record, run)
+    };
+    let (job, mut record, run) = if compiled { py.detach(work) } else { work() };
+    if let Some(error) = job.system.take_failure() {
+        return Err(error);
+    }
+    let ending = Ending::new(&job.system, &run);
+    if run.is_err() && record.is_empty() {
+        return Err(bad_input(ending.message));
+    }
+    record.close();
+    let columns = record.columns(py)?;
+    ending.describe(&columns, &run)?;
+    columns.set_item("nfev", job.system.calls())?;
+    Ok(columns)
+}

@@ -1,0 +1,123 @@
+//! What Python passes.
+
+use numpy::PyReadonlyArray1;
+use pyo3::prelude::*;
+use stickslip_solver::{Direction, Guard, InvalidOption, Options, Pair, UnknownPair};
+
+use crate::failure::bad_input;
+
+/// What is called: a function of C (its address and that of its parameters, and the object that
+/// keeps both alive), or any callable.
+#[derive(FromPyObject)]
+pub enum Callee {
+    Compiled(usize, usize, Py<PyAny>),
+    Python(Py<PyAny>),
+}
+
+/// A function, with what messages call it.
+#[derive(FromPyObject)]
+pub struct FunctionArguments(pub String, pub Callee);
+
+/// What follows when a guard fires: a mode, if it is known before; the function that returns the
+/// state after, or the mode and the state; and which of both.
+#[derive(FromPyObject)]
+pub struct ChangeArguments(pub Option<usize>, pub Option<FunctionArguments>, pub bool);
+
+/// A guard: what messages call it, direction, order of the zero from which it starts (`None` if that
+/// is to be found out), count after which it ends the run, whether it yields, whether it is smooth,
+/// and what follows.
+#[derive(FromPyObject)]
+pub struct GuardArguments(
+    pub String,
+    String,
+    pub Option<u32>,
+    u32,
+    bool,
+    bool,
+    pub ChangeArguments,
+);
+
+/// A function that returns the values of successive guards, the first of them, and their number.
+#[derive(FromPyObject)]
+pub struct SourceArguments(pub FunctionArguments, pub usize, pub usize);
+
+/// A mode: right-hand side, guards, and where their values come from.
+#[derive(FromPyObject)]
+pub struct ModeArguments(pub FunctionArguments, pub Vec<GuardArguments>, pub Vec<SourceArguments>);
+
+impl GuardArguments {
+    /// The guard that the solver knows.
+    pub fn guard(&self) -> PyResult<Guard> {
+        let Self(_, direction, zero_order, terminal, yields, smooth, _) = self;
+        let direction = match direction.as_str() {
+            "below" => Direction::Below,
+            "falling" => Direction::Falling,
+            "rising" => Direction::Rising,
+            "either" => Direction::Either,
+            "off" => Direction::Off,
+            other => return Err(bad_input(format!("direction = {other:?}"))),
+        };
+        let guard =
+            Guard::new(direction).from_zero(zero_order.unwrap_or(0)).terminal_after(*terminal);
+        let guard = if *yields { guard.yielding() } else { guard };
+        Ok(if *smooth { guard.smooth() } else { guard })
+    }
+}
+
+/// The mode, the time and the state at the start.
+#[derive(FromPyObject)]
+pub struct Start<'py>(usize, f64, PyReadonlyArray1<'py, f64>);
+
+impl Start<'_> {
+    pub fn owned(&self) -> (usize, f64, Vec<f64>) {
+        (self.0, self.1, self.2.as_array().to_vec())
+    }
+}
+
+/// Times at which the state is wanted, or `None` for all steps, and whether dense output is kept.
+#[derive(FromPyObject)]
+pub struct Output<'py>(Option<PyReadonlyArray1<'py, f64>>, bool);
+
+impl Output<'_> {
+    pub fn owned(&self) -> (Option<Vec<f64>>, bool) {
+        (self.0.as_ref().map(|times| times.as_array().to_vec()), self.1)
+    }
+}
+
+/// The method and the options of a run.
+#[derive(FromPyObject)]
+pub struct Settings {
+    #[pyo3(item)]
+    method: String,
+    #[pyo3(item)]
+    rtol: f64,
+    #[pyo3(item)]
+    atol: f64,
+    #[pyo3(item)]
+    max_step: f64,
+    #[pyo3(item)]
+    first_step: Option<f64>,
+    #[pyo3(item)]
+    max_switches: usize,
+    #[pyo3(item)]
+    guard_scale: Option<f64>,
+}
+
+impl Settings {
+    pub fn checked(&self) -> PyResult<(Pair, Options)> {
+        let pair = self.method.parse().map_err(|error: UnknownPair| bad_input(error))?;
+        let options = Options {
+            rtol: self.rtol,
+            atol: self.atol,
+            max_step: self.max_step,
+            first_step: self.first_step,
+            max_switches: self.max_switches,
+            guard_scale: self.guard_scale,
+            ..Options::default()
+        };
+        options.validate().map_err(|InvalidOption { name, value, expected }| {
+            bad_input(format!("{name} = {value:?} is out of range; expected {expected}"))
+        })?;
+        Ok((pair, options))
+    }
+}

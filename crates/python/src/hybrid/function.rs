@@ -1,0 +1,152 @@
+//! One call of a function of Python or of C.
+
+use std::cell::RefCell;
+
+use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::{PyFloat, PyTuple};
+
+use crate::failure::bad_input;
+use crate::hybrid::arguments::{Callee, FunctionArguments};
+
+/// A function of time and state, with what messages call it.
+pub struct Function {
+    pub label: String,
+    pub code: Code,
+}
+
+/// What runs when a function is called.
+pub enum Code {
+    Compiled(Compiled),
+    Python(Py<PyAny>),
+}
+
+impl Function {
+    pub fn new(FunctionArguments(label, callee): FunctionArguments) -> PyResult<Self> {
+        let code = match callee {
+            Callee::Compiled(0, ..) => return Err(bad_input(format!("{label}: its address is 0"))),
+            Callee::Compiled(address, parameters, keeper) => {
+                Code::Compiled(Compiled { address, parameters, _keeper: keeper })
+            }
+            Callee::Python(callable) => Code::Python(callable),
+        };
+        Ok(Self { label, code })
+    }
+
+    pub fn is_compiled(&self) -> bool {
+        matches!(self.code, Code::Compiled(_))
+    }
+}
+
+/// A function `void f(double t, const double *y, double *out, const double *parameters)` of C.
+pub struct Compiled {
+    /// Where its code is; not 0.
+    address: usize,
+    /// Where its parameters are, or 0.
+    parameters: usize,
+    /// What keeps both alive.
+    _keeper: Py<PyAny>,
+}
+
+type Signature = unsafe extern "C" fn(f64, *const f64, *mut f64, *const f64);
+
+impl Compiled {
+    /// Calls the function.
+    #[expect(unsafe_code, reason = "code that Python names by its address can only be trusted")]
+    pub fn call(&self, t: f64, y: &[f64], out: &mut [f64]) {
+        // SAFETY: whoever made a `stickslip.Compiled` asserts what cannot be checked: at this
+        // address is a function with this signature, it reads only the state, of the system's
+        // dimension, and the parameters that are passed with it, writes only as many values as are
+        // documented, and may be called by any thread. The documentation of `Compiled` says so. The
+        // address is not 0, an integer of a pointer's size may be taken for a pointer to a
+        // function, `_keeper` keeps code and parameters alive, and both slices live during the call
+        // and do not overlap.
+        unsafe {
+            let function = std::mem::transmute::<usize, Signature>(self.address);
+            let parameters = std::ptr::with_exposed_provenance(self.parameters);
+            function(t, y.as_ptr(), out.as_mut_ptr(), parameters);
+        }
+    }
+}
+
+/// Calls callables of Python with a time and a state.
+pub struct Caller {
+    /// What follows time and state.
+    args: Vec<Py<PyAny>>,
+    /// The array of the last call, if nobody else has kept it.
+    spare: RefCell<Option<Py<PyArray1<f64>>>>,
+}
+
+impl Caller {
+    pub fn new(args: &Bound<'_, PyTuple>) -> Self {
+        Self { args: args.iter().map(Bound::unbind).collect(), spare: RefCell::new(None) }
+    }
+
+    /// Calls `callable`, and gives what it returns to `read`.
+    ///
+    /// The state is an array that belongs to the callable: it may keep and change it.
+    pub fn call<T, E: From<PyErr>>(
+        &self,
+        callable: &Bound<'_, PyAny>,
+        t: f64,
+        y: &[f64],
+        read: impl FnOnce(&Bound<'_, PyAny>) -> Result<T, E>,
+    ) -> Result<T, E> {
+        let py = callable.py();
+        let array = self.array(py, y);
+        let data = array.data();
+        let result = if self.args.is_empty() {
+            callable.call1((t, &array))?
+        } else {
+            let first = [PyFloat::new(py, t).into_any(), array.clone().into_any()];
+            let rest = self.args.iter().map(|one| one.bind(py).clone());
+            let all: Vec<_> = first.into_iter().chain(rest).collect();
+            callable.call1(PyTuple::new(py, all)?)?
+        };
+        let found = read(&result);
+        drop(result);
+        // Whoever keeps the array, or a view of it, holds another reference. The array itself may
+        // have been given other memory.
+        if has_one_owner(&array) && array.data() == data {
+            *self.spare.borrow_mut() = Some(array.unbind());
+        }
+        found
+    }
+
+    /// An array of its own with the values of `y`.
+    fn array<'py>(&self, py: Python<'py>, y: &[f64]) -> Bound<'py, PyArray1<f64>> {
+        let spare = self.spare.borrow_mut().take().map(|array| array.into_bound(py));
+        match spare {
+            Some(array) if fill(&array, y) => array,
+            _ => PyArray1::from_slice(py, y),
+        }
+    }
+}
+
+/// Whether there is no other reference to the array.
+#[expect(unsafe_code, reason = "PyO3 counts references in no safe function")]
+fn has_one_owner(array: &Bound<'_, PyArray1<f64>>) -> bool {
+    // SAFETY: the pointer is that of an object which `array` keeps alive, and this thread is
+    // attached to the interpreter.
+    unsafe { pyo3::ffi::Py_REFCNT(array.as_ptr()) == 1 }
+}
+
+/// Writes `y` to an array to which nobody else has a reference. Returns whether it fits: whoever had
+/// the array may have changed its shape.
+#[expect(unsafe_code, reason = "the checks of a borrow would cost more than the copy")]
+fn fill(array: &Bound<'_, PyArray1<f64>>, y: &[f64]) -> bool {
+    // A callable may have changed the type of the elements.
+    if array.as_any().cast::<PyArray1<f64>>().is_err() || array.len() != y.len() {
+        return false;
+    }
+    // SAFETY: the only reference to the array is this one, so that no slice of it exists, and this
+    // thread runs no other code during the copy. The elements are doubles, which was just checked;
+    // `as_slice_mut` checks that they follow each other.
+    match unsafe { array.as_slice_mut() } {
+        Ok(slice) if slice.len() == y.len() => {
+            slice.copy_from_slice(y);
+            true
+        }
+        _ => false,
+    }
+}

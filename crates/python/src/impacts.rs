@@ -1,0 +1,164 @@
+//! Pairs of bodies in SI units, and their impacts.
+
+use numpy::{IntoPyArray, PyReadonlyArray1};
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+use stickslip_model::{
+    Body, Elasticity, Encounter, ImpactReport, InvalidParameter, Motion, Sphere, Surface, Vector3,
+    Wall, WallMotion, quantity,
+};
+
+use crate::engines::{Choice, document};
+use crate::failure::{Failure, bad_input, failed};
+
+/// Radius in m, mass in kg, moment of inertia in kg m² or that of a homogeneous sphere, Young's
+/// modulus in Pa, Poisson's ratio.
+#[derive(FromPyObject)]
+struct SphereArguments(f64, f64, Option<f64>, f64, f64);
+
+/// Friction, tangential stiffness in kg/s², damping time in s.
+#[derive(FromPyObject)]
+struct SurfaceArguments(f64, f64, f64);
+
+/// What the first sphere hits, if it is not a rigid wall.
+#[derive(FromPyObject)]
+enum OtherArguments {
+    Sphere(SphereArguments),
+    /// Young's modulus and Poisson's ratio.
+    Wall(f64, f64),
+}
+
+/// Three vectors: of a sphere position, velocity and spin; of a wall a point, its normal and its
+/// velocity.
+#[derive(FromPyObject)]
+struct MotionArguments([f64; 3], [f64; 3], [f64; 3]);
+
+/// The mass in kg of a homogeneous sphere.
+#[pyfunction]
+pub fn homogeneous_mass(radius_m: f64, density_kg_per_m3: f64) -> PyResult<f64> {
+    let radius_m = quantity::RADIUS.check(radius_m).map_err(bad_input)?;
+    let density_kg_per_m3 = quantity::DENSITY.check(density_kg_per_m3).map_err(bad_input)?;
+    Ok(Sphere::homogeneous_mass(radius_m, density_kg_per_m3))
+}
+
+/// Two bodies that collide.
+#[pyclass(frozen, module = "stickslip._native")]
+pub struct Pair {
+    sphere: Sphere,
+    other: Body,
+    surface: Surface,
+    reduced: stickslip_model::Pair,
+}
+
+#[pymethods]
+impl Pair {
+    #[new]
+    fn new(
+        sphere: SphereArguments,
+        other: Option<OtherArguments>,
+        surface: SurfaceArguments,
+    ) -> PyResult<Self> {
+        let sphere = sphere.checked().map_err(bad_input)?;
+        let other = match other {
+            Some(OtherArguments::Sphere(other)) => {
+                Body::Sphere(other.checked().map_err(bad_input)?)
+            }
+            Some(OtherArguments::Wall(young_modulus_pa, poisson_ratio)) => {
+                let elasticity = Elasticity { young_modulus_pa, poisson_ratio };
+                Body::Wall(Wall { elasticity: Some(elasticity) })
+            }
+            None => Body::Wall(Wall { elasticity: None }),
+        };
+        let SurfaceArguments(friction, tangential_stiffness_kg_per_s2, damping_time_s) = surface;
+        let surface = Surface { friction, tangential_stiffness_kg_per_s2, damping_time_s };
+        let reduced = stickslip_model::Pair::new(&sphere, &other, &surface).map_err(bad_input)?;
+        Ok(Self { sphere, other, surface, reduced })
+    }
+
+    /// α and μ.
+    #[getter]
+    fn reduction(&self) -> (f64, f64) {
+        (self.reduced.alpha, self.surface.friction)
+    }
+
+    /// κ, ψ, damping and the unit of time in s for each pair of velocities in m/s.
+    fn contacts<'py>(
+        &self,
+        py: Python<'py>,
+        normal: PyReadonlyArray1<'py, f64>,
+        tangential: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Bound<'py, PyTuple>> {
+        let [mut kappa, mut psi, mut damping, mut unit] = [const { Vec::new() }; 4];
+        let velocities = normal.as_array().into_iter().zip(tangential.as_array());
+        for (index, (&normal, &tangential)) in velocities.enumerate() {
+            let impact = self
+                .reduced
+                .impact(normal, tangential)
+                .map_err(|error| Failure::from(error).exception(&format!("[{index}] ")))?;
+            kappa.push(impact.contact.kappa());
+            psi.push(impact.contact.psi());
+            damping.push(impact.contact.damping());
+            unit.push(impact.time_unit_s);
+        }
+        PyTuple::new(py, [kappa, psi, damping, unit].map(|column| column.into_pyarray(py)))
+    }
+
+    /// The impact of the two bodies with these motions, as the JSON that the program prints.
+    fn encounter(
+        &self,
+        py: Python<'_>,
+        motion: MotionArguments,
+        other: MotionArguments,
+        engine: Choice,
+    ) -> PyResult<String> {
+        let engine = engine.engine()?;
+        let first = (&self.sphere, &motion.of_sphere());
+        let encounter = match &self.other {
+            Body::Sphere(sphere) => {
+                Encounter::of_spheres(first, (sphere, &other.of_sphere()), &self.surface)
+            }
+            Body::Wall(wall) => {
+                Encounter::with_wall(first, (wall, &other.of_wall()), &self.surface)
+            }
+        };
+        let encounter = encounter.map_err(bad_input)?;
+        let (collision, statistics) =
+            py.detach(|| engine.collide(encounter.contact())).map_err(Failure::from)?;
+        let report = ImpactReport::new(&encounter, collision);
+        report.require_finite().map_err(failed)?;
+        document("stickslip.impact/1", &report, &engine, statistics.as_ref())
+    }
+}
+
+impl SphereArguments {
+    fn checked(&self) -> Result<Sphere, InvalidParameter> {
+        let Self(radius_m, mass_kg, moment, young_modulus_pa, poisson_ratio) = *self;
+        let radius_m = quantity::RADIUS.check(radius_m)?;
+        let mass_kg = quantity::MASS.check(mass_kg)?;
+        let sphere = Sphere {
+            radius_m,
+            mass_kg,
+            moment_of_inertia_kg_m2: moment
+                .unwrap_or_else(|| Sphere::homogeneous_moment(radius_m, mass_kg)),
+            elasticity: Elasticity { young_modulus_pa, poisson_ratio },
+        };
+        sphere.validate()?;
+        Ok(sphere)
+    }
+}
+
+impl MotionArguments {
+    fn of_sphere(&self) -> Motion {
+        let [position_m, velocity_m_per_s, spin_rad_per_s] = self.vectors();
+        Motion { position_m, velocity_m_per_s, spin_rad_per_s }
+    }
+
+    fn of_wall(&self) -> WallMotion {
+        let [point_m, normal, velocity_m_per_s] = self.vectors();
+        WallMotion { point_m, normal, velocity_m_per_s }
+    }
+
+    fn vectors(&self) -> [Vector3<f64>; 3] {
+        [self.0, self.1, self.2].map(Vector3::from)
+    }
+}

@@ -1,0 +1,39 @@
+//! What the Python package `stickslip` computes with.
+//!
+//! Nothing is decided here: arguments become settings of the libraries, and their results become
+//! arrays, or the JSON that the program prints. Names, shapes and units are documented in the Python
+//! functions that call these, in `python/stickslip`.
+//!
+//! Start reading in `arrays`; then `collision`, `impacts`, `planes`, `studies` (results), `engines`,
+//! `parallel` and `failure` (what they share).
+
+mod arrays;
+mod collision;
+mod engines;
+mod failure;
+mod hybrid;
+mod impacts;
+mod parallel;
+mod planes;
+mod studies;
+
+/// The module that Python loads. It has no state of its own, and needs no lock of the interpreter.
+#[pyo3::pymodule(gil_used = false)]
+mod _native {
+    #[pymodule_export]
+    use super::arrays::{collide_many, eps_t};
+    #[pymodule_export]
+    use super::collision::Collision;
+    #[pymodule_export]
+    use super::engines::{has_fused_products, processor_has_fused_products, version};
+    #[pymodule_export]
+    use super::failure::ComputationError;
+    #[pymodule_export]
+    use super::hybrid::{evaluate_dense, run_hybrid};
+    #[pymodule_export]
+    use super::impacts::{Pair, homogeneous_mass};
+    #[pymodule_export]
+    use super::planes::Atlas;
+    #[pymodule_export]
+    use super::studies::{asymptote, converge, reproduce, reproduction_parts};
+}

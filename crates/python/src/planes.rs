@@ -1,0 +1,123 @@
+//! Atlases of the (κ, ψ) plane.
+
+use numpy::{IntoPyArray, PyReadonlyArray1};
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+use stickslip_model::{Contact, InvalidParameter, Reduction};
+use stickslip_plane::Range;
+use stickslip_plane::atlas::{self, Document, Frame, RatioRange, SCHEMA, Unlocated};
+use stickslip_plane::progress::SILENT;
+
+use crate::failure::{bad_input, failed, of_atlas};
+use crate::parallel::Threads;
+
+/// The boundaries and regions of a window, with their document.
+#[pyclass(frozen, module = "stickslip._native")]
+pub struct Atlas {
+    atlas: atlas::Atlas,
+    document: Document,
+}
+
+#[pymethods]
+impl Atlas {
+    /// Traces the boundaries between two κ and two ψ; `ratio` is an interval of g_t/g_n with μ and α
+    /// that `psi` was computed from.
+    #[staticmethod]
+    fn trace(
+        py: Python<'_>,
+        kappa: (f64, f64),
+        psi: (f64, f64),
+        ratio: Option<((f64, f64), f64, f64)>,
+        damping: f64,
+        tolerance: Option<f64>,
+        threads: usize,
+    ) -> PyResult<Self> {
+        let range = |(low, high): (f64, f64)| Range { low, high };
+        let ratio = ratio.map(|(ratio, mu, alpha)| RatioRange {
+            range: range(ratio),
+            reduction: Reduction { mu, alpha },
+        });
+        let frame = Frame { kappa: range(kappa), psi: range(psi), ratio, damping };
+        let tolerance = tolerance.unwrap_or_else(|| frame.tolerances().usual);
+        let pool = Threads::pool(threads)?;
+        let verified = py
+            .detach(|| pool.install(|| atlas::trace(frame, tolerance, SILENT)))
+            .map_err(|error| of_atlas(&error))?;
+        let document = Document::new(&verified);
+        Ok(Self { atlas: verified.atlas, document })
+    }
+
+    /// The atlas in the text of a file that `trace` has written.
+    #[staticmethod]
+    fn read(py: Python<'_>, text: &str) -> PyResult<Self> {
+        py.detach(|| {
+            let value: serde_json::Value = serde_json::from_str(text).map_err(|e| e.to_string())?;
+            if value["schema"] != SCHEMA {
+                let schema = &value["schema"];
+                return Err(format!("schema is {schema}; expected {SCHEMA:?}"));
+            }
+            let document: Document = serde_json::from_str(text).map_err(|e| e.to_string())?;
+            let atlas = document.clone().try_into();
+            let atlas = atlas.map_err(|e: atlas::DocumentError| e.to_string())?;
+            Ok(Self { atlas, document })
+        })
+        .map_err(bad_input)
+    }
+
+    /// The document of the atlas as JSON.
+    fn json(&self) -> PyResult<String> {
+        serde_json::to_string(&self.document).map_err(failed)
+    }
+
+    /// The atlas as GeoJSON.
+    fn geojson(&self) -> PyResult<String> {
+        let collection = atlas::document_geojson(&self.atlas, &self.document);
+        serde_json::to_string(&collection).map_err(failed)
+    }
+
+    /// What speaks against the atlas.
+    #[getter]
+    fn objection(&self) -> Option<String> {
+        self.document.verification.objection()
+    }
+
+    /// The picture as SVG.
+    fn picture(&self, py: Python<'_>) -> String {
+        py.detach(|| stickslip_figure::pictures::atlas::draw(&self.atlas).document())
+    }
+
+    /// The region and the distance from the nearest boundary in ψ of each point: −1 on a boundary
+    /// within its error, −2 outside the window; NaN where no boundary has the same κ.
+    fn locate<'py>(
+        &self,
+        py: Python<'py>,
+        kappa: PyReadonlyArray1<'py, f64>,
+        psi: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Bound<'py, PyTuple>> {
+        let (kappa, psi) = (kappa.as_array().to_vec(), psi.as_array().to_vec());
+        let (mut regions, mut distances) = (Vec::new(), Vec::new());
+        let work = |part: std::ops::Range<usize>| {
+            part.map(|index| self.place(kappa[index], psi[index])).collect::<Result<Vec<_>, _>>()
+        };
+        Threads::new(1, kappa.len())?.each(py, kappa.len(), work, |part| {
+            for (region, distance) in part.map_err(bad_input)? {
+                regions.push(region);
+                distances.push(distance);
+            }
+            Ok(())
+        })?;
+        (regions.into_pyarray(py), distances.into_pyarray(py)).into_pyobject(py)
+    }
+}
+
+impl Atlas {
+    fn place(&self, kappa: f64, psi: f64) -> Result<(i64, f64), InvalidParameter> {
+        let located = self.atlas.locate(&Contact::new(kappa, psi, 0.0)?);
+        let region = match located.region {
+            Ok(region) => i64::try_from(region).unwrap_or(i64::MAX),
+            Err(Unlocated::OnBoundary { .. }) => -1,
+            Err(Unlocated::Outside { .. }) => -2,
+        };
+        Ok((region, located.distance.unwrap_or(f64::NAN)))
+    }
+}

@@ -1,0 +1,117 @@
+//! Studies: stiff springs, convergence, and the paper checked.
+
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use stickslip_model::Contact;
+use stickslip_plane::Range;
+use stickslip_plane::progress::SILENT;
+use stickslip_reproduction::figures::Reproduction;
+use stickslip_reproduction::statements::Spring;
+use stickslip_studies::{Cell, Study, StudyError, convergence, stiff_springs};
+
+use crate::failure::{bad_input, failed};
+use crate::parallel::Threads;
+
+/// The limit of stiff springs.
+#[pyfunction]
+pub fn asymptote(
+    py: Python<'_>,
+    kappa: (f64, f64),
+    psi: Vec<f64>,
+    threads: usize,
+) -> PyResult<Bound<'_, PyDict>> {
+    let kappa = Range { low: kappa.0, high: kappa.1 };
+    let settings = stiff_springs::Settings { kappa, psi };
+    settings.validate().map_err(bad_input)?;
+    run(py, threads, || stiff_springs::run(&settings, SILENT))
+}
+
+/// How accurate the integrators are, on collisions (κ, ψ, damping), or on the usual ones with this
+/// damping.
+#[pyfunction]
+pub fn converge(
+    py: Python<'_>,
+    contacts: Option<Vec<[f64; 3]>>,
+    damping: f64,
+    threads: usize,
+) -> PyResult<Bound<'_, PyDict>> {
+    let settings = match contacts {
+        None => convergence::Settings::usual(damping).map_err(bad_input)?,
+        Some(contacts) => {
+            let contacts = contacts.into_iter().map(|[kappa, psi, a]| Contact::new(kappa, psi, a));
+            let contacts = contacts.collect::<Result<_, _>>().map_err(bad_input)?;
+            convergence::Settings { contacts }
+        }
+    };
+    settings.validate().map_err(bad_input)?;
+    run(py, threads, || convergence::run(&settings, SILENT))
+}
+
+/// The titles of the parts of the reproduction.
+#[pyfunction]
+pub fn reproduction_parts() -> Vec<&'static str> {
+    Reproduction::parts().iter().map(|part| part.title).collect()
+}
+
+/// One part of the reproduction, with maps of so many cells in each direction.
+#[pyfunction]
+pub fn reproduce(
+    py: Python<'_>,
+    part: usize,
+    cells: usize,
+    threads: usize,
+) -> PyResult<Bound<'_, PyDict>> {
+    let parts = Reproduction::parts();
+    let chosen = parts
+        .get(part)
+        .ok_or_else(|| bad_input(format!("part {part}; expected 0 to {}", parts.len() - 1)))?;
+    let reproduction = Reproduction::new(cells, Spring::Reset);
+    let pool = Threads::pool(threads)?;
+    let section = py.detach(|| pool.install(|| chosen.run(&reproduction))).map_err(failed)?;
+    let study = dictionary(py, &section.study)?;
+    let objections: Vec<_> = section.objections.iter().map(ToString::to_string).collect();
+    study.set_item("objections", objections)?;
+    Ok(study)
+}
+
+fn run(
+    py: Python<'_>,
+    threads: usize,
+    make: impl FnOnce() -> Result<Study, StudyError> + Send,
+) -> PyResult<Bound<'_, PyDict>> {
+    let pool = Threads::pool(threads)?;
+    let study = py.detach(|| pool.install(make)).map_err(failed)?;
+    dictionary(py, &study)
+}
+
+/// A study as a dictionary; `json` is text.
+fn dictionary<'py>(py: Python<'py>, study: &Study) -> PyResult<Bound<'py, PyDict>> {
+    let tables = PyList::empty(py);
+    for table in &study.tables {
+        let rows = PyList::empty(py);
+        for row in &table.rows {
+            let cells = PyList::empty(py);
+            for cell in row {
+                match cell {
+                    Cell::Number(value) => cells.append(value)?,
+                    Cell::Count(count) => cells.append(count)?,
+                    Cell::Text(text) => cells.append(text)?,
+                }
+            }
+            rows.append(cells)?;
+        }
+        let columns: Vec<_> = table.columns.iter().map(|one| (one.name, one.meaning)).collect();
+        tables.append((table.name, &table.title, columns, rows))?;
+    }
+    let pictures = study.pictures.iter();
+    let pictures: Vec<_> =
+        pictures.map(|one| (one.name, one.caption.clone(), one.svg.document())).collect();
+    let dictionary = PyDict::new(py);
+    dictionary.set_item("name", study.name)?;
+    dictionary.set_item("title", study.title)?;
+    dictionary.set_item("findings", &study.findings)?;
+    dictionary.set_item("json", study.json.to_string())?;
+    dictionary.set_item("tables", tables)?;
+    dictionary.set_item("pictures", pictures)?;
+    Ok(dictionary)
+}
