@@ -1,0 +1,97 @@
+"""Collisions of frictional spheres and other piecewise-smooth ODEs, with every switch found.
+
+Start with `collide` (one collision), `eps_t` and `collide_many` (arrays), `impact` (SI units),
+`trace` (every boundary in a window), `map` and `sweep` (xarray), `solve` (systems of your own).
+"""
+
+from stickslip import _native
+from stickslip._native import ComputationError
+from stickslip.atlases import Atlas, AtlasWarning, Boundary, Located, Region, Vertex, trace
+from stickslip.collisions import (
+    Collision,
+    Collisions,
+    Estimate,
+    Sensitivity,
+    collide,
+    collide_many,
+    eps_t,
+    eps_t_and_switch_count,
+    psi_of_ratio,
+)
+from stickslip.hybrid import (
+    Compiled,
+    DenseOutput,
+    Guard,
+    HybridSystem,
+    Mode,
+    Solution,
+    solve,
+)
+from stickslip.impacts import (
+    Bodies,
+    Impacts,
+    Material,
+    Motion,
+    Sphere,
+    Surface,
+    Wall,
+    WallMotion,
+    impact,
+)
+from stickslip.maps import map
+from stickslip.studies import (
+    Study,
+    Table,
+    asymptote,
+    converge,
+    reproduce,
+    reproduction_parts,
+)
+from stickslip.sweeps import sweep, write_sweep
+
+__version__ = _native.version()
+
+__all__ = [
+    "Atlas",
+    "AtlasWarning",
+    "Bodies",
+    "Boundary",
+    "Collision",
+    "Collisions",
+    "Compiled",
+    "ComputationError",
+    "DenseOutput",
+    "Estimate",
+    "Guard",
+    "HybridSystem",
+    "Impacts",
+    "Located",
+    "Material",
+    "Mode",
+    "Motion",
+    "Region",
+    "Sensitivity",
+    "Solution",
+    "Sphere",
+    "Study",
+    "Surface",
+    "Table",
+    "Vertex",
+    "Wall",
+    "WallMotion",
+    "asymptote",
+    "collide",
+    "collide_many",
+    "converge",
+    "eps_t",
+    "eps_t_and_switch_count",
+    "impact",
+    "map",
+    "psi_of_ratio",
+    "reproduce",
+    "reproduction_parts",
+    "solve",
+    "sweep",
+    "trace",
+    "write_sweep",
+]

@@ -1,0 +1,1 @@
+"""The native module for any processor."""

@@ -1,0 +1,1 @@
+"""The native module for x86-64-v3."""

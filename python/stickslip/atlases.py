@@ -1,0 +1,286 @@
+"""Atlases: every boundary in a window of the (kappa, psi) plane, and the regions between them."""
+
+import json
+import os
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip import _native
+from stickslip.collisions import Floats, _threads, psi_of_ratio
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+#: Colours of the kinds of boundaries, which a colour-blind reader can tell apart.
+COLOURS = {"end-of-contact": "#333333", "stick-graze": "#0072b2", "slip-graze": "#d55e00"}
+LINES = {"end-of-contact": "-", "stick-graze": "-", "slip-graze": "--"}
+
+
+class AtlasWarning(UserWarning):
+    """An atlas is complete, but may be wrong."""
+
+
+@dataclass(frozen=True)
+class Boundary:
+    """A curve on which the switches of a collision change."""
+
+    id: int
+    #: end-of-contact, stick-graze or slip-graze.
+    kind: str
+    #: Itineraries on both sides: at smaller and at larger psi.
+    below: str
+    above: str
+    #: Points (kappa, psi), shape (n, 2).
+    points: Floats
+    #: Directions of the boundary there, shape (n, 2).
+    tangents: Floats
+    #: Why the curve ends: window-edge, vertex or closed.
+    start: str
+    end: str
+
+
+@dataclass(frozen=True)
+class Vertex:
+    """A point at which boundaries meet or end."""
+
+    id: int
+    kind: str
+    kappa: float
+    psi: float
+    #: The boundaries that end here.
+    boundaries: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Region:
+    """A part of the window in which all collisions have the same switches."""
+
+    id: int
+    switch_count: int
+    itinerary: str
+    #: A point (kappa, psi) inside.
+    sample: tuple[float, float]
+    #: Share of the window's area, in ln kappa and ln(1 + psi).
+    area_share: float
+    #: The boundaries around it.
+    boundaries: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Located:
+    """Where points lie in an atlas; arrays of the shape of the points."""
+
+    #: Index of the region; -1 on a boundary within its error, -2 outside the window.
+    region: NDArray[np.int64]
+    #: Number of switches; -1 where there is no region.
+    switch_count: NDArray[np.int64]
+    #: Itinerary; empty where there is no region.
+    itinerary: NDArray[np.str_]
+    #: Distance in psi from the nearest boundary at the same kappa; NaN if there is none.
+    distance: Floats
+
+
+class Atlas:
+    """The subdivision of a window, from `trace` or `Atlas.load`."""
+
+    def __init__(self, native: _native.Atlas) -> None:
+        self._native = native
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_read, (self._native.json(),))
+
+    @classmethod
+    def load(cls, file: str | os.PathLike[str]) -> "Atlas":
+        """The atlas in a file that `save` or `stickslip trace` has written."""
+        return _read(Path(file).read_text(encoding="utf-8"))
+
+    def save(self, file: str | os.PathLike[str]) -> None:
+        """Writes the file that `stickslip trace` would write, complete or not at all."""
+        path = Path(file)
+        beside = path.with_name(f".{path.name}.{os.getpid()}.part")
+        try:
+            beside.write_text(self._native.json() + "\n", encoding="utf-8")
+            beside.replace(path)
+        finally:
+            beside.unlink(missing_ok=True)
+
+    @cached_property
+    def document(self) -> dict[str, Any]:
+        """The object in the file of the atlas."""
+        found: dict[str, Any] = json.loads(self._native.json())
+        return found
+
+    @property
+    def window(self) -> Mapping[str, Any]:
+        """Intervals of kappa and psi, and the damping."""
+        window: Mapping[str, Any] = self.document["window"]
+        return window
+
+    @property
+    def tolerance(self) -> float:
+        """Accuracy of the boundaries in psi."""
+        return float(self.document["tolerance"])
+
+    @property
+    def verification(self) -> Mapping[str, Any]:
+        """What the verification found."""
+        report: Mapping[str, Any] = self.document["verification"]
+        return report
+
+    @property
+    def objection(self) -> str | None:
+        """What speaks against the atlas; None if nothing does."""
+        return self._native.objection
+
+    @cached_property
+    def boundaries(self) -> tuple[Boundary, ...]:
+        """The boundaries."""
+        return tuple(
+            Boundary(
+                id=one["id"],
+                kind=one["kind"],
+                below=one["below"]["itinerary"],
+                above=one["above"]["itinerary"],
+                points=np.array(one["points"], dtype=np.float64).reshape(-1, 2),
+                tangents=np.array(one["tangents"], dtype=np.float64).reshape(-1, 2),
+                start=one["start"],
+                end=one["end"],
+            )
+            for one in self.document["boundaries"]
+        )
+
+    @cached_property
+    def vertices(self) -> tuple[Vertex, ...]:
+        """The points at which boundaries meet or end."""
+        return tuple(
+            Vertex(one["id"], one["kind"], one["kappa"], one["psi"], tuple(one["boundaries"]))
+            for one in self.document["vertices"]
+        )
+
+    @cached_property
+    def regions(self) -> tuple[Region, ...]:
+        """The regions."""
+        return tuple(
+            Region(
+                id=one["id"],
+                switch_count=one["switch_count"],
+                itinerary=one["itinerary"],
+                sample=(one["sample"][0], one["sample"][1]),
+                area_share=one["area_share"],
+                boundaries=tuple(one["boundaries"]),
+            )
+            for one in self.document["regions"]
+        )
+
+    def locate(self, kappa: ArrayLike, psi: ArrayLike) -> Located:
+        """The regions in which points lie. kappa and psi broadcast."""
+        given = np.broadcast_arrays(
+            np.asarray(kappa, dtype=np.float64), np.asarray(psi, dtype=np.float64)
+        )
+        shape = given[0].shape
+        flat = (np.ascontiguousarray(one).reshape(-1) for one in given)
+        region, distance = self._native.locate(*flat)
+        counts = np.array([one.switch_count for one in self.regions] + [-1])
+        names = np.array([one.itinerary for one in self.regions] + [""])
+        # -1 and -2 both stand for the last entry.
+        index = np.maximum(region, -1)
+        return Located(
+            region.reshape(shape),
+            counts[index].reshape(shape),
+            names[index].reshape(shape),
+            distance.reshape(shape),
+        )
+
+    def geojson(self) -> dict[str, Any]:
+        """Regions, boundaries and vertices as GeoJSON; coordinates are kappa and psi."""
+        found: dict[str, Any] = json.loads(self._native.geojson())
+        return found
+
+    def plot(self, ax: "Axes | None" = None, *, labels: bool = True, **line: Any) -> "Axes":
+        """Draws the boundaries with matplotlib, and the number of switches in large regions.
+
+        ax: axes to draw in, or None for new ones. labels: whether regions are labelled. line:
+        properties of all lines, e.g. `linewidth`.
+        """
+        if ax is None:
+            import matplotlib.pyplot as plt
+
+            ax = plt.figure(layout="constrained").add_subplot()
+        named = set()
+        for boundary in self.boundaries:
+            kind = boundary.kind
+            style: dict[str, Any] = {"color": COLOURS[kind], "linestyle": LINES[kind]}
+            style |= {"linewidth": 1.0} | line
+            label = None if kind in named else kind
+            named.add(kind)
+            ax.plot(boundary.points[:, 0], boundary.points[:, 1], label=label, **style)
+        if labels:
+            for region in self.regions:
+                if region.area_share > 0.005:
+                    ax.annotate(str(region.switch_count), region.sample, ha="center", va="center")
+        (low, high), psi = self.window["kappa"], self.window["psi"]
+        ax.set(
+            xlim=(low, high),
+            ylim=psi,
+            xscale="log" if high > 10 * low else "linear",
+            xlabel=r"scaled stiffness $\kappa$",
+            ylabel=r"impact ratio $\psi$",
+        )
+        return ax
+
+    def picture(self) -> str:
+        """The boundaries with the number of switches in each region, as an SVG document."""
+        return self._native.picture()
+
+    def _repr_html_(self) -> str:
+        return self.picture()
+
+    def __repr__(self) -> str:
+        counts = (len(self.boundaries), len(self.vertices), len(self.regions))
+        return "Atlas: {} boundaries, {} vertices, {} regions".format(*counts)
+
+
+def _read(text: str) -> Atlas:
+    return Atlas(_native.Atlas.read(text))
+
+
+def trace(
+    kappa: tuple[float, float],
+    psi: tuple[float, float] | None = None,
+    damping: float = 0.0,
+    *,
+    ratio: tuple[float, float] | None = None,
+    mu: float = 0.4,
+    alpha: float = 2 / 7,
+    tolerance: float | None = None,
+    threads: int | None = None,
+) -> Atlas:
+    """Every boundary in a window, and the regions between them, verified.
+
+    kappa, psi: intervals, above 0. ratio: interval of g_t/g_n instead of psi, which mu and alpha
+    reduce. tolerance: accuracy of the boundaries in psi, from 1e-11 to 1e-9 times 1 + the largest
+    psi. If something speaks against the atlas, it says so in an AtlasWarning and in `objection`.
+
+    >>> atlas = trace((5, 8), (0.8, 1.2))
+    >>> atlas.locate([5.5, 7.5], [0.9, 1.1]).itinerary.tolist()
+    ['+o-', '+o-']
+    """
+    interval = None
+    if (psi is None) == (ratio is None):
+        raise ValueError("expected exactly one of psi and ratio")
+    if ratio is not None:
+        low, high = (float(psi_of_ratio(end, mu, alpha)) for end in ratio)
+        psi, interval = (low, high), (ratio, mu, alpha)
+    assert psi is not None
+    native = _native.Atlas.trace(kappa, psi, interval, damping, tolerance, _threads(threads))
+    atlas = Atlas(native)
+    if atlas.objection is not None:
+        warnings.warn(f"the atlas may be wrong: {atlas.objection}", AtlasWarning, stacklevel=2)
+    return atlas

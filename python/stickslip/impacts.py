@@ -1,0 +1,328 @@
+"""Impacts of two bodies in SI units."""
+
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Self, TypeAlias, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from stickslip import _native
+from stickslip.collisions import Collisions, Floats, Method, OnError, collide_many
+
+Vector: TypeAlias = tuple[float, float, float]
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Material:
+    """An elastic material."""
+
+    #: Young's modulus in Pa.
+    young_modulus_pa: float
+    #: Poisson's ratio.
+    poisson_ratio: float
+    #: Density in kg/m³, for spheres whose mass is not given.
+    density_kg_per_m3: float | None = None
+
+
+@dataclass(frozen=True)
+class Sphere:
+    """A sphere. Without a moment of inertia it is homogeneous."""
+
+    #: Radius in m.
+    radius_m: float
+    material: Material
+    #: Mass in kg, where the material has no density.
+    mass_kg: float | None = None
+    #: Moment of inertia in kg m², with a mass only.
+    moment_of_inertia_kg_m2: float | None = None
+
+    def _arguments(self) -> tuple[float, float, float | None, float, float]:
+        density = self.material.density_kg_per_m3
+        if (self.mass_kg is None) == (density is None):
+            given = "both missing" if density is None else "both given"
+            raise ValueError(f"mass_kg and density_kg_per_m3 are {given}; expected exactly one")
+        if self.mass_kg is None and self.moment_of_inertia_kg_m2 is not None:
+            raise ValueError(
+                "moment_of_inertia_kg_m2 contradicts a density, which makes the sphere "
+                "homogeneous; expected beside mass_kg only"
+            )
+        mass = self.mass_kg
+        if mass is None:
+            assert density is not None
+            mass = _native.homogeneous_mass(self.radius_m, density)
+        return (
+            self.radius_m,
+            mass,
+            self.moment_of_inertia_kg_m2,
+            self.material.young_modulus_pa,
+            self.material.poisson_ratio,
+        )
+
+
+@dataclass(frozen=True)
+class Wall:
+    """A plane wall of infinite mass, rigid if it has no material."""
+
+    material: Material | None = None
+
+
+@dataclass(frozen=True)
+class Surface:
+    """The surfaces at the contact."""
+
+    #: Coefficient of friction.
+    friction: float
+    #: Stiffness of the tangential spring in kg/s².
+    tangential_stiffness_kg_per_s2: float
+    #: Damping time A of the normal force in s.
+    damping_time_s: float = 0.0
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The motion of a sphere when the bodies touch."""
+
+    #: Position of the centre in m.
+    position_m: Vector
+    #: Velocity of the centre in m/s.
+    velocity_m_per_s: Vector
+    #: Angular velocity in rad/s.
+    spin_rad_per_s: Vector = (0.0, 0.0, 0.0)
+
+    def _arguments(self) -> tuple[Vector, Vector, Vector]:
+        return (self.position_m, self.velocity_m_per_s, self.spin_rad_per_s)
+
+
+@dataclass(frozen=True)
+class WallMotion:
+    """Where a wall is, and its motion."""
+
+    #: A point of the wall in m.
+    point_m: Vector
+    #: A vector at right angles to the wall, towards the sphere; any length but 0.
+    normal: Vector
+    #: Velocity in m/s.
+    velocity_m_per_s: Vector = (0.0, 0.0, 0.0)
+
+    def _arguments(self) -> tuple[Vector, Vector, Vector]:
+        return (self.point_m, self.normal, self.velocity_m_per_s)
+
+
+class Bodies:
+    """Two bodies that collide: a sphere, and another one or a wall."""
+
+    def __init__(self, sphere: Sphere, other: Sphere | Wall, surface: Surface) -> None:
+        self.sphere = sphere
+        self.other = other
+        self.surface = surface
+        second: Any
+        if isinstance(other, Sphere):
+            second = other._arguments()
+        elif other.material is None:
+            second = None
+        elif other.material.density_kg_per_m3 is not None:
+            raise ValueError(
+                "density_kg_per_m3 of a wall has no effect, since its mass is infinite; expected "
+                "in spheres only"
+            )
+        else:
+            second = (other.material.young_modulus_pa, other.material.poisson_ratio)
+        contact = (
+            surface.friction,
+            surface.tangential_stiffness_kg_per_s2,
+            surface.damping_time_s,
+        )
+        self._pair = _native.Pair(sphere._arguments(), second, contact)
+        self._motions: tuple[Any, Any] | None = None
+
+    @classmethod
+    def read(cls, file: str | os.PathLike[str] | Mapping[str, Any]) -> Self:
+        """The bodies in a JSON file of the program, or in such an object."""
+        fields = file if isinstance(file, Mapping) else json.loads(Path(file).read_text())
+        _known("", fields, "$schema", "comment", "spheres", "wall", "surface")
+        spheres = [_sphere(f"spheres[{i}]", one) for i, one in enumerate(fields.get("spheres", []))]
+        walls = [_wall(fields["wall"])] if "wall" in fields else []
+        if (len(spheres), len(walls)) not in ((2, 0), (1, 1)):
+            raise ValueError(
+                f"spheres has {len(spheres)} entries, and there is {'a' if walls else 'no'} wall; "
+                "expected two spheres, or one sphere and a wall"
+            )
+        first, motion = spheres[0]
+        second: Sphere | Wall
+        other_motion: Motion | WallMotion | None
+        second, other_motion = walls[0] if walls else spheres[1]
+        surface = _made("surface", _object("", fields, "surface"), Surface)
+        bodies = cls(first, second, surface)
+        if motion is not None and other_motion is not None:
+            bodies._motions = (motion, other_motion)
+        return bodies
+
+    @property
+    def alpha(self) -> float:
+        """Tangential inertia, without unit; 2/7 for homogeneous spheres."""
+        return self._pair.reduction[0]
+
+    def contacts(
+        self, normal_m_per_s: ArrayLike, tangential_m_per_s: ArrayLike
+    ) -> tuple[Floats, Floats, Floats, Floats]:
+        """kappa, psi, damping and the unit of time in s for velocities of the surfaces in m/s."""
+        given = np.broadcast_arrays(
+            np.asarray(normal_m_per_s, dtype=np.float64),
+            np.asarray(tangential_m_per_s, dtype=np.float64),
+        )
+        found = self._pair.contacts(*(np.ascontiguousarray(one).reshape(-1) for one in given))
+        kappa, psi, damping, unit = (one.reshape(given[0].shape) for one in found)
+        return kappa, psi, damping, unit
+
+    def encounter(
+        self,
+        motion: Motion | None = None,
+        other: Motion | WallMotion | None = None,
+        method: Method = "auto",
+        *,
+        rtol: float | None = None,
+        atol: float | None = None,
+    ) -> dict[str, Any]:
+        """The impact in three dimensions, as the object that `stickslip impact --format json` prints.
+
+        motion, other: the motions of the two bodies, or those of the file that was read. Velocities
+        and spins after the impact, restitution, switches in seconds and energies are in it.
+        """
+        if motion is None and other is None and self._motions is not None:
+            motion, other = self._motions
+        if motion is None or other is None:
+            raise ValueError("a motion is missing; expected those of both bodies")
+        if isinstance(other, Motion) != isinstance(self.other, Sphere):
+            raise TypeError("other must be a Motion of a sphere, or a WallMotion of a wall")
+        text = self._pair.encounter(motion._arguments(), other._arguments(), (method, rtol, atol))
+        found: dict[str, Any] = json.loads(text)
+        return found
+
+
+class Impacts:
+    """Arrays of impacts, from `impact`, in the order and shape of the velocities."""
+
+    def __init__(
+        self, normal_m_per_s: Floats, tangential_m_per_s: Floats, unit: Floats, found: Collisions
+    ) -> None:
+        #: The collisions in scaled parameters.
+        self.collisions = found
+        #: Velocities of the surfaces before, in m/s.
+        self.normal_m_per_s = normal_m_per_s
+        self.tangential_m_per_s = tangential_m_per_s
+        #: Coefficients of restitution.
+        self.eps_n = found.eps_n
+        self.eps_t = found.eps_t
+        #: Velocities after, in m/s: the normal one of separation, the tangential one in the
+        #: direction of the one before.
+        self.normal_after_m_per_s: Floats = found.eps_n * normal_m_per_s
+        self.tangential_after_m_per_s: Floats = found.eps_t * tangential_m_per_s
+        #: Duration of the contact in s.
+        self.contact_time_s: Floats = found.contact_time * unit
+        #: The unit of scaled times in s.
+        self.time_unit_s = unit
+        #: Number of switches.
+        self.switch_count = found.switch_count
+
+    def __repr__(self) -> str:
+        return f"Impacts(shape={self.collisions.shape})"
+
+
+def impact(
+    bodies: Bodies | Mapping[str, Any] | str | os.PathLike[str],
+    normal_m_per_s: ArrayLike | None = None,
+    tangential_m_per_s: ArrayLike | None = None,
+    *,
+    speed_m_per_s: ArrayLike | None = None,
+    angle_rad: ArrayLike | None = None,
+    method: Method = "auto",
+    rtol: float | None = None,
+    atol: float | None = None,
+    errors: OnError = "raise",
+    threads: int | None = None,
+) -> Impacts:
+    """Impacts of two bodies for arrays of velocities, which broadcast.
+
+    bodies: two bodies, an object with the layout of docs/impact.schema.json, or the path of such a
+    file. normal_m_per_s, tangential_m_per_s: velocities of the surfaces at the contact, above 0.
+    Instead of them speed_m_per_s and angle_rad, the angle between velocity and normal, above 0 and
+    below pi/2. The other arguments are those of `collide_many`.
+    """
+    pair = bodies if isinstance(bodies, Bodies) else Bodies.read(bodies)
+    if speed_m_per_s is not None and angle_rad is not None:
+        if normal_m_per_s is not None or tangential_m_per_s is not None:
+            raise ValueError("velocities and a speed with an angle are both given; expected one")
+        angle = np.asarray(angle_rad, dtype=np.float64)
+        if not np.all((angle > 0) & (angle < np.pi / 2)):
+            raise ValueError("angle_rad is out of range; expected above 0 and below pi/2")
+        normal_m_per_s = np.multiply(speed_m_per_s, np.cos(angle))
+        tangential_m_per_s = np.multiply(speed_m_per_s, np.sin(angle))
+    elif speed_m_per_s is not None or angle_rad is not None:
+        raise ValueError("expected speed_m_per_s and angle_rad together")
+    if normal_m_per_s is None or tangential_m_per_s is None:
+        raise ValueError("expected normal_m_per_s and tangential_m_per_s, or a speed and an angle")
+    normal, tangential = np.broadcast_arrays(
+        np.asarray(normal_m_per_s, dtype=np.float64),
+        np.asarray(tangential_m_per_s, dtype=np.float64),
+    )
+    kappa, psi, damping, unit = pair.contacts(normal, tangential)
+    found = collide_many(
+        kappa, psi, damping, method, rtol=rtol, atol=atol, errors=errors, threads=threads
+    )
+    return Impacts(normal, tangential, unit, found)
+
+
+def _known(place: str, fields: Any, *names: str) -> None:
+    if not isinstance(fields, Mapping):
+        raise ValueError(f"{place or 'the file'} is {fields!r}; expected an object")
+    for name in fields:
+        if name not in names:
+            expected = ", ".join(name for name in names if name != "comment")
+            raise ValueError(f"{place}{'.' if place else ''}{name} is not known; expected {expected}")
+
+
+def _object(place: str, fields: Mapping[str, Any], name: str) -> Any:
+    if name not in fields:
+        raise ValueError(f"{place}{'.' if place else ''}{name} is missing; expected an object")
+    return fields[name]
+
+
+def _made(place: str, fields: Any, make: type[T]) -> T:
+    """The dataclass whose fields the object has."""
+    _known(place, fields, "comment", *make.__annotations__)
+    given = {name: value for name, value in fields.items() if name != "comment"}
+    for name, value in given.items():
+        vector = isinstance(value, list) and len(value) == 3
+        for number in value if vector else [value]:
+            if isinstance(number, bool) or not isinstance(number, int | float | Material):
+                raise ValueError(f"{place}.{name} is {value!r}; expected numbers")
+    try:
+        return make(**given)
+    except TypeError as error:
+        raise ValueError(f"{place}: {error}") from None
+
+
+def _sphere(place: str, fields: Any) -> tuple[Sphere, Motion | None]:
+    _known(place, fields, "comment", "radius_m", "mass_kg", "moment_of_inertia_kg_m2",
+           "material", "motion")  # fmt: skip
+    material = _made(f"{place}.material", _object(place, fields, "material"), Material)
+    own = {name: value for name, value in fields.items() if name != "motion"}
+    motion = _made(f"{place}.motion", fields["motion"], Motion) if "motion" in fields else None
+    return _made(place, own | {"material": material}, Sphere), motion
+
+
+def _wall(fields: Any) -> tuple[Wall, WallMotion | None]:
+    _known("wall", fields, "comment", "rigid", "material", "motion")
+    if bool(fields.get("rigid")) == ("material" in fields):
+        given = "both given" if "material" in fields else "both missing"
+        raise ValueError(f"wall.material and wall.rigid are {given}; expected exactly one of them")
+    material = None
+    if "material" in fields:
+        material = _made("wall.material", fields["material"], Material)
+    motion = _made("wall.motion", fields["motion"], WallMotion) if "motion" in fields else None
+    return Wall(material), motion

@@ -1,0 +1,134 @@
+"""Studies: the limit of stiff springs, convergence, and the paper checked."""
+
+import csv
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip import _native
+from stickslip.collisions import _threads
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of values."""
+
+    name: str
+    title: str
+    #: What the columns hold, with units, by their names.
+    meanings: dict[str, str]
+    rows: list[list[float | int | str]]
+
+    @cached_property
+    def columns(self) -> dict[str, NDArray[Any]]:
+        """The columns as arrays."""
+        turned = zip(*self.rows, strict=True) if self.rows else ([] for _ in self.meanings)
+        return {name: np.array(column) for name, column in zip(self.meanings, turned, strict=True)}
+
+
+@dataclass(frozen=True)
+class Study:
+    """Numbers, tables, pictures and sentences of a study."""
+
+    name: str
+    title: str
+    #: The results in sentences.
+    findings: list[str]
+    #: All numbers.
+    data: dict[str, Any]
+    tables: dict[str, Table]
+    #: SVG documents.
+    pictures: dict[str, str]
+    captions: dict[str, str]
+    #: What speaks against the results.
+    objections: list[str]
+
+    def save(self, directory: str | Path) -> None:
+        """Writes the JSON, CSV and SVG files of the study."""
+        folder = Path(directory)
+        folder.mkdir(parents=True, exist_ok=True)
+        text = json.dumps({"title": self.title, "findings": self.findings} | self.data, indent=2)
+        (folder / f"{self.name}.json").write_text(text + "\n", encoding="utf-8")
+        for table in self.tables.values():
+            path = folder / f"{table.name}.csv"
+            with path.open("w", newline="", encoding="utf-8") as file:
+                csv.writer(file).writerows([table.meanings, *table.rows])
+        for name, svg in self.pictures.items():
+            (folder / f"{name}.svg").write_text(svg, encoding="utf-8")
+
+    def _repr_html_(self) -> str:
+        items = "".join(f"<li>{one}</li>" for one in self.findings)
+        return f"<h3>{self.title}</h3><ul>{items}</ul>" + "".join(self.pictures.values())
+
+
+def asymptote(
+    kappa: tuple[float, float] = (10.0, 1e8),
+    psi: Iterable[float] = (0.3, 1.0, 1.7),
+    *,
+    threads: int | None = None,
+) -> Study:
+    """The limit of stiff springs: how eps_t and the velocity vanish as kappa grows.
+
+    kappa: interval within 3 to 1e10. psi: one to four impact ratios above 0 and below 2.
+    """
+    return _study(_native.asymptote(kappa, list(psi), _threads(threads)))
+
+
+def converge(
+    contacts: Iterable[tuple[float, float, float]] | None = None,
+    *,
+    damping: float = 0.0,
+    threads: int | None = None,
+) -> Study:
+    """How accurate the integrators are, at which cost.
+
+    contacts: collisions (kappa, psi, damping) with kappa up to 1e6; without them the usual ones
+    with this damping.
+    """
+    given = None if contacts is None else [tuple(map(float, contact)) for contact in contacts]
+    return _study(_native.converge(given, damping, _threads(threads)))  # type: ignore[arg-type]
+
+
+def reproduction_parts() -> list[str]:
+    """The titles of the parts of `reproduce`."""
+    return _native.reproduction_parts()
+
+
+def reproduce(part: int | str, *, cells: int = 200, threads: int | None = None) -> Study:
+    """A part of the paper, computed anew.
+
+    part: its title, or its index in `reproduction_parts()`. cells: columns and rows of maps.
+    """
+    titles = _native.reproduction_parts()
+    if isinstance(part, str):
+        if part not in titles:
+            raise ValueError(f"part = {part!r}; expected one of {titles}")
+        part = titles.index(part)
+    if not 0 <= part < len(titles):
+        raise ValueError(f"part = {part}; expected 0 to {len(titles) - 1}")
+    if not 1 <= cells <= 100_000:
+        raise ValueError(f"cells = {cells}; expected 1 to 100000")
+    return _study(_native.reproduce(part, cells, _threads(threads)))
+
+
+def _study(found: dict[str, Any]) -> Study:
+    tables = {
+        name: Table(name, title, dict(columns), rows)
+        for name, title, columns, rows in found["tables"]
+    }
+    return Study(
+        name=found["name"],
+        title=found["title"],
+        findings=found["findings"],
+        data=json.loads(found["json"]),
+        tables=tables,
+        pictures={name: svg for name, _, svg in found["pictures"]},
+        captions={name: caption for name, caption, _ in found["pictures"]},
+        objections=found.get("objections", []),
+    )

@@ -1,0 +1,43 @@
+"""Every ```python block of docs/python runs; the blocks of a page follow each other."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+DOCS = Path(__file__).parents[2] / "docs" / "python"
+PAGES = sorted(DOCS.glob("*.md"))
+BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+
+def test_there_are_pages() -> None:
+    assert "coming-from-solve-ivp.md" in {page.name for page in PAGES}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_blocks_run(page: Path, tmp_path: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    blocks = BLOCK.findall(text)
+    assert blocks, f"{page.name} has no block that runs"
+    # Empty lines in the place of the rest: a traceback then has the lines of the page.
+    script = [""] * len(text.splitlines())
+    for match in BLOCK.finditer(text):
+        first = text[: match.start()].count("\n") + 1
+        lines = match.group(1).splitlines()
+        script[first : first + len(lines)] = lines
+    path = tmp_path / f"{page.stem}.py"
+    path.write_text("\n".join(script), encoding="utf-8")
+    package = str(Path(__file__).parents[1])
+    paths = os.pathsep.join([package, *filter(None, [os.environ.get("PYTHONPATH")])])
+    found = subprocess.run(
+        [sys.executable, str(path)],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": paths},
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert found.returncode == 0, found.stderr
