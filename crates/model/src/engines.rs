@@ -115,22 +115,35 @@ impl Engine {
         contact: Contact,
     ) -> Result<(Collision, Option<Statistics>), EngineError> {
         let mut collision = Collision::before(contact);
+        let statistics = self.collide_into(contact, &mut collision)?;
+        Ok((collision, statistics))
+    }
+
+    /// As [`Self::collide`], with the result written to `collision`, whose memory is used again.
+    ///
+    /// # Errors
+    /// As [`Self::collide`]. What is in `collision` then has no meaning.
+    pub fn collide_into(
+        &self,
+        contact: Contact,
+        collision: &mut Collision,
+    ) -> Result<Option<Statistics>, EngineError> {
         let statistics = match self.resolved(&contact) {
             Self::Dop853(Tolerances { rtol, atol }) => {
                 let collider = Collider::with_tolerances(Dop853, rtol, atol);
-                Some(collider.collide_into(contact, &mut collision)?)
+                Some(collider.collide_into(contact, collision)?)
             }
             Self::Dopri5(Tolerances { rtol, atol }) => {
                 let collider = Collider::with_tolerances(Dopri5, rtol, atol);
-                Some(collider.collide_into(contact, &mut collision)?)
+                Some(collider.collide_into(contact, collision)?)
             }
             Self::Exact | Self::Auto => {
-                exact::collide_into(contact, &mut collision)?;
+                exact::collide_into(contact, collision)?;
                 None
             }
         };
         collision.require_finite()?;
-        Ok((collision, statistics))
+        Ok(statistics)
     }
 
     /// The collision of `contact` with its course. An integrator computes both with one run; the

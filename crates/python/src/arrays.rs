@@ -1,6 +1,7 @@
 //! Collisions of arrays of parameters.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -38,10 +39,24 @@ impl Points {
         [0, 1, 2].map(|column| value(&self.columns[column]))
     }
 
-    fn collide(&self, engine: Engine, index: usize) -> Result<Collision, Failure> {
-        let [kappa, psi, damping] = self.parameters(index);
-        let contact = Contact::new(kappa, psi, damping)?;
-        Ok(engine.collide(contact)?.0)
+    /// Computes the collisions of a part, and tells `take` of each.
+    fn collide(
+        &self,
+        engine: Engine,
+        part: Range<usize>,
+        mut take: impl FnMut(usize, Result<&Collision, Failure>),
+    ) {
+        // Any contact will do: only the memory is used.
+        let Ok(any) = Contact::new(1.0, 1.0, 0.0) else { return };
+        let mut collision = Collision::before(any);
+        for index in part {
+            let [kappa, psi, damping] = self.parameters(index);
+            let contact = Contact::new(kappa, psi, damping).map_err(Failure::from);
+            let found = contact.and_then(|contact| {
+                engine.collide_into(contact, &mut collision).map_err(Failure::from)
+            });
+            take(index, found.map(|_| &collision));
+        }
     }
 
     /// The place of a case, for messages.
@@ -78,19 +93,19 @@ pub fn eps_t<'py>(
     eps_t.reserve_exact(points.count);
     counts.reserve_exact(points.count);
     let mut failures = Vec::new();
-    let work = |part: std::ops::Range<usize>| {
+    let work = |part: Range<usize>| {
         let mut failed = Failures::new();
-        let results: Vec<(f64, i32)> = part
-            .map(|index| match points.collide(engine, index) {
-                Ok(found) => {
-                    (found.eps_t(), i32::try_from(found.switches.len()).unwrap_or(i32::MAX))
-                }
-                Err(failure) => {
-                    failed.push((index, failure));
-                    (f64::NAN, -1)
-                }
-            })
-            .collect();
+        let mut results = Vec::with_capacity(part.len());
+        points.collide(engine, part, |index, found| match found {
+            Ok(found) => {
+                let count = i32::try_from(found.switches.len()).unwrap_or(i32::MAX);
+                results.push((found.eps_t(), count));
+            }
+            Err(failure) => {
+                failed.push((index, failure));
+                results.push((f64::NAN, -1));
+            }
+        });
         (results, failed)
     };
     Threads::new(threads, points.count)?.each(py, points.count, work, |(results, failed)| {
@@ -131,14 +146,12 @@ struct Columns {
 }
 
 impl Columns {
-    fn of(points: &Points, engine: Engine, part: std::ops::Range<usize>) -> Self {
+    fn of(points: &Points, engine: Engine, part: Range<usize>) -> Self {
         let mut columns = Self::default();
-        for index in part {
-            match points.collide(engine, index) {
-                Ok(collision) => columns.push(&collision),
-                Err(failure) => columns.push_failure(index, failure),
-            }
-        }
+        points.collide(engine, part, |index, found| match found {
+            Ok(collision) => columns.push(collision),
+            Err(failure) => columns.push_failure(index, failure),
+        });
         columns
     }
 

@@ -171,13 +171,17 @@ impl System {
         }
     }
 
-    /// Fails if Ctrl-C was pressed. It is looked for only now and then.
-    #[expect(clippy::redundant_closure_for_method_calls, reason = "the method does not compile")]
+    /// Fails if Ctrl-C was pressed, and lets other threads run. Callables that are not written in
+    /// Python do neither. It is done only now and then.
     fn look_for_signals(&self) {
         let calls = self.calls.1.get() + 1;
         self.calls.1.set(calls);
         if calls.is_multiple_of(CALLS) && self.looked.get().elapsed() >= PAUSE {
-            if let Err(error) = Python::attach(|py| py.check_signals()) {
+            let looked = Python::attach(|py| {
+                py.detach(std::thread::yield_now);
+                py.check_signals()
+            });
+            if let Err(error) = looked {
                 self.fail(error);
             }
             self.looked.set(Instant::now());

@@ -239,18 +239,19 @@ pub fn exit<T: Trajectory>(
     k: u32,
     mut low: Moment,
     mut high: Moment,
-    guess: Option<Moment>,
+    mut guess: Option<Moment>,
 ) -> Moment {
     if high == Moment::END {
         let (y, _) = swing.motion(swing.path.time_left(&swing.start));
+        // The exit of a spring that stands still at its last elongation.
+        guess = swing.path.last_time_at(swing.spring.kappa * y.abs());
         if y.abs() < hidden_angle(swing) * swing.amplitude {
             // q vanishes at the end of contact as well, or nearly.
             let earlier = before_end(swing);
             let passed = exceeds_limit(swing, k, earlier);
-            (low, high) = if passed { (low, earlier) } else { (earlier, high) };
+            (low, high, guess) = if passed { (low, earlier, None) } else { (earlier, high, None) };
         }
     }
-    let guess = guess.or_else(|| (high == Moment::END).then(|| guess_before_end(swing)).flatten());
     let moment = root_between(swing.path, low, high, guess, |at| {
         let gap = swing.gap(k, at);
         along_root(swing.path, at, gap.value, gap.rate, gap.acceleration)
@@ -290,12 +291,6 @@ fn first_exit<T: Trajectory>(swing: &Swing<T>, rise: Moment, fall: Moment) -> Mo
         along_root(path, at, scaled, rate, acceleration)
     });
     if swing.is_onset(0, &path.at(moment)) { moment } else { settled(swing, 0, moment) }
-}
-
-/// The exit of a spring that stands still at its last elongation.
-fn guess_before_end<T: Trajectory>(swing: &Swing<T>) -> Option<Moment> {
-    let (end, _) = swing.motion(swing.path.time_left(&swing.start));
-    swing.path.last_time_at(swing.spring.kappa * end.abs())
 }
 
 /// The derivatives of a function in time as derivatives in the root coordinate.
