@@ -78,7 +78,16 @@ def host() -> str:
 
 def build_fast(manifest: Path) -> None:
     flags = {"RUSTFLAGS": "-C target-cpu=x86-64-v3", "PYO3_BUILD_EXTENSION_MODULE": "1"}
-    cargo = ["cargo", "rustc", "--profile", "python", "--locked", "--lib", "--message-format", "json"]
+    cargo = [
+        "cargo",
+        "rustc",
+        "--profile",
+        "python",
+        "--locked",
+        "--lib",
+        "--message-format",
+        "json",
+    ]
     done = subprocess.run(
         [*cargo, "--manifest-path", str(manifest)],
         env=os.environ | flags,

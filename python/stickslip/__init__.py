@@ -5,7 +5,10 @@ Start with `collide` (one collision), `eps_t` and `collide_many` (arrays), `impa
 """
 
 from stickslip import _native
+from stickslip._compiled import Compiled
 from stickslip._native import ComputationError
+from stickslip._solutions import DenseOutput, Solution
+from stickslip._systems import Guard, HybridSystem, Mode
 from stickslip.atlases import Atlas, AtlasWarning, Boundary, Located, Region, Vertex, trace
 from stickslip.collisions import (
     Collision,
@@ -18,15 +21,7 @@ from stickslip.collisions import (
     eps_t_and_switch_count,
     psi_of_ratio,
 )
-from stickslip.hybrid import (
-    Compiled,
-    DenseOutput,
-    Guard,
-    HybridSystem,
-    Mode,
-    Solution,
-    solve,
-)
+from stickslip.hybrid import solve
 from stickslip.impacts import (
     Bodies,
     Impacts,

@@ -4,382 +4,21 @@ A `HybridSystem` has modes, each with a right-hand side and guards; `solve` runs
 switch. A plain function with events, as for SciPy's `solve_ivp`, needs no system.
 """
 
-import ctypes
-import operator
-import re
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from itertools import count
-from typing import Any, Literal, TypeAlias, get_args
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _native
+from stickslip._compiled import Compiled, Function, _count, _number, _reals
+from stickslip._solutions import DenseOutput, Solution
+from stickslip._systems import Guard, HybridSystem, Mode, _check_function, _Source
 
 Floats: TypeAlias = NDArray[np.float64]
-Direction: TypeAlias = Literal["below", "falling", "rising", "either"]
-Outcome: TypeAlias = Literal[
-    "reached_end",
-    "ended_by_guard",
-    "zeno",
-    "switch_limit",
-    "step_limit",
-    "instant_limit",
-    "failed",
-]
-
 #: The names of methods; in small letters they mean the same.
 METHODS = {"dop853": "dop853", "dopri5": "dopri5", "rk45": "dopri5"}
-
-
-class Compiled:
-    """A compiled function with the signature
-
-        void f(double t, const double *y, double *out, const double *parameters)
-
-    `out` takes the derivative of the state, the values of guards, or the state after a guard has
-    fired, whichever the function is used for. If all functions of a system are compiled, it runs
-    without the interpreter's lock.
-
-    function: a `cfunc` of Numba, a `scipy.LowLevelCallable` (whose user data are the parameters), a
-    function of ctypes, or the address of the code. parameters: numbers that are copied, and passed
-    with each call.
-
-    What is at an address cannot be checked. Another signature, or a function that reads or writes
-    beyond its arrays, ends in wrong numbers or in a crash of the interpreter. The function may be
-    called by any thread, and by several at once. It cannot raise an exception; NaN says that there
-    is no value.
-    """
-
-    #: What `solve` asks of an event.
-    terminal: bool | int = False
-    direction: float = 0.0
-    from_zero: int = 0
-    smooth: bool = False
-
-    def __init__(self, function: Any, parameters: ArrayLike | None = None) -> None:
-        self._keeps = function
-        self.__name__ = str(getattr(function, "__name__", "compiled"))
-        address, pointer, signature = _code_of(function)
-        if signature is not None and not _SIGNATURE.fullmatch(signature.replace(" ", "")):
-            raise TypeError(
-                f"the signature is {signature!r}; expected "
-                "void (double t, double *y, double *out, double *parameters)"
-            )
-        if not 0 < address < 2 ** (8 * ctypes.sizeof(ctypes.c_void_p)):
-            raise ValueError(f"{address} is not the address of a function")
-        self.address = address
-        self.parameters: Floats | None = None
-        if parameters is not None:
-            if pointer:
-                raise ValueError("parameters are given twice: here and as user data")
-            self.parameters = _reals(parameters, "parameters").reshape(-1)
-            self.parameters.setflags(write=False)
-            pointer = self.parameters.ctypes.data
-        self._pointer = pointer
-
-    def __reduce__(self) -> Any:
-        raise TypeError("an address means nothing in another process: Compiled cannot be pickled")
-
-    def __repr__(self) -> str:
-        return f"Compiled({self._keeps!r})"
-
-
-Function: TypeAlias = Callable[..., Any] | Compiled
-
-_FUNCTION_OF_CTYPES: Any = type(ctypes.CFUNCTYPE(None)()).__mro__[1]
-_POINTER = r"(const)?(double|float64|void)\*(const)?"
-_SIGNATURE = re.compile(rf"void\((double|float64),{_POINTER},{_POINTER},{_POINTER}\)")
-
-
-def _code_of(function: Any) -> tuple[int, int, str | None]:
-    """The addresses of a function and of its parameters, or 0, and its signature, if it has one."""
-    if isinstance(function, int) and not isinstance(function, bool):
-        return function, 0, None
-    if isinstance(function, tuple) and type(function).__name__ == "LowLevelCallable":
-        # Its own [] refuses.
-        capsule = ctypes.py_object(tuple.__getitem__(function, 0))
-        api = ctypes.pythonapi
-        name = ctypes.PYFUNCTYPE(ctypes.c_char_p, ctypes.py_object)(
-            ("PyCapsule_GetName", api)
-        )(capsule)
-        pointer = ctypes.PYFUNCTYPE(ctypes.c_void_p, ctypes.py_object, ctypes.c_char_p)(
-            ("PyCapsule_GetPointer", api)
-        )(capsule, name)
-        context = ctypes.PYFUNCTYPE(ctypes.c_void_p, ctypes.py_object)(
-            ("PyCapsule_GetContext", api)
-        )(capsule)
-        return int(pointer), int(context or 0), name.decode()
-    if isinstance(function, _FUNCTION_OF_CTYPES):
-        return int(ctypes.cast(function, ctypes.c_void_p).value or 0), 0, None
-    address = getattr(function, "address", None)
-    if isinstance(address, int):
-        signature = getattr(function, "_sig", None)
-        if signature is None:
-            return address, 0, None
-        result = str(signature.return_type).replace("none", "void")
-        return address, 0, f"{result} ({', '.join(str(one) for one in signature.args)})"
-    raise TypeError(
-        f"a {type(function).__name__} is not compiled; expected a cfunc of Numba, a "
-        "LowLevelCallable of SciPy, a function of ctypes, or an address"
-    )
-
-
-@dataclass(frozen=True)
-class Guard:
-    """When a mode ends, and what follows; see `Mode.guard`."""
-
-    name: str
-    direction: Direction = "below"
-    to: "str | Mode | None" = None
-    reset: Function | None = None
-    transition: Callable[..., Any] | None = None
-    terminal: bool | int = False
-    from_zero: int = 0
-    smooth: bool = False
-    yields: bool = False
-
-    def __post_init__(self) -> None:
-        if not isinstance(self.name, str):
-            raise TypeError(f"{self.name!r} is not a name of a guard; expected a str")
-        about = f"guard {self.name!r}"
-        if self.direction not in get_args(Direction):
-            raise ValueError(
-                f"{about}: direction = {self.direction!r}; expected one of {get_args(Direction)}"
-            )
-        for name, value in (("terminal", int(self.terminal)), ("from_zero", self.from_zero)):
-            if not 0 <= value < 2**31:
-                raise ValueError(f"{about}: {name} = {value}; expected 0 or above")
-        if self.transition is not None and (self.to is not None or self.reset is not None):
-            raise ValueError(f"{about}: a transition says it all; expected no to and no reset")
-        if isinstance(self.transition, Compiled):
-            raise TypeError(f"{about}: a transition is a callable; a reset may be compiled")
-        for name, function in (("reset", self.reset), ("transition", self.transition)):
-            if function is not None:
-                _check_function(function, f"{name} of {about}")
-        if self.direction == "below" and not self.changes and self.terminal != 1:
-            raise ValueError(
-                f"{about} would fire for ever, because it stays below zero: expected to, reset, "
-                'transition or terminal=True, or direction = "falling"'
-            )
-
-    @property
-    def changes(self) -> bool:
-        """Whether anything follows when it fires."""
-        return not (self.to is None and self.reset is None and self.transition is None)
-
-
-@dataclass(frozen=True)
-class _Source:
-    """A function that returns the values of successive guards."""
-
-    function: Function
-    label: str
-    guards: tuple[Guard, ...]
-
-
-class Mode:
-    """A smooth regime of a `HybridSystem`, which makes it."""
-
-    def __init__(self, name: str, right_hand_side: Function) -> None:
-        self.name = name
-        self.right_hand_side = right_hand_side
-        self._sources: list[_Source] = []
-
-    @property
-    def guard_list(self) -> tuple[Guard, ...]:
-        """The guards, in the order in which they were added."""
-        return tuple(guard for source in self._sources for guard in source.guards)
-
-    def guard(
-        self,
-        name: str,
-        function: Function,
-        *,
-        to: "str | Mode | None" = None,
-        reset: Function | None = None,
-        transition: Callable[..., Any] | None = None,
-        direction: Direction = "below",
-        terminal: bool | int = False,
-        from_zero: int = 0,
-        smooth: bool = False,
-        yields: bool = False,
-    ) -> "Mode":
-        """Adds a guard, and returns the mode.
-
-        function(t, y) is a number, and the guard fires at its zeros. direction: "below" fires as
-        soon as the number is negative, also where the mode begins: the guard bounds the mode.
-        "falling", "rising" and "either" fire where it crosses zero.
-
-        to: the mode that follows; without it the mode stays. reset(t, y): the state that follows;
-        without it the state stays. transition(t, y): both in one, (mode, state), or one of both.
-        These functions may be called more than once for an event.
-
-        terminal: True ends the run, and a number k ends it when the guard fires for the k-th time.
-        from_zero: the order of the zero from which the guard starts whenever the mode begins; only
-        needed if rounding may hide that it is 0 there, or if it is a double zero. smooth: the guard
-        varies as slowly as the state, so that fewer values are enough. yields: of guards that fire
-        together the first one decides what follows; this one gives way to the others.
-        """
-        guard = Guard(
-            name, direction, to, reset, transition, terminal, from_zero, smooth, yields
-        )
-        return self._add(function, f"guard {name!r} of mode {self.name!r}", (guard,))
-
-    def guards(self, function: Function, *guards: Guard) -> "Mode":
-        """Adds guards whose values one function returns, in this order, and returns the mode."""
-        if not guards:
-            raise ValueError("no guards are given; expected at least one")
-        return self._add(function, f"the guards of mode {self.name!r}", guards)
-
-    def _add(self, function: Function, label: str, guards: tuple[Guard, ...]) -> "Mode":
-        _check_function(function, label)
-        names = [guard.name for guard in self.guard_list + guards]
-        for name in names:
-            if names.count(name) > 1:
-                raise ValueError(f"mode {self.name!r} has two guards {name!r}")
-        self._sources.append(_Source(function, label, guards))
-        return self
-
-    def __repr__(self) -> str:
-        names = ", ".join(repr(guard.name) for guard in self.guard_list)
-        return f"Mode({self.name!r}, guards: {names or 'none'})"
-
-
-class HybridSystem:
-    """Modes and what leads from one to another.
-
-    >>> ball = HybridSystem()
-    >>> fly = ball.mode("fly", lambda t, y: [y[1], -9.81])
-    >>> fly.guard("floor", lambda t, y: y[0], reset=lambda t, y: [0.0, -0.5 * y[1]])
-    Mode('fly', guards: 'floor')
-    >>> found = solve(ball, (0.0, 2.5), [4.905, 0.0])
-    >>> found.t_events[0].round(12)
-    array([1., 2.])
-    """
-
-    def __init__(self) -> None:
-        self._modes: dict[str, Mode] = {}
-
-    @property
-    def modes(self) -> tuple[Mode, ...]:
-        """The modes, in the order in which they were added."""
-        return tuple(self._modes.values())
-
-    def mode(self, name: str, right_hand_side: Function) -> Mode:
-        """Adds a mode. right_hand_side(t, y) is the derivative of the state, shape (n,)."""
-        if not isinstance(name, str):
-            raise TypeError(f"{name!r} is not a name of a mode; expected a str")
-        if name in self._modes:
-            raise ValueError(f"there are two modes {name!r}")
-        _check_function(right_hand_side, f"the right-hand side of mode {name!r}")
-        self._modes[name] = mode = Mode(name, right_hand_side)
-        return mode
-
-    def __getitem__(self, name: str) -> Mode:
-        return self._modes[name]
-
-    def __repr__(self) -> str:
-        return f"HybridSystem({', '.join(repr(mode) for mode in self.modes)})"
-
-
-class DenseOutput:
-    """The state at any time of a run, from the polynomial of each step.
-
-    At an event it is the state after it. Outside the run it is NaN.
-    """
-
-    def __init__(self, found: dict[str, Any], names: list[str], start: float) -> None:
-        self._segments = (found["starts"], found["sizes"], found["coefficients"])
-        self._modes = np.append(found["segment_modes"].astype(np.intp), found["end_mode"])
-        self._names = np.array(names)
-        self._end = (found["end_time"], found["end_state"])
-        #: The first and the last time of the run.
-        self.t_min, self.t_max = sorted((start, found["end_time"]))
-
-    def __call__(self, t: ArrayLike) -> Floats:
-        """The state, shape (n,) at a number and (n, k) at k times."""
-        times = np.asarray(t, dtype=np.float64)
-        if times.ndim > 1:
-            raise ValueError(f"t has {times.ndim} dimensions; expected a number or a list")
-        flat = np.ascontiguousarray(times).reshape(-1)
-        rows = _native.evaluate_dense(self._segments, self._end, flat)
-        states: Floats = rows.reshape(flat.size, self._end[1].size).T
-        return states if times.ndim else states[:, 0]
-
-    def mode(self, t: ArrayLike) -> Any:
-        """The mode at each time, or "" outside the run."""
-        times = np.asarray(t, dtype=np.float64)
-        starts, sizes, _ = self._segments
-        sign = -1.0 if sizes.size and sizes[0] < 0.0 else 1.0
-        index = np.searchsorted(sign * starts, sign * times, side="right") - 1
-        index = np.where(times == self._end[0], -1, np.maximum(index, 0))
-        inside = (times >= self.t_min) & (times <= self.t_max)
-        return np.where(inside, self._names[self._modes[index]], "")[()]
-
-
-@dataclass(frozen=True)
-class Solution:
-    """What `solve` found. The names are those of SciPy's `solve_ivp` where it has them."""
-
-    #: Times, shape (k,): of the steps, or those of `t_eval`. A run that ends early ends with its
-    #: last point. Where an event changes the state, the steps have its time twice.
-    t: Floats
-    #: States, shape (n, k).
-    y: Floats
-    #: The mode at each time, shape (k,).
-    mode: NDArray[np.str_]
-    #: The state at any time, if it was asked for.
-    sol: DenseOutput | None
-    #: The times of the events of each name of `event_names`.
-    t_events: list[Floats]
-    #: The states there, before the event changes them, each of shape (events, n).
-    y_events: list[Floats]
-    #: Names of `events`, and then of guards, in the order in which they were added. Guards of
-    #: several modes may share a name.
-    event_names: list[str]
-    #: Everything that fired, in order: time, guard, mode `from` and `to`, state `before` and
-    #: `after` (shape (n,)), flatness, jump and simultaneous. An error of the guard, relative to its
-    #: largest value, moves the event by the error times `flatness`. `jump`: the guard jumps over
-    #: zero. `simultaneous`: guards that vanish there too, a tuple of names; if nothing changes,
-    #: they have fired with this one.
-    events: NDArray[np.void]
-    #: Where a guard came so close to zero that a step had to decide: time, guard, mode and the
-    #: guard's value there, the margin.
-    touches: NDArray[np.void]
-    #: Where a guard changed its sign at a pole, and did not fire: time, guard and mode.
-    poles: NDArray[np.void]
-    #: 0 if the end was reached, 1 if a guard or an event ended the run, and else -1.
-    status: int
-    #: The same in a word: reached_end, ended_by_guard, zeno, switch_limit, step_limit,
-    #: instant_limit or failed.
-    outcome: Outcome
-    #: The same in a sentence.
-    message: str
-    #: Where the switches accumulate, if the outcome is zeno.
-    accumulation: float | None
-    #: Calls of right-hand sides.
-    nfev: int
-    #: Work of the solver, by the names of `stickslip_solver::Statistics`; empty if it failed.
-    statistics: dict[str, int]
-    #: The methods are explicit: no Jacobians, no factors.
-    njev: int = 0
-    nlu: int = 0
-
-    @property
-    def success(self) -> bool:
-        """Whether the run came to a regular end: status 0 or 1."""
-        return self.status >= 0
-
-    def __getitem__(self, name: str) -> Any:
-        if name not in {*self.__dataclass_fields__, "success"}:
-            raise KeyError(name)
-        return getattr(self, name)
-
-    def __repr__(self) -> str:
-        shape = f"y of shape {self.y.shape}, {self.events.size} events, nfev = {self.nfev}"
-        return f"Solution(status={self.status}: {self.message} {shape})"
 
 
 def solve(
@@ -448,9 +87,9 @@ def solve(
     if end < start:
         table.refuse_changes()
     found = _native.run_hybrid(
-        table.modes(), table.args, (first, start, state), end, settings, (times, dense_output)
+        table.modes(), table.args, (first, start, state), end, settings, (times, bool(dense_output))
     )
-    return table.solution(found, state.size, start, dense_output)
+    return table.solution(found, state.size, start, bool(dense_output))
 
 
 class _Table:
@@ -663,18 +302,6 @@ def _callee(function: Function) -> Any:
     return function
 
 
-def _check_function(function: Any, what: str) -> None:
-    if isinstance(function, Compiled):
-        return
-    if hasattr(function, "address") and hasattr(function, "ctypes"):
-        raise TypeError(f"{what} is a cfunc; expected Compiled(cfunc), or a callable")
-    if type(function).__name__ == "LowLevelCallable":
-        raise TypeError(f"{what} is a LowLevelCallable; expected Compiled(...) of it")
-    if not callable(function):
-        kind = type(function).__name__
-        raise TypeError(f"{what} is of type {kind}; expected a callable or Compiled")
-
-
 def _event_list(events: Function | Iterable[Function] | None) -> list[Function]:
     if events is None:
         return []
@@ -721,34 +348,6 @@ def _method(method: str) -> str:
             "and no implicit ones"
         )
     return found
-
-
-def _reals(values: ArrayLike, what: str) -> Floats:
-    """A copy as doubles."""
-    array = np.asarray(values)
-    if array.dtype.kind == "c":
-        raise TypeError(f"{what} is complex; expected real numbers (real and imaginary parts)")
-    if array.dtype.kind not in "biufO" or (array.ndim == 0 and array.dtype.kind == "O"):
-        raise TypeError(f"{what} is {values!r}; expected numbers")
-    if array.dtype.kind == "O":
-        array = np.array([float(one) for one in array.flat]).reshape(array.shape)
-    return np.array(array, dtype=np.float64, order="C")
-
-
-def _number(value: Any, what: str) -> float:
-    array = _reals(value, what)
-    if array.size != 1:
-        if array.size and (array == array.flat[0]).all():
-            return float(array.flat[0])
-        raise ValueError(f"{what} has {array.size} values; expected one number for all components")
-    return float(array.reshape(-1)[0])
-
-
-def _count(value: int, what: str) -> int:
-    number = operator.index(value)
-    if not 1 <= number < 2**63:
-        raise ValueError(f"{what} = {value}; expected 1 or above")
-    return number
 
 
 def _span(t_span: ArrayLike) -> tuple[float, float]:

@@ -283,7 +283,9 @@ def _known(place: str, fields: Any, *names: str) -> None:
     for name in fields:
         if name not in names:
             expected = ", ".join(name for name in names if name != "comment")
-            raise ValueError(f"{place}{'.' if place else ''}{name} is not known; expected {expected}")
+            raise ValueError(
+                f"{place}{'.' if place else ''}{name} is not known; expected {expected}"
+            )
 
 
 def _object(place: str, fields: Mapping[str, Any], name: str) -> Any:

@@ -24,7 +24,11 @@ ATTRIBUTES: dict[str, dict[str, Any]] = {
     "eps_t": {"long_name": "coefficient of tangential restitution", "units": "1"},
     "eps_n": {"long_name": "coefficient of normal restitution", "units": "1"},
     "contact_time": {"long_name": "scaled contact time", "units": "1"},
-    "switch_count": {"long_name": "number of switches", "units": "1", "missing_value": -1},
+    "switch_count": {
+        "long_name": "number of switches",
+        "units": "1",
+        "comment": "-1 where there is no collision",
+    },
 }
 
 

@@ -1,6 +1,5 @@
-"""Every ```python block of docs/python runs; the blocks of a page follow each other."""
+"""Every ```python block of the docs runs; the blocks of a page follow each other."""
 
-import os
 import re
 import subprocess
 import sys
@@ -8,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-DOCS = Path(__file__).parents[2] / "docs" / "python"
-PAGES = sorted(DOCS.glob("*.md"))
+ROOT = Path(__file__).parents[2]
+PAGES = [ROOT / "python" / "README.md", *sorted((ROOT / "docs" / "python").glob("*.md"))]
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
@@ -30,12 +29,9 @@ def test_blocks_run(page: Path, tmp_path: Path) -> None:
         script[first : first + len(lines)] = lines
     path = tmp_path / f"{page.stem}.py"
     path.write_text("\n".join(script), encoding="utf-8")
-    package = str(Path(__file__).parents[1])
-    paths = os.pathsep.join([package, *filter(None, [os.environ.get("PYTHONPATH")])])
     found = subprocess.run(
         [sys.executable, str(path)],
         cwd=tmp_path,
-        env=os.environ | {"PYTHONPATH": paths},
         capture_output=True,
         text=True,
         timeout=300,

@@ -250,13 +250,19 @@ def floor(t, y):
 
 
 def test_args():
-    found = solve(lambda t, y, k, m: -k * y / m, (0, 1), [1.0], args=(2, 4),
-                  events=lambda t, y, k, m: y[0] - k / m - 0.3)
+    found = solve(
+        lambda t, y, k, m: -k * y / m,
+        (0, 1),
+        [1.0],
+        args=(2, 4),
+        events=lambda t, y, k, m: y[0] - k / m - 0.3,
+    )
     assert abs(found.y[0, -1] - math.exp(-0.5)) < 1e-10
     assert abs(found.t_events[0][0] + 2 * math.log(0.8)) < 1e-10
     system = HybridSystem()
     system.mode("on", lambda t, y, k: [k]).guard(
-        "full", lambda t, y, k: k - y[0], reset=lambda t, y, k: [y[0] - k])
+        "full", lambda t, y, k: k - y[0], reset=lambda t, y, k: [y[0] - k]
+    )
     assert np.allclose(solve(system, (0, 3.5), [0.0], args=(2.0,)).t_events[0], [1, 2, 3])
     with pytest.raises(TypeError, match=r"args=\(3,\)"):
         solve(decay, (0, 1), [1.0], args=3)
@@ -307,7 +313,8 @@ def test_backwards():
         solve(ball(), (1.0, 0.0), [1.0, 0.0])
     stone = HybridSystem()
     stone.mode("fly", lambda t, y: [y[1], -G]).guard(
-        "1 m", lambda t, y: y[0] - 1.0, direction="rising", terminal=True)
+        "1 m", lambda t, y: y[0] - 1.0, direction="rising", terminal=True
+    )
     found = solve(stone, (0.0, -10.0), [0.0, -9.81])
     assert abs(found.t[-1] - (-1.0 + math.sqrt(1.0 - 2.0 / 9.81))) < 1e-12
 
@@ -417,8 +424,14 @@ def test_transitions():
 
 def test_many_events():
     count = 2000
-    found = solve(lambda t, y: [1.0], (0, count + 0.5), [0.25], t_eval=[], max_step=2,
-                  events=lambda t, y: math.sin(math.pi * y[0]))
+    found = solve(
+        lambda t, y: [1.0],
+        (0, count + 0.5),
+        [0.25],
+        t_eval=[],
+        max_step=2,
+        events=lambda t, y: math.sin(math.pi * y[0]),
+    )
     assert found.t_events[0].size == count
     assert np.abs(found.t_events[0] - np.arange(0.75, count)).max() < 1e-9
     limited = solve(ball(1.0), (0, 100), [4.905, 0.0], max_switches=7)
@@ -464,14 +477,16 @@ def test_callables_and_compiled_functions_agree_bit_for_bit():
     held = ctypes.cast(parameters.ctypes.data, ctypes.c_void_p)
     with_data = HybridSystem()
     with_data.mode("fly", Compiled(LowLevelCallable(c_fly.ctypes, held))).guard(
-        "floor", Compiled(c_height.address), reset=Compiled(c_bounce.ctypes, [0.5]))
+        "floor", Compiled(c_height.address), reset=Compiled(c_bounce.ctypes, [0.5])
+    )
     span, start = (0.0, 2.9), [4.905, 0.0]
     python = solve(ball(), span, start)
     for system in (compiled_ball(), compiled_ball(wrapped), with_data):
         assert_same(solve(system, span, start), python)
     mixed = HybridSystem()
     mixed.mode("fly", Compiled(c_fly, [G])).guard(
-        "floor", lambda t, y: y[0], reset=lambda t, y: np.array([0.0, -0.5 * y[1]]))
+        "floor", lambda t, y: y[0], reset=lambda t, y: np.array([0.0, -0.5 * y[1]])
+    )
     assert_same(solve(mixed, span, start), python)
     jitted = njit(lambda t, y: np.array([y[1], -y[0]]))
     one = solve(circle, (0, 9), [0.0, 1.0], events=lambda t, y: y[0] - 0.5)
@@ -611,6 +626,17 @@ def test_ctrl_c_stops_a_compiled_run():
     start = time.perf_counter()
     with pytest.raises(KeyboardInterrupt):
         solve(Compiled(c_circle), (0, 1e9), [0.0, 1.0], t_eval=[])
+    assert time.perf_counter() - start < 5.0
+    timer.join()
+
+
+def test_callables_without_bytecode_let_others_run():
+    # A ufunc writes its second argument. It does not look for signals, nor for other threads.
+    timer = threading.Timer(0.2, _thread.interrupt_main)
+    timer.start()
+    start = time.perf_counter()
+    with pytest.raises(KeyboardInterrupt):
+        solve(np.cos, (0, 1e12), [1.0], t_eval=[], max_step=0.1)
     assert time.perf_counter() - start < 5.0
     timer.join()
 
@@ -827,9 +853,17 @@ def test_ten_thousand_components():
 
 def test_options():
     for name, value in [
-        ("method", "Radau"), ("rtol", 0.0), ("rtol", [1e-3, 1e-4]), ("atol", -1.0), ("atol", None),
-        ("max_step", 0.0), ("first_step", -1.0), ("max_switches", 0), ("max_switches", 1.5),
-        ("guard_scale", 0.0), ("guard_scale", "a"),
+        ("method", "Radau"),
+        ("rtol", 0.0),
+        ("rtol", [1e-3, 1e-4]),
+        ("atol", -1.0),
+        ("atol", None),
+        ("max_step", 0.0),
+        ("first_step", -1.0),
+        ("max_switches", 0),
+        ("max_switches", 1.5),
+        ("guard_scale", 0.0),
+        ("guard_scale", "a"),
     ]:
         with pytest.raises((TypeError, ValueError), match=f"{name}|integer"):
             solve(decay, (0, 1), [1.0, 2.0], **{name: value})

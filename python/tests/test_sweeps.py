@@ -18,8 +18,9 @@ import numpy as np
 import pytest
 
 import stickslip
-from stickslip import sweeps
-from stickslip.sweeps import QUANTITIES, SCHEMA, sweep, write_sweep
+from stickslip import _blocks, _stores
+from stickslip._blocks import QUANTITIES, SCHEMA
+from stickslip.sweeps import sweep, write_sweep
 
 xr = pytest.importorskip("xarray")
 da = pytest.importorskip("dask.array")
@@ -90,7 +91,7 @@ def test_two_quantities_in_any_order(order: Any) -> None:
 def test_values_do_not_depend_on_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
     expected = digest(sweep(KAPPA, PSI, [0.0, 0.1, 0.2], quantities=ALL))
     for piece in (1, 7, 50):
-        monkeypatch.setattr(sweeps, "_PIECE", piece)
+        monkeypatch.setattr(_blocks, "_PIECE", piece)
         assert digest(sweep(KAPPA, PSI, [0.0, 0.1, 0.2], quantities=ALL)) == expected
 
 
@@ -455,10 +456,10 @@ def test_what_is_no_store_is_refused(tmp_path: Path) -> None:
 def test_another_build_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     store = tmp_path / "s"
     write_sweep(store, **SMALL)
-    build = sweeps._build()
+    build = _stores.build_of_process()
     for change in ({"stickslip_version": "0.0.9"}, {"rounding": "separate products"}):
         with monkeypatch.context() as patch:
-            patch.setattr(sweeps, "_build", lambda change=change: build | change)
+            patch.setattr(_stores, "build_of_process", lambda change=change: build | change)
             with pytest.raises(ValueError, match="last digits differ"):
                 write_sweep(store, **SMALL)
     write_sweep(store, **SMALL)
@@ -466,7 +467,7 @@ def test_another_build_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 def test_worker_that_does_not_see_the_store(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="all workers must see the same files"):
-        sweeps._write_block(str(tmp_path / "s"), (0, 0), "nan", None)
+        _stores.write_block(str(tmp_path / "s"), (0, 0), "nan", None)
     assert not os.listdir(tmp_path)
 
 

@@ -7,7 +7,7 @@ use stickslip_model::{CollisionError, EngineError, InvalidParameter};
 use stickslip_plane::atlas::AtlasError;
 
 create_exception!(
-    _native,
+    stickslip,
     ComputationError,
     PyRuntimeError,
     "A collision, an atlas or a study has no result, though its parameters are in range."

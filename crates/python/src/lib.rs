@@ -4,8 +4,8 @@
 //! arrays, or the JSON that the program prints. Names, shapes and units are documented in the Python
 //! functions that call these, in `python/stickslip`.
 //!
-//! Start reading in `arrays`; then `collision`, `impacts`, `planes`, `studies` (results), `engines`,
-//! `parallel` and `failure` (what they share).
+//! Start reading in `arrays`; then `collision`, `impacts`, `planes`, `studies` (results), `hybrid`
+//! (systems of one's own), `engines`, `parallel` and `failure` (what they share).
 
 mod arrays;
 mod collision;

@@ -1,0 +1,118 @@
+"""What a run gives: points, events, and the state at any time."""
+
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip import _native
+
+Floats: TypeAlias = NDArray[np.float64]
+Outcome: TypeAlias = Literal[
+    "reached_end",
+    "ended_by_guard",
+    "zeno",
+    "switch_limit",
+    "step_limit",
+    "instant_limit",
+    "failed",
+]
+
+
+class DenseOutput:
+    """The state at any time of a run, from the polynomial of each step.
+
+    At an event it is the state after it. Outside the run it is NaN.
+    """
+
+    def __init__(self, found: dict[str, Any], names: list[str], start: float) -> None:
+        self._segments = (found["starts"], found["sizes"], found["coefficients"])
+        self._modes = np.append(found["segment_modes"].astype(np.intp), found["end_mode"])
+        self._names = np.array(names)
+        self._end = (found["end_time"], found["end_state"])
+        #: The first and the last time of the run.
+        self.t_min, self.t_max = sorted((start, found["end_time"]))
+
+    def __call__(self, t: ArrayLike) -> Floats:
+        """The state, shape (n,) at a number and (n, k) at k times."""
+        times = np.asarray(t, dtype=np.float64)
+        if times.ndim > 1:
+            raise ValueError(f"t has {times.ndim} dimensions; expected a number or a list")
+        flat = np.ascontiguousarray(times).reshape(-1)
+        rows = _native.evaluate_dense(self._segments, self._end, flat)
+        states: Floats = rows.reshape(flat.size, self._end[1].size).T
+        return states if times.ndim else states[:, 0]
+
+    def mode(self, t: ArrayLike) -> Any:
+        """The mode at each time, or "" outside the run."""
+        times = np.asarray(t, dtype=np.float64)
+        starts, sizes, _ = self._segments
+        sign = -1.0 if sizes.size and sizes[0] < 0.0 else 1.0
+        index = np.searchsorted(sign * starts, sign * times, side="right") - 1
+        index = np.where(times == self._end[0], -1, np.maximum(index, 0))
+        inside = (times >= self.t_min) & (times <= self.t_max)
+        return np.where(inside, self._names[self._modes[index]], "")[()]
+
+
+@dataclass(frozen=True)
+class Solution:
+    """What `solve` found. The names are those of SciPy's `solve_ivp` where it has them."""
+
+    #: Times, shape (k,): of the steps, or those of `t_eval`. A run that ends early ends with its
+    #: last point. Where an event changes the state, the steps have its time twice.
+    t: Floats
+    #: States, shape (n, k).
+    y: Floats
+    #: The mode at each time, shape (k,).
+    mode: NDArray[np.str_]
+    #: The state at any time, if it was asked for.
+    sol: DenseOutput | None
+    #: The times of the events of each name of `event_names`.
+    t_events: list[Floats]
+    #: The states there, before the event changes them, each of shape (events, n).
+    y_events: list[Floats]
+    #: Names of `events`, and then of guards, in the order in which they were added. Guards of
+    #: several modes may share a name.
+    event_names: list[str]
+    #: Everything that fired, in order: time, guard, mode `from` and `to`, state `before` and
+    #: `after` (shape (n,)), flatness, jump and simultaneous. An error of the guard, relative to its
+    #: largest value, moves the event by the error times `flatness`. `jump`: the guard jumps over
+    #: zero. `simultaneous`: guards that vanish there too, a tuple of names; if nothing changes,
+    #: they have fired with this one.
+    events: NDArray[np.void]
+    #: Where a guard came so close to zero that a step had to decide: time, guard, mode and the
+    #: guard's value there, the margin.
+    touches: NDArray[np.void]
+    #: Where a guard changed its sign at a pole, and did not fire: time, guard and mode.
+    poles: NDArray[np.void]
+    #: 0 if the end was reached, 1 if a guard or an event ended the run, and else -1.
+    status: int
+    #: The same in a word: reached_end, ended_by_guard, zeno, switch_limit, step_limit,
+    #: instant_limit or failed.
+    outcome: Outcome
+    #: The same in a sentence.
+    message: str
+    #: Where the switches accumulate, if the outcome is zeno.
+    accumulation: float | None
+    #: Calls of right-hand sides.
+    nfev: int
+    #: Work of the solver, by the names of `stickslip_solver::Statistics`; empty if it failed.
+    statistics: dict[str, int]
+    #: The methods are explicit: no Jacobians, no factors.
+    njev: int = 0
+    nlu: int = 0
+
+    @property
+    def success(self) -> bool:
+        """Whether the run came to a regular end: status 0 or 1."""
+        return self.status >= 0
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in {*self.__dataclass_fields__, "success"}:
+            raise KeyError(name)
+        return getattr(self, name)
+
+    def __repr__(self) -> str:
+        shape = f"y of shape {self.y.shape}, {self.events.size} events, nfev = {self.nfev}"
+        return f"Solution(status={self.status}: {self.message} {shape})"

@@ -1,0 +1,181 @@
+"""Systems of modes, with what ends them and what follows."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stickslip._compiled import Compiled, Function
+
+Floats: TypeAlias = NDArray[np.float64]
+Direction: TypeAlias = Literal["below", "falling", "rising", "either"]
+
+
+@dataclass(frozen=True)
+class Guard:
+    """When a mode ends, and what follows; see `Mode.guard`."""
+
+    name: str
+    direction: Direction = "below"
+    to: "str | Mode | None" = None
+    reset: Function | None = None
+    transition: Callable[..., Any] | None = None
+    terminal: bool | int = False
+    from_zero: int = 0
+    smooth: bool = False
+    yields: bool = False
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.name, str):
+            raise TypeError(f"{self.name!r} is not a name of a guard; expected a str")
+        about = f"guard {self.name!r}"
+        if self.direction not in get_args(Direction):
+            raise ValueError(
+                f"{about}: direction = {self.direction!r}; expected one of {get_args(Direction)}"
+            )
+        for name, value in (("terminal", int(self.terminal)), ("from_zero", self.from_zero)):
+            if not 0 <= value < 2**31:
+                raise ValueError(f"{about}: {name} = {value}; expected 0 or above")
+        if self.transition is not None and (self.to is not None or self.reset is not None):
+            raise ValueError(f"{about}: a transition says it all; expected no to and no reset")
+        if isinstance(self.transition, Compiled):
+            raise TypeError(f"{about}: a transition is a callable; a reset may be compiled")
+        for name, function in (("reset", self.reset), ("transition", self.transition)):
+            if function is not None:
+                _check_function(function, f"{name} of {about}")
+        if self.direction == "below" and not self.changes and self.terminal != 1:
+            raise ValueError(
+                f"{about} would fire for ever, because it stays below zero: expected to, reset, "
+                'transition or terminal=True, or direction = "falling"'
+            )
+
+    @property
+    def changes(self) -> bool:
+        """Whether anything follows when it fires."""
+        return not (self.to is None and self.reset is None and self.transition is None)
+
+
+@dataclass(frozen=True)
+class _Source:
+    """A function that returns the values of successive guards."""
+
+    function: Function
+    label: str
+    guards: tuple[Guard, ...]
+
+
+class Mode:
+    """A smooth regime of a `HybridSystem`, which makes it."""
+
+    def __init__(self, name: str, right_hand_side: Function) -> None:
+        self.name = name
+        self.right_hand_side = right_hand_side
+        self._sources: list[_Source] = []
+
+    @property
+    def guard_list(self) -> tuple[Guard, ...]:
+        """The guards, in the order in which they were added."""
+        return tuple(guard for source in self._sources for guard in source.guards)
+
+    def guard(
+        self,
+        name: str,
+        function: Function,
+        *,
+        to: "str | Mode | None" = None,
+        reset: Function | None = None,
+        transition: Callable[..., Any] | None = None,
+        direction: Direction = "below",
+        terminal: bool | int = False,
+        from_zero: int = 0,
+        smooth: bool = False,
+        yields: bool = False,
+    ) -> "Mode":
+        """Adds a guard, and returns the mode.
+
+        function(t, y) is a number, and the guard fires at its zeros. direction: "below" fires as
+        soon as the number is negative, also where the mode begins: the guard bounds the mode.
+        "falling", "rising" and "either" fire where it crosses zero.
+
+        to: the mode that follows; without it the mode stays. reset(t, y): the state that follows;
+        without it the state stays. transition(t, y): both in one, (mode, state), or one of both.
+        These functions may be called more than once for an event.
+
+        terminal: True ends the run, and a number k ends it when the guard fires for the k-th time.
+        from_zero: the order of the zero from which the guard starts whenever the mode begins; only
+        needed if rounding may hide that it is 0 there, or if it is a double zero. smooth: the guard
+        varies as slowly as the state, so that fewer values are enough. yields: of guards that fire
+        together the first one decides what follows; this one gives way to the others.
+        """
+        guard = Guard(name, direction, to, reset, transition, terminal, from_zero, smooth, yields)
+        return self._add(function, f"guard {name!r} of mode {self.name!r}", (guard,))
+
+    def guards(self, function: Function, *guards: Guard) -> "Mode":
+        """Adds guards whose values one function returns, in this order, and returns the mode."""
+        if not guards:
+            raise ValueError("no guards are given; expected at least one")
+        return self._add(function, f"the guards of mode {self.name!r}", guards)
+
+    def _add(self, function: Function, label: str, guards: tuple[Guard, ...]) -> "Mode":
+        _check_function(function, label)
+        names = [guard.name for guard in self.guard_list + guards]
+        for name in names:
+            if names.count(name) > 1:
+                raise ValueError(f"mode {self.name!r} has two guards {name!r}")
+        self._sources.append(_Source(function, label, guards))
+        return self
+
+    def __repr__(self) -> str:
+        names = ", ".join(repr(guard.name) for guard in self.guard_list)
+        return f"Mode({self.name!r}, guards: {names or 'none'})"
+
+
+class HybridSystem:
+    """Modes and what leads from one to another.
+
+    >>> ball = HybridSystem()
+    >>> fly = ball.mode("fly", lambda t, y: [y[1], -9.81])
+    >>> fly.guard("floor", lambda t, y: y[0], reset=lambda t, y: [0.0, -0.5 * y[1]])
+    Mode('fly', guards: 'floor')
+    >>> found = solve(ball, (0.0, 2.5), [4.905, 0.0])
+    >>> found.t_events[0].round(12)
+    array([1., 2.])
+    """
+
+    def __init__(self) -> None:
+        self._modes: dict[str, Mode] = {}
+
+    @property
+    def modes(self) -> tuple[Mode, ...]:
+        """The modes, in the order in which they were added."""
+        return tuple(self._modes.values())
+
+    def mode(self, name: str, right_hand_side: Function) -> Mode:
+        """Adds a mode. right_hand_side(t, y) is the derivative of the state, shape (n,)."""
+        if not isinstance(name, str):
+            raise TypeError(f"{name!r} is not a name of a mode; expected a str")
+        if name in self._modes:
+            raise ValueError(f"there are two modes {name!r}")
+        _check_function(right_hand_side, f"the right-hand side of mode {name!r}")
+        self._modes[name] = mode = Mode(name, right_hand_side)
+        return mode
+
+    def __getitem__(self, name: str) -> Mode:
+        return self._modes[name]
+
+    def __repr__(self) -> str:
+        return f"HybridSystem({', '.join(repr(mode) for mode in self.modes)})"
+
+
+def _check_function(function: Any, what: str) -> None:
+    if isinstance(function, Compiled):
+        return
+    if hasattr(function, "address") and hasattr(function, "ctypes"):
+        raise TypeError(f"{what} is a cfunc; expected Compiled(cfunc), or a callable")
+    if type(function).__name__ == "LowLevelCallable":
+        raise TypeError(f"{what} is a LowLevelCallable; expected Compiled(...) of it")
+    if not callable(function):
+        kind = type(function).__name__
+        raise TypeError(f"{what} is of type {kind}; expected a callable or Compiled")
