@@ -13,7 +13,84 @@ pub struct DynamicDense<'a> {
     pub(super) r: &'a [f64],
 }
 
-impl DynamicDense<'_> {
+impl<'a> DynamicDense<'a> {
+    /// The coefficients of the polynomial: of each component the first one, then of each the second
+    /// one, and so on. [`Self::from_coefficients`] makes the same dense output of them, so that it
+    /// can be kept.
+    ///
+    /// ```
+    /// use stickslip_solver::{
+    ///     Dop853, DynamicDense, DynamicObserver, DynamicStart, DynamicSystem, Guard, Options,
+    ///     run_dynamic,
+    /// };
+    ///
+    /// struct Decay;
+    ///
+    /// impl DynamicSystem for Decay {
+    ///     type Mode = ();
+    ///
+    ///     fn field(&self, (): (), _s: f64, y: &[f64], slope: &mut [f64]) {
+    ///         slope.iter_mut().zip(y).for_each(|(slope, y)| *slope = -y);
+    ///     }
+    ///     fn guards(&self, (): ()) -> &[Guard] {
+    ///         &[]
+    ///     }
+    ///     fn guard_values(&self, (): (), _s: f64, _y: &[f64], _values: &mut [f64]) {}
+    /// }
+    ///
+    /// /// Starts, sizes and coefficients of all steps.
+    /// #[derive(Default)]
+    /// struct Kept(Vec<(f64, f64, Vec<f64>)>);
+    ///
+    /// impl DynamicObserver<()> for Kept {
+    ///     const WANTS_SEGMENTS: bool = true;
+    ///
+    ///     fn on_segment(&mut self, (): (), dense: &DynamicDense<'_>) {
+    ///         self.0.push((dense.start(), dense.size(), dense.coefficients().to_vec()));
+    ///     }
+    /// }
+    ///
+    /// let start = DynamicStart { mode: (), s: 0.0, state: &[1.0, 2.0] };
+    /// let mut kept = Kept::default();
+    /// let end = run_dynamic(Dop853, &Decay, start, 1.0, &Options::default(), &mut kept)?;
+    /// let (s, h, coefficients) = kept.0.last().expect("it has steps");
+    /// let last = DynamicDense::from_coefficients(*s, *h, 2, coefficients).expect("two components");
+    /// assert!((last.at(1.0)[1] - end.state[1]).abs() < 1e-15);
+    /// let half = s + 0.5 * h;
+    /// assert!((last.at(0.5)[1] - 2.0 * (-half).exp()).abs() < 1e-9);
+    /// # Ok::<(), stickslip_solver::RunError>(())
+    /// ```
+    #[must_use]
+    pub fn coefficients(&self) -> &'a [f64] {
+        &self.r[..(self.degree + 1) * self.n]
+    }
+
+    /// The dense output of the step from `start` of this size, whose [`Self::coefficients`] were
+    /// kept. It is `None` if their number is not a multiple of the dimension, or 0 though there are
+    /// components.
+    ///
+    /// ```
+    /// use stickslip_solver::DynamicDense;
+    ///
+    /// // 1 + 4θ and 2 + 5θ.
+    /// let line = DynamicDense::from_coefficients(0.0, 0.5, 2, &[1.0, 2.0, 4.0, 5.0]);
+    /// assert_eq!(line.map(|line| line.at(0.5)), Some(vec![3.0, 4.5]));
+    /// assert!(DynamicDense::from_coefficients(0.0, 0.5, 2, &[1.0, 2.0, 4.0]).is_none());
+    /// assert!(DynamicDense::from_coefficients(0.0, 0.5, 2, &[]).is_none());
+    /// assert!(DynamicDense::from_coefficients(0.0, 0.5, 0, &[]).is_some());
+    /// ```
+    #[must_use]
+    pub fn from_coefficients(
+        start: f64,
+        size: f64,
+        dimension: usize,
+        coefficients: &'a [f64],
+    ) -> Option<Self> {
+        let terms = coefficients.len().checked_div(dimension).unwrap_or(1);
+        let fits = terms > 0 && terms * dimension == coefficients.len();
+        fits.then(|| Self { s: start, h: size, n: dimension, degree: terms - 1, r: coefficients })
+    }
+
     /// The place where the step starts.
     #[must_use]
     pub fn start(&self) -> f64 {
