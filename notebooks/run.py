@@ -41,11 +41,11 @@ def main() -> int:
     chosen = [Path(name).stem for name in parser.parse_args().name] or list(known)
     unknown = [name for name in chosen if name not in known]
     if unknown or not chosen:
-        parser.error(f"there is no notebook {' '.join(unknown)}; expected some of {', '.join(known)}")
+        parser.error(f"no notebook {' '.join(unknown)}; expected some of {', '.join(known)}")
     failures = 0
     for name in chosen:
         begin = time.monotonic()
-        notebook, failure = run(known[name])
+        _, failure = run(known[name])
         state = "FAILED after " if failure else ""
         print(f"{name}: {state}{time.monotonic() - begin:.1f} s", flush=True)
         if failure:
@@ -74,7 +74,8 @@ def run(path: Path) -> tuple[Any, str | None]:
         message = f"{notebook.cells[started[-1]].source if started else ''}\n{error}"
     else:
         return notebook, None
-    return notebook, f"cell {started[-1] if started else 0} of {path.name}, counted from 0: {message}"
+    place = started[-1] if started else 0
+    return notebook, f"cell {place} of {path.name}, counted from 0: {message}"
 
 
 if __name__ == "__main__":
