@@ -20,7 +20,7 @@ pub fn geojson(verified: &VerifiedAtlas) -> FeatureCollection {
     document_geojson(&verified.atlas, &Document::new(verified))
 }
 
-/// As [`geojson`], of an atlas with its document.
+/// As [`geojson()`], of an atlas with its document.
 #[must_use]
 pub fn document_geojson(atlas: &Atlas, document: &Document) -> FeatureCollection {
     let lines = atlas.polylines();
