@@ -39,6 +39,8 @@ const LIMIT: usize = 20_000;
 const GROWS: f64 = 4.0;
 /// The number of widths from a pole where it is compared with its surroundings.
 const AROUND: f64 = 64.0;
+/// A value that is this part of those on both sides of it is near a zero.
+const VANISHES: f64 = 1e-3;
 /// On a step of which this part cannot be told from a point, time is resolved poorly.
 const SHORT: f64 = 0.01;
 /// The least part of the step that may be a plateau. Differences of a guard are zero on shorter ones
@@ -172,8 +174,8 @@ pub(crate) fn first_crossing(
                 Some((low, at_low)) if at_low >= 0.0 && value < 0.0 => {
                     let (a, b) = ((low, at_low), (theta, value));
                     let guess = root(|theta| quotient.at(theta), a, b);
-                    if is_pole(quotient, a, b, guess, task.resolution) {
-                        notice(Notice::Pole(guess));
+                    if let Some(place) = pole(quotient, a, b, guess, task.resolution) {
+                        notice(Notice::Pole(place));
                         // A domain ends at a pole too.
                         if !task.domain {
                             before = Some((theta, value));
@@ -221,29 +223,34 @@ fn is_flat(quotient: &mut Quotient<'_>, rounding: f64) -> bool {
     zero > PLATEAU && quotient.curve.dense(theta).abs() * (zero / theta) > 16.0 * rounding
 }
 
-/// Whether a curve changes its sign between two places at a pole: its values grow towards `guess`,
-/// where the sign seems to change, or towards both places if they are close together.
-fn is_pole(
+/// The place of a pole at which a curve changes its sign between two places, near `guess`. The
+/// result is `None` if it is no pole.
+///
+/// The places are first brought together as closely as time is resolved. What the values are there
+/// is compared with those at the places, or with those around them if these are close to the pole
+/// already. Without the first step, a guard that goes up and down often would pass for a pole where
+/// the places around are near its other zeros.
+fn pole(
     quotient: &mut Quotient<'_>,
     low: (f64, f64),
     high: (f64, f64),
     guess: f64,
     resolution: f64,
-) -> bool {
-    let size = low.1.max(-high.1);
+) -> Option<f64> {
+    let (least, size) = (low.1.min(-high.1), low.1.max(-high.1));
     let width = high.0 - low.0;
-    if width < NARROWEST {
-        let mut at = |theta: f64| quotient.at(theta.clamp(f64::MIN_POSITIVE, 1.0)).abs();
-        let around = at(low.0 - AROUND * width).max(at(high.0 + AROUND * width));
-        if size > GROWS * around {
-            return true;
-        }
+    let close = width < NARROWEST;
+    // Nothing tells more quickly that it is a zero.
+    let enough = if close { VANISHES * least } else { 2.0 * size };
+    if quotient.at(guess).abs() <= enough {
+        return None;
     }
-    if quotient.at(guess).abs() <= 2.0 * size {
-        return false;
-    }
-    let (a, b) = narrow(|theta| quotient.at(theta), low, high, resolution);
-    a.1.max(-b.1) > GROWS * size
+    let mut at = |theta: f64| quotient.at(theta.clamp(f64::MIN_POSITIVE, 1.0));
+    let (a, b) = narrow(&mut at, low, high, resolution);
+    let near = a.1.max(-b.1);
+    let mut around = || at(low.0 - AROUND * width).abs().max(at(high.0 + AROUND * width).abs());
+    let grows = near > GROWS * size || close && near > GROWS * around();
+    grows.then_some(0.5 * (a.0 + b.0))
 }
 
 /// The last sign that a curve shows on a step, or 0 if it shows none. The result is `None` if a

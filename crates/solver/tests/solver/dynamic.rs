@@ -58,10 +58,10 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> DynamicSystem for Of
 }
 
 /// A system of one mode from closures.
-struct Plain<F, V> {
-    field: F,
-    guards: Vec<Guard>,
-    values: V,
+pub struct Plain<F, V> {
+    pub field: F,
+    pub guards: Vec<Guard>,
+    pub values: V,
 }
 
 impl<'a, F, V> Plain<F, V>
@@ -70,7 +70,7 @@ where
     V: Fn(f64, &[f64], &mut [f64]) + 'a,
 {
     /// The same system as one type for all closures, so that runs are compiled once.
-    fn boxed(self) -> Boxed<'a> {
+    pub fn boxed(self) -> Boxed<'a> {
         Boxed { field: Box::new(self.field), guards: self.guards, values: Box::new(self.values) }
     }
 }
@@ -78,7 +78,7 @@ where
 type Function<'a> = Box<dyn Fn(f64, &[f64], &mut [f64]) + 'a>;
 
 /// A system of one mode.
-struct Boxed<'a> {
+pub struct Boxed<'a> {
     field: Function<'a>,
     guards: Vec<Guard>,
     values: Function<'a>,

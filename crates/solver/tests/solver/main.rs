@@ -11,6 +11,7 @@
 //! | `margins` | margins with a closed form |
 //! | `properties` | what holds of random systems; `checks` says it, for the fuzz targets too |
 //! | `planted_kinds` | random guards of every kind: steep, fast, kinked, with jumps and poles |
+//! | `fast_guards` | black boxes that go up and down often on one step, and poles on long steps |
 //! | `singular` | guards without bounds or without a value somewhere |
 //! | `strangers` | systems that nobody here designed for |
 //! | `dynamic` | systems whose dimension is known at run time |
@@ -22,6 +23,7 @@ mod any;
 mod checks;
 mod dynamic;
 mod event_battery;
+mod fast_guards;
 mod guard_rounding;
 mod margins;
 mod methods;
