@@ -451,7 +451,6 @@ def test_guards_that_change_fast():
     assert np.abs(found.t_events[0] - crossings).max() < 1e-12
 
 
-@pytest.mark.xfail(strict=True, reason="the solver takes one of 955 crossings for a pole")
 def test_guards_that_change_fast_on_long_steps():
     found = solve(lambda t, y: [1.0], (0, 10), [0.0], events=fast, guard_scale=0.01)
     assert found.t_events[0].size == 955 and found.poles.size == 0

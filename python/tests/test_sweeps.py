@@ -637,7 +637,7 @@ def test_page_of_the_documentation(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 
 def test_worker_of_another_build_is_refused(tmp_path: Path) -> None:
-    if not stickslip._native.has_fused_products():
+    if "_x86_64_v3" not in str(stickslip._native.__file__):
         pytest.skip("there is one build only")
     store = tmp_path / "s"
     with pytest.raises(ValueError, match="kappa = -2.0"):
