@@ -1,21 +1,18 @@
 //! The names of the layouts of JSON that the program writes. The number at the end rises when a
 //! field disappears or changes its meaning.
 
+use stickslip_model::document;
 use stickslip_plane::atlas;
 use stickslip_reproduction::statements;
 use stickslip_studies::{convergence, stiff_springs};
 
-/// The layout of a collision.
-pub const COLLISION: &str = "stickslip.collision/1";
-/// The layout of an impact in SI units.
-pub const IMPACT: &str = "stickslip.impact/1";
 /// The layout of the report that `reproduce` writes.
 pub const REPORT: &str = "stickslip.report/1";
 
 /// All layouts, those of the libraries included.
 pub const ALL: [&str; 7] = [
-    COLLISION,
-    IMPACT,
+    document::COLLISION,
+    document::IMPACT,
     atlas::SCHEMA,
     convergence::SCHEMA,
     stiff_springs::SCHEMA,

@@ -2,7 +2,7 @@
 //!
 //! A further engine is a module beside [`integrator`] and [`exact`] and a variant of [`Engine`].
 
-use stickslip_solver::{Dop853, Dopri5, Statistics};
+use stickslip_solver::{Dop853, Dopri5, InvalidOption, Options, Statistics};
 
 pub(crate) mod domain;
 mod estimate;
@@ -66,6 +66,28 @@ pub enum EngineError {
     NotFinite(#[from] NotFinite),
 }
 
+/// The reason why options choose no engine.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum InvalidChoice {
+    /// No method has this name.
+    #[error("method {0:?} is unknown; expected auto, exact, dop853 or dopri5")]
+    Method(String),
+    /// The exact solution has no tolerances.
+    #[error(
+        "{name} {value:?} has no effect with the method exact, which has no tolerances; \
+         expected with dop853 and dopri5 only"
+    )]
+    Unused {
+        /// `rtol` or `atol`.
+        name: &'static str,
+        /// The tolerance.
+        value: f64,
+    },
+    /// A tolerance is out of range.
+    #[error(transparent)]
+    Tolerance(#[from] InvalidOption),
+}
+
 impl Tolerances {
     /// Defaults of Dormand–Prince 8(5,3), with which w is within 1e-12.
     pub const DOP853: Self = Self { rtol: Collider::RTOL, atol: Collider::ATOL };
@@ -74,6 +96,39 @@ impl Tolerances {
 }
 
 impl Engine {
+    /// The engine that a program's options choose: a method by its [`Self::name`], and tolerances,
+    /// whose defaults are those of the method.
+    ///
+    /// `auto` is the exact solution, whose range contains that of the integrators, unless a
+    /// tolerance asks for an integration.
+    ///
+    /// # Errors
+    /// [`InvalidChoice`]: no method has this name, a tolerance would have no effect, or is out of
+    /// range.
+    pub fn chosen(
+        method: &str,
+        rtol: Option<f64>,
+        atol: Option<f64>,
+    ) -> Result<Self, InvalidChoice> {
+        let tolerances = |usual: Tolerances| Tolerances {
+            rtol: rtol.unwrap_or(usual.rtol),
+            atol: atol.unwrap_or(usual.atol),
+        };
+        let given = [("rtol", rtol), ("atol", atol)];
+        let given = given.into_iter().find_map(|(name, value)| Some((name, value?)));
+        let engine = match (method, given) {
+            ("dop853", _) | ("auto", Some(_)) => Self::Dop853(tolerances(Tolerances::DOP853)),
+            ("dopri5", _) => Self::Dopri5(tolerances(Tolerances::DOPRI5)),
+            ("exact" | "auto", None) => Self::Exact,
+            ("exact", Some((name, value))) => return Err(InvalidChoice::Unused { name, value }),
+            (other, _) => return Err(InvalidChoice::Method(other.to_owned())),
+        };
+        if let Some(Tolerances { rtol, atol }) = engine.tolerances() {
+            Options { rtol, atol, ..Options::default() }.validate()?;
+        }
+        Ok(engine)
+    }
+
     /// The name of the method: `dop853`, `dopri5`, `exact` or `auto`.
     #[must_use]
     pub fn name(&self) -> &'static str {

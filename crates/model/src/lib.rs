@@ -3,9 +3,8 @@
 //! During one contact the tangential force switches several times between Coulomb sliding and a
 //! spring (Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107, 2008). In scaled variables a
 //! collision has three parameters: the stiffness κ, the impact ratio ψ and the damping. Together
-//! they are a [`Contact`]. A [`Collider`] integrates its collision. Without damping,
-//! [`exact::collide`] solves it in closed form. Both return a [`Collision`] with every switch, and
-//! an [`Engine`] is a choice between them.
+//! they are a [`Contact`]. A [`Collider`] integrates its collision; [`exact::collide`] solves it without
+//! steps. Both return a [`Collision`] with every switch, and an [`Engine`] is a choice between them.
 //!
 //! Start reading in [`integrator`]. The source has one folder for each idea; in reading order:
 //!
@@ -18,7 +17,7 @@
 //! | `limits` | [`normal`], [`coulomb`], [`largest`], [`inner`]: closed forms and limits to compare with |
 //! | `numerics` | numbers with twice the digits, roots in a bracket |
 //!
-//! With the feature `serde`, results serialise themselves.
+//! With the feature `serde`, results serialise themselves, and `document` says what computed them.
 //!
 //! ```
 //! use stickslip_model::{Collider, Contact, exact};
@@ -32,6 +31,8 @@
 //! ```
 
 mod contact;
+#[cfg(feature = "serde")]
+pub mod document;
 mod engines;
 mod laws;
 mod limits;
@@ -48,7 +49,7 @@ pub use engines::history::{History, PhaseHistory, Snapshot};
 pub use engines::integrator as collision;
 pub use engines::integrator::{Collider, CollisionError};
 pub use engines::sensitivity::{Derived, Sensitivity};
-pub use engines::{Engine, EngineError, Estimate, Tolerances};
+pub use engines::{Engine, EngineError, Estimate, InvalidChoice, Tolerances};
 pub use engines::{exact, history, integrator, sensitivity};
 pub use laws::phase::{Regime, Side};
 pub use laws::regularized;

@@ -9,7 +9,7 @@ use pyo3::types::{PyDict, PyTuple};
 use stickslip_model::{Collision, Contact, Engine, Regime};
 
 use crate::engines::Choice;
-use crate::failure::Failure;
+use crate::failure::{Failure, bad_input};
 use crate::parallel::Threads;
 
 /// Parameters of collisions: κ, ψ and damping, each with one value for all or for each.
@@ -26,12 +26,27 @@ pub struct Parameters<'py>(
     PyReadonlyArray1<'py, f64>,
 );
 
+/// Requires arrays to have one length.
+pub fn expect_equal(lengths: impl IntoIterator<Item = usize>) -> PyResult<()> {
+    let mut lengths = lengths.into_iter();
+    let first = lengths.next();
+    match lengths.find(|&other| Some(other) != first) {
+        Some(other) => Err(bad_input(format!(
+            "arrays of {} and {other} numbers; expected arrays of one length",
+            first.unwrap_or(0)
+        ))),
+        None => Ok(()),
+    }
+}
+
 impl Points {
-    pub fn new(parameters: &Parameters<'_>) -> Self {
+    pub fn new(parameters: &Parameters<'_>) -> PyResult<Self> {
         let Parameters(kappa, psi, damping) = parameters;
         let columns = [kappa, psi, damping].map(|column| column.as_array().to_vec());
-        let count = columns.iter().map(Vec::len).find(|&length| length != 1).unwrap_or(1);
-        Self { columns, count }
+        let lengths = || columns.iter().map(Vec::len).filter(|&length| length != 1);
+        expect_equal(lengths())?;
+        let count = lengths().next().unwrap_or(1);
+        Ok(Self { columns, count })
     }
 
     fn parameters(&self, index: usize) -> [f64; 3] {
@@ -88,7 +103,7 @@ pub fn eps_t<'py>(
     strict: bool,
     threads: usize,
 ) -> PyResult<Bound<'py, PyTuple>> {
-    let (points, engine) = (Points::new(&parameters), engine.engine()?);
+    let (points, engine) = (Points::new(&parameters)?, engine.engine()?);
     let (mut eps_t, mut counts) = (Vec::new(), Vec::new());
     eps_t.reserve_exact(points.count);
     counts.reserve_exact(points.count);
@@ -253,7 +268,7 @@ pub fn collide_many<'py>(
     strict: bool,
     threads: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (points, engine) = (Points::new(&parameters), engine.engine()?);
+    let (points, engine) = (Points::new(&parameters)?, engine.engine()?);
     let mut columns = Columns::default();
     let work = |part| Columns::of(&points, engine, part);
     Threads::new(threads, points.count)?.each(py, points.count, work, |part| {

@@ -3,6 +3,7 @@
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use stickslip_figure::pictures;
+use stickslip_model::document::COLLISION;
 use stickslip_model::{Collider, Contact, Derived, Engine, History, Snapshot};
 use stickslip_solver::Statistics;
 
@@ -32,7 +33,7 @@ impl Collision {
 
     /// The collision as the JSON that the program prints.
     fn json(&self) -> PyResult<String> {
-        document("stickslip.collision/1", &self.result, &self.engine, self.statistics.as_ref())
+        document(COLLISION, &self.result, &self.engine, self.statistics.as_ref())
     }
 
     /// The error of ε_t to expect, and the distance from other switches.

@@ -1,9 +1,9 @@
 //! What computes collisions.
 
 use pyo3::prelude::*;
-use serde_json::{Map, Value, json, to_value};
-use stickslip_model::{Engine, Tolerances};
-use stickslip_solver::{InvalidOption, Options, Statistics};
+use serde_json::Value;
+use stickslip_model::{Engine, InvalidChoice};
+use stickslip_solver::{InvalidOption, Statistics};
 
 use crate::failure::{bad_input, failed};
 
@@ -15,33 +15,22 @@ impl Choice {
     /// The engine that is chosen, by the rules of the program's options.
     pub fn engine(&self) -> PyResult<Engine> {
         let Self(method, rtol, atol) = self;
-        let tolerances = |usual: Tolerances| Tolerances {
-            rtol: rtol.unwrap_or(usual.rtol),
-            atol: atol.unwrap_or(usual.atol),
-        };
-        let engine = match (method.as_str(), rtol.or(*atol)) {
-            ("dop853", _) | ("auto", Some(_)) => Engine::Dop853(tolerances(Tolerances::DOP853)),
-            ("dopri5", _) => Engine::Dopri5(tolerances(Tolerances::DOPRI5)),
-            ("exact" | "auto", None) => Engine::Exact,
-            ("exact", Some(value)) => {
-                return Err(bad_input(format!(
-                    "a tolerance of {value:?} has no effect with method = \"exact\"; expected with \
+        Engine::chosen(method, *rtol, *atol).map_err(|invalid| {
+            bad_input(match invalid {
+                InvalidChoice::Method(name) => {
+                    format!(
+                        "method = {name:?}; expected \"auto\", \"exact\", \"dop853\" or \"dopri5\""
+                    )
+                }
+                InvalidChoice::Unused { name, value } => format!(
+                    "{name} = {value:?} has no effect with method = \"exact\"; expected with \
                      \"dop853\" and \"dopri5\" only"
-                )));
-            }
-            (other, _) => {
-                return Err(bad_input(format!(
-                    "method = {other:?}; expected \"auto\", \"exact\", \"dop853\" or \"dopri5\""
-                )));
-            }
-        };
-        if let Some(Tolerances { rtol, atol }) = engine.tolerances() {
-            let options = Options { rtol, atol, ..Options::default() };
-            options.validate().map_err(|InvalidOption { name, value, expected }| {
-                bad_input(format!("{name} = {value:?} is out of range; expected {expected}"))
-            })?;
-        }
-        Ok(engine)
+                ),
+                InvalidChoice::Tolerance(InvalidOption { name, value, expected }) => {
+                    format!("{name} = {value:?} is out of range; expected {expected}")
+                }
+            })
+        })
     }
 }
 
@@ -52,20 +41,9 @@ pub fn document(
     engine: &Engine,
     statistics: Option<&Statistics>,
 ) -> PyResult<String> {
-    let mut object = Map::from_iter([("schema".to_owned(), schema.into())]);
-    let method = to_value(engine).map_err(failed)?;
-    if let Value::Object(fields) = to_value(result).map_err(failed)? {
-        for (name, value) in fields {
-            let parameters = name == "parameters";
-            object.insert(name, value);
-            if parameters {
-                object.insert("method".to_owned(), method.clone());
-            }
-        }
-    }
-    let statistics = statistics.map_or(Ok(json!({})), to_value).map_err(failed)?;
-    object.insert("statistics".to_owned(), statistics);
-    Ok(Value::Object(object).to_string())
+    stickslip_model::document::new(schema, result, engine, (None, statistics))
+        .map(|document| Value::Object(document).to_string())
+        .map_err(failed)
 }
 
 /// The version of the package.

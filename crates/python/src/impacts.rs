@@ -3,11 +3,13 @@
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
+use stickslip_model::document::IMPACT;
 use stickslip_model::{
     Body, Elasticity, Encounter, ImpactReport, InvalidParameter, Motion, Sphere, Surface, Vector3,
     Wall, WallMotion, quantity,
 };
 
+use crate::arrays::expect_equal;
 use crate::engines::{Choice, document};
 use crate::failure::{Failure, bad_input, failed};
 
@@ -88,6 +90,7 @@ impl Pair {
         normal: PyReadonlyArray1<'py, f64>,
         tangential: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<Bound<'py, PyTuple>> {
+        expect_equal([normal.len()?, tangential.len()?])?;
         let [mut kappa, mut psi, mut damping, mut unit] = [const { Vec::new() }; 4];
         let velocities = normal.as_array().into_iter().zip(tangential.as_array());
         for (index, (&normal, &tangential)) in velocities.enumerate() {
@@ -126,7 +129,7 @@ impl Pair {
             py.detach(|| engine.collide(encounter.contact())).map_err(Failure::from)?;
         let report = ImpactReport::new(&encounter, collision);
         report.require_finite().map_err(failed)?;
-        document("stickslip.impact/1", &report, &engine, statistics.as_ref())
+        document(IMPACT, &report, &engine, statistics.as_ref())
     }
 }
 

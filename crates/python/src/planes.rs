@@ -8,6 +8,7 @@ use stickslip_plane::Range;
 use stickslip_plane::atlas::{self, Document, Frame, RatioRange, SCHEMA, Unlocated};
 use stickslip_plane::progress::SILENT;
 
+use crate::arrays::expect_equal;
 use crate::failure::{bad_input, failed, of_atlas};
 use crate::parallel::Threads;
 
@@ -94,6 +95,7 @@ impl Atlas {
         kappa: PyReadonlyArray1<'py, f64>,
         psi: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<Bound<'py, PyTuple>> {
+        expect_equal([kappa.len()?, psi.len()?])?;
         let (kappa, psi) = (kappa.as_array().to_vec(), psi.as_array().to_vec());
         let (mut regions, mut distances) = (Vec::new(), Vec::new());
         let work = |part: std::ops::Range<usize>| {

@@ -1,6 +1,7 @@
 //! One collision, computed, printed and drawn.
 
 use stickslip_figure::pictures;
+use stickslip_model::document;
 use stickslip_studies::CollisionFailure;
 
 use crate::args::Format;
@@ -9,7 +10,6 @@ use crate::output::console::print;
 use crate::output::file::publish;
 use crate::output::{json, text};
 use crate::plan::SinglePlan;
-use crate::schema;
 
 /// Computes the collision, draws it if that is wanted, and prints it.
 ///
@@ -35,7 +35,7 @@ pub fn run(plan: &SinglePlan) -> Result<(), Failure> {
     }
     let estimates = (estimate.as_ref(), statistics.as_ref());
     print(|out| match format {
-        Format::Json => json::write(out, schema::COLLISION, &collision, engine, estimates),
+        Format::Json => json::write(out, document::COLLISION, &collision, engine, estimates),
         Format::Table => text::write(out, engine, &collision, estimates),
     })
 }

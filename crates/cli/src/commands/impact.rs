@@ -2,7 +2,7 @@
 
 mod table;
 
-use stickslip_model::ImpactReport;
+use stickslip_model::{ImpactReport, document};
 use stickslip_studies::CollisionFailure;
 
 use crate::args::Format;
@@ -10,7 +10,6 @@ use crate::error::Failure;
 use crate::output::console::print;
 use crate::output::json;
 use crate::plan::ImpactPlan;
-use crate::schema;
 
 /// Computes the impact and prints it.
 ///
@@ -25,7 +24,7 @@ pub fn run(plan: &ImpactPlan) -> Result<(), Failure> {
     impact.require_finite().map_err(|error| failed(error.into()))?;
     let statistics = statistics.as_ref();
     print(|out| match format {
-        Format::Json => json::write(out, schema::IMPACT, &impact, engine, (None, statistics)),
+        Format::Json => json::write(out, document::IMPACT, &impact, engine, (None, statistics)),
         Format::Table => table::write(out, engine, &impact, statistics),
     })
 }

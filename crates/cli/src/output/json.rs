@@ -3,14 +3,10 @@
 use std::io::{self, Write};
 
 use serde::Serialize;
-use serde_json::{Map, Value, json, to_value};
-use stickslip_model::{Engine, Estimate};
+use stickslip_model::{Engine, Estimate, document};
 use stickslip_solver::Statistics;
 
-/// Writes `result` as one JSON object with the layout `schema`, and ends the line. The object also
-/// says what computed the result: the engine after the parameters, and at the end the estimate of
-/// the error, if there is one, and the integrator's work, which is an empty object for the exact
-/// solution.
+/// Writes `result` as one [`document`] with the layout `schema`, and ends the line.
 ///
 /// # Errors
 /// `out` cannot be written.
@@ -19,25 +15,10 @@ pub fn write(
     schema: &str,
     result: &impl Serialize,
     engine: &Engine,
-    (estimate, statistics): (Option<&Estimate>, Option<&Statistics>),
+    work: (Option<&Estimate>, Option<&Statistics>),
 ) -> io::Result<()> {
-    let mut object = Map::from_iter([("schema".to_owned(), schema.into())]);
-    let method = to_value(engine)?;
-    if let Value::Object(fields) = to_value(result)? {
-        for (name, value) in fields {
-            let parameters = name == "parameters";
-            object.insert(name, value);
-            if parameters {
-                object.insert("method".to_owned(), method.clone());
-            }
-        }
-    }
-    if let Some(estimate) = estimate {
-        object.insert("estimate".to_owned(), to_value(estimate)?);
-    }
-    let statistics = statistics.map_or(Ok(json!({})), to_value)?;
-    object.insert("statistics".to_owned(), statistics);
-    serde_json::to_writer_pretty(&mut *out, &object)?;
+    let document = document::new(schema, result, engine, work)?;
+    serde_json::to_writer_pretty(&mut *out, &document)?;
     writeln!(out)
 }
 
