@@ -40,6 +40,16 @@ use std::process::Output;
 use assert_cmd::cargo::cargo_bin_cmd;
 use tempfile::TempDir;
 
+/// `signal`, or 15 where the tests themselves run with `signal` ignored: shells start background jobs
+/// without interrupts, and children inherit that.
+#[cfg(unix)]
+fn heeded(signal: u32) -> u32 {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    if ignored.unwrap_or(0) >> (signal - 1) & 1 == 1 { 15 } else { signal }
+}
+
 /// The exit code and the output of a run.
 struct Ran {
     code: i32,

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use assert_cmd::cargo::cargo_bin;
 
-use crate::Workspace;
+use crate::{Workspace, heeded};
 
 /// A map with 79 tiles of 256 points. The collisions are stiff, so that a tile takes about 20 ms.
 const LINE: &str = "map --kappa 0:1e6 --psi 0:2.9 --size 100x200 --method exact --out m.npz";
@@ -114,7 +114,7 @@ fn ten_kills_leave_no_trace() {
 #[test]
 fn an_interrupt_from_the_keyboard_loses_nothing() {
     let workspace = Workspace::new();
-    interrupt(&workspace, 2, Duration::ZERO, "-2");
+    interrupt(&workspace, 2, Duration::ZERO, &format!("-{}", heeded(2)));
     interrupt(&workspace, 2, Duration::ZERO, "-15");
     let kept = tiles(&workspace).len();
     finish(&workspace, &format!("{kept} of {TILES} tiles"));

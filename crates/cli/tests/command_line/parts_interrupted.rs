@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use assert_cmd::cargo::cargo_bin;
 
 use crate::parts::backwards;
-use crate::{Ran, Workspace};
+use crate::{Ran, Workspace, heeded};
 
 /// A map with 79 tiles of 256 points. The collisions are stiff, so that a tile takes about 20 ms.
 const LINE: &str = "map --kappa 0:1e6 --psi 0:2.9 --size 100x200 --method exact";
@@ -58,13 +58,13 @@ fn whole() -> Vec<u8> {
 #[test]
 fn interrupted_parts_go_on_where_they_stopped() {
     let workspace = Workspace::new();
-    for (part, number, of) in [(1, "-9", 39), (2, "-2", 40)] {
+    for (part, number, of) in [(1, 9, 39), (2, heeded(2), 40)] {
         let line = format!("{LINE} --part {part}/2 --out {part}.part");
         let mut kept = 0;
         for _ in 0..3 {
             let mut child = start(&workspace, &line);
             wait_for(&workspace, &format!("{part}.part"), kept + 2);
-            signal(&mut child, number);
+            signal(&mut child, &format!("-{number}"));
             kept = tiles(&workspace, &format!("{part}.part"));
         }
         let ran = workspace.run(&line);
