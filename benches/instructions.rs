@@ -145,7 +145,7 @@ fn exact_family() -> CollisionFamily {
 }
 
 fn free_runs(family: &CollisionFamily, times: usize) -> usize {
-    let point = CollisionPlane::point(63.0, 0.5);
+    let point = collision_plane().point(63.0, 0.5);
     for _ in 0..times {
         black_box(family.free_run(black_box(&point)).expect("a run"));
     }
@@ -153,7 +153,7 @@ fn free_runs(family: &CollisionFamily, times: usize) -> usize {
 }
 
 fn prescribed_runs(family: &CollisionFamily, times: usize) -> usize {
-    let point = CollisionPlane::point(63.0, 0.5);
+    let point = collision_plane().point(63.0, 0.5);
     let margins = family.free_run(&point).expect("a run").margins;
     for _ in 0..times {
         for (margin, _) in &margins {

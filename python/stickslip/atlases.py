@@ -67,7 +67,7 @@ class Region:
     itinerary: str
     #: A point (kappa, psi) inside.
     sample: tuple[float, float]
-    #: Share of the window's area, in ln kappa and ln(1 + psi).
+    #: Share of the window's area, in traced coordinates (docs/command-line.md).
     area_share: float
     #: The boundaries around it.
     boundaries: tuple[int, ...]

@@ -74,7 +74,7 @@ fn assert_right(plane: &CollisionPlane, atlas: &Atlas, kappa: (f64, f64), psi: (
             } else {
                 kappa.0 * (kappa.1 / kappa.0).powf(part)
             };
-            CollisionPlane::point(kappa, psi.0 + random.f64() * (psi.1 - psi.0))
+            plane.point(kappa, psi.0 + random.f64() * (psi.1 - psi.0))
         })
         .collect();
     let decided: usize = points
@@ -82,7 +82,7 @@ fn assert_right(plane: &CollisionPlane, atlas: &Atlas, kappa: (f64, f64), psi: (
         .map(|point| {
             let Location::Region(region) = atlas.locate(point) else { return 0 };
             let expected = atlas.regions()[region].label.clone().ok_or("no label".to_owned());
-            assert_eq!(expected, label(plane, point), "{:?}", CollisionPlane::parameters(point));
+            assert_eq!(expected, label(plane, point), "{:?}", plane.parameters(point));
             1
         })
         .sum();
@@ -193,7 +193,7 @@ fn reference_boundaries_lie_on_traced_curves() {
     {
         let (kappa, psi) =
             (crate::common::number(&boundary["kappa"]), crate::common::number(&boundary["psi"]));
-        let point = CollisionPlane::point(kappa, psi);
+        let point = undamped().point(kappa, psi);
         if !plane.window().contains(&point) {
             continue;
         }
@@ -227,7 +227,7 @@ fn vertices_are_where_they_must_be() {
     // flat there.
     let known = [(0.5701023788418932873, 2.0, 1e-10), (1.568459328886909846, 1.0, 1e-7)];
     for (kappa, psi, accuracy) in known {
-        let place = CollisionPlane::point(kappa, psi);
+        let place = undamped().point(kappa, psi);
         let nearest = ATLAS.vertices().iter().map(|vertex| (vertex.point - place).norm());
         let nearest = nearest.fold(f64::INFINITY, f64::min);
         println!("vertex at κ = {kappa}, ψ = {psi}: {nearest:.1e} off");
@@ -247,7 +247,7 @@ fn boundaries_run_into_the_limits_of_small_impacts() {
             .vertices()
             .iter()
             .filter(|vertex| (vertex.point.y - bottom).abs() < 1e-12)
-            .map(|vertex| CollisionPlane::parameters(&vertex.point)[0])
+            .map(|vertex| plane.parameters(&vertex.point)[0])
             .collect();
         kappas.sort_by(f64::total_cmp);
         // κ_10 is 23.8, κ_11 28.8.
@@ -271,7 +271,7 @@ fn the_top_boundary_is_the_closed_form() {
             continue;
         }
         for node in &curve.nodes {
-            let [kappa, psi] = CollisionPlane::parameters(&node.point);
+            let [kappa, psi] = undamped().parameters(&node.point);
             if (ATLAS.window().high.y - node.point.y).abs() > 1e-9 {
                 largest = largest.max((psi - exact::top_boundary(kappa)).abs());
                 nodes += 1;

@@ -6,10 +6,13 @@ use stickslip_model::{Collision, Contact, Engine, InvalidParameter, Side};
 use stickslip_solver::{Dop853, Margin, Options, Start};
 use stickslip_tracer::{Family, FamilyError, FreeRun, HybridFamily, Point, Problem, Window};
 
+use crate::chart::Chart;
+use crate::range::Range;
+
 /// Collisions with κ and ψ in a window and one scaled damping.
 ///
-/// They are traced in x = ln κ and y = ln(1 + ψ), in which their boundaries bend evenly. These are
-/// the traced coordinates; [`Self::point`] and [`Self::parameters`] convert.
+/// They are traced in the coordinates of a [`Chart`]; [`Self::point`] and [`Self::parameters`]
+/// convert.
 ///
 /// ```
 /// use stickslip_plane::CollisionPlane;
@@ -19,7 +22,7 @@ use stickslip_tracer::{Family, FamilyError, FreeRun, HybridFamily, Point, Proble
 /// let network = trace(&plane.family(), &plane.window(), &TraceOptions::default())?;
 /// let regions = Subdivision::new(plane.window(), network.curves, network.vertices, 1e-9)?;
 ///
-/// let place = CollisionPlane::point(7.5, 1.1);
+/// let place = plane.point(7.5, 1.1);
 /// let Location::Region(region) = regions.locate(&place) else { panic!("on a boundary") };
 /// // As many guards fire as the collision has switches.
 /// let switches = regions.regions()[region].label.as_ref().map(Vec::len);
@@ -31,6 +34,7 @@ use stickslip_tracer::{Family, FamilyError, FreeRun, HybridFamily, Point, Proble
 pub struct CollisionPlane {
     low: Contact,
     high: Contact,
+    chart: Chart,
 }
 
 /// Collisions as a family of runs. The label of a run is the list of the guards that fired.
@@ -59,28 +63,42 @@ impl CollisionPlane {
     /// # Errors
     /// [`InvalidParameter`]: a value that no collision can have.
     pub fn new(kappa: (f64, f64), psi: (f64, f64), damping: f64) -> Result<Self, InvalidParameter> {
+        let range = |(low, high)| Range { low, high };
         Ok(Self {
             low: Contact::new(kappa.0, psi.0, damping)?,
             high: Contact::new(kappa.1, psi.1, damping)?,
+            chart: Chart::of(range(kappa), range(psi)),
         })
     }
 
-    /// The point (ln κ, ln(1 + ψ)) of the traced coordinates.
+    /// The same collisions in other traced coordinates.
     #[must_use]
-    pub fn point(kappa: f64, psi: f64) -> Point {
-        Point::new(kappa.ln(), psi.ln_1p())
+    pub fn with_chart(self, chart: Chart) -> Self {
+        Self { chart, ..self }
+    }
+
+    /// The traced coordinates.
+    #[must_use]
+    pub fn chart(&self) -> &Chart {
+        &self.chart
+    }
+
+    /// The traced point of κ and ψ.
+    #[must_use]
+    pub fn point(&self, kappa: f64, psi: f64) -> Point {
+        self.chart.point(kappa, psi)
     }
 
     /// κ and ψ of a traced point: the inverse of [`Self::point`].
     #[must_use]
-    pub fn parameters(point: &Point) -> [f64; 2] {
-        [point.x.exp(), point.y.exp_m1()]
+    pub fn parameters(&self, point: &Point) -> [f64; 2] {
+        self.chart.parameters(point)
     }
 
     /// The window in traced coordinates.
     #[must_use]
     pub fn window(&self) -> Window {
-        let corner = |contact: &Contact| Self::point(contact.kappa(), contact.psi());
+        let corner = |contact: &Contact| self.point(contact.kappa(), contact.psi());
         Window { low: corner(&self.low), high: corner(&self.high) }
     }
 
@@ -92,7 +110,7 @@ impl CollisionPlane {
     /// # Errors
     /// [`InvalidParameter`]: κ or ψ is beyond the range of numbers.
     pub fn contact(&self, point: &Point) -> Result<Contact, InvalidParameter> {
-        let [kappa, psi] = Self::parameters(point);
+        let [kappa, psi] = self.parameters(point);
         Contact::new(kappa, psi.max(0.5 * self.low.psi()), self.low.damping())
     }
 

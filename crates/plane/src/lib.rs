@@ -10,6 +10,7 @@
 //!
 //! Start reading in [`family`]. The modules in reading order:
 //!
+//! - [`chart`]: the coordinates in which the plane is traced
 //! - [`family`]: collisions as a family for the tracer
 //! - [`mod@range`] and [`grid`]: windows, and windows divided into cells
 //! - [`tile`] and [`sweep`]: the results of a grid, and how they are computed
@@ -34,6 +35,7 @@
 //! results do not depend on the number of threads.
 
 pub mod atlas;
+pub mod chart;
 pub mod family;
 pub mod grid;
 pub mod progress;
@@ -41,6 +43,7 @@ pub mod range;
 pub mod sweep;
 pub mod tile;
 
+pub use chart::Chart;
 pub use family::{CollisionFamily, CollisionFamilyError, CollisionPlane};
 pub use grid::{Coordinates, Extent, Grid, GridAxis, Quantity};
 pub use range::Range;

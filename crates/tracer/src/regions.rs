@@ -4,6 +4,7 @@
 //!
 //! - `subdivision`: curves in, regions out
 //! - `frame`: the window's boundary, cut at vertices
+//! - `abscissae`: vertical curves made exactly vertical
 //! - `arrangement`: the curves cut into pieces that have an order
 //! - `region`: regions and their labels
 //! - `interior`: a point well inside each region
@@ -12,6 +13,7 @@
 //! - `outline`: the rings around a region
 //! - `verify`: runs against the subdivision
 
+mod abscissae;
 mod arrangement;
 pub mod finding;
 mod frame;

@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("κ {kappa:?}, ψ {psi:?}, damping {damping}");
         let plane = CollisionPlane::new(kappa, psi, damping)?;
         let (atlas, agrees) = atlas(&plane)?;
-        let random = random_points(kappa, psi, count);
+        let random = random_points(&plane, kappa, psi, count);
         let start = Instant::now();
         let located: Vec<Location> = random.iter().map(|point| atlas.locate(point)).collect();
         let locating = start.elapsed().as_secs_f64() / count as f64;
@@ -71,7 +71,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             1e6 * locating
         );
         for point in wrong.iter().take(5) {
-            println!("    wrong: {:?}", CollisionPlane::parameters(point));
+            println!("    wrong: {:?}", plane.parameters(point));
         }
         let near_points = near.div_ceil(2 * atlas.curves().len());
         let options =
@@ -125,7 +125,12 @@ fn atlas(plane: &CollisionPlane) -> Result<(Atlas, bool), Box<dyn Error>> {
     Err("no round is the last one".into())
 }
 
-fn random_points(kappa: Interval, psi: Interval, count: usize) -> Vec<Point> {
+fn random_points(
+    plane: &CollisionPlane,
+    kappa: Interval,
+    psi: Interval,
+    count: usize,
+) -> Vec<Point> {
     let mut random = fastrand::Rng::with_seed(7);
     let point = |index: usize| {
         let part = random.f64();
@@ -134,7 +139,7 @@ fn random_points(kappa: Interval, psi: Interval, count: usize) -> Vec<Point> {
         } else {
             kappa.0 * (kappa.1 / kappa.0).powf(part)
         };
-        CollisionPlane::point(kappa, psi.0 + random.f64() * (psi.1 - psi.0))
+        plane.point(kappa, psi.0 + random.f64() * (psi.1 - psi.0))
     };
     (0..count).map(point).collect()
 }

@@ -369,7 +369,7 @@ fn bad_windows_are_refused() {
         ("--kappa 5:20 --psi 0.2:2 --mu 0.4", ["--mu", "--ratio"]),
         ("--kappa 5:20 --psi 0.2:2 --tolerance 1e-3", ["--tolerance", "e-11 to 2.7"]),
         ("--kappa 5:20 --psi 0.2:2 --tolerance 1e-12", ["--tolerance", "3e-11"]),
-        ("--kappa 5:20 --psi 0.2:0.2000001", ["too narrow", "expected"]),
+        ("--kappa 5:20 --psi 0.2:0.20000001", ["too narrow", "expected"]),
     ] {
         let ran = workspace.run(&format!("trace {options} --out a.json"));
         assert_eq!(ran.code, 2, "{options}: {}", ran.stderr);

@@ -4,7 +4,6 @@
 
 mod closed_forms;
 
-use stickslip_plane::CollisionPlane;
 use stickslip_plane::atlas::{Atlas, BoundaryKind, switch_count};
 use stickslip_tracer::{Location, VertexKind};
 
@@ -147,7 +146,7 @@ fn vertices(svg: &mut Svg, atlas: &Atlas, panel: &Panel, legend: &mut Legend) {
         }
         svg.begin_group(class);
         for vertex in vertices {
-            square(svg, panel.place(CollisionPlane::parameters(&vertex.point).into()));
+            square(svg, panel.place(atlas.chart.parameters(&vertex.point).into()));
         }
         svg.end_group();
     }
@@ -162,7 +161,7 @@ fn labels(svg: &mut Svg, atlas: &Atlas, panel: &Panel) {
     };
     let region = |column: u16, row: u16| {
         let (kappa, psi) = panel.value(middle(f64::from(column), f64::from(row)));
-        match atlas.regions.locate(&CollisionPlane::point(kappa, psi)) {
+        match atlas.regions.locate(&atlas.chart.point(kappa, psi)) {
             Location::Region(region) => i32::try_from(region).unwrap_or(-1),
             _ => -1,
         }

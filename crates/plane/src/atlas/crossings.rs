@@ -8,7 +8,7 @@ impl Atlas {
     /// ψ of all boundaries at `kappa`, in ascending order. They are as accurate as the boundaries.
     #[must_use]
     pub fn boundaries_at(&self, kappa: f64) -> Vec<f64> {
-        let x = kappa.ln();
+        let x = self.chart.point(kappa, self.frame.psi.low).x;
         let mut psi = Vec::new();
         for nodes in self.regions.curves().iter().flat_map(|curve| curve.nodes.windows(2)) {
             let cubic = Cubic::between(&nodes[0], &nodes[1]);
@@ -17,7 +17,8 @@ impl Atlas {
             let mut from = 0.0;
             for to in cuts.into_iter().chain([1.0]) {
                 if right(from) != right(to) {
-                    psi.push(cubic.at(crossing(from, to, right)).y.exp_m1());
+                    let place = cubic.at(crossing(from, to, right));
+                    psi.push(self.chart.parameters(&place)[1]);
                 }
                 from = to;
             }

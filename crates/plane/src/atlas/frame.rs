@@ -3,6 +3,7 @@
 use stickslip_model::{InvalidParameter, Reduction};
 use stickslip_tracer::Window;
 
+use crate::chart::Chart;
 use crate::family::CollisionPlane;
 use crate::range::Range;
 
@@ -35,59 +36,73 @@ pub struct ToleranceRange {
     pub finest: f64,
     /// The usual one.
     pub usual: f64,
-    /// The coarsest: the tracer tells curves apart by 1e-8 of the window's shorter side.
+    /// The coarsest: the tracer tells curves apart by 1e-8 of an ordinary window's shorter side.
     pub coarsest: f64,
 }
 
 /// A window is too narrow for the accuracy of its boundaries.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "the window is too narrow: {width:e} in ln(kappa) by {height:e} in ln(1 + psi); expected from \
-     {NARROWEST} each"
+    "the window is too narrow: {width:e} in ln(kappa) by {height:e} in ln(psi); expected from \
+     {NARROWEST:e} each"
 )]
 pub struct TooNarrow {
     /// The width of the window in ln κ.
     pub width: f64,
-    /// The height of the window in ln(1 + ψ).
+    /// The height of the window in ln ψ.
     pub height: f64,
 }
 
 /// The smallest distance between a boundary and its curve, in traced coordinates.
 const FINEST: f64 = 1e-11;
-/// The least width and height of a window in traced coordinates.
-const NARROWEST: f64 = 0.01;
+/// The error of margins, which limits the places of boundaries.
+const NOISE: f64 = 1e-13;
+/// The least width and height of a window in ln κ and ln ψ.
+const NARROWEST: f64 = 2e-7;
 
 impl Frame {
-    /// The window in the traced coordinates of [`CollisionPlane`].
+    /// The coordinates in which the window is traced.
     #[must_use]
-    pub fn window(&self) -> Window {
-        Window {
-            low: CollisionPlane::point(self.kappa.low, self.psi.low),
-            high: CollisionPlane::point(self.kappa.high, self.psi.high),
-        }
+    pub fn chart(&self) -> Chart {
+        Chart::of(self.kappa, self.psi)
+    }
+
+    /// The window in traced coordinates.
+    #[must_use]
+    pub fn window(&self, chart: &Chart) -> Window {
+        chart.window(self.kappa, self.psi)
+    }
+
+    /// The error of a place in traced coordinates that comes from that of margins.
+    #[must_use]
+    pub fn noise(&self, chart: &Chart) -> f64 {
+        NOISE / chart.width.min(chart.height).min(1.0)
     }
 
     /// The distance in traced coordinates between a boundary and a curve that is accurate to
     /// `tolerance` in ψ.
     #[must_use]
-    pub fn interpolation(&self, tolerance: f64) -> f64 {
+    pub fn interpolation(&self, chart: &Chart, tolerance: f64) -> f64 {
         // The finest tolerance may be lost by rounding.
-        (tolerance / (1.0 + self.psi.high)).max(FINEST)
+        (tolerance / chart.scale(self.psi.high)).max(FINEST)
     }
 
     /// The distance from a curve within which the side of a point is left open. It is ten times the
     /// curve's error, and at least 1e-9, since vertices are known less well.
     #[must_use]
-    pub fn resolution(&self, tolerance: f64) -> f64 {
-        (10.0 * self.interpolation(tolerance)).max(1e-9)
+    pub fn resolution(&self, chart: &Chart, tolerance: f64) -> f64 {
+        (10.0 * self.interpolation(chart, tolerance)).max(1e3 * self.noise(chart)).max(1e-9)
     }
 
     /// The accuracies in ψ that boundaries can have.
     #[must_use]
     pub fn tolerances(&self) -> ToleranceRange {
-        let shorter = self.window().extent().min().min(1.0);
-        let [finest, usual, coarsest] = [FINEST, (1e-10 * shorter).max(FINEST), 1e-9 * shorter]
-            .map(|part| part * (1.0 + self.psi.high));
+        let chart = self.chart();
+        let shorter = self.window(&chart).extent().min().min(1.0);
+        let finest = FINEST.max(10.0 * self.noise(&chart));
+        let [finest, usual, coarsest] =
+            [finest, (1e-10 * shorter).max(finest), (1e-9 * shorter).max(10.0 * finest)]
+                .map(|part| part * chart.scale(self.psi.high));
         ToleranceRange { finest, usual, coarsest }
     }
 
@@ -96,18 +111,18 @@ impl Frame {
     /// # Errors
     /// [`TooNarrow`] has the size of the window.
     pub fn require_wide(&self) -> Result<(), TooNarrow> {
-        let extent = self.window().extent();
-        if extent.min() >= NARROWEST {
+        let [width, height] = [self.kappa, self.psi].map(|side| (side.high / side.low).ln());
+        if width >= NARROWEST && height >= NARROWEST {
             return Ok(());
         }
-        Err(TooNarrow { width: extent.x, height: extent.y })
+        Err(TooNarrow { width, height })
     }
 
     /// (κ, ψ), moved onto an edge of the window if it differs from the edge by rounding alone.
     #[must_use]
     pub fn snapped(&self, [kappa, psi]: [f64; 2]) -> [f64; 2] {
         let snap = |value: f64, Range { low, high }: Range| {
-            let near = |edge: &f64| (value - edge).abs() <= 1e-14 * (1.0 + edge.abs());
+            let near = |edge: &f64| (value - edge).abs() <= 1e-14 * edge;
             [low, high].into_iter().find(near).unwrap_or(value)
         };
         [snap(kappa, self.kappa), snap(psi, self.psi)]

@@ -5,9 +5,9 @@ use serde_json::json;
 use stickslip_tracer::{Side, Stretch};
 
 use super::document::Document;
-use super::regions::{Atlas, Regions};
+use super::regions::Atlas;
 use super::tracing::VerifiedAtlas;
-use crate::family::CollisionPlane;
+use crate::chart::Chart;
 
 /// A closed line of points (κ, ψ), or a piece of one.
 type Ring = Vec<[f64; 2]>;
@@ -32,7 +32,7 @@ pub fn document_geojson(atlas: &Atlas, document: &Document) -> FeatureCollection
             "itinerary": region.switching.itinerary,
             "area_share": region.area_share,
         });
-        feature(polygons(&atlas.regions, &lines, region.id), properties)
+        feature(polygons(atlas, &lines, region.id), properties)
     });
     let boundaries = document.boundaries.iter().zip(&lines).map(|(boundary, line)| {
         let properties = json!({
@@ -62,8 +62,9 @@ fn feature(geometry: Geometry, properties: serde_json::Value) -> Feature {
 }
 
 /// A region as one polygon with holes, or as several polygons that touch at vertices.
-fn polygons(regions: &Regions, lines: &[Ring], region: usize) -> Geometry {
-    let rings = regions.outlines(region).into_iter().map(|outline| ring(lines, &outline));
+fn polygons(atlas: &Atlas, lines: &[Ring], region: usize) -> Geometry {
+    let rings = atlas.regions.outlines(region).into_iter();
+    let rings = rings.map(|outline| ring(&atlas.chart, lines, &outline));
     let (around, holes): (Vec<Ring>, Vec<Ring>) = rings.partition(|ring| area(ring) > 0.0);
     let single = around.len() == 1;
     let mut polygons: Vec<Vec<Ring>> = around.into_iter().map(|ring| vec![ring]).collect();
@@ -82,7 +83,7 @@ fn polygons(regions: &Regions, lines: &[Ring], region: usize) -> Geometry {
 }
 
 /// The closed line along an outline.
-fn ring(lines: &[Ring], outline: &[Stretch]) -> Ring {
+fn ring(chart: &Chart, lines: &[Ring], outline: &[Stretch]) -> Ring {
     let mut points = Ring::new();
     for stretch in outline {
         // Each stretch begins with the last point of the one before.
@@ -90,7 +91,7 @@ fn ring(lines: &[Ring], outline: &[Stretch]) -> Ring {
         match *stretch {
             Stretch::Curve(curve, Side::Left) => points.extend(&lines[curve]),
             Stretch::Curve(curve, Side::Right) => points.extend(lines[curve].iter().rev()),
-            Stretch::Window(ends) => points.extend(ends.iter().map(CollisionPlane::parameters)),
+            Stretch::Window(ends) => points.extend(ends.iter().map(|end| chart.parameters(end))),
         }
     }
     points.pop();

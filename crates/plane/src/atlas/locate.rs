@@ -4,7 +4,7 @@ use stickslip_model::Contact;
 use stickslip_tracer::Location;
 
 use super::regions::Atlas;
-use crate::family::CollisionPlane;
+use crate::chart::Chart;
 
 /// The place of a collision in an atlas.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,7 +50,7 @@ impl Atlas {
     #[must_use]
     pub fn locate(&self, contact: &Contact) -> Located {
         let (kappa, psi) = (contact.kappa(), contact.psi());
-        let point = CollisionPlane::point(kappa, psi);
+        let point = self.chart.point(kappa, psi);
         let region = match self.regions.locate(&point) {
             Location::Region(region) => Ok(region),
             Location::OnBoundary { curve: boundary, .. } => {
@@ -62,9 +62,11 @@ impl Atlas {
             }
         };
         // ψ₂ − ψ₁ = (1 + ψ₁)(e^(y₂ − y₁) − 1): further up than down for equal distances in y.
+        let Chart { spread, height, psi: from, .. } = self.chart;
         let [below, above] = self.regions.vertical_distances(&point);
-        let below = below.map(|distance| -(-distance).exp_m1());
-        let nearest = [below, above.map(f64::exp_m1)].into_iter().flatten().reduce(f64::min);
-        Located { region, distance: nearest.map(|part| (1.0 + psi) * part) }
+        let below = below.map(|distance| -(-height * distance).exp_m1());
+        let above = above.map(|distance| (height * distance).exp_m1());
+        let nearest = [below, above].into_iter().flatten().reduce(f64::min);
+        Located { region, distance: nearest.map(|part| (spread + psi - from) * part) }
     }
 }

@@ -3,7 +3,6 @@
 use stickslip_tracer::Cubic;
 
 use super::regions::Atlas;
-use crate::family::CollisionPlane;
 
 /// The largest number of straight lines between two points of a boundary.
 const MOST_LINES: f64 = 16.0;
@@ -17,7 +16,7 @@ impl Atlas {
     pub fn polylines(&self) -> Vec<Vec<[f64; 2]>> {
         let extent = self.regions.window().extent();
         let polyline = |curve: &stickslip_tracer::Curve<_, _>| {
-            let mut points = vec![CollisionPlane::parameters(&curve.nodes[0].point)];
+            let mut points = vec![self.chart.parameters(&curve.nodes[0].point)];
             for nodes in curve.nodes.windows(2) {
                 let cubic = Cubic::between(&nodes[0], &nodes[1]);
                 let length = (nodes[1].point - nodes[0].point).component_div(&extent).norm();
@@ -25,7 +24,7 @@ impl Atlas {
                 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
                 let count = lines as u32;
                 let parts = (1..=count).map(|line| f64::from(line) / lines);
-                points.extend(parts.map(|part| CollisionPlane::parameters(&cubic.at(part))));
+                points.extend(parts.map(|part| self.chart.parameters(&cubic.at(part))));
             }
             points
         };

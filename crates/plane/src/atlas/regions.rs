@@ -6,6 +6,7 @@ use stickslip_tracer::Subdivision;
 
 use super::boundary::BoundaryKind;
 use super::frame::Frame;
+use crate::chart::Chart;
 
 /// A window divided by its boundaries into regions, which are labelled by itineraries.
 pub type Regions = Subdivision<String, BoundaryKind>;
@@ -15,6 +16,8 @@ pub type Regions = Subdivision<String, BoundaryKind>;
 pub struct Atlas {
     /// The window.
     pub frame: Frame,
+    /// The traced coordinates, in which the boundaries are cubics.
+    pub chart: Chart,
     /// Accuracy of the boundaries in ψ.
     pub tolerance: f64,
     /// Boundaries, vertices and regions.

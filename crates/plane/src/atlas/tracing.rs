@@ -13,6 +13,7 @@ use super::boundary::{BoundaryKind, itinerary};
 use super::frame::{Frame, TooNarrow};
 use super::regions::{Atlas, Regions};
 use super::verification::{self, LabelError, VerificationReport};
+use crate::chart::Chart;
 use crate::family::{CollisionFamilyError, CollisionPlane};
 use crate::progress::{Progress, Report};
 
@@ -105,22 +106,22 @@ pub fn trace(
         Collider::require(corner)?;
     }
     let family = plane.family();
-    let options =
-        TraceOptions { interpolation: frame.interpolation(tolerance), ..TraceOptions::default() };
-    let mut tracer = Tracer::new(&family, &window, &options)?;
+    let options = trace_options(&frame, plane.chart(), tolerance);
+    let failed = |error| AtlasError::of(&plane, error);
+    let mut tracer = Tracer::new(&family, &window, &options).map_err(failed)?;
     progress(Progress::Begin { steps: 1 });
-    tracer.explore()?;
+    tracer.explore().map_err(failed)?;
     let mut round = 1;
     loop {
         let mut network = tracer.network();
         network.name_vertices();
-        let unresolved = verification::unresolved(&network);
+        let unresolved = verification::unresolved(plane.chart(), &network);
         let atlas = atlas(frame, tolerance, network, &any)?;
         let (report, brackets) = verification::verify(&atlas, unresolved, round)?;
         progress(Progress::Advance { steps: 1 });
-        let again = round < ROUNDS && tracer.look_between(&brackets)?;
+        let again = round < ROUNDS && tracer.look_between(&brackets).map_err(failed)?;
         if !again {
-            let extrema = tracer.extrema()?;
+            let extrema = tracer.extrema().map_err(failed)?;
             return Ok(VerifiedAtlas { atlas, extrema, report });
         }
         progress(Progress::Begin { steps: 1 });
@@ -128,11 +129,24 @@ pub fn trace(
     }
 }
 
-impl From<TraceError<CollisionFamilyError>> for AtlasError {
-    fn from(error: TraceError<CollisionFamilyError>) -> Self {
+/// The options of a trace that is accurate to `tolerance` in ψ.
+fn trace_options(frame: &Frame, chart: &Chart, tolerance: f64) -> TraceOptions {
+    let (usual, noise) = (TraceOptions::default(), frame.noise(chart));
+    TraceOptions {
+        tolerance: usual.tolerance.max(0.1 * noise),
+        interpolation: frame.interpolation(chart, tolerance),
+        offset: usual.offset.max(10.0 * noise),
+        ..usual
+    }
+}
+
+impl AtlasError {
+    /// The error of a trace of `plane`.
+    #[must_use]
+    pub fn of(plane: &CollisionPlane, error: TraceError<CollisionFamilyError>) -> Self {
         match error {
             TraceError::Run { point, source } => {
-                let [kappa, psi] = CollisionPlane::parameters(&point);
+                let [kappa, psi] = plane.parameters(&point);
                 Self::Run { kappa, psi, source }
             }
             error => Self::Trace(error),
@@ -147,15 +161,18 @@ fn atlas(
     network: Network<Vec<usize>, Margin>,
     any: &Contact,
 ) -> Result<Atlas, AtlasError> {
-    let regions = regions(&frame, tolerance, network, any)?;
+    let chart = frame.chart();
+    let regions = regions(&frame, &chart, tolerance, network, any)?;
     let unbounded = regions
         .regions()
         .iter()
         .enumerate()
         .filter(|(_, region)| region.label.is_none())
-        .map(|(index, region)| Ok((index, verification::itinerary(&frame, &region.sample)?)))
+        .map(|(index, region)| {
+            Ok((index, verification::itinerary(&frame, &chart, &region.sample)?))
+        })
         .collect::<Result<BTreeMap<_, _>, LabelError>>()?;
-    Ok(Atlas { frame, tolerance, regions, unbounded })
+    Ok(Atlas { frame, chart, tolerance, regions, unbounded })
 }
 
 /// The regions that the traced curves make.
@@ -164,13 +181,14 @@ fn atlas(
 /// same regions, bit for bit.
 fn regions(
     frame: &Frame,
+    chart: &Chart,
     tolerance: f64,
     network: Network<Vec<usize>, Margin>,
     any: &Contact,
 ) -> Result<Regions, AtlasError> {
     let written = |point: &Point| {
-        let [kappa, psi] = frame.snapped(CollisionPlane::parameters(point));
-        CollisionPlane::point(kappa, psi)
+        let [kappa, psi] = frame.snapped(chart.parameters(point));
+        chart.point(kappa, psi)
     };
     let curves = network.curves.into_iter().map(|curve| Curve {
         margin: BoundaryKind::of(any, &curve.margin),
@@ -189,6 +207,6 @@ fn regions(
         margins: Vec::new(),
     });
     let vertices: Vec<_> = vertices.collect();
-    let resolution = frame.resolution(tolerance);
-    Ok(Subdivision::new(frame.window(), curves, vertices, resolution)?)
+    let resolution = frame.resolution(chart, tolerance);
+    Ok(Subdivision::new(frame.window(chart), curves, vertices, resolution)?)
 }

@@ -9,7 +9,7 @@ use stickslip_tracer::{
 
 use super::frame::Frame;
 use super::regions::Atlas;
-use crate::family::CollisionPlane;
+use crate::chart::Chart;
 
 /// What the verification of an atlas found, in the layout of the atlas file.
 #[derive(Clone, Debug, PartialEq)]
@@ -90,17 +90,17 @@ pub(super) fn verify(
     mut unresolved: Vec<String>,
     round: u64,
 ) -> Result<(VerificationReport, Vec<[Point; 2]>), VerifyError> {
-    let Atlas { frame, tolerance, regions, .. } = atlas;
-    let nearest = 10.0 * frame.resolution(*tolerance);
+    let Atlas { frame, chart, tolerance, regions, .. } = atlas;
+    let nearest = 10.0 * frame.resolution(chart, *tolerance);
     let farthest = nearest.max(1e-3 * regions.window().extent().min());
     let options =
         VerifyOptions { random_points: 20_000, near_points: 20, nearest, farthest, seed: round };
     let verification = verify_with(regions, &options, |points| {
-        points.par_iter().map(|point| itinerary(frame, point)).collect()
+        points.par_iter().map(|point| itinerary(frame, chart, point)).collect()
     })?;
     let mut undecided = 0;
     for open in &verification.unverified {
-        let [kappa, psi] = CollisionPlane::parameters(&open.checkpoint.point);
+        let [kappa, psi] = chart.parameters(&open.checkpoint.point);
         let what = match &open.reason {
             Reason::Location(Location::OnBoundary { .. }) => {
                 undecided += 1;
@@ -116,7 +116,7 @@ pub(super) fn verify(
     let agrees = verification.agrees() && unresolved.is_empty();
     let Verification { euler, mismatches, tried, untried_curves, .. } = verification;
     let mismatches = mismatches.into_iter().map(|mismatch| {
-        let [kappa, psi] = CollisionPlane::parameters(&mismatch.checkpoint.point);
+        let [kappa, psi] = chart.parameters(&mismatch.checkpoint.point);
         MismatchFields {
             kappa,
             psi,
@@ -190,15 +190,18 @@ pub enum LabelError {
 ///
 /// # Errors
 /// [`LabelError`] says why the collision cannot be computed.
-pub(super) fn itinerary(frame: &Frame, point: &Point) -> Result<String, LabelError> {
-    let contact = frame.plane()?.contact(point)?;
+pub(super) fn itinerary(frame: &Frame, chart: &Chart, point: &Point) -> Result<String, LabelError> {
+    let contact = frame.plane()?.with_chart(*chart).contact(point)?;
     Ok(Collider::default().collide(contact)?.itinerary())
 }
 
 /// What the tracer saw and could not explain, in sentences.
-pub(super) fn unresolved<Label, Margin>(network: &Network<Label, Margin>) -> Vec<String> {
+pub(super) fn unresolved<Label, Margin>(
+    chart: &Chart,
+    network: &Network<Label, Margin>,
+) -> Vec<String> {
     let at = |point: &Point| {
-        let [kappa, psi] = CollisionPlane::parameters(point);
+        let [kappa, psi] = chart.parameters(point);
         format!("kappa = {kappa:?}, psi = {psi:?}")
     };
     let describe = |open: &Unresolved<Label>| match open {

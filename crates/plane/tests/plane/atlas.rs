@@ -1,9 +1,10 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use stickslip_model::{Collider, Contact, exact};
+use stickslip_plane::Range;
 use stickslip_plane::atlas::{AtlasError, BoundaryKind, Frame, Unlocated, switch_count, trace};
 use stickslip_plane::progress::{Progress, SILENT};
-use stickslip_plane::{CollisionPlane, Range};
+use stickslip_tracer::VertexKind;
 
 use crate::windows::{crossing, empty, frame, traced};
 
@@ -13,17 +14,36 @@ fn contact(kappa: f64, psi: f64) -> Contact {
 
 #[test]
 fn a_window_too_narrow_is_refused_with_its_size() {
-    let narrow = frame((5.0, 20.0), (0.2, 0.205));
+    let narrow = frame((5.0, 20.0), (0.2, 0.2 + 1e-8));
     let AtlasError::Narrow(size) = trace(narrow, 1e-10, SILENT).unwrap_err() else {
         panic!("not too narrow")
     };
     assert!((size.width - 4.0_f64.ln()).abs() < 1e-15);
-    assert!((size.height - (1.205_f64 / 1.2).ln()).abs() < 1e-15);
+    assert!((size.height - 5e-8).abs() < 1e-14);
     let text = size.to_string();
-    assert!(text.contains("too narrow") && text.contains("expected from 0.01 each"), "{text}");
+    assert!(text.contains("too narrow") && text.contains("expected from 2e-7 each"), "{text}");
     // In the other direction, too; a window just wide enough is traced.
-    assert!(frame((5.0, 5.04), (0.2, 2.0)).require_wide().is_err());
-    assert!(frame((5.0, 5.06), (0.2, 2.0)).require_wide().is_ok());
+    assert!(frame((5.0, 5.0 + 9e-7), (0.2, 2.0)).require_wide().is_err());
+    assert!(frame((5.0, 5.0 + 1.1e-6), (0.2, 2.0)).require_wide().is_ok());
+}
+
+/// Windows that are tiny, or reach to tiny ψ, have charts of their own: around the crossing at
+/// κ = 19.35 (five widths), around the cusp, and with κ and ψ over many decades.
+#[test]
+fn small_and_long_windows_are_right() {
+    let atlas = &crossing().atlas;
+    let mut vertices = atlas.regions.vertices().iter();
+    let crossing = vertices.find(|vertex| vertex.kind == VertexKind::Crossing).unwrap();
+    let [kappa, psi] = atlas.chart.parameters(&crossing.point);
+    for width in [1e-3, 1e-4, 1e-5, 1e-6, 5e-7] {
+        let around = |value: f64| (value * (1.0 - width), value * (1.0 + width));
+        let verified = traced(frame(around(kappa), around(psi)));
+        assert!(verified.report.agrees, "{width:e}: {:?}", verified.report.objection());
+        let regions = &verified.atlas.regions;
+        assert_eq!((regions.curves().len(), regions.regions().len()), (4, 4), "{width:e}");
+    }
+    let long = traced(frame((0.01, 10.0), (1e-4, 3.0)));
+    assert!(long.report.agrees, "{:?}", long.report.objection());
 }
 
 #[test]
@@ -172,7 +192,7 @@ fn boundaries_have_kinds_and_lines_through_their_points() {
     for (curve, line) in atlas.regions.curves().iter().zip(&lines) {
         assert!(matches!(curve.margin, BoundaryKind::EndOfContact | BoundaryKind::StickGraze));
         for node in &curve.nodes {
-            let [kappa, psi] = CollisionPlane::parameters(&node.point);
+            let [kappa, psi] = atlas.chart.parameters(&node.point);
             let near = |point: &[f64; 2]| (point[0] - kappa).hypot(point[1] - psi) < 1e-12;
             assert!(line.iter().any(near));
         }

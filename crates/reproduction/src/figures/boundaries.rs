@@ -5,7 +5,6 @@ use std::sync::Arc;
 use serde_json::json;
 use stickslip_figure::{number, pictures};
 use stickslip_model::exact;
-use stickslip_plane::CollisionPlane;
 use stickslip_plane::Range;
 use stickslip_plane::atlas::{Atlas, Frame, VerifiedAtlas, trace};
 use stickslip_plane::progress::SILENT;
@@ -117,8 +116,7 @@ fn distance_from_closed_form(atlas: &Atlas) -> f64 {
     let curves = atlas.regions.curves().iter();
     // The label of its upper side has one phase.
     let uppermost = curves.filter(|curve| curve.sides.iter().any(|side| side.len() == 1));
-    let points = uppermost
-        .flat_map(|curve| &curve.nodes)
-        .map(|node| CollisionPlane::parameters(&node.point));
+    let points =
+        uppermost.flat_map(|curve| &curve.nodes).map(|node| atlas.chart.parameters(&node.point));
     points.fold(0.0, |most, [kappa, psi]| f64::max(most, (psi - exact::top_boundary(kappa)).abs()))
 }

@@ -7,8 +7,8 @@
 //! (`figures::points`). They are computed twice on purpose, as an independent check: a test holds
 //! that both agree.
 
-use stickslip_plane::CollisionPlane;
 use stickslip_plane::atlas::AtlasError;
+use stickslip_plane::{Chart, CollisionPlane};
 use stickslip_studies::search::change;
 use stickslip_tracer::{Family, Point, TraceOptions, trace};
 
@@ -137,10 +137,10 @@ fn stretch(spring: Spring, kappa: f64, low: f64, high: f64) -> Result<Stretch, S
 /// The ψ of all boundaries at `kappa`, in order.
 fn traced(kappa: f64) -> Result<Vec<f64>, Stop> {
     let window = (kappa * (-REACH).exp(), kappa * REACH.exp());
-    let plane = CollisionPlane::new(window, PSI, 0.0)?;
-    let (family, x) = (plane.family(), kappa.ln());
-    let network =
-        trace(&family, &plane.window(), &TraceOptions::default()).map_err(AtlasError::from)?;
+    let plane = CollisionPlane::new(window, PSI, 0.0)?.with_chart(Chart::PLAIN);
+    let (family, x) = (plane.family(), plane.point(kappa, PSI.0).x);
+    let network = trace(&family, &plane.window(), &TraceOptions::default())
+        .map_err(|error| AtlasError::of(&plane, error))?;
     if let Some(open) = network.unresolved.first() {
         let reason = format!("the boundaries at κ = {kappa} are in doubt: {open:?}");
         return Err(Stop::Open(reason));
@@ -153,14 +153,15 @@ fn traced(kappa: f64) -> Result<Vec<f64>, Stop> {
                 continue;
             }
             let guess = from.y + (to.y - from.y) * (x - from.x) / (to.x - from.x);
-            let failed = |source| AtlasError::Run { kappa, psi: guess.exp_m1(), source };
+            let psi_at = |y| plane.parameters(&Point::new(x, y))[1];
+            let failed = |source| AtlasError::Run { kappa, psi: psi_at(guess), source };
             let margin = family.moved(&from, &curve.margin).map_err(failed)?;
             let value = |y: f64| family.margin(&Point::new(x, y), &margin);
             let Some(y) = secant(value, guess).map_err(failed)? else {
-                let reason = format!("no boundary at κ = {kappa} near ln(1 + ψ) = {guess}");
+                let reason = format!("no boundary at κ = {kappa} near ψ = {}", psi_at(guess));
                 return Err(Stop::Open(reason));
             };
-            found.push(y.exp_m1());
+            found.push(psi_at(y));
         }
     }
     found.sort_by(f64::total_cmp);

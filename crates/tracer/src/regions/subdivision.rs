@@ -2,6 +2,7 @@
 
 use crate::cubic::Cubic;
 use crate::curve::{Curve, Node, Vertex};
+use crate::regions::abscissae::Abscissae;
 use crate::regions::arrangement::crossing::Crossings;
 use crate::regions::arrangement::faces::Faces;
 use crate::regions::arrangement::piece::{Edge, Piece};
@@ -71,13 +72,19 @@ impl<Label: Clone + Ord, Margin> Subdivision<Label, Margin> {
     ) -> Result<Self, SubdivisionError> {
         SubdivisionError::check(&window, &curves, &vertices, tolerance)?;
         let mut findings = Vec::new();
+        let places = curves.iter().flat_map(|curve| curve.nodes.iter().map(|node| node.point.x));
+        let places = places.chain(vertices.iter().map(|vertex| vertex.point.x));
+        let abscissae = Abscissae::new(window.low.x, window.high.x, places);
         let mut points: Vec<Point> = vertices.iter().map(|vertex| vertex.point).collect();
+        for point in &mut points {
+            point.x = abscissae.of(point.x);
+        }
         let around = frame(&window, &vertices, tolerance, &mut points, &mut findings);
         let mut pieces = Vec::new();
         let mut edges = Vec::with_capacity(curves.len() + around.len());
         for (index, curve) in curves.iter().enumerate() {
             let start = pieces.len();
-            for cubic in cubics(index, curve, &points, tolerance, &mut findings) {
+            for cubic in cubics(index, curve, &points, &abscissae, tolerance, &mut findings) {
                 Piece::of(index, cubic, &mut pieces);
             }
             if pieces.len() == start {
@@ -217,10 +224,14 @@ fn cubics<Label, Margin>(
     index: usize,
     curve: &Curve<Label, Margin>,
     points: &[Point],
+    abscissae: &Abscissae,
     tolerance: f64,
     findings: &mut Vec<Finding<Label>>,
 ) -> Vec<Cubic> {
     let mut nodes = curve.nodes.clone();
+    for node in &mut nodes {
+        node.point.x = abscissae.of(node.point.x);
+    }
     let last = nodes.len() - 1;
     if let Some(ends) = curve.ends {
         for (node, vertex) in [0, last].into_iter().zip(ends) {
@@ -233,7 +244,20 @@ fn cubics<Label, Margin>(
     } else if nodes[0].point != nodes[last].point {
         nodes.push(nodes[0]);
     }
-    nodes.windows(2).map(|pair: &[Node]| Cubic::between(&pair[0], &pair[1])).collect()
+    nodes
+        .windows(2)
+        .map(|pair: &[Node]| {
+            let mut cubic = Cubic::between(&pair[0], &pair[1]);
+            let [first, last] = [0, 3].map(|end| cubic.points[end].x);
+            // The handles of a vertical piece differ by rounding too.
+            if first == last && abscissae.is_straight(&cubic) {
+                for point in &mut cubic.points {
+                    point.x = first;
+                }
+            }
+            cubic
+        })
+        .collect()
 }
 
 /// The counts of Euler's formula. A closed curve counts as an edge with one vertex.

@@ -4,6 +4,7 @@ use stickslip_tracer::{Finding, SubdivisionError};
 
 use super::layout::SCHEMA;
 use crate::atlas::frame::TooNarrow;
+use crate::chart::Chart;
 
 /// The reason why a document is not an atlas.
 ///
@@ -32,6 +33,9 @@ pub enum DocumentError {
         /// Upper end of the interval.
         high: f64,
     },
+    /// The chart does not map the window onto an area.
+    #[error("{0:?} does not map the window onto an area")]
+    Chart(Chart),
     /// The damping is negative.
     #[error("window.damping = {damping:?}: expected 0 or above")]
     Damping {

@@ -5,6 +5,7 @@ use stickslip_tracer::{Node, VertexKind};
 
 use crate::atlas::boundary::BoundaryKind;
 use crate::atlas::verification::VerificationReport;
+use crate::chart::Chart;
 
 /// The name of the layout, with its version.
 pub const SCHEMA: &str = "stickslip.atlas/1";
@@ -19,6 +20,9 @@ pub struct Document {
     pub schema: String,
     /// The window.
     pub window: WindowFields,
+    /// The coordinates in which boundaries are cubics; (ln κ, ln(1 + ψ)) if there are none here.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chart: Option<Chart>,
     /// Accuracy of the boundaries in ψ.
     pub tolerance: f64,
     /// The boundaries.
@@ -65,9 +69,9 @@ pub struct BoundaryFields {
     pub below: Switching,
     /// The switches above the boundary, or to its right where it runs straight up.
     pub above: Switching,
-    /// Points (κ, ψ), between which the boundary is a cubic in (ln κ, ln(1 + ψ)).
+    /// Points (κ, ψ), between which the boundary is a cubic in the coordinates of the chart.
     pub points: Vec<[f64; 2]>,
-    /// Unit tangents at the points, in (ln κ, ln(1 + ψ)).
+    /// Unit tangents at the points, in these coordinates.
     pub tangents: Vec<[f64; 2]>,
     /// Where the boundary starts.
     pub start: BoundaryEnd,

@@ -11,7 +11,7 @@ use super::layout::{
 use crate::atlas::boundary::BoundaryKind;
 use crate::atlas::frame::Frame;
 use crate::atlas::regions::{Atlas, Regions, switch_count};
-use crate::family::CollisionPlane;
+use crate::chart::Chart;
 use crate::range::Range;
 
 impl TryFrom<Document> for Atlas {
@@ -35,19 +35,21 @@ impl TryFrom<Document> for Atlas {
             return Err(DocumentError::Tolerance { tolerance });
         }
         frame.require_wide()?;
+        let chart = document.chart.unwrap_or(Chart::PLAIN);
+        require_chart(&frame, &chart)?;
         let curves = document.boundaries.iter().enumerate();
-        let curves = curves.map(|(index, boundary)| curve(index, boundary));
+        let curves = curves.map(|(index, boundary)| curve(&chart, index, boundary));
         let curves = curves.collect::<Result<Vec<_>, _>>()?;
         let vertices = document.vertices.iter().enumerate();
-        let vertices = vertices.map(|(index, fields)| vertex(index, fields));
+        let vertices = vertices.map(|(index, fields)| vertex(&chart, index, fields));
         let vertices = vertices.collect::<Result<Vec<_>, _>>()?;
-        let resolution = frame.resolution(tolerance);
-        let regions = Subdivision::new(frame.window(), curves, vertices, resolution)?;
+        let resolution = frame.resolution(&chart, tolerance);
+        let regions = Subdivision::new(frame.window(&chart), curves, vertices, resolution)?;
         if let Some(finding) = regions.findings().first() {
             return Err(DocumentError::Finding(finding.clone()));
         }
-        let unbounded = unbounded(&regions, document.regions)?;
-        Ok(Self { frame, tolerance, regions, unbounded })
+        let unbounded = unbounded(&chart, &regions, document.regions)?;
+        Ok(Self { frame, chart, tolerance, regions, unbounded })
     }
 }
 
@@ -66,8 +68,22 @@ fn frame(window: &WindowFields) -> Result<Frame, DocumentError> {
     Ok(Frame { kappa, psi, ratio: None, damping: window.damping })
 }
 
+/// Refuses a chart that does not map the window onto an area.
+fn require_chart(frame: &Frame, chart: &Chart) -> Result<(), DocumentError> {
+    let window = frame.window(chart);
+    let extent = window.extent();
+    let corners = [window.low, window.high];
+    let finite = corners.iter().all(|corner| corner.iter().all(|part| part.is_finite()));
+    let numbers = [chart.kappa, chart.width, chart.spread, chart.height];
+    if finite && extent.min() > 0.0 && numbers.iter().all(|&number| number > 0.0) {
+        return Ok(());
+    }
+    Err(DocumentError::Chart(*chart))
+}
+
 /// The curve of a boundary in traced coordinates.
 fn curve(
+    chart: &Chart,
     index: usize,
     boundary: &BoundaryFields,
 ) -> Result<Curve<String, BoundaryKind>, DocumentError> {
@@ -79,7 +95,7 @@ fn curve(
     }
     let mut nodes = Vec::with_capacity(points.len());
     for (place, (point, tangent)) in points.iter().zip(tangents).enumerate() {
-        let point = positive(*point, || format!("boundaries[{index}].points[{place}]"))?;
+        let point = positive(chart, *point, || format!("boundaries[{index}].points[{place}]"))?;
         nodes.push(Node { point, tangent: Point::from(*tangent) });
     }
     let below = checked(boundary.below.clone(), || format!("boundaries[{index}].below"))?;
@@ -89,15 +105,20 @@ fn curve(
 }
 
 /// The vertex in traced coordinates.
-fn vertex(index: usize, vertex: &VertexFields) -> Result<Vertex<BoundaryKind>, DocumentError> {
+fn vertex(
+    chart: &Chart,
+    index: usize,
+    vertex: &VertexFields,
+) -> Result<Vertex<BoundaryKind>, DocumentError> {
     require_id("vertices", index, vertex.id)?;
-    let point = positive([vertex.kappa, vertex.psi], || format!("vertices[{index}]"))?;
+    let point = positive(chart, [vertex.kappa, vertex.psi], || format!("vertices[{index}]"))?;
     Ok(Vertex { point, kind: vertex.kind.into(), margins: Vec::new() })
 }
 
 /// Compares the regions that the boundaries make with those that the document lists. The result has
 /// the itineraries of the regions that no boundary touches.
 fn unbounded(
+    chart: &Chart,
     regions: &Regions,
     listed: Vec<RegionFields>,
 ) -> Result<BTreeMap<usize, String>, DocumentError> {
@@ -109,7 +130,7 @@ fn unbounded(
     for (index, region) in listed.into_iter().enumerate() {
         require_id("regions", index, region.id)?;
         let itinerary = checked(region.switching, || format!("regions[{index}]"))?;
-        let sample = positive(region.sample, || format!("regions[{index}].sample"))?;
+        let sample = positive(chart, region.sample, || format!("regions[{index}].sample"))?;
         let around = &regions.regions()[index].label;
         let fits = around.as_ref().is_none_or(|around| *around == itinerary);
         if !fits || regions.locate(&sample) != Location::Region(index) {
@@ -135,9 +156,13 @@ fn checked(switching: Switching, place: impl Fn() -> String) -> Result<String, D
 }
 
 /// A point (κ, ψ) in traced coordinates.
-fn positive([kappa, psi]: [f64; 2], place: impl Fn() -> String) -> Result<Point, DocumentError> {
+fn positive(
+    chart: &Chart,
+    [kappa, psi]: [f64; 2],
+    place: impl Fn() -> String,
+) -> Result<Point, DocumentError> {
     if kappa > 0.0 && psi > 0.0 {
-        return Ok(CollisionPlane::point(kappa, psi));
+        return Ok(chart.point(kappa, psi));
     }
     Err(DocumentError::Point { place: place(), kappa, psi })
 }

@@ -8,26 +8,27 @@ use super::layout::{
 };
 use crate::atlas::boundary::BoundaryKind;
 use crate::atlas::frame::Frame;
-use crate::atlas::regions::{Atlas, Regions, switch_count};
+use crate::atlas::regions::{Atlas, switch_count};
 use crate::atlas::tracing::VerifiedAtlas;
-use crate::family::CollisionPlane;
+use crate::chart::Chart;
 
 impl Document {
     /// The document of an atlas, with the result of its verification.
     #[must_use]
     pub fn new(verified: &VerifiedAtlas) -> Self {
         let VerifiedAtlas { atlas, extrema, report } = verified;
-        let Atlas { frame, tolerance, regions, .. } = atlas;
+        let Atlas { frame, chart, tolerance, regions, .. } = atlas;
         let boundaries = regions.curves().iter().enumerate();
         Self {
             schema: SCHEMA.to_owned(),
             window: WindowFields::new(frame),
+            chart: (*chart != Chart::PLAIN).then_some(*chart),
             tolerance: *tolerance,
             boundaries: boundaries
                 .map(|(id, curve)| BoundaryFields::new(atlas, id, curve))
                 .collect(),
-            vertices: vertices(frame, regions),
-            extrema: extrema.iter().map(ExtremumFields::new).collect(),
+            vertices: vertices(atlas),
+            extrema: extrema.iter().map(|one| ExtremumFields::new(chart, one)).collect(),
             regions: (0..regions.regions().len()).map(|id| RegionFields::new(atlas, id)).collect(),
             verification: report.clone(),
         }
@@ -56,7 +57,7 @@ impl BoundaryFields {
             Some(Meeting::WindowEdge | Meeting::WindowCorner) => BoundaryEnd::Window,
             Some(_) => BoundaryEnd::Vertex,
         };
-        let point = |node: &Node| atlas.frame.snapped(CollisionPlane::parameters(&node.point));
+        let point = |node: &Node| atlas.frame.snapped(atlas.chart.parameters(&node.point));
         Self {
             id,
             kind: curve.margin,
@@ -72,7 +73,8 @@ impl BoundaryFields {
 }
 
 /// All vertices, each with the boundaries that start or end there.
-fn vertices(frame: &Frame, regions: &Regions) -> Vec<VertexFields> {
+fn vertices(atlas: &Atlas) -> Vec<VertexFields> {
+    let Atlas { frame, chart, regions, .. } = atlas;
     let mut ending = vec![Vec::new(); regions.vertices().len()];
     for (id, curve) in regions.curves().iter().enumerate() {
         for vertex in curve.ends.into_iter().flatten() {
@@ -84,15 +86,15 @@ fn vertices(frame: &Frame, regions: &Regions) -> Vec<VertexFields> {
     let vertices = regions.vertices().iter().zip(ending).enumerate();
     vertices
         .map(|(id, (vertex, boundaries))| {
-            let [kappa, psi] = frame.snapped(CollisionPlane::parameters(&vertex.point));
+            let [kappa, psi] = frame.snapped(chart.parameters(&vertex.point));
             VertexFields { id, kind: vertex.kind.into(), kappa, psi, boundaries }
         })
         .collect()
 }
 
 impl ExtremumFields {
-    fn new(extremum: &Extremum) -> Self {
-        let [kappa, psi] = CollisionPlane::parameters(&extremum.point);
+    fn new(chart: &Chart, extremum: &Extremum) -> Self {
+        let [kappa, psi] = chart.parameters(&extremum.point);
         let of = if extremum.axis == 0 { ExtremalParameter::Kappa } else { ExtremalParameter::Psi };
         Self { boundary: extremum.curve, of, kappa, psi }
     }
@@ -107,7 +109,7 @@ impl RegionFields {
         Self {
             id,
             switching: Switching::new(atlas.itinerary(id)),
-            sample: CollisionPlane::parameters(&region.sample),
+            sample: atlas.chart.parameters(&region.sample),
             area_share: region.area / atlas.regions.window().area(),
             boundaries,
         }

@@ -14,6 +14,9 @@ use crate::window::Point;
 /// Crossings with a larger uncertainty, as a fraction of the window's shorter extent, are also
 /// tried as touches. The values of margins tell the place of a touch only to half the digits.
 const TANGENTIAL: f64 = 1e-9;
+/// Crossings with a larger uncertainty, as a fraction of the window's shorter extent, are none: the
+/// two margins are almost multiples of each other.
+const VAGUE: f64 = 1e-5;
 
 /// The special point of a branch after `from`, within a failed step of length `h`; `None` if the
 /// step is too long to find it. `beyond` is the place that the step reached, if only its labels
@@ -36,7 +39,9 @@ pub(crate) fn locate<F: Family>(
             }
             met => met,
         };
-        if let Some((point, off)) = met {
+        if let Some((point, off)) = met
+            && off <= VAGUE * track.runs.scale
+        {
             let progress = (point - from.node.point).dot(&from.node.tangent);
             found.push((progress, point, off, margin));
         }

@@ -1,0 +1,78 @@
+//! The coordinates in which the (κ, ψ) plane is traced.
+
+use stickslip_tracer::{Point, Window};
+
+use crate::range::Range;
+
+/// Traced coordinates of the (κ, ψ) plane, in which boundaries bend evenly.
+///
+/// They are x = ln(κ/κ₀)/w and y = ln(1 + (ψ − ψ₀)/s)/h. Windows of an ordinary shape have the
+/// [plain](Self::PLAIN) chart, ln κ and ln(1 + ψ). One that is narrow, long, or reaches to small ψ
+/// has a chart of its own, in which its sides are ln κ and ln ψ from 0 to 1: then lengths relative to
+/// the window mean the same in both directions, and no digits are lost in a small window.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Chart {
+    /// κ₀.
+    pub kappa: f64,
+    /// w.
+    pub width: f64,
+    /// ψ₀.
+    pub psi: f64,
+    /// s; y is the logarithm of a multiple of ψ where it is ψ₀.
+    pub spread: f64,
+    /// h.
+    pub height: f64,
+}
+
+impl Chart {
+    /// ln κ and ln(1 + ψ).
+    pub const PLAIN: Self = Self { kappa: 1.0, width: 1.0, psi: 0.0, spread: 1.0, height: 1.0 };
+
+    /// The chart of a window.
+    #[must_use]
+    pub fn of(kappa: Range, psi: Range) -> Self {
+        /// The least extent of an ordinary window in plain coordinates.
+        const SHORTEST: f64 = 0.01;
+        /// The greatest ratio of the two extents.
+        const LONGEST: f64 = 16.0;
+        /// The least ψ of an ordinary window.
+        const SMALLEST: f64 = 0.005;
+        let extent = Self::PLAIN.window(kappa, psi).extent();
+        let ordinary = extent.min() >= SHORTEST && extent.max() <= LONGEST * extent.min();
+        if ordinary && psi.low >= SMALLEST {
+            return Self::PLAIN;
+        }
+        let unit =
+            Self { kappa: kappa.low, width: 1.0, psi: psi.low, spread: psi.low, height: 1.0 };
+        let extent = unit.window(kappa, psi).extent();
+        Self { width: extent.x, height: extent.y, ..unit }
+    }
+
+    /// The traced point of κ and ψ.
+    #[must_use]
+    pub fn point(&self, kappa: f64, psi: f64) -> Point {
+        let x = (kappa / self.kappa).ln() / self.width;
+        let y = ((psi - self.psi) / self.spread).ln_1p() / self.height;
+        Point::new(x, y)
+    }
+
+    /// κ and ψ of a traced point: the inverse of [`Self::point`].
+    #[must_use]
+    pub fn parameters(&self, point: &Point) -> [f64; 2] {
+        let kappa = self.kappa * (point.x * self.width).exp();
+        [kappa, self.psi + self.spread * (point.y * self.height).exp_m1()]
+    }
+
+    /// A window in traced coordinates.
+    #[must_use]
+    pub fn window(&self, kappa: Range, psi: Range) -> Window {
+        Window { low: self.point(kappa.low, psi.low), high: self.point(kappa.high, psi.high) }
+    }
+
+    /// The derivative of ψ with respect to y at `psi`.
+    #[must_use]
+    pub fn scale(&self, psi: f64) -> f64 {
+        self.height * (self.spread - self.psi + psi)
+    }
+}

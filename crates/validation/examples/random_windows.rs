@@ -1,0 +1,101 @@
+//! Random windows of the (κ, ψ) plane: is the atlas of each complete, and are all points right?
+//!
+//! Windows are log-uniform in κ from 1e-4 to 1e5, in ψ from 1e-6 to 1e3, in their width and height
+//! from 1e-6 to 10 in the logarithms, and in the damping from 1e-6 to 10; every fourth is undamped.
+//! Points are uniform in the window, half of them in its logarithms; each is located and compared
+//! with the exact solution. Fails if a point is wrong or anything speaks against an atlas.
+//!
+//! Run with `cargo run --release -p validation --example random_windows -- [WINDOWS] [POINTS] [FIRST]
+//! [LEAST]`; 200 windows with 20 000 points each without arguments. LEAST is the least length instead
+//! of 1e-6.
+
+use std::error::Error;
+use std::io::Write;
+use std::time::Instant;
+
+use rayon::prelude::*;
+use stickslip::model::{Contact, exact};
+use stickslip::plane::Range;
+use stickslip::plane::atlas::{self, Frame};
+use stickslip::plane::progress::SILENT;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let mut count = |usual: u64| arguments.next().map_or(Ok(usual), |argument| argument.parse());
+    let (windows, points, first) = (count(200)?, count(20_000)?, count(0)?);
+    let least = arguments.next().map_or(Ok(1e-6), |argument| argument.parse())?;
+    let mut outcomes = [0; 3];
+    for number in first..first + windows {
+        let mut random = fastrand::Rng::with_seed(number);
+        let frame = frame(&mut random, least, number.is_multiple_of(4));
+        let Frame { kappa, psi, damping, .. } = frame;
+        print!(
+            "{number:4} κ {:?}:{:?} ψ {:?}:{:?} a {damping:?}: ",
+            kappa.low, kappa.high, psi.low, psi.high
+        );
+        std::io::stdout().flush()?;
+        let start = Instant::now();
+        let tolerance = frame.tolerances().usual;
+        let outcome = match atlas::trace(frame, tolerance, SILENT) {
+            Ok(found) => {
+                let seconds = start.elapsed().as_secs_f64();
+                let wrong = wrong(&found.atlas, &mut random, points);
+                let regions = &found.atlas.regions;
+                let objection = found.report.objection();
+                println!(
+                    "{} curves, {} regions, {seconds:.2} s, {} wrong {}",
+                    regions.curves().len(),
+                    regions.regions().len(),
+                    wrong.len(),
+                    objection.as_deref().unwrap_or("ok")
+                );
+                for [kappa, psi] in wrong.iter().take(3) {
+                    println!("       wrong: --kappa {kappa:?} --psi {psi:?}");
+                }
+                usize::from(!wrong.is_empty() || objection.is_some())
+            }
+            Err(error) => {
+                println!("{error}");
+                2
+            }
+        };
+        outcomes[outcome] += 1;
+    }
+    let [complete, doubtful, refused] = outcomes;
+    println!("{complete} complete, {doubtful} wrong or doubtful, {refused} refused");
+    if doubtful + refused == 0 { Ok(()) } else { Err("an atlas is not complete".into()) }
+}
+
+fn frame(random: &mut fastrand::Rng, least: f64, undamped: bool) -> Frame {
+    let mut log = |low: f64, high: f64| low * (high / low).powf(random.f64());
+    let mut side = |low: f64, high: f64| {
+        let (start, length) = (log(low, high), log(least, 10.0));
+        // The window lies around its place, and inside the range.
+        let reach = (0.5 * length).exp();
+        Range { low: (start / reach).max(low), high: (start * reach).min(high) }
+    };
+    let (kappa, psi) = (side(1e-4, 1e5), side(1e-6, 1e3));
+    let damping = if undamped { 0.0 } else { log(1e-6, 10.0) };
+    Frame { kappa, psi, ratio: None, damping }
+}
+
+/// The points whose region has other switches than their collisions.
+fn wrong(atlas: &atlas::Atlas, random: &mut fastrand::Rng, count: u64) -> Vec<[f64; 2]> {
+    let Frame { kappa, psi, damping, .. } = atlas.frame;
+    let even = |Range { low, high }: Range, part: f64| low + part * (high - low);
+    let log = |Range { low, high }: Range, part: f64| low * (high / low).powf(part);
+    let points: Vec<[f64; 2]> = (0..count)
+        .map(|index| {
+            let parts = [random.f64(), random.f64()];
+            let place = if index.is_multiple_of(2) { even } else { log };
+            let [x, y] = [place(kappa, parts[0]), place(psi, parts[1])];
+            [x.clamp(kappa.low, kappa.high), y.clamp(psi.low, psi.high)]
+        })
+        .collect();
+    let is_wrong = |&[kappa, psi]: &[f64; 2]| {
+        let Ok(contact) = Contact::new(kappa, psi, damping) else { return true };
+        let Ok(region) = atlas.locate(&contact).region else { return false };
+        exact::collide(contact).map_or(true, |found| found.itinerary() != atlas.itinerary(region))
+    };
+    points.into_par_iter().filter(is_wrong).collect()
+}
