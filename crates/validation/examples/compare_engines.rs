@@ -1,12 +1,13 @@
 //! Random collisions by both engines: do they ever disagree on a switch?
 //!
-//! κ is log-uniform in [0.02, 400], ψ uniform in [0.002, 2.3]. The program prints the largest
+//! κ is log-uniform in [0.02, 400], ψ uniform in [0.002, 2.3]. With `damped`, κ is log-uniform in
+//! [0.01, 1000], ψ in [0.001, 5] and the damping in [1e-6, 1e4]. The program prints the largest
 //! difference of the final velocity and every collision whose itineraries differ, with its margin:
 //! the least relative change of ψ that changes the itinerary of the exact engine. It fails if a
 //! collision with a margin of 1e-12 or more differs.
 //!
-//! Run with `cargo run --release -p validation --example compare_engines -- [COUNT] [SEED]`; one
-//! million without arguments.
+//! Run with `cargo run --release -p validation --example compare_engines -- [COUNT] [SEED]
+//! [damped]`; one million without arguments.
 
 use std::process::ExitCode;
 
@@ -45,10 +46,11 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let count: u64 = arguments.next().map_or(Ok(1_000_000), |text| text.parse())?;
     let seed: u64 = arguments.next().map_or(Ok(1), |text| text.parse())?;
+    let damped = arguments.next().is_some_and(|text| text == "damped");
     let chunks: Vec<u64> = (0..count).step_by(usize::try_from(CHUNK)?).collect();
     let result = chunks
         .into_par_iter()
-        .map(|first| compare(seed, first..count.min(first + CHUNK)))
+        .map(|first| compare(seed, damped, first..count.min(first + CHUNK)))
         .collect::<Vec<_>>()
         .into_iter()
         .fold(Comparison::default(), Comparison::merge);
@@ -69,14 +71,12 @@ fn main() -> Result<ExitCode, Box<dyn std::error::Error>> {
     Ok(if wrong == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-fn compare(seed: u64, cases: std::ops::Range<u64>) -> Comparison {
+fn compare(seed: u64, damped: bool, cases: std::ops::Range<u64>) -> Comparison {
     let collider = Collider::default();
     let mut comparison = Comparison::default();
     for case in cases {
-        let (first, second) = uniform_pair(seed, case);
-        let kappa = 0.02 * (400.0_f64 / 0.02).powf(first);
-        let psi = 0.002 + (2.3 - 0.002) * second;
-        match collide(&collider, kappa, psi) {
+        let parameters = parameters(seed, damped, case);
+        match collide(&collider, parameters) {
             Ok((integrated, closed)) => {
                 let contact = closed.contact;
                 comparison.switches += closed.switches.len();
@@ -97,7 +97,7 @@ fn compare(seed: u64, cases: std::ops::Range<u64>) -> Comparison {
                     comparison.time = comparison.time.max(difference);
                 }
             }
-            Err(error) => comparison.failed.push(format!("κ = {kappa}, ψ = {psi}: {error}")),
+            Err(error) => comparison.failed.push(format!("{parameters:?}: {error}")),
         }
     }
     comparison
@@ -105,10 +105,9 @@ fn compare(seed: u64, cases: std::ops::Range<u64>) -> Comparison {
 
 fn collide(
     collider: &Collider,
-    kappa: f64,
-    psi: f64,
+    [kappa, psi, damping]: [f64; 3],
 ) -> Result<(Collision, Collision), Box<dyn std::error::Error>> {
-    let contact = Contact::new(kappa, psi, 0.0)?;
+    let contact = Contact::new(kappa, psi, damping)?;
     Ok((collider.collide(contact)?, exact::collide(contact)?))
 }
 
@@ -116,7 +115,8 @@ fn collide(
 /// engine.
 fn margin(contact: Contact) -> f64 {
     let itinerary = |factor: f64| {
-        let moved = Contact::new(contact.kappa(), contact.psi() * factor, 0.0).ok()?;
+        let moved =
+            Contact::new(contact.kappa(), contact.psi() * factor, contact.damping()).ok()?;
         exact::collide(moved).ok().map(|collision| collision.itinerary())
     };
     let here = itinerary(1.0);
@@ -125,6 +125,16 @@ fn margin(contact: Contact) -> f64 {
         change *= 2.0;
     }
     change
+}
+
+/// Random κ, ψ and damping.
+fn parameters(seed: u64, damped: bool, case: u64) -> [f64; 3] {
+    let (first, second) = uniform_pair(seed, case);
+    if !damped {
+        return [0.02 * (400.0_f64 / 0.02).powf(first), 0.002 + (2.3 - 0.002) * second, 0.0];
+    }
+    let (third, _) = uniform_pair(seed ^ 0x5eed, case);
+    [0.01 * 1e5_f64.powf(first), 0.001 * 5e3_f64.powf(second), 1e-6 * 1e10_f64.powf(third)]
 }
 
 /// Two random numbers in [0, 1) that depend on seed and case alone (splitmix64), not on threads.
