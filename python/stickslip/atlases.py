@@ -77,7 +77,8 @@ class Region:
 class Located:
     """Where points lie in an atlas; arrays of the shape of the points."""
 
-    #: Index of the region; -1 on a boundary within its error, -2 outside the window.
+    #: Index of the region; -1 on a boundary whose collision has the switches of
+    #: no region there, -2 outside the window.
     region: NDArray[np.int64]
     #: Number of switches; -1 where there is no region.
     switch_count: NDArray[np.int64]

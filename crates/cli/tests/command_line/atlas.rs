@@ -163,15 +163,19 @@ fn points_that_cannot_be_located_are_named() {
     workspace.write("p.csv", "kappa,psi\n6,0.5\n6,2\n4,1\n6,2.6\n6,x\n6\n");
     let ran = workspace.run("locate --atlas a.json --batch p.csv --out o.csv");
     assert_eq!(ran.code, 1);
-    for part in ["5 of 6 points", "o.csv", "row 2", "kappa = 6.0, psi = 2.0", "on boundary"] {
+    for part in ["4 of 6 points", "o.csv", "row 3", "kappa = 4.0, psi = 1.0", "outside"] {
         assert!(ran.stderr.contains(part), "{part}: {}", ran.stderr);
     }
     let located = rows(&workspace.read("o.csv"));
     assert_eq!(located[1][2], "4");
-    for row in &located[2..] {
+    // On the boundary itself the collision decides.
+    let ran = workspace.run("collide --kappa 6 --psi 2 --method exact --format json");
+    let computed: Value = serde_json::from_str(&ran.stdout).unwrap();
+    assert_eq!(computed["itinerary"], *located[2][3]);
+    assert!(located[2][5].parse::<f64>().unwrap() < 3.5e-10, "{:?}", located[2]);
+    for row in &located[3..] {
         assert_eq!(row[2..5], ["", "", ""], "{row:?}");
     }
-    assert!(located[2][5].parse::<f64>().unwrap() < 3.5e-10, "{:?}", located[2]);
     assert_eq!(located[3][5], "");
 }
 

@@ -1,6 +1,6 @@
 //! Points looked up in an atlas.
 
-use stickslip_model::Contact;
+use stickslip_model::{Contact, exact};
 use stickslip_tracer::Location;
 
 use super::regions::Atlas;
@@ -18,8 +18,11 @@ pub struct Located {
 /// A point has no known region.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Unlocated {
-    /// The point is so close to a boundary that the boundary's error leaves the side open.
-    #[error("kappa = {kappa:?}, psi = {psi:?} is on boundary {boundary} within its error")]
+    /// The point is within a boundary's error, and its collision has the switches of no region there.
+    #[error(
+        "kappa = {kappa:?}, psi = {psi:?} is on boundary {boundary} within its error, and its \
+         collision has other switches than the regions there"
+    )]
     OnBoundary {
         /// κ of the point.
         kappa: f64,
@@ -45,8 +48,9 @@ pub enum Unlocated {
 }
 
 impl Atlas {
-    /// Looks up a collision by its κ and ψ. The damping of `contact` is not compared with that of
-    /// the atlas.
+    /// Looks up a collision by its κ and ψ. Within the error of a boundary, the collision itself
+    /// decides, computed by the exact solution. The damping is that of the atlas, whatever that of
+    /// `contact` is.
     #[must_use]
     pub fn locate(&self, contact: &Contact) -> Located {
         let (kappa, psi) = (contact.kappa(), contact.psi());
@@ -54,7 +58,8 @@ impl Atlas {
         let region = match self.regions.locate(&point) {
             Location::Region(region) => Ok(region),
             Location::OnBoundary { curve: boundary, .. } => {
-                Err(Unlocated::OnBoundary { kappa, psi, boundary })
+                let region = self.decided(boundary, contact);
+                region.ok_or(Unlocated::OnBoundary { kappa, psi, boundary })
             }
             Location::Outside => {
                 let window = [self.frame.kappa, self.frame.psi].map(|side| [side.low, side.high]);
@@ -68,5 +73,21 @@ impl Atlas {
         let above = above.map(|distance| (height * distance).exp_m1());
         let nearest = [below, above].into_iter().flatten().reduce(f64::min);
         Located { region, distance: nearest.map(|part| (spread + psi - from) * part) }
+    }
+
+    /// The region beside `boundary`, or beside one that meets it, in which collisions have the
+    /// switches of this one.
+    fn decided(&self, boundary: usize, contact: &Contact) -> Option<usize> {
+        let contact = Contact::new(contact.kappa(), contact.psi(), self.frame.damping).ok()?;
+        let itinerary = exact::collide(contact).ok()?.itinerary();
+        let curves = self.regions.curves();
+        let ends = |curve: usize| curves[curve].ends.into_iter().flatten();
+        let meeting = (0..curves.len())
+            .filter(|&other| ends(other).any(|end| ends(boundary).any(|own| own == end)));
+        let beside = |curve: usize| self.regions.regions_beside(curve).into_iter().flatten();
+        std::iter::once(boundary)
+            .chain(meeting)
+            .flat_map(beside)
+            .find(|&region| self.itinerary(region) == itinerary)
     }
 }

@@ -4,7 +4,7 @@ use stickslip_model::{Collider, Contact, exact};
 use stickslip_plane::Range;
 use stickslip_plane::atlas::{AtlasError, BoundaryKind, Frame, Unlocated, switch_count, trace};
 use stickslip_plane::progress::{Progress, SILENT};
-use stickslip_tracer::VertexKind;
+use stickslip_tracer::{Location, VertexKind};
 
 use crate::windows::{crossing, empty, frame, traced};
 
@@ -162,24 +162,23 @@ fn a_point_outside_the_window_is_refused_with_the_window() {
 }
 
 #[test]
-fn a_point_on_a_boundary_is_refused_with_the_boundary() {
+fn a_point_on_a_boundary_is_decided_by_its_collision() {
     let atlas = &crossing().atlas;
     for psi in atlas.boundaries_at(20.0) {
-        let located = atlas.locate(&contact(20.0, psi));
-        let Err(Unlocated::OnBoundary { kappa: 20.0, psi: found, boundary }) = located.region
-        else {
-            panic!("{:?}", located.region)
-        };
-        assert_eq!(found, psi);
-        assert!(located.distance.unwrap() < 1e-12);
-        // On either side the point is decided, by two regions of the boundary.
-        let [below, above] = [psi - 1e-6, psi + 1e-6]
-            .map(|psi| atlas.itinerary(atlas.locate(&contact(20.0, psi)).region.unwrap()));
-        let mut sides = atlas.regions.curves()[boundary].sides.each_ref().map(String::as_str);
-        let mut found = [below, above];
-        sides.sort_unstable();
-        found.sort_unstable();
-        assert_eq!(found, sides);
+        let place = atlas.chart.point(20.0, psi);
+        assert!(matches!(atlas.regions.locate(&place), Location::OnBoundary { .. }));
+        assert!(atlas.locate(&contact(20.0, psi)).distance.unwrap() < 1e-12);
+        // Within the error of the boundary and beyond it, on either side.
+        let mut found = Vec::new();
+        for away in [-1e-6, -1e-11, -1e-13, 0.0, 1e-13, 1e-11, 1e-6] {
+            let contact = contact(20.0, psi + away);
+            let itinerary = exact::collide(contact).unwrap().itinerary();
+            let region = atlas.locate(&contact).region.unwrap();
+            assert_eq!(atlas.itinerary(region), itinerary, "{away:e}");
+            found.push(itinerary);
+        }
+        found.dedup();
+        assert_eq!(found.len(), 2);
     }
     assert_eq!(atlas.boundaries_at(20.0).len(), 2);
 }
