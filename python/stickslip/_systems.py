@@ -1,5 +1,6 @@
 """Systems of modes, with what ends them and what follows."""
 
+import operator
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias, get_args
@@ -35,8 +36,10 @@ class Guard:
             raise ValueError(
                 f"{about}: direction = {self.direction!r}; expected one of {get_args(Direction)}"
             )
-        for name, value in (("terminal", int(self.terminal)), ("from_zero", self.from_zero)):
-            if not 0 <= value < 2**31:
+        for name, value in (("terminal", self.terminal), ("from_zero", self.from_zero)):
+            if not hasattr(value, "__index__"):
+                raise TypeError(f"{about}: {name} = {value!r}; expected a whole number")
+            if not 0 <= operator.index(value) < 2**31:
                 raise ValueError(f"{about}: {name} = {value}; expected 0 or above")
         if self.transition is not None and (self.to is not None or self.reset is not None):
             raise ValueError(f"{about}: a transition says it all; expected no to and no reset")

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _native
+from stickslip._arrays import numbers
 from stickslip.collisions import Floats, _threads, psi_of_ratio
 
 if TYPE_CHECKING:
@@ -77,8 +78,8 @@ class Region:
 class Located:
     """Where points lie in an atlas; arrays of the shape of the points."""
 
-    #: Index of the region; -1 on a boundary whose collision has the switches of
-    #: no region there, -2 outside the window.
+    #: Index of the region; -1 on a boundary or on the edge, where the
+    #: collision has the switches of no region; -2 outside the window.
     region: NDArray[np.int64]
     #: Number of switches; -1 where there is no region.
     switch_count: NDArray[np.int64]
@@ -182,9 +183,7 @@ class Atlas:
 
     def locate(self, kappa: ArrayLike, psi: ArrayLike) -> Located:
         """The regions in which points lie. kappa and psi broadcast."""
-        given = np.broadcast_arrays(
-            np.asarray(kappa, dtype=np.float64), np.asarray(psi, dtype=np.float64)
-        )
+        given = np.broadcast_arrays(numbers("kappa", kappa), numbers("psi", psi))
         shape = given[0].shape
         flat = (np.ascontiguousarray(one).reshape(-1) for one in given)
         region, distance = self._native.locate(*flat)

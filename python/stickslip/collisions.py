@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _native
+from stickslip._arrays import numbers
 
 Floats: TypeAlias = NDArray[np.float64]
 Method: TypeAlias = Literal["auto", "exact", "dop853", "dopri5"]
@@ -28,6 +29,9 @@ SWITCH = np.dtype(
         ("velocity", "f8"),
     ]
 )
+
+#: The greatest number of intervals of a phase.
+MOST_MOMENTS = 10**6
 
 #: A moment of a collision, in scaled variables: time t, compression x and its rate, normal force,
 #: reduced spring y, tangential force F_t/mu, reduced tangential velocity w.
@@ -162,11 +166,13 @@ class Collision:
         times: scaled times of any shape, which is that of the result; outside the contact a moment
         is NaN. Without times, each phase has `moments` intervals of equal length.
         """
+        if not 1 <= moments <= MOST_MOMENTS:
+            raise ValueError(f"moments = {moments!r}; expected 1 to {MOST_MOMENTS}")
         if times is None:
             rows = self._native.history(None, moments)
             return rows.view(MOMENT).reshape(-1)
-        asked = np.asarray(times, dtype=np.float64)
-        rows = self._native.history(np.ascontiguousarray(asked).reshape(-1), moments)
+        asked = numbers("times", times)
+        rows = self._native.history(asked.reshape(-1), moments)
         return rows.view(MOMENT).reshape(asked.shape)
 
     def sensitivity(self) -> Sensitivity:
@@ -349,7 +355,7 @@ def _broadcast(
     kappa: ArrayLike, psi: ArrayLike, damping: ArrayLike
 ) -> tuple[tuple[Floats, Floats, Floats], tuple[Floats, Floats, Floats], tuple[int, ...]]:
     """The parameters as given, as flat arrays (of one value, if they have only one), and the shape."""
-    given = tuple(np.asarray(one, dtype=np.float64) for one in (kappa, psi, damping))
+    given = (numbers("kappa", kappa), numbers("psi", psi), numbers("damping", damping))
     shape = np.broadcast_shapes(*(one.shape for one in given))
     flat = tuple(
         one.reshape(-1) if one.size == 1 else np.broadcast_to(one, shape).reshape(-1)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip import _native
+from stickslip._arrays import numbers
 from stickslip.collisions import Collisions, Floats, Method, OnError, collide_many
 
 Vector: TypeAlias = tuple[float, float, float]
@@ -172,8 +173,8 @@ class Bodies:
     ) -> tuple[Floats, Floats, Floats, Floats]:
         """kappa, psi, damping and the unit of time in s for velocities of the surfaces in m/s."""
         given = np.broadcast_arrays(
-            np.asarray(normal_m_per_s, dtype=np.float64),
-            np.asarray(tangential_m_per_s, dtype=np.float64),
+            numbers("normal_m_per_s", normal_m_per_s),
+            numbers("tangential_m_per_s", tangential_m_per_s),
         )
         found = self._pair.contacts(*(np.ascontiguousarray(one).reshape(-1) for one in given))
         kappa, psi, damping, unit = (one.reshape(given[0].shape) for one in found)
@@ -257,9 +258,11 @@ def impact(
     if speed_m_per_s is not None and angle_rad is not None:
         if normal_m_per_s is not None or tangential_m_per_s is not None:
             raise ValueError("velocities and a speed with an angle are both given; expected one")
-        angle = np.asarray(angle_rad, dtype=np.float64)
-        if not np.all((angle > 0) & (angle < np.pi / 2)):
-            raise ValueError("angle_rad is out of range; expected above 0 and below pi/2")
+        angle = numbers("angle_rad", angle_rad)
+        wrong = ~((angle > 0) & (angle < np.pi / 2))
+        if np.any(wrong):
+            first = float(angle[wrong].flat[0])
+            raise ValueError(f"angle_rad = {first!r}; expected above 0 and below pi/2")
         normal_m_per_s = np.multiply(speed_m_per_s, np.cos(angle))
         tangential_m_per_s = np.multiply(speed_m_per_s, np.sin(angle))
     elif speed_m_per_s is not None or angle_rad is not None:
@@ -267,8 +270,8 @@ def impact(
     if normal_m_per_s is None or tangential_m_per_s is None:
         raise ValueError("expected normal_m_per_s and tangential_m_per_s, or a speed and an angle")
     normal, tangential = np.broadcast_arrays(
-        np.asarray(normal_m_per_s, dtype=np.float64),
-        np.asarray(tangential_m_per_s, dtype=np.float64),
+        numbers("normal_m_per_s", normal_m_per_s),
+        numbers("tangential_m_per_s", tangential_m_per_s),
     )
     kappa, psi, damping, unit = pair.contacts(normal, tangential)
     found = collide_many(

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use numpy::{IntoPyArray, PyReadonlyArray1};
+use numpy::{IntoPyArray, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use stickslip_model::{Collision, Contact, Engine, Regime};
@@ -39,10 +39,22 @@ pub fn expect_equal(lengths: impl IntoIterator<Item = usize>) -> PyResult<()> {
     }
 }
 
+/// The numbers of an array.
+///
+/// Those that do not lie as Rust reads them, such as a field of records, are refused: the package
+/// passes copies.
+pub fn numbers(array: &PyReadonlyArray1<'_, f64>) -> PyResult<Vec<f64>> {
+    if array.data().is_aligned() {
+        Ok(array.as_array().to_vec())
+    } else {
+        Err(bad_input("an array that is not aligned; expected a copy of it"))
+    }
+}
+
 impl Points {
     pub fn new(parameters: &Parameters<'_>) -> PyResult<Self> {
         let Parameters(kappa, psi, damping) = parameters;
-        let columns = [kappa, psi, damping].map(|column| column.as_array().to_vec());
+        let columns = [numbers(kappa)?, numbers(psi)?, numbers(damping)?];
         let lengths = || columns.iter().map(Vec::len).filter(|&length| length != 1);
         expect_equal(lengths())?;
         let count = lengths().next().unwrap_or(1);

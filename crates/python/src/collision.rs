@@ -7,6 +7,7 @@ use stickslip_model::document::COLLISION;
 use stickslip_model::{Collider, Contact, Derived, Engine, History, Snapshot};
 use stickslip_solver::Statistics;
 
+use crate::arrays::numbers;
 use crate::engines::{Choice, document};
 use crate::failure::{Failure, bad_input};
 
@@ -53,7 +54,7 @@ impl Collision {
         if moments == 0 {
             return Err(bad_input("moments = 0; expected at least 1"));
         }
-        let times = times.map(|times| times.as_array().to_vec());
+        let times = times.map(|times| numbers(&times)).transpose()?;
         let history = py.detach(|| self.course()).map_err(Failure::from)?;
         let rows: Vec<[f64; 7]> = match times {
             Some(times) => {

@@ -9,7 +9,7 @@ use stickslip_model::{
     Wall, WallMotion, quantity,
 };
 
-use crate::arrays::expect_equal;
+use crate::arrays::{expect_equal, numbers};
 use crate::engines::{Choice, document};
 use crate::failure::{Failure, bad_input, failed};
 
@@ -92,8 +92,8 @@ impl Pair {
     ) -> PyResult<Bound<'py, PyTuple>> {
         expect_equal([normal.len()?, tangential.len()?])?;
         let [mut kappa, mut psi, mut damping, mut unit] = [const { Vec::new() }; 4];
-        let velocities = normal.as_array().into_iter().zip(tangential.as_array());
-        for (index, (&normal, &tangential)) in velocities.enumerate() {
+        let velocities = numbers(&normal)?.into_iter().zip(numbers(&tangential)?);
+        for (index, (normal, tangential)) in velocities.enumerate() {
             let impact = self
                 .reduced
                 .impact(normal, tangential)

@@ -8,7 +8,7 @@ use stickslip_plane::Range;
 use stickslip_plane::atlas::{self, Document, Frame, RatioRange, SCHEMA, Unlocated};
 use stickslip_plane::progress::SILENT;
 
-use crate::arrays::expect_equal;
+use crate::arrays::{expect_equal, numbers};
 use crate::failure::{bad_input, failed, of_atlas};
 use crate::parallel::Threads;
 
@@ -96,7 +96,7 @@ impl Atlas {
         psi: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<Bound<'py, PyTuple>> {
         expect_equal([kappa.len()?, psi.len()?])?;
-        let (kappa, psi) = (kappa.as_array().to_vec(), psi.as_array().to_vec());
+        let (kappa, psi) = (numbers(&kappa)?, numbers(&psi)?);
         let (mut regions, mut distances) = (Vec::new(), Vec::new());
         let work = |part: std::ops::Range<usize>| {
             part.map(|index| self.place(kappa[index], psi[index])).collect::<Result<Vec<_>, _>>()
@@ -117,7 +117,7 @@ impl Atlas {
         let located = self.atlas.locate(&Contact::new(kappa, psi, 0.0)?);
         let region = match located.region {
             Ok(region) => i64::try_from(region).unwrap_or(i64::MAX),
-            Err(Unlocated::OnBoundary { .. }) => -1,
+            Err(Unlocated::OnBoundary { .. } | Unlocated::OnEdge { .. }) => -1,
             Err(Unlocated::Outside { .. }) => -2,
         };
         Ok((region, located.distance.unwrap_or(f64::NAN)))

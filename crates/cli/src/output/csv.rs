@@ -140,8 +140,13 @@ mod tests {
         fn numbers_have_their_shortest_digits(bits: u64, exponent in -25..25_i32, digits in 0..10_000_i32) {
             let short = f64::from(digits) * 10_f64.powi(exponent);
             for value in [f64::from_bits(bits), short, -short, 10_f64.powi(exponent)] {
-                let written = text(|rows| rows.number(value));
-                prop_assert_eq!(String::from_utf8(written).unwrap(), number(value));
+                let written = String::from_utf8(text(|rows| rows.number(value))).unwrap();
+                let expected = number(value);
+                // Two shortest numbers may be equally near.
+                let read = |text: &str| text.parse().map(f64::to_bits);
+                let as_good =
+                    written.len() == expected.len() && read(&written) == read(&expected);
+                prop_assert!(written == expected || as_good, "{written} and {expected}");
             }
         }
 

@@ -1,7 +1,7 @@
 //! Points looked up in an atlas.
 
 use stickslip_model::{Contact, exact};
-use stickslip_tracer::Location;
+use stickslip_tracer::{Location, Point, Window};
 
 use super::regions::Atlas;
 use crate::chart::Chart;
@@ -31,6 +31,18 @@ pub enum Unlocated {
         /// The index of the boundary.
         boundary: usize,
     },
+    /// The point is on the edge of the window, and its collision has other switches than the region
+    /// there: a boundary runs along the edge.
+    #[error(
+        "kappa = {kappa:?}, psi = {psi:?} is on the edge of the window, and its collision has other \
+         switches than the region there"
+    )]
+    OnEdge {
+        /// κ of the point.
+        kappa: f64,
+        /// ψ of the point.
+        psi: f64,
+    },
     /// The point is outside the window.
     #[error(
         "kappa = {kappa:?}, psi = {psi:?} is outside the window of the atlas, kappa {:?} to {:?}, \
@@ -56,7 +68,14 @@ impl Atlas {
         let (kappa, psi) = (contact.kappa(), contact.psi());
         let point = self.chart.point(kappa, psi);
         let region = match self.regions.locate(&point) {
-            Location::Region(region) => Ok(region),
+            Location::Region(region) if !self.is_at_edge(&point) => Ok(region),
+            // A boundary may lie on the edge of the window.
+            Location::Region(region) => match self.itinerary_of(contact) {
+                Some(itinerary) if itinerary != self.itinerary(region) => {
+                    Err(Unlocated::OnEdge { kappa, psi })
+                }
+                _ => Ok(region),
+            },
             Location::OnBoundary { curve: boundary, .. } => {
                 let region = self.decided(boundary, contact);
                 region.ok_or(Unlocated::OnBoundary { kappa, psi, boundary })
@@ -75,11 +94,23 @@ impl Atlas {
         Located { region, distance: nearest.map(|part| (spread + psi - from) * part) }
     }
 
+    /// Whether a point is closer to the edge of the window than boundaries are known.
+    fn is_at_edge(&self, point: &Point) -> bool {
+        let resolution = self.frame.resolution(&self.chart, self.tolerance);
+        let Window { low, high } = *self.regions.window();
+        (point - low).min() <= resolution || (high - point).min() <= resolution
+    }
+
+    /// The itinerary of the collision itself, with the damping of the atlas.
+    fn itinerary_of(&self, contact: &Contact) -> Option<String> {
+        let contact = Contact::new(contact.kappa(), contact.psi(), self.frame.damping).ok()?;
+        Some(exact::collide(contact).ok()?.itinerary())
+    }
+
     /// The region beside `boundary`, or beside one that meets it, in which collisions have the
     /// switches of this one.
     fn decided(&self, boundary: usize, contact: &Contact) -> Option<usize> {
-        let contact = Contact::new(contact.kappa(), contact.psi(), self.frame.damping).ok()?;
-        let itinerary = exact::collide(contact).ok()?.itinerary();
+        let itinerary = self.itinerary_of(contact)?;
         let curves = self.regions.curves();
         let ends = |curve: usize| curves[curve].ends.into_iter().flatten();
         let meeting = (0..curves.len())

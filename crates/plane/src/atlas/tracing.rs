@@ -93,13 +93,13 @@ pub fn trace(
     tolerance: f64,
     progress: Report<'_>,
 ) -> Result<VerifiedAtlas, AtlasError> {
+    let plane = frame.plane()?;
     frame.require_wide()?;
     let possible = frame.tolerances();
     if !(possible.finest..=possible.coarsest).contains(&tolerance) {
         let (finest, coarsest) = (possible.finest, possible.coarsest);
         return Err(AtlasError::Tolerance { tolerance, finest, coarsest });
     }
-    let plane = frame.plane()?;
     let window = plane.window();
     let any = plane.contact(&window.low)?;
     for corner in [&any, &plane.contact(&window.high)?] {

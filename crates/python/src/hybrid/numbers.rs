@@ -40,7 +40,9 @@ pub fn read(result: &Bound<'_, PyAny>, out: &mut [f64], signed: bool) -> Result<
         *out = number.value();
         return Ok(());
     }
-    if let Ok(array) = result.cast::<PyArray1<f64>>() {
+    if let Ok(array) = result.cast::<PyArray1<f64>>()
+        && is_aligned(array)
+    {
         return read_array(array, out);
     }
     let taken = if let Ok(list) = result.cast_exact::<PyList>() {
@@ -51,6 +53,11 @@ pub fn read(result: &Bound<'_, PyAny>, out: &mut [f64], signed: bool) -> Result<
         false
     };
     if taken { Ok(()) } else { read_anything(result, out, signed) }
+}
+
+/// Whether Rust can read the array where it lies. A field of records may lie at any byte.
+fn is_aligned(array: &Bound<'_, PyArray1<f64>>) -> bool {
+    array.data().is_aligned()
 }
 
 fn read_array(array: &Bound<'_, PyArray1<f64>>, out: &mut [f64]) -> Result<(), Problem> {

@@ -55,10 +55,9 @@ impl<Label, Margin> Subdivision<Label, Margin> {
         let left = (home > 0 && self.slabs.walls[home] == point.x).then(|| home - 1);
         let beside = std::iter::once(home)
             .chain(left)
-            .flat_map(|slab| self.slabs.neighbours(slab, point))
+            .flat_map(|slab| self.slabs.neighbours(slab, point, |piece| self.is_curve(piece)))
             .flatten()
             .map(|index| &self.slabs.pieces[index])
-            .filter(|piece| self.is_curve(piece))
             .map(|piece| piece.y_at(point.x) - point.y);
         let upright = self
             .slabs

@@ -102,12 +102,17 @@ impl Slabs {
         self.of(slab).partition_point(|&piece| self.pieces[piece].y_at(point.x) < point.y)
     }
 
-    /// The pieces directly below and above `point` in the slab.
+    /// The nearest pieces below and above `point` in the slab that `accept` accepts.
     #[inline]
-    pub(crate) fn neighbours(&self, slab: usize, point: &Point) -> [Option<usize>; 2] {
-        let pieces = self.of(slab);
-        let above = self.below(slab, point);
-        [above.checked_sub(1).map(|below| pieces[below]), pieces.get(above).copied()]
+    pub(crate) fn neighbours(
+        &self,
+        slab: usize,
+        point: &Point,
+        accept: impl Fn(&Piece) -> bool,
+    ) -> [Option<usize>; 2] {
+        let (below, above) = self.of(slab).split_at(self.below(slab, point));
+        let accepted = |&&index: &&usize| accept(&self.pieces[index]);
+        [below.iter().rev().find(accepted).copied(), above.iter().find(accepted).copied()]
     }
 
     /// The vertical pieces with x from `from` to `to`.
@@ -134,7 +139,7 @@ impl Slabs {
         let mut consider = |index: usize| {
             let piece = &self.pieces[index];
             let bound = best.map_or(reach, |(_, distance)| distance);
-            if piece.box_distance(point) <= bound && accept(piece) {
+            if piece.box_distance(point) <= bound {
                 let distance = piece.cubic.distance(point);
                 if distance <= bound && best.is_none_or(|(_, least)| distance < least) {
                     best = Some((index, distance));
@@ -142,22 +147,23 @@ impl Slabs {
             }
         };
         let home = self.at(point.x);
-        self.neighbours(home, point).into_iter().flatten().for_each(&mut consider);
+        self.neighbours(home, point, &accept).into_iter().flatten().for_each(&mut consider);
         let mut slab = home;
         while slab > 0 && self.walls[slab] >= point.x - reach {
             slab -= 1;
             let place = Point::new(self.walls[slab + 1].min(point.x), point.y);
-            self.neighbours(slab, &place).into_iter().flatten().for_each(&mut consider);
+            self.neighbours(slab, &place, &accept).into_iter().flatten().for_each(&mut consider);
         }
         let mut slab = home;
         while slab + 1 < self.count() && self.walls[slab + 1] <= point.x + reach {
             slab += 1;
             let place = Point::new(self.walls[slab].max(point.x), point.y);
-            self.neighbours(slab, &place).into_iter().flatten().for_each(&mut consider);
+            self.neighbours(slab, &place, &accept).into_iter().flatten().for_each(&mut consider);
         }
         self.verticals_between(point.x - reach, point.x + reach)
             .iter()
             .copied()
+            .filter(|&index| accept(&self.pieces[index]))
             .for_each(&mut consider);
         best
     }
