@@ -37,7 +37,7 @@ impl Chart {
         /// The greatest ratio of the two extents.
         const LONGEST: f64 = 16.0;
         /// The least ψ of an ordinary window.
-        const SMALLEST: f64 = 0.005;
+        const SMALLEST: f64 = 1e-3;
         let extent = Self::PLAIN.window(kappa, psi).extent();
         let ordinary = extent.min() >= SHORTEST && extent.max() <= LONGEST * extent.min();
         if ordinary && psi.low >= SMALLEST {
