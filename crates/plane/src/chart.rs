@@ -19,7 +19,7 @@ pub struct Chart {
     pub width: f64,
     /// ψ₀.
     pub psi: f64,
-    /// s; y is the logarithm of a multiple of ψ where it is ψ₀.
+    /// s. With s = ψ₀, y is (ln ψ − ln ψ₀)/h.
     pub spread: f64,
     /// h.
     pub height: f64,
@@ -71,8 +71,7 @@ impl Chart {
     }
 
     /// The derivative of ψ with respect to y at `psi`.
-    #[must_use]
-    pub fn scale(&self, psi: f64) -> f64 {
+    pub(crate) fn scale(&self, psi: f64) -> f64 {
         self.height * (self.spread - self.psi + psi)
     }
 }

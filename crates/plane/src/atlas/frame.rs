@@ -60,6 +60,11 @@ const NOISE: f64 = 1e-13;
 /// The least width and height of a window in ln κ and ln ψ.
 const NARROWEST: f64 = 2e-7;
 
+/// The error of a place in traced coordinates that comes from that of margins.
+pub(super) fn noise(chart: &Chart) -> f64 {
+    NOISE / chart.width.min(chart.height).min(1.0)
+}
+
 impl Frame {
     /// The coordinates in which the window is traced.
     #[must_use]
@@ -71,12 +76,6 @@ impl Frame {
     #[must_use]
     pub fn window(&self, chart: &Chart) -> Window {
         chart.window(self.kappa, self.psi)
-    }
-
-    /// The error of a place in traced coordinates that comes from that of margins.
-    #[must_use]
-    pub fn noise(&self, chart: &Chart) -> f64 {
-        NOISE / chart.width.min(chart.height).min(1.0)
     }
 
     /// The distance in traced coordinates between a boundary and a curve that is accurate to
@@ -91,7 +90,7 @@ impl Frame {
     /// curve's error, and at least 1e-9, since vertices are known less well.
     #[must_use]
     pub fn resolution(&self, chart: &Chart, tolerance: f64) -> f64 {
-        (10.0 * self.interpolation(chart, tolerance)).max(1e3 * self.noise(chart)).max(1e-9)
+        (10.0 * self.interpolation(chart, tolerance)).max(1e3 * noise(chart)).max(1e-9)
     }
 
     /// The accuracies in ψ that boundaries can have.
@@ -99,7 +98,7 @@ impl Frame {
     pub fn tolerances(&self) -> ToleranceRange {
         let chart = self.chart();
         let shorter = self.window(&chart).extent().min().min(1.0);
-        let finest = FINEST.max(10.0 * self.noise(&chart));
+        let finest = FINEST.max(10.0 * noise(&chart));
         let [finest, usual, coarsest] =
             [finest, (1e-10 * shorter).max(finest), (1e-9 * shorter).max(10.0 * finest)]
                 .map(|part| part * chart.scale(self.psi.high));

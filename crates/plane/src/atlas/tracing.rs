@@ -10,7 +10,7 @@ use stickslip_tracer::{
 };
 
 use super::boundary::{BoundaryKind, itinerary};
-use super::frame::{Frame, TooNarrow};
+use super::frame::{Frame, TooNarrow, noise};
 use super::regions::{Atlas, Regions};
 use super::verification::{self, LabelError, VerificationReport};
 use crate::chart::Chart;
@@ -131,7 +131,7 @@ pub fn trace(
 
 /// The options of a trace that is accurate to `tolerance` in ψ.
 fn trace_options(frame: &Frame, chart: &Chart, tolerance: f64) -> TraceOptions {
-    let (usual, noise) = (TraceOptions::default(), frame.noise(chart));
+    let (usual, noise) = (TraceOptions::default(), noise(chart));
     TraceOptions {
         tolerance: usual.tolerance.max(0.1 * noise),
         interpolation: frame.interpolation(chart, tolerance),
