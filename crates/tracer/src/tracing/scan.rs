@@ -68,11 +68,7 @@ impl<F: Family> Tracer<'_, F> {
                 return Ok(());
             };
             let places = change.places.map(|place| a.lerp(&b, place));
-            let seed = match identify(&self.runs, &places, &change.labels)? {
-                None if !doubtful => self.beyond_strip(&segment, &change)?,
-                seed => seed,
-            };
-            match seed {
+            match identify(&self.runs, &places, &change.labels)? {
                 Some(seed) => self.seed(&seed)?,
                 // The labels beside a curve are not its own if another curve is closer than runs
                 // can tell apart.
@@ -87,24 +83,6 @@ impl<F: Family> Tracer<'_, F> {
             label = change.labels[1].clone();
         }
         Ok(())
-    }
-
-    /// The boundary at a change whose second label is that of a strip too narrow to be resolved: its
-    /// sides are then on both sides of the strip.
-    fn beyond_strip(
-        &self,
-        [a, b]: &[Point; 2],
-        change: &Change<F::Label>,
-    ) -> Traced<Option<SeedOf<F>>, F> {
-        let wider = 5.0 * self.runs.options.offset / (b - a).norm();
-        let [low, high] = change.places;
-        let places =
-            [(low - wider).max(0.0), (high + wider).min(1.0)].map(|place| a.lerp(b, place));
-        let labels = [self.runs.label(&places[0])?, self.runs.label(&places[1])?];
-        if labels[0] == labels[1] {
-            return Ok(None);
-        }
-        identify(&self.runs, &places, &labels)
     }
 
     /// Traces the curve through a seed in both directions, unless it is known.
