@@ -33,8 +33,8 @@ use stickslip::solver::{
     Direction, Dop853, Guard, HybridSystem, Margin, Options, Place, Start, State,
 };
 use stickslip::tracer::{
-    Cubic, Curve, HybridFamily, Location, Point, Problem, Subdivision, TraceOptions, VerifyOptions,
-    Window, trace, verify,
+    Cubic, Curve, HybridFamily, Itinerary, Location, Point, Problem, Subdivision, TraceOptions,
+    VerifyOptions, Window, trace, verify,
 };
 
 /// The velocity of the belt.
@@ -106,7 +106,7 @@ struct Distances {
 }
 
 impl Distances {
-    fn add(&mut self, curve: &Curve<Vec<usize>, Margin>) {
+    fn add(&mut self, curve: &Curve<Itinerary, Margin>) {
         let (switches, at_end) = (curve.margin.exits.len(), curve.margin.place == Place::End);
         // The first and the last node are vertices, where other margins vanish too.
         for (piece, nodes) in curve.nodes.windows(2).enumerate() {
@@ -148,6 +148,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             Place::Minimum { .. } if curve.margin.exits.len() % 2 == 1 => 0,
             Place::Minimum { .. } => 1,
             Place::End => 2,
+            place => panic!("no boundary of the belt lies at {place:?}"),
         };
         kinds[kind].1.add(curve);
     }
@@ -171,7 +172,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let (belt, _) = Belts.at(&point);
         assert!(!belt.overtakes(), "{point:?}");
         if let Location::Region(region) = plane.locate(&point) {
-            let switches = plane.regions()[region].label.as_ref().map(Vec::len);
+            let label = plane.regions()[region].label.as_ref();
+            let switches = label.and_then(Itinerary::fired).map(<[usize]>::len);
             assert_eq!(switches, Some(belt.switches()), "{point:?}");
             compared += 1;
         }

@@ -205,6 +205,7 @@ fn reference_boundaries_lie_on_traced_curves() {
             Place::End => "end-of-contact",
             Place::Minimum { .. } if curve.margin.exits.len().is_multiple_of(2) => "slip-graze",
             Place::Minimum { .. } => "stick-graze",
+            place => panic!("{place:?}"),
         };
         assert_eq!(boundary["kind"], kind, "κ = {kappa}, ψ = {psi}");
         let mut counts = curve.sides.clone().map(|label| label.len() as u64);

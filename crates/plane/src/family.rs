@@ -3,8 +3,10 @@
 use stickslip_model::exact::{self, ExactError};
 use stickslip_model::regularized::{GUARDS, OTHER_SIDE, Phase, Regularized, SAME_SIDE, STATE};
 use stickslip_model::{Collision, Contact, Engine, InvalidParameter, Side};
-use stickslip_solver::{Dop853, Margin, Options, Start};
-use stickslip_tracer::{Family, FamilyError, FreeRun, HybridFamily, Point, Problem, Window};
+use stickslip_solver::{Dop853, Margin, Options, Outcome, Start};
+use stickslip_tracer::{
+    Family, FamilyError, FreeRun, HybridFamily, Itinerary, Point, Problem, Window,
+};
 
 use crate::chart::Chart;
 use crate::range::Range;
@@ -53,8 +55,11 @@ pub enum CollisionFamilyError {
     #[error(transparent)]
     Exact(#[from] ExactError),
     /// The integration failed.
-    #[error("{}", .0.kind)]
+    #[error("{}", .0.error)]
     Integrated(#[from] FamilyError),
+    /// The integration stopped before the end of contact.
+    #[error("the integration stopped before the end of contact: {0:?}")]
+    Unfinished(Outcome),
 }
 
 impl CollisionPlane {
@@ -166,6 +171,22 @@ impl Problem<STATE, GUARDS> for CollisionPlane {
     }
 }
 
+/// The guards that fire in an integrated collision. All contacts end, so that any other itinerary
+/// is an error.
+fn fired(
+    family: &HybridFamily<CollisionPlane, Dop853, STATE, GUARDS>,
+    point: &Point,
+    itinerary: Itinerary,
+) -> Result<Vec<usize>, CollisionFamilyError> {
+    if let Itinerary::Fires(guards) = itinerary {
+        return Ok(guards);
+    }
+    Err(match family.outcome(point) {
+        Ok(outcome) => CollisionFamilyError::Unfinished(outcome),
+        Err(error) => FamilyError { point: *point, error }.into(),
+    })
+}
+
 impl Family for CollisionFamily {
     type Label = Vec<usize>;
     type Margin = Margin;
@@ -176,7 +197,7 @@ impl Family for CollisionFamily {
             Self::Exact(plane) => {
                 CollisionPlane::label(&exact::collide(plane.contact_or_any(point))?)
             }
-            Self::Integrated(family) => family.label(point)?,
+            Self::Integrated(family) => fired(family, point, family.label(point)?)?,
         })
     }
 
@@ -194,13 +215,23 @@ impl Family for CollisionFamily {
         })
     }
 
+    fn is_sure(&self, margin: &Margin) -> bool {
+        match self {
+            Self::Exact(_) => true,
+            Self::Integrated(family) => family.is_sure(margin),
+        }
+    }
+
     fn free_run(&self, point: &Point) -> Result<FreeRun<Vec<usize>, Margin>, CollisionFamilyError> {
         Ok(match self {
             Self::Exact(plane) => {
                 let found = exact::margins(&plane.contact_or_any(point))?;
                 FreeRun { label: found.fired, margins: found.near_misses }
             }
-            Self::Integrated(family) => family.free_run(point)?,
+            Self::Integrated(family) => {
+                let FreeRun { label, margins } = family.free_run(point)?;
+                FreeRun { label: fired(family, point, label)?, margins }
+            }
         })
     }
 }

@@ -107,6 +107,21 @@ pub trait HybridSystem<const N: usize, const G: usize> {
     ) -> (Self::Mode, State<N>) {
         (mode, *y)
     }
+
+    /// A number that is positive where [`Self::transition`] takes one branch, and negative where it
+    /// takes another one, for instance a slope of a guard that tells sliding from crossing. It is
+    /// NaN if the transition does not branch; the provided version always returns NaN.
+    ///
+    /// Only margins ([`mod@crate::margin`]) use it: the itinerary may change where it is zero.
+    fn transition_condition(
+        &self,
+        _mode: Self::Mode,
+        _guard: usize,
+        _s: f64,
+        _y: &State<N>,
+    ) -> f64 {
+        f64::NAN
+    }
 }
 
 /// Where a run starts.

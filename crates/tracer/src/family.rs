@@ -47,6 +47,15 @@ pub trait Family {
         Ok(margin.clone())
     }
 
+    /// Whether the label changes wherever this margin passes through zero, if the itinerary that
+    /// leads to it is that of the free run.
+    ///
+    /// A margin that may as well vanish without consequences is only looked at where the label has
+    /// been seen to change. The default is that the label changes.
+    fn is_sure(&self, _margin: &Self::Margin) -> bool {
+        true
+    }
+
     /// The free run at `point` with all its margins.
     ///
     /// On a boundary close to `point`, one of these margins vanishes, or one of the margins of the

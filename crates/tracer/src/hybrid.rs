@@ -1,7 +1,7 @@
 //! Hybrid systems with two parameters as families of runs.
 
 use stickslip_solver::{
-    HybridSystem, Margin, Method, NearMiss, Observer, Options, Outcome, RunError, Start,
+    HybridSystem, Margin, Method, NearMiss, Observer, Options, Outcome, Place, RunError, Start,
     SwitchEvent, margin, margins, run,
 };
 
@@ -35,10 +35,38 @@ where
 pub type ModeOf<P, const N: usize, const G: usize> =
     <<P as Problem<N, G>>::System as HybridSystem<N, G>>::Mode;
 
+/// What a run of a [`HybridFamily`] does.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Itinerary {
+    /// The run comes to its end, or to a terminal guard. The guards that fire before, in order.
+    Fires(Vec<usize>),
+    /// The switches accumulate before the end, or follow one another without end at one instant.
+    Accumulates,
+    /// The run reaches [`Options::max_steps`] or [`Options::max_switches`].
+    Unfinished,
+    /// The run fails.
+    Fails,
+}
+
+impl Itinerary {
+    /// The guards that fire, in order; `None` if the run does not come to its end.
+    #[must_use]
+    pub fn fired(&self) -> Option<&[usize]> {
+        match self {
+            Self::Fires(guards) => Some(guards),
+            _ => None,
+        }
+    }
+}
+
 /// The runs of a problem.
 ///
-/// A label lists the guards that fire, in order. Margins are those of the solver,
-/// [`stickslip_solver::Margin`].
+/// The label of a run is its [`Itinerary`]. Margins are those of the solver,
+/// [`stickslip_solver::Margin`]; they are complete if the start of the run and every transition
+/// without a [condition](HybridSystem::transition_condition) are smooth.
+///
+/// A run that does not come to its end has no margins. Where such runs begin, the trace reports
+/// changes of the label as unresolved, with the labels on both sides; [`Self::outcome`] tells why.
 #[derive(Clone, Copy, Debug)]
 pub struct HybridFamily<P, M, const N: usize, const G: usize> {
     /// The system and the start of its run, at every point.
@@ -48,31 +76,18 @@ pub struct HybridFamily<P, M, const N: usize, const G: usize> {
     /// The options of every run. They also determine the accuracy of margins.
     pub options: Options,
     /// The end of every run, if no terminal guard ends it before.
-    ///
-    /// A run that stops before for another reason, for instance at an accumulation of switches, is
-    /// an error. Choose the window and the end so that this does not happen.
     pub end: f64,
 }
 
-/// A run of a hybrid family failed.
+/// The options of the runs are invalid, or their end is not behind their start.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("at ({}, {}): {kind}", .point.x, .point.y)]
+#[error("at ({}, {}): {error}", .point.x, .point.y)]
 pub struct FamilyError {
     /// The point of the parameter plane.
     pub point: Point,
-    /// Why the run failed.
-    pub kind: FamilyErrorKind,
-}
-
-/// Why a run of a hybrid family failed.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum FamilyErrorKind {
-    /// The integration failed.
-    #[error(transparent)]
-    Run(#[from] RunError),
-    /// The run stopped before its end.
-    #[error("the run stopped before its end and before a terminal guard: {0:?}")]
-    Unfinished(Outcome),
+    /// What is wrong.
+    #[source]
+    pub error: RunError,
 }
 
 impl<P, M, const N: usize, const G: usize> HybridFamily<P, M, N, G>
@@ -80,10 +95,29 @@ where
     P: Problem<N, G>,
     M: Method,
 {
+    /// How the run at `point` ends.
+    ///
+    /// # Errors
+    /// The error of a run that fails.
+    pub fn outcome(&self, point: &Point) -> Result<Outcome, RunError> {
+        self.run(point).map(|(outcome, _)| outcome)
+    }
+
+    /// The outcome of the run at `point`, and the guards that fire.
+    fn run(&self, point: &Point) -> Result<(Outcome, Vec<usize>), RunError> {
+        let (system, start) = self.problem.at(point);
+        let mut fired = Fired(Vec::new());
+        let run = run(self.method, &system, start, self.end, &self.options, &mut fired)?;
+        if let Outcome::EndedByGuard { .. } = run.outcome {
+            fired.0.pop();
+        }
+        Ok((run.outcome, fired.0))
+    }
+
     fn near_miss(&self, point: &Point, which: &Margin) -> Result<Option<NearMiss>, FamilyError> {
         let (system, start) = self.problem.at(point);
-        margin(self.method, &system, start, self.end, &self.options, which)
-            .map_err(|error| failure(point, error))
+        let found = margin(self.method, &system, start, self.end, &self.options, which);
+        Ok(value_of(point, found)?.flatten())
     }
 }
 
@@ -92,19 +126,13 @@ where
     P: Problem<N, G>,
     M: Method,
 {
-    type Label = Vec<usize>;
+    type Label = Itinerary;
     type Margin = Margin;
     type Error = FamilyError;
 
-    fn label(&self, point: &Point) -> Result<Vec<usize>, FamilyError> {
-        let (system, start) = self.problem.at(point);
-        let mut fired = Fired(Vec::new());
-        let run = run(self.method, &system, start, self.end, &self.options, &mut fired)
-            .map_err(|error| failure(point, error))?;
-        if let Outcome::EndedByGuard { .. } = run.outcome {
-            fired.0.pop();
-        }
-        finished(point, run.outcome).map(|()| fired.0)
+    fn label(&self, point: &Point) -> Result<Itinerary, FamilyError> {
+        Ok(value_of(point, self.run(point))?
+            .map_or(Itinerary::Fails, |(outcome, fired)| itinerary(outcome, fired)))
     }
 
     fn margin(&self, point: &Point, which: &Margin) -> Result<Option<f64>, FamilyError> {
@@ -116,24 +144,40 @@ where
             .map(|found| found.map_or_else(|| which.clone(), |miss| miss.margin))
     }
 
-    fn free_run(&self, point: &Point) -> Result<FreeRun<Vec<usize>, Margin>, FamilyError> {
+    /// Where a phase starts or ends, the order of events may change without a change of the
+    /// itinerary: a guard that is negative from the start on fires as it would soon after.
+    fn is_sure(&self, margin: &Margin) -> bool {
+        matches!(margin.place, Place::Minimum { .. } | Place::Maximum { .. } | Place::End)
+    }
+
+    fn free_run(&self, point: &Point) -> Result<FreeRun<Itinerary, Margin>, FamilyError> {
         let (system, start) = self.problem.at(point);
-        let found = margins(self.method, &system, start, self.end, &self.options)
-            .map_err(|error| failure(point, error))?;
-        finished(point, found.outcome)?;
+        let found = margins(self.method, &system, start, self.end, &self.options);
+        let Some(found) = value_of(point, found)? else {
+            return Ok(FreeRun { label: Itinerary::Fails, margins: Vec::new() });
+        };
         let margins = found.near_misses.into_iter().map(|miss| (miss.margin, miss.value));
-        Ok(FreeRun { label: found.fired, margins: margins.collect() })
+        let label = itinerary(found.outcome, found.fired);
+        Ok(FreeRun { label, margins: margins.collect() })
     }
 }
 
-fn failure(point: &Point, error: RunError) -> FamilyError {
-    FamilyError { point: *point, kind: error.into() }
+/// The result of a run, `None` if it failed. What is wrong with all runs is an error.
+fn value_of<T>(point: &Point, result: Result<T, RunError>) -> Result<Option<T>, FamilyError> {
+    match result {
+        Ok(value) => Ok(Some(value)),
+        Err(error @ (RunError::Option(_) | RunError::Span { .. })) => {
+            Err(FamilyError { point: *point, error })
+        }
+        Err(_) => Ok(None),
+    }
 }
 
-fn finished(point: &Point, outcome: Outcome) -> Result<(), FamilyError> {
+fn itinerary(outcome: Outcome, fired: Vec<usize>) -> Itinerary {
     match outcome {
-        Outcome::EndedByGuard { .. } | Outcome::ReachedEnd => Ok(()),
-        _ => Err(FamilyError { point: *point, kind: FamilyErrorKind::Unfinished(outcome) }),
+        Outcome::EndedByGuard { .. } | Outcome::ReachedEnd => Itinerary::Fires(fired),
+        Outcome::Zeno { .. } | Outcome::InstantLimit { .. } => Itinerary::Accumulates,
+        Outcome::StepLimit | Outcome::SwitchLimit | Outcome::Stopped => Itinerary::Unfinished,
     }
 }
 

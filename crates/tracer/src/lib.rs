@@ -17,7 +17,7 @@
 //! ```
 //! use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
 //! use stickslip_tracer::{
-//!     HybridFamily, Location, Point, Subdivision, TraceOptions, Window, trace,
+//!     HybridFamily, Itinerary, Location, Point, Subdivision, TraceOptions, Window, trace,
 //! };
 //!
 //! /// A ball that keeps a fraction of its velocity at each bounce, in units in which g = 1.
@@ -62,7 +62,7 @@
 //! let regions = Subdivision::new(window, network.curves, network.vertices, 1e-9)?;
 //! let Location::Region(region) = regions.locate(&Point::new(0.6, 0.55)) else { panic!("a boundary") };
 //! // In this region the guard fires twice before the end, at two bounces.
-//! assert_eq!(regions.regions()[region].label, Some(vec![0, 0]));
+//! assert_eq!(regions.regions()[region].label, Some(Itinerary::Fires(vec![0, 0])));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -95,7 +95,7 @@ mod window;
 pub use cubic::Cubic;
 pub use curve::{Curve, Node, Vertex, VertexKind};
 pub use family::{Family, FreeRun};
-pub use hybrid::{FamilyError, FamilyErrorKind, HybridFamily, ModeOf, Problem};
+pub use hybrid::{FamilyError, HybridFamily, Itinerary, ModeOf, Problem};
 pub use options::{InvalidTraceOption, TraceError, TraceOptions};
 pub use regions::finding::{Euler, Finding, SubdivisionError};
 pub use regions::locate::Location;

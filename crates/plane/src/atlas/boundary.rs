@@ -25,7 +25,8 @@ impl BoundaryKind {
         match (margin.place, phases(contact, guards).last().map(|phase| phase.regime)) {
             (Place::End, _) => Self::EndOfContact,
             (Place::Minimum { .. }, Some(Regime::Slip)) => Self::SlipGraze,
-            (Place::Minimum { .. }, _) => Self::StickGraze,
+            // The exact engine has no other places.
+            _ => Self::StickGraze,
         }
     }
 }

@@ -1,81 +1,109 @@
 //! Runs with a prescribed itinerary, which watch a guard in their last phase.
-//!
-//! If a system does not know its rates, they are replaced by differences. The reach of these
-//! differences is a small part of the longest step so far. Error control knows the scale on which
-//! the solution changes, so this works in any unit of time. The rounding of the differences is
-//! measured if a decision depends on it.
-
-use std::cell::Cell;
 
 use crate::error::RunError;
-use crate::hybrid::{Direction, Guard, HybridSystem, Observer, Outcome, Start, SwitchEvent};
-use crate::margin::name::Exit;
-use crate::method::control::first_step;
+use crate::hybrid::{Direction, Guard, HybridSystem, Observer, Outcome, Run, Start, SwitchEvent};
+use crate::margin::name::{Exit, Way};
+use crate::margin::rate::{Reach, derivative};
 use crate::method::{Method, State, Step, Trial};
-use crate::options::{Options, StepSize};
+use crate::options::Options;
 use crate::runs::run;
 
-/// The part of a step over which differences reach. Its fourth power makes an error of 1e-11 of a
-/// rate, and rounding one of some 1e-13.
-const REACH: f64 = 1.0 / 256.0;
+/// What a run watches in the phase after its last exit.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Watch {
+    /// A derivative of the guard at the start of the phase.
+    Start { derivative: u32 },
+    /// The minima of the guard, or its maxima, up to the first one after `enough`.
+    Extrema { kind: Kind, enough: f64 },
+    /// The guard at the last exit.
+    Exit,
+    /// The condition of the transition at the last exit.
+    Branch,
+    /// The guard at the end of the run.
+    End,
+}
 
-/// A guard at a local minimum, or at the end of the run.
-#[derive(Clone, Copy)]
-pub(crate) struct Extremum {
+/// On which side of zero an extremum is watched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Where the guard comes nearest to firing.
+    Minimum,
+    /// Where it comes nearest to the side from which it fires.
+    Maximum,
+}
+
+/// A guard at a place.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Taken {
     pub s: f64,
     pub value: f64,
 }
 
 /// What a prescribed run finds about the guard that it watches.
-pub(crate) struct Watched {
+pub(super) struct Watched {
     /// The places of the prescribed exits.
     pub exits: Vec<f64>,
-    /// The local minima of the guard in the last phase.
-    pub minima: Vec<Extremum>,
-    /// The guard at the end of the run, if the run got there.
-    pub end: Option<Extremum>,
+    /// The values that were watched, in order.
+    pub taken: Vec<Taken>,
 }
 
-/// Follows `exits` and then watches `guard` up to its first minimum after `enough`, or to the end
-/// of the run. The result is `None` if the run ends before all exits have happened.
-pub(crate) fn watch<M, S, const N: usize, const G: usize>(
+/// Follows `exits` and then watches `guard`. The result is `None` if the run cannot follow all
+/// exits. If the run fails while it looks for extrema, those before are the second result.
+pub(super) fn watch<M, S, const N: usize, const G: usize>(
     method: M,
     system: &S,
     start: Start<S::Mode, N>,
     end: f64,
     options: &Options,
     exits: &[Exit],
-    (guard, enough): (usize, f64),
-) -> Result<Option<Watched>, RunError>
+    (guard, watch): (usize, Watch),
+) -> Result<Option<Watched>, (RunError, Watched)>
 where
     M: Method,
     S: HybridSystem<N, G>,
 {
     let reach = Reach::new::<M, S, N, G>(system, &start, end, options);
-    let prescribed = Prescribed { system, exits, watched: guard, enough, reach };
+    let prescribed = Prescribed { system, exits, watched: guard, watch, reach };
     // In a prescribed run, switches may be as close together as they like.
     let options = Options { zeno: 0.0, ..*options };
     let mut watching = Watching::<S, G> {
         prescribed: &prescribed,
-        seen: Watched { exits: Vec::with_capacity(exits.len()), minima: Vec::new(), end: None },
+        seen: Watched { exits: Vec::with_capacity(exits.len()), taken: Vec::new() },
     };
-    let mode = PhaseMode { mode: start.mode, phase: 0, progress: Progress::Start };
-    let start = Start { mode, s: start.s, state: start.state };
-    let run = run(method, &prescribed, start, end, &options, &mut watching)?;
-    if run.mode.phase < exits.len() {
+    let start = Start { mode: prescribed.enter(start.mode, 0), s: start.s, state: start.state };
+    let ended = run(method, &prescribed, start, end, &options, &mut watching);
+    let mut seen = watching.seen;
+    let run = match ended {
+        Ok(run) => run,
+        Err(error) => return Err((error, seen)),
+    };
+    if run.mode.progress == Progress::Lost || seen.exits.len() < exits.len() {
         return Ok(None);
     }
-    let mut seen = watching.seen;
-    let ended = matches!(run.outcome, Outcome::EndedByGuard { .. } | Outcome::ReachedEnd);
-    if ended && run.mode.progress != Progress::Done {
-        let value = prescribed.value(run.mode.mode, guard, run.s, &run.state);
-        seen.end = Some(Extremum { s: run.s, value });
+    seen.taken.extend(prescribed.at_last::<M, N, G>(&run, &options));
+    match seen.taken.iter().find(|taken| taken.value.is_nan()) {
+        Some(&Taken { s, .. }) => Err((RunError::GuardNotANumber { guard, s }, seen)),
+        None => Ok(Some(seen)),
     }
-    let nowhere = seen.minima.iter().chain(&seen.end).find(|extremum| extremum.value.is_nan());
-    if let Some(&Extremum { s, .. }) = nowhere {
-        return Err(RunError::GuardNotANumber { guard, s });
-    }
-    Ok(Some(seen))
+}
+
+/// Whether the condition of a transition is positive; `None` if it has none.
+pub(super) fn branch<S, const N: usize, const G: usize>(
+    system: &S,
+    mode: S::Mode,
+    guard: usize,
+    (s, y): (f64, &State<N>),
+) -> Option<bool>
+where
+    S: HybridSystem<N, G>,
+{
+    let condition = system.transition_condition(mode, guard, s, y);
+    (!condition.is_nan()).then_some(condition > 0.0)
+}
+
+/// The sign with which a guard is multiplied, so that it is positive where it does not fire.
+pub(super) fn sense(guard: Guard) -> f64 {
+    if guard.direction() == Direction::Rising { -1.0 } else { 1.0 }
 }
 
 /// A system whose guards fire only as prescribed. The value of one guard, the subject, is replaced
@@ -85,53 +113,8 @@ struct Prescribed<'a, S> {
     exits: &'a [Exit],
     /// The guard to watch after all exits.
     watched: usize,
-    /// The guard is watched up to its first minimum after this place.
-    enough: f64,
+    watch: Watch,
     reach: Reach,
-}
-
-/// The reach of the differences that replace unknown rates.
-struct Reach {
-    /// The start of the present step.
-    start: Cell<f64>,
-    /// The distance over which the differences reach.
-    distance: Cell<f64>,
-}
-
-impl Reach {
-    /// The reach for the first step of a run.
-    fn new<M, S, const N: usize, const G: usize>(
-        system: &S,
-        start: &Start<S::Mode, N>,
-        end: f64,
-        options: &Options,
-    ) -> Self
-    where
-        M: Method,
-        S: HybridSystem<N, G>,
-    {
-        let Start { mode, s, state } = *start;
-        let longest = (end - s).min(options.max_step);
-        let first = match (options.step_size, options.first_step) {
-            (StepSize::Fixed(h), _) | (_, Some(h)) => h.min(longest),
-            _ => {
-                let mut field = |s: f64, y: &State<N>| system.field(mode, s, y);
-                let slope = field(s, &state);
-                let tolerances = (options.rtol, options.atol);
-                first_step::<M, N>(&mut field, s, &state, &slope, tolerances, longest)
-            }
-        };
-        Self { start: Cell::new(s), distance: Cell::new(REACH * first) }
-    }
-
-    /// Adapts the reach to the step before, which was accepted up to `s`, where a step now starts.
-    fn follow(&self, s: f64) {
-        let distance = REACH * (s - self.start.replace(s));
-        // It changes seldom, so that rates seldom change between two steps.
-        if distance >= 2.0 * self.distance.get() {
-            self.distance.set(distance);
-        }
-    }
 }
 
 /// A mode of the system and the progress of the prescribed run.
@@ -150,74 +133,101 @@ enum Progress {
     Start,
     /// The run has passed the place after which the guard of the exit may fire.
     Armed,
-    /// The run has passed a minimum of the guard that it watches.
-    Minimum,
-    /// The run has passed the last minimum that it has to find.
+    /// The run has passed an extremum of the guard that it watches.
+    Extremum,
+    /// The run has passed the last extremum that it has to find.
     Done,
+    /// The run cannot follow the exits.
+    Lost,
 }
 
 /// What the run waits for.
+#[derive(Clone, Copy)]
 enum Awaited {
     /// The run waits for this place.
     Place(f64),
-    /// The run waits for the zero of the subject.
-    Guard,
-    /// The run waits for a minimum of the subject.
-    Minimum,
+    /// The run waits for the subject to fire in this way.
+    Guard(Way),
+    /// The run waits for an extremum of the subject.
+    Extremum(Kind),
+    /// The run waits for its end.
+    End,
     /// The run waits for nothing any more.
     Nothing,
 }
 
 impl<S> Prescribed<'_, S> {
+    /// Whether the guard is watched in this phase.
+    fn is_last(&self, phase: usize) -> bool {
+        let at_exit = matches!(self.watch, Watch::Exit | Watch::Branch);
+        phase + usize::from(at_exit) == self.exits.len()
+    }
+
     /// The subject, which is the guard that counts, and what the run waits for.
     fn subject<Mode>(&self, at: &PhaseMode<Mode>) -> (usize, Awaited) {
-        match self.exits.get(at.phase) {
-            Some(exit) if at.progress == Progress::Start && exit.part.0 > 0.0 => {
-                (exit.guard, Awaited::Place(exit.after.0))
+        let stopped = matches!(at.progress, Progress::Done | Progress::Lost);
+        let awaited = match (self.exits.get(at.phase), self.watch) {
+            (Some(exit), _) if !stopped => {
+                let passes = at.progress == Progress::Start && exit.part.0 > 0.0;
+                let place = Awaited::Place(exit.after.0);
+                return (exit.guard, if passes { place } else { Awaited::Guard(exit.way) });
             }
-            Some(exit) => (exit.guard, Awaited::Guard),
-            None if at.progress == Progress::Done => (self.watched, Awaited::Nothing),
-            None => (self.watched, Awaited::Minimum),
-        }
+            (None, Watch::Extrema { kind, .. }) if !stopped => Awaited::Extremum(kind),
+            (None, Watch::End) if !stopped => Awaited::End,
+            _ => Awaited::Nothing,
+        };
+        (self.watched, awaited)
     }
 
-    /// The rate of `guard`, by differences if it is not known.
-    fn rate<const N: usize, const G: usize>(
+    /// The beginning of a phase in `mode`. The run is lost if the guard that counts is not part of
+    /// the mode.
+    fn enter<const N: usize, const G: usize>(
         &self,
-        mode: <S as HybridSystem<N, G>>::Mode,
-        guard: usize,
-        s: f64,
-        y: &State<N>,
-    ) -> f64
+        mode: S::Mode,
+        phase: usize,
+    ) -> PhaseMode<S::Mode>
     where
         S: HybridSystem<N, G>,
     {
-        let rate = self.system.guard_rates(mode, s, y)[guard];
-        if !rate.is_nan() {
-            return rate;
-        }
-        let (slope, reach) = (self.system.field(mode, s, y), self.reach.distance.get());
-        let at =
-            |reach: f64| self.system.guard_values(mode, s + reach, &(y + slope * reach))[guard];
-        let near = at(reach) - at(-reach);
-        let far = at(2.0 * reach) - at(-2.0 * reach);
-        (8.0 * near - far) / (12.0 * reach)
+        let at = PhaseMode { mode, phase, progress: Progress::Start };
+        let (subject, guards) = (self.subject(&at).0, self.system.guards(mode));
+        let off = |guard: usize| guards[guard].direction() == Direction::Off;
+        let lost = off(subject) || (self.is_last(phase) && off(self.watched));
+        PhaseMode { progress: if lost { Progress::Lost } else { Progress::Start }, ..at }
     }
 
-    /// The guard's value, positive where it does not fire.
-    fn value<const N: usize, const G: usize>(
-        &self,
-        mode: <S as HybridSystem<N, G>>::Mode,
-        guard: usize,
-        s: f64,
-        y: &State<N>,
-    ) -> f64
+    /// The value of the guard that is watched, positive where it does not fire.
+    fn value<const N: usize, const G: usize>(&self, mode: S::Mode, (s, y): (f64, &State<N>)) -> f64
     where
         S: HybridSystem<N, G>,
     {
-        let rises = self.system.guards(mode)[guard].direction() == Direction::Rising;
-        let value = self.system.guard_values(mode, s, y)[guard];
-        if rises { -value } else { value }
+        let sign = sense(self.system.guards(mode)[self.watched]);
+        sign * self.system.guard_values(mode, s, y)[self.watched]
+    }
+
+    /// What is watched where the run has ended, if it is watched there.
+    fn at_last<M: Method, const N: usize, const G: usize>(
+        &self,
+        run: &Run<PhaseMode<S::Mode>, N>,
+        options: &Options,
+    ) -> Option<Taken>
+    where
+        S: HybridSystem<N, G>,
+    {
+        let (mode, s) = (run.mode.mode, run.s);
+        let place = (s, &run.state);
+        let regular = matches!(run.outcome, Outcome::EndedByGuard { .. } | Outcome::ReachedEnd);
+        let value = match self.watch {
+            Watch::Start { derivative: which } => {
+                let (mode, which) = ((mode, options), (self.watched, which));
+                derivative::<M, S, N, G>(self.system, &self.reach, mode, which, place)?
+            }
+            Watch::Exit => self.value(mode, place),
+            Watch::Branch => self.system.transition_condition(mode, self.watched, s, &run.state),
+            Watch::End if regular => self.value(mode, place),
+            Watch::End | Watch::Extrema { .. } => return None,
+        };
+        Some(Taken { s, value })
     }
 }
 
@@ -234,44 +244,61 @@ where
 
     fn guards(&self, at: Self::Mode) -> [Guard; G] {
         let (subject, awaited) = self.subject(&at);
-        let own = self.system.guards(at.mode);
+        let mut system = self.system.guards(at.mode);
+        for exit in &self.exits[..at.phase.min(self.exits.len())] {
+            system[exit.guard] = system[exit.guard].fired(1);
+        }
+        let last = self.is_last(at.phase);
         let guard_of = |guard: usize| {
+            let own = system[guard];
             // A zero at the start of the phase matters only there.
-            let order = if at.progress == Progress::Start { own[guard].zero_order() } else { 0 };
-            if own[guard].ends_run() {
-                return Guard::new(own[guard].direction()).from_zero(order).terminal();
+            let order = if at.progress == Progress::Start { own.zero_order() } else { 0 };
+            if own.ends_run() && !(last && guard == self.watched) {
+                return Guard::new(own.direction()).from_zero(order).terminal();
             }
             if guard != subject {
                 return Guard::OFF;
             }
             match awaited {
                 Awaited::Place(_) => Guard::new(Direction::Below),
-                // Not `Below`: after a graze it may still be negative, and must rise first.
-                Awaited::Guard => Guard::new(Direction::Falling).from_zero(order),
-                Awaited::Minimum => {
+                Awaited::Guard(way) => {
+                    // Not `Below`: after a graze it may still be negative, and must rise first.
+                    let guard = match way {
+                        Way::AtOnce => Guard::new(Direction::Below),
+                        Way::Falling | Way::Rising => {
+                            Guard::new(Direction::Falling).from_zero(order)
+                        }
+                    };
+                    if last { guard.terminal() } else { guard }
+                }
+                Awaited::Extremum(_) => {
                     // The rate rises from zero after a minimum.
-                    let after_minimum = at.progress == Progress::Minimum;
+                    let after_minimum = at.progress == Progress::Extremum;
                     let order = if after_minimum { 1 } else { order.saturating_sub(1) };
                     Guard::new(Direction::Rising).from_zero(order)
                 }
+                Awaited::End => Guard::OFF,
                 Awaited::Nothing => Guard::new(Direction::Below).terminal(),
             }
         };
         // Place and rate of a smooth guard are smooth too.
-        std::array::from_fn(|guard| guard_of(guard).as_smooth_as(&own[guard]))
+        std::array::from_fn(|guard| guard_of(guard).as_smooth_as(&system[guard]))
     }
 
     #[inline]
     fn guard_values(&self, at: Self::Mode, s: f64, y: &State<N>) -> [f64; G] {
         let (subject, awaited) = self.subject(&at);
         let mut values = self.system.guard_values(at.mode, s, y);
-        let rises = self.system.guards(at.mode)[subject].direction() == Direction::Rising;
-        let sign = if rises { -1.0 } else { 1.0 };
         values[subject] = match awaited {
             Awaited::Place(place) => place - s,
-            Awaited::Guard => sign * values[subject],
-            Awaited::Minimum => sign * self.rate(at.mode, subject, s, y),
-            Awaited::Nothing => -1.0,
+            Awaited::Guard(Way::Falling) | Awaited::End => values[subject],
+            Awaited::Guard(Way::Rising) => -values[subject],
+            Awaited::Extremum(kind) => {
+                let rate = self.reach.rate(self.system, at.mode, subject, (s, y));
+                let rises = self.system.guards(at.mode)[subject].direction() == Direction::Rising;
+                if rises == (kind == Kind::Minimum) { -rate } else { rate }
+            }
+            Awaited::Guard(Way::AtOnce) | Awaited::Nothing => -1.0,
         };
         values
     }
@@ -297,19 +324,26 @@ where
         y: &State<N>,
     ) -> (Self::Mode, State<N>) {
         let progress = match self.subject(&at).1 {
-            Awaited::Guard => {
-                let (mode, y) = self.system.transition(at.mode, guard, s, y);
-                return (PhaseMode { mode, phase: at.phase + 1, progress: Progress::Start }, y);
+            Awaited::Guard(_)
+                if self.exits[at.phase].branch != branch(self.system, at.mode, guard, (s, y)) =>
+            {
+                Progress::Lost
+            }
+            Awaited::Guard(_) => {
+                let (mode, after) = self.system.transition(at.mode, guard, s, y);
+                return (self.enter(mode, at.phase + 1), after);
             }
             Awaited::Place(_) => Progress::Armed,
-            Awaited::Minimum if s < self.enough => Progress::Minimum,
-            Awaited::Minimum | Awaited::Nothing => Progress::Done,
+            Awaited::Extremum(_) if matches!(self.watch, Watch::Extrema { enough, .. } if s < enough) => {
+                Progress::Extremum
+            }
+            Awaited::Extremum(_) | Awaited::End | Awaited::Nothing => Progress::Done,
         };
         (PhaseMode { progress, ..at }, *y)
     }
 }
 
-/// Records the exits, and the minima of the guard that is watched.
+/// Records the exits, and the extrema of the guard that is watched.
 struct Watching<'a, S, const G: usize> {
     prescribed: &'a Prescribed<'a, S>,
     seen: Watched,
@@ -325,11 +359,12 @@ where
             return;
         }
         match awaited {
-            Awaited::Place(_) | Awaited::Nothing => {}
-            Awaited::Guard => self.seen.exits.push(event.s),
-            Awaited::Minimum => {
-                let value = self.prescribed.value(event.from.mode, guard, event.s, &event.before);
-                self.seen.minima.push(Extremum { s: event.s, value });
+            Awaited::Place(_) | Awaited::End | Awaited::Nothing => {}
+            Awaited::Guard(_) => self.seen.exits.push(event.s),
+            Awaited::Extremum(kind) => {
+                let value = self.prescribed.value(event.from.mode, (event.s, &event.before));
+                let value = if kind == Kind::Minimum { value } else { -value };
+                self.seen.taken.push(Taken { s: event.s, value });
             }
         }
     }

@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use stickslip_solver::{
-    Direction, Dop853, Dopri5, Guard, HybridSystem, Margins, Method, Options, Outcome, Recorder,
-    RunError, Start, State, margins, run,
+    Direction, Dop853, Dopri5, Guard, HybridSystem, Margins, Method, Options, Outcome, Place,
+    Recorder, RunError, Start, State, margins, run,
 };
 
 use crate::any::{BlackBox, any};
@@ -82,7 +82,9 @@ fn a_rate_that_is_a_difference_of_large_terms_still_shows_its_minimum() {
             let minimum = (PI + sine.asin()) / frequency;
             let value = 1.0 + amplitude * (frequency * minimum).cos() - velocity * minimum;
             let found = belt.margins();
-            let first = &found.near_misses[0];
+            let is_minimum = |place| matches!(place, Place::Minimum { .. });
+            let mut misses = found.near_misses.iter();
+            let first = misses.find(|miss| is_minimum(miss.margin.place)).expect("a minimum");
             assert!(first.margin.exits.is_empty());
             // Measured: 1.5e-13 and 1.7e-15. The first is the rounding of 0.5 divided by the
             // curvature, which is 5e-4.
@@ -115,6 +117,11 @@ fn margins_by_differences_are_those_by_rates() {
             assert_eq!(by_rates.near_misses.len(), by_differences.near_misses.len());
             for (one, other) in by_rates.near_misses.iter().zip(&by_differences.near_misses) {
                 assert_eq!(one.margin, other.margin);
+                // Derivatives are rates, each on its own scale of time.
+                if let Place::Start { derivative: 1.. } = one.margin.place {
+                    assert_eq!(one.value > 0.0, other.value > 0.0, "{scale} {one:?} {other:?}");
+                    continue;
+                }
                 largest = largest.max((one.value - other.value).abs());
                 compared += 1;
             }

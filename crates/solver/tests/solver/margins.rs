@@ -33,7 +33,9 @@ fn the_end_of_the_span_leaves_a_margin() {
     let start = |height| Start { mode: (), s: 0.0, state: State::from([height, 0.0]) };
     let options = Options::with_tolerance(1e-14);
     let free = margins(Dop853, &Drop, start(0.6), 1.0, &options).unwrap();
-    let [miss] = &free.near_misses[..] else { panic!("{:?}", free.near_misses) };
+    let [start_of_fall, miss] = &free.near_misses[..] else { panic!("{:?}", free.near_misses) };
+    assert_eq!(start_of_fall.margin.place, Place::Start { derivative: 0 });
+    assert_eq!((start_of_fall.s, start_of_fall.value), (0.0, 0.6));
     assert_eq!(miss.margin.place, Place::End);
     assert!((miss.value - 0.1).abs() < 1e-15, "{}", miss.value);
     for height in [0.4, 0.5, 0.6] {

@@ -79,6 +79,10 @@ impl<'a, F: Family> Runs<'a, F> {
         Ok(value)
     }
 
+    pub(crate) fn is_sure(&self, margin: &F::Margin) -> bool {
+        self.family.is_sure(margin)
+    }
+
     pub(crate) fn moved(&self, point: &Point, margin: &F::Margin) -> Traced<F::Margin, F> {
         self.family.moved(point, margin).map_err(|source| TraceError::Run { point: *point, source })
     }

@@ -1,5 +1,6 @@
 //! Traces and subdivisions with known answers.
 
+mod every_change;
 mod extrema;
 mod guards;
 mod known_curves;

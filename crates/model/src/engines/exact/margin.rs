@@ -198,6 +198,7 @@ impl<E: FnMut(Exit)> Task for Prescribed<'_, E> {
                 return match which.place {
                     Place::End => Some(slide.end_margin(&sliding)),
                     Place::Minimum { .. } => slide.turn_margin(&sliding),
+                    _ => None,
                 };
             };
             let onset = prescribed_onset(slide, &sliding, exit)?;
@@ -338,7 +339,7 @@ fn guard(k: u32) -> usize {
 /// The exit at the end of a slip phase; its hint is 0 before the split of the turns and 1 after it.
 fn slip_exit<T: Trajectory>(slide: &Slide<T>, onset: Moment) -> Exit {
     let after = if onset.is_before(slide.path.split()) { 0.0 } else { 1.0 };
-    Exit { guard: SAME_SIDE, after: Hint(after), part: Hint(0.0) }
+    Exit::falling(SAME_SIDE, after)
 }
 
 /// The moment at which the slip phase ends as `exit` prescribes.
@@ -361,7 +362,7 @@ fn prescribed_onset<T: Trajectory>(
 /// after the top of R.
 fn stick_exit(k: u32, after_top: bool) -> Exit {
     let after = f64::from(k) + if after_top { 0.5 } else { 0.0 };
-    Exit { guard: guard(k), after: Hint(after), part: Hint(0.0) }
+    Exit::falling(guard(k), after)
 }
 
 /// The half swing of the exit of a stick phase, and whether the exit is after the top of R.

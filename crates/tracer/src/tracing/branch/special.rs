@@ -27,11 +27,37 @@ pub(crate) fn locate<F: Family>(
     beyond: Option<&FootholdOf<F>>,
     h: f64,
 ) -> Traced<Option<Special<F::Margin>>, F> {
-    let mut found = Vec::new();
-    let mut margins = track.rivals(from, beyond);
-    if let Some(beyond) = beyond {
-        margins.extend(wedge(track, beyond)?);
+    for sure in [true, false] {
+        let mut margins = track.rivals(from, beyond, sure);
+        if sure && let Some(beyond) = beyond {
+            margins.extend(wedge(track, beyond)?);
+        }
+        if let Some(special) = among(track, from, beyond, margins, h)? {
+            return Ok(Some(special));
+        }
     }
+    let guess = from.node.point + from.node.tangent * (0.5 * h);
+    if let Some(point) = stationary(track.runs, &track.margin, &guess, 0.5 * h, 3.0 * h)?
+        && track.runs.margin(&point, &track.margin)?.is_some_and(|value| {
+            value.abs() <= (1e-3 * h * from.gradient.norm()).max(track.runs.options.noise)
+        })
+        && (point - from.node.point).dot(&from.node.tangent) > -1e-9 * track.runs.scale
+    {
+        return Ok(Some(degenerate(track, point, 0.0, true)));
+    }
+    Ok(None)
+}
+
+/// The first place within a failed step where one of these margins vanishes together with that of
+/// the branch, and behind which the branch does not have its labels.
+fn among<F: Family>(
+    track: &Track<'_, '_, F>,
+    from: &FootholdOf<F>,
+    beyond: Option<&FootholdOf<F>>,
+    margins: Vec<F::Margin>,
+    h: f64,
+) -> Traced<Option<Special<F::Margin>>, F> {
+    let mut found = Vec::new();
     for margin in margins {
         let met = match meet(track, from, beyond, &margin, h)? {
             None if narrow::<F>(from, beyond, &margin, h) => {
@@ -64,15 +90,6 @@ pub(crate) fn locate<F: Family>(
                 solved: true,
             }));
         }
-    }
-    let guess = from.node.point + from.node.tangent * (0.5 * h);
-    if let Some(point) = stationary(track.runs, &track.margin, &guess, 0.5 * h, 3.0 * h)?
-        && track.runs.margin(&point, &track.margin)?.is_some_and(|value| {
-            value.abs() <= (1e-3 * h * from.gradient.norm()).max(track.runs.options.noise)
-        })
-        && (point - from.node.point).dot(&from.node.tangent) > -1e-9 * track.runs.scale
-    {
-        return Ok(Some(degenerate(track, point, 0.0, true)));
     }
     Ok(None)
 }

@@ -25,7 +25,7 @@ pub(crate) fn touch<F: Family>(
         (middle.node.point - first.node.point).norm(),
         (next.node.point - middle.node.point).norm(),
     ];
-    for margin in track.rivals(middle, None) {
+    for margin in track.rivals(middle, None, true) {
         let [Some(a), Some(b), Some(c)] =
             [first, middle, next].map(|foothold| value_beside(foothold, &margin))
         else {

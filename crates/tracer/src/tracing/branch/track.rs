@@ -100,15 +100,20 @@ impl<F: Family> Track<'_, '_, F> {
     }
 
     /// The margins in the free runs at both ends of a step, except the margin that is followed, in
-    /// order.
-    pub fn rivals(&self, from: &FootholdOf<F>, beyond: Option<&FootholdOf<F>>) -> Vec<F::Margin> {
+    /// order: those on whose zeros the label is sure to change, or the others.
+    pub fn rivals(
+        &self,
+        from: &FootholdOf<F>,
+        beyond: Option<&FootholdOf<F>>,
+        sure: bool,
+    ) -> Vec<F::Margin> {
         let mut margins: Vec<F::Margin> = [Some(from), beyond]
             .into_iter()
             .flatten()
             .flat_map(|foothold| foothold.sides.iter())
             .flat_map(|run| run.margins.iter())
             .map(|(margin, _)| margin)
-            .filter(|margin| **margin != self.margin)
+            .filter(|margin| **margin != self.margin && self.runs.is_sure(margin) == sure)
             .cloned()
             .collect();
         margins.sort();
