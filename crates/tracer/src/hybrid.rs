@@ -40,20 +40,23 @@ pub type ModeOf<P, const N: usize, const G: usize> =
 pub enum Itinerary {
     /// The run comes to its end, or to a terminal guard. The guards that fire before, in order.
     Fires(Vec<usize>),
+    /// The run goes on after [`Options::max_switches`] switches. The guards that fire up to there.
+    Begins(Vec<usize>),
     /// The switches accumulate before the end, or follow one another without end at one instant.
     Accumulates,
-    /// The run reaches [`Options::max_steps`] or [`Options::max_switches`].
+    /// The run reaches [`Options::max_steps`].
     Unfinished,
     /// The run fails.
     Fails,
 }
 
 impl Itinerary {
-    /// The guards that fire, in order; `None` if the run does not come to its end.
+    /// The guards that fire, in order; `None` if the run comes neither to its end nor to the
+    /// greatest number of switches.
     #[must_use]
     pub fn fired(&self) -> Option<&[usize]> {
         match self {
-            Self::Fires(guards) => Some(guards),
+            Self::Fires(guards) | Self::Begins(guards) => Some(guards),
             _ => None,
         }
     }
@@ -65,8 +68,10 @@ impl Itinerary {
 /// [`stickslip_solver::Margin`]; they are complete if the start of the run and every transition
 /// without a [condition](HybridSystem::transition_condition) are smooth.
 ///
-/// A run that does not come to its end has no margins. Where such runs begin, the trace reports
-/// changes of the label as unresolved, with the labels on both sides; [`Self::outcome`] tells why.
+/// A run that accumulates switches or fails has no margins. Where such runs begin, the trace
+/// reports changes of the label as unresolved, with the labels on both sides; [`Self::outcome`]
+/// tells why. Near an accumulation there are boundaries without end: set
+/// [`Options::max_switches`], and itineraries are told apart only up to so many switches.
 #[derive(Clone, Copy, Debug)]
 pub struct HybridFamily<P, M, const N: usize, const G: usize> {
     /// The system and the start of its run, at every point.
@@ -177,7 +182,8 @@ fn itinerary(outcome: Outcome, fired: Vec<usize>) -> Itinerary {
     match outcome {
         Outcome::EndedByGuard { .. } | Outcome::ReachedEnd => Itinerary::Fires(fired),
         Outcome::Zeno { .. } | Outcome::InstantLimit { .. } => Itinerary::Accumulates,
-        Outcome::StepLimit | Outcome::SwitchLimit | Outcome::Stopped => Itinerary::Unfinished,
+        Outcome::SwitchLimit => Itinerary::Begins(fired),
+        Outcome::StepLimit | Outcome::Stopped => Itinerary::Unfinished,
     }
 }
 

@@ -10,6 +10,8 @@
 //! - A [`Subdivision`] holds the regions between the curves and answers in which region a point
 //!   lies.
 //! - [`verify`] compares the labels of the regions with runs at random points.
+//! - An [`Atlas`] does all of this, looks again where runs disagree, and knows which regions are in
+//!   doubt.
 //!
 //! In this example the system is a bouncing ball; its height and its restitution are the
 //! parameters. The label of a region lists the guards that fire in its runs:
@@ -82,7 +84,9 @@
 //! - `options`: options and errors of a trace
 //! - `tracing`: how boundaries are found and followed
 //! - `regions`: the regions between the curves
+//! - `atlas`: regions that are traced, verified, and looked at again
 
+mod atlas;
 mod cubic;
 mod curve;
 mod family;
@@ -92,6 +96,7 @@ mod regions;
 mod tracing;
 mod window;
 
+pub use atlas::{Atlas, AtlasError, AtlasOf, AtlasOptions};
 pub use cubic::Cubic;
 pub use curve::{Curve, Node, Vertex, VertexKind};
 pub use family::{Family, FreeRun};

@@ -214,6 +214,9 @@ pub(super) fn unresolved<Label, Margin>(
         Unresolved::TooManyNodes { point } => {
             format!("a boundary has too many points and was left at {}", at(point))
         }
+        Unresolved::NoLength { point, .. } => {
+            format!("a boundary has no length at {}", at(point))
+        }
         Unresolved::TooManyCurves { point } => {
             format!("too many boundaries; the next one starts at {}", at(point))
         }

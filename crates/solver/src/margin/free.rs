@@ -20,7 +20,8 @@ const SHORT: f64 = 1e-6;
 /// The margins of a phase take one run over that phase for each of its guards, two for a guard that
 /// does not bound the domain of its mode, and each extremum takes about one step more. A guard has
 /// no margins behind a place where its rate cannot be followed, for instance because it is zero
-/// from there on. A run that ends early has none at all.
+/// from there on. A run that ends early has none at all, but
+/// one that ends at [`Options::max_switches`] has those of its phases up to there.
 ///
 /// # Errors
 /// Those of [`run`].
@@ -48,18 +49,23 @@ where
         near_misses: Vec::new(),
         outcome: free.outcome,
     };
-    if !matches!(free.outcome, Outcome::EndedByGuard { .. } | Outcome::ReachedEnd) {
-        return Ok(found);
-    }
+    // What would follow the last switch does not matter if the run stops there.
+    let phases = switches.len()
+        + match free.outcome {
+            Outcome::EndedByGuard { .. } | Outcome::ReachedEnd => 1,
+            Outcome::SwitchLimit => 0,
+            _ => return Ok(found),
+        };
     let short = SHORT * (free.s - start.s);
     let mut listing =
         Listing { method, system, options, end, exits: Vec::new(), misses: Vec::new() };
     let mut phase = Phase { start, led_by: None, last: false };
-    for k in 0..=switches.len() {
+    for k in 0..phases {
         let switch = switches.get(k);
         let exited = switch.map_or(free.s, |event| event.s);
         // If the last phase is about to vanish, the phase before it lasts to the end.
-        phase.last = switch.is_none() || (k + 1 == switches.len() && free.s - exited <= short);
+        let vanishes = k + 2 == phases && free.s - exited <= short;
+        phase.last = switch.is_none() || vanishes;
         listing.phase(&phase, switch, exited, ended_by);
         if let Some(event) = switch {
             let start = Start { mode: event.to, s: event.s, state: event.after };

@@ -64,8 +64,11 @@ where
 {
     let reach = Reach::new::<M, S, N, G>(system, &start, end, options);
     let prescribed = Prescribed { system, exits, watched: guard, watch, reach };
-    // In a prescribed run, switches may be as close together as they like.
-    let options = Options { zeno: 0.0, ..*options };
+    // In a prescribed run, switches may be as close together as they like, and there are more of
+    // them: places and extrema count too.
+    let limits = (usize::MAX, usize::MAX);
+    let (max_switches, max_at_one_instant) = limits;
+    let options = Options { zeno: 0.0, max_switches, max_at_one_instant, ..*options };
     let mut watching = Watching::<S, G> {
         prescribed: &prescribed,
         seen: Watched { exits: Vec::with_capacity(exits.len()), taken: Vec::new() },
@@ -296,7 +299,10 @@ where
             Awaited::Extremum(kind) => {
                 let rate = self.reach.rate(self.system, at.mode, subject, (s, y));
                 let rises = self.system.guards(at.mode)[subject].direction() == Direction::Rising;
-                if rises == (kind == Kind::Minimum) { -rate } else { rate }
+                let rate = if rises == (kind == Kind::Minimum) { -rate } else { rate };
+                // A guard that does not change, or by less than its rounding, has passed its
+                // extremum.
+                if rate == 0.0 { f64::MIN_POSITIVE } else { rate }
             }
             Awaited::Guard(Way::AtOnce) | Awaited::Nothing => -1.0,
         };

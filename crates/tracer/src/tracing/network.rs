@@ -53,6 +53,13 @@ pub enum Unresolved<Label> {
         /// The index of the vertex.
         vertex: usize,
     },
+    /// A curve between two vertices that are one place, as far as can be told. It is left out.
+    NoLength {
+        /// The place.
+        point: Point,
+        /// The labels on both sides of the curve.
+        labels: [Label; 2],
+    },
     /// A curve has as many nodes as the options allow.
     TooManyNodes {
         /// The last node of the curve.

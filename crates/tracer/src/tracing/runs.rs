@@ -12,6 +12,17 @@ pub(crate) type Traced<T, F> = Result<T, TraceError<<F as Family>::Error>>;
 /// A place, with the free run there.
 pub(crate) type Sampled<F> = (Point, FreeRun<<F as Family>::Label, <F as Family>::Margin>);
 
+/// The slope of a margin, by differences.
+struct Slope {
+    value: f64,
+    /// The change of the slope from one side to the other, relative to the slope.
+    bend: f64,
+}
+
+/// The greatest bend of a margin within the differences that give its gradient. Their error is
+/// about its square.
+const BENT: f64 = 0.05;
+
 /// A family in a window, with the options of a trace. It makes and counts all runs.
 pub struct Runs<'a, F: Family> {
     family: &'a F,
@@ -93,6 +104,10 @@ impl<'a, F: Family> Runs<'a, F> {
     /// difference is least for h = (3εL²)^⅓. For ε = 1e-14 and L = 1 this is 3e-5, and the error is
     /// 5e-10. The scale is estimated by `radius`, the radius of curvature of the boundary.
     ///
+    /// Beside a place where a margin is singular, for instance beside the boundary of a graze that
+    /// comes before, it varies on a much shorter scale across its boundary. This shows by a bend
+    /// within the differences, and they are made shorter.
+    ///
     /// If the margin exists on one side only, the difference is one-sided, of second order. If it
     /// exists on neither side, the step is reduced. The direction matters because boundaries end in
     /// wedges that are long along them and thin across.
@@ -104,31 +119,47 @@ impl<'a, F: Family> Runs<'a, F> {
         radius: f64,
     ) -> Traced<Option<Point>, F> {
         let ratio = (radius / self.scale).clamp(1e-9, 1.0);
-        let h = 3e-5 * self.scale * ratio.powf(2.0 / 3.0);
+        let mut h = 3e-5 * self.scale * ratio.powf(2.0 / 3.0);
         let across = Point::new(-direction.y, direction.x);
-        let (Some(along), Some(rise)) =
-            (self.slope(point, margin, direction, h)?, self.slope(point, margin, &across, h)?)
-        else {
+        let mut rise = self.slope(point, margin, &across, h)?;
+        while let Some(Slope { bend, .. }) = rise
+            && bend > BENT
+            && h > 1e-8 * self.scale
+        {
+            h *= (0.1 * BENT / bend).max(1e-2);
+            rise = self.slope(point, margin, &across, h)?;
+        }
+        let (Some(rise), Some(along)) = (rise, self.slope(point, margin, direction, h)?) else {
             return Ok(None);
         };
+        let (along, rise) = (along.value, rise.value);
         let gradient = direction * along + across * rise;
         // Where a margin is flat, its boundary has no direction.
         Ok(Some(gradient).filter(|gradient| gradient.norm() > 0.0))
     }
 
-    /// The derivative of a margin along `direction`, by differences with step `h` at most.
+    /// The slope of a margin along `direction`, by differences with step `h` at most.
     fn slope(
         &self,
         point: &Point,
         margin: &F::Margin,
         direction: &Point,
         mut h: f64,
-    ) -> Traced<Option<f64>, F> {
+    ) -> Traced<Option<Slope>, F> {
         while h > 1e-9 * self.scale {
             let ahead = self.margin(&(point + direction * h), margin)?;
             let behind = self.margin(&(point - direction * h), margin)?;
             let (sign, near) = match (ahead, behind) {
-                (Some(ahead), Some(behind)) => return Ok(Some((ahead - behind) / (2.0 * h))),
+                (Some(ahead), Some(behind)) => {
+                    let change = ahead - behind;
+                    let mut bend = ((ahead + behind) / change).abs();
+                    if bend > BENT
+                        && let Some(here) = self.margin(point, margin)?
+                    {
+                        bend = ((ahead + behind - 2.0 * here) / change).abs();
+                    }
+                    return Ok(Some(Slope { value: change / (2.0 * h), bend }));
+                }
                 (Some(ahead), None) => (1.0, ahead),
                 (None, Some(behind)) => (-1.0, behind),
                 (None, None) => {
@@ -138,7 +169,9 @@ impl<'a, F: Family> Runs<'a, F> {
             };
             let far = self.margin(&(point + direction * (2.0 * sign * h)), margin)?;
             if let (Some(here), Some(far)) = (self.margin(point, margin)?, far) {
-                return Ok(Some(sign * (4.0 * near - 3.0 * here - far) / (2.0 * h)));
+                let value = sign * (4.0 * near - 3.0 * here - far) / (2.0 * h);
+                let bend = ((far - 2.0 * near + here) / (far - here)).abs();
+                return Ok(Some(Slope { value, bend }));
             }
             h /= 16.0;
         }
