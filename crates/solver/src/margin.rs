@@ -24,6 +24,9 @@
 //! transition that branches, up to where the other branch begins; and that of a phase behind a
 //! guard that fires, up to where this guard is beyond zero as its phase begins.
 //!
+//! The zero of a guard at the start of a phase or at an exit need not change the itinerary: a guard
+//! that is negative from the start on fires as it would have done soon after.
+//!
 //! An extremum of a guard is a zero of its rate. It is found like a zero of a black box: the rate
 //! is sampled on every step, also that of a readable system, and steps of the method locate its
 //! zeros.
