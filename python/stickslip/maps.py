@@ -1,5 +1,6 @@
 """Maps: collisions on a grid, as an xarray Dataset."""
 
+import operator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -35,6 +36,7 @@ ATTRIBUTES: dict[str, dict[str, Any]] = {
 def centres(interval: tuple[float, float], cells: int) -> Floats:
     """The centres of equal cells, where maps have their collisions; shape (cells,)."""
     low, high = interval
+    cells = operator.index(cells)
     if not (0 <= low < high < np.inf):
         raise ValueError(f"interval {interval}; expected 0 <= LO < HI, both finite")
     if cells < 1:
@@ -67,6 +69,9 @@ def map(
 
     if (psi is None) == (ratio is None):
         raise ValueError("expected exactly one of psi and ratio")
+    if not 0 <= damping < np.inf:
+        raise ValueError(f"damping = {damping!r}; expected 0 or above, finite")
+    mu, alpha = float(mu), float(alpha)
     columns, rows = size
     across = centres(kappa, columns)
     coordinates: dict[str, Any] = {"kappa": ("kappa", across, ATTRIBUTES["kappa"])}

@@ -1,5 +1,7 @@
 """Arrays as users have them: fields of records, masked, of other types, written to later."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -91,3 +93,26 @@ def test_edges_of_an_atlas() -> None:
     computed = stickslip.collide_many(kappa, 2.0).itinerary
     decided = found.region >= 0
     assert np.array_equal(found.itinerary[decided], computed[decided])
+
+
+def test_the_last_moment_is_in_the_course() -> None:
+    random = np.random.default_rng(5)
+    for damping in [0.0, 0.3, 1.0, 2.0]:
+        for kappa, psi in random.uniform([0.1, 0.01], [50.0, 3.0], (20, 2)):
+            collision = stickslip.collide(kappa, psi, damping)
+            course = collision.history([0.0, collision.contact_time, 1.01 * collision.contact_time])
+            assert np.isfinite(course["velocity"][:2]).all() and np.isnan(course["velocity"][2])
+            assert course["time"][1] == collision.contact_time
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error"),
+    [
+        ({"size": (2.5, 2)}, TypeError),
+        ({"damping": -1.0}, ValueError),
+        ({"mu": [0.1, 0.2]}, TypeError),
+    ],
+)
+def test_maps_of_nothing(arguments: dict[str, Any], error: type[Exception]) -> None:
+    with pytest.raises(error):
+        stickslip.map((1.0, 2.0), ratio=(0.1, 1.0), **{"size": (2, 2), **arguments})

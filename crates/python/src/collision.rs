@@ -58,7 +58,13 @@ impl Collision {
         let history = py.detach(|| self.course()).map_err(Failure::from)?;
         let rows: Vec<[f64; 7]> = match times {
             Some(times) => {
-                let at = |time| history.at(time).map_or(outside(time), |moment| row(&moment));
+                // The course may end a rounding before the contact does.
+                let (end, contact_time) = (history.duration(), self.result.contact_time);
+                let at = |time: f64| {
+                    let within = if time <= contact_time { time.min(end) } else { time };
+                    let moment = history.at(within).map(|moment| Snapshot { time, ..moment });
+                    moment.map_or(outside(time), |moment| row(&moment))
+                };
                 times.into_iter().map(at).collect()
             }
             None => history

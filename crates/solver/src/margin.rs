@@ -75,7 +75,7 @@ pub struct Margins {
 /// the system does not have the guards in the name.
 ///
 /// # Errors
-/// Those of [`run`].
+/// Those of [`run`](crate::run).
 pub fn margin<M, S, const N: usize, const G: usize>(
     method: M,
     system: &S,
