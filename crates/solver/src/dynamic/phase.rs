@@ -72,14 +72,15 @@ impl<Mode: Copy> Phase<Mode> {
     }
 
     /// Takes values that may be due to rounding of the state at `event`, which led here, for zeros.
-    /// `same` tells whether the guard that fired is the same as before the event. The sizes of the
+    /// `same` tells whether the guard that fired is the same as before the event, and `stands`
+    /// whether it goes on where it fired, whatever its rounding is. The sizes of the
     /// time and of the components near the event are `s_scale` and `work.scale`.
     pub(crate) fn forgive<S: DynamicSystem<Mode = Mode>>(
         &mut self,
         system: &S,
         (s, y): (f64, &[f64]),
         event: &Event,
-        same: bool,
+        (same, stands): (bool, bool),
         s_scale: f64,
         work: &mut Work,
     ) -> usize {
@@ -102,7 +103,8 @@ impl<Mode: Copy> Phase<Mode> {
             let (hidden, evaluations) = rounding(&at, (s, y), (s_scale, scale), moved, values);
             count += evaluations;
             let residual = if guard == event.guard { event.residual } else { 0.0 };
-            if value.abs() <= hidden.max(residual) {
+            let stands = stands && guard == event.guard && direction != Direction::Below;
+            if stands || value.abs() <= hidden.max(residual) {
                 self.at_zero = true;
                 self.zero_orders[guard] = 1;
                 self.forgiven[guard] = true;

@@ -363,7 +363,8 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
         let (system, place) = (self.system, (s, &self.state[..]));
         self.phase.enter(system, to, place, &self.fired)?;
         self.statistics.guards += 1;
-        let same = to == from || self.is_same_guard(from, s, event);
+        let stands = !event.jump && self.is_same_guard(from, s, event);
+        let same = (to == from || stands, stands);
         self.statistics.guards +=
             self.phase.forgive(system, (s, &self.state), event, same, s_scale, &mut self.work);
         if self.options.step_size == StepSize::Adaptive {

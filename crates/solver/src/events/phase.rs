@@ -84,17 +84,17 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
     {
         for guard in 0..G {
             let (value, direction) = (self.values[guard], self.guards[guard].direction());
+            // A guard that fired stands on its zero where it goes on, also exactly, and whatever its
+            // rounding is.
+            let stands = guard == event.guard
+                && !matches!(direction, Direction::Off | Direction::Below)
+                && value.abs() <= NEAR_ZERO * largest.max(event.slope * event.step.h)
+                && self.is_same_guard(system, (s, y), event, from);
             let may_be_zero = match direction {
                 Direction::Off => false,
                 // On the right side, a bound of the domain needs no pardon.
                 Direction::Below => value < 0.0,
-                // A guard that fired stands on its zero where it goes on, also exactly.
-                _ => {
-                    guard == event.guard
-                        && (from == self.mode
-                            || value.abs() <= NEAR_ZERO * largest.max(event.slope * event.step.h)
-                                && self.is_same_guard(system, (s, y), event, from))
-                }
+                _ => stands || (guard == event.guard && from == self.mode),
             };
             if !may_be_zero || self.zero_orders[guard] > 0 {
                 continue;
@@ -104,7 +104,8 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
             let scale = event.state.zip_map(&event.step.y0, |a, b| a.abs().max(b.abs()));
             let y_scale = scale.zip_map(y, |a, b| a.max(b.abs()));
             let residual = if guard == event.guard { event.residual } else { 0.0 };
-            if value.abs() <= rounding(value_at, (s, y), (s_scale, &y_scale)).max(residual) {
+            let hidden = || rounding(value_at, (s, y), (s_scale, &y_scale)).max(residual);
+            if stands || value.abs() <= hidden() {
                 self.at_zero = true;
                 self.zero_orders[guard] = 1;
                 self.forgiven[guard] = true;

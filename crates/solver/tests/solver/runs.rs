@@ -5,6 +5,7 @@ mod answers;
 mod backwards;
 mod closures;
 mod ends;
+mod goes_on;
 mod observers;
 mod pairs;
 mod samples;

@@ -6,5 +6,6 @@ mod guards;
 mod known_curves;
 mod leaving_minimum;
 mod random_circles;
+mod random_guards;
 mod subdivision;
 mod vertex_kinds;

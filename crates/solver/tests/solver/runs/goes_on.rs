@@ -1,0 +1,67 @@
+//! A guard that fires, changes the mode, and goes on from where it fired.
+
+use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State, run};
+
+/// The guard sin(ωs + φ), whose rounding is that of its angle. Each zero changes the mode.
+#[derive(Clone, Copy)]
+struct Wave {
+    frequency: f64,
+    phase: f64,
+    direction: Direction,
+}
+
+impl Wave {
+    fn value(&self, s: f64) -> f64 {
+        (self.frequency * s + self.phase).sin()
+    }
+}
+
+impl HybridSystem<1, 1> for Wave {
+    type Mode = u32;
+
+    fn field(&self, _: u32, _: f64, _: &State<1>) -> State<1> {
+        State::from([1.0])
+    }
+    fn guards(&self, _: u32) -> [Guard; 1] {
+        [Guard::new(self.direction)]
+    }
+    fn guard_values(&self, _: u32, s: f64, _: &State<1>) -> [f64; 1] {
+        [self.value(s)]
+    }
+    fn transition(&self, mode: u32, _: usize, _: f64, y: &State<1>) -> (u32, State<1>) {
+        (mode + 1, *y)
+    }
+}
+
+/// No zero fires twice, however far its place is off by rounding.
+#[test]
+fn each_zero_fires_once() {
+    let mut random = fastrand::Rng::with_seed(7);
+    let options = Options { max_step: 0.2, ..Options::with_tolerance(1e-13) };
+    for direction in [Direction::Rising, Direction::Falling, Direction::Either] {
+        for _ in 0..2000 {
+            let wave = Wave {
+                frequency: 1.0 + 4.0 * random.f64(),
+                phase: 1.0 + 1e3_f64.powf(random.f64()),
+                direction,
+            };
+            let start = Start { mode: 0, s: 0.0, state: State::from([0.0]) };
+            let found = run(Dop853, &wave, start, 3.0, &options, &mut ()).expect("a run");
+            // Half turns up to the start and up to the end.
+            let turns = |s: f64| ((wave.frequency * s + wave.phase) / std::f64::consts::PI).floor();
+            let [first, last] = [turns(0.0), turns(3.0)];
+            let zeros = (first as i64 + 1..=last as i64).filter(|n| match direction {
+                Direction::Rising => n % 2 == 0,
+                Direction::Falling => n % 2 != 0,
+                _ => true,
+            });
+            assert_eq!(
+                found.mode as usize,
+                zeros.count(),
+                "{direction:?} {} {}",
+                wave.frequency,
+                wave.phase
+            );
+        }
+    }
+}
