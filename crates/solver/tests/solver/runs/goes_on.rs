@@ -50,9 +50,10 @@ fn each_zero_fires_once() {
             // Half turns up to the start and up to the end.
             let turns = |s: f64| ((wave.frequency * s + wave.phase) / std::f64::consts::PI).floor();
             let [first, last] = [turns(0.0), turns(3.0)];
-            let zeros = (first as i64 + 1..=last as i64).filter(|n| match direction {
-                Direction::Rising => n % 2 == 0,
-                Direction::Falling => n % 2 != 0,
+            let turns = std::iter::successors(Some(first + 1.0), |turn| Some(turn + 1.0));
+            let zeros = turns.take_while(|turn| *turn <= last).filter(|turn| match direction {
+                Direction::Rising => turn.rem_euclid(2.0) == 0.0,
+                Direction::Falling => turn.rem_euclid(2.0) == 1.0,
                 _ => true,
             });
             assert_eq!(
