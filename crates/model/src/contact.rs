@@ -1,5 +1,7 @@
 //! The parameters of a collision.
 
+use crate::laws::law::{Damping, Law};
+
 /// The parameters of one collision in scaled variables: stiffness, impact ratio and damping.
 ///
 /// Scaled units: time β^{−2/5} g_n^{−1/5}, length g_n^{4/5} β^{−2/5}, with β = ρ/m.
@@ -18,6 +20,21 @@ pub struct Contact {
     kappa: f64,
     psi: f64,
     damping: f64,
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "is_zero"))]
+    tangential_damping: f64,
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "is_paper"))]
+    law: Law,
+}
+
+#[cfg(feature = "serde")]
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
+#[cfg(feature = "serde")]
+fn is_paper(law: &Law) -> bool {
+    *law == Law::PAPER
 }
 
 impl Contact {
@@ -27,17 +44,33 @@ impl Contact {
     /// # Errors
     /// [`InvalidParameter`] names the first parameter that is out of its range.
     pub fn new(kappa: f64, psi: f64, damping: f64) -> Result<Self, InvalidParameter> {
-        let in_range = |name, value: f64, expected, ok: bool| {
-            if ok && value.is_finite() {
-                Ok(())
-            } else {
-                Err(InvalidParameter { name, value, expected })
-            }
-        };
         in_range("kappa", kappa, "a finite number above 0", kappa > 0.0)?;
         in_range("psi", psi, "a finite number above 0", psi > 0.0)?;
         in_range("damping", damping, "a finite number, 0 or above", damping >= 0.0)?;
-        Ok(Self { kappa, psi, damping })
+        Ok(Self { kappa, psi, damping, tangential_damping: 0.0, law: Law::PAPER })
+    }
+
+    /// The same collision with another law, and with the tangential damping b =
+    /// (γ_t/γ_n)/α ≥ 0, which is a ratio of the two damping constants.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`]: the tangential damping is out of its range, the damping has no effect
+    /// in this law, or a contact with this damping never ends.
+    pub fn with_law(self, law: Law, tangential_damping: f64) -> Result<Self, InvalidParameter> {
+        let Self { damping, .. } = self;
+        let ok = tangential_damping >= 0.0;
+        in_range("tangential_damping", tangential_damping, "a finite number, 0 or above", ok)?;
+        let ok = damping == 0.0 || law.damping != Damping::None;
+        in_range("damping", damping, "0, since this law has no damping", ok)?;
+        let expected = match law.endless_from() {
+            2.0 => "less than 2: from there on contacts of this law never end",
+            least if least > 2.0 => {
+                "less than 2.2360679774997896: from there on contacts of this law never end"
+            }
+            _ => "less than 1.1279881355201692: from there on contacts of this law never end",
+        };
+        in_range("damping", damping, expected, damping < law.endless_from())?;
+        Ok(Self { tangential_damping, law, ..self })
     }
 
     /// Scaled stiffness κ of the tangential spring.
@@ -57,6 +90,33 @@ impl Contact {
     pub fn damping(&self) -> f64 {
         self.damping
     }
+
+    /// Tangential damping b = (γ_t/γ_n)/α; 0 in the paper's law.
+    #[must_use]
+    pub fn tangential_damping(&self) -> f64 {
+        self.tangential_damping
+    }
+
+    /// The contact law.
+    #[must_use]
+    pub fn law(&self) -> Law {
+        self.law
+    }
+
+    /// Whether the paper's law holds: that is the law, or it differs in terms without effect.
+    #[must_use]
+    pub fn obeys_paper(&self) -> bool {
+        self.law.acts_as_paper(self.damping, self.tangential_damping)
+    }
+}
+
+fn in_range(
+    name: &'static str,
+    value: f64,
+    expected: &'static str,
+    ok: bool,
+) -> Result<(), InvalidParameter> {
+    if ok && value.is_finite() { Ok(()) } else { Err(InvalidParameter { name, value, expected }) }
 }
 
 /// A parameter of a collision is out of its range.

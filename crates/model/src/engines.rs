@@ -39,7 +39,8 @@ pub enum Engine {
     Dopri5(Tolerances),
     /// The exact solution.
     Exact,
-    /// The best engine for a contact: the exact solution, for every contact so far.
+    /// The best engine for a contact: the exact solution where its law is the paper's, otherwise
+    /// Dormand–Prince 8(5,3).
     Auto,
 }
 
@@ -151,10 +152,11 @@ impl Engine {
 
     /// The engine that computes the collision of `contact`: itself, or what [`Self::Auto`] chooses.
     #[must_use]
-    pub fn resolved(self, _contact: &Contact) -> Self {
+    pub fn resolved(self, contact: &Contact) -> Self {
         match self {
             // The range of the exact solution contains that of the integrators.
-            Self::Auto => Self::Exact,
+            Self::Auto if contact.obeys_paper() => Self::Exact,
+            Self::Auto => Self::Dop853(Tolerances::DOP853),
             chosen => chosen,
         }
     }

@@ -23,6 +23,8 @@ pub struct Collision {
     pub contact_time: f64,
     /// The regime in which the contact starts: slip without damping, stick with it.
     pub start: Regime,
+    /// The side of the slip with which it starts; only a few contact laws start on side −1.
+    pub start_side: Side,
     /// Every switch, in order of time.
     pub switches: Switches,
     /// Number of sign changes of the tangential velocity during contact.
@@ -67,6 +69,7 @@ impl Collision {
             final_velocity: f64::NAN,
             contact_time: f64::NAN,
             start: Phase::first(&contact).regime,
+            start_side: Side::Positive,
             switches: Switches::new(),
             reversals: 0,
             energy: EnergyLedger::default(),
@@ -78,6 +81,7 @@ impl Collision {
         self.contact = contact;
         (self.eps_n, self.final_velocity, self.contact_time) = (f64::NAN, f64::NAN, f64::NAN);
         self.start = Phase::first(&contact).regime;
+        self.start_side = Side::Positive;
         self.switches.clear();
         self.reversals = 0;
         self.energy = EnergyLedger::default();
@@ -92,16 +96,16 @@ impl Collision {
     /// One character for each phase: `+` and `-` for slip on side +1 and −1, `o` for stick.
     #[must_use]
     pub fn itinerary(&self) -> String {
-        let start = match self.start {
-            Regime::Slip => '+',
-            Regime::Stick => 'o',
-        };
-        let entered = self.switches.iter().map(|switch| match (switch.to, switch.side) {
-            (Regime::Stick, _) => 'o',
-            (Regime::Slip, Side::Positive) => '+',
-            (Regime::Slip, Side::Negative) => '-',
-        });
-        std::iter::once(start).chain(entered).collect()
+        let start = (self.start, self.start_side);
+        let entered = self.switches.iter().map(|switch| (switch.to, switch.side));
+        let phases = std::iter::once(start).chain(entered);
+        phases
+            .map(|phase| match phase {
+                (Regime::Stick, _) => 'o',
+                (Regime::Slip, Side::Positive) => '+',
+                (Regime::Slip, Side::Negative) => '-',
+            })
+            .collect()
     }
 
     /// The guards that fired, [`SAME_SIDE`](crate::regularized::SAME_SIDE) or
@@ -109,7 +113,7 @@ impl Collision {
     /// [`exact::Margins::fired`](crate::exact::Margins::fired) names them.
     #[must_use]
     pub fn fired(&self) -> Vec<usize> {
-        let mut side = Side::Positive;
+        let mut side = self.start_side;
         let guard = |switch: &Switch| {
             let same = std::mem::replace(&mut side, switch.side) == switch.side;
             if same { SAME_SIDE } else { OTHER_SIDE }

@@ -3,6 +3,7 @@
 use stickslip_solver::{Observer, Options, Outcome, Pair, RunError, Start, Statistics, run_with};
 
 mod account;
+mod general;
 mod last_slip;
 mod refine;
 mod reversals;
@@ -127,6 +128,9 @@ impl Collider {
         collision: &mut Collision,
     ) -> Result<Statistics, CollisionError> {
         let options = self.options_for(&contact)?;
+        if !contact.obeys_paper() {
+            return general::collide(self.pair, contact, &options, collision);
+        }
         self.observe(contact, &options, collision, &mut ())
     }
 
@@ -243,7 +247,10 @@ impl Collider {
     }
 
     /// The options for `contact` where its course is kept.
-    fn recorded_options(&self, contact: &Contact) -> Result<Options, OutOfDomain> {
+    fn recorded_options(&self, contact: &Contact) -> Result<Options, CollisionError> {
+        if !contact.obeys_paper() {
+            return Err(CollisionError::Law { what: "the course" });
+        }
         let options = self.options_for(contact)?;
         Ok(Options { max_steps: options.max_steps.min(History::MOST_STEPS), ..options })
     }
@@ -298,6 +305,12 @@ pub enum CollisionError {
     /// The integration failed.
     #[error(transparent)]
     Run(#[from] RunError),
+    /// Only for the paper's law.
+    #[error("{what} of a collision is computed for the paper's contact law only")]
+    Law {
+        /// What was asked for.
+        what: &'static str,
+    },
     /// The contact did not end.
     #[error("the contact has not ended at scaled time {time}: {outcome:?}")]
     Unfinished {

@@ -34,9 +34,6 @@ use components::array;
 pub use components::{DAMPING, GAP, RATE, SPRING, STATE, T, U, V, W};
 use equations::{Equations, Force};
 
-/// The first step of a phase goes at most this part of the time left beyond it.
-const BEYOND: f64 = 1.5;
-
 /// The contact as a hybrid system.
 #[derive(Clone, Copy, Debug)]
 pub struct Regularized {
@@ -227,11 +224,8 @@ impl ReadableSystem<STATE, GUARDS> for Regularized {
         }
     }
 
-    /// Near its end a contact has no other scale than the time that is left, u/|v|, which may be
-    /// far below the tolerance.
     fn longest_first_step(&self, _phase: Phase, _s: f64, y: &State<STATE>) -> f64 {
-        let v = self.compression_rate(y);
-        if v < 0.0 { BEYOND * y[U] / -v } else { f64::INFINITY }
+        super::longest_first_step(y[U], self.compression_rate(y))
     }
 
     #[inline(always)]

@@ -10,6 +10,7 @@ mod common;
 mod estimates;
 mod exact;
 mod impacts;
+mod laws;
 mod margins;
 mod properties;
 mod reference;

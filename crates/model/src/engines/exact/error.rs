@@ -11,6 +11,9 @@ pub enum ExactError {
     /// The contact is out of range.
     #[error(transparent)]
     Domain(#[from] OutOfDomain),
+    /// There is an exact solution of the paper's law only.
+    #[error("there is no exact solution of this contact law; expected dop853 or dopri5")]
+    Law,
     /// The collision has too many switches for a list.
     #[error(
         "more than {limit} switches at kappa = {kappa}, psi = {psi}: \
@@ -30,6 +33,9 @@ pub enum ExactError {
 
 /// Checks that `contact` is in the range of the engine.
 pub fn checked(contact: &Contact) -> Result<(), ExactError> {
+    if !contact.obeys_paper() {
+        return Err(ExactError::Law);
+    }
     Ok(domain::exact(contact)?)
 }
 

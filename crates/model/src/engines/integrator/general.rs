@@ -1,0 +1,168 @@
+//! The integration of a contact with any law.
+
+use stickslip_solver::{
+    Observer, Options, Outcome, Pair, Start, State, Statistics, SwitchEvent, run_with,
+};
+
+use super::CollisionError;
+use crate::contact::Contact;
+use crate::laws::general::{CREST, DAMPING, GeneralContact, Mode, Progress, REVERSAL, STATE, T};
+use crate::laws::law::{End, Law, Normal};
+use crate::laws::phase::{END, Regime};
+use crate::result::{Collision, EnergyLedger, Switch};
+
+/// Integrates one collision into `collision`.
+pub fn collide(
+    pair: Pair,
+    contact: Contact,
+    options: &Options,
+    collision: &mut Collision,
+) -> Result<Statistics, CollisionError> {
+    let system = GeneralContact::new(contact).with_reversals();
+    collision.reset(contact);
+    // Unless a switch follows at once.
+    collision.start = Regime::Stick;
+    let start = Start { mode: system.first(), s: 0.0, state: system.start() };
+    let mut account = Account {
+        system,
+        collision,
+        phase: start.mode,
+        entered: start.state,
+        elapsed: 0.0,
+        sliding: 0.0,
+        lasting: 0.0,
+        held: None,
+    };
+    let run = run_with(pair, &system, start, f64::INFINITY, options, &mut account)?;
+    if run.outcome != (Outcome::EndedByGuard { guard: END }) {
+        let time = account.elapsed + run.state[T];
+        return Err(CollisionError::Unfinished { outcome: run.outcome, time });
+    }
+    account.finish(&run.state);
+    Ok(run.statistics)
+}
+
+/// The running account of a collision.
+struct Account<'a> {
+    system: GeneralContact,
+    collision: &'a mut Collision,
+    /// The phase so far.
+    phase: Mode,
+    /// The state in which it began.
+    entered: State<STATE>,
+    /// The time at which it began.
+    elapsed: f64,
+    /// Tangential energy taken by sliding.
+    sliding: f64,
+    /// The time since the last recorded switch.
+    lasting: f64,
+    /// The slip before, and the switch to this stick phase, where the limit is zero: there it
+    /// counts only if it lasts.
+    held: Option<(Mode, Switch)>,
+}
+
+impl Account<'_> {
+    /// Closes the phase in state `y`.
+    fn leave(&mut self, y: &State<STATE>) {
+        if self.phase.regime == Regime::Slip {
+            let [w0, w1] = [&self.entered, y].map(|y| self.system.velocity(y));
+            self.sliding += 0.5 * (w0 - w1) * (w0 + w1);
+        }
+        self.elapsed += y[T];
+        self.lasting += y[T];
+        self.entered = *y;
+    }
+
+    /// Records the switch from the phase, which ends in state `before`, to `next`.
+    fn switch(&mut self, next: Mode, before: &State<STATE>, y: &State<STATE>) {
+        let at_once = before[T] == 0.0;
+        self.leave(before);
+        let switch = Switch {
+            time: self.elapsed,
+            time_left: f64::NAN,
+            to: next.regime,
+            side: next.side,
+            spring: self.system.spring(next, y),
+            velocity: self.system.velocity(y),
+        };
+        let from = std::mem::replace(&mut self.phase, next);
+        if self.elapsed == 0.0 {
+            (self.collision.start, self.collision.start_side) = (next.regime, next.side);
+            return;
+        }
+        match self.held.take() {
+            Some((earlier, held)) if at_once => {
+                self.lasting += held.time_left;
+                if earlier.side != next.side {
+                    self.push(switch);
+                }
+                return;
+            }
+            Some((_, held)) => self.collision.switches.push(held),
+            None => {}
+        }
+        if next.progress != Progress::Touched {
+            self.push(switch);
+        } else if from.regime == Regime::Slip {
+            let time_left = std::mem::take(&mut self.lasting);
+            self.held = Some((from, Switch { time_left, ..switch }));
+        }
+    }
+
+    /// Records a switch. Until the end, `time_left` is the time since the one before.
+    fn push(&mut self, switch: Switch) {
+        let time_left = std::mem::take(&mut self.lasting);
+        self.collision.switches.push(Switch { time_left, ..switch });
+    }
+
+    /// Closes the account in the state `y` at the end.
+    fn finish(mut self, y: &State<STATE>) {
+        self.leave(y);
+        if let Some((_, held)) = self.held.take() {
+            self.collision.switches.push(held);
+        }
+        let Self { system, collision, sliding, lasting, .. } = self;
+        let contact = collision.contact;
+        let (overlap, rate) = (system.overlap(y), system.compression_rate(y));
+        let Law { normal, end, .. } = contact.law();
+        // Where the force is limited nothing pushes any more.
+        let flight = if end == End::Overlap { overlap / -rate } else { 0.0 };
+        collision.contact_time = self.elapsed + flight;
+        let mut left = lasting + flight;
+        for switch in collision.switches.iter_mut().rev() {
+            left += std::mem::replace(&mut switch.time_left, left);
+        }
+        collision.eps_n = -rate;
+        collision.final_velocity = system.velocity(y);
+        let [tangential_initial, tangential_final] =
+            [contact.psi(), collision.final_velocity].map(|w| 0.5 * w * w);
+        let compression_left = match normal {
+            _ if end == End::Overlap => 0.0,
+            Normal::Linear => 0.5 * overlap * overlap,
+            Normal::Hertz => 0.4 * overlap.powf(2.5),
+        };
+        let normal_final = 0.5 * rate * rate;
+        collision.energy = EnergyLedger {
+            tangential_initial,
+            tangential_final,
+            sliding,
+            spring_left: tangential_initial - tangential_final - sliding,
+            normal_initial: 0.5,
+            normal_final,
+            damping: y[DAMPING],
+            compression_left,
+        };
+    }
+}
+
+impl Observer<Mode, STATE> for Account<'_> {
+    fn on_switch(&mut self, event: &SwitchEvent<Mode, STATE>) {
+        match event.guard {
+            REVERSAL => self.collision.reversals += 1,
+            // The phase goes on.
+            CREST => self.phase.stage = event.to.stage,
+            END if event.from.stage == event.to.stage => {}
+            _ => self.switch(event.to, &event.before, &event.after),
+        }
+    }
+}

@@ -1,0 +1,330 @@
+//! The equations of a contact with any law, for plain numbers and for all that act like them.
+
+use std::ops::Index;
+
+use stickslip_solver::Number;
+
+use super::exponents::Exponents;
+use super::{DAMPING, GAP, GUARDS, Mode, Progress, RATE, SPRING, STATE, Stage, T as TIME, U, V, W};
+use crate::contact::Contact;
+use crate::laws::phase::Regime;
+
+/// The least damping for which the component V is a³(v + u^{p−d}/a); see
+/// [`regularized`](crate::regularized).
+const STRONG: f64 = 1.0;
+
+/// Highest power of u in any equation.
+const POWERS: usize = 9;
+
+/// The powers of u, from u⁰.
+#[derive(Clone, Copy)]
+struct Powers<T>([T; POWERS]);
+
+impl<T> Index<u8> for Powers<T> {
+    type Output = T;
+
+    #[inline(always)]
+    fn index(&self, power: u8) -> &T {
+        &self.0[usize::from(power)]
+    }
+}
+
+/// The equations with the parameters of one contact.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Equations {
+    pub exponents: Exponents,
+    kappa: f64,
+    damping: f64,
+    tangential_damping: f64,
+    /// v = by_v·V + by_u·u^{p−d}.
+    by_v: f64,
+    by_u: f64,
+    /// F/u^d = force_by_v·V + force_by_u·u^{p−d}.
+    force_by_v: f64,
+    force_by_u: f64,
+    /// The factor c of [`SPRING`].
+    pub scale: f64,
+    /// Size σ of the velocity.
+    velocity_unit: f64,
+    /// Q = spring_force·u^ρ·[`SPRING`] + dashpot·u^d·[`W`].
+    spring_force: f64,
+    dashpot: f64,
+    /// The rate of [`SPRING`] is spring_rate·u^β·[`W`].
+    spring_rate: f64,
+}
+
+/// A quantity and its first two derivatives with respect to s.
+#[derive(Clone, Copy)]
+struct Jet<T>(T, T, T);
+
+impl Equations {
+    pub fn new(contact: &Contact) -> Self {
+        let exponents = Exponents::new(contact);
+        let (kappa, a) = (contact.kappa(), contact.damping());
+        let strong = a >= STRONG;
+        let by_v = if strong { a.powi(-3) } else { 1.0 };
+        let omega = kappa.sqrt();
+        let scale = omega.sqrt().max(1.0);
+        let velocity_unit = contact.psi().min(1.0);
+        Self {
+            exponents,
+            kappa,
+            damping: a,
+            tangential_damping: contact.tangential_damping(),
+            by_v,
+            by_u: if strong { -1.0 / a } else { 0.0 },
+            force_by_v: a * by_v,
+            force_by_u: if strong { 0.0 } else { 1.0 },
+            scale,
+            velocity_unit,
+            spring_force: omega / scale * velocity_unit,
+            dashpot: contact.tangential_damping() * a * velocity_unit,
+            spring_rate: f64::from(exponents.n) * omega * scale,
+        }
+    }
+
+    /// The state at the start of contact.
+    pub fn start(&self, psi: f64) -> [f64; STATE] {
+        let mut y = [0.0; STATE];
+        y[V] = 1.0 / self.by_v;
+        y[W] = psi / self.velocity_unit;
+        y
+    }
+
+    /// Reduced tangential velocity w.
+    #[inline(always)]
+    pub fn velocity<T: Number>(&self, y: &[T; STATE]) -> T {
+        y[W] * self.velocity_unit
+    }
+
+    /// The rate v of the overlap.
+    #[inline(always)]
+    pub fn compression_rate<T: Number>(&self, y: &[T; STATE]) -> T {
+        self.rate(&powers(y[U]), y)
+    }
+
+    #[inline(always)]
+    fn rate<T: Number>(&self, u: &Powers<T>, y: &[T; STATE]) -> T {
+        y[V] * self.by_v + u[self.exponents.bend] * self.by_u
+    }
+
+    /// F/u^d, whose sign is that of the normal force.
+    #[inline(always)]
+    fn push<T: Number>(&self, u: &Powers<T>, y: &[T; STATE]) -> T {
+        y[V] * self.force_by_v + u[self.exponents.bend] * self.force_by_u
+    }
+
+    /// The normal force.
+    pub fn normal_force(&self, y: &[f64; STATE]) -> f64 {
+        let u = &powers(y[U]);
+        u[self.exponents.d] * self.push(u, y)
+    }
+
+    /// The size Q of the tangential force of spring and dashpot, divided by u^m.
+    #[inline(always)]
+    fn pull<T: Number>(&self, stage: Stage, u: &Powers<T>, y: &[T; STATE]) -> T {
+        let e = self.exponents.of(stage);
+        u[e.rho - e.shared] * y[SPRING] * self.spring_force
+            + u[self.exponents.d - e.shared] * y[W] * self.dashpot
+    }
+
+    /// The tangential force Q of spring and dashpot.
+    pub fn tangential_force(&self, stage: Stage, y: &[f64; STATE]) -> f64 {
+        let u = &powers(y[U]);
+        u[self.exponents.of(stage).shared] * self.pull(stage, u, y)
+    }
+
+    /// The part of Q that is due to the dashpot.
+    pub fn dashpot_force(&self, y: &[f64; STATE]) -> f64 {
+        powers(y[U])[self.exponents.d] * y[W] * self.dashpot
+    }
+
+    /// The right-hand side of a mode.
+    #[inline(always)]
+    pub fn field<T: Number>(&self, mode: Mode, y: &[T; STATE]) -> [T; STATE] {
+        let e = self.exponents;
+        let u = &powers(y[U]);
+        let n = f64::from(e.n);
+        let v = self.rate(u, y);
+        let push = self.push(u, y);
+        let dv = u[e.last + e.d] * push * -n;
+        let mut slope = [T::from(0.0); STATE];
+        slope[U] = v;
+        slope[V] = (dv - lowered(u, e.bend) * v * self.by_u) / self.by_v;
+        slope[TIME] = u[e.last] * n;
+        if e.damped {
+            slope[DAMPING] = u[e.last + e.d] * v * v * (n * self.damping);
+        }
+        match mode.regime {
+            Regime::Slip => {
+                slope[W] = dv * (mode.side.sign() * mode.stage.sign() / self.velocity_unit);
+            }
+            Regime::Stick => {
+                let of = e.of(mode.stage);
+                let pull = self.pull(mode.stage, u, y);
+                slope[W] = u[e.last + of.shared] * pull * (-n / self.velocity_unit);
+                slope[SPRING] = u[of.beta] * y[W] * self.spring_rate;
+                if mode.progress == Progress::Switched {
+                    slope[GAP] = y[RATE] * self.scale;
+                    slope[RATE] =
+                        self.gap_acceleration(mode, u, y) / (self.scale * self.scale);
+                }
+            }
+        }
+        slope
+    }
+
+    /// The second derivative of the gap in a stick phase.
+    #[inline(always)]
+    fn gap_acceleration<T: Number>(&self, mode: Mode, u: &Powers<T>, y: &[T; STATE]) -> T {
+        let e = self.exponents;
+        let of = e.of(mode.stage);
+        let n = f64::from(e.n);
+        let v = self.rate(u, y);
+        let push = self.push(u, y);
+        let damping = if e.damped { self.damping } else { 0.0 };
+        // dv/ds = −n u^k F/u^d, with k = n − 1 + d.
+        let k = e.last + e.d;
+        let dv = u[k] * push * -n;
+        let elastic = lowered(u, e.bend);
+        let push1 = elastic * v + dv * damping;
+        let ddv = (lowered(u, k) * v * push + u[k] * push1) * -n;
+        let push2 = twice_lowered(u, e.bend) * v * v + elastic * dv + ddv * damping;
+        let force = lifted(e.d - of.shared, u, v, dv, Jet(push, push1, push2));
+
+        let pull = self.pull(mode.stage, u, y);
+        let per_unit = -n / self.velocity_unit;
+        let k = e.last + of.shared;
+        let dw = u[k] * pull * per_unit;
+        let dspring = u[of.beta] * y[W] * self.spring_rate;
+        let ddspring = (lowered(u, of.beta) * v * y[W] + u[of.beta] * dw) * self.spring_rate;
+        let spring =
+            lifted(of.rho - of.shared, u, v, dv, Jet(y[SPRING], dspring, ddspring));
+        let pull1 = spring.1 * self.spring_force
+            + (lowered(u, e.d - of.shared) * v * y[W] + u[e.d - of.shared] * dw) * self.dashpot;
+        let ddw = (lowered(u, k) * v * pull + u[k] * pull1) * per_unit;
+        let dashpot = lifted(e.d - of.shared, u, v, dv, Jet(y[W], dw, ddw));
+        let pull2 = spring.2 * self.spring_force + dashpot.2 * self.dashpot;
+        force.2 * mode.stage.sign() - pull2 * mode.side.sign()
+    }
+
+    /// The values of the guards.
+    #[inline(always)]
+    pub fn guards<T: Number>(&self, mode: Mode, y: &[T; STATE]) -> [T; GUARDS] {
+        let e = self.exponents;
+        let u = &powers(y[U]);
+        let of = e.of(mode.stage);
+        let v = self.rate(u, y);
+        let push = self.push(u, y);
+        let end = if e.damped && mode.stage != Stage::Tail { push } else { y[U] };
+        let (end, same, other) = match mode.regime {
+            Regime::Slip => (end, self.stretching(mode, u, y), T::from(1.0)),
+            Regime::Stick => {
+                let pull = self.pull(mode.stage, u, y) * mode.side.sign();
+                if mode.progress == Progress::Switched {
+                    let gap = y[GAP] * self.scale;
+                    // Late in a contact the force is rounding alone, unlike gap and spring.
+                    let force = gap + pull;
+                    let ends = e.damped && mode.stage != Stage::Tail;
+                    (if ends { force } else { end }, gap, force + pull)
+                } else {
+                    let limit = u[e.d - of.shared] * push * mode.stage.sign();
+                    (end, limit - pull, limit + pull)
+                }
+            }
+        };
+        [end, same, other, v, y[W]]
+    }
+
+    /// How fast the spring would leave its limit in stick, s dQ/ds − dL/ds, divided by a power of
+    /// u. Slip ends where that vanishes.
+    #[inline(always)]
+    fn stretching<T: Number>(&self, mode: Mode, u: &Powers<T>, y: &[T; STATE]) -> T {
+        let e = self.exponents;
+        let of = e.of(mode.stage);
+        let (side, sign) = (mode.side.sign(), mode.stage.sign());
+        let (n, w) = (f64::from(e.n), self.velocity(y));
+        let v = self.rate(u, y);
+        let push = self.push(u, y);
+        // One power more than that of the term, so that it is not negative.
+        let power = |more: u8| u[more - of.leading];
+        let mut sum = power(e.last + e.r + 1) * w * (n * self.kappa * side);
+        let ahead = f64::from(of.rho) - f64::from(e.d);
+        if ahead != 0.0 {
+            let behind = push * sign - w * (side * self.damping * self.tangential_damping);
+            sum = sum + power(e.d) * v * behind * ahead;
+        }
+        if e.bend > 0 {
+            sum = sum - power(e.p) * v * (sign * f64::from(e.bend));
+        }
+        let excess = 1.0 - self.tangential_damping;
+        if e.damped && excess != 0.0 {
+            let steep = sign * self.damping * n * excess;
+            sum = sum + power(2 * e.d + e.last + 1) * push * steep;
+        }
+        sum
+    }
+
+    /// The spring that makes the tangential force `size`, in units of u^m.
+    fn spring_for(&self, stage: Stage, u: &Powers<f64>, y: &[f64; STATE], size: f64) -> f64 {
+        let of = self.exponents.of(stage);
+        let rest = size - u[self.exponents.d - of.shared] * y[W] * self.dashpot;
+        rest / (u[of.rho - of.shared] * self.spring_force)
+    }
+
+    /// The state with which `next` begins, from the state `y` at the switch.
+    pub fn enter(&self, next: Mode, y: &[f64; STATE]) -> [f64; STATE] {
+        let u = &powers(y[U]);
+        let of = self.exponents.of(next.stage);
+        let size = match next.progress {
+            // The limit is zero, and so is the spring.
+            Progress::Touched => 0.0,
+            _ => u[self.exponents.d - of.shared] * self.push(u, y) * next.stage.sign(),
+        };
+        let mut y = *y;
+        y[SPRING] = match next.regime {
+            Regime::Stick => self.spring_for(next.stage, u, &y, size * next.side.sign()),
+            Regime::Slip => 0.0,
+        };
+        (y[TIME], y[GAP], y[RATE]) = (0.0, 0.0, 0.0);
+        y
+    }
+
+    /// The state at greatest compression, with the history that is carried from there on.
+    pub fn turn(&self, y: &[f64; STATE]) -> [f64; STATE] {
+        let e = self.exponents;
+        let carried = e.of(Stage::Main).rho as i32 - e.of(Stage::Unloading).rho as i32;
+        let mut y = *y;
+        y[SPRING] *= y[U].powi(carried);
+        y
+    }
+}
+
+#[inline(always)]
+fn powers<T: Number>(u: T) -> Powers<T> {
+    let mut powers = [T::from(1.0); POWERS];
+    for k in 1..POWERS {
+        powers[k] = powers[k - 1] * u;
+    }
+    Powers(powers)
+}
+
+/// d(u^k)/du.
+#[inline(always)]
+fn lowered<T: Number>(u: &Powers<T>, k: u8) -> T {
+    if k == 0 { T::from(0.0) } else { u[k - 1] * f64::from(k) }
+}
+
+/// d²(u^k)/du².
+#[inline(always)]
+fn twice_lowered<T: Number>(u: &Powers<T>, k: u8) -> T {
+    if k < 2 { T::from(0.0) } else { u[k - 2] * f64::from(k * (k - 1)) }
+}
+
+/// u^k times a quantity, with derivatives, where u' = v.
+#[inline(always)]
+fn lifted<T: Number>(k: u8, u: &Powers<T>, v: T, dv: T, Jet(x, x1, x2): Jet<T>) -> Jet<T> {
+    let rise = lowered(u, k) * v;
+    let bend = twice_lowered(u, k) * v * v + lowered(u, k) * dv;
+    Jet(u[k] * x, rise * x + u[k] * x1, bend * x + rise * x1 * 2.0 + u[k] * x2)
+}

@@ -1,0 +1,162 @@
+//! A contact law as data.
+
+/// The terms of a contact law. [`Law::PAPER`] is that of Schwager, Becker and Pöschel; particle
+/// codes compute others, which [`presets`](crate::presets) names.
+///
+/// In scaled units, with the overlap x, its rate v and the tangential velocity w:
+///
+/// ```text
+/// dv/dt = −F     F = x or x^{3/2}, plus η v     η = a, a√x or a x^{1/4}
+/// dw/dt = −Q     Q = k y + b η w     k = κ or κ√x     dy/dt = w
+/// ```
+///
+/// b is the tangential damping. Where |Q| would exceed |F|, dw/dt = −sgn(Q) |F|, and the history is
+/// set such that Q has this size. The source is the text of LAMMPS (29 Sep 2021):
+/// `pair_gran_hooke_history`, `pair_gran_hertz_history` and `pair_granular`.
+///
+/// ```
+/// use stickslip_model::{Contact, Engine, Law, Tangential};
+///
+/// let mindlin = Law { tangential: Tangential::Mindlin, ..Law::PAPER };
+/// let contact = Contact::new(1.2, 0.3, 0.0)?.with_law(mindlin, 0.0)?;
+/// let (collision, _) = Engine::Auto.collide(contact)?;
+/// // A spring that stiffens with the load is not conservative.
+/// assert!(collision.eps_t().abs() > 0.1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
+pub struct Law {
+    /// The elastic part of the normal force.
+    pub normal: Normal,
+    /// The damping η of the normal force.
+    pub damping: Damping,
+    /// The stiffness k of the tangential spring.
+    pub tangential: Tangential,
+    /// What the spring remembers.
+    pub history: HistoryOf,
+    /// Whether the history shrinks with √x while the overlap falls.
+    pub rescaled: bool,
+    /// Whether the normal force is kept from attracting. Without effect where `end` is
+    /// [`End::Force`].
+    pub limit_damping: bool,
+    /// Where the contact ends.
+    pub end: End,
+}
+
+/// The elastic part of the normal force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+pub enum Normal {
+    /// x.
+    Linear,
+    /// x^{3/2}.
+    Hertz,
+}
+
+/// The damping η of the normal force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+pub enum Damping {
+    /// 0.
+    None,
+    /// a.
+    Linear,
+    /// a √x.
+    Viscoelastic,
+    /// a x^{1/4}.
+    Tsuji,
+}
+
+/// The stiffness k of the tangential spring.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+pub enum Tangential {
+    /// κ.
+    Constant,
+    /// κ √x.
+    Mindlin,
+}
+
+/// What the spring remembers. With a constant stiffness both mean the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+pub enum HistoryOf {
+    /// Its elongation y, with dy/dt = w and the force k y.
+    Displacement,
+    /// Its force q, with dq/dt = k w.
+    Force,
+}
+
+/// Where a contact ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+pub enum End {
+    /// Where the normal force would begin to attract.
+    Force,
+    /// Where the overlap vanishes.
+    Overlap,
+}
+
+impl Default for Law {
+    fn default() -> Self {
+        Self::PAPER
+    }
+}
+
+impl Law {
+    /// The law of Schwager, Becker and Pöschel.
+    pub const PAPER: Self = Self {
+        normal: Normal::Hertz,
+        damping: Damping::Viscoelastic,
+        tangential: Tangential::Constant,
+        history: HistoryOf::Displacement,
+        rescaled: false,
+        limit_damping: false,
+        end: End::Force,
+    };
+
+    /// Whether a contact with this law and these dampings obeys the paper's: terms that differ
+    /// have no effect on it.
+    #[must_use]
+    pub fn acts_as_paper(&self, damping: f64, tangential_damping: f64) -> bool {
+        let elastic = self.normal == Normal::Hertz
+            && self.tangential == Tangential::Constant
+            && !self.rescaled;
+        let damped = self.damping == Damping::Viscoelastic
+            && tangential_damping == 0.0
+            && self.end == End::Force;
+        elastic && (damping == 0.0 || damped)
+    }
+
+    /// The least damping with which a contact never ends, because an attracting tail holds it
+    /// for ever; infinite where all contacts end.
+    ///
+    /// With x = uⁿ the end is a line that every trajectory crosses, unless one arrives at u = 0 with
+    /// v = 0. For linear damping of a linear force that is known from its sines, for Tsuji's of
+    /// Hertz' force from v = −A x^{5/4}, 5A²/4 − aA + 1 = 0. For linear damping of Hertz' force the
+    /// last trajectory to escape arrives along v = −a x. No other law has a trajectory that arrives.
+    #[must_use]
+    pub fn endless_from(&self) -> f64 {
+        if self.limit_damping || self.end == End::Force {
+            return f64::INFINITY;
+        }
+        match (self.normal, self.damping) {
+            (Normal::Linear, Damping::Linear) => 2.0,
+            (Normal::Hertz, Damping::Tsuji) => 5.0_f64.sqrt(),
+            (Normal::Hertz, Damping::Linear) => HERTZ_LINEAR,
+            _ => f64::INFINITY,
+        }
+    }
+}
+
+/// The damping from which Hertz' force with linear damping has contacts that never end: there the
+/// trajectory that arrives at x = 0 along v = −a x starts from x = 0 with v = 1. By a Taylor
+/// integration with 30 digits: `tests/data/endless_contacts.py`.
+const HERTZ_LINEAR: f64 = 1.127_988_135_520_169_2;
