@@ -219,6 +219,8 @@ impl ReadableSystem<STATE, GUARDS> for GeneralContact {
         let of = e.of(mode.stage);
         let below = Guard::new(Direction::Below).smooth();
         let touched = matches!(mode.progress, Progress::Touched | Progress::Reset);
+        // A phase that starts from a zero may be much shorter than a step.
+        let leave = if touched { Guard::new(Direction::Below) } else { below };
         let end = if self.attracts() && mode.stage != Stage::Tail { below } else { below.terminal() };
         // Where both limits are 0, a spring that is there slips first.
         let end = if mode.regime == Regime::Stick { end.yielding() } else { end };
@@ -229,11 +231,11 @@ impl ReadableSystem<STATE, GUARDS> for GeneralContact {
             (Regime::Slip, _) => [below, Guard::OFF],
             (_, Progress::Touched) => {
                 let order = if mode.stage == Stage::Tail { 1 } else { self.first_order() };
-                [below.from_zero(order); 2]
+                [leave.from_zero(order); 2]
             }
             (_, Progress::Reset) => [
-                below.from_zero(u32::from(of.leading - of.shared)),
-                below.from_zero(u32::from(e.d - of.shared)),
+                leave.from_zero(u32::from(of.leading - of.shared)),
+                leave.from_zero(u32::from(e.d - of.shared)),
             ],
             (_, Progress::Switched) => [below.from_zero(2), below],
             (_, Progress::Settled) => [below, below],

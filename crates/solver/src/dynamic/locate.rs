@@ -69,17 +69,17 @@ impl<S: DynamicSystem> Examination<'_, S> {
             jump: landing.jump,
         };
         let (start, y0) = (self.phase.values[guard], self.origin.y);
-        let at_start = |slope: f64| {
-            let landing = Landing { elapsed: 0.0, residual: start, slope, jump: false };
+        let at_start = |residual: f64, slope: f64| {
+            let landing = Landing { elapsed: 0.0, residual, slope, jump: false };
             Ok(Some(event(landing, y0)))
         };
         if high == 0.0 {
-            return at_start(f64::INFINITY);
+            return at_start(0.0, f64::INFINITY);
         }
         if low == 0.0
             && let Some(slope) = self.falls_from_start(&at, s0, REACH * step.h)
         {
-            return at_start(slope);
+            return at_start(start, slope);
         }
         theta = if theta > low && theta < high { theta } else { 0.5 * (low + high) };
         let width = room((low, high), theta) * step.h;
@@ -136,7 +136,7 @@ impl<S: DynamicSystem> Examination<'_, S> {
                 return Ok(Some(event(landing, &self.work.state)));
             }
             if high * step.h <= NOWHERE * (s0.abs() + step.h) {
-                return at_start(end.slope);
+                return at_start(start, end.slope);
             }
             if high - low <= 4.0 * f64::EPSILON * high {
                 // The zero is too flat for Newton's method, and the step ends just beyond it. Both

@@ -66,18 +66,19 @@ where
             step,
         };
         let start = self.phase.values[guard];
-        let at_start = |slope: f64| {
+        let at_start = |residual: f64, slope: f64| {
             let (elapsed, state, jump) = (0.0, step.y0, false);
-            let landing = Landing { elapsed, state, residual: start, slope, jump };
+            let landing = Landing { elapsed, state, residual, slope, jump };
             Ok(Some(event(landing, step.shrunk_to_start())))
         };
         if high == 0.0 {
-            return at_start(f64::INFINITY);
+            // The guard is negative there: it has not been located, and hides nothing.
+            return at_start(0.0, f64::INFINITY);
         }
         if low == 0.0
             && let Some(slope) = self.falls_from_start(step, guard, crossing.sign)
         {
-            return at_start(slope);
+            return at_start(start, slope);
         }
         theta = if theta > low && theta < high { theta } else { 0.5 * (low + high) };
         let width = room((low, high), theta) * step.h;
@@ -135,7 +136,7 @@ where
                 return Ok(Some(event(at, trial)));
             }
             if high * step.h <= NOWHERE * (step.s.abs() + step.h) {
-                return at_start(end.slope);
+                return at_start(start, end.slope);
             }
             if high - low <= 4.0 * f64::EPSILON * high {
                 // The zero is too flat for Newton's method, and the step ends just beyond it. Both

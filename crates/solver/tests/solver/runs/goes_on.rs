@@ -66,3 +66,39 @@ fn each_zero_fires_once() {
         }
     }
 }
+
+/// Three modes whose guards are negative where they begin: −5, −1, and time itself in the last one.
+struct Stairs;
+
+impl HybridSystem<1, 1> for Stairs {
+    type Mode = u32;
+
+    fn field(&self, _: u32, _: f64, _: &State<1>) -> State<1> {
+        State::from([1.0])
+    }
+    fn guards(&self, _: u32) -> [Guard; 1] {
+        [Guard::new(Direction::Below)]
+    }
+    fn guard_values(&self, mode: u32, s: f64, _: &State<1>) -> [f64; 1] {
+        [match mode {
+            0 => -5.0 + 20.0 * s,
+            1 => -1.0 + 30.0 * s,
+            _ => 1.0,
+        }]
+    }
+    fn transition(&self, mode: u32, _: usize, _: f64, y: &State<1>) -> (u32, State<1>) {
+        (mode + 1, *y)
+    }
+}
+
+/// A guard that fires at once has not been located: how negative it is says nothing about rounding
+/// of the guards behind it.
+#[test]
+fn guards_fire_at_once_one_after_the_other() {
+    for tolerance in [1e-13, 1e-10, 1e-6, 1e-3] {
+        let options = Options { first_step: Some(0.1), ..Options::with_tolerance(tolerance) };
+        let start = Start { mode: 0, s: 0.0, state: State::from([0.0]) };
+        let found = run(Dop853, &Stairs, start, 1.0, &options, &mut ()).expect("a run");
+        assert_eq!(found.mode, 2, "{tolerance}");
+    }
+}

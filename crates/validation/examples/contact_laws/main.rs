@@ -1,0 +1,234 @@
+//! Every contact law on random contacts: the integrator at two tolerances, the other pair, and a
+//! second opinion in plain time.
+//!
+//! For each law, contacts are log-uniform in κ from 0.05 to 400, ψ from 0.01 to 3 and the damping
+//! from 0.01 to 2 (or to 0.95 of that with which contacts never end); every second has a tangential
+//! damping from 0 to 5. A contact on which two opinions differ in the number of switches is looked
+//! into: the distance is the least relative change of ψ or κ that changes the integrator's number.
+//!
+//! Run with `cargo run --release -p validation --example contact_laws -- [CONTACTS]`, the number for
+//! each law and both opinions; 1000 without an argument.
+
+use std::error::Error;
+
+use rayon::prelude::*;
+use stickslip::model::{
+    Collision, Contact, Damping, End, Engine, HistoryOf, Law, Normal, Tangential, Tolerances,
+};
+
+mod plain;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let contacts: u64 = std::env::args().nth(1).map_or(Ok(1000), |argument| argument.parse())?;
+    let only = std::env::args().nth(2).map(|argument| argument.parse::<usize>()).transpose()?;
+    println!(
+        "law: failed | counts differ, largest |Δε_t| with 1e-10 | with dopri5 at 1e-10 | in plain time"
+    );
+    let mut total = Tally::default();
+    for (number, law) in laws().into_iter().enumerate() {
+        if only.is_some_and(|only| only != number) {
+            continue;
+        }
+        let tally = (0..contacts)
+            .into_par_iter()
+            .map(|seed| compared(law, number as u64 * 1_000_000_007 + seed))
+            .reduce(Tally::default, Tally::with);
+        println!("{number:3} {}: {tally}", name(&law));
+        total = total.with(tally);
+    }
+    println!("all: {total}");
+    Ok(())
+}
+
+/// All laws that differ in effect.
+fn laws() -> Vec<Law> {
+    let mut laws = Vec::new();
+    for normal in [Normal::Linear, Normal::Hertz] {
+        for (damping, limit_damping, end) in [
+            (Damping::None, false, End::Force),
+            (Damping::Linear, false, End::Force),
+            (Damping::Linear, true, End::Overlap),
+            (Damping::Linear, false, End::Overlap),
+            (Damping::Viscoelastic, false, End::Force),
+            (Damping::Viscoelastic, true, End::Overlap),
+            (Damping::Viscoelastic, false, End::Overlap),
+            (Damping::Tsuji, false, End::Force),
+            (Damping::Tsuji, true, End::Overlap),
+            (Damping::Tsuji, false, End::Overlap),
+        ] {
+            for (tangential, history) in [
+                (Tangential::Constant, HistoryOf::Displacement),
+                (Tangential::Mindlin, HistoryOf::Displacement),
+                (Tangential::Mindlin, HistoryOf::Force),
+            ] {
+                for rescaled in [false, true] {
+                    laws.push(Law {
+                        normal,
+                        damping,
+                        tangential,
+                        history,
+                        rescaled,
+                        limit_damping,
+                        end,
+                    });
+                }
+            }
+        }
+    }
+    laws
+}
+
+fn name(law: &Law) -> String {
+    let Law { normal, damping, tangential, history, rescaled, limit_damping, end } = law;
+    let rescaled = if *rescaled { " rescaled" } else { "" };
+    let limit = if *limit_damping { " limited" } else { "" };
+    format!("{normal:?} {damping:?} {tangential:?} {history:?}{rescaled} {end:?}{limit}")
+}
+
+/// What the opinions on some contacts differ in.
+#[derive(Clone, Debug)]
+struct Tally {
+    contacts: usize,
+    failed: usize,
+    counts: [usize; 3],
+    largest: [f64; 3],
+    worst: [Option<Contact>; 3],
+    failure: Option<String>,
+}
+
+impl Default for Tally {
+    fn default() -> Self {
+        Self {
+            contacts: 0,
+            failed: 0,
+            counts: [0; 3],
+            largest: [0.0; 3],
+            worst: [None; 3],
+            failure: None,
+        }
+    }
+}
+
+impl Tally {
+    fn with(mut self, other: Self) -> Self {
+        self.contacts += other.contacts;
+        self.failed += other.failed;
+        self.failure = self.failure.or(other.failure);
+        for i in 0..3 {
+            self.counts[i] += other.counts[i];
+            if other.largest[i] > self.largest[i] {
+                self.largest[i] = other.largest[i];
+                self.worst[i] = other.worst[i];
+            }
+        }
+        self
+    }
+}
+
+impl std::fmt::Display for Tally {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} of {}", self.failed, self.contacts)?;
+        for (count, largest) in self.counts.iter().zip(self.largest) {
+            write!(f, " | {count}, {largest:.1e}")?;
+        }
+        if let Some(failure) = &self.failure {
+            write!(f, "\n      {failure}")?;
+        }
+        for worst in self.worst.iter().zip(self.largest).filter(|(_, largest)| *largest > 1e-4) {
+            if let (Some(contact), _) = worst {
+                write!(
+                    f,
+                    "\n      κ {:?} ψ {:?} a {:?} b {:?}",
+                    contact.kappa(),
+                    contact.psi(),
+                    contact.damping(),
+                    contact.tangential_damping()
+                )?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A random contact.
+fn random(law: Law, seed: u64) -> Contact {
+    let mut random = fastrand::Rng::with_seed(seed);
+    let mut between = |low: f64, high: f64| low * (high / low).powf(random.f64());
+    let (kappa, psi) = (between(0.05, 400.0), between(0.01, 3.0));
+    let damping = between(0.01, (0.95 * law.endless_from()).min(2.0));
+    let damping = if law.damping == Damping::None { 0.0 } else { damping };
+    let tangential = if random.bool() { 5.0 * random.f64() } else { 0.0 };
+    Contact::new(kappa, psi, damping)
+        .and_then(|contact| contact.with_law(law, tangential))
+        .expect("parameters in range")
+}
+
+/// The itinerary of a collision without phases that plain time does not resolve.
+fn lasting(collision: &Collision) -> String {
+    let itinerary = collision.itinerary();
+    let times = std::iter::once(0.0).chain(collision.switches.iter().map(|switch| switch.time));
+    longer(itinerary.chars().zip(times), collision.contact_time)
+}
+
+/// The phases that last, among phases with the times at which they begin.
+fn longer(phases: impl Iterator<Item = (char, f64)>, end: f64) -> String {
+    /// The shortest phase that counts.
+    const SHORTEST: f64 = 1e-5;
+    let phases: Vec<_> = phases.collect();
+    let ends = phases.iter().skip(1).map(|(_, time)| *time).chain([end]);
+    let mut itinerary = String::new();
+    for ((phase, begin), end) in phases.iter().zip(ends) {
+        if end - begin > SHORTEST && !itinerary.ends_with(*phase) {
+            itinerary.push(*phase);
+        }
+    }
+    itinerary
+}
+
+/// The opinions on one contact.
+fn compared(law: Law, seed: u64) -> Tally {
+    let contact = random(law, seed);
+    let mut tally = Tally { contacts: 1, ..Tally::default() };
+    let collision = match Engine::Dop853(Tolerances::DOP853).collide(contact) {
+        Ok((collision, _)) => collision,
+        Err(error) => {
+            tally.failed = 1;
+            tally.failure = Some(format!("{error} at {contact:?}"));
+            return tally;
+        }
+    };
+    let coarse = Tolerances { rtol: 1e-10, atol: 1e-10 };
+    let of = |collision: &Collision| (collision.eps_t(), lasting(collision));
+    let opinions = [
+        Engine::Dop853(coarse).collide(contact).ok().map(|(collision, _)| of(&collision)),
+        Engine::Dopri5(coarse).collide(contact).ok().map(|(collision, _)| of(&collision)),
+        plain::collide(contact).map(|found| {
+            (found.eps_t, longer(found.phases.into_iter(), found.contact_time))
+        }),
+    ];
+    for (i, opinion) in opinions.into_iter().enumerate() {
+        let Some((eps_t, itinerary)) = opinion else {
+            tally.failed += 1;
+            tally.failure = Some(format!("opinion {i} has no result at {contact:?}"));
+            continue;
+        };
+        let difference = (eps_t - collision.eps_t()).abs();
+        if itinerary != lasting(&collision) {
+            tally.counts[i] += 1;
+            if std::env::var_os("VERBOSE").is_some() {
+                println!(
+                    "{i} {itinerary} for {} Δ {difference:.1e} κ {:?} ψ {:?} a {:?} b {:?}",
+                    lasting(&collision),
+                    contact.kappa(),
+                    contact.psi(),
+                    contact.damping(),
+                    contact.tangential_damping()
+                );
+            }
+        }
+        if difference > tally.largest[i] {
+            (tally.largest[i], tally.worst[i]) = (difference, Some(contact));
+        }
+    }
+    tally
+}
