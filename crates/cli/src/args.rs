@@ -9,6 +9,8 @@ mod completions;
 mod converge;
 mod impact;
 mod join;
+mod law;
+mod laws;
 mod locate;
 mod man;
 mod map;
@@ -27,6 +29,8 @@ pub use completions::CompletionsArguments;
 pub use converge::ConvergeArguments;
 pub use impact::ImpactArguments;
 pub use join::JoinArguments;
+pub use law::LawArguments;
+pub use laws::LawsArguments;
 pub use locate::LocateArguments;
 pub use man::ManArguments;
 pub use map::MapArguments;
@@ -54,6 +58,9 @@ pub enum Command {
     /// Compute the impact of two spheres, or of a sphere and a wall, in SI units
     #[command(long_about = impact::ABOUT, after_long_help = impact::EXAMPLES)]
     Impact(ImpactArguments),
+    /// List the contact laws that have names, or print one of them
+    #[command(long_about = laws::ABOUT, after_long_help = laws::EXAMPLES)]
+    Laws(LawsArguments),
     /// Compute the restitution and the number of switches on a plane
     #[command(long_about = map::ABOUT, after_long_help = map::EXAMPLES)]
     Map(MapArguments),

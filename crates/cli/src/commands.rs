@@ -6,6 +6,7 @@ pub mod collide;
 pub mod completions;
 pub mod impact;
 pub mod join;
+pub mod laws;
 pub mod locate;
 pub mod man;
 pub mod map;

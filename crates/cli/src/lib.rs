@@ -93,6 +93,7 @@ fn carry_out(arguments: &Arguments) -> Result<(), Failure> {
             CollidePlan::Batch(plan) => commands::batch::run(&plan),
         },
         Command::Impact(arguments) => commands::impact::run(&ImpactPlan::new(arguments)?),
+        Command::Laws(arguments) => commands::laws::run(arguments),
         Command::Map(arguments) => commands::map::run(&MapPlan::new(arguments)?),
         Command::Join(arguments) => commands::join::run(&JoinPlan::new(arguments)?),
         Command::Trace(arguments) => commands::trace::run(&TracePlan::new(arguments)?),

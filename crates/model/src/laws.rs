@@ -1,11 +1,13 @@
 //! Laws of the contact, as hybrid systems.
 //!
 //! [`law`] says what a law consists of. [`regularized`] is the paper's, in coordinates of its own;
-//! [`general`] is every other one. [`phase`] holds what laws have in common.
+//! [`general`] is every other one;
+//! [`presets`] names those of particle codes. [`phase`] holds what laws have in common.
 
 pub mod general;
 pub(crate) mod law;
 pub(crate) mod phase;
+pub mod presets;
 pub mod regularized;
 
 /// The longest first step of a phase. Near its end a contact has no other scale than the time that

@@ -10,7 +10,7 @@
 //!
 //! | folder | modules |
 //! |---|---|
-//! | `laws` | [`regularized`]: the equations of the contact as a hybrid system |
+//! | `laws` | [`Law`]: a contact law as data; [`presets`]: those of particle codes; [`regularized`], [`general`]: the equations of the paper's law and of any law as hybrid systems |
 //! | `engines` | [`integrator`], [`exact`]: two ways to a collision; [`history`]: its course in time; [`sensitivity`]: its derivatives |
 //! | `result` | what every engine returns: [`Collision`], [`Switch`], [`EnergyLedger`] |
 //! | `spheres` | SI units: [`quantity`], [`bodies`], [`scaling`] to a [`Contact`], [`encounter`] in three dimensions, its [`Outcome`] and [`ImpactReport`] |
@@ -53,7 +53,7 @@ pub use engines::{Engine, EngineError, Estimate, InvalidChoice, Tolerances};
 pub use engines::{exact, history, integrator, sensitivity};
 pub use laws::law::{Damping, End, HistoryOf, Law, Normal, Tangential};
 pub use laws::phase::{Regime, Side};
-pub use laws::{general, regularized};
+pub use laws::{general, presets, regularized};
 pub use limits::{coulomb, inner, largest, normal};
 pub use nalgebra::Vector3;
 pub use result::{Collision, EnergyLedger, FEW_SWITCHES, NotFinite, Switch, Switches};

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use stickslip_model::{Contact, InvalidParameter, Pair, Reduction};
+use stickslip_model::{Contact, InvalidParameter, Law, Pair, Reduction};
 
 use crate::range::Range;
 
@@ -38,6 +38,24 @@ pub struct Grid {
     pub rows: GridAxis,
     /// What the two axes mean.
     pub coordinates: Coordinates,
+    /// The contact law of all collisions.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "is_paper"))]
+    pub law: Law,
+    /// The tangential damping of all collisions.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "is_zero"))]
+    pub tangential_damping: f64,
+}
+
+#[cfg(feature = "serde")]
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+fn is_paper(law: &Law) -> bool {
+    *law == Law::PAPER
+}
+
+#[cfg(feature = "serde")]
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 /// What the axes of a grid mean: columns first, rows second.
@@ -93,6 +111,12 @@ pub enum Extent {
 }
 
 impl Grid {
+    /// A window of collisions that obey the paper's law.
+    #[must_use]
+    pub fn new(columns: GridAxis, rows: GridAxis, coordinates: Coordinates) -> Self {
+        Self { columns, rows, coordinates, law: Law::PAPER, tangential_damping: 0.0 }
+    }
+
     /// Number of points, one for each cell; the largest number if there are more.
     #[must_use]
     pub fn points(&self) -> usize {
@@ -119,7 +143,7 @@ impl Grid {
     /// [`InvalidParameter`]: no collision has the parameters of this cell.
     pub fn contact(&self, column: usize, row: usize) -> Result<Contact, InvalidParameter> {
         let [kappa, psi, damping] = self.parameters(column, row)?;
-        Contact::new(kappa, psi, damping)
+        Contact::new(kappa, psi, damping)?.with_law(self.law, self.tangential_damping)
     }
 
     /// The quantities along a row and along a column.
@@ -201,6 +225,9 @@ impl fmt::Display for Grid {
             [("columns", x, self.columns), ("rows", y, self.rows)]
         {
             writeln!(f, "{name}: {cells}, {quantity} from {low:?} to {high:?}")?;
+        }
+        if self.law != Law::PAPER {
+            writeln!(f, "law: {:?}\ntangential damping: {:?}", self.law, self.tangential_damping)?;
         }
         match self.coordinates {
             Coordinates::Psi { damping } => writeln!(f, "damping: {damping:?}"),

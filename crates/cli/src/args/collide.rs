@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::law::LawArguments;
 use super::method::MethodArguments;
 use super::shared::{self, CollisionArguments, Format};
 use crate::input::parameter::Parameter;
@@ -28,6 +29,10 @@ pub struct CollideArguments {
     /// The parameters beside κ and ψ.
     #[command(flatten, next_help_heading = "Collision")]
     pub collision: CollisionArguments,
+
+    /// The contact law.
+    #[command(flatten)]
+    pub law: LawArguments,
 
     /// What computes a collision.
     #[command(flatten)]
@@ -77,8 +82,8 @@ tangential velocity are also divided by μ/α. Numbers are written like 18, 1.5e
 /// What `collide --help` says last.
 pub const EXAMPLES: &str = "\
 Batch files:
-  The header of IN.csv names any of kappa, psi, ratio, mu, alpha, damping; the options of the same
-  names give what the file does not. Other columns pass through. OUT.csv has the columns of the input
+  The header of IN.csv names any of kappa, psi, ratio, mu, alpha, damping, tangential_damping;
+  the options of the same names give what the file does not. Other columns pass through. OUT.csv has the columns of the input
   followed by eps_n, eps_t, switch_count, itinerary, contact_time, reversals, status. A row that
   cannot be computed has no results; its status says why, and the exit code is 1.
 

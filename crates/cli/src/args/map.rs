@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use stickslip_plane::Range;
 
+use super::law::LawArguments;
 use super::method::MethodArguments;
 use super::shared::{self, CollisionArguments};
 use crate::input::part::MapPart;
@@ -51,6 +52,10 @@ pub struct MapArguments {
     /// The parameters beside κ and ψ.
     #[command(flatten, next_help_heading = "Collisions")]
     pub collisions: CollisionArguments,
+
+    /// The contact law.
+    #[command(flatten)]
+    pub law: LawArguments,
 
     /// What computes the collisions.
     #[command(flatten)]

@@ -1,6 +1,6 @@
 //! The parameters of a collision: their names and ranges on the command line and in files.
 
-use stickslip_model::{Contact, quantity};
+use stickslip_model::{Contact, Law, quantity};
 
 use crate::input::number::{self, NotANumber, SYNTAX};
 
@@ -19,6 +19,8 @@ pub enum Parameter {
     Alpha,
     /// Scaled damping a.
     Damping,
+    /// Tangential damping (γ_t/γ_n)/α.
+    TangentialDamping,
 }
 
 impl Parameter {
@@ -31,6 +33,7 @@ impl Parameter {
             Self::Mu => "mu",
             Self::Alpha => "alpha",
             Self::Damping => "damping",
+            Self::TangentialDamping => "tangential_damping",
         }
     }
 
@@ -53,6 +56,9 @@ impl Parameter {
             Self::Kappa => Contact::new(value, 1.0, 0.0),
             Self::Psi => Contact::new(1.0, value, 0.0),
             Self::Damping => Contact::new(1.0, 1.0, value),
+            Self::TangentialDamping => {
+                Contact::new(1.0, 1.0, 0.0).and_then(|it| it.with_law(Law::PAPER, value))
+            }
             Self::Mu => return quantity::FRICTION.check(value).map_err(|error| error.expected),
             Self::Ratio => {
                 let ok = value > 0.0 && value.is_finite();
@@ -94,15 +100,16 @@ pub enum BadValue {
 
 #[cfg(test)]
 mod tests {
-    use super::Parameter::{Alpha, Damping, Kappa, Mu, Psi, Ratio};
+    use super::Parameter::{Alpha, Damping, Kappa, Mu, Psi, Ratio, TangentialDamping};
 
     #[test]
     fn every_parameter_has_a_range() {
-        for parameter in [Kappa, Psi, Ratio, Mu, Alpha, Damping] {
+        for parameter in [Kappa, Psi, Ratio, Mu, Alpha, Damping, TangentialDamping] {
             assert!(parameter.check(f64::NAN).is_err(), "{parameter:?}");
             assert!(parameter.parse("-1").is_err(), "{parameter:?}");
             assert!(parameter.parse("1").is_ok(), "{parameter:?}");
-            assert_eq!(parameter.parse("0").is_ok(), parameter == Damping);
+            let may_be_zero = matches!(parameter, Damping | TangentialDamping);
+            assert_eq!(parameter.parse("0").is_ok(), may_be_zero);
         }
         assert!(Alpha.parse("1.0000001").is_err());
     }

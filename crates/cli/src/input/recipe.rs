@@ -1,6 +1,6 @@
 //! The sources of the parameters of a contact: options, or columns of a file.
 
-use stickslip_model::{Contact, InvalidParameter, Reduction};
+use stickslip_model::{Contact, InvalidParameter, Law, Reduction};
 
 use crate::input::parameter::{BadValue, Parameter};
 
@@ -19,6 +19,10 @@ pub struct Given {
     pub alpha: Option<f64>,
     /// `--damping`.
     pub damping: Option<f64>,
+    /// `--tangential-damping`.
+    pub tangential_damping: Option<f64>,
+    /// `--law`.
+    pub law: Law,
 }
 
 impl Given {
@@ -30,6 +34,7 @@ impl Given {
             Parameter::Mu => self.mu,
             Parameter::Alpha => self.alpha,
             Parameter::Damping => self.damping,
+            Parameter::TangentialDamping => self.tangential_damping,
         }
     }
 }
@@ -43,6 +48,8 @@ pub struct Recipe {
     mu: Source,
     alpha: Source,
     damping: Source,
+    tangential_damping: Source,
+    law: Law,
 }
 
 /// The parameter that gives the impact ratio, in either of two forms.
@@ -108,7 +115,10 @@ impl Recipe {
         let mu = source(Parameter::Mu)?.unwrap_or(Source::Value(usual.mu));
         let alpha = source(Parameter::Alpha)?.unwrap_or(Source::Value(usual.alpha));
         let damping = source(Parameter::Damping)?.unwrap_or(Source::Value(0.0));
-        Ok(Self { kappa, impact, mu, alpha, damping })
+        let tangential_damping =
+            source(Parameter::TangentialDamping)?.unwrap_or(Source::Value(0.0));
+        let law = given.law;
+        Ok(Self { kappa, impact, mu, alpha, damping, tangential_damping, law })
     }
 
     /// The contact. `field` gives the text in a column.
@@ -135,8 +145,11 @@ impl Recipe {
                 reduced(&Reduction { mu, alpha }, ratio)?
             }
         };
+        let tangential_damping = value(self.tangential_damping)?;
         let contact = Contact::new(value(self.kappa)?, psi, value(self.damping)?);
-        contact.map_err(ValueError::Contact)
+        contact
+            .and_then(|contact| contact.with_law(self.law, tangential_damping))
+            .map_err(ValueError::Contact)
     }
 }
 

@@ -18,7 +18,15 @@ pub fn write(
     work: (Option<&Estimate>, Option<&Statistics>),
 ) -> io::Result<()> {
     let document = document::new(schema, result, engine, work)?;
-    serde_json::to_writer_pretty(&mut *out, &document)?;
+    lines(out, &document)
+}
+
+/// Writes `value` on several lines, and ends the last one.
+///
+/// # Errors
+/// `out` cannot be written.
+pub fn lines(out: &mut dyn Write, value: &impl Serialize) -> io::Result<()> {
+    serde_json::to_writer_pretty(&mut *out, value)?;
     writeln!(out)
 }
 

@@ -9,6 +9,7 @@ use super::engine::engine;
 use super::files::require_different;
 use crate::args::{CollideArguments, CollisionArguments, Format, Method};
 use crate::error::Failure;
+use crate::input::law;
 use crate::input::recipe::Given;
 use crate::output::picture::PictureFile;
 
@@ -70,6 +71,8 @@ impl CollidePlan {
             mu,
             alpha,
             damping,
+            tangential_damping: arguments.law.tangential_damping,
+            law: law::chosen(&arguments.law)?,
         };
         let (Some(input), Some(out)) = (&arguments.batch, &arguments.out) else {
             let contact = contact(&given)?;

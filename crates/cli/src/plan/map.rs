@@ -11,7 +11,7 @@ use super::files::require_different;
 use super::window::{ImpactRange, KappaWindow};
 use crate::args::{MapArguments, Method};
 use crate::error::Failure;
-use crate::input::bodies;
+use crate::input::{bodies, law};
 use crate::input::part::MapPart;
 use crate::input::source::is_standard_input;
 use crate::output::picture::PictureFile;
@@ -65,6 +65,8 @@ impl MapPlan {
             &[("--bodies", bodies.as_deref())],
         )?;
         let output = MapOutput::new(arguments)?;
+        let law = law::chosen(&arguments.law)?;
+        let tangential_damping = arguments.law.tangential_damping.unwrap_or(0.0);
         let MapAxes { columns, rows, coordinates, engine } = match bodies {
             Some(file) => MapAxes::of_bodies(arguments, file)?,
             None => MapAxes::scaled(arguments)?,
@@ -74,6 +76,8 @@ impl MapPlan {
                 columns: GridAxis { range: columns, cells: size.columns },
                 rows: GridAxis { range: rows, cells: size.rows },
                 coordinates,
+                law,
+                tangential_damping,
             },
             engine,
             out: out.clone(),

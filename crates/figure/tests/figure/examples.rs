@@ -42,7 +42,7 @@ pub fn gallery(contacts: &[(f64, f64)]) -> Svg {
 pub fn grid(kappa: (f64, f64), psi: (f64, f64), engine: Engine) -> Svg {
     let axis = |(low, high), cells| GridAxis { range: Range { low, high }, cells };
     let coordinates = Coordinates::Psi { damping: 0.0 };
-    let grid = Grid { columns: axis(kappa, 40), rows: axis(psi, 30), coordinates };
+    let grid = Grid::new(axis(kappa, 40), axis(psi, 30), coordinates);
     let tile = sweep::compute(&grid, engine, 0..grid.points());
     grid::draw(&grid, (40, 30), &tile).unwrap()
 }

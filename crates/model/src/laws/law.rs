@@ -122,6 +122,48 @@ impl Law {
         end: End::Force,
     };
 
+    /// The equations in scaled units, in one line.
+    #[must_use]
+    pub fn equations(&self) -> String {
+        let elastic = match self.normal {
+            Normal::Linear => "x",
+            Normal::Hertz => "x^(3/2)",
+        };
+        let eta = match self.damping {
+            Damping::None => "",
+            Damping::Linear => "a",
+            Damping::Viscoelastic => "a √x",
+            Damping::Tsuji => "a x^(1/4)",
+        };
+        let damped = self.damping != Damping::None;
+        let normal = match (damped, self.limit_damping && self.end == End::Overlap) {
+            (false, _) => format!("F = {elastic}"),
+            (true, false) => format!("F = {elastic} + {eta} v"),
+            (true, true) => format!("F = max(0, {elastic} + {eta} v)"),
+        };
+        let stiffness = match self.tangential {
+            Tangential::Constant => "κ",
+            Tangential::Mindlin => "κ √x",
+        };
+        let dashpot = if damped { format!(" + b {eta} w") } else { String::new() };
+        let rescaled = |history| {
+            if self.rescaled { format!(" (+ {history} v/(2x) where v < 0)") } else { String::new() }
+        };
+        let tangential = match self.history {
+            HistoryOf::Displacement => {
+                format!("Q = {stiffness} y{dashpot}, dy/dt = w{}", rescaled("y"))
+            }
+            HistoryOf::Force => {
+                format!("Q = q{dashpot}, dq/dt = {stiffness} w{}", rescaled("q"))
+            }
+        };
+        let end = match self.end {
+            End::Force => "F = 0",
+            End::Overlap => "x = 0",
+        };
+        format!("{normal}; {tangential}; |Q| ≤ |F|; ends at {end}")
+    }
+
     /// Whether a contact with this law and these dampings obeys the paper's: terms that differ
     /// have no effect on it.
     #[must_use]

@@ -17,11 +17,7 @@ fn grids() -> [Grid; 3] {
         Coordinates::Ratio { reduction, damping: 0.1 },
         Coordinates::Velocities { pair },
     ]
-    .map(|coordinates| Grid {
-        columns: axis(1.0, 6.0, 5),
-        rows: axis(0.5, 2.0, 3),
-        coordinates,
-    })
+    .map(|coordinates| Grid::new(axis(1.0, 6.0, 5), axis(0.5, 2.0, 3), coordinates))
 }
 
 #[test]

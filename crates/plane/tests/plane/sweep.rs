@@ -7,7 +7,7 @@ use stickslip_plane::{Coordinates, Grid, GridAxis, Range, Tile};
 fn grid(kappa: (f64, f64), psi: (f64, f64), damping: f64) -> Grid {
     let axis = |(low, high), cells| GridAxis { range: Range { low, high }, cells };
     let coordinates = Coordinates::Psi { damping };
-    Grid { columns: axis(kappa, 12), rows: axis(psi, 7), coordinates }
+    Grid::new(axis(kappa, 12), axis(psi, 7), coordinates)
 }
 
 fn bits(tile: &Tile) -> (Vec<u64>, &[i32]) {

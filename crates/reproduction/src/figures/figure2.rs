@@ -36,7 +36,7 @@ pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
     let pair = Pair::equal_spheres(STEEL_RADIUS_M, &STEEL, &SURFACE)?;
     let axis = GridAxis { range: VELOCITY, cells: reproduction.cells };
     let coordinates = Coordinates::Velocities { pair };
-    let sweep = Arc::new(Sweep::new(Grid { columns: axis, rows: axis, coordinates }));
+    let sweep = Arc::new(Sweep::new(Grid::new(axis, axis, coordinates)));
 
     // κ falls with g_n, the only velocity on which it depends.
     let ends = [0, axis.cells - 1];

@@ -23,11 +23,11 @@ impl StiffnessMap {
     pub fn both(reproduction: &Reproduction, most_ratio: f64) -> [Self; 2] {
         let axis = |high| GridAxis { range: Range { low: 0.0, high }, cells: reproduction.cells };
         Reading::ALL.map(|reading| {
-            let sweep = Sweep::new(Grid {
-                columns: axis(reading.kappa(MOST_STIFFNESS)),
-                rows: axis(most_ratio),
-                coordinates: Coordinates::Ratio { reduction: REDUCTION, damping: 0.0 },
-            });
+            let sweep = Sweep::new(Grid::new(
+                axis(reading.kappa(MOST_STIFFNESS)),
+                axis(most_ratio),
+                Coordinates::Ratio { reduction: REDUCTION, damping: 0.0 },
+            ));
             Self { reading, sweep: Arc::new(sweep) }
         })
     }

@@ -1,6 +1,6 @@
 //! What a map says about itself: everything besides its axes on which its results depend.
 
-use stickslip_model::Engine;
+use stickslip_model::{Engine, Law};
 use stickslip_plane::{Coordinates, Grid};
 
 use crate::version;
@@ -36,12 +36,18 @@ impl Provenance {
                 ("damping_time_s", pair.surface.damping_time_s),
             ],
         };
+        let law = (grid.law != Law::PAPER).then_some(grid.law);
+        if law.is_some() {
+            numbers.push(("tangential_damping", grid.tangential_damping));
+        }
         if let Some(tolerances) = engine.tolerances() {
             numbers.extend([("rtol", tolerances.rtol), ("atol", tolerances.atol)]);
         }
         let numbers = numbers.into_iter().map(|(name, value)| (name, Fact::Number(value)));
         let texts = [("method", engine.name().to_owned()), ("version", version::program())];
-        let texts = texts.into_iter().map(|(name, text)| (name, Fact::Text(text)));
+        // A law has nothing that JSON lacks.
+        let law = law.map(|law| ("law", serde_json::to_string(&law).unwrap_or_default()));
+        let texts = law.into_iter().chain(texts).map(|(name, text)| (name, Fact::Text(text)));
         Self(numbers.chain(texts).collect())
     }
 }

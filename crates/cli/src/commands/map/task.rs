@@ -114,7 +114,7 @@ mod tests {
     fn task(points: usize, tile_points: usize) -> Task {
         let axis = |cells| GridAxis { range: Interval { low: 0.0, high: 1.0 }, cells };
         let coordinates = Coordinates::Psi { damping: 0.0 };
-        let grid = Grid { columns: axis(points), rows: axis(1), coordinates };
+        let grid = Grid::new(axis(points), axis(1), coordinates);
         Task { tile_points, ..Task::new(grid, Engine::Exact) }
     }
 

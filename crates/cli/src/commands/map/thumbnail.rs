@@ -60,7 +60,7 @@ mod tests {
 
         // Both results of a point are its number. Tiles end in the middle of rows.
         let coordinates = Coordinates::Psi { damping: 0.0 };
-        let grid = Grid { columns: axis(7), rows: axis(5), coordinates };
+        let grid = Grid::new(axis(7), axis(5), coordinates);
         let task = Task { tile_points: 4, ..Task::new(grid, Engine::Exact) };
         let directory = tempfile::tempdir().unwrap();
         let tiles = Tiles::open(&directory.path().join("map.npz"), task, None).unwrap();

@@ -33,6 +33,7 @@ impl Columns {
         Parameter::Mu,
         Parameter::Alpha,
         Parameter::Damping,
+        Parameter::TangentialDamping,
     ];
 
     /// The columns of a file of points (κ, ψ) that are located in an atlas.

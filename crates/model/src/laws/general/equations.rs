@@ -293,7 +293,7 @@ impl Equations {
     /// The state at greatest compression, with the history that is carried from there on.
     pub fn turn(&self, y: &[f64; STATE]) -> [f64; STATE] {
         let e = self.exponents;
-        let carried = e.of(Stage::Main).rho as i32 - e.of(Stage::Unloading).rho as i32;
+        let carried = i32::from(e.of(Stage::Main).rho) - i32::from(e.of(Stage::Unloading).rho);
         let mut y = *y;
         y[SPRING] *= y[U].powi(carried);
         y

@@ -54,7 +54,7 @@ impl Exponents {
     pub fn new(contact: &Contact) -> Self {
         let law = contact.law();
         let damped = contact.damping() > 0.0;
-        let n = order(&law, damped);
+        let n = order(law, damped);
         let half = n / 2;
         let p = match law.normal {
             Normal::Linear => n,
@@ -108,7 +108,7 @@ impl Exponents {
 }
 
 /// The least n that makes a law polynomial in u.
-fn order(law: &Law, damped: bool) -> u8 {
+fn order(law: Law, damped: bool) -> u8 {
     let roots = law.normal == Normal::Hertz
         || law.tangential == Tangential::Mindlin
         || law.rescaled

@@ -1,0 +1,53 @@
+//! Contact laws: by their names, or in JSON files.
+
+use std::path::Path;
+
+use stickslip_model::presets::{self, Preset};
+use stickslip_model::Law;
+
+use super::{json, source};
+use crate::args::LawArguments;
+use crate::error::Failure;
+
+/// Largest number of bytes of a file.
+const MOST_BYTES: u64 = 1 << 16;
+
+/// The law that the options choose: a name, or otherwise a file.
+///
+/// # Errors
+/// [`Failure::Usage`]: the law has no tangential damping. [`Failure::Input`]: there is neither such
+/// a name nor such a file, or the file does not describe a law.
+pub fn chosen(arguments: &LawArguments) -> Result<Law, Failure> {
+    let Some(text) = &arguments.law else { return Ok(Law::PAPER) };
+    let Some(preset) = presets::find(text) else { return read(Path::new(text)) };
+    let damping = arguments.tangential_damping.unwrap_or(0.0);
+    if damping != 0.0 && !preset.tangential_damping {
+        return Err(Failure::Usage(format!(
+            "--tangential-damping {damping:?} has no meaning in the law {}: {}; expected 0, or a \
+             file of the law that is meant",
+            preset.name, preset.checked
+        )));
+    }
+    Ok(preset.law)
+}
+
+/// The preset with this name.
+///
+/// # Errors
+/// [`Failure::Usage`]: there is none.
+pub fn named(name: &str) -> Result<Preset, Failure> {
+    presets::find(name).ok_or_else(|| {
+        let expected = "expected a name that `stickslip laws` lists";
+        Failure::Usage(format!("no contact law is named {name:?}; {expected}"))
+    })
+}
+
+/// The law in the file at `path`.
+fn read(path: &Path) -> Result<Law, Failure> {
+    if !source::is_standard_input(path) && !path.exists() {
+        let reason = "is neither a file nor a name that `stickslip laws` lists";
+        return Err(Failure::input(path, reason.to_owned()));
+    }
+    let text = source::read(path, MOST_BYTES)?;
+    json::parse(&text).map_err(|reason| Failure::input(source::shown(path), reason))
+}
