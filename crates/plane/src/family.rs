@@ -2,11 +2,15 @@
 
 use stickslip_model::exact::{self, ExactError};
 use stickslip_model::regularized::{GUARDS, OTHER_SIDE, Phase, Regularized, SAME_SIDE, STATE};
-use stickslip_model::{Collision, Contact, Engine, InvalidParameter, Side};
+use stickslip_model::{Collision, Contact, Engine, InvalidParameter, Law, Side};
 use stickslip_solver::{Dop853, Margin, Options, Outcome, Start};
 use stickslip_tracer::{
     Family, FamilyError, FreeRun, HybridFamily, Itinerary, Point, Problem, Window,
 };
+
+pub(crate) mod general;
+
+pub use general::GeneralFamily;
 
 use crate::chart::Chart;
 use crate::range::Range;
@@ -46,6 +50,8 @@ pub enum CollisionFamily {
     Exact(CollisionPlane),
     /// Computed by integration.
     Integrated(HybridFamily<CollisionPlane, Dop853, STATE, GUARDS>),
+    /// Collisions with another law than the paper's, computed by integration.
+    General(GeneralFamily),
 }
 
 /// A collision of a family cannot be computed.
@@ -82,6 +88,16 @@ impl CollisionPlane {
         Self { chart, ..self }
     }
 
+    /// The same collisions with another law.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`]: no collision has this law with the dampings.
+    pub fn with_law(self, law: Law, tangential_damping: f64) -> Result<Self, InvalidParameter> {
+        let low = self.low.with_law(law, tangential_damping)?;
+        let high = self.high.with_law(law, tangential_damping)?;
+        Ok(Self { low, high, ..self })
+    }
+
     /// The traced coordinates.
     #[must_use]
     pub fn chart(&self) -> &Chart {
@@ -116,7 +132,8 @@ impl CollisionPlane {
     /// [`InvalidParameter`]: κ or ψ is beyond the range of numbers.
     pub fn contact(&self, point: &Point) -> Result<Contact, InvalidParameter> {
         let [kappa, psi] = self.parameters(point);
-        Contact::new(kappa, psi.max(0.5 * self.low.psi()), self.low.damping())
+        Contact::new(kappa, psi.max(0.5 * self.low.psi()), self.low.damping())?
+            .with_law(self.low.law(), self.low.tangential_damping())
     }
 
     /// The collisions as a family: by the exact solution wherever there is one, which makes a trace
@@ -140,6 +157,9 @@ impl CollisionPlane {
             ..Options::default()
         };
         let (method, end) = (Dop853, f64::INFINITY);
+        if !self.low.obeys_paper() {
+            return CollisionFamily::General(GeneralFamily { plane: self, options });
+        }
         CollisionFamily::Integrated(HybridFamily { problem: self, method, options, end })
     }
 
@@ -198,6 +218,7 @@ impl Family for CollisionFamily {
                 CollisionPlane::label(&exact::collide(plane.contact_or_any(point))?)
             }
             Self::Integrated(family) => fired(family, point, family.label(point)?)?,
+            Self::General(family) => family.label(point)?,
         })
     }
 
@@ -205,6 +226,7 @@ impl Family for CollisionFamily {
         Ok(match self {
             Self::Exact(plane) => exact::margin(&plane.contact_or_any(point), margin)?,
             Self::Integrated(family) => family.margin(point, margin)?,
+            Self::General(family) => family.margin(point, margin)?,
         })
     }
 
@@ -212,6 +234,9 @@ impl Family for CollisionFamily {
         Ok(match self {
             Self::Exact(plane) => exact::moved(&plane.contact_or_any(point), margin)?,
             Self::Integrated(family) => family.moved(point, margin)?,
+            Self::General(family) => family
+                .near_miss(point, margin)?
+                .map_or_else(|| margin.clone(), |(moved, _)| moved),
         })
     }
 
@@ -219,6 +244,7 @@ impl Family for CollisionFamily {
         match self {
             Self::Exact(_) => true,
             Self::Integrated(family) => family.is_sure(margin),
+            Self::General(_) => general::is_sure(margin),
         }
     }
 
@@ -232,6 +258,7 @@ impl Family for CollisionFamily {
                 let FreeRun { label, margins } = family.free_run(point)?;
                 FreeRun { label: fired(family, point, label)?, margins }
             }
+            Self::General(family) => family.free_run(point)?,
         })
     }
 }

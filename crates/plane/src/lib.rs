@@ -23,7 +23,7 @@
 //!
 //! let kappa = Range { low: 5.0, high: 8.0 };
 //! let psi = Range { low: 0.8, high: 1.2 };
-//! let frame = Frame { kappa, psi, ratio: None, damping: 0.0 };
+//! let frame = Frame::new(kappa, psi, 0.0);
 //! let verified = trace(frame, frame.tolerances().usual, progress::SILENT)?;
 //! assert!(verified.report.agrees);
 //! // Every region has an itinerary: `+o-` is slip, stick and slip to the other side.

@@ -38,7 +38,7 @@ impl Atlas {
             range: range(ratio),
             reduction: Reduction { mu, alpha },
         });
-        let frame = Frame { kappa: range(kappa), psi: range(psi), ratio, damping };
+        let frame = Frame { ratio, ..Frame::new(range(kappa), range(psi), damping) };
         let tolerance = tolerance.unwrap_or_else(|| frame.tolerances().usual);
         let pool = Threads::pool(threads)?;
         let verified = py

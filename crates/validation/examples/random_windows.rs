@@ -76,7 +76,7 @@ fn frame(random: &mut fastrand::Rng, least: f64, undamped: bool) -> Frame {
     };
     let (kappa, psi) = (side(1e-4, 1e5), side(1e-6, 1e3));
     let damping = if undamped { 0.0 } else { log(1e-6, 10.0) };
-    Frame { kappa, psi, ratio: None, damping }
+    Frame::new(kappa, psi, damping)
 }
 
 /// The points whose region has other switches than their collisions.

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use stickslip_plane::Range;
 
+use super::law::LawArguments;
 use super::shared::{self, CollisionArguments};
 use crate::input::parameter::Parameter;
 use crate::input::{number, range};
@@ -30,6 +31,10 @@ pub struct TraceArguments {
     /// The parameters beside κ and ψ.
     #[command(flatten, next_help_heading = "Collisions")]
     pub collisions: CollisionArguments,
+
+    /// The contact law.
+    #[command(flatten)]
+    pub law: LawArguments,
 
     /// Accuracy of boundaries in ψ, also between their points; from 1e-11·(1 + HI) to 1e-9·(1 +
     /// HI) with HI of ψ, and less in narrow windows [default: 1e-10·(1 + HI)]

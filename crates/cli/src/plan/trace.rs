@@ -9,6 +9,7 @@ use super::files::require_different;
 use super::window::{ImpactRange, KappaWindow};
 use crate::args::TraceArguments;
 use crate::error::Failure;
+use crate::input::law;
 use crate::input::recipe::reduced;
 use crate::output::picture::PictureFile;
 
@@ -66,5 +67,8 @@ fn frame(arguments: &TraceArguments) -> Result<Frame, Failure> {
             (Range { low: psi(low)?, high: psi(high)? }, Some(ratio))
         }
     };
-    Ok(Frame { kappa, psi, ratio, damping: collisions.damping.unwrap_or(0.0) })
+    let law = law::chosen(&arguments.law)?;
+    let tangential_damping = arguments.law.tangential_damping.unwrap_or(0.0);
+    let damping = collisions.damping.unwrap_or(0.0);
+    Ok(Frame { kappa, psi, ratio, damping, law, tangential_damping })
 }

@@ -12,7 +12,7 @@ use closed_forms::ClosedForms;
 use crate::canvas::number::number;
 use crate::canvas::panel::{Edge, Panel, Scale};
 use crate::canvas::shape::{Rectangle, Stroke};
-use crate::canvas::style::{BOUNDARY_END, BOUNDARY_SLIP, BOUNDARY_STICK, FRAME, INK, SMALL, TITLE};
+use crate::canvas::style::{BOUNDARY_END, BOUNDARY_SLIP, BOUNDARY_START, BOUNDARY_STICK, FRAME, INK, SMALL, TITLE};
 use crate::canvas::svg::{Anchor, Svg, Words};
 use crate::canvas::{Cells, Legend, place};
 
@@ -32,10 +32,12 @@ const COLUMNS: u16 = 540;
 const ROWS: u16 = 356;
 
 /// All kinds of boundaries in the order of the legend, with their names.
-const KINDS: [(BoundaryKind, &str, &str); 3] = [
+const KINDS: [(BoundaryKind, &str, &str); 5] = [
     (BoundaryKind::EndOfContact, "end-of-contact", "switch at the end of contact"),
     (BoundaryKind::StickGraze, "stick-graze", "graze while sticking"),
     (BoundaryKind::SlipGraze, "slip-graze", "graze while sliding"),
+    (BoundaryKind::StartOfContact, "start-of-contact", "slip from the start"),
+    (BoundaryKind::StartOfTail, "start-of-tail", "slip from where the force attracts"),
 ];
 
 /// Draws `atlas`.
@@ -102,6 +104,7 @@ pub fn stroke(kind: BoundaryKind) -> Stroke {
         BoundaryKind::EndOfContact => BOUNDARY_END,
         BoundaryKind::StickGraze => BOUNDARY_STICK,
         BoundaryKind::SlipGraze => BOUNDARY_SLIP,
+        BoundaryKind::StartOfContact | BoundaryKind::StartOfTail => BOUNDARY_START,
     }
 }
 
@@ -117,7 +120,12 @@ fn title(atlas: &Atlas) -> String {
     };
     let reduction = atlas.frame.ratio.map(|ratio| ratio.reduction);
     let (mu, alpha) = (reduction.map(|r| r.mu), reduction.map(|r| r.alpha));
-    let parameters = [("a", Some(atlas.frame.damping)), ("μ", mu), ("α", alpha)];
+    let parameters = [
+        ("a", Some(atlas.frame.damping)),
+        ("b", Some(atlas.frame.tangential_damping).filter(|damping| *damping != 0.0)),
+        ("μ", mu),
+        ("α", alpha),
+    ];
     let parameters = parameters
         .iter()
         .filter_map(|(name, value)| value.map(|value| format!("{name} = {}", number(value, 6))));

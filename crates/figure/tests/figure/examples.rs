@@ -74,7 +74,7 @@ pub fn restitution(largest: f64) -> Svg {
 /// The atlas of a window.
 pub fn traced(kappa: (f64, f64), psi: (f64, f64), damping: f64) -> Atlas {
     let range = |(low, high)| Range { low, high };
-    let frame = Frame { kappa: range(kappa), psi: range(psi), ratio: None, damping };
+    let frame = Frame::new(range(kappa), range(psi), damping);
     trace(frame, frame.tolerances().usual, SILENT).unwrap().atlas
 }
 

@@ -5,10 +5,10 @@
 //!
 //! - Where the history is rescaled, it grows as √x while the overlap falls. From greatest
 //!   compression on, history over √x is carried, whose equation is polynomial again.
-//! - Where the normal force begins to attract, its absolute value has a kink. Behind it the limit
-//!   grows from zero, and a stick phase is tried first: it is over at once where the contact slips.
-//! - In the same way a contact starts in stick, and slips at once where the spring or its dashpot
-//!   would exceed the limit. Its history is then reset.
+//! - Where the normal force begins to attract, its absolute value has a kink, and the limit is zero.
+//!   Slip goes on behind it if the spring would leave the limit faster than the limit grows;
+//!   otherwise the contact sticks.
+//! - For the same reason a contact may start in slip: [`Beginning`].
 //!
 //! Neither greatest compression nor the beginning of attraction is a switch.
 //!
@@ -26,7 +26,7 @@ use crate::laws::law::{End, Law};
 use equations::Equations;
 
 /// Number of components.
-pub const STATE: usize = 8;
+pub const STATE: usize = 10;
 /// u, the n-th root of the overlap.
 pub const U: usize = 0;
 /// v = dx/dt where the damping a is below 1, otherwise a³(v + u^{p−d}/a).
@@ -39,10 +39,15 @@ pub const W: usize = 3;
 pub const T: usize = 4;
 /// Normal energy taken by damping.
 pub const DAMPING: usize = 5;
-/// gap/c, in the first step of a stick phase.
+/// In the first step of a stick phase, the gap between the force and its limit on the side of the
+/// phase, divided by c and a power of u.
 pub const GAP: usize = 6;
-/// rate/c², in the first step of a stick phase.
+/// The rate of that gap, divided by c once more.
 pub const RATE: usize = 7;
+/// The gap on the other side.
+pub const FAR_GAP: usize = 8;
+/// Its rate.
+pub const FAR_RATE: usize = 9;
 
 /// Number of guards.
 pub const GUARDS: usize = 5;
@@ -56,6 +61,7 @@ pub const REVERSAL: usize = 4;
 pub struct GeneralContact {
     contact: Contact,
     equations: Equations,
+    beginning: Beginning,
     /// Whether reversals of the tangential velocity are events.
     reversals: bool,
 }
@@ -84,6 +90,21 @@ pub enum Stage {
     Tail,
 }
 
+/// How a contact starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Beginning {
+    /// In stick.
+    Stick,
+    /// In slip on side +1, since spring or dashpot would exceed the limit.
+    Slip,
+    /// In stick, with a history that is reset to the limit less what the dashpot adds: the dashpot
+    /// would exceed the limit, but the spring falls behind it.
+    Reset,
+    /// In slip on side −1: the history is reset, and a spring that stiffens faster than the limit
+    /// is at its other limit at once.
+    Overturned,
+}
+
 /// How a phase began.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
@@ -108,7 +129,30 @@ impl GeneralContact {
     /// The system of one contact.
     #[must_use]
     pub fn new(contact: Contact) -> Self {
-        Self { contact, equations: Equations::new(&contact), reversals: false }
+        let equations = Equations::new(&contact);
+        let beginning = equations.beginning(contact.psi());
+        Self { contact, equations, beginning, reversals: false }
+    }
+
+    /// How the contact starts.
+    #[must_use]
+    pub fn beginning(&self) -> Beginning {
+        self.beginning
+    }
+
+    /// The same system with another start, for margins that are followed beyond the contacts that
+    /// have them.
+    #[must_use]
+    pub fn beginning_with(self, beginning: Beginning) -> Self {
+        Self { beginning, ..self }
+    }
+
+    /// The numbers whose signs decide how the contact starts: one minus the ratio of tangential
+    /// force and limit, if both grow alike, and the rate at which the spring exceeds the limit, if
+    /// it may fall behind.
+    #[must_use]
+    pub fn beginning_margins(&self) -> [Option<f64>; 2] {
+        self.equations.beginning_margins(self.contact.psi())
     }
 
     /// The same system, with an event at every reversal of the tangential velocity.
@@ -123,21 +167,28 @@ impl GeneralContact {
         self.contact
     }
 
-    /// The mode in which every contact starts.
+    /// The mode in which the contact starts.
     #[must_use]
     pub fn first(&self) -> Mode {
-        Mode {
-            regime: Regime::Stick,
-            side: Side::Positive,
-            stage: Stage::Main,
-            progress: Progress::Touched,
-        }
+        let (regime, side, progress) = match self.beginning {
+            Beginning::Stick if self.equations.starts_flat() => {
+                (Regime::Stick, Side::Positive, Progress::Settled)
+            }
+            Beginning::Stick => (Regime::Stick, Side::Positive, Progress::Touched),
+            Beginning::Slip => (Regime::Slip, Side::Positive, Progress::Touched),
+            Beginning::Reset => (Regime::Stick, Side::Positive, Progress::Reset),
+            Beginning::Overturned => (Regime::Slip, Side::Negative, Progress::Touched),
+        };
+        Mode { regime, side, stage: Stage::Main, progress }
     }
 
-    /// The state at the start of contact.
+    /// The state at the start of contact, or soon after it.
     #[must_use]
     pub fn start(&self) -> State<STATE> {
-        self.equations.start(self.contact.psi()).into()
+        if self.beginning == Beginning::Stick && self.equations.starts_flat() {
+            return self.equations.early(self.contact.psi()).into();
+        }
+        self.equations.enter(self.first(), &self.equations.start(self.contact.psi())).into()
     }
 
     /// Reduced tangential velocity w.
@@ -187,21 +238,33 @@ impl GeneralContact {
         self.equations.exponents.damped && end == End::Overlap && !limit_damping
     }
 
-    /// The order of the zero from which the guards of the first phase start.
-    fn first_order(&self) -> u32 {
-        let e = self.equations.exponents;
-        let of = e.of(Stage::Main);
-        u32::from((e.d - of.shared).min(of.rho - of.shared + of.beta + 1))
+    /// The mode that follows `mode` where `guard` fires. Where attraction begins, slip goes on if
+    /// it `slips`.
+    #[must_use]
+    pub fn after(&self, mode: Mode, guard: usize, slips: bool) -> Mode {
+        let (regime, side, progress) = match (guard, mode.regime) {
+            (CREST, _) => return Mode { stage: Stage::Unloading, ..self.settle(mode) },
+            (END, _) => {
+                let (regime, progress) = if slips {
+                    (Regime::Slip, Progress::Switched)
+                } else {
+                    (Regime::Stick, Progress::Touched)
+                };
+                return Mode { regime, progress, stage: Stage::Tail, ..mode };
+            }
+            (OTHER_SIDE, Regime::Stick) => {
+                (Regime::Slip, mode.side.opposite(), Progress::Switched)
+            }
+            (_, Regime::Stick) => (Regime::Slip, mode.side, Progress::Switched),
+            (_, Regime::Slip) => (Regime::Stick, mode.side, Progress::Switched),
+        };
+        Mode { regime, side, progress, ..mode }
     }
 
-    /// Whether a slip that is over at the very start of contact is followed by slip on the other
-    /// side.
-    ///
-    /// The history has then been reset to the limit, less what the dashpot adds. A spring that
-    /// grows faster than the limit is at its other limit at once.
-    fn overturns(&self) -> bool {
-        let e = self.equations.exponents;
-        e.of(Stage::Main).rho > e.d
+    /// How much faster than the limit the spring leaves it where attraction begins in a slip phase.
+    fn excess_in_tail(&self, mode: Mode, y: &State<STATE>) -> f64 {
+        let tail = self.after(mode, END, true);
+        self.equations.guards(tail, array(y))[SAME_SIDE]
     }
 }
 
@@ -228,9 +291,10 @@ impl ReadableSystem<STATE, GUARDS> for GeneralContact {
         let starts = touched && mode.stage != Stage::Tail && !e.damped;
         let end = if starts { end.from_zero(1) } else { end };
         let [same, other] = match (mode.regime, mode.progress) {
-            (Regime::Slip, _) => [below, Guard::OFF],
+            (Regime::Slip, _) => [leave, Guard::OFF],
             (_, Progress::Touched) => {
-                let order = if mode.stage == Stage::Tail { 1 } else { self.first_order() };
+                let (limit, force) = self.equations.first_orders();
+                let order = if mode.stage == Stage::Tail { 1 } else { limit.min(force).into() };
                 [leave.from_zero(order); 2]
             }
             (_, Progress::Reset) => [
@@ -267,41 +331,20 @@ impl ReadableSystem<STATE, GUARDS> for GeneralContact {
         _s: f64,
         y: &State<STATE>,
     ) -> (Mode, State<STATE>) {
-        let next = match guard {
-            REVERSAL => return (mode, *y),
-            CREST => {
-                let next = Mode { stage: Stage::Unloading, ..self.settle(mode) };
-                return (next, self.equations.turn(array(y)).into());
-            }
-            END => Mode {
-                regime: Regime::Stick,
-                stage: Stage::Tail,
-                progress: Progress::Touched,
-                ..mode
-            },
-            _ => self.switched(mode, guard, y),
-        };
+        if guard == REVERSAL {
+            return (mode, *y);
+        }
+        let slips = mode.regime == Regime::Slip && self.excess_in_tail(mode, y) >= 0.0;
+        let next = self.after(mode, guard, slips);
+        if guard == CREST {
+            return (next, self.equations.turn(array(y)).into());
+        }
         (next, self.equations.enter(next, array(y)).into())
     }
-}
 
-impl GeneralContact {
-    /// The mode that follows `mode` where the spring reaches or leaves its limit.
-    fn switched(&self, mode: Mode, guard: usize, y: &State<STATE>) -> Mode {
-        let starts = y[U] == 0.0;
-        let (regime, side, progress) = match mode.regime {
-            Regime::Slip if starts && self.overturns() => {
-                (Regime::Slip, Side::Negative, Progress::Switched)
-            }
-            Regime::Slip if starts => (Regime::Stick, mode.side, Progress::Reset),
-            Regime::Slip => (Regime::Stick, mode.side, Progress::Switched),
-            Regime::Stick => {
-                let side = if guard == OTHER_SIDE { mode.side.opposite() } else { mode.side };
-                (Regime::Slip, side, Progress::Switched)
-            }
-        };
-        debug_assert!(matches!(guard, SAME_SIDE | OTHER_SIDE));
-        Mode { regime, side, progress, ..mode }
+    fn transition_condition(&self, mode: Mode, guard: usize, _s: f64, y: &State<STATE>) -> f64 {
+        let branches = guard == END && mode.regime == Regime::Slip && self.attracts();
+        if branches { self.excess_in_tail(mode, y) } else { f64::NAN }
     }
 }
 

@@ -4,6 +4,8 @@ use stickslip_model::regularized::{OTHER_SIDE, Phase};
 use stickslip_model::{Contact, Regime, Side};
 use stickslip_solver::{Margin, Place};
 
+use crate::family::general;
+
 /// What happens on a boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -15,12 +17,19 @@ pub enum BoundaryKind {
     StickGraze,
     /// While sliding, the spring all but sticks.
     SlipGraze,
+    /// At the start of contact, the tangential force exceeds its limit.
+    StartOfContact,
+    /// Where the normal force begins to attract, slip goes on or begins.
+    StartOfTail,
 }
 
 impl BoundaryKind {
     /// The kind of a boundary on which `margin` vanishes.
     #[must_use]
     pub fn of(contact: &Contact, margin: &Margin) -> Self {
+        if !contact.obeys_paper() {
+            return general::kind(contact, margin);
+        }
         let guards = margin.exits.iter().map(|exit| exit.guard);
         match (margin.place, phases(contact, guards).last().map(|phase| phase.regime)) {
             (Place::End, _) => Self::EndOfContact,
@@ -33,6 +42,9 @@ impl BoundaryKind {
 
 /// The itinerary of a collision in which `guards` fired: one character per phase.
 pub(super) fn itinerary(contact: &Contact, guards: &[usize]) -> String {
+    if !contact.obeys_paper() {
+        return general::itinerary(contact, guards);
+    }
     let character = |phase: Phase| match (phase.regime, phase.side) {
         (Regime::Stick, _) => 'o',
         (Regime::Slip, Side::Positive) => '+',

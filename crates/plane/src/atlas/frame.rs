@@ -1,6 +1,6 @@
 //! The window of an atlas, and the accuracy that boundaries can have in it.
 
-use stickslip_model::{InvalidParameter, Reduction};
+use stickslip_model::{InvalidParameter, Law, Reduction};
 use stickslip_tracer::Window;
 
 use crate::chart::Chart;
@@ -18,6 +18,10 @@ pub struct Frame {
     pub ratio: Option<RatioRange>,
     /// Scaled damping.
     pub damping: f64,
+    /// The contact law.
+    pub law: Law,
+    /// Tangential damping.
+    pub tangential_damping: f64,
 }
 
 /// An interval of impact ratios.
@@ -66,6 +70,12 @@ pub(super) fn noise(chart: &Chart) -> f64 {
 }
 
 impl Frame {
+    /// A window of collisions that obey the paper's law.
+    #[must_use]
+    pub fn new(kappa: Range, psi: Range, damping: f64) -> Self {
+        Self { kappa, psi, ratio: None, damping, law: Law::PAPER, tangential_damping: 0.0 }
+    }
+
     /// The coordinates in which the window is traced.
     #[must_use]
     pub fn chart(&self) -> Chart {
@@ -133,6 +143,7 @@ impl Frame {
     /// [`InvalidParameter`]: no collision has these values.
     pub fn plane(&self) -> Result<CollisionPlane, InvalidParameter> {
         let Self { kappa, psi, damping, .. } = *self;
-        CollisionPlane::new((kappa.low, kappa.high), (psi.low, psi.high), damping)
+        CollisionPlane::new((kappa.low, kappa.high), (psi.low, psi.high), damping)?
+            .with_law(self.law, self.tangential_damping)
     }
 }

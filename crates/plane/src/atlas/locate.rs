@@ -1,8 +1,9 @@
 //! Points looked up in an atlas.
 
-use stickslip_model::{Contact, exact};
+use stickslip_model::{Contact, Engine};
 use stickslip_tracer::{Location, Point, Window};
 
+use super::frame::Frame;
 use super::regions::Atlas;
 use crate::chart::Chart;
 
@@ -61,8 +62,8 @@ pub enum Unlocated {
 
 impl Atlas {
     /// Looks up a collision by its κ and ψ. Within the error of a boundary, the collision itself
-    /// decides, computed by the exact solution. The damping is that of the atlas, whatever that of
-    /// `contact` is.
+    /// decides, computed by the best engine for it. Damping and law are those of the atlas,
+    /// whatever those of `contact` are.
     #[must_use]
     pub fn locate(&self, contact: &Contact) -> Located {
         let (kappa, psi) = (contact.kappa(), contact.psi());
@@ -103,8 +104,12 @@ impl Atlas {
 
     /// The itinerary of the collision itself, with the damping of the atlas.
     fn itinerary_of(&self, contact: &Contact) -> Option<String> {
-        let contact = Contact::new(contact.kappa(), contact.psi(), self.frame.damping).ok()?;
-        Some(exact::collide(contact).ok()?.itinerary())
+        let Frame { damping, law, tangential_damping, .. } = self.frame;
+        let contact = Contact::new(contact.kappa(), contact.psi(), damping)
+            .and_then(|contact| contact.with_law(law, tangential_damping))
+            .ok()?;
+        let (collision, _) = Engine::Auto.collide(contact).ok()?;
+        Some(collision.itinerary())
     }
 
     /// The region beside `boundary`, or beside one that meets it, in which collisions have the

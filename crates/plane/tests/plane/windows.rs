@@ -9,7 +9,7 @@ use stickslip_plane::progress::SILENT;
 /// An undamped window.
 pub fn frame(kappa: (f64, f64), psi: (f64, f64)) -> Frame {
     let range = |(low, high)| Range { low, high };
-    Frame { kappa: range(kappa), psi: range(psi), ratio: None, damping: 0.0 }
+    Frame::new(range(kappa), range(psi), 0.0)
 }
 
 /// The atlas of `frame` with the usual tolerance.

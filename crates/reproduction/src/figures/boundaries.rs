@@ -25,7 +25,7 @@ const PSI: Range = Range { low: 0.01, high: 3.0 };
 /// # Errors
 /// The boundaries cannot be traced.
 pub fn run(_: &Reproduction) -> Result<Section, ReproductionError> {
-    let frame = Frame { kappa: KAPPA, psi: PSI, ratio: None, damping: 0.0 };
+    let frame = Frame::new(KAPPA, PSI, 0.0);
     let tolerance = frame.tolerances().usual;
     let verified = Arc::new(trace(frame, tolerance, SILENT)?);
 

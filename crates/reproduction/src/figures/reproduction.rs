@@ -40,7 +40,7 @@ impl Reproduction {
         // Below this ψ no boundary crosses the line of the points.
         let kappa = Range { low: 0.05, high: Reading::Axis.kappa(MOST_STIFFNESS) };
         let psi = Range { low: 0.002, high: psi(MOST_RATIO_4) };
-        let frame = Frame { kappa, psi, ratio: None, damping: 0.0 };
+        let frame = Frame::new(kappa, psi, 0.0);
         let verified = trace(frame, frame.tolerances().usual, SILENT)?;
         Ok(self.boundaries.get_or_init(|| Arc::new(verified)))
     }

@@ -92,6 +92,17 @@ pub trait ReadableSystem<const N: usize, const G: usize> {
     ) -> (Self::Mode, State<N>) {
         (mode, *y)
     }
+
+    /// As [`HybridSystem::transition_condition`].
+    fn transition_condition(
+        &self,
+        _mode: Self::Mode,
+        _guard: usize,
+        _s: f64,
+        _y: &State<N>,
+    ) -> f64 {
+        f64::NAN
+    }
 }
 
 /// The components of a state.
@@ -145,5 +156,10 @@ impl<S: ReadableSystem<N, G>, const N: usize, const G: usize> HybridSystem<N, G>
 
     fn transition(&self, mode: S::Mode, guard: usize, s: f64, y: &State<N>) -> (S::Mode, State<N>) {
         ReadableSystem::transition(self, mode, guard, s, y)
+    }
+
+    #[inline]
+    fn transition_condition(&self, mode: S::Mode, guard: usize, s: f64, y: &State<N>) -> f64 {
+        ReadableSystem::transition_condition(self, mode, guard, s, y)
     }
 }

@@ -6,7 +6,7 @@ use stickslip_solver::{
 
 use super::CollisionError;
 use crate::contact::Contact;
-use crate::laws::general::{CREST, DAMPING, GeneralContact, Mode, Progress, REVERSAL, STATE, T};
+use crate::laws::general::{CREST, DAMPING, GeneralContact, Mode, REVERSAL, STATE, T};
 use crate::laws::law::{End, Law, Normal};
 use crate::laws::phase::{END, Regime};
 use crate::result::{Collision, EnergyLedger, Switch};
@@ -20,9 +20,8 @@ pub fn collide(
 ) -> Result<Statistics, CollisionError> {
     let system = GeneralContact::new(contact).with_reversals();
     collision.reset(contact);
-    // Unless a switch follows at once.
-    collision.start = Regime::Stick;
     let start = Start { mode: system.first(), s: 0.0, state: system.start() };
+    (collision.start, collision.start_side) = (start.mode.regime, start.mode.side);
     let mut account = Account {
         system,
         collision,
@@ -31,7 +30,6 @@ pub fn collide(
         elapsed: 0.0,
         sliding: 0.0,
         lasting: 0.0,
-        held: None,
     };
     let run = run_with(pair, &system, start, f64::INFINITY, options, &mut account)?;
     if run.outcome != (Outcome::EndedByGuard { guard: END }) {
@@ -56,9 +54,6 @@ struct Account<'a> {
     sliding: f64,
     /// The time since the last recorded switch.
     lasting: f64,
-    /// The slip before, and the switch to this stick phase, where the limit is zero: there it
-    /// counts only if it lasts.
-    held: Option<(Mode, Switch)>,
 }
 
 impl Account<'_> {
@@ -75,52 +70,22 @@ impl Account<'_> {
 
     /// Records the switch from the phase, which ends in state `before`, to `next`.
     fn switch(&mut self, next: Mode, before: &State<STATE>, y: &State<STATE>) {
-        let at_once = before[T] == 0.0;
         self.leave(before);
-        let switch = Switch {
+        self.phase = next;
+        self.collision.switches.push(Switch {
             time: self.elapsed,
-            time_left: f64::NAN,
+            // Until the end, the time since the switch before.
+            time_left: std::mem::take(&mut self.lasting),
             to: next.regime,
             side: next.side,
             spring: self.system.spring(next, y),
             velocity: self.system.velocity(y),
-        };
-        let from = std::mem::replace(&mut self.phase, next);
-        if self.elapsed == 0.0 {
-            (self.collision.start, self.collision.start_side) = (next.regime, next.side);
-            return;
-        }
-        match self.held.take() {
-            Some((earlier, held)) if at_once => {
-                self.lasting += held.time_left;
-                if earlier.side != next.side {
-                    self.push(switch);
-                }
-                return;
-            }
-            Some((_, held)) => self.collision.switches.push(held),
-            None => {}
-        }
-        if next.progress != Progress::Touched {
-            self.push(switch);
-        } else if from.regime == Regime::Slip {
-            let time_left = std::mem::take(&mut self.lasting);
-            self.held = Some((from, Switch { time_left, ..switch }));
-        }
-    }
-
-    /// Records a switch. Until the end, `time_left` is the time since the one before.
-    fn push(&mut self, switch: Switch) {
-        let time_left = std::mem::take(&mut self.lasting);
-        self.collision.switches.push(Switch { time_left, ..switch });
+        });
     }
 
     /// Closes the account in the state `y` at the end.
     fn finish(mut self, y: &State<STATE>) {
         self.leave(y);
-        if let Some((_, held)) = self.held.take() {
-            self.collision.switches.push(held);
-        }
         let Self { system, collision, sliding, lasting, .. } = self;
         let contact = collision.contact;
         let (overlap, rate) = (system.overlap(y), system.compression_rate(y));
@@ -162,6 +127,11 @@ impl Observer<Mode, STATE> for Account<'_> {
             // The phase goes on.
             CREST => self.phase.stage = event.to.stage,
             END if event.from.stage == event.to.stage => {}
+            // Slip goes on where the normal force begins to attract.
+            END if event.to.regime == self.phase.regime => {
+                self.leave(&event.before);
+                self.phase = event.to;
+            }
             _ => self.switch(event.to, &event.before, &event.after),
         }
     }

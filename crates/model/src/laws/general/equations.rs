@@ -5,9 +5,9 @@ use std::ops::Index;
 use stickslip_solver::Number;
 
 use super::exponents::Exponents;
-use super::{DAMPING, GAP, GUARDS, Mode, Progress, RATE, SPRING, STATE, Stage, T as TIME, U, V, W};
+use super::{Beginning, DAMPING, FAR_GAP, FAR_RATE, GAP, GUARDS, Mode, Progress, RATE, SPRING, STATE, Stage, T as TIME, U, V, W};
 use crate::contact::Contact;
-use crate::laws::phase::Regime;
+use crate::laws::phase::{Regime, Side};
 
 /// The least damping for which the component V is a³(v + u^{p−d}/a); see
 /// [`regularized`](crate::regularized).
@@ -91,6 +91,71 @@ impl Equations {
         y
     }
 
+    /// How the contact starts.
+    pub fn beginning(&self, psi: f64) -> Beginning {
+        let e = self.exponents;
+        match self.beginning_margins(psi) {
+            [Some(room), _] if room > 0.0 => Beginning::Stick,
+            [Some(_), _] if e.of(Stage::Main).rho > e.d => Beginning::Overturned,
+            [Some(_), Some(excess)] if excess < 0.0 => Beginning::Reset,
+            [Some(_), _] => Beginning::Slip,
+            [None, _] if self.first_orders().0 < self.first_orders().1 => Beginning::Stick,
+            [None, _] => Beginning::Slip,
+        }
+    }
+
+    /// The orders of the zeros from which the limit and the tangential force start, divided by u^m.
+    pub fn first_orders(&self) -> (u8, u8) {
+        let e = self.exponents;
+        let of = e.of(Stage::Main);
+        let spring = of.rho - of.shared + of.beta + 1;
+        let dashpot = e.d - of.shared;
+        (dashpot, if self.dashpot > 0.0 { dashpot.min(spring) } else { spring })
+    }
+
+    /// Whether limit and force start from zeros of third order and may nearly agree. A dense output
+    /// does not tell their difference from zero.
+    pub fn starts_flat(&self) -> bool {
+        self.first_orders() == (3, 3)
+    }
+
+    /// The state of a contact that starts in stick from zeros of third order, soon after its start.
+    /// What is neglected is below rounding.
+    pub fn early(&self, psi: f64) -> [f64; STATE] {
+        let s = 1e-3 * self.kappa.max(1.0).powf(-0.2);
+        let fifth = s.powi(5);
+        let mut y = self.start(psi);
+        y[U] = s * (1.0 - fifth / 15.0);
+        y[V] = 1.0 - 0.4 * fifth;
+        y[W] *= 1.0 - 4.0 / 15.0 * self.kappa * fifth;
+        y[SPRING] = self.spring_rate * y[W] * s.powi(3) / 3.0;
+        y[TIME] = s * s;
+        y
+    }
+
+    /// See [`super::GeneralContact::beginning_margins`].
+    pub fn beginning_margins(&self, psi: f64) -> [Option<f64>; 2] {
+        let e = self.exponents;
+        let (limit, force) = self.first_orders();
+        if limit != force {
+            return [None; 2];
+        }
+        if e.damped {
+            let ratio = self.tangential_damping * psi;
+            let mode = Mode {
+                regime: Regime::Slip,
+                side: Side::Positive,
+                stage: Stage::Main,
+                progress: Progress::Touched,
+            };
+            let may_fall_behind = e.of(Stage::Main).rho == e.d;
+            let excess = || self.stretching(mode, &powers(0.0), &self.start(psi));
+            return [Some(1.0 - ratio), may_fall_behind.then(excess)];
+        }
+        let spring = f64::from(e.n) * self.kappa * psi / f64::from(e.of(Stage::Main).beta + 1);
+        [Some(1.0 - spring), None]
+    }
+
     /// Reduced tangential velocity w.
     #[inline(always)]
     pub fn velocity<T: Number>(&self, y: &[T; STATE]) -> T {
@@ -164,19 +229,22 @@ impl Equations {
                 let pull = self.pull(mode.stage, u, y);
                 slope[W] = u[e.last + of.shared] * pull * (-n / self.velocity_unit);
                 slope[SPRING] = u[of.beta] * y[W] * self.spring_rate;
-                if mode.progress == Progress::Switched {
+                if mode.progress != Progress::Settled {
+                    let [near, far] = self.gaps(mode, u, y).map(|gap| gap.2);
                     slope[GAP] = y[RATE] * self.scale;
-                    slope[RATE] =
-                        self.gap_acceleration(mode, u, y) / (self.scale * self.scale);
+                    slope[FAR_GAP] = y[FAR_RATE] * self.scale;
+                    slope[RATE] = near / (self.scale * self.scale);
+                    slope[FAR_RATE] = far / (self.scale * self.scale);
                 }
             }
         }
         slope
     }
 
-    /// The second derivative of the gap in a stick phase.
+    /// The gaps between the force and its limit in a stick phase, on the side of the phase and on
+    /// the other one, divided by u^m.
     #[inline(always)]
-    fn gap_acceleration<T: Number>(&self, mode: Mode, u: &Powers<T>, y: &[T; STATE]) -> T {
+    fn gaps<T: Number>(&self, mode: Mode, u: &Powers<T>, y: &[T; STATE]) -> [Jet<T>; 2] {
         let e = self.exponents;
         let of = e.of(mode.stage);
         let n = f64::from(e.n);
@@ -205,7 +273,14 @@ impl Equations {
         let ddw = (lowered(u, k) * v * pull + u[k] * pull1) * per_unit;
         let dashpot = lifted(e.d - of.shared, u, v, dv, Jet(y[W], dw, ddw));
         let pull2 = spring.2 * self.spring_force + dashpot.2 * self.dashpot;
-        force.2 * mode.stage.sign() - pull2 * mode.side.sign()
+        let (sign, side) = (mode.stage.sign(), mode.side.sign());
+        [-side, side].map(|side| {
+            Jet(
+                force.0 * sign + pull * side,
+                force.1 * sign + pull1 * side,
+                force.2 * sign + pull2 * side,
+            )
+        })
     }
 
     /// The values of the guards.
@@ -220,16 +295,15 @@ impl Equations {
         let (end, same, other) = match mode.regime {
             Regime::Slip => (end, self.stretching(mode, u, y), T::from(1.0)),
             Regime::Stick => {
-                let pull = self.pull(mode.stage, u, y) * mode.side.sign();
-                if mode.progress == Progress::Switched {
-                    let gap = y[GAP] * self.scale;
-                    // Late in a contact the force is rounding alone, unlike gap and spring.
-                    let force = gap + pull;
-                    let ends = e.damped && mode.stage != Stage::Tail;
-                    (if ends { force } else { end }, gap, force + pull)
-                } else {
+                if mode.progress == Progress::Settled {
+                    let pull = self.pull(mode.stage, u, y) * mode.side.sign();
                     let limit = u[e.d - of.shared] * push * mode.stage.sign();
                     (end, limit - pull, limit + pull)
+                } else {
+                    let [near, far] = [y[GAP] * self.scale, y[FAR_GAP] * self.scale];
+                    // Late in a contact the force is rounding alone, unlike the gaps.
+                    let ends = e.damped && mode.stage == Stage::Main;
+                    (if ends { near + far } else { end }, near, far)
                 }
             }
         };
@@ -282,12 +356,33 @@ impl Equations {
             _ => u[self.exponents.d - of.shared] * self.push(u, y) * next.stage.sign(),
         };
         let mut y = *y;
-        y[SPRING] = match next.regime {
-            Regime::Stick => self.spring_for(next.stage, u, &y, size * next.side.sign()),
-            Regime::Slip => 0.0,
-        };
-        (y[TIME], y[GAP], y[RATE]) = (0.0, 0.0, 0.0);
+        y[TIME] = 0.0;
+        for component in [SPRING, GAP, RATE, FAR_GAP, FAR_RATE] {
+            y[component] = 0.0;
+        }
+        if next.regime == Regime::Stick {
+            // A contact starts without history.
+            if (next.progress, next.stage) != (Progress::Touched, Stage::Main) {
+                y[SPRING] = self.spring_for(next.stage, u, &y, size * next.side.sign());
+            }
+            self.open(next, &mut y);
+        }
         y
+    }
+
+    /// Sets the gaps with which a stick phase begins. What is zero there is exactly zero.
+    fn open(&self, mode: Mode, y: &mut [f64; STATE]) {
+        let [near, far] = self.gaps(mode, &powers(y[U]), y);
+        let (length, rate) = (self.scale, self.scale * self.scale);
+        match (mode.progress, mode.stage) {
+            (Progress::Touched, Stage::Tail) => {}
+            (Progress::Touched, _) => (y[GAP], y[FAR_GAP]) = (near.0 / length, far.0 / length),
+            _ => y[FAR_GAP] = far.0 / length,
+        }
+        y[FAR_RATE] = far.1 / rate;
+        if mode.progress != Progress::Switched {
+            y[RATE] = near.1 / rate;
+        }
     }
 
     /// The state at greatest compression, with the history that is carried from there on.

@@ -1,5 +1,6 @@
 //! What a reader of documents refuses.
 
+use stickslip_model::InvalidParameter;
 use stickslip_tracer::{Finding, SubdivisionError};
 
 use super::layout::SCHEMA;
@@ -36,6 +37,9 @@ pub enum DocumentError {
     /// The chart does not map the window onto an area.
     #[error("{0:?} does not map the window onto an area")]
     Chart(Chart),
+    /// No collision has the dampings and the law of the window.
+    #[error("window: {0}")]
+    Law(#[from] InvalidParameter),
     /// The damping is negative.
     #[error("window.damping = {damping:?}: expected 0 or above")]
     Damping {

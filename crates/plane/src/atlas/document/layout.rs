@@ -1,6 +1,7 @@
 //! The layout of the file of an atlas.
 
 use serde::{Deserialize, Serialize};
+use stickslip_model::Law;
 use stickslip_tracer::{Node, VertexKind};
 
 use crate::atlas::boundary::BoundaryKind;
@@ -47,6 +48,12 @@ pub struct WindowFields {
     pub psi: [f64; 2],
     /// Scaled damping of all collisions.
     pub damping: f64,
+    /// The contact law; the paper's if there is none here.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub law: Option<Law>,
+    /// Tangential damping of all collisions; 0 if it is not here.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tangential_damping: Option<f64>,
     /// Lower and upper end of g_t/g_n, if the window was given in impact ratios.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ratio: Option<[f64; 2]>,

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use stickslip_model::Contact;
 use stickslip_tracer::{Curve, Location, Node, Point, Subdivision, Vertex};
 
 use super::error::DocumentError;
@@ -65,7 +66,11 @@ fn frame(window: &WindowFields) -> Result<Frame, DocumentError> {
         return Err(DocumentError::Damping { damping: window.damping });
     }
     let (kappa, psi) = (range("kappa", window.kappa)?, range("psi", window.psi)?);
-    Ok(Frame { kappa, psi, ratio: None, damping: window.damping })
+    let law = window.law.unwrap_or_default();
+    let tangential_damping = window.tangential_damping.unwrap_or(0.0);
+    Contact::new(kappa.low, psi.low, window.damping)
+        .and_then(|contact| contact.with_law(law, tangential_damping))?;
+    Ok(Frame { law, tangential_damping, ..Frame::new(kappa, psi, window.damping) })
 }
 
 /// Refuses a chart that does not map the window onto an area.
@@ -148,7 +153,8 @@ fn checked(switching: Switching, place: impl Fn() -> String) -> Result<String, D
     let Switching { switch_count: count, itinerary } = switching;
     let phases = itinerary.as_bytes();
     let known = !phases.is_empty() && phases.iter().all(|phase| b"+o-".contains(phase));
-    let alternating = phases.windows(2).all(|pair| (pair[0] == b'o') != (pair[1] == b'o'));
+    // Slip may change its side where its limit is zero.
+    let alternating = phases.windows(2).all(|pair| pair[0] != pair[1]);
     if known && alternating && switch_count(&itinerary) == count {
         return Ok(itinerary);
     }

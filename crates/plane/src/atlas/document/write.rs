@@ -1,5 +1,6 @@
 //! How the document of an atlas is made.
 
+use stickslip_model::Law;
 use stickslip_tracer::{Curve, Extremum, Node};
 
 use super::layout::{
@@ -41,6 +42,9 @@ impl WindowFields {
             kappa: [frame.kappa.low, frame.kappa.high],
             psi: [frame.psi.low, frame.psi.high],
             damping: frame.damping,
+            law: (frame.law != Law::PAPER).then_some(frame.law),
+            tangential_damping: (frame.tangential_damping != 0.0)
+                .then_some(frame.tangential_damping),
             ratio: frame.ratio.map(|ratio| [ratio.range.low, ratio.range.high]),
             mu: frame.ratio.map(|ratio| ratio.reduction.mu),
             alpha: frame.ratio.map(|ratio| ratio.reduction.alpha),

@@ -1,0 +1,229 @@
+//! Collisions with any contact law, as a family that the tracer can follow.
+//!
+//! The label of a run says how the contact begins, which guards fire, and whether slip goes on where
+//! the normal force begins to attract. The first exit in the name of a margin is no exit of a guard
+//! but the beginning of the contact, so that a margin is followed beyond the contacts that begin so.
+
+use stickslip_model::general::{Beginning, CREST, GUARDS, GeneralContact, Mode, STATE};
+use stickslip_model::regularized::{END, OTHER_SIDE, SAME_SIDE};
+use stickslip_model::{Contact, Regime, Side};
+use stickslip_solver::{
+    Dop853, Exit, Margin, Observer, Options, Outcome, Place, Start, SwitchEvent, margin, margins,
+    run,
+};
+use stickslip_tracer::{FamilyError, FreeRun, Point};
+
+use super::{CollisionFamilyError, CollisionPlane};
+use crate::atlas::BoundaryKind;
+
+/// What a label has instead of [`END`] where slip goes on.
+const SLIPS_ON: usize = GUARDS;
+/// What is added to the place of a beginning in its list.
+const BEGINS: usize = GUARDS + 1;
+
+const BEGINNINGS: [Beginning; 4] =
+    [Beginning::Stick, Beginning::Slip, Beginning::Reset, Beginning::Overturned];
+
+/// Collisions with any law, integrated.
+#[derive(Clone, Copy, Debug)]
+pub struct GeneralFamily {
+    pub(super) plane: CollisionPlane,
+    pub(super) options: Options,
+}
+
+/// What the runs of the family are made of.
+type System = (GeneralContact, Start<Mode, STATE>);
+
+impl GeneralFamily {
+    fn system(&self, point: &Point) -> GeneralContact {
+        GeneralContact::new(self.plane.contact_or_any(point))
+    }
+
+    /// The label of the run at a point.
+    pub fn label(&self, point: &Point) -> Result<Vec<usize>, CollisionFamilyError> {
+        let (system, start) = started(self.system(point));
+        let mut fired = Fired(vec![code(system.beginning())]);
+        let found = run(Dop853, &system, start, f64::INFINITY, &self.options, &mut fired)
+            .map_err(|error| FamilyError { point: *point, error })?;
+        if found.outcome != (Outcome::EndedByGuard { guard: END }) {
+            return Err(CollisionFamilyError::Unfinished(found.outcome));
+        }
+        fired.0.pop();
+        Ok(fired.0)
+    }
+
+    /// The label of the run at a point, and its margins.
+    pub fn free_run(
+        &self,
+        point: &Point,
+    ) -> Result<FreeRun<Vec<usize>, Margin>, CollisionFamilyError> {
+        let (system, start) = started(self.system(point));
+        let found = margins(Dop853, &system, start, f64::INFINITY, &self.options)
+            .map_err(|error| FamilyError { point: *point, error })?;
+        let begins = Exit::falling(code(system.beginning()), 0.0);
+        let mut found: Vec<_> = found
+            .near_misses
+            .into_iter()
+            .filter(|miss| matters(&miss.margin))
+            .map(|miss| (begun(begins, miss.margin), miss.value))
+            .collect();
+        let longest = found.iter().map(|(margin, _)| &margin.exits).max_by_key(|exits| exits.len());
+        let corners = longest.map_or_else(Vec::new, |exits| corners(&system, exits));
+        for corner in corners {
+            if let Some(value) = self.margin(point, &corner)? {
+                found.push((corner, value));
+            }
+        }
+        for (margin, value) in (0..).zip(system.beginning_margins()) {
+            found.extend(value.map(|value| (beginning(margin), value)));
+        }
+        Ok(FreeRun { label: self.label(point)?, margins: found })
+    }
+
+    /// The value of a margin at a point, and its name there.
+    pub fn near_miss(
+        &self,
+        point: &Point,
+        which: &Margin,
+    ) -> Result<Option<(Margin, f64)>, CollisionFamilyError> {
+        let system = self.system(point);
+        let Some((begins, exits)) = which.exits.split_first() else {
+            let Place::Start { derivative } = which.place else { return Ok(None) };
+            let value = system.beginning_margins().into_iter().nth(derivative as usize).flatten();
+            return Ok(value.map(|value| (which.clone(), value)));
+        };
+        let (system, start) = started(system.beginning_with(BEGINNINGS[begins.guard - BEGINS]));
+        let inner = Margin { exits: exits.to_vec(), ..which.clone() };
+        let found = margin(Dop853, &system, start, f64::INFINITY, &self.options, &inner);
+        // A run that cannot follow the itinerary has no such margin.
+        let found = found.ok().flatten();
+        Ok(found.map(|miss| (begun(*begins, miss.margin), miss.value)))
+    }
+
+    /// The value of a margin at a point.
+    pub fn margin(
+        &self,
+        point: &Point,
+        which: &Margin,
+    ) -> Result<Option<f64>, CollisionFamilyError> {
+        Ok(self.near_miss(point, which)?.map(|(_, value)| value))
+    }
+}
+
+/// Whether the itinerary changes where a margin vanishes, and not only the order of events.
+pub fn is_sure(margin: &Margin) -> bool {
+    match margin.place {
+        Place::Minimum { .. } | Place::Maximum { .. } | Place::End | Place::Branch(_) => true,
+        Place::Exit(exit) => exit.guard == END,
+        Place::Start { .. } => margin.exits.is_empty(),
+    }
+}
+
+/// Whether a margin may say anything about switches.
+fn matters(margin: &Margin) -> bool {
+    margin.guard != CREST
+}
+
+fn started(system: GeneralContact) -> System {
+    (system, Start { mode: system.first(), s: 0.0, state: system.start() })
+}
+
+fn code(beginning: Beginning) -> usize {
+    BEGINS + BEGINNINGS.iter().position(|other| *other == beginning).unwrap_or(0)
+}
+
+fn begun(begins: Exit, mut margin: Margin) -> Margin {
+    margin.exits.insert(0, begins);
+    margin
+}
+
+/// A margin of the beginning itself.
+fn beginning(derivative: u32) -> Margin {
+    Margin { exits: Vec::new(), guard: SAME_SIDE, place: Place::Start { derivative } }
+}
+
+/// The margins of stick phases that a slip follows with which the contact ends, or with which
+/// attraction begins: there the limit is zero, and the sign of the tangential force in a longer
+/// stick phase decides on which side the contact slips.
+fn corners(system: &GeneralContact, exits: &[Exit]) -> Vec<Margin> {
+    let mut mode = system.first();
+    let mut corners = Vec::new();
+    for (place, exit) in exits.iter().enumerate().skip(1) {
+        let next = exits.get(place + 1);
+        let switches = matches!(exit.guard, SAME_SIDE | OTHER_SIDE);
+        if mode.regime == Regime::Stick && switches && next.is_none_or(|next| next.guard == END) {
+            let place_of = next.map_or(Place::End, |next| Place::Exit(*next));
+            let exits = exits[..place].to_vec();
+            corners.push(Margin { exits, guard: SAME_SIDE, place: place_of });
+        }
+        mode = system.after(mode, exit.guard, exit.branch == Some(true));
+    }
+    corners
+}
+
+/// Records the guards that fire.
+struct Fired(Vec<usize>);
+
+impl Observer<Mode, STATE> for Fired {
+    fn on_switch(&mut self, event: &SwitchEvent<Mode, STATE>) {
+        let slips_on = event.guard == END && event.to.regime == Regime::Slip;
+        match event.guard {
+            CREST => {}
+            END if slips_on => self.0.push(SLIPS_ON),
+            guard => self.0.push(guard),
+        }
+    }
+}
+
+/// The phases of a collision that begins so, and whose guards fire in this order; `END` with
+/// whether slip goes on.
+fn phases(
+    contact: &Contact,
+    begins: Option<usize>,
+    fired: impl Iterator<Item = (usize, bool)>,
+) -> Vec<Mode> {
+    let mut system = GeneralContact::new(*contact);
+    if let Some(begins) = begins {
+        system = system.beginning_with(BEGINNINGS[begins - BEGINS]);
+    }
+    let mut phases = vec![system.first()];
+    for (guard, slips) in fired {
+        phases.push(system.after(phases[phases.len() - 1], guard, slips));
+    }
+    phases
+}
+
+/// The itinerary of a collision with this label: one character per phase.
+pub fn itinerary(contact: &Contact, label: &[usize]) -> String {
+    let fired = label.iter().skip(1).map(|&code| match code {
+        SLIPS_ON => (END, true),
+        guard => (guard, false),
+    });
+    let mut itinerary = String::new();
+    for phase in phases(contact, label.first().copied(), fired) {
+        let character = match (phase.regime, phase.side) {
+            (Regime::Stick, _) => 'o',
+            (Regime::Slip, Side::Positive) => '+',
+            (Regime::Slip, Side::Negative) => '-',
+        };
+        // Slip that goes on is one phase.
+        if !itinerary.ends_with(character) {
+            itinerary.push(character);
+        }
+    }
+    itinerary
+}
+
+/// What happens where a margin vanishes.
+pub fn kind(contact: &Contact, margin: &Margin) -> BoundaryKind {
+    let begins = margin.exits.first().map(|exit| exit.guard);
+    let fired = margin.exits.iter().skip(1).map(|exit| (exit.guard, exit.branch == Some(true)));
+    let phases = phases(contact, begins, fired);
+    match (margin.place, phases.last()) {
+        (Place::End, _) => BoundaryKind::EndOfContact,
+        (Place::Start { .. }, _) => BoundaryKind::StartOfContact,
+        (Place::Branch(_) | Place::Exit(_), _) => BoundaryKind::StartOfTail,
+        (_, Some(Mode { regime: Regime::Slip, .. })) => BoundaryKind::SlipGraze,
+        _ => BoundaryKind::StickGraze,
+    }
+}
