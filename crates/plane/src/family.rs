@@ -158,7 +158,7 @@ impl CollisionPlane {
         };
         let (method, end) = (Dop853, f64::INFINITY);
         if !self.low.obeys_paper() {
-            return CollisionFamily::General(GeneralFamily { plane: self, options });
+            return CollisionFamily::General(GeneralFamily::new(self, options));
         }
         CollisionFamily::Integrated(HybridFamily { problem: self, method, options, end })
     }

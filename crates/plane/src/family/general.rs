@@ -35,6 +35,15 @@ pub struct GeneralFamily {
 type System = (GeneralContact, Start<Mode, STATE>);
 
 impl GeneralFamily {
+    /// The family, with options for every run.
+    pub(super) fn new(plane: CollisionPlane, options: Options) -> Self {
+        // A run that follows a prescribed itinerary may never end.
+        let oscillations = plane.high.kappa().sqrt().min(1e5);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1e7")]
+        let max_steps = 1000 + (100.0 * oscillations) as usize;
+        Self { plane, options: Options { max_steps, ..options } }
+    }
+
     fn system(&self, point: &Point) -> GeneralContact {
         GeneralContact::new(self.plane.contact_or_any(point))
     }
