@@ -101,10 +101,14 @@ impl Account<'_> {
         collision.final_velocity = system.velocity(y);
         let [tangential_initial, tangential_final] =
             [contact.psi(), collision.final_velocity].map(|w| 0.5 * w * w);
-        let compression_left = match normal {
-            _ if end == End::Overlap => 0.0,
+        let compression = match normal {
             Normal::Linear => 0.5 * overlap * overlap,
             Normal::Hertz => 0.4 * overlap.powf(2.5),
+        };
+        // Where the force is limited, damping takes the rest of the compression.
+        let [taken, compression_left] = match end {
+            End::Force => [0.0, compression],
+            End::Overlap => [compression, 0.0],
         };
         let normal_final = 0.5 * rate * rate;
         collision.energy = EnergyLedger {
@@ -114,7 +118,7 @@ impl Account<'_> {
             spring_left: tangential_initial - tangential_final - sliding,
             normal_initial: 0.5,
             normal_final,
-            damping: y[DAMPING],
+            damping: y[DAMPING] + taken,
             compression_left,
         };
     }
