@@ -6,6 +6,7 @@ Start with `collide` (one collision), `eps_t` and `collide_many` (arrays), `impa
 
 from stickslip import _native
 from stickslip._compiled import Compiled
+from stickslip._laws import NamedLaw, laws
 from stickslip._native import ComputationError
 from stickslip._solutions import DenseOutput, Solution
 from stickslip._systems import Guard, HybridSystem, Mode
@@ -64,6 +65,7 @@ __all__ = [
     "Material",
     "Mode",
     "Motion",
+    "NamedLaw",
     "Region",
     "Sensitivity",
     "Solution",
@@ -81,6 +83,7 @@ __all__ = [
     "eps_t",
     "eps_t_and_switch_count",
     "impact",
+    "laws",
     "map",
     "psi_of_ratio",
     "reproduce",

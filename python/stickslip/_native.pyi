@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 _Floats: TypeAlias = NDArray[np.float64]
 _Engine: TypeAlias = tuple[str, float | None, float | None]
+_Law: TypeAlias = tuple[str, float]
 _Vector: TypeAlias = tuple[float, float, float]
 _Motion: TypeAlias = tuple[_Vector, _Vector, _Vector]
 _Sphere: TypeAlias = tuple[float, float, float | None, float, float]
@@ -16,16 +17,27 @@ class ComputationError(RuntimeError): ...
 def has_fused_products() -> bool: ...
 def processor_has_fused_products() -> bool: ...
 def version() -> str: ...
+def laws() -> str: ...
 def eps_t(
-    parameters: tuple[_Floats, _Floats, _Floats], engine: _Engine, strict: bool, threads: int
+    parameters: tuple[_Floats, _Floats, _Floats],
+    engine: _Engine,
+    law: _Law,
+    strict: bool,
+    threads: int,
 ) -> tuple[_Floats, NDArray[np.int32], list[tuple[int, str]]]: ...
 def collide_many(
-    parameters: tuple[_Floats, _Floats, _Floats], engine: _Engine, strict: bool, threads: int
+    parameters: tuple[_Floats, _Floats, _Floats],
+    engine: _Engine,
+    law: _Law,
+    strict: bool,
+    threads: int,
 ) -> dict[str, Any]: ...
 
 @final
 class Collision:
-    def __new__(cls, kappa: float, psi: float, damping: float, engine: _Engine) -> Collision: ...
+    def __new__(
+        cls, kappa: float, psi: float, damping: float, engine: _Engine, law: _Law
+    ) -> Collision: ...
     def json(self) -> str: ...
     def estimate(self) -> tuple[float, float, bool]: ...
     def history(self, times: _Floats | None, moments: int) -> _Floats: ...
@@ -56,7 +68,7 @@ class Atlas:
         kappa: tuple[float, float],
         psi: tuple[float, float],
         ratio: tuple[tuple[float, float], float, float] | None,
-        damping: float,
+        collisions: tuple[float, _Law],
         tolerance: float | None,
         threads: int,
     ) -> Atlas: ...

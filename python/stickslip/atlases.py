@@ -12,16 +12,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip import _native
+from stickslip import _laws, _native
 from stickslip._arrays import numbers
+from stickslip._laws import Law
 from stickslip.collisions import Floats, _threads, psi_of_ratio
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 #: Colours of the kinds of boundaries, which a colour-blind reader can tell apart.
-COLOURS = {"end-of-contact": "#333333", "stick-graze": "#0072b2", "slip-graze": "#d55e00"}
-LINES = {"end-of-contact": "-", "stick-graze": "-", "slip-graze": "--"}
+COLOURS = {"end-of-contact": "#333333", "stick-graze": "#0072b2", "slip-graze": "#d55e00"} | {
+    kind: "#009e73" for kind in ("start-of-contact", "start-of-tail")
+}
+LINES = {"end-of-contact": "-", "stick-graze": "-", "slip-graze": "--"} | {
+    kind: "-." for kind in ("start-of-contact", "start-of-tail")
+}
 
 
 class AtlasWarning(UserWarning):
@@ -33,7 +38,8 @@ class Boundary:
     """A curve on which the switches of a collision change."""
 
     id: int
-    #: end-of-contact, stick-graze or slip-graze.
+    #: end-of-contact, stick-graze or slip-graze; with other laws than the paper's also
+    #: start-of-contact and start-of-tail.
     kind: str
     #: Itineraries on both sides: at smaller and at larger psi.
     below: str
@@ -259,13 +265,15 @@ def trace(
     ratio: tuple[float, float] | None = None,
     mu: float = 0.4,
     alpha: float = 2 / 7,
+    law: Law | None = None,
+    tangential_damping: float = 0.0,
     tolerance: float | None = None,
     threads: int | None = None,
 ) -> Atlas:
     """Every boundary in a window, and the regions between them, verified.
 
     kappa, psi: intervals, above 0. ratio: interval of g_t/g_n instead of psi, which mu and alpha
-    reduce. tolerance: accuracy of the boundaries in psi, from 1e-11 to 1e-9 times 1 + the largest
+    reduce. law, tangential_damping: as in `collide`. tolerance: accuracy of the boundaries in psi, from 1e-11 to 1e-9 times 1 + the largest
     psi. If something speaks against the atlas, it says so in an AtlasWarning and in `objection`.
 
     >>> atlas = trace((5, 8), (0.8, 1.2))
@@ -279,7 +287,10 @@ def trace(
         low, high = (float(psi_of_ratio(end, mu, alpha)) for end in ratio)
         psi, interval = (low, high), (ratio, mu, alpha)
     assert psi is not None
-    native = _native.Atlas.trace(kappa, psi, interval, damping, tolerance, _threads(threads))
+    chosen = _laws.arguments(law, tangential_damping)
+    native = _native.Atlas.trace(
+        kappa, psi, interval, (damping, chosen), tolerance, _threads(threads)
+    )
     atlas = Atlas(native)
     if atlas.objection is not None:
         warnings.warn(f"the atlas may be wrong: {atlas.objection}", AtlasWarning, stacklevel=2)

@@ -10,8 +10,9 @@ from typing import Any, Literal, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip import _native
+from stickslip import _laws, _native
 from stickslip._arrays import numbers
+from stickslip._laws import Law
 
 Floats: TypeAlias = NDArray[np.float64]
 Method: TypeAlias = Literal["auto", "exact", "dop853", "dopri5"]
@@ -85,9 +86,12 @@ class Collision:
         method: Method = "auto",
         rtol: float | None = None,
         atol: float | None = None,
+        law: Law | None = None,
+        tangential_damping: float = 0.0,
     ) -> None:
-        self._arguments = (kappa, psi, damping, method, rtol, atol)
-        self._native = _native.Collision(kappa, psi, damping, (method, rtol, atol))
+        chosen = _laws.arguments(law, tangential_damping)
+        self._arguments = (kappa, psi, damping, method, rtol, atol, *chosen)
+        self._native = _native.Collision(kappa, psi, damping, (method, rtol, atol), chosen)
         self._fields: dict[str, Any] = json.loads(self._native.json())
         #: Scaled stiffness of the tangential spring.
         self.kappa = kappa
@@ -205,7 +209,7 @@ class Collisions:
     def __init__(
         self,
         parameters: tuple[Floats, Floats, Floats],
-        engine: tuple[Method, float | None, float | None],
+        engine: tuple[Method, float | None, float | None, str, float],
         columns: dict[str, Any],
         shape: tuple[int, ...],
     ) -> None:
@@ -330,12 +334,16 @@ def collide(
     *,
     rtol: float | None = None,
     atol: float | None = None,
+    law: Law | None = None,
+    tangential_damping: float = 0.0,
 ) -> Collision:
     """One collision, with every switch.
 
     kappa: scaled stiffness, above 0. psi: reduced impact ratio, above 0. damping: scaled damping, 0
     or above. method: "exact", "dop853", "dopri5", or "auto", which is exact unless a tolerance is
-    given. rtol, atol: tolerances of a step of the integrators.
+    given. rtol, atol: tolerances of a step of the integrators. law: the contact law, a name of `laws`
+    or its terms; the paper's if there is none. tangential_damping: (gamma_t/gamma_n)/alpha of a law,
+    0 or above.
 
     Raises ValueError for parameters out of range, and ComputationError where there is no result.
 
@@ -348,7 +356,9 @@ def collide(
     for name, value in (("kappa", kappa), ("psi", psi), ("damping", damping)):
         if np.ndim(value):
             raise TypeError(f"{name} is an array; expected a number, or use collide_many")
-    return Collision(float(kappa), float(psi), float(damping), method, rtol, atol)
+    return Collision(
+        float(kappa), float(psi), float(damping), method, rtol, atol, law, tangential_damping
+    )
 
 
 def _broadcast(
@@ -389,6 +399,8 @@ def eps_t(
     *,
     rtol: float | None = None,
     atol: float | None = None,
+    law: Law | None = None,
+    tangential_damping: float = 0.0,
     errors: OnError = "raise",
     threads: int | None = None,
 ) -> Any:
@@ -402,7 +414,16 @@ def eps_t(
     array([-0.08488447, -0.04165221])
     """
     return eps_t_and_switch_count(
-        kappa, psi, damping, method, rtol=rtol, atol=atol, errors=errors, threads=threads
+        kappa,
+        psi,
+        damping,
+        method,
+        rtol=rtol,
+        atol=atol,
+        law=law,
+        tangential_damping=tangential_damping,
+        errors=errors,
+        threads=threads,
     )[0][()]
 
 
@@ -414,6 +435,8 @@ def eps_t_and_switch_count(
     *,
     rtol: float | None = None,
     atol: float | None = None,
+    law: Law | None = None,
+    tangential_damping: float = 0.0,
     errors: OnError = "raise",
     threads: int | None = None,
 ) -> tuple[Floats, NDArray[np.int32]]:
@@ -422,7 +445,8 @@ def eps_t_and_switch_count(
     As `eps_t`; where a collision has no result, the number of switches is -1.
     """
     _, flat, shape = _broadcast(kappa, psi, damping)
-    found, counts, _ = _native.eps_t(flat, (method, rtol, atol), _strict(errors), _threads(threads))
+    engine, chosen = (method, rtol, atol), _laws.arguments(law, tangential_damping)
+    found, counts, _ = _native.eps_t(flat, engine, chosen, _strict(errors), _threads(threads))
     return found.reshape(shape), counts.reshape(shape)
 
 
@@ -434,6 +458,8 @@ def collide_many(
     *,
     rtol: float | None = None,
     atol: float | None = None,
+    law: Law | None = None,
+    tangential_damping: float = 0.0,
     errors: OnError = "raise",
     threads: int | None = None,
 ) -> Collisions:
@@ -448,6 +474,6 @@ def collide_many(
     ['stick', 'slip', 'stick', 'slip', 'stick', 'slip']
     """
     given, flat, shape = _broadcast(kappa, psi, damping)
-    engine = (method, rtol, atol)
-    columns = _native.collide_many(flat, engine, _strict(errors), _threads(threads))
-    return Collisions(given, engine, columns, shape)
+    engine, chosen = (method, rtol, atol), _laws.arguments(law, tangential_damping)
+    columns = _native.collide_many(flat, engine, chosen, _strict(errors), _threads(threads))
+    return Collisions(given, (*engine, *chosen), columns, shape)

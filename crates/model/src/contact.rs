@@ -1,5 +1,6 @@
 //! The parameters of a collision.
 
+use crate::laws::general::GeneralContact;
 use crate::laws::law::{Damping, Law};
 
 /// The parameters of one collision in scaled variables: stiffness, impact ratio and damping.
@@ -102,6 +103,27 @@ impl Contact {
     #[must_use]
     pub fn law(&self) -> Law {
         self.law
+    }
+
+    /// How badly the start of contact is conditioned: `None` unless the dashpot exceeds the limit
+    /// there and turns the spring over at once
+    /// ([`Beginning::Overturned`](crate::general::Beginning::Overturned)).
+    ///
+    /// In steps, the force is turned over only when the overlap is so many times that of the first
+    /// step in contact. Where this is not small beside the ratio of the largest overlap to the
+    /// first, a particle code is far from the limit of small steps that is computed here.
+    ///
+    /// ```
+    /// use stickslip_model::{Contact, presets};
+    ///
+    /// let law = presets::find("granular/hertz/tsuji/mindlin").ok_or("no such law")?.law;
+    /// let contact = Contact::new(3.0, 0.5, 0.3)?.with_law(law, 4.0)?;
+    /// assert_eq!(contact.start_layer(), Some(81.0));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn start_layer(&self) -> Option<f64> {
+        if self.obeys_paper() { None } else { GeneralContact::new(*self).start_layer() }
     }
 
     /// Whether the paper's law holds: that is the law, or it differs in terms without effect.

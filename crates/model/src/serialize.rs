@@ -66,7 +66,7 @@ impl Serialize for Side {
 /// The contact as `parameters`, and the results, computed ones included.
 impl Serialize for Collision {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut object = serializer.serialize_struct("Collision", 10)?;
+        let mut object = serializer.serialize_struct("Collision", 11)?;
         object.serialize_field("parameters", &self.contact)?;
         object.serialize_field("eps_n", &self.eps_n)?;
         object.serialize_field("eps_t", &self.eps_t())?;
@@ -75,6 +75,10 @@ impl Serialize for Collision {
         object.serialize_field("switch_count", &self.switches.len())?;
         object.serialize_field("reversals", &self.reversals)?;
         object.serialize_field("itinerary", &self.itinerary())?;
+        match self.contact.start_layer() {
+            Some(layer) => object.serialize_field("start_layer", &layer)?,
+            None => object.skip_field("start_layer")?,
+        }
         object.serialize_field("switches", &self.switches[..])?;
         object.serialize_field("energy", &self.energy)?;
         object.end()

@@ -226,7 +226,7 @@ impl Family for CollisionFamily {
         Ok(match self {
             Self::Exact(plane) => exact::margin(&plane.contact_or_any(point), margin)?,
             Self::Integrated(family) => family.margin(point, margin)?,
-            Self::General(family) => family.margin(point, margin)?,
+            Self::General(family) => family.margin(point, margin),
         })
     }
 
@@ -234,9 +234,9 @@ impl Family for CollisionFamily {
         Ok(match self {
             Self::Exact(plane) => exact::moved(&plane.contact_or_any(point), margin)?,
             Self::Integrated(family) => family.moved(point, margin)?,
-            Self::General(family) => family
-                .near_miss(point, margin)?
-                .map_or_else(|| margin.clone(), |(moved, _)| moved),
+            Self::General(family) => {
+                family.near_miss(point, margin).map_or_else(|| margin.clone(), |(moved, _)| moved)
+            }
         })
     }
 

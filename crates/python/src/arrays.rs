@@ -6,9 +6,9 @@ use std::ops::Range;
 use numpy::{IntoPyArray, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
-use stickslip_model::{Collision, Contact, Engine, Regime};
+use stickslip_model::{Collision, Contact, Engine, Law, Regime};
 
-use crate::engines::Choice;
+use crate::engines::{Choice, LawChoice};
 use crate::failure::{Failure, bad_input};
 use crate::parallel::Threads;
 
@@ -16,6 +16,7 @@ use crate::parallel::Threads;
 pub struct Points {
     columns: [Vec<f64>; 3],
     count: usize,
+    law: (Law, f64),
 }
 
 /// Three arrays of numbers. Python's are copied, because other threads may write to them.
@@ -52,13 +53,13 @@ pub fn numbers(array: &PyReadonlyArray1<'_, f64>) -> PyResult<Vec<f64>> {
 }
 
 impl Points {
-    pub fn new(parameters: &Parameters<'_>) -> PyResult<Self> {
+    pub fn new(parameters: &Parameters<'_>, law: &LawChoice) -> PyResult<Self> {
         let Parameters(kappa, psi, damping) = parameters;
         let columns = [numbers(kappa)?, numbers(psi)?, numbers(damping)?];
         let lengths = || columns.iter().map(Vec::len).filter(|&length| length != 1);
         expect_equal(lengths())?;
         let count = lengths().next().unwrap_or(1);
-        Ok(Self { columns, count })
+        Ok(Self { columns, count, law: law.law()? })
     }
 
     fn parameters(&self, index: usize) -> [f64; 3] {
@@ -78,7 +79,9 @@ impl Points {
         let mut collision = Collision::before(any);
         for index in part {
             let [kappa, psi, damping] = self.parameters(index);
-            let contact = Contact::new(kappa, psi, damping).map_err(Failure::from);
+            let contact = Contact::new(kappa, psi, damping)
+                .and_then(|contact| contact.with_law(self.law.0, self.law.1))
+                .map_err(Failure::from);
             let found = contact.and_then(|contact| {
                 engine.collide_into(contact, &mut collision).map_err(Failure::from)
             });
@@ -112,10 +115,11 @@ pub fn eps_t<'py>(
     py: Python<'py>,
     parameters: Parameters<'py>,
     engine: Choice,
+    law: LawChoice,
     strict: bool,
     threads: usize,
 ) -> PyResult<Bound<'py, PyTuple>> {
-    let (points, engine) = (Points::new(&parameters)?, engine.engine()?);
+    let (points, engine) = (Points::new(&parameters, &law)?, engine.engine()?);
     let (mut eps_t, mut counts) = (Vec::new(), Vec::new());
     eps_t.reserve_exact(points.count);
     counts.reserve_exact(points.count);
@@ -277,10 +281,11 @@ pub fn collide_many<'py>(
     py: Python<'py>,
     parameters: Parameters<'py>,
     engine: Choice,
+    law: LawChoice,
     strict: bool,
     threads: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (points, engine) = (Points::new(&parameters)?, engine.engine()?);
+    let (points, engine) = (Points::new(&parameters, &law)?, engine.engine()?);
     let mut columns = Columns::default();
     let work = |part| Columns::of(&points, engine, part);
     Threads::new(threads, points.count)?.each(py, points.count, work, |part| {

@@ -8,7 +8,7 @@ use stickslip_model::{Collider, Contact, Derived, Engine, History, Snapshot};
 use stickslip_solver::Statistics;
 
 use crate::arrays::numbers;
-use crate::engines::{Choice, document};
+use crate::engines::{Choice, LawChoice, document};
 use crate::failure::{Failure, bad_input};
 
 /// A collision with what computed it.
@@ -22,9 +22,18 @@ pub struct Collision {
 #[pymethods]
 impl Collision {
     #[new]
-    fn new(py: Python<'_>, kappa: f64, psi: f64, damping: f64, engine: Choice) -> PyResult<Self> {
-        let engine = engine.engine()?;
-        let contact = Contact::new(kappa, psi, damping).map_err(Failure::from)?;
+    fn new(
+        py: Python<'_>,
+        kappa: f64,
+        psi: f64,
+        damping: f64,
+        engine: Choice,
+        law: LawChoice,
+    ) -> PyResult<Self> {
+        let (engine, (law, tangential_damping)) = (engine.engine()?, law.law()?);
+        let contact = Contact::new(kappa, psi, damping)
+            .and_then(|contact| contact.with_law(law, tangential_damping))
+            .map_err(Failure::from)?;
         let place = || format!("kappa = {kappa:?}, psi = {psi:?}, damping = {damping:?}: ");
         let (result, statistics) = py
             .detach(|| engine.collide(contact))

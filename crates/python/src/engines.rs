@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 use serde_json::Value;
-use stickslip_model::{Engine, InvalidChoice};
+use stickslip_model::{Engine, InvalidChoice, Law, presets};
 use stickslip_solver::{InvalidOption, Statistics};
 
 use crate::failure::{bad_input, failed};
@@ -32,6 +32,43 @@ impl Choice {
             })
         })
     }
+}
+
+/// A contact law, by its name or as JSON, and the tangential damping.
+#[derive(FromPyObject)]
+pub struct LawChoice(String, f64);
+
+impl LawChoice {
+    /// The law that is chosen, and the tangential damping.
+    pub fn law(&self) -> PyResult<(Law, f64)> {
+        let Self(text, tangential_damping) = self;
+        let Some(preset) = presets::find(text) else {
+            let law = serde_json::from_str(text).map_err(|error| {
+                bad_input(format!("law = {text}: {error}; expected a name of stickslip.laws()"))
+            })?;
+            return Ok((law, *tangential_damping));
+        };
+        if *tangential_damping != 0.0 && !preset.tangential_damping {
+            return Err(bad_input(format!(
+                "tangential_damping = {tangential_damping:?} has no meaning in the law {}: {}; \
+                 expected 0, or the terms of the law that is meant",
+                preset.name, preset.checked
+            )));
+        }
+        Ok((preset.law, *tangential_damping))
+    }
+}
+
+/// The contact laws that have names, as JSON, with their equations.
+#[pyfunction]
+pub fn laws() -> PyResult<String> {
+    let entry = |preset: &presets::Preset| {
+        let mut entry = serde_json::to_value(preset)?;
+        entry["equations"] = preset.law.equations().into();
+        Ok(entry)
+    };
+    let entries: serde_json::Result<Vec<Value>> = presets::ALL.iter().map(entry).collect();
+    Ok(Value::from(entries.map_err(failed)?).to_string())
 }
 
 /// A result with the layout `schema`, as the JSON that the program prints.

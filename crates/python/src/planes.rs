@@ -9,6 +9,7 @@ use stickslip_plane::atlas::{self, Document, Frame, RatioRange, SCHEMA, Unlocate
 use stickslip_plane::progress::SILENT;
 
 use crate::arrays::{expect_equal, numbers};
+use crate::engines::LawChoice;
 use crate::failure::{bad_input, failed, of_atlas};
 use crate::parallel::Threads;
 
@@ -22,14 +23,14 @@ pub struct Atlas {
 #[pymethods]
 impl Atlas {
     /// Traces the boundaries between two κ and two ψ; `ratio` is an interval of g_t/g_n with μ and α
-    /// that `psi` was computed from.
+    /// that `psi` was computed from. The collisions have this damping and this law.
     #[staticmethod]
     fn trace(
         py: Python<'_>,
         kappa: (f64, f64),
         psi: (f64, f64),
         ratio: Option<((f64, f64), f64, f64)>,
-        damping: f64,
+        (damping, law): (f64, LawChoice),
         tolerance: Option<f64>,
         threads: usize,
     ) -> PyResult<Self> {
@@ -38,7 +39,9 @@ impl Atlas {
             range: range(ratio),
             reduction: Reduction { mu, alpha },
         });
-        let frame = Frame { ratio, ..Frame::new(range(kappa), range(psi), damping) };
+        let (law, tangential_damping) = law.law()?;
+        let usual = Frame::new(range(kappa), range(psi), damping);
+        let frame = Frame { ratio, law, tangential_damping, ..usual };
         let tolerance = tolerance.unwrap_or_else(|| frame.tolerances().usual);
         let pool = Threads::pool(threads)?;
         let verified = py

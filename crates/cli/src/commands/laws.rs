@@ -29,7 +29,8 @@ pub fn run(arguments: &LawsArguments) -> Result<(), Failure> {
         (Some(preset), Format::Json) => json::lines(out, &preset.law),
         (Some(preset), Format::Table) => one(out, &preset),
         (None, Format::Json) => {
-            let entry = |preset: &'static Preset| Entry { equations: preset.law.equations(), preset };
+            let entry =
+                |preset: &'static Preset| Entry { equations: preset.law.equations(), preset };
             let entries: Vec<Entry<'_>> = presets::ALL.iter().map(entry).collect();
             json::lines(out, &entries)
         }

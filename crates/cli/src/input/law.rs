@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use stickslip_model::presets::{self, Preset};
 use stickslip_model::Law;
+use stickslip_model::presets::{self, Preset};
 
 use super::{json, source};
 use crate::args::LawArguments;

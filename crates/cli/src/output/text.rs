@@ -27,6 +27,17 @@ pub fn write(
         contact.damping(),
         describe(engine)
     )?;
+    if !contact.obeys_paper() {
+        writeln!(out, "Law {}", contact.law().equations())?;
+        writeln!(out, "Tangential damping b = {:?}", contact.tangential_damping())?;
+    }
+    if let Some(layer) = contact.start_layer() {
+        writeln!(
+            out,
+            "Badly conditioned: in steps, the force is turned over only when the overlap is {layer:.3e} \
+             times that of the first step"
+        )?;
+    }
     writeln!(out)?;
     if collision.switches.is_empty() {
         writeln!(out, "No switch.")?;
@@ -90,6 +101,11 @@ fn row(index: usize, switch: &Switch) -> [String; 7] {
 
 fn energy(out: &mut dyn Write, collision: &Collision) -> io::Result<()> {
     let ledger = &collision.energy;
+    let left = if collision.contact.obeys_paper() {
+        "left in spring, compression"
+    } else {
+        "taken by spring and dashpot, left in compression"
+    };
     writeln!(out)?;
     aligned(
         out,
@@ -98,7 +114,7 @@ fn energy(out: &mut dyn Write, collision: &Collision) -> io::Result<()> {
             entry("at impact", ledger.tangential_initial, ledger.normal_initial),
             entry("motion at the end", ledger.tangential_final, ledger.normal_final),
             entry("taken by sliding, damping", ledger.sliding, ledger.damping),
-            entry("left in spring, compression", ledger.spring_left, ledger.compression_left),
+            entry(left, ledger.spring_left, ledger.compression_left),
             entry("unbalanced", ledger.tangential_unbalanced(), ledger.normal_unbalanced()),
         ],
     )

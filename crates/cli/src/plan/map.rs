@@ -11,9 +11,9 @@ use super::files::require_different;
 use super::window::{ImpactRange, KappaWindow};
 use crate::args::{MapArguments, Method};
 use crate::error::Failure;
-use crate::input::{bodies, law};
 use crate::input::part::MapPart;
 use crate::input::source::is_standard_input;
+use crate::input::{bodies, law};
 use crate::output::picture::PictureFile;
 
 /// A map to be computed.

@@ -33,7 +33,8 @@ impl StudyPlan<convergence::Settings> {
             let usual = convergence::Settings::usual(damping.unwrap_or(0.0));
             usual.map_err(|invalid| Failure::Usage(invalid.to_string()))?
         } else {
-            let contact = contact(&Given { kappa, psi, ratio, mu, alpha, damping, ..Given::default() })?;
+            let contact =
+                contact(&Given { kappa, psi, ratio, mu, alpha, damping, ..Given::default() })?;
             convergence::Settings { contacts: vec![contact] }
         };
         settings.validate().map_err(refused)?;

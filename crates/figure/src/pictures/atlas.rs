@@ -12,7 +12,9 @@ use closed_forms::ClosedForms;
 use crate::canvas::number::number;
 use crate::canvas::panel::{Edge, Panel, Scale};
 use crate::canvas::shape::{Rectangle, Stroke};
-use crate::canvas::style::{BOUNDARY_END, BOUNDARY_SLIP, BOUNDARY_START, BOUNDARY_STICK, FRAME, INK, SMALL, TITLE};
+use crate::canvas::style::{
+    BOUNDARY_END, BOUNDARY_SLIP, BOUNDARY_START, BOUNDARY_STICK, FRAME, INK, SMALL, TITLE,
+};
 use crate::canvas::svg::{Anchor, Svg, Words};
 use crate::canvas::{Cells, Legend, place};
 

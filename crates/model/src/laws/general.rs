@@ -140,6 +140,18 @@ impl GeneralContact {
         self.beginning
     }
 
+    /// See [`Contact::start_layer`].
+    pub(crate) fn start_layer(&self) -> Option<f64> {
+        let e = self.equations.exponents;
+        if self.beginning != Beginning::Overturned {
+            return None;
+        }
+        // The dashpot's force grows as u^d, that of the reset spring as u^ρ.
+        let excess = self.contact.tangential_damping() * self.contact.psi();
+        let power = f64::from(e.n) / f64::from(e.of(Stage::Main).rho - e.d);
+        Some(((excess + 1.0) / (excess - 1.0)).powf(power))
+    }
+
     /// The same system with another start, for margins that are followed beyond the contacts that
     /// have them.
     #[must_use]
@@ -252,9 +264,7 @@ impl GeneralContact {
                 };
                 return Mode { regime, progress, stage: Stage::Tail, ..mode };
             }
-            (OTHER_SIDE, Regime::Stick) => {
-                (Regime::Slip, mode.side.opposite(), Progress::Switched)
-            }
+            (OTHER_SIDE, Regime::Stick) => (Regime::Slip, mode.side.opposite(), Progress::Switched),
             (_, Regime::Stick) => (Regime::Slip, mode.side, Progress::Switched),
             (_, Regime::Slip) => (Regime::Stick, mode.side, Progress::Switched),
         };
@@ -284,7 +294,8 @@ impl ReadableSystem<STATE, GUARDS> for GeneralContact {
         let touched = matches!(mode.progress, Progress::Touched | Progress::Reset);
         // A phase that starts from a zero may be much shorter than a step.
         let leave = if touched { Guard::new(Direction::Below) } else { below };
-        let end = if self.attracts() && mode.stage != Stage::Tail { below } else { below.terminal() };
+        let end =
+            if self.attracts() && mode.stage != Stage::Tail { below } else { below.terminal() };
         // Where both limits are 0, a spring that is there slips first.
         let end = if mode.regime == Regime::Stick { end.yielding() } else { end };
         // Without damping the contact starts at u = 0.
@@ -304,8 +315,7 @@ impl ReadableSystem<STATE, GUARDS> for GeneralContact {
             (_, Progress::Switched) => [below.from_zero(2), below],
             (_, Progress::Settled) => [below, below],
         };
-        let crest =
-            if e.rescaled && mode.stage == Stage::Main { below } else { Guard::OFF };
+        let crest = if e.rescaled && mode.stage == Stage::Main { below } else { Guard::OFF };
         let reversal = Guard::new(Direction::Either).smooth();
         [end, same, other, crest, if self.reversals { reversal } else { Guard::OFF }]
     }

@@ -16,7 +16,8 @@ pub struct EnergyLedger {
     pub tangential_final: f64,
     /// Tangential energy taken by Coulomb sliding, ∫ F (s w − dL/dt) dt over all slip phases.
     pub sliding: f64,
-    /// Tangential energy left in the spring at the end, κ y²/2.
+    /// Tangential energy left in the spring at the end, κ y²/2. In other laws than the paper's: what
+    /// spring and dashpot took while sticking; negative where they create energy.
     pub spring_left: f64,
     /// Normal energy at impact, ½.
     pub normal_initial: f64,

@@ -49,7 +49,7 @@ impl GeneralFamily {
     }
 
     /// The label of the run at a point.
-    pub fn label(&self, point: &Point) -> Result<Vec<usize>, CollisionFamilyError> {
+    pub(super) fn label(&self, point: &Point) -> Result<Vec<usize>, CollisionFamilyError> {
         let (system, start) = started(self.system(point));
         let mut fired = Fired(vec![code(system.beginning())]);
         let found = run(Dop853, &system, start, f64::INFINITY, &self.options, &mut fired)
@@ -62,7 +62,7 @@ impl GeneralFamily {
     }
 
     /// The label of the run at a point, and its margins.
-    pub fn free_run(
+    pub(super) fn free_run(
         &self,
         point: &Point,
     ) -> Result<FreeRun<Vec<usize>, Margin>, CollisionFamilyError> {
@@ -79,7 +79,7 @@ impl GeneralFamily {
         let longest = found.iter().map(|(margin, _)| &margin.exits).max_by_key(|exits| exits.len());
         let corners = longest.map_or_else(Vec::new, |exits| corners(&system, exits));
         for corner in corners {
-            if let Some(value) = self.margin(point, &corner)? {
+            if let Some(value) = self.margin(point, &corner) {
                 found.push((corner, value));
             }
         }
@@ -90,32 +90,23 @@ impl GeneralFamily {
     }
 
     /// The value of a margin at a point, and its name there.
-    pub fn near_miss(
-        &self,
-        point: &Point,
-        which: &Margin,
-    ) -> Result<Option<(Margin, f64)>, CollisionFamilyError> {
+    pub(super) fn near_miss(&self, point: &Point, which: &Margin) -> Option<(Margin, f64)> {
         let system = self.system(point);
         let Some((begins, exits)) = which.exits.split_first() else {
-            let Place::Start { derivative } = which.place else { return Ok(None) };
-            let value = system.beginning_margins().into_iter().nth(derivative as usize).flatten();
-            return Ok(value.map(|value| (which.clone(), value)));
+            let Place::Start { derivative } = which.place else { return None };
+            let value = system.beginning_margins().into_iter().nth(derivative as usize)?;
+            return Some((which.clone(), value?));
         };
         let (system, start) = started(system.beginning_with(BEGINNINGS[begins.guard - BEGINS]));
         let inner = Margin { exits: exits.to_vec(), ..which.clone() };
-        let found = margin(Dop853, &system, start, f64::INFINITY, &self.options, &inner);
         // A run that cannot follow the itinerary has no such margin.
-        let found = found.ok().flatten();
-        Ok(found.map(|miss| (begun(*begins, miss.margin), miss.value)))
+        let found = margin(Dop853, &system, start, f64::INFINITY, &self.options, &inner).ok()??;
+        Some((begun(*begins, found.margin), found.value))
     }
 
     /// The value of a margin at a point.
-    pub fn margin(
-        &self,
-        point: &Point,
-        which: &Margin,
-    ) -> Result<Option<f64>, CollisionFamilyError> {
-        Ok(self.near_miss(point, which)?.map(|(_, value)| value))
+    pub(super) fn margin(&self, point: &Point, which: &Margin) -> Option<f64> {
+        self.near_miss(point, which).map(|(_, value)| value)
     }
 }
 

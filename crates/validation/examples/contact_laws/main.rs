@@ -202,9 +202,8 @@ fn compared(law: Law, seed: u64) -> Tally {
     let opinions = [
         Engine::Dop853(coarse).collide(contact).ok().map(|(collision, _)| of(&collision)),
         Engine::Dopri5(coarse).collide(contact).ok().map(|(collision, _)| of(&collision)),
-        plain::collide(contact).map(|found| {
-            (found.eps_t, longer(found.phases.into_iter(), found.contact_time))
-        }),
+        plain::collide(contact)
+            .map(|found| (found.eps_t, longer(found.phases.into_iter(), found.contact_time))),
     ];
     for (i, opinion) in opinions.into_iter().enumerate() {
         let Some((eps_t, itinerary)) = opinion else {

@@ -55,9 +55,8 @@ pub fn collide(contact: Contact) -> Option<Found> {
         h *= 1.03;
         let ended = |y: &State| y[0] <= 0.0 || (plain.ends_by_force() && plain.force(y) <= 0.0);
         let sign = plain.force(&y) > 0.0;
-        let changed = |y: &State| {
-            ended(y) || (plain.force(y) > 0.0) != sign || plain.leaves(regime, y)
-        };
+        let changed =
+            |y: &State| ended(y) || (plain.force(y) > 0.0) != sign || plain.leaves(regime, y);
         let mut next = plain.step(regime, &y, dt);
         if changed(&next) {
             let mut low = 0.0;

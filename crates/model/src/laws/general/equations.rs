@@ -5,7 +5,10 @@ use std::ops::Index;
 use stickslip_solver::Number;
 
 use super::exponents::Exponents;
-use super::{Beginning, DAMPING, FAR_GAP, FAR_RATE, GAP, GUARDS, Mode, Progress, RATE, SPRING, STATE, Stage, T as TIME, U, V, W};
+use super::{
+    Beginning, DAMPING, FAR_GAP, FAR_RATE, GAP, GUARDS, Mode, Progress, RATE, SPRING, STATE, Stage,
+    T as TIME, U, V, W,
+};
 use crate::contact::Contact;
 use crate::laws::phase::{Regime, Side};
 
@@ -98,9 +101,8 @@ impl Equations {
             [Some(room), _] if room > 0.0 => Beginning::Stick,
             [Some(_), _] if e.of(Stage::Main).rho > e.d => Beginning::Overturned,
             [Some(_), Some(excess)] if excess < 0.0 => Beginning::Reset,
-            [Some(_), _] => Beginning::Slip,
             [None, _] if self.first_orders().0 < self.first_orders().1 => Beginning::Stick,
-            [None, _] => Beginning::Slip,
+            _ => Beginning::Slip,
         }
     }
 
@@ -266,8 +268,7 @@ impl Equations {
         let dw = u[k] * pull * per_unit;
         let dspring = u[of.beta] * y[W] * self.spring_rate;
         let ddspring = (lowered(u, of.beta) * v * y[W] + u[of.beta] * dw) * self.spring_rate;
-        let spring =
-            lifted(of.rho - of.shared, u, v, dv, Jet(y[SPRING], dspring, ddspring));
+        let spring = lifted(of.rho - of.shared, u, v, dv, Jet(y[SPRING], dspring, ddspring));
         let pull1 = spring.1 * self.spring_force
             + (lowered(u, e.d - of.shared) * v * y[W] + u[e.d - of.shared] * dw) * self.dashpot;
         let ddw = (lowered(u, k) * v * pull + u[k] * pull1) * per_unit;

@@ -86,18 +86,7 @@ impl Exponents {
         };
         let unloading = stage(if law.rescaled { half } else { 0 });
         let rescaled = law.rescaled;
-        Self {
-            n,
-            last,
-            p,
-            d,
-            bend: p - d,
-            r,
-            damped,
-            rescaled,
-            loading: stage(0),
-            unloading,
-        }
+        Self { n, last, p, d, bend: p - d, r, damped, rescaled, loading: stage(0), unloading }
     }
 
     /// The powers of a stage.

@@ -1,0 +1,77 @@
+"""Contact laws of particle codes."""
+
+import json
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import stickslip
+
+DATA = Path(__file__).parents[2] / "tests" / "data" / "lammps_laws.json"
+
+
+def test_collisions_are_those_of_lammps() -> None:
+    alpha = 2 / 7
+    tangential = {"lin": "constant"}
+    for case in json.loads(DATA.read_text())["cases"][::7]:
+        scaled = case["scaled"]
+        law = {
+            "normal": {"hooke": "linear"}.get(scaled["normal"], "hertz"),
+            "damping": {"const": "linear", "sqrtx": "viscoelastic", "quarter": "tsuji"}[
+                scaled["damp"]
+            ],
+            "tangential": tangential.get(scaled["tang"], "mindlin"),
+            "history": "force" if scaled["tang"].endswith("force") else "displacement",
+            "rescaled": "rescale" in scaled["tang"],
+            "limit_damping": scaled["limit"],
+            "end": "overlap",
+        }
+        collision = stickslip.collide(
+            scaled["kappa"] / alpha,
+            scaled["g0"] * alpha / scaled["mu"],
+            scaled["cn"],
+            law=law,
+            tangential_damping=scaled["xt"] / alpha,
+        )
+        assert abs(collision.eps_t + case["eps_t"]) < 1e-4 + case["eps_t_error"]
+        assert pickle.loads(pickle.dumps(collision)).eps_t == collision.eps_t
+
+
+def test_arrays_and_single_collisions_agree() -> None:
+    name = "granular/hertz/tsuji/mindlin"
+    many = stickslip.collide_many([3.0, 30.0], 0.4, 0.3, law=name, tangential_damping=3.5)
+    eps_t = stickslip.eps_t([3.0, 30.0], 0.4, 0.3, law=name, tangential_damping=3.5)
+    assert np.array_equal(many.eps_t, eps_t)
+    assert many[1].eps_t == eps_t[1]
+    assert many.itinerary[0].startswith("-")
+
+
+def test_laws_have_names() -> None:
+    named = stickslip.laws()["yade/FrictPhys_CundallStrack"]
+    assert named.code == "YADE" and named.equations.startswith("F = x;")
+    by_name = stickslip.collide(2.0, 0.4, law=named.name)
+    assert stickslip.collide(2.0, 0.4, law=named.law).eps_t == by_name.eps_t
+
+
+def test_what_has_no_meaning_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"expected a name of stickslip.laws\(\)"):
+        stickslip.collide(2.0, 0.4, law="hooke")
+    with pytest.raises(ValueError, match="unknown variant"):
+        stickslip.collide(2.0, 0.4, law={"normal": "hooke"})
+    with pytest.raises(ValueError, match="never end"):
+        stickslip.collide(2.0, 0.4, 2.5, law="granular/hertz/tsuji/mindlin")
+    with pytest.raises(ValueError, match="tangential_damping = 1.0 has no meaning"):
+        stickslip.collide(2.0, 0.4, 0.1, law="mfix/LSD", tangential_damping=1)
+
+
+def test_atlases_have_laws(tmp_path: Path) -> None:
+    law = "gran/hooke/history+limit_damping"
+    atlas = stickslip.trace((1, 3), (0.3, 0.9), law=law)
+    assert "start-of-contact" in {boundary.kind for boundary in atlas.boundaries}
+    atlas.save(tmp_path / "atlas.json")
+    again = stickslip.Atlas.load(tmp_path / "atlas.json")
+    kappa, psi = np.linspace(1.1, 2.9, 7), np.linspace(0.35, 0.85, 7)
+    found = again.locate(kappa, psi).itinerary
+    assert found.tolist() == stickslip.collide_many(kappa, psi, law=law).itinerary.tolist()
