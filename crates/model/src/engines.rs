@@ -12,6 +12,7 @@ pub mod integrator;
 pub mod sensitivity;
 
 use crate::contact::Contact;
+use crate::laws::law::Law;
 use crate::result::{Collision, NotFinite};
 pub use estimate::Estimate;
 use exact::ExactError;
@@ -128,6 +129,21 @@ impl Engine {
             Options { rtol, atol, ..Options::default() }.validate()?;
         }
         Ok(engine)
+    }
+
+    /// As [`Self::chosen`], for collisions with a law: `auto` is the best engine for it.
+    ///
+    /// # Errors
+    /// As [`Self::chosen`].
+    pub fn chosen_for(
+        law: (Law, f64),
+        method: &str,
+        rtol: Option<f64>,
+        atol: Option<f64>,
+    ) -> Result<Self, InvalidChoice> {
+        let papers = law == (Law::PAPER, 0.0);
+        let method = if method == "auto" && !papers { "dop853" } else { method };
+        Self::chosen(method, rtol, atol)
     }
 
     /// The name of the method: `dop853`, `dopri5`, `exact` or `auto`.

@@ -119,7 +119,8 @@ pub fn eps_t<'py>(
     strict: bool,
     threads: usize,
 ) -> PyResult<Bound<'py, PyTuple>> {
-    let (points, engine) = (Points::new(&parameters, &law)?, engine.engine()?);
+    let points = Points::new(&parameters, &law)?;
+    let engine = engine.engine(points.law)?;
     let (mut eps_t, mut counts) = (Vec::new(), Vec::new());
     eps_t.reserve_exact(points.count);
     counts.reserve_exact(points.count);
@@ -285,7 +286,8 @@ pub fn collide_many<'py>(
     strict: bool,
     threads: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (points, engine) = (Points::new(&parameters, &law)?, engine.engine()?);
+    let points = Points::new(&parameters, &law)?;
+    let engine = engine.engine(points.law)?;
     let mut columns = Columns::default();
     let work = |part| Columns::of(&points, engine, part);
     Threads::new(threads, points.count)?.each(py, points.count, work, |part| {

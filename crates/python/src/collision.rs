@@ -30,7 +30,8 @@ impl Collision {
         engine: Choice,
         law: LawChoice,
     ) -> PyResult<Self> {
-        let (engine, (law, tangential_damping)) = (engine.engine()?, law.law()?);
+        let (law, tangential_damping) = law.law()?;
+        let engine = engine.engine((law, tangential_damping))?;
         let contact = Contact::new(kappa, psi, damping)
             .and_then(|contact| contact.with_law(law, tangential_damping))
             .map_err(Failure::from)?;

@@ -5,8 +5,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use stickslip_model::document::IMPACT;
 use stickslip_model::{
-    Body, Elasticity, Encounter, ImpactReport, InvalidParameter, Motion, Sphere, Surface, Vector3,
-    Wall, WallMotion, quantity,
+    Body, Elasticity, Encounter, ImpactReport, InvalidParameter, Law, Motion, Sphere, Surface,
+    Vector3, Wall, WallMotion, quantity,
 };
 
 use crate::arrays::{expect_equal, numbers};
@@ -114,7 +114,7 @@ impl Pair {
         other: MotionArguments,
         engine: Choice,
     ) -> PyResult<String> {
-        let engine = engine.engine()?;
+        let engine = engine.engine((Law::PAPER, 0.0))?;
         let first = (&self.sphere, &motion.of_sphere());
         let encounter = match &self.other {
             Body::Sphere(sphere) => {

@@ -30,7 +30,7 @@ impl Atlas {
         kappa: (f64, f64),
         psi: (f64, f64),
         ratio: Option<((f64, f64), f64, f64)>,
-        (damping, law): (f64, LawChoice),
+        collisions: (f64, LawChoice),
         tolerance: Option<f64>,
         threads: usize,
     ) -> PyResult<Self> {
@@ -39,6 +39,7 @@ impl Atlas {
             range: range(ratio),
             reduction: Reduction { mu, alpha },
         });
+        let (damping, law) = collisions;
         let (law, tangential_damping) = law.law()?;
         let usual = Frame::new(range(kappa), range(psi), damping);
         let frame = Frame { ratio, law, tangential_damping, ..usual };

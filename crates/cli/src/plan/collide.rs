@@ -63,7 +63,10 @@ impl CollidePlan {
     /// [`Failure::Usage`] says which options contradict each other.
     pub fn new(arguments: &CollideArguments) -> Result<Self, Failure> {
         let CollisionArguments { mu, alpha, damping } = arguments.collision;
-        let engine = engine(&arguments.method, Method::Dop853)?;
+        let law = law::chosen(&arguments.law)?;
+        let tangential_damping = arguments.law.tangential_damping;
+        let chosen = (law, tangential_damping.unwrap_or(0.0));
+        let engine = engine(&arguments.method, Method::Dop853, chosen)?;
         let given = Given {
             kappa: arguments.kappa,
             psi: arguments.psi,
@@ -71,8 +74,8 @@ impl CollidePlan {
             mu,
             alpha,
             damping,
-            tangential_damping: arguments.law.tangential_damping,
-            law: law::chosen(&arguments.law)?,
+            tangential_damping,
+            law,
         };
         let (Some(input), Some(out)) = (&arguments.batch, &arguments.out) else {
             let contact = contact(&given)?;

@@ -1,6 +1,6 @@
 //! What `impact` is to do.
 
-use stickslip_model::{Encounter, Engine};
+use stickslip_model::{Encounter, Engine, Law};
 
 use super::engine::engine;
 use crate::args::{Format, ImpactArguments, Method};
@@ -27,7 +27,7 @@ impl ImpactPlan {
     pub fn new(arguments: &ImpactArguments) -> Result<Self, Failure> {
         let ImpactArguments { file, method, format } = arguments;
         let encounter = bodies::read_encounter(file)?;
-        let engine = engine(method, Method::Dop853)?;
+        let engine = engine(method, Method::Dop853, (Law::PAPER, 0.0))?;
         Ok(Self { encounter, engine, format: *format })
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use stickslip_model::Engine;
+use stickslip_model::{Engine, Law};
 use stickslip_plane::atlas::RatioRange;
 use stickslip_plane::{Coordinates, Grid, GridAxis, Range};
 
@@ -69,7 +69,7 @@ impl MapPlan {
         let tangential_damping = arguments.law.tangential_damping.unwrap_or(0.0);
         let MapAxes { columns, rows, coordinates, engine } = match bodies {
             Some(file) => MapAxes::of_bodies(arguments, file)?,
-            None => MapAxes::scaled(arguments)?,
+            None => MapAxes::scaled(arguments, (law, tangential_damping))?,
         };
         Ok(Self {
             grid: Grid {
@@ -129,10 +129,10 @@ struct MapAxes {
 
 impl MapAxes {
     /// The axes κ and ψ, or κ and g_t/g_n.
-    fn scaled(arguments: &MapArguments) -> Result<Self, Failure> {
+    fn scaled(arguments: &MapArguments, law: (Law, f64)) -> Result<Self, Failure> {
         let MapArguments { kappa, psi, ratio, collisions, ref method, .. } = *arguments;
         let window = KappaWindow::new(kappa, psi, ratio, collisions)?;
-        let engine = engine(method, Method::Auto)?;
+        let engine = engine(method, Method::Auto, law)?;
         let damping = collisions.damping.unwrap_or(0.0);
         let (rows, coordinates) = match window.impact {
             ImpactRange::Psi(psi) => (psi, Coordinates::Psi { damping }),
@@ -150,7 +150,7 @@ impl MapAxes {
             return Err(Failure::Usage(message.to_owned()));
         };
         let pair = bodies::read_pair(file)?;
-        let engine = engine(&arguments.method, Method::Auto)?;
+        let engine = engine(&arguments.method, Method::Auto, (Law::PAPER, 0.0))?;
         Ok(Self { columns, rows, coordinates: Coordinates::Velocities { pair }, engine })
     }
 }

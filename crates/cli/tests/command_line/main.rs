@@ -15,6 +15,7 @@ mod completions;
 mod converge;
 mod impact;
 mod impact_failures;
+mod laws;
 mod man;
 mod map;
 mod map_failures;

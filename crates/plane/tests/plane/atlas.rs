@@ -223,12 +223,7 @@ fn progress_tells_of_as_many_steps_as_it_announced() {
 
 #[test]
 fn a_damped_window_is_traced_by_integration() {
-    let frame = Frame {
-        kappa: Range { low: 10.0, high: 11.0 },
-        psi: Range { low: 0.9, high: 1.0 },
-        ratio: None,
-        damping: 0.05,
-    };
+    let frame = Frame::new(Range { low: 10.0, high: 11.0 }, Range { low: 0.9, high: 1.0 }, 0.05);
     let verified = traced(frame);
     assert!(verified.report.agrees, "{:?}", verified.report);
     let itinerary = verified.atlas.itinerary(0);

@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             .into_par_iter()
             .map(|seed| compared(law, number as u64 * 1_000_000_007 + seed))
             .reduce(Tally::default, Tally::with);
-        println!("{number:3} {}: {tally}", name(&law));
+        println!("{number:3} {}: {tally}", name(law));
         total = total.with(tally);
     }
     println!("all: {total}");
@@ -78,10 +78,10 @@ fn laws() -> Vec<Law> {
     laws
 }
 
-fn name(law: &Law) -> String {
+fn name(law: Law) -> String {
     let Law { normal, damping, tangential, history, rescaled, limit_damping, end } = law;
-    let rescaled = if *rescaled { " rescaled" } else { "" };
-    let limit = if *limit_damping { " limited" } else { "" };
+    let rescaled = if rescaled { " rescaled" } else { "" };
+    let limit = if limit_damping { " limited" } else { "" };
     format!("{normal:?} {damping:?} {tangential:?} {history:?}{rescaled} {end:?}{limit}")
 }
 

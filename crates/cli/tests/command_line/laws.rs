@@ -1,0 +1,145 @@
+//! Contact laws.
+
+use serde_json::{Value, json};
+
+use crate::{Workspace, npz, reference, rows, stickslip};
+
+/// α of a homogeneous sphere.
+const ALPHA: f64 = 2.0 / 7.0;
+
+#[test]
+fn a_law_is_listed_and_printed_as_a_file() {
+    let listed = stickslip("laws");
+    assert_eq!((listed.code, listed.stderr.as_str()), (0, ""));
+    assert!(listed.stdout.contains("gran/hertz/history"), "{}", listed.stdout);
+    let ran = stickslip("laws --format json");
+    let laws: Value = serde_json::from_str(&ran.stdout).unwrap();
+    for law in laws.as_array().unwrap() {
+        let name = law["name"].as_str().unwrap();
+        let printed = stickslip(&format!("laws {name} --format json"));
+        let printed: Value = serde_json::from_str(&printed.stdout).unwrap();
+        assert_eq!(printed, law["law"], "{name}");
+        let shown = stickslip(&format!("laws {name}")).stdout;
+        assert!(shown.contains(law["equations"].as_str().unwrap()), "{shown}");
+        assert!(shown.contains(law["source"].as_str().unwrap()), "{shown}");
+    }
+    let unknown = stickslip("laws hooke");
+    assert_eq!(unknown.code, 2);
+    assert!(unknown.stderr.contains("expected a name that `stickslip laws` lists"));
+}
+
+#[test]
+fn a_collision_is_the_same_by_name_by_file_and_in_a_batch() {
+    let directory = Workspace::new();
+    let name = "granular/hertz/tsuji/mindlin_rescale/force+limit_damping";
+    directory.write("law.json", stickslip(&format!("laws {name} --format json")).stdout);
+    directory.write("in.csv", "kappa,psi,damping,tangential_damping\n3,0.4,0.3,3.5\n3,0.4,0.3,0\n");
+    let one = "collide --kappa 3 --psi 0.4 --damping 0.3 --tangential-damping 3.5 --format json";
+    let by_name = directory.run(&format!("{one} --law {name}"));
+    let by_file = directory.run(&format!("{one} --law law.json"));
+    assert_eq!((by_name.code, &by_name.stdout), (0, &by_file.stdout));
+    let found: Value = serde_json::from_str(&by_name.stdout).unwrap();
+    assert_eq!(found["parameters"]["law"]["rescaled"], true);
+    assert_eq!(found["parameters"]["tangential_damping"], 3.5);
+    let ran = directory.run("collide --batch in.csv --law law.json --out out.csv");
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    let rows = rows(&directory.read("out.csv"));
+    assert_eq!(rows[1][5].parse::<f64>().unwrap(), found["eps_t"].as_f64().unwrap());
+    assert_ne!(rows[1][5], rows[2][5]);
+}
+
+#[test]
+fn collisions_are_those_of_lammps() {
+    let directory = Workspace::new();
+    for case in reference("lammps_laws.json", "cases").iter().step_by(20) {
+        let scaled = &case["scaled"];
+        let number = |name: &str| scaled[name].as_f64().unwrap();
+        let tangential = scaled["tang"].as_str().unwrap();
+        let law = json!({
+            "normal": if scaled["normal"] == "hooke" { "linear" } else { "hertz" },
+            "damping": match scaled["damp"].as_str().unwrap() {
+                "const" => "linear",
+                "sqrtx" => "viscoelastic",
+                _ => "tsuji",
+            },
+            "tangential": if tangential == "lin" { "constant" } else { "mindlin" },
+            "history": if tangential.ends_with("force") { "force" } else { "displacement" },
+            "rescaled": tangential.contains("rescale"),
+            "limit_damping": scaled["limit"],
+            "end": "overlap",
+        });
+        directory.write("law.json", law.to_string());
+        let ran = directory.run(&format!(
+            "collide --kappa {} --psi {} --damping {} --tangential-damping {} --law law.json \
+             --format json",
+            number("kappa") / ALPHA,
+            number("g0") * ALPHA / number("mu"),
+            number("cn"),
+            number("xt") / ALPHA
+        ));
+        assert_eq!(ran.code, 0, "{}", ran.stderr);
+        let found: Value = serde_json::from_str(&ran.stdout).unwrap();
+        let expected = -case["eps_t"].as_f64().unwrap();
+        let error = (found["eps_t"].as_f64().unwrap() - expected).abs();
+        assert!(error < 1e-4 + case["eps_t_error"].as_f64().unwrap(), "{case}");
+    }
+}
+
+#[test]
+fn what_is_no_law_is_refused() {
+    let directory = Workspace::new();
+    directory.write("law.json", r#"{"normal": "hooke"}"#);
+    directory.write("extra.json", r#"{"stiffness": 3}"#);
+    for (law, expected, code) in [
+        ("nowhere", "is neither a file nor a name", 2),
+        ("law.json", "normal: unknown variant `hooke`, expected `linear` or `hertz`", 2),
+        ("extra.json", "unknown field `stiffness`", 2),
+        ("granular/hertz/tsuji/mindlin --damping 2.3", "never end", 2),
+        ("yade/FrictPhys_CundallStrack --damping 0.1", "this law has no damping", 2),
+        ("mfix/LSD --damping 0.1 --tangential-damping 1", "has no meaning in the law mfix/LSD", 2),
+        ("gran/hooke/history --method exact", "there is no exact solution", 1),
+        ("gran/hooke/history --plot a.svg", "for the paper's contact law only", 1),
+    ] {
+        let ran = directory.run(&format!("collide --kappa 3 --psi 0.4 --law {law}"));
+        assert_eq!(ran.code, code, "{law}: {}", ran.stderr);
+        assert!(ran.stderr.contains(expected), "{law}: {}", ran.stderr);
+    }
+}
+
+#[test]
+fn a_badly_conditioned_start_is_said() {
+    let law = "--law granular/hertz/tsuji/mindlin --damping 0.3 --tangential-damping 4";
+    let ran = stickslip(&format!("collide --kappa 3 --psi 0.5 {law}"));
+    assert!(ran.stdout.contains("only when the overlap is 8.100e1 times"), "{}", ran.stdout);
+    let calm = stickslip(&format!("collide --kappa 3 --psi 0.1 {law}"));
+    assert!(!calm.stdout.contains("Badly conditioned"), "{}", calm.stdout);
+}
+
+#[test]
+fn maps_and_atlases_know_their_law() {
+    let directory = Workspace::new();
+    let law = "--law gran/hooke/history+limit_damping";
+    let window = "--kappa 1:3 --psi 0.3:0.9";
+    let ran = directory.run(&format!("map {window} --size 4x3 --damping 0.1 {law} --out map.npz"));
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    let arrays = npz(&directory.path("map.npz"));
+    let text = |name: &str| arrays.iter().find(|array| array.0 == name).unwrap().1.text();
+    assert!(text("law").contains(r#""normal":"linear""#));
+
+    let ran = directory.run(&format!("trace {window} {law} --out atlas.json --plot atlas.svg"));
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    let atlas: Value = serde_json::from_str(&directory.read("atlas.json")).unwrap();
+    assert_eq!(atlas["window"]["law"]["limit_damping"], true);
+    let kinds: Vec<&Value> =
+        atlas["boundaries"].as_array().unwrap().iter().map(|boundary| &boundary["kind"]).collect();
+    assert!(kinds.iter().any(|kind| *kind == "start-of-contact"), "{kinds:?}");
+    directory.write("points.csv", "kappa,psi\n1.1,0.35\n2,0.6\n2.9,0.85\n1.5,0.666666666666\n");
+    let ran = directory.run("locate --atlas atlas.json --batch points.csv --out located.csv");
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    directory.run(&format!("collide --batch points.csv {law} --out collided.csv"));
+    let (located, collided) =
+        (rows(&directory.read("located.csv")), rows(&directory.read("collided.csv")));
+    for (located, collided) in located.iter().zip(&collided).skip(1) {
+        assert_eq!((&located[2], &located[3]), (&collided[4], &collided[5]));
+    }
+}
