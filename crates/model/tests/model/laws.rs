@@ -274,9 +274,8 @@ fn contacts_on_the_verge_of_slip_are_resolved() {
         let (kappa, tangential_damping) = if damped { (2.0, 2.0) } else { (2.0, 0.0) };
         // ψ at which a contact starts to slip: where dashpot or spring grow as the limit does.
         let verge = match (damped, law.tangential, law.history) {
-            (true, _, _) => 0.5,
             (false, Tangential::Mindlin, HistoryOf::Force) => 0.75,
-            (false, ..) => 0.5,
+            _ => 0.5,
         };
         let at = |psi: f64| {
             let damping = if damped { 0.3 } else { 0.0 };

@@ -73,8 +73,8 @@ impl GeneralFamily {
         let mut found: Vec<_> = found
             .near_misses
             .into_iter()
-            .filter(|miss| matters(&miss.margin))
             .map(|miss| (begun(begins, miss.margin), miss.value))
+            .filter(|(margin, _)| is_sure(margin))
             .collect();
         let longest = found.iter().map(|(margin, _)| &margin.exits).max_by_key(|exits| exits.len());
         let corners = longest.map_or_else(Vec::new, |exits| corners(&system, exits));
@@ -113,15 +113,11 @@ impl GeneralFamily {
 /// Whether the itinerary changes where a margin vanishes, and not only the order of events.
 pub fn is_sure(margin: &Margin) -> bool {
     match margin.place {
+        _ if margin.guard == CREST => false,
         Place::Minimum { .. } | Place::Maximum { .. } | Place::End | Place::Branch(_) => true,
         Place::Exit(exit) => exit.guard == END,
         Place::Start { .. } => margin.exits.is_empty(),
     }
-}
-
-/// Whether a margin may say anything about switches.
-fn matters(margin: &Margin) -> bool {
-    margin.guard != CREST
 }
 
 fn started(system: GeneralContact) -> System {

@@ -6,5 +6,6 @@ mod document;
 #[cfg(feature = "geojson")]
 mod geojson;
 mod grid;
+mod laws;
 mod sweep;
 mod windows;

@@ -30,7 +30,8 @@ pub struct ClosedForms {
 impl ClosedForms {
     /// The closed forms in `window`, which `panel` shows.
     pub fn of(window: &Frame, panel: &Panel) -> Self {
-        if window.damping != 0.0 {
+        let Frame { damping, law, tangential_damping, .. } = *window;
+        if damping != 0.0 || !law.acts_as_paper(damping, tangential_damping) {
             return Self { top: Vec::new(), limits: Vec::new() };
         }
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]

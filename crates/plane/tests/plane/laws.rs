@@ -1,0 +1,79 @@
+//! Atlases of contact laws of particle codes, against closed forms.
+
+use stickslip_model::presets;
+use stickslip_plane::atlas::{BoundaryKind, Frame, VerifiedAtlas};
+
+use crate::windows::{frame, traced};
+
+fn with_law(name: &str, damping: f64, window: Frame) -> Frame {
+    Frame { law: presets::find(name).unwrap().law, damping, ..window }
+}
+
+/// No collision has other switches than its region. The tracer may leave a change open where a
+/// boundary that runs straight up meets the edge of the window.
+fn agrees_with_collisions(verified: &VerifiedAtlas) {
+    let report = &verified.report;
+    assert!(report.mismatches.is_empty() && report.findings.is_empty(), "{report:?}");
+    assert!(report.unresolved.len() <= 1 && report.share_tried > 0.999, "{report:?}");
+}
+
+/// Without damping, a linear contact is made of sines: x = sin t, and Q = √κ ψ sin √κ t in stick.
+/// It starts in slip above κψ = 1. In the slip that follows, the spring all but sticks at the end
+/// where ψ = 2 − 1/κ; below κψ = 1 the spring is at zero at the end where κ is a square.
+#[test]
+fn a_linear_contact_has_its_closed_forms() {
+    let verified = traced(with_law("gran/hooke/history", 0.0, frame((0.7, 3.5), (0.2, 1.9))));
+    agrees_with_collisions(&verified);
+    let atlas = &verified.atlas;
+    for kappa in [0.8, 0.9] {
+        let found = atlas.boundaries_at(kappa);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!((found[0] - 1.0 / kappa).abs() < 1e-9, "{found:?}");
+    }
+    for kappa in [1.3, 2.0, 3.0] {
+        let found = atlas.boundaries_at(kappa);
+        let expected = [1.0 / kappa, 2.0 - 1.0 / kappa];
+        assert_eq!(found.len(), 2, "{found:?}");
+        assert!(found.iter().zip(expected).all(|(one, other)| (one - other).abs() < 1e-9));
+    }
+    let curves = atlas.regions.curves().iter();
+    let upright = curves.filter(|curve| curve.margin == BoundaryKind::EndOfContact);
+    let upright: Vec<f64> = upright
+        .flat_map(|curve| &curve.nodes)
+        .map(|node| atlas.chart.parameters(&node.point))
+        .filter(|[kappa, psi]| kappa * psi < 0.99)
+        .map(|[kappa, _]| kappa)
+        .collect();
+    assert!(upright.len() > 1 && upright.iter().all(|kappa| (kappa - 1.0).abs() < 1e-8));
+    assert_eq!(atlas.itinerary(region(atlas, 0.9, 0.5)), "o+");
+    assert_eq!(atlas.itinerary(region(atlas, 1.5, 0.5)), "o-");
+    assert_eq!(atlas.itinerary(region(atlas, 2.0, 1.6)), "+");
+}
+
+fn region(atlas: &stickslip_plane::atlas::Atlas, kappa: f64, psi: f64) -> usize {
+    let contact = stickslip_model::Contact::new(kappa, psi, 0.0).unwrap();
+    atlas.locate(&contact).region.unwrap()
+}
+
+/// With Mindlin's stiffness and force history a contact starts in slip above (2/3)κψ = 1.
+#[test]
+fn a_force_history_starts_in_slip() {
+    let name = "granular/hertz/tsuji/mindlin/force";
+    let verified = traced(with_law(name, 0.0, frame((1.0, 2.0), (0.5, 2.0))));
+    agrees_with_collisions(&verified);
+    for kappa in [1.1, 1.5, 1.9] {
+        let found = verified.atlas.boundaries_at(kappa);
+        let start = found.iter().any(|psi| (psi - 1.5 / kappa).abs() < 1e-9);
+        assert!(start, "{kappa}: {found:?}");
+    }
+}
+
+/// Where attraction is limited, damped contacts are divided completely too.
+#[test]
+fn a_limited_contact_is_traced_with_damping() {
+    let name = "granular/hertz/viscoelastic/linear_history+limit_damping";
+    let window = Frame { tangential_damping: 0.5, ..frame((1.0, 8.0), (0.2, 1.5)) };
+    let verified = traced(with_law(name, 0.2, window));
+    assert!(verified.report.agrees, "{:?}", verified.report);
+    assert!(verified.atlas.regions.curves().len() > 3);
+}
