@@ -4,9 +4,10 @@ use std::process::Command;
 
 use crate::{Workspace, stickslip};
 
-const COMMANDS: [&str; 11] = [
+const COMMANDS: [&str; 12] = [
     "collide",
     "impact",
+    "laws",
     "map",
     "join",
     "trace",

@@ -4,13 +4,14 @@ use std::process::Command;
 
 use crate::{Workspace, stickslip};
 
-const PAGES: [&str; 12] = [
+const PAGES: [&str; 13] = [
     "stickslip-asymptote.1",
     "stickslip-collide.1",
     "stickslip-completions.1",
     "stickslip-converge.1",
     "stickslip-impact.1",
     "stickslip-join.1",
+    "stickslip-laws.1",
     "stickslip-locate.1",
     "stickslip-man.1",
     "stickslip-map.1",
