@@ -27,7 +27,9 @@ def test_fields_of_records() -> None:
     course = stickslip.collide(63, 0.5).history(table["psi"])
     assert np.array_equal(course, stickslip.collide(63, 0.5).history(plain[1]))
     with pytest.raises(ValueError, match="not aligned"):
-        _native.eps_t((table["kappa"], plain[1], plain[1]), ("exact", None, None), ("paper", 0.0), True, 1)
+        _native.eps_t(
+            (table["kappa"], plain[1], plain[1]), ("exact", None, None), ("paper", 0.0), True, 1
+        )
 
 
 def test_a_right_hand_side_may_return_a_field() -> None:
