@@ -153,8 +153,7 @@ fn checked(switching: Switching, place: impl Fn() -> String) -> Result<String, D
     let Switching { switch_count: count, itinerary } = switching;
     let phases = itinerary.as_bytes();
     let known = !phases.is_empty() && phases.iter().all(|phase| b"+o-".contains(phase));
-    // Slip may change its side where its limit is zero.
-    let alternating = phases.windows(2).all(|pair| pair[0] != pair[1]);
+    let alternating = phases.windows(2).all(|pair| (pair[0] == b'o') != (pair[1] == b'o'));
     if known && alternating && switch_count(&itinerary) == count {
         return Ok(itinerary);
     }
