@@ -143,7 +143,10 @@ fn every_law_runs_and_keeps_its_accounts() {
             assert!(energy.normal_unbalanced().abs() < 1e-9, "{contact:?}");
             assert!(collision.eps_n >= 0.0 && collision.eps_n < 1.0 + 1e-9, "{contact:?}");
             let phases: Vec<char> = collision.itinerary().chars().collect();
-            assert!(phases.windows(2).all(|pair| (pair[0] == 'o') != (pair[1] == 'o')), "{contact:?}");
+            assert!(
+                phases.windows(2).all(|pair| (pair[0] == 'o') != (pair[1] == 'o')),
+                "{contact:?}"
+            );
             let left: Vec<f64> = collision.switches.iter().map(|switch| switch.time_left).collect();
             assert!(left.windows(2).all(|pair| pair[0] >= pair[1]), "{contact:?}");
         }
