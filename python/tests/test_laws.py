@@ -75,3 +75,10 @@ def test_atlases_have_laws(tmp_path: Path) -> None:
     kappa, psi = np.linspace(1.1, 2.9, 7), np.linspace(0.35, 0.85, 7)
     found = again.locate(kappa, psi).itinerary
     assert found.tolist() == stickslip.collide_many(kappa, psi, law=law).itinerary.tolist()
+
+
+def test_what_is_known_of_the_paper_s_law_alone_is_refused() -> None:
+    found = stickslip.collide(2.0, 0.4, 0.1, law="gran/hertz/history")
+    for ask in (found.sensitivity, found.estimate, found.history, found.picture):
+        with pytest.raises(stickslip.ComputationError, match="for the paper's contact law only"):
+            ask()

@@ -75,6 +75,11 @@ impl Contact {
         Ok(Self { tangential_damping, law, ..self })
     }
 
+    /// The same κ, ψ and damping with the paper's law.
+    pub(crate) fn with_paper_law(self) -> Self {
+        Self { tangential_damping: 0.0, law: Law::PAPER, ..self }
+    }
+
     /// Scaled stiffness κ of the tangential spring.
     #[must_use]
     pub fn kappa(&self) -> f64 {
@@ -131,6 +136,14 @@ impl Contact {
     pub fn obeys_paper(&self) -> bool {
         self.law.acts_as_paper(self.damping, self.tangential_damping)
     }
+
+    /// Checks that the paper's law holds, for `what` is computed for no other.
+    ///
+    /// # Errors
+    /// [`OtherLaw`] unless [`Self::obeys_paper`].
+    pub fn require_paper(&self, what: &'static str) -> Result<(), OtherLaw> {
+        if self.obeys_paper() { Ok(()) } else { Err(OtherLaw { what }) }
+    }
 }
 
 fn in_range(
@@ -140,6 +153,14 @@ fn in_range(
     ok: bool,
 ) -> Result<(), InvalidParameter> {
     if ok && value.is_finite() { Ok(()) } else { Err(InvalidParameter { name, value, expected }) }
+}
+
+/// What was asked for is computed for the paper's contact law only.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("{what} of a collision is computed for the paper's contact law only")]
+pub struct OtherLaw {
+    /// What was asked for.
+    pub what: &'static str,
 }
 
 /// A parameter of a collision is out of its range.

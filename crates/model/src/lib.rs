@@ -42,7 +42,7 @@ mod result;
 mod serialize;
 mod spheres;
 
-pub use contact::{Contact, InvalidParameter};
+pub use contact::{Contact, InvalidParameter, OtherLaw};
 pub use engines::domain::OutOfDomain;
 pub use engines::history::{History, PhaseHistory, Snapshot};
 #[doc(hidden)]

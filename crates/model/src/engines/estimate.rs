@@ -1,5 +1,6 @@
 //! The error to expect of a collision, and how far its itinerary is from changing.
 
+use super::integrator::CollisionError;
 use super::{Engine, EngineError, Tolerances, exact};
 use crate::laws::phase::Regime;
 use crate::result::Collision;
@@ -59,6 +60,7 @@ impl Engine {
     /// As [`Self::collide`].
     pub fn estimate(&self, collision: &Collision) -> Result<Estimate, EngineError> {
         let contact = collision.contact;
+        contact.require_paper("the estimate").map_err(CollisionError::Law)?;
         let engine = self.resolved(&contact);
         let distance = exact::distance(&contact)?;
         let difference = match engine {

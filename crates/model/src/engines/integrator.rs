@@ -10,7 +10,7 @@ mod reversals;
 
 use super::domain::{self, OutOfDomain};
 use super::history::History;
-use crate::contact::Contact;
+use crate::contact::{Contact, OtherLaw};
 use crate::laws::phase::{END, Phase, Regime};
 use crate::laws::regularized::Regularized;
 use crate::laws::regularized::components::{DAMPING, STATE, T, U};
@@ -157,6 +157,7 @@ impl Collider {
     /// # Errors
     /// As [`Self::collide`].
     pub fn collide_finely(&self, contact: Contact) -> Result<Option<Collision>, CollisionError> {
+        contact.require_paper("the finest solution")?;
         let mut collision = self.collide(contact)?;
         let options = self.options_for(&contact)?;
         Ok(refine::refine(self.pair, &options, &mut collision).then_some(collision))
@@ -248,9 +249,7 @@ impl Collider {
 
     /// The options for `contact` where its course is kept.
     fn recorded_options(&self, contact: &Contact) -> Result<Options, CollisionError> {
-        if !contact.obeys_paper() {
-            return Err(CollisionError::Law { what: "the course" });
-        }
+        contact.require_paper("the course")?;
         let options = self.options_for(contact)?;
         Ok(Options { max_steps: options.max_steps.min(History::MOST_STEPS), ..options })
     }
@@ -305,12 +304,9 @@ pub enum CollisionError {
     /// The integration failed.
     #[error(transparent)]
     Run(#[from] RunError),
-    /// Only for the paper's law.
-    #[error("{what} of a collision is computed for the paper's contact law only")]
-    Law {
-        /// What was asked for.
-        what: &'static str,
-    },
+    /// The contact has another law than the paper's.
+    #[error(transparent)]
+    Law(#[from] OtherLaw),
     /// The contact did not end.
     #[error("the contact has not ended at scaled time {time}: {outcome:?}")]
     Unfinished {

@@ -79,6 +79,7 @@ impl Collider {
     /// [`RunError::State`](stickslip_solver::RunError::State).
     pub fn sensitivity(&self, contact: Contact) -> Result<Sensitivity, CollisionError> {
         const TOGETHER: usize = STATE * (1 + PARAMETERS);
+        contact.require_paper("the sensitivity")?;
         let system = Regularized::new(contact);
         let start = Start { mode: Phase::first(&contact), s: 0.0, state: system.start() };
         let by = Parameter::ALL.map(|p| State::from(system.equations.start_by(contact.psi(), p)));

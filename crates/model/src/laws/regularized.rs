@@ -42,9 +42,10 @@ pub struct Regularized {
 }
 
 impl Regularized {
-    /// The system of one contact.
+    /// The system of one contact: that of the paper's law at its κ, ψ and a, whatever law it has.
     #[must_use]
     pub fn new(contact: Contact) -> Self {
+        let contact = contact.with_paper_law();
         Self { contact, equations: Equations::new(&contact) }
     }
 

@@ -4,7 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value;
 use stickslip_model::{
-    Collision, Contact, Damping, End, Engine, HistoryOf, Law, Normal, Tangential, exact, presets,
+    Collider, Collision, CollisionError, Contact, Damping, End, Engine, EngineError, HistoryOf,
+    Law, Normal, Tangential, exact, presets, regularized::Regularized,
 };
 
 use crate::common::file;
@@ -221,6 +222,24 @@ fn a_linear_contact_has_a_closed_form() {
         assert!((collision.contact_time - duration).abs() < 1e-11 * duration);
         assert!((collision.eps_n - (-damping * duration / 2.0).exp()).abs() < 1e-11);
     }
+}
+
+#[test]
+fn what_is_known_of_the_paper_s_law_alone_is_refused() {
+    let law = Law { normal: Normal::Linear, ..Law::PAPER };
+    let contact = Contact::new(18.0, 0.4, 0.1).unwrap().with_law(law, 0.0).unwrap();
+    let collider = Collider::default();
+    let is_law = |error| matches!(error, CollisionError::Law(_));
+    assert!(collider.sensitivity(contact).is_err_and(is_law));
+    assert!(collider.collide_finely(contact).is_err_and(is_law));
+    assert!(collider.history(contact).is_err_and(is_law));
+    assert!(collider.followed(contact).is_err_and(is_law));
+    assert_eq!(exact::collide(contact).unwrap_err(), exact::ExactError::Law);
+    let collision = collide(contact);
+    let estimate = Engine::Auto.estimate(&collision).unwrap_err();
+    assert!(matches!(estimate, EngineError::Collision(CollisionError::Law(_))));
+    // The equations in regularised coordinates are those of the paper, and say so.
+    assert!(Regularized::new(contact).contact().obeys_paper());
 }
 
 #[test]

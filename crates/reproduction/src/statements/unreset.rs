@@ -63,8 +63,10 @@ pub struct UnresetCollision {
 /// ```
 ///
 /// # Errors
-/// [`CollisionError`]: the integration fails, or the contact does not end.
+/// [`CollisionError`]: the contact has another law, the integration fails, or the contact does not
+/// end.
 pub fn collide(contact: Contact) -> Result<UnresetCollision, CollisionError> {
+    contact.require_paper("the unreset spring")?;
     let system = UnresetSpring::new(contact);
     let (rtol, atol) = (Collider::RTOL, Collider::ATOL);
     let options =

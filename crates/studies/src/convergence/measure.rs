@@ -78,13 +78,13 @@ impl Approximation {
     }
 }
 
-/// The collision to compare with: without damping the exact solution, with damping Dormand–Prince
-/// 8(5,3) at a tolerance of 1e-15.
+/// The collision to compare with: without damping the exact solution, with damping or in other
+/// laws than the paper's Dormand–Prince 8(5,3) at a tolerance of 1e-15.
 ///
 /// # Errors
 /// [`EngineError`]: the exact solution or the integrator fails.
 pub fn reference(contact: Contact) -> Result<Collision, EngineError> {
-    if contact.damping() > 0.0 {
+    if contact.damping() > 0.0 || !contact.obeys_paper() {
         Ok(Collider::with_tolerances(Pair::Dop853, 1e-15, 1e-15).collide(contact)?)
     } else {
         Ok(exact::collide(contact)?)
@@ -115,6 +115,7 @@ pub fn integrate(
     coordinates: Coordinates,
     switching: &Switching,
 ) -> Result<Approximation, CollisionError> {
+    contact.require_paper("the convergence")?;
     let phase = Phase::first(&contact);
     let mut switches = SwitchRecord { found: Vec::new(), clock: coordinates, elapsed: 0.0 };
     let (outcome, final_velocity, statistics) = match coordinates {
@@ -273,8 +274,10 @@ impl<const N: usize> Observer<Phase, N> for SwitchRecord {
 
 #[cfg(test)]
 mod tests {
+    use stickslip_model::{Damping, Law, Normal};
     use stickslip_solver::{Dopri5, StepSize};
 
+    use super::super::{InvalidConvergence, Settings};
     use super::*;
 
     const FIXED: Options = Options {
@@ -325,6 +328,19 @@ mod tests {
                 assert!(times.iter().all(|t| *t < time), "{contact:?} {coordinates:?} {times:?}");
             }
         }
+    }
+
+    #[test]
+    fn other_laws_are_refused() {
+        let law = Law { normal: Normal::Linear, damping: Damping::Linear, ..Law::PAPER };
+        let contact = Contact::new(18.0, 0.4, 0.1).unwrap().with_law(law, 0.0).unwrap();
+        let located = Switching::Located { options: FIXED };
+        for coordinates in [Coordinates::Regularized, Coordinates::PlainTime] {
+            let found = integrate(Pair::Dopri5, contact, coordinates, &located);
+            assert!(matches!(found, Err(CollisionError::Law(_))));
+        }
+        let settings = Settings { contacts: vec![contact] };
+        assert!(matches!(settings.validate(), Err(InvalidConvergence::Law(_))));
     }
 
     #[test]

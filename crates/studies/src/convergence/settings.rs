@@ -1,6 +1,6 @@
 //! What a study of convergence is about.
 
-use stickslip_model::{Contact, InvalidParameter};
+use stickslip_model::{Contact, InvalidParameter, OtherLaw};
 
 use crate::paper::{Reading, STIFFNESS};
 
@@ -28,6 +28,9 @@ pub enum InvalidConvergence {
         /// The stiffness of the collision.
         kappa: f64,
     },
+    /// A collision has another law than the paper's.
+    #[error(transparent)]
+    Law(#[from] OtherLaw),
 }
 
 impl Settings {
@@ -47,10 +50,13 @@ impl Settings {
     /// Checks all settings.
     ///
     /// # Errors
-    /// [`InvalidConvergence`]: there is no collision, or one is too stiff.
+    /// [`InvalidConvergence`]: there is no collision, or one is too stiff or of another law.
     pub fn validate(&self) -> Result<(), InvalidConvergence> {
         if self.contacts.is_empty() {
             return Err(InvalidConvergence::NoContacts);
+        }
+        for contact in &self.contacts {
+            contact.require_paper("the convergence")?;
         }
         match self.contacts.iter().find(|contact| contact.kappa() > MOST_STIFFNESS) {
             Some(stiff) => Err(InvalidConvergence::Stiff { kappa: stiff.kappa() }),
