@@ -79,6 +79,15 @@ def test_atlases_have_laws(tmp_path: Path) -> None:
 
 def test_what_is_known_of_the_paper_s_law_alone_is_refused() -> None:
     found = stickslip.collide(2.0, 0.4, 0.1, law="gran/hertz/history")
-    for ask in (found.sensitivity, found.estimate, found.history, found.picture):
+    for ask in (found.sensitivity, found.estimate):
         with pytest.raises(stickslip.ComputationError, match="for the paper's contact law only"):
             ask()
+
+
+def test_courses_are_those_of_the_law() -> None:
+    found = stickslip.collide(12.0, 0.6, 0.3, law="granular/hertz/tsuji/mindlin_rescale")
+    course = found.history()
+    assert course["velocity"][0] == 0.6 and course["velocity"][-1] == found.w_final
+    assert course["normal_force"].min() < -0.05
+    assert np.all(np.abs(course["tangential_force"]) <= np.abs(course["normal_force"]) + 1e-12)
+    assert "b = " not in found.picture() and "stick" in found.picture()

@@ -101,10 +101,10 @@ fn row(index: usize, switch: &Switch) -> [String; 7] {
 
 fn energy(out: &mut dyn Write, collision: &Collision) -> io::Result<()> {
     let ledger = &collision.energy;
-    let left = if collision.contact.obeys_paper() {
-        "left in spring, compression"
+    let [taken, left] = if collision.contact.obeys_paper() {
+        ["taken by sliding, damping", "left in spring, compression"]
     } else {
-        "taken by spring and dashpot, left in compression"
+        ["lost in slip, taken by damping", "lost in stick, left in compression"]
     };
     writeln!(out)?;
     aligned(
@@ -113,7 +113,7 @@ fn energy(out: &mut dyn Write, collision: &Collision) -> io::Result<()> {
             ["energy".to_owned(), "tangential".to_owned(), "normal".to_owned()],
             entry("at impact", ledger.tangential_initial, ledger.normal_initial),
             entry("motion at the end", ledger.tangential_final, ledger.normal_final),
-            entry("taken by sliding, damping", ledger.sliding, ledger.damping),
+            entry(taken, ledger.sliding, ledger.damping),
             entry(left, ledger.spring_left, ledger.compression_left),
             entry("unbalanced", ledger.tangential_unbalanced(), ledger.normal_unbalanced()),
         ],

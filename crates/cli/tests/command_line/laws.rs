@@ -98,11 +98,23 @@ fn what_is_no_law_is_refused() {
         ("yade/FrictPhys_CundallStrack --damping 0.1", "this law has no damping", 2),
         ("mfix/LSD --damping 0.1 --tangential-damping 1", "has no meaning in the law mfix/LSD", 2),
         ("gran/hooke/history --method exact", "there is no exact solution", 1),
-        ("gran/hooke/history --plot a.svg", "for the paper's contact law only", 1),
+        ("gran/hooke/history --estimate", "for the paper's contact law only", 1),
     ] {
         let ran = directory.run(&format!("collide --kappa 3 --psi 0.4 --law {law}"));
         assert_eq!(ran.code, code, "{law}: {}", ran.stderr);
         assert!(ran.stderr.contains(expected), "{law}: {}", ran.stderr);
+    }
+}
+
+#[test]
+fn pictures_are_in_the_units_of_the_law() {
+    let directory = Workspace::new();
+    for (law, unit) in [("gran/hooke/history", "−1/2"), ("gran/hertz/history", "−2/5")] {
+        let law = format!("--damping 0.3 --tangential-damping 0.5 --law {law}");
+        let ran = directory.run(&format!("collide --kappa 12 --psi 0.6 {law} --plot a.svg"));
+        assert_eq!(ran.code, 0, "{}", ran.stderr);
+        let picture = directory.read("a.svg");
+        assert!(picture.contains(unit) && picture.contains("b = 0.5"), "{law}");
     }
 }
 

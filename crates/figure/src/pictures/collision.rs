@@ -1,6 +1,6 @@
 //! The picture of one collision: forces above, velocity below, against time.
 
-use stickslip_model::{Collision, History};
+use stickslip_model::{Collision, Contact, History, Normal};
 
 use super::course::{self, Course};
 use crate::canvas::number::number;
@@ -19,7 +19,7 @@ const VELOCITY: Rectangle = Rectangle { top: 352.0, height: 156.0, ..FORCES };
 const TITLE_AT: (f64, f64) = (80.0, 22.0);
 const LEGEND_AT: (f64, f64) = (80.0, 50.0);
 
-/// The name of the axis of forces.
+/// The name of the axis of forces, where the elastic force is that of Hertz.
 pub const FORCE: &str = "force in units of m β^{2/5} g_n^{6/5}";
 /// The name of the axis of time.
 pub const TIME: &str = "time t in units of β^{−2/5} g_n^{−1/5}";
@@ -36,14 +36,23 @@ pub fn draw(collision: &Collision, history: &History) -> Svg {
     let forces = course.forces(&mut svg, FORCES, course.largest_force());
     forces.ticks(&mut svg, Edge::Left, true);
     forces.ticks(&mut svg, Edge::Bottom, false);
-    forces.name(&mut svg, Edge::Left, 58.0, FORCE);
+    let [force, time] = axes(&collision.contact);
+    forces.name(&mut svg, Edge::Left, 58.0, force);
 
     let velocity = course.velocity(&mut svg, VELOCITY);
     velocity.ticks(&mut svg, Edge::Left, true);
     velocity.ticks(&mut svg, Edge::Bottom, true);
     velocity.name(&mut svg, Edge::Left, 58.0, "velocity w = (α/μ) g_t/g_n");
-    velocity.name(&mut svg, Edge::Bottom, 36.0, TIME);
+    velocity.name(&mut svg, Edge::Bottom, 36.0, time);
     svg
+}
+
+/// The names of the axes of forces and time.
+fn axes(contact: &Contact) -> [&'static str; 2] {
+    match contact.law().normal {
+        Normal::Hertz => [FORCE, TIME],
+        Normal::Linear => ["force in units of m β^{1/2} g_n", "time t in units of β^{−1/2}"],
+    }
 }
 
 /// The parameters and results of a collision in a line.
@@ -54,5 +63,9 @@ fn title(collision: &Collision) -> String {
     let eps_t = number(collision.eps_t(), 4);
     let count = collision.switches.len();
     let plural = if count == 1 { "" } else { "es" };
-    format!("κ = {kappa}, ψ = {psi}, a = {damping}:  ε_t = {eps_t}, {count} switch{plural}")
+    let b = match contact.tangential_damping() {
+        0.0 => String::new(),
+        b => format!(", b = {}", number(b, 6)),
+    };
+    format!("κ = {kappa}, ψ = {psi}, a = {damping}{b}:  ε_t = {eps_t}, {count} switch{plural}")
 }

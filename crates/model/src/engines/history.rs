@@ -1,15 +1,14 @@
 //! The course of a collision in time, at every moment and not at its switches alone.
 
-use std::ops::Range;
+mod followed;
+mod record;
 
-use stickslip_solver::{
-    Dense, Observer, Options, Outcome, Pair, RunError, Start, State, SwitchEvent, run_with,
-};
+use crate::laws::general::{self, GeneralContact};
+use crate::laws::phase::{Regime, Side};
+use crate::laws::regularized::{Regularized, components};
 
-use crate::contact::Contact;
-use crate::laws::phase::{END, Phase, Regime, Side};
-use crate::laws::regularized::Regularized;
-use crate::laws::regularized::components::{STATE, T, U};
+pub(crate) use followed::Followed;
+pub(crate) use record::{Course, Record};
 
 /// A collision at one moment, in scaled and reduced variables.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,11 +20,12 @@ pub struct Snapshot {
     pub compression: f64,
     /// Rate v = dx/dt of the compression.
     pub normal_velocity: f64,
-    /// Scaled normal force F = x^{3/2} + a √x v, in units of m β^{2/5} g_n^{6/5}.
+    /// Scaled normal force F, in the paper's law x^{3/2} + a √x v, in units of m β^{2/5} g_n^{6/5}.
     pub normal_force: f64,
-    /// Reduced elongation y of the spring; s F/κ while sliding.
+    /// Reduced elongation y of the spring, s F/κ while sliding; in other laws its force over κ.
     pub spring: f64,
-    /// Reduced tangential force F_t/μ = −κ y in the units of the normal force; |F_t|/μ ≤ F.
+    /// Reduced tangential force F_t/μ, in the paper's law −κ y, in the units of the normal force;
+    /// |F_t|/μ ≤ |F|.
     pub tangential_force: f64,
     /// Reduced tangential velocity w.
     pub velocity: f64,
@@ -58,30 +58,20 @@ pub struct Snapshot {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct History {
-    system: Regularized,
-    /// Accepted steps in order.
-    steps: Vec<Dense<STATE>>,
-    phases: Vec<PhaseRecord>,
+pub struct History(Run);
+
+/// The run of a contact that obeys the paper's law, or another one.
+#[derive(Clone, Debug)]
+enum Run {
+    Paper(Record<Regularized, { components::STATE }>),
+    Other(Record<GeneralContact, { general::STATE }>),
 }
 
 /// One phase of a [`History`].
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub struct PhaseHistory<'a> {
-    history: &'a History,
-    record: &'a PhaseRecord,
-}
-
-/// A phase as the run went through it.
-#[derive(Clone, Debug)]
-struct PhaseRecord {
-    phase: Phase,
-    /// Time at which it begins.
-    since: f64,
-    begin: State<STATE>,
-    end: State<STATE>,
-    /// Its steps among those of the history; none if the phase is too short for one.
-    steps: Range<usize>,
+    course: &'a dyn Course,
+    index: usize,
 }
 
 impl History {
@@ -90,91 +80,41 @@ impl History {
     /// Without damping, κ = 1e9 takes 200 000 steps at the default tolerances.
     pub const MOST_STEPS: usize = 300_000;
 
-    /// The course of `contact` before its run, which fills it as an observer.
-    pub(crate) fn before(contact: Contact) -> Self {
-        let system = Regularized::new(contact);
-        let (phase, begin) = (Phase::first(&contact), system.start());
-        let first = PhaseRecord { phase, since: 0.0, begin, end: begin, steps: 0..0 };
-        Self { system, steps: Vec::new(), phases: vec![first] }
+    /// The course of a contact that obeys the paper's law.
+    pub(crate) fn of_paper(record: Record<Regularized, { components::STATE }>) -> Self {
+        Self(Run::Paper(record))
     }
 
-    /// Integrates the collision of `contact` and keeps its trajectory.
-    pub(crate) fn record(
-        pair: Pair,
-        options: &Options,
-        contact: Contact,
-    ) -> Result<(Self, Outcome), RunError> {
-        let mut history = Self::before(contact);
-        let system = history.system;
-        let start = Start { mode: Phase::first(&contact), s: 0.0, state: system.start() };
-        let run = run_with(pair, &system, start, f64::INFINITY, options, &mut history)?;
-        Ok((history, run.outcome))
+    /// The course of a contact with another law.
+    pub(crate) fn of_other(record: Record<GeneralContact, { general::STATE }>) -> Self {
+        Self(Run::Other(record))
+    }
+
+    fn course(&self) -> &dyn Course {
+        match &self.0 {
+            Run::Paper(record) => record,
+            Run::Other(record) => record,
+        }
     }
 
     /// Scaled duration t_c of the contact.
     #[must_use]
     pub fn duration(&self) -> f64 {
-        self.phases.last().map_or(0.0, |last| last.since + last.end[T])
+        self.course().duration()
     }
 
     /// The phases in order; there is one more than there are switches.
     #[must_use]
     pub fn phases(&self) -> impl ExactSizeIterator<Item = PhaseHistory<'_>> {
-        self.phases.iter().map(|record| PhaseHistory { history: self, record })
+        let course = self.course();
+        (0..course.phases()).map(move |index| PhaseHistory { course, index })
     }
 
     /// The collision at a scaled time, at a switch in the phase that begins; `None` outside the
     /// contact.
     #[must_use]
     pub fn at(&self, time: f64) -> Option<Snapshot> {
-        if !(0.0..=self.duration()).contains(&time) {
-            return None;
-        }
-        let index = self.phases.partition_point(|record| record.since <= time);
-        let record = self.phases.get(index.checked_sub(1)?)?;
-        Some(self.snapshot(record, &self.state_at(record, time - record.since)))
-    }
-
-    /// The state a time `elapsed` after the phase began.
-    fn state_at(&self, record: &PhaseRecord, elapsed: f64) -> State<STATE> {
-        let steps = &self.steps[record.steps.clone()];
-        let index = steps.partition_point(|step| step.at(0.0)[T] <= elapsed);
-        let Some(step) = index.checked_sub(1).map(|index| &steps[index]) else {
-            return record.begin;
-        };
-        // With t' = 2u time grows with the step fraction: Newton's method, kept inside a bracket.
-        let (mut low, mut high) = (0.0, 1.0);
-        let mut theta = 0.5;
-        for _ in 0..60 {
-            let state = step.at(theta);
-            let excess = state[T] - elapsed;
-            if excess > 0.0 {
-                high = theta;
-            } else {
-                low = theta;
-            }
-            let newton = theta - excess / (2.0 * state[U] * step.size());
-            let next = if low < newton && newton < high { newton } else { 0.5 * (low + high) };
-            let moved = (next - theta).abs();
-            theta = next;
-            if moved <= f64::EPSILON {
-                break;
-            }
-        }
-        step.at(theta)
-    }
-
-    fn snapshot(&self, record: &PhaseRecord, state: &State<STATE>) -> Snapshot {
-        let spring = self.system.spring(record.phase, state);
-        Snapshot {
-            time: record.since + state[T],
-            compression: state[U] * state[U],
-            normal_velocity: self.system.compression_rate(state),
-            normal_force: self.system.normal_force(state),
-            spring,
-            tangential_force: -self.system.contact().kappa() * spring,
-            velocity: self.system.velocity(state),
-        }
+        (0.0..=self.duration()).contains(&time).then(|| self.course().at(time))
     }
 }
 
@@ -182,84 +122,45 @@ impl PhaseHistory<'_> {
     /// The law that holds.
     #[must_use]
     pub fn regime(&self) -> Regime {
-        self.record.phase.regime
+        self.course.phase(self.index).0
     }
 
     /// The side of sliding or, in stick, the side from which the spring comes.
     #[must_use]
     pub fn side(&self) -> Side {
-        self.record.phase.side
+        self.course.phase(self.index).1
     }
 
     /// The first moment of the phase.
     #[must_use]
     pub fn begin(&self) -> Snapshot {
-        self.history.snapshot(self.record, &self.record.begin)
+        self.course.begin(self.index)
     }
 
-    /// The last moment of the phase.
+    /// The last moment of the phase; of the last phase, that at which the overlap vanishes or the
+    /// law ends the contact.
     #[must_use]
     pub fn end(&self) -> Snapshot {
-        self.history.snapshot(self.record, &self.record.end)
+        self.course.end(self.index)
     }
 
     /// `intervals` + 1 moments from the first to the last. There are only these two if `intervals`
-    /// is 0, or if the phase is too short for a step.
+    /// is 0, or if the phase is too short for a step. Where the force ends before the overlap, there
+    /// is one more at the end of the force.
     ///
-    /// They are evenly spaced in s, with dt = 2√x ds, in which the motion is smooth. In time they
-    /// are closer to each other near the ends of contact.
-    pub fn samples(&self, intervals: usize) -> impl Iterator<Item = Snapshot> {
-        let Self { history, record } = *self;
-        let steps = &history.steps[record.steps.clone()];
-        let (from, length) = match (steps.first(), steps.last()) {
-            (Some(first), Some(last)) => {
-                (first.start(), last.start() + last.size() - first.start())
-            }
-            _ => (0.0, 0.0),
-        };
-        let inner = if steps.is_empty() { 1..1 } else { 1..intervals };
-        let between = inner.map(move |i| {
-            let s = from + length * (i as f64 / intervals as f64);
-            let index = steps.partition_point(|step| step.start() <= s).max(1) - 1;
-            let theta = (s - steps[index].start()) / steps[index].size();
-            history.snapshot(record, &steps[index].at(theta.clamp(0.0, 1.0)))
-        });
-        std::iter::once(self.begin()).chain(between).chain(std::iter::once(self.end()))
-    }
-}
-
-impl Observer<Phase, STATE> for History {
-    const WANTS_SEGMENTS: bool = true;
-
-    fn on_segment(&mut self, _phase: Phase, step: &Dense<STATE>) {
-        self.steps.push(*step);
-    }
-
-    fn on_switch(&mut self, event: &SwitchEvent<Phase, STATE>) {
-        let steps = self.steps.len();
-        let Some(ended) = self.phases.last_mut() else { return };
-        ended.end = event.before;
-        ended.steps.end = steps;
-        let since = ended.since + event.before[T];
-        if event.guard != END {
-            let (begin, end) = (event.after, event.after);
-            self.phases.push(PhaseRecord {
-                phase: event.to,
-                since,
-                begin,
-                end,
-                steps: steps..steps,
-            });
-        }
+    /// They are evenly spaced in s, with dt = 2√x ds or that of the law's own smooth coordinates.
+    /// In time they are closer to each other near the ends of contact.
+    pub fn samples(&self, intervals: usize) -> impl Iterator<Item = Snapshot> + use<> {
+        self.course.samples(self.index, intervals).into_iter()
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use stickslip_solver::{Dop853, Statistics};
+    use stickslip_solver::{Dop853, Options, Outcome, Statistics};
 
     use super::*;
-    use crate::{Collider, CollisionError, Engine, Tolerances};
+    use crate::{Collider, CollisionError, Contact, Engine, Tolerances};
 
     fn history(kappa: f64, psi: f64, damping: f64) -> History {
         Collider::default().history(Contact::new(kappa, psi, damping).unwrap()).unwrap()

@@ -1,6 +1,8 @@
 //! A collision integrated from first touch to separation: start reading here.
 
-use stickslip_solver::{Observer, Options, Outcome, Pair, RunError, Start, Statistics, run_with};
+use stickslip_solver::{
+    HybridSystem, Observer, Options, Outcome, Pair, RunError, Start, Statistics, run_with,
+};
 
 mod account;
 mod general;
@@ -9,7 +11,7 @@ mod refine;
 mod reversals;
 
 use super::domain::{self, OutOfDomain};
-use super::history::History;
+use super::history::{Course, Followed, History, Record};
 use crate::contact::{Contact, OtherLaw};
 use crate::laws::phase::{END, Phase, Regime};
 use crate::laws::regularized::Regularized;
@@ -129,7 +131,7 @@ impl Collider {
     ) -> Result<Statistics, CollisionError> {
         let options = self.options_for(&contact)?;
         if !contact.obeys_paper() {
-            return general::collide(self.pair, contact, &options, collision);
+            return general::collide(self.pair, contact, &options, collision, &mut ());
         }
         self.observe(contact, &options, collision, &mut ())
     }
@@ -176,9 +178,16 @@ impl Collider {
         contact: Contact,
     ) -> Result<(Collision, Statistics, History), CollisionError> {
         let options = self.recorded_options(&contact)?;
-        let (mut collision, mut history) = (Collision::before(contact), History::before(contact));
-        let statistics = self.observe(contact, &options, &mut collision, &mut history)?;
-        Ok((collision, statistics, history))
+        let mut collision = Collision::before(contact);
+        if contact.obeys_paper() {
+            let mut record = Record::before(Regularized::new(contact));
+            let statistics = self.observe(contact, &options, &mut collision, &mut record)?;
+            return Ok((collision, statistics, History::of_paper(record)));
+        }
+        let mut record = Record::before(general::system(contact));
+        let statistics =
+            general::collide(self.pair, contact, &options, &mut collision, &mut record)?;
+        Ok((collision, statistics, History::of_other(record)))
     }
 
     /// Integrates one collision into `collision`, while `course` observes the run too.
@@ -240,16 +249,34 @@ impl Collider {
     /// As [`Self::collide`].
     pub fn history(&self, contact: Contact) -> Result<History, CollisionError> {
         let options = self.recorded_options(&contact)?;
-        let (history, outcome) = History::record(self.pair, &options, contact)?;
-        if outcome == (Outcome::EndedByGuard { guard: END }) {
-            return Ok(history);
+        if contact.obeys_paper() {
+            let record = self.record(Regularized::new(contact), &options)?;
+            Ok(History::of_paper(record))
+        } else {
+            Ok(History::of_other(self.record(general::system(contact), &options)?))
         }
-        Err(CollisionError::Unfinished { outcome, time: history.duration() })
+    }
+
+    /// Runs the contact of `system` and keeps its course.
+    fn record<S, const N: usize, const G: usize>(
+        &self,
+        system: S,
+        options: &Options,
+    ) -> Result<Record<S, N>, CollisionError>
+    where
+        S: Followed<N> + HybridSystem<N, G, Mode = <S as Followed<N>>::Mode>,
+    {
+        let mut record = Record::before(system);
+        let start = system.start();
+        let run = run_with(self.pair, &system, start, f64::INFINITY, options, &mut record)?;
+        match run.outcome {
+            Outcome::EndedByGuard { guard: END } => Ok(record),
+            outcome => Err(CollisionError::Unfinished { outcome, time: record.duration() }),
+        }
     }
 
     /// The options for `contact` where its course is kept.
     fn recorded_options(&self, contact: &Contact) -> Result<Options, CollisionError> {
-        contact.require_paper("the course")?;
         let options = self.options_for(contact)?;
         Ok(Options { max_steps: options.max_steps.min(History::MOST_STEPS), ..options })
     }

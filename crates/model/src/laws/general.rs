@@ -198,9 +198,17 @@ impl GeneralContact {
     #[must_use]
     pub fn start(&self) -> State<STATE> {
         if self.beginning == Beginning::Stick && self.equations.starts_flat() {
-            return self.equations.early(self.contact.psi()).into();
+            return self.equations.early(self.contact.psi(), self.equations.first_moment()).into();
         }
         self.equations.enter(self.first(), &self.equations.start(self.contact.psi())).into()
+    }
+
+    /// The state at a time before that of [`Self::start`].
+    pub(crate) fn state_before_start(&self, time: f64) -> State<STATE> {
+        if self.beginning == Beginning::Stick && self.equations.starts_flat() {
+            return self.equations.early(self.contact.psi(), time.sqrt()).into();
+        }
+        self.start()
     }
 
     /// Reduced tangential velocity w.
@@ -220,6 +228,23 @@ impl GeneralContact {
     pub fn overlap(&self, y: &State<STATE>) -> f64 {
         // Where a contact ends, rounding may make u negative.
         y[U].max(0.0).powi(i32::from(self.equations.exponents.n))
+    }
+
+    /// How long the overlap goes on after the force has ended in the state `y`: where the force is
+    /// limited, nothing pushes any more.
+    #[must_use]
+    pub fn flight(&self, y: &State<STATE>) -> f64 {
+        match self.contact.law().end {
+            End::Overlap => self.overlap(y) / -self.compression_rate(y),
+            End::Force => 0.0,
+        }
+    }
+
+    /// How fast time grows with s.
+    #[must_use]
+    pub fn clock_rate(&self, y: &State<STATE>) -> f64 {
+        let n = i32::from(self.equations.exponents.n);
+        f64::from(n) * y[U].powi(n - 1)
     }
 
     /// Scaled normal force F.

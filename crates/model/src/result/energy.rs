@@ -14,10 +14,12 @@ pub struct EnergyLedger {
     pub tangential_initial: f64,
     /// Tangential kinetic energy at the end, w²/2.
     pub tangential_final: f64,
-    /// Tangential energy taken by Coulomb sliding, ∫ F (s w − dL/dt) dt over all slip phases.
+    /// Tangential energy taken by Coulomb sliding, ∫ F (s w − dL/dt) dt over all slip phases. In
+    /// other laws than the paper's, where what the spring holds is not always finite: the kinetic
+    /// energy lost in slip, ∫ |F| s w dt.
     pub sliding: f64,
-    /// Tangential energy left in the spring at the end, κ y²/2. In other laws than the paper's: what
-    /// spring and dashpot took while sticking; negative where they create energy.
+    /// Tangential energy left in the spring at the end, κ y²/2. In other laws than the paper's: the
+    /// kinetic energy lost in stick, to spring and dashpot; part of it comes back in slip.
     pub spring_left: f64,
     /// Normal energy at impact, ½.
     pub normal_initial: f64,

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde_json::Value;
 use stickslip_model::{
     Collider, Collision, CollisionError, Contact, Damping, End, Engine, EngineError, HistoryOf,
-    Law, Normal, Tangential, exact, presets, regularized::Regularized,
+    Law, Normal, Snapshot, Tangential, exact, presets, regularized::Regularized,
 };
 
 use crate::common::file;
@@ -225,6 +225,61 @@ fn a_linear_contact_has_a_closed_form() {
 }
 
 #[test]
+fn courses_obey_their_laws() {
+    let mut rng = fastrand::Rng::with_seed(31);
+    let (mut quotients, mut flights) = (0, 0);
+    for law in laws() {
+        let contact = random(law, &mut rng);
+        let (collision, _, history) = Engine::Auto.followed(contact).unwrap();
+        let same = |one: f64, other: f64| assert!((one - other).abs() < 1e-11, "{contact:?}");
+        let phases: Vec<_> = history.phases().collect();
+        assert_eq!(phases.len(), collision.switches.len() + 1);
+        for (pair, switch) in phases.windows(2).zip(&collision.switches) {
+            assert_eq!((pair[1].regime(), pair[1].side()), (switch.to, switch.side));
+            for moment in [pair[0].end(), pair[1].begin(), history.at(switch.time).unwrap()] {
+                same(moment.time, switch.time);
+                same(moment.velocity, switch.velocity);
+            }
+        }
+        let (first, last) = (history.at(0.0).unwrap(), history.at(history.duration()).unwrap());
+        assert!(first.velocity == contact.psi() && first.compression < 1e-15);
+        same(history.duration(), collision.contact_time);
+        same(last.velocity, collision.final_velocity);
+        same(last.normal_velocity, -collision.eps_n);
+        if law.end == End::Overlap {
+            same(last.compression, 0.0);
+        }
+        for phase in phases {
+            for pair in phase.samples(200).collect::<Vec<_>>().windows(2) {
+                let time = 0.5 * (pair[0].time + pair[1].time);
+                let now = history.at(time).unwrap();
+                let step = pair[1].time - pair[0].time;
+                let slope = |of: fn(&Snapshot) -> f64| (of(&pair[1]) - of(&pair[0])) / step;
+                // Where attraction begins, the limit has a kink.
+                let kink = pair[0].normal_force * pair[1].normal_force < 0.0;
+                if step < 1e-4 || (now.compression < 0.3 && now.normal_force != 0.0) || kink {
+                    continue;
+                }
+                // The quotient's error is that of the third derivative.
+                let near = |one: f64, other: f64| {
+                    let size = 1.0 + contact.kappa() * contact.kappa();
+                    let error = (one - other).abs();
+                    assert!(error < 2.0 * step * step * size, "{error} {step} {contact:?} {now:?}");
+                };
+                near(slope(|s| s.compression), now.normal_velocity);
+                near(slope(|s| s.normal_velocity), -now.normal_force);
+                near(slope(|s| s.velocity), now.tangential_force);
+                let limit = now.normal_force.abs() + 1e-9;
+                assert!(now.tangential_force.abs() <= limit, "{contact:?} {now:?}");
+                quotients += 1;
+                flights += usize::from(now.normal_force == 0.0);
+            }
+        }
+    }
+    assert!(quotients > 20_000 && flights > 20, "{quotients} {flights}");
+}
+
+#[test]
 fn what_is_known_of_the_paper_s_law_alone_is_refused() {
     let law = Law { normal: Normal::Linear, ..Law::PAPER };
     let contact = Contact::new(18.0, 0.4, 0.1).unwrap().with_law(law, 0.0).unwrap();
@@ -232,8 +287,6 @@ fn what_is_known_of_the_paper_s_law_alone_is_refused() {
     let is_law = |error| matches!(error, CollisionError::Law(_));
     assert!(collider.sensitivity(contact).is_err_and(is_law));
     assert!(collider.collide_finely(contact).is_err_and(is_law));
-    assert!(collider.history(contact).is_err_and(is_law));
-    assert!(collider.followed(contact).is_err_and(is_law));
     assert_eq!(exact::collide(contact).unwrap_err(), exact::ExactError::Law);
     let collision = collide(contact);
     let estimate = Engine::Auto.estimate(&collision).unwrap_err();

@@ -129,19 +129,23 @@ impl Observer<Phase, STATE> for Account<'_> {
 }
 
 /// The account of a run, and another observer of the same run.
-pub struct Observed<'a, O> {
-    pub account: Account<'a>,
+pub struct Observed<'a, A, O> {
+    pub account: A,
     pub course: &'a mut O,
 }
 
-impl<O: Observer<Phase, STATE>> Observer<Phase, STATE> for Observed<'_, O> {
+impl<A, O, Mode: Copy, const N: usize> Observer<Mode, N> for Observed<'_, A, O>
+where
+    A: Observer<Mode, N>,
+    O: Observer<Mode, N>,
+{
     const WANTS_SEGMENTS: bool = O::WANTS_SEGMENTS;
 
-    fn on_segment(&mut self, phase: Phase, step: &Dense<STATE>) {
-        self.course.on_segment(phase, step);
+    fn on_segment(&mut self, mode: Mode, step: &Dense<N>) {
+        self.course.on_segment(mode, step);
     }
 
-    fn on_switch(&mut self, event: &SwitchEvent<Phase, STATE>) {
+    fn on_switch(&mut self, event: &SwitchEvent<Mode, N>) {
         self.account.on_switch(event);
         self.course.on_switch(event);
     }

@@ -5,24 +5,26 @@ use stickslip_solver::{
 };
 
 use super::CollisionError;
+use super::account::Observed;
 use crate::contact::Contact;
 use crate::laws::general::{CREST, DAMPING, GeneralContact, Mode, REVERSAL, STATE, T};
 use crate::laws::law::{End, Law, Normal};
 use crate::laws::phase::{END, Regime};
 use crate::result::{Collision, EnergyLedger, Switch};
 
-/// Integrates one collision into `collision`.
-pub fn collide(
+/// Integrates one collision into `collision`, while `course` observes the run too.
+pub fn collide<O: Observer<Mode, STATE>>(
     pair: Pair,
     contact: Contact,
     options: &Options,
     collision: &mut Collision,
+    course: &mut O,
 ) -> Result<Statistics, CollisionError> {
-    let system = GeneralContact::new(contact).with_reversals();
+    let system = system(contact);
     collision.reset(contact);
     let start = Start { mode: system.first(), s: 0.0, state: system.start() };
     (collision.start, collision.start_side) = (start.mode.regime, start.mode.side);
-    let mut account = Account {
+    let account = Account {
         system,
         collision,
         phase: start.mode,
@@ -31,13 +33,20 @@ pub fn collide(
         sliding: 0.0,
         lasting: 0.0,
     };
-    let run = run_with(pair, &system, start, f64::INFINITY, options, &mut account)?;
+    let mut observed = Observed { account, course };
+    let run = run_with(pair, &system, start, f64::INFINITY, options, &mut observed)?;
+    let account = observed.account;
     if run.outcome != (Outcome::EndedByGuard { guard: END }) {
         let time = account.elapsed + run.state[T];
         return Err(CollisionError::Unfinished { outcome: run.outcome, time });
     }
     account.finish(&run.state);
     Ok(run.statistics)
+}
+
+/// The system whose run is a collision.
+pub fn system(contact: Contact) -> GeneralContact {
+    GeneralContact::new(contact).with_reversals()
 }
 
 /// The running account of a collision.
@@ -90,8 +99,7 @@ impl Account<'_> {
         let contact = collision.contact;
         let (overlap, rate) = (system.overlap(y), system.compression_rate(y));
         let Law { normal, end, .. } = contact.law();
-        // Where the force is limited nothing pushes any more.
-        let flight = if end == End::Overlap { overlap / -rate } else { 0.0 };
+        let flight = system.flight(y);
         collision.contact_time = self.elapsed + flight;
         let mut left = lasting + flight;
         for switch in collision.switches.iter_mut().rev() {

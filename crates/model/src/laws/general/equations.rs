@@ -121,10 +121,14 @@ impl Equations {
         self.first_orders() == (3, 3)
     }
 
-    /// The state of a contact that starts in stick from zeros of third order, soon after its start.
-    /// What is neglected is below rounding.
-    pub fn early(&self, psi: f64) -> [f64; STATE] {
-        let s = 1e-3 * self.kappa.max(1.0).powf(-0.2);
+    /// The length s after which a contact is integrated that starts from zeros of third order.
+    pub fn first_moment(&self) -> f64 {
+        1e-3 * self.kappa.max(1.0).powf(-0.2)
+    }
+
+    /// The state of a contact that starts in stick from zeros of third order, up to the
+    /// [`Self::first_moment`]. What is neglected is below rounding.
+    pub fn early(&self, psi: f64, s: f64) -> [f64; STATE] {
         let fifth = s.powi(5);
         let mut y = self.start(psi);
         y[U] = s * (1.0 - fifth / 15.0);
