@@ -52,10 +52,12 @@ class Pair:
         cls,
         sphere: _Sphere,
         other: _Sphere | tuple[float, float] | None,
-        surface: tuple[float, float, float],
+        forces: tuple[str, str],
     ) -> Pair: ...
     @property
     def reduction(self) -> tuple[float, float]: ...
+    @property
+    def tangential_damping(self) -> float: ...
     def contacts(
         self, normal: _Floats, tangential: _Floats
     ) -> tuple[_Floats, _Floats, _Floats, _Floats]: ...

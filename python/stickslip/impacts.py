@@ -1,17 +1,19 @@
 """Impacts of two bodies in SI units."""
 
 import json
+import math
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Self, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stickslip import _native
+from stickslip import _laws, _native
 from stickslip._arrays import numbers
+from stickslip._laws import Law
 from stickslip.collisions import Collisions, Floats, Method, OnError, collide_many
 
 Vector: TypeAlias = tuple[float, float, float]
@@ -74,14 +76,39 @@ class Wall:
 
 @dataclass(frozen=True)
 class Surface:
-    """The surfaces at the contact."""
+    """The constants of a contact law in SI units; `stickslip impact --help` says which law has which.
+
+    The paper's law has the first three.
+    """
 
     #: Coefficient of friction.
     friction: float
-    #: Stiffness of the tangential spring in kg/s².
-    tangential_stiffness_kg_per_s2: float
+    #: Stiffness of the tangential spring in kg/s², where it is constant.
+    tangential_stiffness_kg_per_s2: float | None = None
     #: Damping time A of the normal force in s.
-    damping_time_s: float = 0.0
+    damping_time_s: float | None = None
+    #: Stiffness of a linear normal force in kg/s².
+    normal_stiffness_kg_per_s2: float | None = None
+    #: Constant of Hertz' force in kg/(s² √m); without it, that of the materials.
+    hertz_stiffness_kg_per_s2_m0_5: float | None = None
+    #: Constant of Mindlin's stiffness in kg/(s² √m); without it, that of the materials.
+    mindlin_stiffness_kg_per_s2_m0_5: float | None = None
+    #: Damping of the normal force in kg/(s mᵉ), with e = 0, 1/2 or 1/4 as the law says.
+    damping_coefficient: float | None = None
+    #: Damping of the normal force without unit, of Tsuji's law or of a linear one.
+    damping_ratio: float | None = None
+    #: Ratio of tangential and normal damping; 0 without it.
+    tangential_damping_ratio: float | None = None
+
+    def _constants(self, law: Law | None) -> str:
+        constants = asdict(self)
+        damping = ("damping_time_s", "damping_coefficient", "damping_ratio")
+        if law is None and all(constants[name] is None for name in damping):
+            constants["damping_time_s"] = 0.0
+        for name, value in constants.items():
+            if value is not None and not math.isfinite(value):
+                raise ValueError(f"{name} = {value!r} is out of range; expected a finite number")
+        return json.dumps(constants)
 
 
 @dataclass(frozen=True)
@@ -115,12 +142,18 @@ class WallMotion:
 
 
 class Bodies:
-    """Two bodies that collide: a sphere, and another one or a wall."""
+    """Two bodies that collide: a sphere, and another one or a wall.
 
-    def __init__(self, sphere: Sphere, other: Sphere | Wall, surface: Surface) -> None:
+    law: the contact law, a name of `laws` or its terms; the paper's if there is none.
+    """
+
+    def __init__(
+        self, sphere: Sphere, other: Sphere | Wall, surface: Surface, law: Law | None = None
+    ) -> None:
         self.sphere = sphere
         self.other = other
         self.surface = surface
+        self.law = law
         second: Any
         if isinstance(other, Sphere):
             second = other._arguments()
@@ -133,17 +166,14 @@ class Bodies:
             )
         else:
             second = (other.material.young_modulus_pa, other.material.poisson_ratio)
-        contact = (
-            surface.friction,
-            surface.tangential_stiffness_kg_per_s2,
-            surface.damping_time_s,
-        )
-        self._pair = _native.Pair(sphere._arguments(), second, contact)
+        chosen, _ = _laws.arguments(law, 0.0)
+        forces = (surface._constants(law), chosen)
+        self._pair = _native.Pair(sphere._arguments(), second, forces)
         self._motions: tuple[Any, Any] | None = None
 
     @classmethod
-    def read(cls, file: str | os.PathLike[str] | Mapping[str, Any]) -> Self:
-        """The bodies in a JSON file of the program, or in such an object."""
+    def read(cls, file: str | os.PathLike[str] | Mapping[str, Any], law: Law | None = None) -> Self:
+        """The bodies in a JSON file of the program, or in such an object, and their contact law."""
         fields = file if isinstance(file, Mapping) else json.loads(Path(file).read_text())
         _known("", fields, "$schema", "comment", "spheres", "wall", "surface")
         spheres = [_sphere(f"spheres[{i}]", one) for i, one in enumerate(fields.get("spheres", []))]
@@ -158,7 +188,7 @@ class Bodies:
         other_motion: Motion | WallMotion | None
         second, other_motion = walls[0] if walls else spheres[1]
         surface = _made("surface", _object("", fields, "surface"), Surface)
-        bodies = cls(first, second, surface)
+        bodies = cls(first, second, surface, law)
         if motion is not None and other_motion is not None:
             bodies._motions = (motion, other_motion)
         return bodies
@@ -246,15 +276,19 @@ def impact(
     atol: float | None = None,
     errors: OnError = "raise",
     threads: int | None = None,
+    law: Law | None = None,
 ) -> Impacts:
     """Impacts of two bodies for arrays of velocities, which broadcast.
 
     bodies: two bodies, an object with the layout of docs/impact.schema.json, or the path of such a
     file. normal_m_per_s, tangential_m_per_s: velocities of the surfaces at the contact, above 0.
     Instead of them speed_m_per_s and angle_rad, the angle between velocity and normal, above 0 and
-    below pi/2. The other arguments are those of `collide_many`.
+    below pi/2. law: the contact law of bodies that are read; `Bodies` have their own. The other
+    arguments are those of `collide_many`.
     """
-    pair = bodies if isinstance(bodies, Bodies) else Bodies.read(bodies)
+    if isinstance(bodies, Bodies) and law is not None:
+        raise ValueError(f"law = {law!r} is given for Bodies; expected in Bodies(..., law=...)")
+    pair = bodies if isinstance(bodies, Bodies) else Bodies.read(bodies, law)
     if speed_m_per_s is not None and angle_rad is not None:
         if normal_m_per_s is not None or tangential_m_per_s is not None:
             raise ValueError("velocities and a speed with an angle are both given; expected one")
@@ -275,7 +309,16 @@ def impact(
     )
     kappa, psi, damping, unit = pair.contacts(normal, tangential)
     found = collide_many(
-        kappa, psi, damping, method, rtol=rtol, atol=atol, errors=errors, threads=threads
+        kappa,
+        psi,
+        damping,
+        method,
+        rtol=rtol,
+        atol=atol,
+        errors=errors,
+        threads=threads,
+        law=pair.law,
+        tangential_damping=pair._pair.tangential_damping,
     )
     return Impacts(normal, tangential, unit, found)
 

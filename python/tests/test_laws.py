@@ -91,3 +91,26 @@ def test_courses_are_those_of_the_law() -> None:
     assert course["normal_force"].min() < -0.05
     assert np.all(np.abs(course["tangential_force"]) <= np.abs(course["normal_force"]) + 1e-12)
     assert "b = " not in found.picture() and "stick" in found.picture()
+
+
+def test_impacts_have_the_constants_of_their_law() -> None:
+    file = Path(__file__).parents[2] / "examples" / "hooke_spheres.json"
+    law = "gran/hooke/history"
+    whole = stickslip.Bodies.read(file, law).encounter()
+    assert whole["eps_n"] == pytest.approx(0.9, abs=1e-9)
+    normal, tangential = (
+        whole["contact"][name] for name in ("normal_m_per_s", "tangential_m_per_s")
+    )
+    found = stickslip.impact(file, [normal, 2 * normal], tangential, law=law)
+    assert found.eps_t[0] == pytest.approx(whole["eps_t"], abs=1e-12)
+    # Nothing depends on the velocity but the ratio.
+    assert found.contact_time_s[0] == pytest.approx(found.contact_time_s[1], rel=1e-12)
+    with pytest.raises(ValueError, match="normal_stiffness_kg_per_s2 = 50000 has no meaning"):
+        stickslip.impact(file, 1.0, 1.0)
+    with pytest.raises(ValueError, match="has no meaning in the law mfix/LSD"):
+        stickslip.impact(file, 1.0, 1.0, law="mfix/LSD")
+    material = stickslip.Material(1e7, 0.3, 2500.0)
+    sphere = stickslip.Sphere(1e-3, material)
+    surface = stickslip.Surface(0.3, normal_stiffness_kg_per_s2=5e4, damping_ratio=0.1)
+    with pytest.raises(ValueError, match="tangential_stiffness_kg_per_s2 is missing"):
+        stickslip.Bodies(sphere, sphere, surface, law)

@@ -59,6 +59,7 @@ pub use nalgebra::Vector3;
 pub use result::{Collision, EnergyLedger, FEW_SWITCHES, NotFinite, Switch, Switches};
 pub use spheres::bodies::{Body, Elasticity, Material, Sphere, Wall};
 pub use spheres::encounter::{Encounter, EncounterError, Motion, WallMotion};
+pub use spheres::forces::{Constants, Forces, InvalidForces};
 pub use spheres::observed::Observed;
 pub use spheres::outcome::{EnergyAccount, ForceSwitch, Outcome};
 pub use spheres::reduction::Reduction;

@@ -45,7 +45,8 @@ pub struct Switch {
     pub to: Regime,
     /// The side of the sliding that begins or, at a switch to stick, of the sliding that ends.
     pub side: Side,
-    /// Reduced elongation y of the spring.
+    /// Reduced elongation y of the spring; in other laws than the paper's, the tangential force
+    /// over −μκ.
     pub spring: f64,
     /// Reduced tangential velocity w.
     pub velocity: f64,

@@ -8,6 +8,7 @@ use serde::ser::{Serialize, SerializeStruct, Serializer};
 use crate::Vector3;
 use crate::contact::Contact;
 use crate::engines::{Engine, Tolerances};
+use crate::laws::law::{Law, Normal};
 use crate::laws::phase::Side;
 use crate::result::Collision;
 use crate::spheres::encounter::{Encounter, Motion};
@@ -156,14 +157,22 @@ impl Serialize for ScaledParameters<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let impact = &self.0.encounter.impact;
         let (pair, contact): (_, &Contact) = (&impact.pair, &impact.contact);
-        let mut object = serializer.serialize_struct("ScaledParameters", 10)?;
+        let mut object = serializer.serialize_struct("ScaledParameters", 12)?;
         object.serialize_field("kappa", &contact.kappa())?;
         object.serialize_field("psi", &self.0.psi())?;
         object.serialize_field("damping", &contact.damping())?;
         object.serialize_field("alpha", &pair.alpha)?;
         object.serialize_field("effective_mass_kg", &pair.effective_mass_kg)?;
         object.serialize_field("effective_radius_m", &pair.effective_radius_m)?;
-        object.serialize_field("elastic_constant_n_per_m1_5", &pair.elastic_constant)?;
+        if pair.law.normal == Normal::Hertz {
+            object.serialize_field("elastic_constant_n_per_m1_5", &pair.elastic_constant)?;
+        } else {
+            object.serialize_field("elastic_constant_n_per_m", &pair.elastic_constant)?;
+        }
+        if pair.law != Law::PAPER {
+            object.serialize_field("tangential_damping", &contact.tangential_damping())?;
+            object.serialize_field("law", &pair.law)?;
+        }
         object.serialize_field("time_unit_s", &impact.time_unit_s)?;
         object.serialize_field("length_unit_m", &impact.length_unit_m())?;
         object.serialize_field("force_unit_n", &impact.force_unit_n())?;

@@ -37,7 +37,7 @@ impl Choice {
 
 /// A contact law, by its name or as JSON, and the tangential damping.
 #[derive(FromPyObject)]
-pub struct LawChoice(String, f64);
+pub struct LawChoice(pub String, pub f64);
 
 impl LawChoice {
     /// The law that is chosen, and the tangential damping.

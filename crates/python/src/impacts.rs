@@ -5,12 +5,12 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use stickslip_model::document::IMPACT;
 use stickslip_model::{
-    Body, Elasticity, Encounter, ImpactReport, InvalidParameter, Law, Motion, Sphere, Surface,
-    Vector3, Wall, WallMotion, quantity,
+    Body, Elasticity, Encounter, Forces, ImpactReport, InvalidParameter, Motion, Sphere, Vector3,
+    Wall, WallMotion, quantity,
 };
 
 use crate::arrays::{expect_equal, numbers};
-use crate::engines::{Choice, document};
+use crate::engines::{Choice, LawChoice, document};
 use crate::failure::{Failure, bad_input, failed};
 
 /// Radius in m, mass in kg, moment of inertia in kg m² or that of a homogeneous sphere, Young's
@@ -18,9 +18,9 @@ use crate::failure::{Failure, bad_input, failed};
 #[derive(FromPyObject)]
 struct SphereArguments(f64, f64, Option<f64>, f64, f64);
 
-/// Friction, tangential stiffness in kg/s², damping time in s.
+/// The constants of a law in SI units, as JSON, and the name or the terms of the law.
 #[derive(FromPyObject)]
-struct SurfaceArguments(f64, f64, f64);
+struct ForcesArguments(String, String);
 
 /// What the first sphere hits, if it is not a rigid wall.
 #[derive(FromPyObject)]
@@ -48,7 +48,7 @@ pub fn homogeneous_mass(radius_m: f64, density_kg_per_m3: f64) -> PyResult<f64> 
 pub struct Pair {
     sphere: Sphere,
     other: Body,
-    surface: Surface,
+    forces: Forces,
     reduced: stickslip_model::Pair,
 }
 
@@ -58,7 +58,7 @@ impl Pair {
     fn new(
         sphere: SphereArguments,
         other: Option<OtherArguments>,
-        surface: SurfaceArguments,
+        forces: ForcesArguments,
     ) -> PyResult<Self> {
         let sphere = sphere.checked().map_err(bad_input)?;
         let other = match other {
@@ -71,16 +71,25 @@ impl Pair {
             }
             None => Body::Wall(Wall { elasticity: None }),
         };
-        let SurfaceArguments(friction, tangential_stiffness_kg_per_s2, damping_time_s) = surface;
-        let surface = Surface { friction, tangential_stiffness_kg_per_s2, damping_time_s };
-        let reduced = stickslip_model::Pair::new(&sphere, &other, &surface).map_err(bad_input)?;
-        Ok(Self { sphere, other, surface, reduced })
+        let ForcesArguments(constants, law) = forces;
+        let constants = serde_json::from_str(&constants).map_err(bad_input)?;
+        let law = |damping| LawChoice(law.clone(), damping).law();
+        let forces = Forces::new(law(0.0)?.0, &constants).map_err(bad_input)?;
+        let reduced = stickslip_model::Pair::new(&sphere, &other, forces).map_err(bad_input)?;
+        law(reduced.tangential_damping())?;
+        Ok(Self { sphere, other, forces, reduced })
     }
 
     /// α and μ.
     #[getter]
     fn reduction(&self) -> (f64, f64) {
-        (self.reduced.alpha, self.surface.friction)
+        (self.reduced.alpha, self.reduced.surface.friction)
+    }
+
+    /// Tangential damping (γ_t/γ_n)/α of all impacts.
+    #[getter]
+    fn tangential_damping(&self) -> f64 {
+        self.reduced.tangential_damping()
     }
 
     /// κ, ψ, damping and the unit of time in s for each pair of velocities in m/s.
@@ -114,15 +123,13 @@ impl Pair {
         other: MotionArguments,
         engine: Choice,
     ) -> PyResult<String> {
-        let engine = engine.engine((Law::PAPER, 0.0))?;
+        let engine = engine.engine((self.reduced.law, self.reduced.tangential_damping()))?;
         let first = (&self.sphere, &motion.of_sphere());
         let encounter = match &self.other {
             Body::Sphere(sphere) => {
-                Encounter::of_spheres(first, (sphere, &other.of_sphere()), &self.surface)
+                Encounter::of_spheres(first, (sphere, &other.of_sphere()), self.forces)
             }
-            Body::Wall(wall) => {
-                Encounter::with_wall(first, (wall, &other.of_wall()), &self.surface)
-            }
+            Body::Wall(wall) => Encounter::with_wall(first, (wall, &other.of_wall()), self.forces),
         };
         let encounter = encounter.map_err(bad_input)?;
         let (collision, statistics) =

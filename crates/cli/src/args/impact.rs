@@ -12,6 +12,10 @@ pub struct ImpactArguments {
     #[arg(value_name = "FILE.json")]
     pub file: PathBuf,
 
+    /// Contact law: a name that `stickslip laws` lists, or a JSON file [default: paper]
+    #[arg(long, value_name = "NAME|FILE.json", help_heading = "Contact law")]
+    pub law: Option<String>,
+
     /// What computes the collision.
     #[command(flatten)]
     pub method: MethodArguments,
@@ -47,8 +51,19 @@ File, for two spheres (a wall instead of the second: {\"spheres\": [one], \"wall
     \"surface\": {\"friction\": 0.4, \"tangential_stiffness_kg_per_s2\": 1e12, \"damping_time_s\": 0}
   }
 
+Other laws have other constants in \"surface\", beside \"friction\":
+  linear normal force    normal_stiffness_kg_per_s2
+  Hertz' normal force    hertz_stiffness_kg_per_s2_m0_5, or that of the materials
+  constant k_t           tangential_stiffness_kg_per_s2
+  Mindlin's k_t          mindlin_stiffness_kg_per_s2_m0_5, or that of the materials
+  damping                damping_coefficient in kg/(s m^e), e = 0, 1/2, 1/4 as the law says; or
+                         damping_time_s (viscoelastic with Hertz; both linear), or damping_ratio
+                         without unit (Tsuji with Hertz; both linear)
+  tangential damping     tangential_damping_ratio, without unit [default: 0]
+
 Examples:
   stickslip impact examples/steel_spheres.json
   stickslip impact examples/glass_on_wall.json --format json
+  stickslip impact examples/hooke_spheres.json --law gran/hooke/history
 
 Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

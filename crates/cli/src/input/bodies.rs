@@ -9,45 +9,46 @@ mod file;
 
 use std::path::Path;
 
-use stickslip_model::{Body, Encounter, Pair};
+use stickslip_model::{Body, Encounter, Law, Pair};
 
 use super::source;
 use crate::error::Failure;
 use file::{Bodies, Other};
 
-/// The two bodies in the file at `path`, reduced to what their contact feels; `-` is standard
-/// input.
+/// The two bodies in the file at `path`, reduced to what their contact feels under a law; `-` is
+/// standard input.
 ///
 /// Motions may be in the file, but they are not used.
 ///
 /// # Errors
 /// [`Failure::Input`]: the file cannot be read, is not JSON, or does not describe two bodies. The
 /// message names the line or the field, and what is expected there.
-pub fn read_pair(path: &Path) -> Result<Pair, Failure> {
-    read(path, |Bodies { sphere: (sphere, _), other, surface }| {
+pub fn read_pair(path: &Path, law: Law) -> Result<Pair, Failure> {
+    read(path, law, |Bodies { sphere: (sphere, _), other, forces }| {
         let other = match other {
             Other::Sphere(other, _) => Body::Sphere(other),
             Other::Wall(wall, _) => Body::Wall(wall),
         };
-        Pair::new(&sphere, &other, &surface).map_err(|invalid| invalid.to_string())
+        Pair::new(&sphere, &other, forces).map_err(|invalid| invalid.to_string())
     })
 }
 
-/// The two bodies in the file at `path` at the moment when they touch; `-` is standard input.
+/// The two bodies in the file at `path` at the moment when they touch, and their contact law; `-` is
+/// standard input.
 ///
 /// # Errors
 /// [`Failure::Input`]: as [`read_pair`], or a motion is missing, or the bodies do not collide.
-pub fn read_encounter(path: &Path) -> Result<Encounter, Failure> {
-    read(path, |Bodies { sphere: (sphere, motion), other, surface }| {
+pub fn read_encounter(path: &Path, law: Law) -> Result<Encounter, Failure> {
+    read(path, law, |Bodies { sphere: (sphere, motion), other, forces }| {
         let first = (&sphere, &field::required("spheres[0].motion", motion)?);
         let encounter = match &other {
             Other::Sphere(other, motion) => {
                 let motion = field::required("spheres[1].motion", *motion)?;
-                Encounter::of_spheres(first, (other, &motion), &surface)
+                Encounter::of_spheres(first, (other, &motion), forces)
             }
             Other::Wall(wall, motion) => {
                 let motion = field::required("wall.motion", *motion)?;
-                Encounter::with_wall(first, (wall, &motion), &surface)
+                Encounter::with_wall(first, (wall, &motion), forces)
             }
         };
         encounter.map_err(|error| error.to_string())
@@ -57,9 +58,13 @@ pub fn read_encounter(path: &Path) -> Result<Encounter, Failure> {
 /// Largest number of bytes of a file.
 const MOST_BYTES: u64 = 1 << 20;
 
-fn read<T>(path: &Path, make: impl FnOnce(Bodies) -> Result<T, String>) -> Result<T, Failure> {
+fn read<T>(
+    path: &Path,
+    law: Law,
+    make: impl FnOnce(Bodies) -> Result<T, String>,
+) -> Result<T, Failure> {
     let text = source::read(path, MOST_BYTES)?;
-    Bodies::parse(&text)
+    Bodies::parse(&text, law)
         .and_then(make)
         .map_err(|reason| Failure::input(source::shown(path), reason))
 }
@@ -104,7 +109,7 @@ mod tests {
             });
             let file = tempfile::NamedTempFile::new().unwrap();
             fs::write(&file, json!({"spheres": spheres, "surface": surface}).to_string()).unwrap();
-            assert_eq!(read_pair(file.path()).unwrap(), expected, "{with_motion}");
+            assert_eq!(read_pair(file.path(), Law::PAPER).unwrap(), expected, "{with_motion}");
         }
     }
 }

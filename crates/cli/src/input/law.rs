@@ -18,17 +18,36 @@ const MOST_BYTES: u64 = 1 << 16;
 /// [`Failure::Usage`]: the law has no tangential damping. [`Failure::Input`]: there is neither such
 /// a name nor such a file, or the file does not describe a law.
 pub fn chosen(arguments: &LawArguments) -> Result<Law, Failure> {
-    let Some(text) = &arguments.law else { return Ok(Law::PAPER) };
-    let Some(preset) = presets::find(text) else { return read(Path::new(text)) };
-    let damping = arguments.tangential_damping.unwrap_or(0.0);
-    if damping != 0.0 && !preset.tangential_damping {
-        return Err(Failure::Usage(format!(
-            "--tangential-damping {damping:?} has no meaning in the law {}: {}; expected 0, or a \
-             file of the law that is meant",
-            preset.name, preset.checked
-        )));
+    let LawArguments { law, tangential_damping } = arguments;
+    permits(law.as_deref(), "--tangential-damping", tangential_damping.unwrap_or(0.0))?;
+    by_name_or_file(law.as_deref())
+}
+
+/// Refuses a tangential damping, called `what`, in a law that is known to have none.
+///
+/// # Errors
+/// [`Failure::Usage`]: the law has no tangential damping.
+pub fn permits(law: Option<&str>, what: &str, damping: f64) -> Result<(), Failure> {
+    match law.and_then(presets::find) {
+        Some(preset) if damping != 0.0 && !preset.tangential_damping => {
+            Err(Failure::Usage(format!(
+                "{what} {damping:?} has no meaning in the law {}: {}; expected 0, or a file of the \
+                 law that is meant",
+                preset.name, preset.checked
+            )))
+        }
+        _ => Ok(()),
     }
-    Ok(preset.law)
+}
+
+/// The law with this name, or otherwise in this file; without either, the paper's.
+///
+/// # Errors
+/// [`Failure::Input`]: there is neither such a name nor such a file, or the file does not describe a
+/// law.
+pub fn by_name_or_file(text: Option<&str>) -> Result<Law, Failure> {
+    let Some(text) = text else { return Ok(Law::PAPER) };
+    presets::find(text).map_or_else(|| read(Path::new(text)), |preset| Ok(preset.law))
 }
 
 /// The preset with this name.

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use stickslip_model::{Collision, Engine, Estimate, Switch};
+use stickslip_model::{Collision, Contact, Engine, Estimate, Switch};
 use stickslip_solver::Statistics;
 
 /// The number of digits that are shown. `--format json` shows all of them.
@@ -27,17 +27,7 @@ pub fn write(
         contact.damping(),
         describe(engine)
     )?;
-    if !contact.obeys_paper() {
-        writeln!(out, "Law {}", contact.law().equations())?;
-        writeln!(out, "Tangential damping b = {:?}", contact.tangential_damping())?;
-    }
-    if let Some(layer) = contact.start_layer() {
-        writeln!(
-            out,
-            "Badly conditioned: in steps, the force is turned over only when the overlap is {layer:.3e} \
-             times that of the first step"
-        )?;
-    }
+    law(out, contact)?;
     writeln!(out)?;
     if collision.switches.is_empty() {
         writeln!(out, "No switch.")?;
@@ -85,6 +75,25 @@ pub fn describe(engine: &Engine) -> String {
         }
         None => "the exact solution".to_owned(),
     }
+}
+
+/// Writes the contact law, if it is not the paper's.
+///
+/// # Errors
+/// `out` cannot be written.
+pub fn law(out: &mut dyn Write, contact: &Contact) -> io::Result<()> {
+    if !contact.obeys_paper() {
+        writeln!(out, "Law {}", contact.law().equations())?;
+        writeln!(out, "Tangential damping b = {:?}", contact.tangential_damping())?;
+    }
+    if let Some(layer) = contact.start_layer() {
+        writeln!(
+            out,
+            "Badly conditioned: in steps, the force is turned over only when the overlap is {layer:.3e} \
+             times that of the first step"
+        )?;
+    }
+    Ok(())
 }
 
 fn row(index: usize, switch: &Switch) -> [String; 7] {

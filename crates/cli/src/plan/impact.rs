@@ -1,11 +1,11 @@
 //! What `impact` is to do.
 
-use stickslip_model::{Encounter, Engine, Law};
+use stickslip_model::{Encounter, Engine};
 
 use super::engine::engine;
 use crate::args::{Format, ImpactArguments, Method};
 use crate::error::Failure;
-use crate::input::bodies;
+use crate::input::{bodies, law};
 
 /// An impact to be computed.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,9 +25,13 @@ impl ImpactPlan {
     /// [`Failure::Input`]: the file cannot be used. [`Failure::Usage`]: options contradict each
     /// other.
     pub fn new(arguments: &ImpactArguments) -> Result<Self, Failure> {
-        let ImpactArguments { file, method, format } = arguments;
-        let encounter = bodies::read_encounter(file)?;
-        let engine = engine(method, Method::Dop853, (Law::PAPER, 0.0))?;
+        let ImpactArguments { file, law, method, format } = arguments;
+        let name = law.as_deref();
+        let law = law::by_name_or_file(name)?;
+        let encounter = bodies::read_encounter(file, law)?;
+        let tangential_damping = encounter.contact().tangential_damping();
+        law::permits(name, "tangential damping", tangential_damping)?;
+        let engine = engine(method, Method::Dop853, (law, tangential_damping))?;
         Ok(Self { encounter, engine, format: *format })
     }
 }

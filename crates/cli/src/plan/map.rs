@@ -66,11 +66,15 @@ impl MapPlan {
         )?;
         let output = MapOutput::new(arguments)?;
         let law = law::chosen(&arguments.law)?;
-        let tangential_damping = arguments.law.tangential_damping.unwrap_or(0.0);
+        let mut tangential_damping = arguments.law.tangential_damping.unwrap_or(0.0);
         let MapAxes { columns, rows, coordinates, engine } = match bodies {
-            Some(file) => MapAxes::of_bodies(arguments, file)?,
+            Some(file) => MapAxes::of_bodies(arguments, file, law)?,
             None => MapAxes::scaled(arguments, (law, tangential_damping))?,
         };
+        if let Coordinates::Velocities { pair } = coordinates {
+            tangential_damping = pair.tangential_damping();
+            law::permits(arguments.law.law.as_deref(), "tangential damping", tangential_damping)?;
+        }
         Ok(Self {
             grid: Grid {
                 columns: GridAxis { range: columns, cells: size.columns },
@@ -144,13 +148,14 @@ impl MapAxes {
     }
 
     /// The axes g_n and g_t of the bodies in `file`.
-    fn of_bodies(arguments: &MapArguments, file: &Path) -> Result<Self, Failure> {
+    fn of_bodies(arguments: &MapArguments, file: &Path, law: Law) -> Result<Self, Failure> {
         let (Some(columns), Some(rows)) = (arguments.normal, arguments.tangential) else {
             let message = "--normal or --tangential is missing; expected --bodies with both";
             return Err(Failure::Usage(message.to_owned()));
         };
-        let pair = bodies::read_pair(file)?;
-        let engine = engine(&arguments.method, Method::Auto, (Law::PAPER, 0.0))?;
+        let pair = bodies::read_pair(file, law)?;
+        let law = (law, pair.tangential_damping());
+        let engine = engine(&arguments.method, Method::Auto, law)?;
         Ok(Self { columns, rows, coordinates: Coordinates::Velocities { pair }, engine })
     }
 }

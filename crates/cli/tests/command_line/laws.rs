@@ -155,3 +155,62 @@ fn maps_and_atlases_know_their_law() {
         assert_eq!((&located[2], &located[3]), (&collided[4], &collided[5]));
     }
 }
+
+#[test]
+fn impacts_have_the_constants_of_their_law() {
+    let directory = Workspace::new();
+    let file = std::fs::read_to_string("../../examples/hooke_spheres.json").unwrap();
+    directory.write("bodies.json", &file);
+    let law = "--law gran/hooke/history";
+    let ran = directory.run(&format!("impact bodies.json {law} --format json"));
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    let impact: Value = serde_json::from_str(&ran.stdout).unwrap();
+    let parameters = &impact["parameters"];
+    assert_eq!(parameters["law"]["normal"], "linear");
+    assert!((parameters["kappa"].as_f64().unwrap() - 1.0).abs() < 1e-12);
+    assert!((impact["eps_n"].as_f64().unwrap() - 0.9).abs() < 1e-9);
+    let number = |value: &Value| value.as_f64().unwrap();
+    // The scaled collision has the same results.
+    let names = ["kappa", "psi", "damping", "tangential_damping"];
+    let [kappa, psi, a, b] = names.map(|name| number(&parameters[name]));
+    assert!((b - 1.75).abs() < 1e-14);
+    let scaled =
+        format!("--kappa {kappa:?} --psi {psi:?} --damping {a:?} --tangential-damping {b:?}");
+    let ran = stickslip(&format!("collide {scaled} {law} --format json"));
+    let collision: Value = serde_json::from_str(&ran.stdout).unwrap();
+    for name in ["eps_n", "eps_t", "switch_count", "itinerary"] {
+        assert_eq!(impact[name], collision[name], "{name}");
+    }
+    let unit = number(&parameters["time_unit_s"]);
+    let (time, scaled) = (number(&impact["contact_time_s"]), number(&collision["contact_time"]));
+    assert!((time / (scaled * unit) - 1.0).abs() < 1e-14);
+    for switch in impact["switches"].as_array().unwrap() {
+        let [normal, tangential] =
+            ["normal_force_n", "tangential_force_n"].map(|name| number(&switch[name]));
+        assert!(switch["spring_m"].is_null());
+        assert!((tangential.abs() - 0.3 * normal).abs() <= 1e-12 * normal);
+    }
+    assert!(impact["comparison"]["eps_n_pade"].is_null());
+    let table = directory.run(&format!("impact bodies.json {law}"));
+    assert!(table.stdout.contains("Law F = x + a v"), "{}", table.stdout);
+    assert!(table.stdout.contains("none in this law"), "{}", table.stdout);
+
+    let map = "map --bodies bodies.json --normal 0.05:0.2 --tangential 0:0.4 --size 3x2";
+    let ran = directory.run(&format!("{map} {law} --out map.npz"));
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    let arrays = npz(&directory.path("map.npz"));
+    let law_of_map = arrays.iter().find(|array| array.0 == "law").unwrap().1.text();
+    assert!(law_of_map.contains(r#""normal":"linear""#), "{law_of_map}");
+    let damping = arrays.iter().find(|array| array.0 == "tangential_damping").unwrap();
+    assert!((damping.1.doubles()[0] - 1.75).abs() < 1e-14);
+
+    for (law, expected) in [
+        ("", "surface.normal_stiffness_kg_per_s2 = 50000 has no meaning in this law"),
+        ("--law gran/hertz/history", "surface.normal_stiffness_kg_per_s2 = 50000 has no"),
+        ("--law mfix/LSD", "has no meaning in the law mfix/LSD"),
+    ] {
+        let ran = directory.run(&format!("impact bodies.json {law}"));
+        assert_eq!(ran.code, 2, "{}", ran.stderr);
+        assert!(ran.stderr.contains(expected), "{}", ran.stderr);
+    }
+}

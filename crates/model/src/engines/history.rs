@@ -22,7 +22,7 @@ pub struct Snapshot {
     pub normal_velocity: f64,
     /// Scaled normal force F, in the paper's law x^{3/2} + a √x v, in units of m β^{2/5} g_n^{6/5}.
     pub normal_force: f64,
-    /// Reduced elongation y of the spring, s F/κ while sliding; in other laws its force over κ.
+    /// Reduced elongation y of the spring, s F/κ while sliding; in other laws −F_t/(μκ).
     pub spring: f64,
     /// Reduced tangential force F_t/μ, in the paper's law −κ y, in the units of the normal force;
     /// |F_t|/μ ≤ |F|.

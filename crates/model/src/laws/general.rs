@@ -262,11 +262,10 @@ impl GeneralContact {
         }
     }
 
-    /// The force of the spring in units of κ: where the stiffness is constant, its elongation y.
+    /// The tangential force over κ: the elongation of a spring of this stiffness.
     #[must_use]
     pub fn spring(&self, mode: Mode, y: &State<STATE>) -> f64 {
-        let rest = self.equations.dashpot_force(array(y));
-        (self.tangential_force(mode, y) - rest) / self.contact.kappa()
+        self.tangential_force(mode, y) / self.contact.kappa()
     }
 
     /// Whether an attracting tail follows where the normal force vanishes.

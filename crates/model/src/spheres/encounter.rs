@@ -7,7 +7,8 @@
 use nalgebra::Vector3;
 
 use super::bodies::{Body, Sphere, Wall};
-use super::scaling::{Impact, Pair, Surface};
+use super::forces::Forces;
+use super::scaling::{Impact, Pair};
 use crate::contact::{Contact, InvalidParameter};
 
 /// Largest relative difference between the distance of two bodies and their radii at which they
@@ -107,9 +108,9 @@ impl Encounter {
     pub fn of_spheres(
         first: (&Sphere, &Motion),
         second: (&Sphere, &Motion),
-        surface: &Surface,
+        forces: impl Into<Forces>,
     ) -> Result<Self, EncounterError> {
-        let pair = Pair::new(first.0, &Body::Sphere(*second.0), surface)?;
+        let pair = Pair::new(first.0, &Body::Sphere(*second.0), forces)?;
         let separation = first.1.position_m - second.1.position_m;
         let distance_m = separation.norm();
         let touching_m = first.0.radius_m + second.0.radius_m;
@@ -133,11 +134,11 @@ impl Encounter {
     pub fn with_wall(
         sphere: (&Sphere, &Motion),
         wall: (&Wall, &WallMotion),
-        surface: &Surface,
+        forces: impl Into<Forces>,
     ) -> Result<Self, EncounterError> {
         let (WallMotion { point_m, normal, velocity_m_per_s }, position_m) =
             (*wall.1, sphere.1.position_m);
-        let pair = Pair::new(sphere.0, &Body::Wall(*wall.0), surface)?;
+        let pair = Pair::new(sphere.0, &Body::Wall(*wall.0), forces)?;
         // Scaled first, so that the square of no length is too large or too small.
         let normal = normal / normal.amax();
         let normal = normal / normal.norm();

@@ -42,13 +42,15 @@ pub struct ForceSwitch {
     pub to: Regime,
     /// The side of the sliding that begins or, at a switch to stick, of the sliding that ends.
     pub side: Side,
-    /// Elongation ζ of the tangential spring in m.
-    pub spring_m: f64,
+    /// Elongation ζ of the tangential spring in m; `None` in other laws than the paper's, where the
+    /// force is not that of a spring of one stiffness.
+    pub spring_m: Option<f64>,
     /// Tangential velocity of the surfaces along t in m/s.
     pub velocity_m_per_s: f64,
-    /// Normal force F_n in N.
+    /// Size of the normal force F_n in N.
     pub normal_force_n: f64,
-    /// Tangential force F_t = −k_t ζ in N on the first body along t; at a switch |F_t| = μ F_n.
+    /// Tangential force F_t, −k_t ζ in the paper's law, in N on the first body along t; at a switch
+    /// |F_t| = μ |F_n|.
     pub tangential_force_n: f64,
 }
 
@@ -64,11 +66,12 @@ pub struct EnergyAccount {
     pub kinetic_after_j: f64,
     /// Work of a moving wall on the sphere, impulse · velocity of the wall.
     pub work_of_wall_j: f64,
-    /// Energy taken by Coulomb sliding.
+    /// Energy taken by Coulomb sliding; in other laws than the paper's, lost in slip.
     pub sliding_j: f64,
     /// Energy taken by the damping of the normal force.
     pub damping_j: f64,
-    /// Energy left in the tangential spring when the contact ends.
+    /// Energy left in the tangential spring when the contact ends; in other laws than the paper's,
+    /// lost in stick.
     pub spring_left_j: f64,
     /// Energy left in the compression when the contact ends; 0 without damping.
     pub compression_left_j: f64,
@@ -139,8 +142,12 @@ impl Encounter {
         let impact = &self.impact;
         let surface = &impact.pair.surface;
         let in_si = |switch: &Switch| {
-            let spring_m = impact.spring_m(switch.spring);
-            let pull_n = surface.tangential_stiffness_kg_per_s2 * spring_m;
+            let of_paper = impact.contact.obeys_paper();
+            let spring_m = of_paper.then(|| impact.spring_m(switch.spring));
+            let force = surface.friction * impact.force_unit_n() * impact.contact.kappa();
+            let pull_n = spring_m.map_or(force * switch.spring, |spring_m| {
+                surface.tangential_stiffness_kg_per_s2 * spring_m
+            });
             ForceSwitch {
                 time_s: switch.time * impact.time_unit_s,
                 time_left_s: switch.time_left * impact.time_unit_s,

@@ -44,11 +44,26 @@ pub const FRICTION: Quantity = positive("friction", "a finite number above 0, wi
 pub const TANGENTIAL_STIFFNESS: Quantity =
     positive("tangential_stiffness_kg_per_s2", "a finite number above 0, in kg/s²");
 /// Damping time A of the normal force.
-pub const DAMPING_TIME: Quantity = Quantity {
-    name: "damping_time_s",
-    expected: "a finite number, 0 or above, in s",
-    range: Range::NotNegative,
-};
+pub const DAMPING_TIME: Quantity =
+    not_negative("damping_time_s", "a finite number, 0 or above, in s");
+/// Stiffness k of a linear normal force.
+pub const NORMAL_STIFFNESS: Quantity =
+    positive("normal_stiffness_kg_per_s2", "a finite number above 0, in kg/s²");
+/// Elastic constant ρ of Hertz' force.
+pub const HERTZ_STIFFNESS: Quantity =
+    positive("hertz_stiffness_kg_per_s2_m0_5", "a finite number above 0, in kg/(s² √m)");
+/// Constant K of Mindlin's tangential stiffness K √ξ.
+pub const MINDLIN_STIFFNESS: Quantity =
+    positive("mindlin_stiffness_kg_per_s2_m0_5", "a finite number above 0, in kg/(s² √m)");
+/// Damping γ of the normal force.
+pub const DAMPING_COEFFICIENT: Quantity =
+    not_negative("damping_coefficient", "a finite number, 0 or above, in kg/(s mᵉ)");
+/// Damping of the normal force without unit.
+pub const DAMPING_RATIO: Quantity =
+    not_negative("damping_ratio", "a finite number, 0 or above, without unit");
+/// Ratio of tangential and normal damping.
+pub const TANGENTIAL_DAMPING_RATIO: Quantity =
+    not_negative("tangential_damping_ratio", "a finite number, 0 or above, without unit");
 
 #[derive(Clone, Copy, Debug)]
 enum Range {
@@ -78,4 +93,8 @@ impl Quantity {
 
 const fn positive(name: &'static str, expected: &'static str) -> Quantity {
     Quantity { name, expected, range: Range::Positive }
+}
+
+const fn not_negative(name: &'static str, expected: &'static str) -> Quantity {
+    Quantity { name, expected, range: Range::NotNegative }
 }

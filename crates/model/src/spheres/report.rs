@@ -2,6 +2,7 @@
 
 use super::encounter::{Encounter, Motion};
 use super::outcome::Outcome;
+use crate::laws::law::{Damping, End, Normal};
 use crate::limits::{coulomb, normal};
 use crate::result::{Collision, NotFinite};
 
@@ -51,17 +52,18 @@ pub struct ImpactReport {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Comparison {
-    /// ε_n by [`normal::series`].
-    pub eps_n_series: f64,
-    /// ε_n by [`normal::pade`].
-    pub eps_n_pade: f64,
+    /// ε_n by [`normal::series`]; `None` unless the normal force is the paper's.
+    pub eps_n_series: Option<f64>,
+    /// ε_n by [`normal::pade`]; `None` unless the normal force is the paper's.
+    pub eps_n_pade: Option<f64>,
     /// ε_t of pure Coulomb sliding with the ε_n of the collision, [`coulomb::restitution`]; `None`
-    /// in a central impact.
+    /// in a central impact, or if the normal force may attract.
     pub eps_t_coulomb: Option<f64>,
-    /// [`Impact::mindlin_stiffness_kg_per_s2`](crate::Impact::mindlin_stiffness_kg_per_s2).
-    pub mindlin_stiffness_kg_per_s2: f64,
-    /// [`Pair::mindlin_kappa`](crate::Pair::mindlin_kappa).
-    pub mindlin_kappa: f64,
+    /// [`Impact::mindlin_stiffness_kg_per_s2`](crate::Impact::mindlin_stiffness_kg_per_s2); `None`
+    /// where the normal force is linear.
+    pub mindlin_stiffness_kg_per_s2: Option<f64>,
+    /// [`Pair::mindlin_kappa`](crate::Pair::mindlin_kappa); `None` where the normal force is linear.
+    pub mindlin_kappa: Option<f64>,
     /// Largest compression ξ in m without damping.
     pub undamped_compression_m: f64,
     /// Largest normal force F_n in N without damping.
@@ -117,9 +119,9 @@ impl ImpactReport {
         let components = vectors.flat_map(|(name, v)| [(name, v.x), (name, v.y), (name, v.z)]);
         let energy = &outcome.energy;
         NotFinite::among(components.chain([
-            ("eps_n_series", comparison.eps_n_series),
-            ("mindlin_stiffness_kg_per_s2", comparison.mindlin_stiffness_kg_per_s2),
-            ("mindlin_kappa", comparison.mindlin_kappa),
+            ("eps_n_series", comparison.eps_n_series.unwrap_or(0.0)),
+            ("mindlin_stiffness_kg_per_s2", comparison.mindlin_stiffness_kg_per_s2.unwrap_or(0.0)),
+            ("mindlin_kappa", comparison.mindlin_kappa.unwrap_or(0.0)),
             ("undamped_compression_m", comparison.undamped_compression_m),
             ("undamped_normal_force_n", comparison.undamped_normal_force_n),
             ("time_unit_s", encounter.impact.time_unit_s),
@@ -136,12 +138,17 @@ impl Comparison {
     fn new(encounter: &Encounter, outcome: &Outcome) -> Self {
         let (impact, contact) = (&encounter.impact, encounter.contact());
         let coulomb = |_| coulomb::restitution(contact.psi(), outcome.eps_n);
+        let (law, damped) = (contact.law(), contact.damping() > 0.0);
+        let hertz = law.normal == Normal::Hertz;
+        let viscoelastic = law.damping == Damping::Viscoelastic && law.end == End::Force;
+        let of_paper = hertz && (viscoelastic || !damped);
+        let attracts = damped && law.end == End::Overlap && !law.limit_damping;
         Self {
-            eps_n_series: normal::series(contact.damping()),
-            eps_n_pade: normal::pade(contact.damping()),
-            eps_t_coulomb: outcome.eps_t.map(coulomb),
-            mindlin_stiffness_kg_per_s2: impact.mindlin_stiffness_kg_per_s2(),
-            mindlin_kappa: impact.pair.mindlin_kappa(),
+            eps_n_series: of_paper.then(|| normal::series(contact.damping())),
+            eps_n_pade: of_paper.then(|| normal::pade(contact.damping())),
+            eps_t_coulomb: outcome.eps_t.filter(|_| !attracts).map(coulomb),
+            mindlin_stiffness_kg_per_s2: hertz.then(|| impact.mindlin_stiffness_kg_per_s2()),
+            mindlin_kappa: hertz.then(|| impact.pair.mindlin_kappa()),
             undamped_compression_m: impact.largest_compression_m(),
             undamped_normal_force_n: impact.largest_normal_force_n(),
         }

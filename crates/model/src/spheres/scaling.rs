@@ -4,8 +4,10 @@
 //! (21)–(24).
 
 use super::bodies::{Body, Material, Sphere};
+use super::forces::Forces;
 use super::quantity;
 use crate::contact::{Contact, InvalidParameter};
+use crate::laws::law::{Damping, Law, Normal, Tangential};
 
 const POSITIVE: &str = "a finite number above 0";
 
@@ -54,15 +56,23 @@ pub struct Pair {
     /// Effective radius R = R_i R_j/(R_i + R_j) in m.
     pub effective_radius_m: f64,
     /// Elastic constant ρ = (4/3) E* √R in kg m^{−1/2} s^{−2}; 2Y √R/(3(1 − ν²)) for equal
-    /// materials.
+    /// materials. Where the normal force is linear, its stiffness k in kg/s².
     pub elastic_constant: f64,
     /// Stiffness ratio 4G*/E* of tangential and normal motion without slip, where 1/G* is the sum
     /// of (2 − ν)/G over both bodies; 2(1 − ν)/(2 − ν) for equal materials.
     pub stiffness_ratio: f64,
     /// α = 1/(1 + m R_i²/J_i + m R_j²/J_j); 2/7 for homogeneous spheres.
     pub alpha: f64,
-    /// The properties of the surfaces.
+    /// The properties of the surfaces. In other laws than the paper's, the stiffness is the constant
+    /// K in kg/(s² √m) where it is Mindlin's, and the damping time is the damping γ over the elastic
+    /// constant, in their units; see [`Constants`](super::forces::Constants).
     pub surface: Surface,
+    /// The contact law.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub law: Law,
+    /// Ratio of tangential and normal damping; 0 in the paper's law.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub tangential_damping_ratio: f64,
 }
 
 impl Pair {
@@ -71,12 +81,18 @@ impl Pair {
     /// As in Hertz' contact, 1/E* = (1 − ν_i²)/Y_i + (1 − ν_j²)/Y_j. A wall has infinite radius,
     /// mass and moment of inertia: R and m are those of the sphere, and α = 1/(1 + m R²/J).
     ///
+    /// The paper's law has a [`Surface`], other laws have [`Forces`].
+    ///
     /// # Errors
     /// [`InvalidParameter`] names the first quantity or result that is out of its range.
-    pub fn new(sphere: &Sphere, other: &Body, surface: &Surface) -> Result<Self, InvalidParameter> {
+    pub fn new(
+        sphere: &Sphere,
+        other: &Body,
+        forces: impl Into<Forces>,
+    ) -> Result<Self, InvalidParameter> {
+        let forces = forces.into();
         sphere.validate()?;
         other.validate()?;
-        surface.validate()?;
         let one = Reciprocals::of_sphere(sphere);
         let two = match other {
             Body::Sphere(other) => Reciprocals::of_sphere(other),
@@ -90,13 +106,20 @@ impl Pair {
         let effective_radius_m = 1.0 / (one.radius + two.radius);
         let modulus = 1.0 / (one.normal_compliance + two.normal_compliance);
         let shear_modulus = 1.0 / (one.tangential_compliance + two.tangential_compliance);
+        let hertz = 4.0 / 3.0 * modulus * effective_radius_m.sqrt();
+        let stiffness_ratio = 4.0 * shear_modulus / modulus;
+        let (elastic_constant, surface) =
+            forces.resolved(effective_mass_kg, hertz, 1.5 * stiffness_ratio * hertz);
+        surface.validate()?;
         let pair = Self {
             effective_mass_kg,
             effective_radius_m,
-            elastic_constant: 4.0 / 3.0 * modulus * effective_radius_m.sqrt(),
-            stiffness_ratio: 4.0 * shear_modulus / modulus,
+            elastic_constant,
+            stiffness_ratio,
             alpha: 1.0 / (1.0 + effective_mass_kg * (one.turning + two.turning)),
-            surface: *surface,
+            surface,
+            law: forces.law,
+            tangential_damping_ratio: forces.tangential_damping_ratio,
         };
         for (name, value) in [
             ("effective_mass_kg", pair.effective_mass_kg),
@@ -124,6 +147,12 @@ impl Pair {
         quantity::DENSITY.check(material.density_kg_per_m3)?;
         let sphere = Sphere::homogeneous(radius_m, material);
         Self::new(&sphere, &Body::Sphere(sphere), surface)
+    }
+
+    /// Scaled tangential damping b, the ratio of the dampings over α.
+    #[must_use]
+    pub fn tangential_damping(&self) -> f64 {
+        self.tangential_damping_ratio / self.alpha
     }
 
     /// Scaled stiffness κ = (3/2)(5/4)^{1/5} (4G*/E*)/α of a spring with Mindlin's tangential
@@ -160,14 +189,30 @@ impl Pair {
                 return Err(InvalidParameter { name, value, expected: POSITIVE });
             }
         }
+        let Self { law, alpha, .. } = *self;
         let beta = self.elastic_constant / self.effective_mass_kg;
-        let time = 1.0 / (beta.powf(0.4) * normal_m_per_s.powf(0.2));
+        let time = match law.normal {
+            Normal::Hertz => 1.0 / (beta.powf(0.4) * normal_m_per_s.powf(0.2)),
+            Normal::Linear => 1.0 / beta.sqrt(),
+        };
+        let length = normal_m_per_s * time;
         let Surface { friction, tangential_stiffness_kg_per_s2, damping_time_s } = self.surface;
-        let kappa =
-            tangential_stiffness_kg_per_s2 * time * time / (self.alpha * self.effective_mass_kg);
-        let psi = tangential_m_per_s / normal_m_per_s * self.alpha / friction;
+        let stiffness = match law.tangential {
+            Tangential::Constant => tangential_stiffness_kg_per_s2,
+            Tangential::Mindlin => tangential_stiffness_kg_per_s2 * length.sqrt(),
+        };
+        let kappa = stiffness * time * time / (alpha * self.effective_mass_kg);
+        let psi = tangential_m_per_s / normal_m_per_s * alpha / friction;
+        let damping = match (law.normal, law.damping) {
+            (_, Damping::None) => 0.0,
+            (Normal::Hertz, Damping::Viscoelastic) => damping_time_s / time,
+            (_, Damping::Linear) => beta * damping_time_s * time,
+            (_, Damping::Viscoelastic) => beta * damping_time_s * time * length.sqrt(),
+            (_, Damping::Tsuji) => beta * damping_time_s * time * length.sqrt().sqrt(),
+        };
+        let contact = Contact::new(kappa, psi, damping)?;
         Ok(Impact {
-            contact: Contact::new(kappa, psi, damping_time_s / time)?,
+            contact: contact.with_law(law, self.tangential_damping())?,
             pair: *self,
             normal_m_per_s,
             time_unit_s: time,
@@ -201,21 +246,29 @@ impl Impact {
         self.pair.effective_mass_kg * self.normal_m_per_s / self.time_unit_s
     }
 
-    /// Largest compression ξ in m without damping, (5/4)^{2/5} length units. With damping ξ stays
-    /// below it.
+    /// Largest compression ξ in m without damping: (5/4)^{2/5} length units, and one where the force
+    /// is linear. With damping ξ stays below it.
     #[must_use]
     pub fn largest_compression_m(&self) -> f64 {
-        1.25_f64.powf(0.4) * self.length_unit_m()
+        match self.pair.law.normal {
+            Normal::Hertz => 1.25_f64.powf(0.4) * self.length_unit_m(),
+            Normal::Linear => self.length_unit_m(),
+        }
     }
 
-    /// Largest normal force F_n in N without damping, (5/4)^{3/5} force units.
+    /// Largest normal force F_n in N without damping: (5/4)^{3/5} force units, and one where it is
+    /// linear.
     #[must_use]
     pub fn largest_normal_force_n(&self) -> f64 {
-        1.25_f64.powf(0.6) * self.force_unit_n()
+        match self.pair.law.normal {
+            Normal::Hertz => 1.25_f64.powf(0.6) * self.force_unit_n(),
+            Normal::Linear => self.force_unit_n(),
+        }
     }
 
     /// Mindlin's tangential stiffness k_t = 8G* √(Rξ) in kg/s² of a contact that does not slip, at
-    /// [`Self::largest_compression_m`], where it is largest. Its κ is [`Pair::mindlin_kappa`].
+    /// [`Self::largest_compression_m`], where it is largest. Its κ is [`Pair::mindlin_kappa`]. Both
+    /// are those of Hertz' normal force.
     #[must_use]
     pub fn mindlin_stiffness_kg_per_s2(&self) -> f64 {
         let Pair { elastic_constant, stiffness_ratio, .. } = self.pair;

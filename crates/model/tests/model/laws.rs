@@ -14,7 +14,7 @@ use crate::common::file;
 const ALPHA: f64 = 2.0 / 7.0;
 
 /// The contact of a case, whose scaled units are those of this crate but for α and μ.
-fn contact(case: &Value) -> Contact {
+pub fn contact(case: &Value) -> Contact {
     let scaled = &case["scaled"];
     let number = |name: &str| scaled[name].as_f64().unwrap();
     let text = |name: &str| scaled[name].as_str().unwrap();

@@ -9,6 +9,7 @@ mod common;
 
 mod estimates;
 mod exact;
+mod forces;
 mod impacts;
 mod laws;
 mod margins;

@@ -280,7 +280,7 @@ fn every_switch_is_at_the_limit_of_friction() {
         assert!(switch.time_s > last && switch.time_left_s > 0.0);
         close(switch.time_s + switch.time_left_s, outcome.contact_time_s, 1e-12);
         close(switch.tangential_force_n.abs(), 0.4 * switch.normal_force_n, 1e-14);
-        assert!(switch.tangential_force_n * switch.spring_m < 0.0);
+        assert!(switch.tangential_force_n * switch.spring_m.unwrap() < 0.0);
         last = switch.time_s;
     }
 }

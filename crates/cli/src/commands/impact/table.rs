@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use stickslip_model::{Engine, ForceSwitch, ImpactReport, Vector3};
 use stickslip_solver::Statistics;
 
-use crate::output::text::{aligned, describe, number, pairs, work};
+use crate::output::text::{aligned, describe, law, number, pairs, work};
 
 /// Writes `impact` as tables.
 ///
@@ -20,12 +20,14 @@ pub fn write(
     let contact = &impact.collision.contact;
     writeln!(
         out,
-        "Impact with κ = {:?}, ψ = {:?}, damping a = {:?}, by {}\n",
+        "Impact with κ = {:?}, ψ = {:?}, damping a = {:?}, by {}",
         contact.kappa(),
         impact.psi(),
         contact.damping(),
         describe(engine)
     )?;
+    law(out, contact)?;
+    writeln!(out)?;
     vectors(out, impact)?;
     switches(out, &impact.outcome.switches)?;
     results(out, impact)?;
@@ -77,7 +79,7 @@ fn switches(out: &mut dyn Write, switches: &[ForceSwitch]) -> io::Result<()> {
             number(switch.time_left_s),
             switch.to.to_string(),
             format!("{:+}", switch.side.sign()),
-            number(switch.spring_m),
+            switch.spring_m.map_or_else(|| "–".to_owned(), number),
             number(switch.velocity_m_per_s),
             number(switch.normal_force_n),
             number(switch.tangential_force_n),
@@ -108,15 +110,20 @@ fn results(out: &mut dyn Write, impact: &ImpactReport) -> io::Result<()> {
 
 fn energy(out: &mut dyn Write, impact: &ImpactReport) -> io::Result<()> {
     let energy = &impact.outcome.energy;
+    let [slip, stick] = if impact.collision.contact.obeys_paper() {
+        ["taken by sliding [J]", "left in the spring [J]"]
+    } else {
+        ["lost in slip [J]", "lost in stick [J]"]
+    };
     pairs(
         out,
         &[
             ("kinetic energy before [J]", number(energy.kinetic_before_j)),
             ("work of the wall [J]", number(energy.work_of_wall_j)),
             ("kinetic energy after [J]", number(energy.kinetic_after_j)),
-            ("taken by sliding [J]", number(energy.sliding_j)),
+            (slip, number(energy.sliding_j)),
             ("taken by damping [J]", number(energy.damping_j)),
-            ("left in the spring [J]", number(energy.spring_left_j)),
+            (stick, number(energy.spring_left_j)),
             ("left in the compression [J]", number(energy.compression_left_j)),
             ("unbalanced [J]", number(energy.unbalanced_j())),
         ],
@@ -145,14 +152,19 @@ fn observed(out: &mut dyn Write, impact: &ImpactReport) -> io::Result<()> {
 
 fn comparison(out: &mut dyn Write, impact: &ImpactReport) -> io::Result<()> {
     let comparison = &impact.comparison;
+    let of_law = |value: Option<f64>| value.map_or_else(|| "none in this law".to_owned(), number);
+    let coulomb = match impact.outcome.eps_t {
+        Some(_) => of_law(comparison.eps_t_coulomb),
+        None => optional(None),
+    };
     pairs(
         out,
         &[
-            ("ε_n by its series", number(comparison.eps_n_series)),
-            ("ε_n by a Padé approximant", number(comparison.eps_n_pade)),
-            ("ε_t of pure Coulomb sliding", optional(comparison.eps_t_coulomb)),
-            ("Mindlin's stiffness [kg/s²]", number(comparison.mindlin_stiffness_kg_per_s2)),
-            ("κ of Mindlin's stiffness", number(comparison.mindlin_kappa)),
+            ("ε_n by its series", of_law(comparison.eps_n_series)),
+            ("ε_n by a Padé approximant", of_law(comparison.eps_n_pade)),
+            ("ε_t of pure Coulomb sliding", coulomb),
+            ("Mindlin's stiffness [kg/s²]", of_law(comparison.mindlin_stiffness_kg_per_s2)),
+            ("κ of Mindlin's stiffness", of_law(comparison.mindlin_kappa)),
             ("undamped compression [m]", number(comparison.undamped_compression_m)),
             ("undamped normal force [N]", number(comparison.undamped_normal_force_n)),
         ],

@@ -3,7 +3,10 @@
 use serde::Deserialize;
 use serde_json::Value;
 use stickslip_model::quantity;
-use stickslip_model::{Elasticity, Motion, Sphere, Surface, Wall, WallMotion};
+use stickslip_model::quantity::Quantity;
+use stickslip_model::{
+    Constants, Elasticity, Forces, Law, Motion, Sphere, Surface, Wall, WallMotion,
+};
 
 use super::field::{Object, number, required, vector};
 use crate::input::json;
@@ -14,8 +17,8 @@ pub struct Bodies {
     pub sphere: (Sphere, Option<Motion>),
     /// The second body.
     pub other: Other,
-    /// The surfaces.
-    pub surface: Surface,
+    /// The forces between them.
+    pub forces: Forces,
 }
 
 /// The body that the first sphere hits.
@@ -27,13 +30,13 @@ pub enum Other {
 }
 
 impl Bodies {
-    /// The bodies that `text` describes.
+    /// The bodies that `text` describes, under a contact law.
     ///
     /// # Errors
     /// What is wrong, where, and what is expected.
-    pub fn parse(text: &[u8]) -> Result<Self, String> {
+    pub fn parse(text: &[u8], law: Law) -> Result<Self, String> {
         let Object(file): Object<File> = json::parse(text)?;
-        file.resolve()
+        file.resolve(law)
     }
 }
 
@@ -108,15 +111,21 @@ struct SurfaceFields {
     #[serde(rename = "comment")]
     _comment: Option<String>,
     friction: Option<Value>,
+    normal_stiffness_kg_per_s2: Option<Value>,
+    hertz_stiffness_kg_per_s2_m0_5: Option<Value>,
     tangential_stiffness_kg_per_s2: Option<Value>,
+    mindlin_stiffness_kg_per_s2_m0_5: Option<Value>,
+    damping_coefficient: Option<Value>,
     damping_time_s: Option<Value>,
+    damping_ratio: Option<Value>,
+    tangential_damping_ratio: Option<Value>,
 }
 
 const POSITION: &str = "in m";
 const VELOCITY: (&str, &str) = ("velocity_m_per_s", "in m/s");
 
 impl File {
-    fn resolve(self) -> Result<Bodies, String> {
+    fn resolve(self, law: Law) -> Result<Bodies, String> {
         let mut spheres = Vec::new();
         for (index, Object(sphere)) in self.spheres.unwrap_or_default().iter().enumerate() {
             spheres.push(sphere.resolve(&format!("spheres[{index}]"))?);
@@ -135,7 +144,7 @@ impl File {
             }
         };
         let Object(surface) = required("surface", self.surface)?;
-        Ok(Bodies { sphere, other, surface: surface.resolve()? })
+        Ok(Bodies { sphere, other, forces: surface.resolve(law)? })
     }
 }
 
@@ -235,13 +244,54 @@ impl WallMotionFields {
 }
 
 impl SurfaceFields {
-    fn resolve(&self) -> Result<Surface, String> {
-        let number = |quantity, value: &Option<Value>| number("surface", quantity, value.as_ref());
-        let stiffness = &self.tangential_stiffness_kg_per_s2;
-        Ok(Surface {
-            friction: number(&quantity::FRICTION, &self.friction)?,
-            tangential_stiffness_kg_per_s2: number(&quantity::TANGENTIAL_STIFFNESS, stiffness)?,
-            damping_time_s: number(&quantity::DAMPING_TIME, &self.damping_time_s)?,
-        })
+    fn resolve(&self, law: Law) -> Result<Forces, String> {
+        let number = |quantity: &Quantity, value: &Option<Value>| {
+            number("surface", quantity, value.as_ref())
+        };
+        let friction = number(&quantity::FRICTION, &self.friction)?;
+        let given = |quantity: &Quantity, value: &Option<Value>| {
+            value.as_ref().map(|_| number(quantity, value)).transpose()
+        };
+        let constants = Constants {
+            friction,
+            normal_stiffness_kg_per_s2: given(
+                &quantity::NORMAL_STIFFNESS,
+                &self.normal_stiffness_kg_per_s2,
+            )?,
+            hertz_stiffness_kg_per_s2_m0_5: given(
+                &quantity::HERTZ_STIFFNESS,
+                &self.hertz_stiffness_kg_per_s2_m0_5,
+            )?,
+            tangential_stiffness_kg_per_s2: given(
+                &quantity::TANGENTIAL_STIFFNESS,
+                &self.tangential_stiffness_kg_per_s2,
+            )?,
+            mindlin_stiffness_kg_per_s2_m0_5: given(
+                &quantity::MINDLIN_STIFFNESS,
+                &self.mindlin_stiffness_kg_per_s2_m0_5,
+            )?,
+            damping_coefficient: given(&quantity::DAMPING_COEFFICIENT, &self.damping_coefficient)?,
+            damping_time_s: given(&quantity::DAMPING_TIME, &self.damping_time_s)?,
+            damping_ratio: given(&quantity::DAMPING_RATIO, &self.damping_ratio)?,
+            tangential_damping_ratio: given(
+                &quantity::TANGENTIAL_DAMPING_RATIO,
+                &self.tangential_damping_ratio,
+            )?,
+        };
+        let only_of_paper = Constants {
+            friction,
+            tangential_stiffness_kg_per_s2: constants.tangential_stiffness_kg_per_s2,
+            damping_time_s: constants.damping_time_s,
+            ..Constants::default()
+        };
+        if law == Law::PAPER && constants == only_of_paper {
+            let stiffness = &self.tangential_stiffness_kg_per_s2;
+            return Ok(Forces::from(&Surface {
+                friction,
+                tangential_stiffness_kg_per_s2: number(&quantity::TANGENTIAL_STIFFNESS, stiffness)?,
+                damping_time_s: number(&quantity::DAMPING_TIME, &self.damping_time_s)?,
+            }));
+        }
+        Forces::new(law, &constants).map_err(|invalid| format!("surface.{invalid}"))
     }
 }

@@ -205,11 +205,6 @@ impl Equations {
         u[self.exponents.of(stage).shared] * self.pull(stage, u, y)
     }
 
-    /// The part of Q that is due to the dashpot.
-    pub fn dashpot_force(&self, y: &[f64; STATE]) -> f64 {
-        powers(y[U])[self.exponents.d] * y[W] * self.dashpot
-    }
-
     /// The right-hand side of a mode.
     #[inline(always)]
     pub fn field<T: Number>(&self, mode: Mode, y: &[T; STATE]) -> [T; STATE] {

@@ -1,0 +1,140 @@
+//! The two systems whose runs make courses: the paper's contact and that of any law.
+
+use stickslip_solver::{Start, State, SwitchEvent};
+
+use super::Snapshot;
+use crate::laws::general::{self, CREST, GeneralContact, Mode, REVERSAL};
+use crate::laws::phase::{END, Phase, Regime, Side};
+use crate::laws::regularized::Regularized;
+use crate::laws::regularized::components;
+
+/// A contact whose run can be kept.
+pub trait Followed<const N: usize>: Copy {
+    /// A phase, or a part of one with equations of its own.
+    type Mode: Copy;
+    /// The component that is the time since the clock was last set to zero.
+    const CLOCK: usize;
+
+    /// Where the run begins.
+    fn start(&self) -> Start<Self::Mode, N>;
+
+    /// The state at a time before the run begins, which is soon after the contact does.
+    fn before_start(&self, time: f64) -> State<N>;
+
+    /// How fast time grows with s.
+    fn clock_rate(&self, y: &State<N>) -> f64;
+
+    /// The contact in the state `y`; its time is that of the clock.
+    fn snapshot(&self, mode: Self::Mode, y: &State<N>) -> Snapshot;
+
+    /// What holds in a mode.
+    fn phase(mode: Self::Mode) -> (Regime, Side);
+
+    /// What begins with an event.
+    fn begins(event: &SwitchEvent<Self::Mode, N>) -> Begins;
+
+    /// How long the overlap goes on when the force has ended in the state `y`.
+    fn flight(&self, y: &State<N>) -> f64;
+}
+
+/// What begins with an event.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Begins {
+    /// Nothing; all goes on.
+    Nothing,
+    /// Other equations within a phase.
+    Part,
+    /// A phase.
+    Phase,
+    /// Nothing more; the contact has ended.
+    End,
+}
+
+impl Followed<{ components::STATE }> for Regularized {
+    type Mode = Phase;
+    const CLOCK: usize = components::T;
+
+    fn start(&self) -> Start<Phase, { components::STATE }> {
+        Start { mode: Phase::first(&self.contact()), s: 0.0, state: Self::start(self) }
+    }
+
+    fn before_start(&self, _time: f64) -> State<{ components::STATE }> {
+        Self::start(self)
+    }
+
+    fn clock_rate(&self, y: &State<{ components::STATE }>) -> f64 {
+        2.0 * y[components::U]
+    }
+
+    fn snapshot(&self, phase: Phase, y: &State<{ components::STATE }>) -> Snapshot {
+        let spring = self.spring(phase, y);
+        Snapshot {
+            time: y[components::T],
+            compression: y[components::U] * y[components::U],
+            normal_velocity: self.compression_rate(y),
+            normal_force: self.normal_force(y),
+            spring,
+            tangential_force: -self.contact().kappa() * spring,
+            velocity: self.velocity(y),
+        }
+    }
+
+    fn phase(phase: Phase) -> (Regime, Side) {
+        (phase.regime, phase.side)
+    }
+
+    fn begins(event: &SwitchEvent<Phase, { components::STATE }>) -> Begins {
+        if event.guard == END { Begins::End } else { Begins::Phase }
+    }
+
+    fn flight(&self, _y: &State<{ components::STATE }>) -> f64 {
+        0.0
+    }
+}
+
+impl Followed<{ general::STATE }> for GeneralContact {
+    type Mode = Mode;
+    const CLOCK: usize = general::T;
+
+    fn start(&self) -> Start<Mode, { general::STATE }> {
+        Start { mode: self.first(), s: 0.0, state: Self::start(self) }
+    }
+
+    fn before_start(&self, time: f64) -> State<{ general::STATE }> {
+        self.state_before_start(time)
+    }
+
+    fn clock_rate(&self, y: &State<{ general::STATE }>) -> f64 {
+        Self::clock_rate(self, y)
+    }
+
+    fn snapshot(&self, mode: Mode, y: &State<{ general::STATE }>) -> Snapshot {
+        Snapshot {
+            time: y[general::T],
+            compression: self.overlap(y),
+            normal_velocity: self.compression_rate(y),
+            normal_force: self.normal_force(y),
+            spring: self.spring(mode, y),
+            tangential_force: -self.tangential_force(mode, y),
+            velocity: self.velocity(y),
+        }
+    }
+
+    fn phase(mode: Mode) -> (Regime, Side) {
+        (mode.regime, mode.side)
+    }
+
+    fn begins(event: &SwitchEvent<Mode, { general::STATE }>) -> Begins {
+        match event.guard {
+            REVERSAL => Begins::Nothing,
+            CREST => Begins::Part,
+            END if event.from.stage == event.to.stage => Begins::End,
+            END if event.from.regime == event.to.regime => Begins::Part,
+            _ => Begins::Phase,
+        }
+    }
+
+    fn flight(&self, y: &State<{ general::STATE }>) -> f64 {
+        Self::flight(self, y)
+    }
+}

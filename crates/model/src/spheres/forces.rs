@@ -1,0 +1,249 @@
+//! Contact laws in SI units: the constants that belong to a law, and what they mean.
+
+use super::quantity::{self, Quantity};
+use super::scaling::Surface;
+use crate::contact::InvalidParameter;
+use crate::laws::law::{Damping, Law, Normal, Tangential};
+
+/// The constants of a contact law in SI units. Which of them a law has is said at each.
+///
+/// With the overlap ξ, its rate ξ̇, the tangential velocity g and the elongation ζ of the spring:
+///
+/// ```text
+/// F_n = k ξ + γ ξ^e ξ̇          (linear)    with e = 0, ½, ¼ where the damping is linear,
+/// F_n = ρ ξ^{3/2} + γ ξ^e ξ̇    (hertz)     viscoelastic or tsuji
+/// F_t = k_t ζ + r γ ξ^e g      (constant), |F_t| ≤ μ |F_n|
+/// F_t = K √ξ ζ + r γ ξ^e g     (mindlin)
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Constants {
+    /// Coulomb's coefficient of friction μ.
+    pub friction: f64,
+    /// Stiffness k of a linear normal force in kg/s².
+    pub normal_stiffness_kg_per_s2: Option<f64>,
+    /// Elastic constant ρ of Hertz' force in kg/(s² √m); without it, that of the materials.
+    pub hertz_stiffness_kg_per_s2_m0_5: Option<f64>,
+    /// Constant tangential stiffness k_t in kg/s².
+    pub tangential_stiffness_kg_per_s2: Option<f64>,
+    /// Constant K of Mindlin's tangential stiffness K √ξ, in kg/(s² √m); without it 8 G* √R, that
+    /// of the materials.
+    pub mindlin_stiffness_kg_per_s2_m0_5: Option<f64>,
+    /// Damping γ of the normal force in kg/(s mᵉ).
+    pub damping_coefficient: Option<f64>,
+    /// Damping time A in s, γ = A ρ or A k: instead of γ where the damping is viscoelastic and the
+    /// force Hertz', or both are linear.
+    pub damping_time_s: Option<f64>,
+    /// Damping c without unit, γ = c √(m ρ) or c √(m k) with the effective mass m: instead of γ
+    /// where the damping is Tsuji's and the force Hertz', or both are linear. It is the scaled
+    /// damping a.
+    pub damping_ratio: Option<f64>,
+    /// The ratio r of tangential and normal damping, without unit; without it 0.
+    pub tangential_damping_ratio: Option<f64>,
+}
+
+/// Constants that fit a law.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Forces {
+    pub(super) law: Law,
+    friction: f64,
+    elastic: Option<f64>,
+    tangential: Option<f64>,
+    dashpot: Dashpot,
+    pub(super) tangential_damping_ratio: f64,
+}
+
+/// The damping γ of the normal force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Dashpot {
+    Coefficient(f64),
+    /// γ over the elastic constant.
+    Time(f64),
+    /// γ over √(effective mass · elastic constant).
+    Ratio(f64),
+}
+
+/// Constants that do not fit a law.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum InvalidForces {
+    /// A constant is out of its range.
+    #[error(transparent)]
+    Parameter(#[from] InvalidParameter),
+    /// A constant is missing.
+    #[error("{name} is missing; expected in this law: {expected}")]
+    Missing {
+        /// The name of the constant.
+        name: &'static str,
+        /// Its range and unit.
+        expected: &'static str,
+    },
+    /// A constant has no meaning in the law.
+    #[error("{name} = {value} has no meaning in this law; expected without it")]
+    Meaningless {
+        /// The name of the constant.
+        name: &'static str,
+        /// The value that was given.
+        value: f64,
+    },
+    /// The damping is given twice.
+    #[error("{first} and {second} are both given; expected one constant of damping")]
+    Twice {
+        /// The name of one constant.
+        first: &'static str,
+        /// The name of another one.
+        second: &'static str,
+    },
+}
+
+impl Forces {
+    /// The law `law` with `constants`.
+    ///
+    /// ```
+    /// use stickslip_model::{Body, Constants, Elasticity, Forces, Pair, Sphere, presets};
+    ///
+    /// let law = presets::find("gran/hooke/history").ok_or("no such law")?.law;
+    /// let constants = Constants {
+    ///     friction: 0.5,
+    ///     normal_stiffness_kg_per_s2: Some(1e5),
+    ///     tangential_stiffness_kg_per_s2: Some(1e5 * 2.0 / 7.0),
+    ///     damping_ratio: Some(0.2),
+    ///     ..Constants::default()
+    /// };
+    /// let elasticity = Elasticity { young_modulus_pa: 1e7, poisson_ratio: 0.3 };
+    /// let (radius_m, mass_kg) = (1e-3, 1e-5);
+    /// let moment_of_inertia_kg_m2 = Sphere::homogeneous_moment(radius_m, mass_kg);
+    /// let sphere = Sphere { radius_m, mass_kg, moment_of_inertia_kg_m2, elasticity };
+    /// let forces = Forces::new(law, &constants)?;
+    /// let impact = Pair::new(&sphere, &Body::Sphere(sphere), forces)?.impact(0.1, 0.2)?;
+    /// // κ = k_t/(α k), whatever the size and the velocity.
+    /// assert!((impact.contact.kappa() - 1.0).abs() < 1e-14);
+    /// assert_eq!(impact.contact.damping(), 0.2);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`InvalidForces`] names the first constant that is missing, out of its range or without
+    /// meaning in the law.
+    pub fn new(law: Law, constants: &Constants) -> Result<Self, InvalidForces> {
+        let c = constants;
+        let friction = quantity::FRICTION.check(c.friction)?;
+        let elastic = match law.normal {
+            Normal::Linear => {
+                unused(&quantity::HERTZ_STIFFNESS, c.hertz_stiffness_kg_per_s2_m0_5)?;
+                Some(required(&quantity::NORMAL_STIFFNESS, c.normal_stiffness_kg_per_s2)?)
+            }
+            Normal::Hertz => {
+                unused(&quantity::NORMAL_STIFFNESS, c.normal_stiffness_kg_per_s2)?;
+                checked(&quantity::HERTZ_STIFFNESS, c.hertz_stiffness_kg_per_s2_m0_5)?
+            }
+        };
+        let tangential = match law.tangential {
+            Tangential::Constant => {
+                unused(&quantity::MINDLIN_STIFFNESS, c.mindlin_stiffness_kg_per_s2_m0_5)?;
+                Some(required(&quantity::TANGENTIAL_STIFFNESS, c.tangential_stiffness_kg_per_s2)?)
+            }
+            Tangential::Mindlin => {
+                unused(&quantity::TANGENTIAL_STIFFNESS, c.tangential_stiffness_kg_per_s2)?;
+                checked(&quantity::MINDLIN_STIFFNESS, c.mindlin_stiffness_kg_per_s2_m0_5)?
+            }
+        };
+        let ratio = checked(&quantity::TANGENTIAL_DAMPING_RATIO, c.tangential_damping_ratio)?;
+        let tangential_damping_ratio = ratio.unwrap_or(0.0);
+        let dashpot = Dashpot::new(law, c)?;
+        Ok(Self { law, friction, elastic, tangential, dashpot, tangential_damping_ratio })
+    }
+
+    /// Elastic constant, and the surface with the constants of stiffness and damping, for an
+    /// effective mass and materials with the elastic constant `hertz` and Mindlin's `mindlin`.
+    pub(super) fn resolved(&self, mass_kg: f64, hertz: f64, mindlin: f64) -> (f64, Surface) {
+        let elastic = self.elastic.unwrap_or(hertz);
+        let damping_time_s = match self.dashpot {
+            Dashpot::Coefficient(gamma) => gamma / elastic,
+            Dashpot::Time(time) => time,
+            Dashpot::Ratio(ratio) => ratio * (mass_kg / elastic).sqrt(),
+        };
+        let tangential_stiffness_kg_per_s2 = self.tangential.unwrap_or(mindlin);
+        let friction = self.friction;
+        (elastic, Surface { friction, tangential_stiffness_kg_per_s2, damping_time_s })
+    }
+}
+
+/// The paper's law, whose elastic constant is that of the materials. [`Pair::new`] checks it.
+///
+/// [`Pair::new`]: super::scaling::Pair::new
+impl From<&Surface> for Forces {
+    fn from(surface: &Surface) -> Self {
+        Self {
+            law: Law::PAPER,
+            friction: surface.friction,
+            elastic: None,
+            tangential: Some(surface.tangential_stiffness_kg_per_s2),
+            dashpot: Dashpot::Time(surface.damping_time_s),
+            tangential_damping_ratio: 0.0,
+        }
+    }
+}
+
+impl Dashpot {
+    fn new(law: Law, constants: &Constants) -> Result<Self, InvalidForces> {
+        let gamma = (&quantity::DAMPING_COEFFICIENT, constants.damping_coefficient);
+        let time = (&quantity::DAMPING_TIME, constants.damping_time_s);
+        let ratio = (&quantity::DAMPING_RATIO, constants.damping_ratio);
+        let (has_time, has_ratio) = match (law.normal, law.damping) {
+            (Normal::Linear, Damping::Linear) => (true, true),
+            (Normal::Hertz, Damping::Viscoelastic) => (true, false),
+            (Normal::Hertz, Damping::Tsuji) => (false, true),
+            _ => (false, false),
+        };
+        if law.damping == Damping::None {
+            for (quantity, value) in [gamma, time, ratio] {
+                unused(quantity, value.filter(|value| *value != 0.0))?;
+            }
+            return Ok(Self::Coefficient(0.0));
+        }
+        if !has_time {
+            unused(time.0, time.1)?;
+        }
+        if !has_ratio {
+            unused(ratio.0, ratio.1)?;
+        }
+        match (checked(gamma.0, gamma.1)?, checked(time.0, time.1)?, checked(ratio.0, ratio.1)?) {
+            (Some(gamma), None, None) => Ok(Self::Coefficient(gamma)),
+            (None, Some(time), None) => Ok(Self::Time(time)),
+            (None, None, Some(ratio)) => Ok(Self::Ratio(ratio)),
+            (None, None, None) => {
+                let expected = match (has_time, has_ratio) {
+                    (true, true) => "it, damping_time_s or damping_ratio",
+                    (true, false) => "it or damping_time_s",
+                    (false, true) => "it or damping_ratio",
+                    (false, false) => gamma.0.expected,
+                };
+                Err(InvalidForces::Missing { name: gamma.0.name, expected })
+            }
+            (Some(_), Some(_), _) => Err(twice(gamma.0, time.0)),
+            (Some(_), ..) => Err(twice(gamma.0, ratio.0)),
+            _ => Err(twice(time.0, ratio.0)),
+        }
+    }
+}
+
+fn twice(first: &Quantity, second: &Quantity) -> InvalidForces {
+    InvalidForces::Twice { first: first.name, second: second.name }
+}
+
+fn checked(quantity: &Quantity, value: Option<f64>) -> Result<Option<f64>, InvalidParameter> {
+    value.map(|value| quantity.check(value)).transpose()
+}
+
+fn required(quantity: &Quantity, value: Option<f64>) -> Result<f64, InvalidForces> {
+    let Quantity { name, expected, .. } = *quantity;
+    checked(quantity, value)?.ok_or(InvalidForces::Missing { name, expected })
+}
+
+/// Refuses a constant that the law does not have.
+fn unused(quantity: &Quantity, value: Option<f64>) -> Result<(), InvalidForces> {
+    match value {
+        Some(value) => Err(InvalidForces::Meaningless { name: quantity.name, value }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,153 @@
+//! Contact laws in SI units, against the parameters with which LAMMPS ran.
+
+use serde_json::Value;
+use stickslip_model::{
+    Body, Constants, Contact, Damping, Elasticity, Forces, InvalidForces, Law, Material, Normal,
+    Pair, Sphere, Surface, Tangential,
+};
+
+use crate::common::file;
+use crate::laws::contact;
+
+/// The forces that a case of LAMMPS asks for. Prefactors without `material` multiply powers of √R or
+/// the effective mass, as its manual says of each damping.
+fn forces(case: &Value, law: Law) -> Forces {
+    let (si, scaled) = (&case["si"], &case["scaled"]);
+    let number = |name: &str| si[name].as_f64().unwrap();
+    let (mass, root) = (number("meff"), number("Reff").sqrt());
+    let linear = law.normal == Normal::Linear;
+    let of_material = si["normal"] == "hertz/material";
+    let own_stiffness = si["kt"].as_f64().or_else(|| si["kt"].as_str()?.parse().ok());
+    let mindlin = law.tangential == Tangential::Mindlin;
+    let gamma = si["damp"].as_f64().or_else(|| si["gamma_n"].as_f64()).unwrap() * mass;
+    let tsuji = si["damping"] == "tsuji";
+    let power = if law.damping == Damping::Linear { 1.0 } else { root };
+    let constants = Constants {
+        friction: number("mu"),
+        normal_stiffness_kg_per_s2: linear.then(|| number("kn")),
+        hertz_stiffness_kg_per_s2_m0_5: (!linear && !of_material).then(|| number("kn") * root),
+        tangential_stiffness_kg_per_s2: own_stiffness.filter(|_| !mindlin),
+        mindlin_stiffness_kg_per_s2_m0_5: own_stiffness.filter(|_| mindlin).map(|k| k * root),
+        damping_coefficient: (!tsuji).then_some(gamma * power),
+        damping_ratio: tsuji.then(|| scaled["cn"].as_f64().unwrap()),
+        damping_time_s: None,
+        tangential_damping_ratio: scaled["xt"].as_f64(),
+    };
+    Forces::new(law, &constants).unwrap()
+}
+
+#[test]
+fn si_parameters_of_lammps_are_its_scaled_ones() {
+    let reference = file("lammps_laws");
+    let mut cases = 0;
+    for case in reference["cases"].as_array().unwrap() {
+        let expected = contact(case);
+        let si = |name: &str| case["si"][name].as_f64();
+        let (radius_m, mass_kg) = (si("R").unwrap(), si("m").unwrap());
+        let sphere = Sphere {
+            radius_m,
+            mass_kg,
+            moment_of_inertia_kg_m2: Sphere::homogeneous_moment(radius_m, mass_kg),
+            elasticity: Elasticity {
+                young_modulus_pa: si("E").unwrap_or(1e9),
+                poisson_ratio: si("nu").unwrap_or(0.0),
+            },
+        };
+        let pair = Pair::new(&sphere, &Body::Sphere(sphere), forces(case, expected.law())).unwrap();
+        let impact = pair.impact(si("u0").unwrap(), si("g0").unwrap()).unwrap();
+        let parameters = |c: &Contact| [c.kappa(), c.psi(), c.damping(), c.tangential_damping()];
+        let found = impact.contact;
+        assert_eq!(found.law(), expected.law());
+        for (one, other) in parameters(&found).into_iter().zip(parameters(&expected)) {
+            assert!((one - other).abs() <= 1e-11 * other, "{case}: {one} {other}");
+        }
+        cases += 1;
+    }
+    assert_eq!(cases, 264);
+}
+
+const STEEL: Material =
+    Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
+
+#[test]
+fn the_paper_s_law_has_a_surface_or_constants() {
+    let surface =
+        Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e8, damping_time_s: 1e-6 };
+    let constants = Constants {
+        friction: 0.4,
+        tangential_stiffness_kg_per_s2: Some(1e8),
+        damping_time_s: Some(1e-6),
+        ..Constants::default()
+    };
+    let sphere = Sphere::homogeneous(0.02, &STEEL);
+    let pair = |forces: Forces| Pair::new(&sphere, &Body::Sphere(sphere), forces).unwrap();
+    let of_constants = Forces::new(Law::PAPER, &constants).unwrap();
+    assert_eq!(pair(Forces::from(&surface)), pair(of_constants));
+    // γ = A ρ, and ρ may be given.
+    let rho = pair(of_constants).elastic_constant;
+    let own = Constants {
+        hertz_stiffness_kg_per_s2_m0_5: Some(rho),
+        damping_coefficient: Some(1e-6 * rho),
+        damping_time_s: None,
+        ..constants
+    };
+    let own = pair(Forces::new(Law::PAPER, &own).unwrap()).impact(1.0, 1.0).unwrap();
+    let expected = pair(of_constants).impact(1.0, 1.0).unwrap();
+    assert!((own.contact.damping() / expected.contact.damping() - 1.0).abs() < 1e-15);
+    assert_eq!(own.contact.kappa(), expected.contact.kappa());
+}
+
+#[test]
+fn constants_that_do_not_fit_are_refused() {
+    let refused =
+        |law: Law, constants: Constants| Forces::new(law, &constants).unwrap_err().to_string();
+    let hooke = Law { normal: Normal::Linear, damping: Damping::Linear, ..Law::PAPER };
+    let complete = Constants {
+        friction: 0.5,
+        normal_stiffness_kg_per_s2: Some(1e5),
+        tangential_stiffness_kg_per_s2: Some(3e4),
+        damping_ratio: Some(0.2),
+        ..Constants::default()
+    };
+    assert!(Forces::new(hooke, &complete).is_ok());
+    for (constants, expected) in [
+        (Constants { friction: 0.0, ..complete }, "friction = 0 is out of range"),
+        (
+            Constants { normal_stiffness_kg_per_s2: None, ..complete },
+            "normal_stiffness_kg_per_s2 is missing; expected in this law: a finite number above 0",
+        ),
+        (
+            Constants { hertz_stiffness_kg_per_s2_m0_5: Some(1e9), ..complete },
+            "hertz_stiffness_kg_per_s2_m0_5 = 1000000000 has no meaning in this law",
+        ),
+        (
+            Constants { mindlin_stiffness_kg_per_s2_m0_5: Some(1e9), ..complete },
+            "mindlin_stiffness_kg_per_s2_m0_5 = 1000000000 has no meaning",
+        ),
+        (Constants { damping_ratio: Some(-0.1), ..complete }, "damping_ratio = -0.1 is out of"),
+        (
+            Constants { damping_ratio: None, ..complete },
+            "damping_coefficient is missing; expected in this law: it, damping_time_s or",
+        ),
+        (
+            Constants { damping_time_s: Some(1e-6), ..complete },
+            "damping_time_s and damping_ratio are both given",
+        ),
+        (
+            Constants { damping_coefficient: Some(1.0), ..complete },
+            "damping_coefficient and damping_ratio are both given",
+        ),
+    ] {
+        let message = refused(hooke, constants);
+        assert!(message.starts_with(expected), "{message}");
+    }
+    // A damping without unit is that of Tsuji's law.
+    let message = refused(Law { normal: Normal::Hertz, ..hooke }, complete);
+    assert!(message.starts_with("normal_stiffness_kg_per_s2 = 100000 has no"), "{message}");
+    let undamped = Law { damping: Damping::None, ..hooke };
+    assert!(matches!(
+        Forces::new(undamped, &complete),
+        Err(InvalidForces::Meaningless { name: "damping_ratio", .. })
+    ));
+    assert!(Forces::new(undamped, &Constants { damping_ratio: None, ..complete }).is_ok());
+}
