@@ -12,7 +12,7 @@ use stickslip_figure::markup::{Piece, PieceStyle, pieces, plain};
 use stickslip_figure::number;
 use stickslip_reproduction::figures::{Section, headlines};
 use stickslip_reproduction::statements::{Audit, Verdict};
-use stickslip_studies::{Cell, Column, Table};
+use stickslip_studies::{Cell, Column, Study, Table, contact_laws};
 
 /// The title of the page and of the report.
 pub const TITLE: &str = "Tangential restitution of viscoelastic spheres, computed anew";
@@ -34,20 +34,46 @@ const MOST_NARROW: usize = 7;
 #[derive(Template)]
 #[template(path = "page.html")]
 struct Page<'a> {
+    title: &'a str,
+    introduction: &'a [&'a str],
+    /// The command that makes the page.
+    command: &'a str,
     sections: &'a [Section],
 }
 
 impl Page<'_> {
+    /// Whether this is the page with everything.
+    fn is_whole(&self) -> bool {
+        self.command == "reproduce"
+    }
+
     /// The audits among the parts, of which there is one.
     fn audits(&self) -> impl Iterator<Item = &Audit> {
         self.sections.iter().filter_map(|section| section.audit.as_ref())
     }
 }
 
-/// The page.
+/// The page with everything.
 pub fn html(sections: &[Section]) -> String {
+    let (title, introduction, command) = (TITLE, &INTRODUCTION[..], "reproduce");
     // Writing to memory fails only where a value cannot be displayed, and all can.
-    Page { sections }.render().unwrap_or_default()
+    Page { title, introduction, command, sections }.render().unwrap_or_default()
+}
+
+/// The page of the contact laws.
+pub fn laws(study: Study) -> String {
+    let mut section = Section::from(study);
+    section.shown.push(contact_laws::LAWS);
+    let introduction = &[
+        "What the contact laws of particle codes do with two spheres, beside the law of Schwager, \
+         Becker and Pöschel, with every switch between sliding and sticking located.",
+        "Quantities are scaled: x is the overlap, v its rate, w the tangential velocity, y or q the \
+         history of the spring, κ its stiffness, ψ = (α/μ) g_t/g_n the impact ratio, a the damping, \
+         b the tangential damping. ε_t is g_t after the contact over g_t before.",
+    ][..];
+    let (title, command, sections) = (contact_laws::TITLE, "laws", &[section][..]);
+    // As above.
+    Page { title, introduction, command, sections }.render().unwrap_or_default()
 }
 
 /// `text` as HTML, with subscripts, superscripts and code set as such.

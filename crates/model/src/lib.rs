@@ -51,7 +51,7 @@ pub use engines::integrator::{Collider, CollisionError};
 pub use engines::sensitivity::{Derived, Sensitivity};
 pub use engines::{Engine, EngineError, Estimate, InvalidChoice, Tolerances};
 pub use engines::{exact, history, integrator, sensitivity};
-pub use laws::law::{Damping, End, HistoryOf, Law, Normal, Tangential};
+pub use laws::law::{Damping, End, HistoryOf, Law, Normal, SpringEnergy, Tangential};
 pub use laws::phase::{Regime, Side};
 pub use laws::{general, presets, regularized};
 pub use limits::{coulomb, inner, largest, normal};

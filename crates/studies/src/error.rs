@@ -1,7 +1,9 @@
 //! What can go wrong in a study.
 
+use stickslip_figure::FigureError;
 use stickslip_model::{Contact, EngineError};
 
+use crate::contact_laws::InvalidContactLaws;
 use crate::convergence::InvalidConvergence;
 use crate::stiff_springs::InvalidStiffSprings;
 use crate::stiff_springs::limit::StiffError;
@@ -12,6 +14,12 @@ pub enum StudyError {
     /// The settings of a study of convergence are out of range.
     #[error(transparent)]
     Convergence(#[from] InvalidConvergence),
+    /// The settings of a study of contact laws are out of range.
+    #[error(transparent)]
+    ContactLaws(#[from] InvalidContactLaws),
+    /// A picture cannot be drawn.
+    #[error(transparent)]
+    Picture(#[from] FigureError),
     /// The settings of a study of stiff springs are out of range.
     #[error(transparent)]
     StiffSprings(#[from] InvalidStiffSprings),

@@ -1,12 +1,12 @@
-//! Studies of the collision of frictional viscoelastic spheres: the limit of stiff springs, and how
-//! accurate the integrators are.
+//! Studies of the collision of frictional viscoelastic spheres: the limit of stiff springs, how
+//! accurate the integrators are, and what the contact laws of particle codes do.
 //!
 //! Each study is a function from plain settings to a [`Study`]: findings in sentences, numbers,
 //! tables and pictures. It writes no files. Parallel loops run on the rayon pool of the caller.
 //!
 //! Start reading in [`study`]; then, in this order: [`paper`] (what the symbols and axes of the
 //! paper mean), [`stiff_springs`] (the limit of stiff springs), [`convergence`] (how accurate the
-//! integrators are), [`search`] (maxima and zeros). The figures and statements of the paper are
+//! integrators are), [`contact_laws`] (the laws of particle codes), [`search`] (maxima and zeros). The figures and statements of the paper are
 //! studies of `stickslip-reproduction`.
 //!
 //! ```
@@ -19,6 +19,7 @@
 //! # Ok::<(), stickslip_studies::StudyError>(())
 //! ```
 
+pub mod contact_laws;
 pub mod convergence;
 mod error;
 pub mod paper;

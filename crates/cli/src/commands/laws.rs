@@ -1,15 +1,23 @@
 //! The contact laws that have names.
 
 use std::io::{self, Write};
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use stickslip_model::presets::{self, Preset};
+use stickslip_studies::contact_laws::{self, Settings};
 
 use crate::args::{Format, LawsArguments};
 use crate::error::Failure;
 use crate::input::law;
-use crate::output::console::print;
+use crate::output::console::{print, say};
+use crate::output::directory::prepare;
+use crate::output::file::write;
+use crate::output::progress::Bar;
+use crate::output::study::write_study;
 use crate::output::{json, text};
+use crate::plan::StudyPlan;
+use crate::{page, threads};
 
 /// A law as `--format json` lists it.
 #[derive(Serialize)]
@@ -19,11 +27,19 @@ struct Entry<'a> {
     equations: String,
 }
 
-/// Prints all laws, or one.
+/// Prints all laws, or one; or computes what they do, and writes a page that shows it.
 ///
 /// # Errors
-/// No law has this name, or standard output cannot be written.
+/// No law has this name, options contradict each other, a collision cannot be computed, or an output
+/// cannot be written.
 pub fn run(arguments: &LawsArguments) -> Result<(), Failure> {
+    if let Some(plan) = StudyPlan::contact_laws(arguments)? {
+        prepare(&plan.out)?;
+        let pool = threads::pool(plan.threads)?;
+        let page = pool.install(|| write_page(&plan.settings, &plan.out))?;
+        say(format_args!("everything is on {}", page.display()));
+        return Ok(());
+    }
     let preset = arguments.name.as_deref().map(law::named).transpose()?;
     print(|out| match (preset, arguments.format) {
         (Some(preset), Format::Json) => json::lines(out, &preset.law),
@@ -36,6 +52,22 @@ pub fn run(arguments: &LawsArguments) -> Result<(), Failure> {
         }
         (None, Format::Table) => all(out),
     })
+}
+
+/// Computes what the laws do, and writes the page and its data into `directory`. The path of the page
+/// is returned.
+///
+/// # Errors
+/// A collision cannot be computed, or a file cannot be written.
+pub fn write_page(settings: &Settings, directory: &Path) -> Result<PathBuf, Failure> {
+    let bar = Bar::steps();
+    let study = contact_laws::run(settings, &|progress| bar.report(progress));
+    drop(bar);
+    let study = study?;
+    write_study(&study, directory)?;
+    let path = directory.join("laws.html");
+    write(&path, page::laws(study).as_bytes())?;
+    Ok(path)
 }
 
 fn one(out: &mut dyn Write, preset: &Preset) -> io::Result<()> {

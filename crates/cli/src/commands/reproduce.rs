@@ -5,7 +5,9 @@ use std::path::Path;
 use stickslip_model::Engine;
 use stickslip_plane::atlas::Document;
 use stickslip_reproduction::figures::{Content, DataFile, Reproduction, Section};
+use stickslip_studies::contact_laws;
 
+use super::laws::write_page;
 use super::map::archive;
 use crate::error::Failure;
 use crate::output::console::say;
@@ -35,6 +37,10 @@ pub fn run(plan: &PagePlan) -> Result<(), Failure> {
         write_section(&section, &plan.out)?;
         sections.push(section);
     }
+    let usual = contact_laws::Settings::default();
+    let laws = contact_laws::Settings { cells: plan.cells.min(usual.cells), ..usual };
+    say(format_args!("beside it: {}", contact_laws::TITLE));
+    pool.install(|| write_page(&laws, &plan.out))?;
     let page = plan.out.join("index.html");
     write(&plan.out.join("report.json"), page::report::json(&sections).as_bytes())?;
     write(&plan.out.join("report.md"), page::report::markdown(&sections).as_bytes())?;

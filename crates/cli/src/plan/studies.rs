@@ -1,12 +1,12 @@
-//! What `converge` and `asymptote` are to do.
+//! What `converge`, `asymptote` and `laws --out` are to do.
 
 use std::fmt::Display;
 use std::path::PathBuf;
 
-use stickslip_studies::{convergence, stiff_springs};
+use stickslip_studies::{contact_laws, convergence, stiff_springs};
 
 use super::collision::contact;
-use crate::args::{AsymptoteArguments, CollisionArguments, ConvergeArguments};
+use crate::args::{AsymptoteArguments, CollisionArguments, ConvergeArguments, LawsArguments};
 use crate::error::Failure;
 use crate::input::recipe::Given;
 
@@ -52,6 +52,26 @@ impl StudyPlan<stiff_springs::Settings> {
         let settings = stiff_springs::Settings { kappa: *kappa, psi: psi.clone() };
         settings.validate().map_err(refused)?;
         Ok(Self { settings, out: out.clone(), threads: *threads })
+    }
+}
+
+impl StudyPlan<contact_laws::Settings> {
+    /// The study of contact laws that `arguments` make; `None` if laws are only printed.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`] says which option is out of range.
+    pub fn contact_laws(arguments: &LawsArguments) -> Result<Option<Self>, Failure> {
+        let LawsArguments { damping, tangential_damping, cells, threads, .. } = *arguments;
+        let Some(out) = &arguments.out else { return Ok(None) };
+        let usual = contact_laws::Settings::default();
+        let settings = contact_laws::Settings {
+            damping: damping.unwrap_or(usual.damping),
+            tangential_damping: tangential_damping.unwrap_or(usual.tangential_damping),
+            cells: cells.map_or(usual.cells, usize::from),
+            ..usual
+        };
+        settings.validate().map_err(refused)?;
+        Ok(Some(Self { settings, out: out.clone(), threads }))
     }
 }
 

@@ -1,5 +1,7 @@
 //! A contact law as data.
 
+use std::fmt;
+
 /// The terms of a contact law. [`Law::PAPER`] is that of Schwager, Becker and Pöschel; particle
 /// codes compute others, which [`presets`](crate::presets) names.
 ///
@@ -104,6 +106,38 @@ pub enum End {
     Overlap,
 }
 
+/// What becomes of the energy in the tangential spring while it sticks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpringEnergy {
+    /// It comes back.
+    Conserved,
+    /// Part of it is lost, and none created.
+    Lost,
+    /// It grows by itself while the overlap grows.
+    CreatedLoading,
+    /// It grows by itself while the overlap falls.
+    CreatedUnloading,
+}
+
+impl SpringEnergy {
+    /// Whether the spring creates energy.
+    #[must_use]
+    pub fn creates(self) -> bool {
+        matches!(self, Self::CreatedLoading | Self::CreatedUnloading)
+    }
+}
+
+impl fmt::Display for SpringEnergy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Conserved => "conserves energy",
+            Self::Lost => "loses energy",
+            Self::CreatedLoading => "creates energy while loading",
+            Self::CreatedUnloading => "creates energy while unloading",
+        })
+    }
+}
+
 impl Default for Law {
     fn default() -> Self {
         Self::PAPER
@@ -162,6 +196,22 @@ impl Law {
             End::Overlap => "x = 0",
         };
         format!("{normal}; {tangential}; |Q| ≤ |F|; ends at {end}")
+    }
+
+    /// What becomes of the energy in the tangential spring while it sticks.
+    ///
+    /// With the stiffness k(x) a spring with the force Q holds Q²/(2k). Where the elongation y is
+    /// kept, its change is Q w + y² k'v/2, and where the force is kept, Q w − Q² k'v/(2k²). A
+    /// history that is rescaled while the overlap falls adds Q² v/(2kx) to either, which is negative
+    /// and, where the force is kept, twice what the falling stiffness creates.
+    #[must_use]
+    pub fn spring_energy(&self) -> SpringEnergy {
+        match (self.tangential, self.history, self.rescaled) {
+            (Tangential::Constant, _, false) => SpringEnergy::Conserved,
+            (Tangential::Constant, _, true) | (_, HistoryOf::Force, true) => SpringEnergy::Lost,
+            (_, HistoryOf::Displacement, _) => SpringEnergy::CreatedLoading,
+            (_, HistoryOf::Force, false) => SpringEnergy::CreatedUnloading,
+        }
     }
 
     /// Whether a contact with this law and these dampings obeys the paper's: terms that differ

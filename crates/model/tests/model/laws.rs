@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde_json::Value;
 use stickslip_model::{
     Collider, Collision, CollisionError, Contact, Damping, End, Engine, EngineError, HistoryOf,
-    Law, Normal, Snapshot, Tangential, exact, presets, regularized::Regularized,
+    Law, Normal, Regime, Snapshot, SpringEnergy, Tangential, exact, presets,
+    regularized::Regularized,
 };
 
 use crate::common::file;
@@ -277,6 +278,51 @@ fn courses_obey_their_laws() {
         }
     }
     assert!(quotients > 20_000 && flights > 20, "{quotients} {flights}");
+}
+
+#[test]
+fn springs_create_energy_where_it_is_said() {
+    let mut rng = fastrand::Rng::with_seed(77);
+    let mut seen = BTreeMap::<String, [usize; 2]>::new();
+    for law in laws() {
+        let random = random(law, &mut rng);
+        let contact = Contact::new(random.kappa(), random.psi(), 0.0).unwrap();
+        let contact = contact.with_law(law, 0.0).unwrap();
+        let (_, _, history) = Engine::Auto.followed(contact).unwrap();
+        let energy = |moment: &Snapshot| {
+            let stiffness = match law.tangential {
+                Tangential::Constant => contact.kappa(),
+                Tangential::Mindlin => contact.kappa() * moment.compression.sqrt(),
+            };
+            let force = moment.tangential_force;
+            0.5 * moment.velocity * moment.velocity + 0.5 * force * force / stiffness
+        };
+        for phase in history.phases().filter(|phase| phase.regime() == Regime::Stick) {
+            for pair in phase.samples(100).collect::<Vec<_>>().windows(2) {
+                if pair.iter().any(|moment| moment.compression < 1e-3) {
+                    continue;
+                }
+                let gained = energy(&pair[1]) - energy(&pair[0]);
+                let loading = pair[0].normal_velocity > 0.0;
+                if loading != (pair[1].normal_velocity > 0.0) {
+                    continue;
+                }
+                let (most, least) = match (law.spring_energy(), loading) {
+                    (SpringEnergy::Conserved, _) => (0.0, 0.0),
+                    (SpringEnergy::CreatedLoading, true)
+                    | (SpringEnergy::CreatedUnloading, false) => (f64::INFINITY, 0.0),
+                    _ => (0.0, f64::NEG_INFINITY),
+                };
+                assert!(gained < most + 1e-10 && gained > least - 1e-10, "{gained} {contact:?}");
+                let counts = seen.entry(law.spring_energy().to_string()).or_default();
+                counts[usize::from(gained.abs() > 1e-6)] += 1;
+            }
+        }
+    }
+    assert_eq!(seen.len(), 4);
+    for (name, [none, some]) in seen {
+        assert!(name.contains("conserves") == (some == 0) && none > 0, "{name} {none} {some}");
+    }
 }
 
 #[test]

@@ -1,0 +1,81 @@
+//! The study of contact laws: what the laws of particle codes do over the plane of stiffness and
+//! impact ratio.
+//!
+//! Start reading here; then, in this order: `settings` (which laws, over which window), `law` (what
+//! is computed of each), `findings`, `tables` and `pictures`.
+
+mod findings;
+mod law;
+mod pictures;
+mod settings;
+mod tables;
+
+use rayon::prelude::*;
+use serde_json::json;
+use stickslip_plane::progress::{Progress, Report};
+
+use crate::error::StudyError;
+use crate::study::Study;
+use law::LawOnPlane;
+
+pub use settings::{InvalidContactLaws, MOST_CELLS, Named, Settings, distinct};
+pub use tables::LAWS;
+
+/// The name of the layout of the JSON, with its version.
+pub const SCHEMA: &str = "stickslip.contact-laws/1";
+/// The title of the study.
+pub const TITLE: &str = "Contact laws of particle codes";
+
+/// All that is computed.
+struct Laws<'a> {
+    settings: &'a Settings,
+    laws: Vec<LawOnPlane>,
+}
+
+/// Makes the study on the threads of the current pool. Progress counts laws.
+///
+/// ```
+/// use stickslip_plane::progress;
+/// use stickslip_studies::contact_laws::{self, Settings};
+///
+/// let settings = Settings { cells: 4, ..Settings::default() };
+/// let study = contact_laws::run(&settings, progress::SILENT)?;
+/// assert_eq!(study.tables[0].rows.len(), settings.laws.len());
+/// # Ok::<(), stickslip_studies::StudyError>(())
+/// ```
+///
+/// # Errors
+/// [`StudyError`]: the settings are out of range, or a collision cannot be computed.
+pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Study, StudyError> {
+    settings.validate()?;
+    progress(Progress::Begin { steps: settings.laws.len() });
+    let laws = settings.laws.par_iter().map(|named| {
+        let law = LawOnPlane::new(settings, named);
+        progress(Progress::Advance { steps: 1 });
+        law
+    });
+    let laws = laws.collect::<Result<_, _>>()?;
+    Laws { settings, laws }.study()
+}
+
+impl Laws<'_> {
+    fn study(&self) -> Result<Study, StudyError> {
+        let json = json!({
+            "schema": SCHEMA,
+            "window": { "kappa": self.settings.kappa, "psi": self.settings.psi },
+            "cells": self.settings.cells,
+            "damping": self.settings.damping,
+            "tangential_damping": self.settings.tangential_damping,
+            "laws": self.laws.iter().map(LawOnPlane::json).collect::<Vec<_>>(),
+        });
+        Ok(Study {
+            name: "contact_laws",
+            title: TITLE,
+            headlines: Vec::new(),
+            findings: self.findings(),
+            json,
+            tables: vec![self.table()],
+            pictures: self.pictures()?,
+        })
+    }
+}

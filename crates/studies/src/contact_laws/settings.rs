@@ -1,0 +1,140 @@
+//! What a study of contact laws is about.
+
+use stickslip_model::presets::{self, Preset};
+use stickslip_model::{Contact, Damping, InvalidParameter, Law};
+use stickslip_plane::Range;
+
+/// The most cells along an axis of a map.
+pub const MOST_CELLS: usize = 1000;
+/// The most laws: as many pictures have names.
+pub const MOST_LAWS: usize = super::pictures::NAMES.len();
+
+/// The laws of a study, and the window over which they are computed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// The laws; at most 24.
+    pub laws: Vec<Named>,
+    /// Interval of the scaled stiffness κ.
+    pub kappa: Range,
+    /// Interval of the reduced impact ratio ψ.
+    pub psi: Range,
+    /// Number of columns and of rows of each map, at most [`MOST_CELLS`].
+    pub cells: usize,
+    /// Scaled damping of the maps and of the standard impact; laws without damping have 0.
+    pub damping: f64,
+    /// Tangential damping b of the maps and of the standard impact.
+    pub tangential_damping: f64,
+    /// κ and ψ of the standard impact.
+    pub standard: (f64, f64),
+}
+
+/// A law with the names under which particle codes have it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Named {
+    /// One name or more.
+    pub names: Vec<&'static str>,
+    /// The law.
+    pub law: Law,
+    /// Whether the codes' laws have this form with tangential damping too; otherwise it is 0.
+    pub tangential_damping: bool,
+}
+
+/// Settings are out of range.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum InvalidContactLaws {
+    /// There are no laws, or too many.
+    #[error("{count} laws; expected 1 to {MOST_LAWS}")]
+    LawCount {
+        /// The number of laws.
+        count: usize,
+    },
+    /// There are no cells, or too many.
+    #[error("{cells} cells along an axis; expected 1 to {MOST_CELLS}")]
+    Cells {
+        /// The number of cells.
+        cells: usize,
+    },
+    /// An interval is empty, or reaches below 0.
+    #[error("{name} {low:?}:{high:?} is out of range; expected LO:HI with 0 <= LO < HI")]
+    Window {
+        /// The name of the axis.
+        name: &'static str,
+        /// The lower end of the interval.
+        low: f64,
+        /// The upper end of the interval.
+        high: f64,
+    },
+    /// A parameter is out of range for one of the laws.
+    #[error(transparent)]
+    Parameter(#[from] InvalidParameter),
+}
+
+impl Default for Settings {
+    /// The laws that have names, each once; κ up to 30, ψ up to 3; damping 0.2.
+    fn default() -> Self {
+        Self {
+            laws: distinct(),
+            kappa: Range { low: 0.0, high: 30.0 },
+            psi: Range { low: 0.0, high: 3.0 },
+            cells: 60,
+            damping: 0.2,
+            tangential_damping: 0.0,
+            standard: (12.0, 0.6),
+        }
+    }
+}
+
+/// The laws that have names, each with all of its names, in the order of the presets. A law is there
+/// twice if only one of its codes has tangential damping in this form.
+#[must_use]
+pub fn distinct() -> Vec<Named> {
+    let mut laws: Vec<Named> = Vec::new();
+    for preset in presets::ALL {
+        let Preset { name, law, tangential_damping, .. } = *preset;
+        let same =
+            |named: &&mut Named| (named.law, named.tangential_damping) == (law, tangential_damping);
+        match laws.iter_mut().find(same) {
+            Some(named) => named.names.push(name),
+            None => laws.push(Named { names: vec![name], law, tangential_damping }),
+        }
+    }
+    laws
+}
+
+impl Settings {
+    /// Checks all settings.
+    ///
+    /// # Errors
+    /// [`InvalidContactLaws`] names the first that is out of range.
+    pub fn validate(&self) -> Result<(), InvalidContactLaws> {
+        let (count, cells) = (self.laws.len(), self.cells);
+        if !(1..=MOST_LAWS).contains(&count) {
+            return Err(InvalidContactLaws::LawCount { count });
+        }
+        if !(1..=MOST_CELLS).contains(&cells) {
+            return Err(InvalidContactLaws::Cells { cells });
+        }
+        for (name, Range { low, high }) in [("kappa", self.kappa), ("psi", self.psi)] {
+            if !(0.0 <= low && low < high && high.is_finite()) {
+                return Err(InvalidContactLaws::Window { name, low, high });
+            }
+        }
+        for named in &self.laws {
+            self.contact(named, self.standard, true)?;
+        }
+        Ok(())
+    }
+
+    /// The contact with a law at κ and ψ, with or without the dampings.
+    pub(super) fn contact(
+        &self,
+        named: &Named,
+        (kappa, psi): (f64, f64),
+        damped: bool,
+    ) -> Result<Contact, InvalidParameter> {
+        let damped = damped && named.law.damping != Damping::None;
+        let a = if damped { self.damping } else { 0.0 };
+        let b = if damped && named.tangential_damping { self.tangential_damping } else { 0.0 };
+        Contact::new(kappa, psi, a)?.with_law(named.law, b)
+    }
+}
