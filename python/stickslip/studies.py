@@ -1,4 +1,4 @@
-"""Studies: the limit of stiff springs, convergence, and the paper checked."""
+"""Studies: stiff springs, convergence, contact laws, and the paper checked."""
 
 import csv
 import json
@@ -93,6 +93,25 @@ def converge(
     """
     given = None if contacts is None else [tuple(map(float, contact)) for contact in contacts]
     return _study(_native.converge(given, damping, _threads(threads)))  # type: ignore[arg-type]
+
+
+def contact_laws(
+    *,
+    damping: float = 0.2,
+    tangential_damping: float = 0.0,
+    cells: int = 60,
+    threads: int | None = None,
+) -> Study:
+    """What the contact laws of particle codes do, for kappa up to 30 and psi up to 3.
+
+    Maps of every law without and with damping, its difference from the paper's law, the forces of
+    a standard impact, and where its spring creates energy. tangential_damping is for the laws whose
+    codes have it in this form. cells: columns and rows of maps, at most 1000.
+    """
+    if not 1 <= cells <= 1000:
+        raise ValueError(f"cells = {cells}; expected 1 to 1000")
+    found = _native.contact_laws(damping, tangential_damping, cells, _threads(threads))
+    return _study(found)
 
 
 def reproduction_parts() -> list[str]:

@@ -34,6 +34,23 @@ def test_convergence() -> None:
         stickslip.converge([(1e7, 0.4, 0)])
 
 
+def test_contact_laws() -> None:
+    study = stickslip.contact_laws(damping=0.1, cells=6)
+    table = study.tables["contact_laws"]
+    assert len(study.pictures) == 2 * len(table.rows)
+    listed = {name for names in table.columns["names"] for name in names.split(", ")}
+    assert listed == set(stickslip.laws())
+    for names, largest, kappa, psi in (
+        (row["names"], row["largest"], row["at_kappa"], row["at_psi"])
+        for row in (dict(zip(table.meanings, row, strict=True)) for row in table.rows)
+    ):
+        alone = stickslip.collide(kappa, psi, law=names.split(", ")[0])
+        assert abs(alone.eps_t) == pytest.approx(largest, rel=0, abs=1e-12)
+    for wrong in ({"cells": 0}, {"damping": -0.1}, {"damping": float("nan")}, {"threads": 0}):
+        with pytest.raises(ValueError, match=next(iter(wrong))):
+            stickslip.contact_laws(**wrong)  # type: ignore[arg-type]
+
+
 def test_parts_of_the_paper() -> None:
     titles = stickslip.reproduction_parts()
     assert len(titles) == 10

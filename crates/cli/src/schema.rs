@@ -4,16 +4,17 @@
 use stickslip_model::document;
 use stickslip_plane::atlas;
 use stickslip_reproduction::statements;
-use stickslip_studies::{convergence, stiff_springs};
+use stickslip_studies::{contact_laws, convergence, stiff_springs};
 
 /// The layout of the report that `reproduce` writes.
 pub const REPORT: &str = "stickslip.report/1";
 
 /// All layouts, those of the libraries included.
-pub const ALL: [&str; 7] = [
+pub const ALL: [&str; 8] = [
     document::COLLISION,
     document::IMPACT,
     atlas::SCHEMA,
+    contact_laws::SCHEMA,
     convergence::SCHEMA,
     stiff_springs::SCHEMA,
     statements::SCHEMA,

@@ -35,5 +35,5 @@ mod _native {
     #[pymodule_export]
     use super::planes::Atlas;
     #[pymodule_export]
-    use super::studies::{asymptote, converge, reproduce, reproduction_parts};
+    use super::studies::{asymptote, compare_laws, converge, reproduce, reproduction_parts};
 }

@@ -1,4 +1,4 @@
-//! Studies: stiff springs, convergence, and the paper checked.
+//! Studies: stiff springs, convergence, contact laws, and the paper checked.
 
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -7,7 +7,7 @@ use stickslip_plane::Range;
 use stickslip_plane::progress::SILENT;
 use stickslip_reproduction::figures::Reproduction;
 use stickslip_reproduction::statements::Spring;
-use stickslip_studies::{Cell, Study, StudyError, convergence, stiff_springs};
+use stickslip_studies::{Cell, Study, StudyError, contact_laws, convergence, stiff_springs};
 
 use crate::failure::{bad_input, failed};
 use crate::parallel::Threads;
@@ -45,6 +45,21 @@ pub fn converge(
     };
     settings.validate().map_err(bad_input)?;
     run(py, threads, || convergence::run(&settings, SILENT))
+}
+
+/// What the contact laws of particle codes do, on maps of so many cells in each direction.
+#[pyfunction(name = "contact_laws")]
+pub fn compare_laws(
+    py: Python<'_>,
+    damping: f64,
+    tangential_damping: f64,
+    cells: usize,
+    threads: usize,
+) -> PyResult<Bound<'_, PyDict>> {
+    let usual = contact_laws::Settings::default();
+    let settings = contact_laws::Settings { damping, tangential_damping, cells, ..usual };
+    settings.validate().map_err(bad_input)?;
+    run(py, threads, || contact_laws::run(&settings, SILENT))
 }
 
 /// The titles of the parts of the reproduction.
@@ -95,7 +110,7 @@ fn dictionary<'py>(py: Python<'py>, study: &Study) -> PyResult<Bound<'py, PyDict
                 match cell {
                     Cell::Number(value) => cells.append(value)?,
                     Cell::Count(count) => cells.append(count)?,
-                    Cell::Text(text) => cells.append(text)?,
+                    Cell::Text(_) => cells.append(cell.text())?,
                 }
             }
             rows.append(cells)?;

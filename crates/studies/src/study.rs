@@ -99,14 +99,15 @@ impl Column {
 }
 
 impl Cell {
-    /// The value as it stands in a file. A number has the shortest form that reads back exactly.
+    /// The value as it stands in a file. A number has the shortest form that reads back exactly. Text
+    /// has no marks of code.
     #[must_use]
     pub fn text(&self) -> String {
         match self {
             Self::Number(value) if value.is_nan() => String::new(),
             Self::Number(value) => format!("{value:?}"),
             Self::Count(count) => count.to_string(),
-            Self::Text(text) => text.clone(),
+            Self::Text(text) => text.replace('`', ""),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 
+use crate::reproduce::{LAWS, names_of_laws, page};
 use crate::{Workspace, npz, reference, rows, stickslip};
 
 /// α of a homogeneous sphere.
@@ -213,4 +214,74 @@ fn impacts_have_the_constants_of_their_law() {
         assert_eq!(ran.code, 2, "{}", ran.stderr);
         assert!(ran.stderr.contains(expected), "{}", ran.stderr);
     }
+}
+
+#[test]
+fn the_page_shows_every_law() {
+    let workspace = Workspace::new();
+    let line = "laws --out laws --cells 6 --damping 0.1 --tangential-damping 0.5 --threads 2";
+    let ran = workspace.run(line);
+    assert_eq!((ran.code, ran.stdout.as_str()), (0, ""), "{}", ran.stderr);
+    assert!(ran.stderr.ends_with("everything is on laws/laws.html\n"), "{}", ran.stderr);
+    assert_eq!(workspace.names_in("laws"), names_of_laws());
+
+    let text = workspace.read("laws/laws.html");
+    let page = page(&text);
+    let has = |tag: &str, at: &str| {
+        page.descendants().filter(|node| node.has_tag_name(tag)).any(|node| {
+            node.descendants().filter_map(|node| node.text()).collect::<String>().contains(at)
+        })
+    };
+    let laws: Value = serde_json::from_str(&stickslip("laws --format json").stdout).unwrap();
+    for law in laws.as_array().unwrap() {
+        let name = law["name"].as_str().unwrap();
+        assert!(has("td", name) && has("figcaption", name), "{name}");
+    }
+    for node in page.descendants().filter_map(|node| node.attribute("href")) {
+        let there = match node.split_once('#') {
+            Some(("", name)) => page.descendants().any(|node| node.attribute("id") == Some(name)),
+            _ => node.starts_with("data:") || workspace.path("laws").join(node).is_file(),
+        };
+        assert!(there, "{node}");
+    }
+
+    // A row for each law, and the same numbers as `collide`.
+    let table = rows(&workspace.read("laws/contact_laws.csv"));
+    assert_eq!(table.len(), 1 + LAWS);
+    let column = |name: &str| table[0].iter().position(|column| column == name).unwrap();
+    for row in &table[1..] {
+        let [kappa, psi] = ["at_kappa", "at_psi"].map(|name| &row[column(name)]);
+        let law = row[column("names")].split(", ").next().unwrap();
+        let line = format!("collide --kappa {kappa} --psi {psi} --law {law} --format json");
+        let found: Value = serde_json::from_str(&stickslip(&line).stdout).unwrap();
+        let largest: f64 = row[column("largest")].parse().unwrap();
+        let error = found["eps_t"].as_f64().unwrap().abs() - largest;
+        // `collide` computes the paper's law exactly.
+        assert!(error.abs() < 1e-12, "{line}: {error:e}");
+    }
+
+    let again = workspace.run(&line.replace("--out laws", "--out one").replace('2', "1"));
+    assert_eq!(again.code, 0, "{}", again.stderr);
+    for name in names_of_laws() {
+        let [one, two] = ["laws", "one"].map(|out| workspace.read(&format!("{out}/{name}")));
+        assert!(one == two, "{name}");
+    }
+}
+
+#[test]
+fn a_page_is_refused_before_any_work() {
+    let workspace = Workspace::with_input("a file");
+    for (line, expected) in [
+        ("laws --cells 5", "--out <DIR>"),
+        ("laws gran/hertz/history --out laws", "cannot be used with"),
+        ("laws --out laws --cells 0", "0 is not in 1..=1000"),
+        ("laws --out laws --damping -1", "'-1' for '--damping <A>': out of range"),
+        ("laws --out laws --tangential-damping inf", "not finite"),
+        ("laws --out in.csv", "--out in.csv is not a directory"),
+    ] {
+        let ran = workspace.run(line);
+        assert_eq!(ran.code, 2, "{line}: {}", ran.stderr);
+        assert!(ran.stderr.contains(expected), "{line}: {}", ran.stderr);
+    }
+    assert_eq!(workspace.names(), ["in.csv"]);
 }
