@@ -27,6 +27,11 @@
 //! The zero of a guard at the start of a phase or at an exit need not change the itinerary: a guard
 //! that is negative from the start on fires as it would have done soon after.
 //!
+//! Where a guard starts its phase from a zero of known order
+//! ([`Guard::from_zero`](crate::Guard::from_zero)), the extrema are those of the guard divided by
+//! that power of the time since the start. They vanish where those of the guard do. But near the
+//! start the guard's own extrema merge in pairs, and change little with the parameters.
+//!
 //! An extremum of a guard is a zero of its rate. It is found like a zero of a black box: the rate
 //! is sampled on every step, also that of a readable system, and steps of the method locate its
 //! zeros.
@@ -52,9 +57,10 @@ pub struct NearMiss {
     pub margin: Margin,
     /// The place where it was taken.
     pub s: f64,
-    /// The guard's value at that place. At an extremum, at an exit, and at the end of the run it is
-    /// positive where the guard does not fire; a guard that fires in either direction keeps its
-    /// sign at exits and at the end.
+    /// The guard's value at that place; at an extremum, divided by the power of time with which it
+    /// starts from zero. At an extremum, at an exit, and at the end of the run it is positive where
+    /// the guard does not fire; a guard that fires in either direction keeps its sign at exits and
+    /// at the end.
     pub value: f64,
 }
 

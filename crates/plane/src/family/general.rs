@@ -8,8 +8,8 @@ use stickslip_model::general::{Beginning, CREST, GUARDS, GeneralContact, Mode, S
 use stickslip_model::regularized::{END, OTHER_SIDE, SAME_SIDE};
 use stickslip_model::{Contact, Regime, Side};
 use stickslip_solver::{
-    Dop853, Exit, Margin, Observer, Options, Outcome, Place, Start, SwitchEvent, margin, margins,
-    run,
+    Dop853, Exit, Margin, Margins, Observer, Options, Outcome, Place, Start, SwitchEvent, margin,
+    margins, run,
 };
 use stickslip_tracer::{FamilyError, FreeRun, Point};
 
@@ -24,11 +24,19 @@ const BEGINS: usize = GUARDS + 1;
 const BEGINNINGS: [Beginning; 4] =
     [Beginning::Stick, Beginning::Slip, Beginning::Reset, Beginning::Overturned];
 
+/// Where runs stop that miss the end of contact, as a part of the contact. A margin is needed a
+/// little beyond the place where it exists, but an itinerary that is not followed up to there is
+/// not followed at all.
+const BEYOND: f64 = 1.1;
+
 /// Collisions with any law, integrated.
 #[derive(Clone, Copy, Debug)]
 pub struct GeneralFamily {
     pub(super) plane: CollisionPlane,
     pub(super) options: Options,
+    /// Where runs stop that have not come to the end of contact. The normal motion, and with it
+    /// the end, is the same at all points of the plane.
+    span: f64,
 }
 
 /// What the runs of the family are made of.
@@ -41,7 +49,11 @@ impl GeneralFamily {
         let oscillations = plane.high.kappa().sqrt().min(1e5);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1e7")]
         let max_steps = 1000 + (100.0 * oscillations) as usize;
-        Self { plane, options: Options { max_steps, ..options } }
+        let options = Options { max_steps, ..options };
+        let (system, start) = started(GeneralContact::new(plane.low));
+        let found = run(Dop853, &system, start, f64::INFINITY, &options, &mut ());
+        let span = found.map_or(f64::INFINITY, |run| BEYOND * run.s);
+        Self { plane, options, span }
     }
 
     fn system(&self, point: &Point) -> GeneralContact {
@@ -67,8 +79,12 @@ impl GeneralFamily {
         point: &Point,
     ) -> Result<FreeRun<Vec<usize>, Margin>, CollisionFamilyError> {
         let (system, start) = started(self.system(point));
-        let found = margins(Dop853, &system, start, f64::INFINITY, &self.options)
+        let found = margins(Dop853, &system, start, self.span, &self.options)
             .map_err(|error| FamilyError { point: *point, error })?;
+        let label = match known_label(&found, system.beginning()) {
+            Some(label) => label,
+            None => self.label(point)?,
+        };
         let begins = Exit::falling(code(system.beginning()), 0.0);
         let mut found: Vec<_> = found
             .near_misses
@@ -86,7 +102,7 @@ impl GeneralFamily {
         for (margin, value) in (0..).zip(system.beginning_margins()) {
             found.extend(value.map(|value| (beginning(margin), value)));
         }
-        Ok(FreeRun { label: self.label(point)?, margins: found })
+        Ok(FreeRun { label, margins: found })
     }
 
     /// The value of a margin at a point, and its name there.
@@ -100,7 +116,10 @@ impl GeneralFamily {
         let (system, start) = started(system.beginning_with(BEGINNINGS[begins.guard - BEGINS]));
         let inner = Margin { exits: exits.to_vec(), ..which.clone() };
         // A run that cannot follow the itinerary has no such margin.
-        let found = margin(Dop853, &system, start, f64::INFINITY, &self.options, &inner).ok()??;
+        let found = margin(Dop853, &system, start, self.span, &self.options, &inner).ok()??;
+        if inner.place == Place::End && found.s >= self.span {
+            return None;
+        }
         Some((begun(*begins, found.margin), found.value))
     }
 
@@ -122,6 +141,23 @@ pub fn is_sure(margin: &Margin) -> bool {
 
 fn started(system: GeneralContact) -> System {
     (system, Start { mode: system.first(), s: 0.0, state: system.start() })
+}
+
+/// The label of a free run, as far as its margins tell it: whether slip goes on where attraction
+/// begins is told by the sign of a margin.
+fn known_label(found: &Margins, beginning: Beginning) -> Option<Vec<usize>> {
+    if found.outcome != (Outcome::EndedByGuard { guard: END }) {
+        return None;
+    }
+    let slips_on = found.near_misses.iter().find_map(|miss| match miss.margin.place {
+        Place::Branch(exit) if exit.guard == END => exit.branch,
+        _ => None,
+    });
+    let mut label = vec![code(beginning)];
+    for &guard in found.fired.iter().filter(|guard| **guard != CREST) {
+        label.push(if guard == END && slips_on? { SLIPS_ON } else { guard });
+    }
+    Some(label)
 }
 
 fn code(beginning: Beginning) -> usize {

@@ -1,5 +1,7 @@
 //! Atlases of contact laws of particle codes, against closed forms.
 
+use std::f64::consts::PI;
+
 use stickslip_model::presets;
 use stickslip_plane::atlas::{BoundaryKind, Frame, VerifiedAtlas};
 
@@ -76,4 +78,43 @@ fn a_limited_contact_is_traced_with_damping() {
     let verified = traced(with_law(name, 0.2, window));
     assert!(verified.report.agrees, "{:?}", verified.report);
     assert!(verified.atlas.regions.curves().len() > 3);
+}
+
+/// κ for which a linear contact that sticks until it attracts has no tangential force there:
+/// √κ t = nπ. The normal force vanishes where tan ωt = −aω/(1 − a²/2), with ω² = 1 − a²/4.
+fn kappa_without_force(n: f64, damping: f64) -> f64 {
+    let omega = (1.0 - 0.25 * damping * damping).sqrt();
+    let angle = PI - (damping * omega / (1.0 - 0.5 * damping * damping)).atan();
+    (n * PI * omega / angle).powi(2)
+}
+
+/// Where the force attracts up to the end of contact, damped contacts are divided completely too:
+/// around a crossing of six boundaries, and where an upright boundary is met by others.
+#[test]
+fn an_attracting_contact_is_traced_with_damping() {
+    let window = frame((1.05, 1.2), (0.6, 0.7));
+    let verified = traced(with_law("gran/hooke/history", 0.2, window));
+    assert!(verified.report.agrees, "{:?}", verified.report);
+    let atlas = &verified.atlas;
+    let tails = atlas.regions.curves().iter();
+    let tails = tails.filter(|curve| curve.margin == BoundaryKind::StartOfTail);
+    let expected = kappa_without_force(1.0, 0.2);
+    let upright = tails.flat_map(|curve| &curve.nodes).filter(|node| {
+        let [kappa, _] = atlas.chart.parameters(&node.point);
+        (kappa - expected).abs() < 1e-9
+    });
+    assert!(upright.count() > 3, "{expected}");
+}
+
+/// Slip that turns where attraction begins, and a spring that grazes its limit soon after, are
+/// 2.6e-5 apart in ψ.
+#[test]
+fn boundaries_close_together_in_an_attracting_tail_are_told_apart() {
+    let window = frame((29.0, 30.0), (1.37, 1.4));
+    let verified = traced(with_law("gran/hooke/history", 0.2, window));
+    assert!(verified.report.agrees, "{:?}", verified.report);
+    let atlas = &verified.atlas;
+    let found = atlas.boundaries_at(29.99);
+    let close = found.windows(2).filter(|pair| (1e-5..5e-5).contains(&(pair[1] - pair[0])));
+    assert_eq!(close.count(), 1, "{found:?}");
 }

@@ -73,7 +73,8 @@ where
         prescribed: &prescribed,
         seen: Watched { exits: Vec::with_capacity(exits.len()), taken: Vec::new() },
     };
-    let start = Start { mode: prescribed.enter(start.mode, 0), s: start.s, state: start.state };
+    let mode = prescribed.enter(start.mode, 0, start.s);
+    let start = Start { mode, s: start.s, state: start.state };
     let ended = run(method, &prescribed, start, end, &options, &mut watching);
     let mut seen = watching.seen;
     let run = match ended {
@@ -127,6 +128,10 @@ struct PhaseMode<Mode> {
     /// The number of exits that have happened.
     phase: usize,
     progress: Progress,
+    /// Where the phase began.
+    began: f64,
+    /// The order of the zero from which the subject starts there.
+    order: u32,
 }
 
 /// The progress within a phase.
@@ -188,15 +193,25 @@ impl<S> Prescribed<'_, S> {
         &self,
         mode: S::Mode,
         phase: usize,
+        began: f64,
     ) -> PhaseMode<S::Mode>
     where
         S: HybridSystem<N, G>,
     {
-        let at = PhaseMode { mode, phase, progress: Progress::Start };
+        let at = PhaseMode { mode, phase, progress: Progress::Start, began, order: 0 };
         let (subject, guards) = (self.subject(&at).0, self.system.guards(mode));
         let off = |guard: usize| guards[guard].direction() == Direction::Off;
         let lost = off(subject) || (self.is_last(phase) && off(self.watched));
-        PhaseMode { progress: if lost { Progress::Lost } else { Progress::Start }, ..at }
+        let progress = if lost { Progress::Lost } else { Progress::Start };
+        PhaseMode { progress, order: guards[subject].zero_order(), ..at }
+    }
+
+    /// What is left of the guard that is watched, or of its extremum, where the zero from which it
+    /// starts is divided out.
+    fn divided<Mode>(at: &PhaseMode<Mode>, s: f64, value: f64) -> f64 {
+        #[expect(clippy::cast_possible_wrap, reason = "an order is a small number")]
+        let power = (s - at.began).powi(at.order as i32);
+        if at.order == 0 { value } else { value / power }
     }
 
     /// The value of the guard that is watched, positive where it does not fire.
@@ -277,7 +292,7 @@ where
                 Awaited::Extremum(_) => {
                     // The rate rises from zero after a minimum.
                     let after_minimum = at.progress == Progress::Extremum;
-                    let order = if after_minimum { 1 } else { order.saturating_sub(1) };
+                    let order = if after_minimum { 1 } else { order + u32::from(order > 0) };
                     Guard::new(Direction::Rising).from_zero(order)
                 }
                 Awaited::End => Guard::OFF,
@@ -298,6 +313,10 @@ where
             Awaited::Guard(Way::Rising) => -values[subject],
             Awaited::Extremum(kind) => {
                 let rate = self.reach.rate(self.system, at.mode, subject, (s, y));
+                let rate = match at.order {
+                    0 => rate,
+                    order => rate * (s - at.began) - values[subject] * f64::from(order),
+                };
                 let rises = self.system.guards(at.mode)[subject].direction() == Direction::Rising;
                 let rate = if rises == (kind == Kind::Minimum) { -rate } else { rate };
                 // A guard that does not change, or by less than its rounding, has passed its
@@ -337,7 +356,7 @@ where
             }
             Awaited::Guard(_) => {
                 let (mode, after) = self.system.transition(at.mode, guard, s, y);
-                return (self.enter(mode, at.phase + 1), after);
+                return (self.enter(mode, at.phase + 1, s), after);
             }
             Awaited::Place(_) => Progress::Armed,
             Awaited::Extremum(_) if matches!(self.watch, Watch::Extrema { enough, .. } if s < enough) => {
@@ -368,7 +387,9 @@ where
             Awaited::Place(_) | Awaited::End | Awaited::Nothing => {}
             Awaited::Guard(_) => self.seen.exits.push(event.s),
             Awaited::Extremum(kind) => {
-                let value = self.prescribed.value(event.from.mode, (event.s, &event.before));
+                let at = &event.from;
+                let value = self.prescribed.value(at.mode, (event.s, &event.before));
+                let value = Prescribed::<S>::divided(at, event.s, value);
                 let value = if kind == Kind::Minimum { value } else { -value };
                 self.seen.taken.push(Taken { s: event.s, value });
             }

@@ -62,3 +62,43 @@ fn a_guard_that_the_system_does_not_have_has_no_margin() {
     other.guard = 1;
     assert_eq!(margin(Dop853, &Drop, start(), 1.0, &options, &other), Ok(None));
 }
+
+/// Its guard is y (p + (y − 1)²), which starts from zero, and y is the time.
+struct FromZero(f64);
+
+impl HybridSystem<1, 1> for FromZero {
+    type Mode = ();
+
+    fn field(&self, (): (), _s: f64, _y: &State<1>) -> State<1> {
+        State::from([1.0])
+    }
+
+    fn guards(&self, (): ()) -> [Guard; 1] {
+        [Guard::new(Direction::Below).from_zero(1)]
+    }
+
+    fn guard_values(&self, (): (), _s: f64, y: &State<1>) -> [f64; 1] {
+        [y[0] * (self.0 + (y[0] - 1.0).powi(2))]
+    }
+
+    fn transition(&self, (): (), _guard: usize, _s: f64, y: &State<1>) -> ((), State<1>) {
+        ((), *y)
+    }
+}
+
+/// Where the zero at the start is divided out, the least value is p at time 1, for every p. The
+/// guard itself has no minimum above p = 1/3, and a margin with no smooth continuation near it.
+#[test]
+fn the_zero_at_the_start_of_a_phase_is_divided_out() {
+    let start = || Start { mode: (), s: 0.0, state: State::from([0.0]) };
+    let options = Options::with_tolerance(1e-14);
+    let free = margins(Dop853, &FromZero(0.5), start(), 2.0, &options).unwrap();
+    let is_minimum = |place| matches!(place, Place::Minimum { .. });
+    let found = free.near_misses.iter().find(|miss| is_minimum(miss.margin.place)).unwrap();
+    for p in [-0.4, -1e-9, 0.0, 1e-9, 0.3, 0.4, 0.9] {
+        let found = margin(Dop853, &FromZero(p), start(), 2.0, &options, &found.margin).unwrap();
+        let miss = found.expect("a margin");
+        let errors = [miss.value - p, miss.s - 1.0];
+        assert!(errors[0].abs() < 1e-13 && errors[1].abs() < 1e-9, "{p}: {errors:?}");
+    }
+}

@@ -49,7 +49,8 @@ pub(crate) fn locate<F: Family>(
 }
 
 /// The first place within a failed step where one of these margins vanishes together with that of
-/// the branch, and behind which the branch does not have its labels.
+/// the branch, and behind which the branch does not have its labels. Crossings come first: touches
+/// take many runs.
 fn among<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,
@@ -57,23 +58,40 @@ fn among<F: Family>(
     margins: Vec<F::Margin>,
     h: f64,
 ) -> Traced<Option<Special<F::Margin>>, F> {
-    let mut found = Vec::new();
+    let (mut crossings, mut others) = (Vec::new(), Vec::new());
     for margin in margins {
-        let met = match meet(track, from, beyond, &margin, h)? {
-            None if narrow::<F>(from, beyond, &margin, h) => {
-                graze(track, from, beyond, &margin, h)?.map(|point| (point, 0.0))
-            }
-            met => met,
-        };
-        if let Some((point, off)) = met
-            && off <= VAGUE * track.runs.scale
-        {
-            let progress = (point - from.node.point).dot(&from.node.tangent);
-            found.push((progress, point, off, margin));
+        match meet(track, from, beyond, &margin, h)? {
+            Some((point, off)) => crossings.push((point, off, margin)),
+            None => others.push(margin),
         }
     }
-    found.sort_by(|(one, ..), (two, ..)| one.total_cmp(two));
-    for (_, point, off, margin) in found {
+    if let Some(special) = first(track, from, beyond, crossings, h)? {
+        return Ok(Some(special));
+    }
+    let mut touches = Vec::new();
+    for margin in others {
+        if narrow::<F>(from, beyond, &margin, h)
+            && let Some(point) = graze(track, from, beyond, &margin, h)?
+        {
+            touches.push((point, 0.0, margin));
+        }
+    }
+    first(track, from, beyond, touches, h)
+}
+
+/// The first of these places behind which the branch does not have its labels. Each has its largest
+/// error and the margin that vanishes there.
+fn first<F: Family>(
+    track: &Track<'_, '_, F>,
+    from: &FootholdOf<F>,
+    beyond: Option<&FootholdOf<F>>,
+    mut places: Vec<(Point, f64, F::Margin)>,
+    h: f64,
+) -> Traced<Option<Special<F::Margin>>, F> {
+    let progress = |point: &Point| (point - from.node.point).dot(&from.node.tangent);
+    places.retain(|(_, off, _)| *off <= VAGUE * track.runs.scale);
+    places.sort_by(|(one, ..), (two, ..)| progress(one).total_cmp(&progress(two)));
+    for (point, off, margin) in places {
         if is_last(track, from, &point)? {
             let (mut point, mut off) = (point, off);
             if off > TANGENTIAL * track.runs.scale
