@@ -7,7 +7,7 @@ use stickslip_model::{
 };
 
 use crate::common::file;
-use crate::laws::contact;
+use crate::lammps::contact;
 
 /// The forces that a case of LAMMPS asks for. Prefactors without `material` multiply powers of √R or
 /// the effective mass, as its manual says of each damping.

@@ -10,39 +10,7 @@ use stickslip_model::{
 };
 
 use crate::common::file;
-
-/// α of a homogeneous sphere.
-const ALPHA: f64 = 2.0 / 7.0;
-
-/// The contact of a case, whose scaled units are those of this crate but for α and μ.
-pub fn contact(case: &Value) -> Contact {
-    let scaled = &case["scaled"];
-    let number = |name: &str| scaled[name].as_f64().unwrap();
-    let text = |name: &str| scaled[name].as_str().unwrap();
-    let (damping, tangential) = (number("cn"), text("tang"));
-    let law = Law {
-        normal: if text("normal") == "hooke" { Normal::Linear } else { Normal::Hertz },
-        damping: match text("damp") {
-            "const" => Damping::Linear,
-            "sqrtx" => Damping::Viscoelastic,
-            "quarter" => Damping::Tsuji,
-            other => panic!("{other}"),
-        },
-        tangential: if tangential == "lin" { Tangential::Constant } else { Tangential::Mindlin },
-        history: if tangential.ends_with("force") {
-            HistoryOf::Force
-        } else {
-            HistoryOf::Displacement
-        },
-        rescaled: tangential.contains("rescale"),
-        limit_damping: scaled["limit"].as_bool().unwrap(),
-        end: End::Overlap,
-    };
-    let psi = number("g0") * ALPHA / number("mu");
-    Contact::new(number("kappa") / ALPHA, psi, damping)
-        .and_then(|contact| contact.with_law(law, number("xt") / ALPHA))
-        .unwrap()
-}
+use crate::lammps::contact;
 
 fn collide(contact: Contact) -> Collision {
     let (collision, _) =

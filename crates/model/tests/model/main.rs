@@ -6,6 +6,8 @@
 mod checks;
 #[path = "../../../../tests/common/mod.rs"]
 mod common;
+#[path = "../../../../tests/common/lammps.rs"]
+mod lammps;
 
 mod estimates;
 mod exact;

@@ -12,7 +12,7 @@ const LAYERS: [&[&str]; 8] = [
     &["stickslip-model", "stickslip-tracer"],
     &["stickslip-plane"],
     &["stickslip-figure"],
-    &["stickslip-studies"],
+    &["stickslip-practice", "stickslip-studies"],
     &["stickslip-reproduction"],
     &["stickslip", "stickslip-cli", "stickslip-python"],
     // Tests and long batteries alone.

@@ -1,0 +1,28 @@
+//! What users of particle codes ask of the collision of two frictional spheres.
+//!
+//! [`time_steps`]: how wrong the coefficients of restitution are at the time step of a simulation,
+//! and which step keeps their errors below a wanted one.
+//!
+//! Each question is a function from plain settings to a result. Parallel loops run on the rayon pool
+//! of the caller, and results do not depend on the number of threads.
+//!
+//! ```
+//! use stickslip_model::{Contact, presets};
+//! use stickslip_plane::progress;
+//! use stickslip_practice::time_steps::{self, Quantity, Settings};
+//!
+//! let law = presets::find("gran/hertz/history").ok_or("no such law")?.law;
+//! let contact = Contact::new(4.0, 0.5, 0.1)?.with_law(law, 0.0)?;
+//! let settings = Settings { contacts: vec![contact], ..Settings::default() };
+//! let result = time_steps::run(&settings, progress::SILENT)?;
+//! // Twenty steps a contact are few enough for errors of ε_t below 0.02 in this impact.
+//! let largest = result.largest_step(Quantity::TangentialRestitution, 0.02);
+//! assert_eq!(largest, Some(1.0 / 20.0));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod time_steps;
+
+#[doc = include_str!("../README.md")]
+#[cfg(doctest)]
+pub struct Readme;

@@ -1,0 +1,204 @@
+//! One collision in the steps of a particle code.
+
+use stickslip_model::{Contact, Damping, End, HistoryOf, Law, Normal, Tangential, exact};
+
+use super::scheme::Scheme;
+
+/// The duration of a contact with the normal force of `law` and without damping, in scaled units:
+/// π for a linear force, 3.218… for Hertz'.
+#[must_use]
+pub fn undamped_contact_time(law: Law) -> f64 {
+    match law.normal {
+        Normal::Linear => std::f64::consts::PI,
+        Normal::Hertz => exact::CONTACT_TIME,
+    }
+}
+
+/// A collision as a particle code computes it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Stepped {
+    /// Coefficient of normal restitution ε_n.
+    pub eps_n: f64,
+    /// Coefficient of tangential restitution ε_t; −1 is full reversal.
+    pub eps_t: f64,
+    /// Number of steps with overlap, until the normal force is 0 for good.
+    pub steps: u64,
+    /// Largest (k dt² + 2 D dt)/4 over the steps and over both directions, with the stiffness k and
+    /// the damping D at the overlap of the step. From 1 on, the oscillation of a spring is not
+    /// resolved and grows from step to step, until friction cuts it off.
+    pub stiffness: f64,
+}
+
+impl Stepped {
+    /// Whether the steps resolve both springs: [`Self::stiffness`] stays below 1.
+    #[must_use]
+    pub fn is_stable(&self) -> bool {
+        self.stiffness < 1.0
+    }
+}
+
+/// Most steps of one contact.
+const MOST_STEPS: f64 = 1e9;
+/// How many times as long as it should a contact may last.
+const LONGEST: f64 = 10.0;
+
+/// Computes the collision of `contact` with the step `dt` in scaled units.
+///
+/// The contact begins after the part `phase` of a step, from 0 to below 1: the gap is then
+/// phase·dt at the scaled velocity 1.
+///
+/// A contact that ends where the force does ([`End::Force`]) is computed as particle codes do it,
+/// with a force that is kept from attracting until the overlap vanishes. Without steps both are the
+/// same.
+///
+/// `None` if the contact has not ended after ten times `duration`, which is how long it lasts
+/// without steps, or after 10⁹ steps, or if numbers are no longer finite.
+#[must_use]
+pub fn step(
+    contact: &Contact,
+    dt: f64,
+    phase: f64,
+    scheme: Scheme,
+    duration: f64,
+) -> Option<Stepped> {
+    let longest = LONGEST * f64::max(duration, undamped_contact_time(contact.law()));
+    let most = (longest / dt + 10.0).min(MOST_STEPS);
+    let mut pair = Pair::new(contact, dt, scheme);
+    let mut state = State { x: -phase * dt, v: 1.0, w: contact.psi(), history: 0.0, root: 0.0 };
+    let mut steps = 0;
+    let mut stiffness: f64 = 0.0;
+    loop {
+        state.x += dt * state.v;
+        if state.x > 0.0 {
+            steps += 1;
+            if steps as f64 > most {
+                return None;
+            }
+            let Some(number) = pair.advance(&mut state) else { break };
+            stiffness = stiffness.max(number);
+        } else if steps > 0 || !state.v.is_finite() {
+            break;
+        }
+    }
+    let stepped = Stepped { eps_n: -state.v, eps_t: state.w / contact.psi(), steps, stiffness };
+    let finite = stepped.eps_n.is_finite() && stepped.eps_t.is_finite() && stiffness.is_finite();
+    finite.then_some(stepped)
+}
+
+/// Where the bodies are, and what the contact remembers.
+struct State {
+    /// Overlap.
+    x: f64,
+    /// Its rate, in the middle of the last step.
+    v: f64,
+    /// Reduced tangential velocity, in the middle of the last step.
+    w: f64,
+    /// Elongation or force of the spring.
+    history: f64,
+    /// √x one step before; 0 before the contact.
+    root: f64,
+}
+
+/// What decides on forces.
+struct Pair {
+    law: Law,
+    limited: bool,
+    kappa: f64,
+    damping: f64,
+    tangential_damping: f64,
+    dt: f64,
+    scheme: Scheme,
+    /// Whether no step with overlap has been taken.
+    first: bool,
+}
+
+impl Pair {
+    fn new(contact: &Contact, dt: f64, scheme: Scheme) -> Self {
+        let law = contact.law();
+        Self {
+            law,
+            limited: law.limit_damping || law.end == End::Force,
+            kappa: contact.kappa(),
+            damping: contact.damping(),
+            tangential_damping: contact.tangential_damping(),
+            dt,
+            scheme,
+            first: true,
+        }
+    }
+
+    /// Advances both velocities by a step, with the forces at the overlap, and tells the
+    /// [`Stepped::stiffness`] of the step. `None` where a limited force has vanished: the overlap
+    /// falls in free flight, in which a force would attract until the end.
+    fn advance(&mut self, state: &mut State) -> Option<f64> {
+        let Self { law, dt, .. } = *self;
+        let (x, root) = (state.x, state.x.sqrt());
+        let (elastic, slope) = match law.normal {
+            Normal::Linear => (x, 1.0),
+            Normal::Hertz => (x * root, 1.5 * root),
+        };
+        let eta = match law.damping {
+            Damping::None => 0.0,
+            Damping::Linear => self.damping,
+            Damping::Viscoelastic => self.damping * root,
+            Damping::Tsuji => self.damping * root.sqrt(),
+        };
+        let normal = elastic + eta * state.v;
+        if self.limited && normal <= 0.0 {
+            return None;
+        }
+        let k = match law.tangential {
+            Tangential::Constant => self.kappa,
+            Tangential::Mindlin => self.kappa * root,
+        };
+        let dashpot = self.tangential_damping * eta;
+        let tangential = self.tangential_force(state, (k, dashpot), normal.abs(), root);
+        state.v -= dt * normal;
+        state.w -= dt * tangential;
+        let number = |k: f64, damping: f64| 0.25 * dt * (k * dt + 2.0 * damping);
+        Some(f64::max(number(slope, eta), number(k, dashpot)))
+    }
+
+    /// The tangential force against the motion, with the history that it leaves.
+    fn tangential_force(
+        &mut self,
+        state: &mut State,
+        (k, dashpot): (f64, f64),
+        limit: f64,
+        root: f64,
+    ) -> f64 {
+        if self.law.rescaled && root < state.root {
+            state.history *= root / state.root;
+        }
+        state.root = root;
+        let elapsed = match self.scheme {
+            Scheme::Elapsed if self.first => (state.x / state.v).min(self.dt),
+            _ => self.dt,
+        };
+        self.first = false;
+        let viscous = dashpot * state.w;
+        let trial = match self.law.history {
+            HistoryOf::Displacement => {
+                state.history += state.w * elapsed;
+                k * state.history + viscous
+            }
+            HistoryOf::Force => {
+                state.history += k * state.w * elapsed;
+                state.history + viscous
+            }
+        };
+        if trial.abs() <= limit {
+            return trial;
+        }
+        if state.history == 0.0 {
+            return 0.0;
+        }
+        let force = limit.copysign(trial);
+        state.history = match self.law.history {
+            HistoryOf::Displacement => (force - viscous) / k,
+            HistoryOf::Force => force - viscous,
+        };
+        force
+    }
+}

@@ -1,0 +1,10 @@
+//! Tests of the crate, in one program.
+//!
+//! Reference data are in `tests/data` of the workspace, whose README says where they come from.
+
+#[path = "../../../../tests/common/lammps.rs"]
+mod lammps;
+
+mod reference;
+mod strangers;
+mod time_steps;

@@ -1,0 +1,37 @@
+//! Collisions of LAMMPS, from `lammps_laws.json`. Several packages share this file.
+
+use serde_json::Value;
+use stickslip_model::{Contact, Damping, End, HistoryOf, Law, Normal, Tangential};
+
+/// α of a homogeneous sphere.
+const ALPHA: f64 = 2.0 / 7.0;
+
+/// The contact of a case, whose scaled units are those of the model but for α and μ.
+pub fn contact(case: &Value) -> Contact {
+    let scaled = &case["scaled"];
+    let number = |name: &str| scaled[name].as_f64().expect("a number");
+    let text = |name: &str| scaled[name].as_str().expect("a text");
+    let (damping, tangential) = (number("cn"), text("tang"));
+    let law = Law {
+        normal: if text("normal") == "hooke" { Normal::Linear } else { Normal::Hertz },
+        damping: match text("damp") {
+            "const" => Damping::Linear,
+            "sqrtx" => Damping::Viscoelastic,
+            "quarter" => Damping::Tsuji,
+            other => panic!("{other}"),
+        },
+        tangential: if tangential == "lin" { Tangential::Constant } else { Tangential::Mindlin },
+        history: if tangential.ends_with("force") {
+            HistoryOf::Force
+        } else {
+            HistoryOf::Displacement
+        },
+        rescaled: tangential.contains("rescale"),
+        limit_damping: scaled["limit"].as_bool().expect("yes or no"),
+        end: End::Overlap,
+    };
+    let psi = number("g0") * ALPHA / number("mu");
+    Contact::new(number("kappa") / ALPHA, psi, damping)
+        .and_then(|contact| contact.with_law(law, number("xt") / ALPHA))
+        .expect("valid parameters")
+}
