@@ -20,7 +20,8 @@ impl TimeSteps {
             let worst = |errors: Errors| errors.worst.error;
             let full = Stroke::full(colour, 1.6);
             let mark = Some(Mark { shape, colour });
-            let line = |name, stroke, mark, points| Series { name, points, line: Some(stroke), mark };
+            let line =
+                |name, stroke, mark, points| Series { name, points, line: Some(stroke), mark };
             let points = self.points(quantity, worst);
             series.push(line(format!("{symbol}: largest error"), full, mark, points));
             let dashed = Stroke { dashes: "6 4", ..full };

@@ -84,7 +84,9 @@ pub enum InvalidTimeSteps {
     /// A number of steps is out of range.
     #[error(
         "steps = {value:?} is out of range; expected a number of steps in a contact from {:?} to \
-         {:?}", Settings::FEWEST_STEPS, Settings::MOST_STEPS
+         {:?}",
+        Settings::FEWEST_STEPS,
+        Settings::MOST_STEPS
     )]
     Steps {
         /// The number of steps in a contact.

@@ -15,8 +15,7 @@ pub fn contact(law: &str, [kappa, psi, damping, tangential]: [f64; 4]) -> Contac
 }
 
 pub fn run(contacts: Vec<Contact>, steps: &[f64]) -> TimeSteps {
-    let settings =
-        Settings { contacts, steps_per_contact: steps.to_vec(), ..Settings::default() };
+    let settings = Settings { contacts, steps_per_contact: steps.to_vec(), ..Settings::default() };
     time_steps::run(&settings, progress::SILENT).expect("errors")
 }
 
@@ -63,7 +62,7 @@ fn the_normal_motion_of_leaps_has_a_closed_form() {
                 let x2 = x1 + dt * (1.0 - dt * x1);
                 (x2 * (n * omega_dt).sin() - x1 * ((n - 1.0) * omega_dt).sin()) / omega_dt.sin()
             };
-            let mut count = 0;
+            let mut count: u32 = 0;
             while x > 0.0 {
                 v -= dt * x;
                 x += dt * v;
@@ -71,7 +70,7 @@ fn the_normal_motion_of_leaps_has_a_closed_form() {
                 assert!((x - amplitude_at(f64::from(count))).abs() < 1e-10);
             }
             assert!((found.eps_n + v).abs() < 1e-12, "{steps} {phase}");
-            assert_eq!(found.steps, count as u64);
+            assert_eq!(found.steps, u64::from(count));
         }
     }
 }
@@ -99,7 +98,8 @@ fn the_largest_step_holds_for_all_shorter_ones() {
             let parts = |row: &&time_steps::Row| {
                 largest.is_some_and(|largest| 1.0 / row.steps_per_contact <= largest)
             };
-            let (inside, outside): (Vec<_>, Vec<_>) = result.rows.iter().partition(parts);
+            let (inside, outside): (Vec<&time_steps::Row>, Vec<&time_steps::Row>) =
+                result.rows.iter().partition(parts);
             assert!(inside.iter().all(|row| row.status == Status::Ok && error(row) <= wanted));
             let next = outside.last().expect("a step that is too long");
             assert!(next.status != Status::Ok || error(next) > wanted);
@@ -128,7 +128,8 @@ fn results_do_not_depend_on_threads() {
 
 #[test]
 fn progress_is_complete() {
-    let (begun, advanced) = <(std::sync::atomic::AtomicUsize, std::sync::atomic::AtomicUsize)>::default();
+    let (begun, advanced) =
+        <(std::sync::atomic::AtomicUsize, std::sync::atomic::AtomicUsize)>::default();
     let settings = Settings {
         contacts: vec![Contact::new(1.0, 1.0, 0.0).expect("parameters"); 3],
         ..Settings::default()
@@ -160,10 +161,10 @@ fn the_paper_s_law_is_that_of_a_limited_force() {
 }
 
 /// The first step of a contact is a whole one for the history, which costs an order of accuracy
-/// where nothing else does.
+/// where the contact starts in stick and nothing else costs one.
 #[test]
 fn an_elapsed_first_step_is_more_accurate() {
-    let contact = contact("gran/hooke/history", [3.0, 0.4, 0.0, 0.0]);
+    let contact = contact("gran/hooke/history", [2.0, 0.02, 0.0, 0.0]);
     let error = |scheme| {
         let settings = Settings {
             contacts: vec![contact],

@@ -1,6 +1,39 @@
-//! The time of Rayleigh waves, in which many users measure their steps.
+//! Time steps in seconds, and the time of Rayleigh waves, in which many users measure their steps.
 
-use stickslip_model::Sphere;
+use stickslip_model::{Encounter, Sphere};
+
+use super::stepped::undamped_contact_time;
+
+/// The times of an impact in SI units to which steps are compared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Seconds {
+    /// The undamped contact time t_c in s.
+    pub contact_time_s: f64,
+    /// The least [`rayleigh_time_s`] of the spheres, in s.
+    pub rayleigh_time_s: f64,
+}
+
+impl Seconds {
+    /// The times of `encounter`.
+    #[must_use]
+    pub fn new(encounter: &Encounter) -> Self {
+        let law = encounter.contact().law();
+        Self {
+            contact_time_s: undamped_contact_time(law) * encounter.impact.time_unit_s,
+            rayleigh_time_s: encounter
+                .spheres()
+                .map(rayleigh_time_s)
+                .fold(f64::INFINITY, f64::min),
+        }
+    }
+
+    /// The step in s of which `steps_per_contact` make the undamped contact time.
+    #[must_use]
+    pub fn step_s(&self, steps_per_contact: f64) -> f64 {
+        self.contact_time_s / steps_per_contact
+    }
+}
 
 /// The time π R √(ρ/G)/(0.1631 ν + 0.8766) in s that a Rayleigh wave takes from one pole of a
 /// sphere to the other, with the mean density ρ and G = Y/(2(1 + ν)).
