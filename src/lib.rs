@@ -16,6 +16,10 @@ pub use stickslip_plane as plane;
 #[cfg(feature = "figure")]
 pub use stickslip_figure as figure;
 
+/// What users of particle codes ask: errors of time steps.
+#[cfg(feature = "practice")]
+pub use stickslip_practice as practice;
+
 /// The limit of stiff springs, and how accurate the integrators are.
 #[cfg(feature = "studies")]
 pub use stickslip_studies as studies;

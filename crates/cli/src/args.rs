@@ -17,6 +17,7 @@ mod map;
 mod method;
 mod reproduce;
 mod shared;
+mod timestep;
 mod trace;
 
 use clap::{Parser, Subcommand};
@@ -37,6 +38,7 @@ pub use map::MapArguments;
 pub use method::{Method, MethodArguments};
 pub use reproduce::{AuditFormat, ReproduceArguments};
 pub use shared::{CollisionArguments, Format};
+pub use timestep::TimestepArguments;
 pub use trace::TraceArguments;
 
 /// Collisions of frictional viscoelastic spheres, with every switch between sticking and sliding.
@@ -82,6 +84,9 @@ pub enum Command {
     /// Measure how errors fall with the step and the tolerance, and what they cost
     #[command(long_about = converge::ABOUT, after_long_help = converge::EXAMPLES)]
     Converge(ConvergeArguments),
+    /// Measure the errors of the time steps of particle codes
+    #[command(long_about = timestep::ABOUT, after_long_help = timestep::EXAMPLES)]
+    Timestep(TimestepArguments),
     /// Print a script that completes commands and options in a shell
     #[command(after_long_help = completions::EXAMPLES)]
     Completions(CompletionsArguments),

@@ -13,4 +13,5 @@ pub mod map;
 pub mod reproduce;
 pub mod statements;
 pub mod studies;
+pub mod timestep;
 pub mod trace;

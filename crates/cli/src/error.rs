@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use stickslip_figure::FigureError;
 use stickslip_plane::atlas::AtlasError;
 use stickslip_plane::sweep::Failed;
+use stickslip_practice::time_steps::TimeStepsError;
 use stickslip_reproduction::ReproductionError;
 use stickslip_reproduction::figures::Objection;
 use stickslip_studies::{CollisionFailure, StudyError};
@@ -60,6 +61,9 @@ pub enum Failure {
     /// A study has no result.
     #[error(transparent)]
     Study(#[from] StudyError),
+    /// Errors of time steps cannot be measured.
+    #[error(transparent)]
+    TimeSteps(#[from] TimeStepsError),
     /// A part of the reproduction has no result.
     #[error(transparent)]
     Reproduction(#[from] ReproductionError),

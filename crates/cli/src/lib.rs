@@ -32,7 +32,8 @@ use args::{Arguments, Command};
 pub use error::Failure;
 use output::console::say;
 use plan::{
-    CollidePlan, ImpactPlan, JoinPlan, LocatePlan, MapPlan, ReproducePlan, StudyPlan, TracePlan,
+    CollidePlan, ImpactPlan, JoinPlan, LocatePlan, MapPlan, ReproducePlan, StudyPlan, TimestepPlan,
+    TracePlan,
 };
 use version::NAME;
 
@@ -108,6 +109,7 @@ fn carry_out(arguments: &Arguments) -> Result<(), Failure> {
         Command::Converge(arguments) => {
             commands::studies::run(&StudyPlan::convergence(arguments)?, convergence::run)
         }
+        Command::Timestep(arguments) => commands::timestep::run(&TimestepPlan::new(arguments)?),
         Command::Completions(arguments) => commands::completions::run(*arguments),
         Command::Man(arguments) => commands::man::run(arguments),
     }

@@ -14,6 +14,7 @@ mod locate;
 mod map;
 mod reproduce;
 mod studies;
+mod timestep;
 mod trace;
 mod window;
 
@@ -24,4 +25,5 @@ pub use locate::LocatePlan;
 pub use map::{MapFormat, MapOutput, MapPlan};
 pub use reproduce::{PagePlan, ReproducePlan, StatementsPlan};
 pub use studies::StudyPlan;
+pub use timestep::TimestepPlan;
 pub use trace::TracePlan;

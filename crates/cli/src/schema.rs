@@ -3,6 +3,7 @@
 
 use stickslip_model::document;
 use stickslip_plane::atlas;
+use stickslip_practice::time_steps;
 use stickslip_reproduction::statements;
 use stickslip_studies::{contact_laws, convergence, stiff_springs};
 
@@ -18,5 +19,6 @@ pub const ALL: [&str; 8] = [
     convergence::SCHEMA,
     stiff_springs::SCHEMA,
     statements::SCHEMA,
+    time_steps::SCHEMA,
     REPORT,
 ];

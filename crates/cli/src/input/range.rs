@@ -17,6 +17,48 @@ pub fn parse_for(parameter: Parameter, text: &str) -> Result<Range, NotARange> {
     }
 }
 
+/// One value of a parameter, or an interval of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum OneOrRange {
+    /// One value.
+    One(f64),
+    /// An interval.
+    Range(Range),
+}
+
+impl OneOrRange {
+    /// The value, or `count` values of the interval in equal ratios, of which the first and the last
+    /// are its ends.
+    pub fn values(self, count: usize) -> Vec<f64> {
+        match self {
+            Self::One(value) => vec![value],
+            Self::Range(Range { low, high }) => (0..count)
+                .map(|index| match index {
+                    0 => low,
+                    _ if index + 1 == count => high,
+                    _ => {
+                        let part = index as f64 / (count - 1) as f64;
+                        (low.ln() * (1.0 - part) + high.ln() * part).exp()
+                    }
+                })
+                .collect(),
+        }
+    }
+}
+
+/// Reads a value of `parameter`, or an interval `LO:HI` as [`parse_for`].
+///
+/// # Errors
+/// What is wrong and what is expected.
+pub fn parse_one_or_range(parameter: Parameter, text: &str) -> Result<OneOrRange, String> {
+    if text.contains(':') {
+        let range = parse_for(parameter, text).map_err(|problem| problem.to_string())?;
+        return Ok(OneOrRange::Range(range));
+    }
+    let value = parameter.parse(text).map_err(|problem| format!("{problem}, or an interval LO:HI"));
+    value.map(OneOrRange::One)
+}
+
 /// Reads an interval `LO:HI`, which may begin at 0.
 ///
 /// # Errors
@@ -134,6 +176,18 @@ mod tests {
         assert_eq!(kappa("0:70"), Err(NotARange::Zero));
         assert_eq!(kappa("-0:70"), Err(NotARange::Zero));
         assert_eq!(kappa("2:1"), Err(NotARange::Order));
+    }
+
+    #[test]
+    fn one_value_or_a_grid() {
+        let read = |text| parse_one_or_range(Parameter::Kappa, text);
+        assert_eq!(read("18").map(|it| it.values(5)), Ok(vec![18.0]));
+        let grid = read("1:16").map(|it| it.values(5)).unwrap();
+        assert_eq!((grid.len(), grid[0], grid[4]), (5, 1.0, 16.0));
+        assert!(grid.windows(2).all(|pair| (pair[1] / pair[0] - 2.0).abs() < 1e-12));
+        let refused = read("0").unwrap_err();
+        assert!(refused.contains("above 0, or an interval LO:HI"), "{refused}");
+        assert!(read("0:1").is_err() && read("2:1").is_err() && read("1:2:3").is_err());
     }
 
     #[test]

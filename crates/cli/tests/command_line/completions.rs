@@ -4,7 +4,7 @@ use std::process::Command;
 
 use crate::{Workspace, stickslip};
 
-const COMMANDS: [&str; 12] = [
+const COMMANDS: [&str; 13] = [
     "collide",
     "impact",
     "laws",
@@ -15,6 +15,7 @@ const COMMANDS: [&str; 12] = [
     "reproduce",
     "asymptote",
     "converge",
+    "timestep",
     "completions",
     "man",
 ];

@@ -4,7 +4,7 @@ use std::process::Command;
 
 use crate::{Workspace, stickslip};
 
-const PAGES: [&str; 13] = [
+const PAGES: [&str; 14] = [
     "stickslip-asymptote.1",
     "stickslip-collide.1",
     "stickslip-completions.1",
@@ -16,6 +16,7 @@ const PAGES: [&str; 13] = [
     "stickslip-man.1",
     "stickslip-map.1",
     "stickslip-reproduce.1",
+    "stickslip-timestep.1",
     "stickslip-trace.1",
     "stickslip.1",
 ];

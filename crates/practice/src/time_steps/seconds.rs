@@ -21,10 +21,7 @@ impl Seconds {
         let law = encounter.contact().law();
         Self {
             contact_time_s: undamped_contact_time(law) * encounter.impact.time_unit_s,
-            rayleigh_time_s: encounter
-                .spheres()
-                .map(rayleigh_time_s)
-                .fold(f64::INFINITY, f64::min),
+            rayleigh_time_s: encounter.spheres().map(rayleigh_time_s).fold(f64::INFINITY, f64::min),
         }
     }
 
