@@ -1,7 +1,8 @@
 """Collisions of frictional spheres and other piecewise-smooth ODEs, with every switch found.
 
 Start with `collide` (one collision), `eps_t` and `collide_many` (arrays), `impact` (SI units),
-`trace` (every boundary in a window), `map` and `sweep` (xarray), `solve` (systems of your own).
+`trace` (every boundary in a window), `map` and `sweep` (xarray), `timestep` (errors of the steps of
+particle codes), `solve` (systems of your own).
 """
 
 from stickslip import _native
@@ -45,6 +46,7 @@ from stickslip.studies import (
     reproduction_parts,
 )
 from stickslip.sweeps import sweep, write_sweep
+from stickslip.timesteps import StepErrors, TimeSteps, timestep
 
 __version__ = _native.version()
 
@@ -71,9 +73,11 @@ __all__ = [
     "Sensitivity",
     "Solution",
     "Sphere",
+    "StepErrors",
     "Study",
     "Surface",
     "Table",
+    "TimeSteps",
     "Vertex",
     "Wall",
     "WallMotion",
@@ -92,6 +96,7 @@ __all__ = [
     "reproduction_parts",
     "solve",
     "sweep",
+    "timestep",
     "trace",
     "write_sweep",
 ]

@@ -67,6 +67,17 @@ impl Points {
         [0, 1, 2].map(|column| value(&self.columns[column]))
     }
 
+    /// The contacts.
+    pub fn contacts(&self) -> PyResult<Vec<Contact>> {
+        let contact = |index| {
+            let [kappa, psi, damping] = self.parameters(index);
+            Contact::new(kappa, psi, damping)
+                .and_then(|contact| contact.with_law(self.law.0, self.law.1))
+                .map_err(|error| Failure::from(error).exception(&self.place(index)))
+        };
+        (0..self.count).map(contact).collect()
+    }
+
     /// Computes the collisions of a part, and tells `take` of each.
     fn collide(
         &self,

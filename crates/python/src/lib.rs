@@ -4,7 +4,7 @@
 //! arrays, or the JSON that the program prints. Names, shapes and units are documented in the Python
 //! functions that call these, in `python/stickslip`.
 //!
-//! Start reading in `arrays`; then `collision`, `impacts`, `planes`, `studies` (results), `hybrid`
+//! Start reading in `arrays`; then `collision`, `impacts`, `planes`, `steps`, `studies` (results), `hybrid`
 //! (systems of one's own), `engines`, `parallel` and `failure` (what they share).
 
 mod arrays;
@@ -15,6 +15,7 @@ mod hybrid;
 mod impacts;
 mod parallel;
 mod planes;
+mod steps;
 mod studies;
 
 /// The module that Python loads. It has no state of its own, and needs no lock of the interpreter.
@@ -34,6 +35,8 @@ mod _native {
     use super::impacts::{Pair, homogeneous_mass};
     #[pymodule_export]
     use super::planes::Atlas;
+    #[pymodule_export]
+    use super::steps::TimeSteps;
     #[pymodule_export]
     use super::studies::{asymptote, compare_laws, converge, reproduce, reproduction_parts};
 }

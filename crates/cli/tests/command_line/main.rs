@@ -31,6 +31,7 @@ mod pictures;
 mod reproduce;
 #[cfg(unix)]
 mod streams;
+mod timestep;
 mod usage;
 mod version;
 

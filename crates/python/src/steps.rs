@@ -1,0 +1,74 @@
+//! Errors of the time steps of particle codes.
+
+use pyo3::prelude::*;
+use serde_json::to_string;
+use stickslip_model::Reduction;
+use stickslip_plane::progress::SILENT;
+use stickslip_practice::time_steps::{self, Quantity, Scheme, Settings, TimeStepsError};
+
+use crate::arrays::{Parameters, Points};
+use crate::engines::LawChoice;
+use crate::failure::{Failure, bad_input, failed};
+use crate::parallel::Threads;
+
+/// Errors over impacts and start phases, for each step.
+#[pyclass(frozen, module = "stickslip._native")]
+pub struct TimeSteps(time_steps::TimeSteps);
+
+#[pymethods]
+impl TimeSteps {
+    /// Measures the errors of impacts with a law; `steps` are numbers of steps in the undamped contact
+    /// time, with so many start phases, and `reduction` is μ and α.
+    #[staticmethod]
+    fn measure(
+        py: Python<'_>,
+        parameters: Parameters<'_>,
+        law: LawChoice,
+        steps: (Vec<f64>, usize),
+        scheme: &str,
+        reduction: (f64, f64),
+        threads: usize,
+    ) -> PyResult<Self> {
+        let names = Scheme::ALL.map(Scheme::name);
+        let scheme = Scheme::find(scheme)
+            .ok_or_else(|| bad_input(format!("scheme = {scheme:?}; expected one of {names:?}")))?;
+        let settings = Settings {
+            contacts: Points::new(&parameters, &law)?.contacts()?,
+            steps_per_contact: steps.0,
+            phases: steps.1,
+            scheme,
+            reduction: Reduction { mu: reduction.0, alpha: reduction.1 },
+        };
+        let pool = Threads::pool(threads)?;
+        let found = py.detach(|| pool.install(|| time_steps::run(&settings, SILENT)));
+        found.map(Self).map_err(|error| match error {
+            TimeStepsError::Settings(invalid) => bad_input(invalid),
+            TimeStepsError::Contact(failure) => {
+                let contact = &failure.contact;
+                let (kappa, psi, damping) = (contact.kappa(), contact.psi(), contact.damping());
+                let place = format!("kappa = {kappa:?}, psi = {psi:?}, damping = {damping:?}: ");
+                Failure::from(failure.source).exception(&place)
+            }
+        })
+    }
+
+    /// The JSON that the program prints.
+    fn json(&self) -> PyResult<String> {
+        to_string(&self.0).map_err(failed)
+    }
+
+    /// The largest step over the contact time with errors of a quantity that are not larger.
+    fn largest_step(&self, quantity: &str, wanted: f64) -> PyResult<Option<f64>> {
+        let mut known = Quantity::ALL.into_iter();
+        let names = Quantity::ALL.map(Quantity::name);
+        let quantity = known.find(|known| known.name() == quantity).ok_or_else(|| {
+            bad_input(format!("quantity = {quantity:?}; expected one of {names:?}"))
+        })?;
+        Ok(self.0.largest_step(quantity, wanted))
+    }
+
+    /// The errors over the step, as an SVG document.
+    fn picture(&self) -> String {
+        self.0.picture().document()
+    }
+}
