@@ -88,7 +88,7 @@ impl Status {
 pub struct Errors {
     /// The median; of an even number, the mean of the two in the middle.
     pub median: f64,
-    /// The root mean square. Impacts with the mean error alone would have it too.
+    /// The root mean square of the errors themselves, not of their scatter around a mean.
     pub root_mean_square: f64,
     /// The largest error, and where it is.
     pub worst: Worst,

@@ -18,7 +18,8 @@
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Scheme {
     /// The history advances by a whole step in the first step of a contact too, as in LAMMPS and in
-    /// MFiX 21.3.2. `touching` is x > 0 at the end of a step.
+    /// MFiX 21.3.2. Bodies touch where the overlap at the end of a step is above 0, and the history
+    /// is forgotten where it is not.
     #[default]
     Lammps,
     /// In the first step of a contact the history advances by the time since the contact began, x/v,

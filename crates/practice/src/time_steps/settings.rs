@@ -7,7 +7,8 @@ use super::scheme::Scheme;
 /// The impacts and time steps whose errors are measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// The impacts.
+    /// The impacts, of which there are at most [`Self::MOST_CONTACTS`], each counted once for every
+    /// start phase.
     pub contacts: Vec<Contact>,
     /// The steps, as numbers t_c/dt of steps in the undamped contact time, from
     /// [`Self::FEWEST_STEPS`] to [`Self::MOST_STEPS`], in any order.
@@ -42,6 +43,8 @@ impl Settings {
     pub const MOST_STEPS: f64 = 1e7;
     /// Most start phases.
     pub const MOST_PHASES: usize = 4096;
+    /// Most contacts, of impacts times phases, for which there is memory: half a gigabyte.
+    pub const MOST_CONTACTS: usize = 10_000_000;
 
     /// Checks all settings.
     ///
@@ -60,6 +63,10 @@ impl Settings {
         }
         if !(1..=Self::MOST_PHASES).contains(&self.phases) {
             return Err(InvalidTimeSteps::Phases { value: self.phases });
+        }
+        let (impacts, phases) = (self.contacts.len(), self.phases);
+        if impacts.saturating_mul(phases) > Self::MOST_CONTACTS {
+            return Err(InvalidTimeSteps::Many { impacts, phases });
         }
         let Reduction { mu, alpha } = self.reduction;
         if !(mu > 0.0 && mu.is_finite()) {
@@ -97,6 +104,18 @@ pub enum InvalidTimeSteps {
     Phases {
         /// The number.
         value: usize,
+    },
+    /// There are too many contacts.
+    #[error(
+        "phases = {phases} with {impacts} impacts make too many contacts; expected a product of at \
+         most {}",
+        Settings::MOST_CONTACTS
+    )]
+    Many {
+        /// The number of impacts.
+        impacts: usize,
+        /// The number of phases.
+        phases: usize,
     },
     /// The coefficient of friction is out of range.
     #[error("mu = {value:?} is out of range; expected a finite number above 0")]

@@ -2,7 +2,7 @@
 
 use stickslip_model::Contact;
 use stickslip_plane::progress;
-use stickslip_practice::time_steps::{self, Quantity, Settings, Status};
+use stickslip_practice::time_steps::{self, Quantity, Scheme, Settings, Status, step};
 
 use crate::time_steps::{contact, run, stepped};
 
@@ -58,6 +58,34 @@ fn millions_of_steps_leave_rounding_alone() {
     assert!(elastic.eps_t.expect("errors").worst.error < 2e-11, "{elastic:?}");
     let eps_t = damped.eps_t.expect("errors").worst.error;
     assert!(eps_t > 1e-8 && eps_t < 1e-5, "{damped:?}");
+}
+
+#[test]
+fn no_step_is_no_hang() {
+    let elastic = contact("gran/hooke/history", [4.0, 0.5, 0.0, 0.0]);
+    for dt in [0.0, -0.1, f64::NAN, f64::INFINITY] {
+        assert_eq!(step(&elastic, dt, 0.5, Scheme::Lammps, 3.0), None);
+    }
+    for phase in [-0.1, 1.0, f64::NAN] {
+        assert_eq!(step(&elastic, 0.1, phase, Scheme::Lammps, 3.0), None);
+    }
+    for dt in [1e30, f64::MAX] {
+        let found = step(&elastic, dt, 0.5, Scheme::Elapsed, 3.0);
+        assert!(found.is_none_or(|found| !found.is_stable()), "{dt}: {found:?}");
+    }
+}
+
+#[test]
+fn more_contacts_than_memory_are_refused() {
+    let settings = Settings {
+        contacts: vec![Contact::new(1.0, 1.0, 0.0).expect("parameters"); 2442],
+        phases: 4096,
+        ..Settings::default()
+    };
+    let error = time_steps::run(&settings, progress::SILENT).expect_err("too many").to_string();
+    let expected = "phases = 4096 with 2442 impacts make too many contacts; expected a product of \
+                    at most 10000000";
+    assert_eq!(error, expected);
 }
 
 /// Linear damping near 2 holds a contact for long. Leaps, whose damping lags, hold it for ever.
