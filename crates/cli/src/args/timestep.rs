@@ -47,7 +47,7 @@ pub struct TimestepArguments {
 
     /// JSON file of an impact as `impact` reads it, instead of scaled parameters; - for standard input
     #[arg(long, value_name = "FILE.json", help_heading = "Impacts")]
-    #[arg(conflicts_with_all = ["kappa", "psi", "grid", "damping", "mu", "alpha", "law"])]
+    #[arg(conflicts_with_all = ["kappa", "psi", "grid", "damping", "mu", "alpha"])]
     #[arg(conflicts_with = "tangential_damping")]
     pub bodies: Option<PathBuf>,
 
@@ -126,11 +126,13 @@ Status of a step:
 With --error E, the largest dt/t_c is told at which the largest error is at most E, and at all
 shorter ones of the given steps too. Nothing is promised of steps that were not given.
 
-With --bodies, steps are told in seconds and in Rayleigh times too, for the paper's law.
+With --bodies, steps are told in seconds and in Rayleigh times too. The file has the constants of
+the law, as `impact --help` lists them.
 
 Examples:
   stickslip timestep --kappa 3 --psi 0.4 --damping 0.3 --law gran/hertz/history
   stickslip timestep --kappa 1:60 --psi 0.05:2 --error 0.01 --plot errors.svg
   stickslip timestep --bodies examples/steel_spheres.json --steps 20,50,100 --format json
+  stickslip timestep --bodies examples/hooke_spheres.json --law gran/hooke/history
 
 Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

@@ -68,7 +68,9 @@ type Impacts = (Vec<Contact>, Reduction, Option<Seconds>);
 /// The impacts of the options or of the file, with what weighs their energy and their times.
 fn impacts(arguments: &TimestepArguments) -> Result<Impacts, Failure> {
     let Some(path) = &arguments.bodies else { return scaled(arguments) };
-    let encounter = bodies::read_encounter(path)?;
+    let name = arguments.law.law.as_deref();
+    let encounter = bodies::read_encounter(path, law::by_name_or_file(name)?)?;
+    law::permits(name, "tangential damping", encounter.contact().tangential_damping())?;
     if encounter.is_central() {
         let reason = "the impact is central; expected a tangential velocity, without which there \
                       is no tangential restitution";

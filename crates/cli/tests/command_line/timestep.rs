@@ -10,6 +10,9 @@ const ALPHA: f64 = 2.0 / 7.0;
 /// The example of two steel spheres.
 const STEEL: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/steel_spheres.json");
 
+/// The example of two grains with a linear force.
+const HOOKE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/hooke_spheres.json");
+
 fn json(line: &str) -> Value {
     let ran = stickslip(&format!("timestep {line} --format json"));
     assert_eq!((ran.code, ran.stderr.as_str()), (0, ""), "{line}");
@@ -74,6 +77,26 @@ fn an_impact_in_si_units_has_steps_in_seconds() {
     for part in ["Rayleigh time [s]", "unstable: 16 of 16", "0.0005, dt = 3.3047e-8 s"] {
         assert!(table.stdout.contains(part), "no {part:?} in {}", table.stdout);
     }
+}
+
+#[test]
+fn an_impact_in_si_units_may_have_any_law() {
+    let found = json(&format!("--bodies {HOOKE} --law gran/hooke/history --steps 50"));
+    let mass = 0.5 * 4.0 / 3.0 * std::f64::consts::PI * 1e-9 * 2500.0;
+    let expected = std::f64::consts::PI * f64::sqrt(mass / 50000.0);
+    let contact_time = found["seconds"]["contact_time_s"].as_f64().expect("a number");
+    assert!((contact_time / expected - 1.0).abs() < 1e-12);
+    assert_eq!(found["contacts"][0]["law"]["normal"], "linear");
+    // The same impact in scaled units.
+    let contact = &found["contacts"][0];
+    let scaled = json(&format!(
+        "--kappa {} --psi {} --damping {} --tangential-damping {} --law gran/hooke/history \
+         --mu 0.3 --steps 50",
+        contact["kappa"], contact["psi"], contact["damping"], contact["tangential_damping"]
+    ));
+    assert_eq!(scaled["rows"][0]["eps_t"], found["rows"][0]["eps_t"]);
+    let unknown = stickslip(&format!("timestep --bodies {HOOKE} --steps 50"));
+    assert_eq!(unknown.code, 2, "{}", unknown.stderr);
 }
 
 #[test]
