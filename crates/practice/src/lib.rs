@@ -3,8 +3,8 @@
 //! [`time_steps`]: how wrong the coefficients of restitution are at the time step of a simulation,
 //! and which step keeps their errors below a wanted one.
 //!
-//! Each question is a function from plain settings to a result. Parallel loops run on the rayon pool
-//! of the caller, and results do not depend on the number of threads.
+//! Each question is a function from plain settings to a result. Parallel loops run on the rayon
+//! pool of the caller, and results do not depend on the number of threads.
 //!
 //! ```
 //! use stickslip_model::{Contact, presets};

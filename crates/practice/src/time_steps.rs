@@ -1,19 +1,19 @@
 //! Errors of the time steps of particle codes.
 //!
-//! A particle code computes a contact in steps of fixed length. Its results have errors of the order
-//! of the step, which depend on where in a step the contact begins. [`run`] computes impacts in the
-//! steps of a code ([`Scheme`]) and without steps ([`Engine::Auto`]), and measures the difference in
-//! ε_t, in ε_n and in the energy after the contact. Steps are told as numbers t_c/dt in the
-//! undamped contact time t_c ([`undamped_contact_time`]).
+//! A particle code computes a contact in steps of fixed length. Its results have errors of the
+//! order of the step, which depend on where in a step the contact begins. [`run`] computes impacts
+//! in the steps of a code ([`Scheme`]) and without steps ([`Engine::Auto`]), and measures the
+//! difference in ε_t, in ε_n and in the energy after the contact. Steps are told as numbers t_c/dt
+//! in the undamped contact time t_c ([`undamped_contact_time`]).
 //!
 //! Start reading here; then, in this order: `scheme` (what codes do in a step), `stepped` (one
 //! collision in steps), `settings`, `measure` (errors over impacts and start phases), `picture`,
 //! `seconds` (times in SI units).
 //!
 //! Against LAMMPS itself, in 264 impacts with 28 laws: the root mean square of the error of ε_t is
-//! within 0.3 % at t_c/20, 2.5 % at t_c/50 and 3.1 % at t_c/100 of what LAMMPS' own collisions have,
-//! but for five elastic ones at t_c/100, whose errors below 4e-6 feel the overlap of LAMMPS' spheres
-//! (`docs/validation.md`).
+//! within 0.3 % at t_c/20, 2.5 % at t_c/50 and 3.1 % at t_c/100 of what LAMMPS' own collisions
+//! have, but for five elastic ones at t_c/100, whose errors below 4e-6 feel the overlap of LAMMPS'
+//! spheres (`docs/validation.md`).
 //!
 //! What the overlap does to the geometry of a contact is not in these errors: it is that of a
 //! point.
@@ -63,7 +63,8 @@ pub struct TimeSteps {
 /// about 1e-12: errors of this size are those of either.
 ///
 /// # Errors
-/// [`TimeStepsError`]: the settings are out of range, or an impact cannot be computed without steps.
+/// [`TimeStepsError`]: the settings are out of range, or an impact cannot be computed without
+/// steps.
 pub fn run(settings: &Settings, progress: Report<'_>) -> Result<TimeSteps, TimeStepsError> {
     settings.validate()?;
     let mut steps = settings.steps_per_contact.clone();
@@ -98,8 +99,8 @@ impl TimeSteps {
     /// `wanted`, and all contacts end with resolved springs. `None` if that does not hold at the
     /// shortest step.
     ///
-    /// Errors do not fall evenly with the step. Nothing is promised of steps that were not measured,
-    /// between those that were or below them, nor of other impacts and phases.
+    /// Errors do not fall evenly with the step. Nothing is promised of steps that were not
+    /// measured, between those that were or below them, nor of other impacts and phases.
     #[must_use]
     pub fn largest_step(&self, quantity: Quantity, wanted: f64) -> Option<f64> {
         let holds = |row: &&Row| {

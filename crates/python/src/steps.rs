@@ -17,8 +17,8 @@ pub struct TimeSteps(time_steps::TimeSteps);
 
 #[pymethods]
 impl TimeSteps {
-    /// Measures the errors of impacts with a law; `steps` are numbers of steps in the undamped contact
-    /// time, with so many start phases, and `reduction` is μ and α.
+    /// Measures the errors of impacts with a law; `steps` are numbers of steps in the undamped
+    /// contact time, with so many start phases, and `reduction` is μ and α.
     #[staticmethod]
     fn measure(
         py: Python<'_>,

@@ -45,7 +45,8 @@ pub struct TimestepArguments {
     #[arg(value_parser = |text: &str| Parameter::Alpha.parse(text))]
     pub alpha: Option<f64>,
 
-    /// JSON file of an impact as `impact` reads it, instead of scaled parameters; - for standard input
+    /// JSON file of an impact as `impact` reads it, instead of scaled parameters; - for standard
+    /// input
     #[arg(long, value_name = "FILE.json", help_heading = "Impacts")]
     #[arg(conflicts_with_all = ["kappa", "psi", "grid", "damping", "mu", "alpha"])]
     #[arg(conflicts_with = "tangential_damping")]
@@ -100,23 +101,23 @@ fn scheme() -> impl TypedValueParser<Value = Scheme> {
 /// What `timestep --help` says first.
 pub const ABOUT: &str = "\
 Measure the errors of the time steps of a particle code: the difference in ε_t, in ε_n and in the \
-energy after a contact between its steps of fixed length dt and a collision without steps. They are \
-told as median, root mean square and largest error over all impacts and over the parts of a step \
-after which a contact begins.
+energy after a contact between its steps of fixed length dt and a collision without steps. They \
+are told as median, root mean square and largest error over all impacts and over the parts of a \
+step after which a contact begins.
 
-Steps are told as numbers t_c/dt in the undamped contact time t_c, which in scaled units is π for a \
-linear force and 3.218 for Hertz'. The energy after the contact is a part of that before.
+Steps are told as numbers t_c/dt in the undamped contact time t_c, which in scaled units is π for \
+a linear force and 3.218 for Hertz'. The energy after the contact is a part of that before.
 
-An interval of --kappa or --psi stands for a grid of values in equal ratios; with two intervals all \
-pairs are computed.";
+An interval of --kappa or --psi stands for a grid of values in equal ratios; with two intervals \
+all pairs are computed.";
 
 /// What `timestep --help` says last.
 pub const EXAMPLES: &str = "\
 Schemes:
   lammps   velocity Verlet, with forces at the velocities of half steps; the history advances by
-           whole steps, in the first step of a contact too; also YADE's, MercuryDPM's and MFiX'
+           whole steps, in the first step of a contact too; also MercuryDPM's and MFiX'
   elapsed  the same, but in the first step of a contact the history advances by the time since it
-           began, as in MFiX 2015
+           began, as in older versions of MFiX
 
 Status of a step:
   ok          all contacts end, and the steps resolve both springs

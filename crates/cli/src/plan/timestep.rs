@@ -34,8 +34,8 @@ impl TimestepPlan {
     /// The plan that `arguments` make.
     ///
     /// # Errors
-    /// [`Failure::Usage`]: an option is missing or out of range. [`Failure::Input`]: a file cannot be
-    /// used.
+    /// [`Failure::Usage`]: an option is missing or out of range. [`Failure::Input`]: a file cannot
+    /// be used.
     pub fn new(arguments: &TimestepArguments) -> Result<Self, Failure> {
         let (contacts, reduction, seconds) = impacts(arguments)?;
         let settings = Settings {

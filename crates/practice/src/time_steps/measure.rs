@@ -63,8 +63,8 @@ pub struct Row {
 pub enum Status {
     /// All contacts have ended, and the steps resolve their springs.
     Ok,
-    /// All contacts have ended, but in some the steps do not resolve a spring, whose oscillation then
-    /// grows. The errors are those of such computations.
+    /// All contacts have ended, but in some the steps do not resolve a spring, whose oscillation
+    /// then grows. The errors are those of such computations.
     Unstable,
     /// Some contacts did not end, so that there are no errors.
     Unfinished,

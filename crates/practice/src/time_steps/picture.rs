@@ -9,8 +9,9 @@ use super::measure::{Errors, Quantity, Status};
 use super::{Row, TimeSteps};
 
 impl TimeSteps {
-    /// The median and the largest errors over dt/t_c, both axes logarithmic. Crosses mark steps that
-    /// do not resolve a spring. Steps at which contacts do not end, and errors of 0, are not drawn.
+    /// The median and the largest errors over dt/t_c, both axes logarithmic. Crosses mark steps
+    /// that do not resolve a spring. Steps at which contacts do not end, and errors of 0, are not
+    /// drawn.
     #[must_use]
     pub fn picture(&self) -> Svg {
         let mut series = Vec::new();

@@ -38,8 +38,8 @@ impl Seconds {
 /// Particle codes recommend steps of some 10 to 30 % of it, the least of all spheres'. It does not
 /// depend on the velocity of an impact, unlike the contact time.
 ///
-/// Source: C. Thornton and C. W. Randall, in Micromechanics of Granular Materials (1988), 133; Y. Li,
-/// Y. Xu and C. Thornton, Powder Technol. 160, 219 (2005).
+/// Source: C. Thornton and C. W. Randall, in Micromechanics of Granular Materials (1988), 133; Y.
+/// Li, Y. Xu and C. Thornton, Powder Technol. 160, 219 (2005).
 ///
 /// ```
 /// use stickslip_model::{Material, Sphere};

@@ -52,9 +52,9 @@ const LONGEST: f64 = 10.0;
 /// with a force that is kept from attracting until the overlap vanishes. Without steps both are the
 /// same.
 ///
-/// `None` if `dt` is not a finite number above 0, if `phase` is not from 0 to below 1, if the contact has
-/// not ended after ten times `duration`, which is how long it lasts without steps, or after
-/// 10⁹ steps, or if numbers are no longer finite.
+/// `None` if `dt` is not a finite number above 0, if `phase` is not from 0 to below 1, if the
+/// contact has not ended after ten times `duration`, which is how long it lasts without steps, or
+/// after 10⁹ steps, or if numbers are no longer finite.
 #[must_use]
 pub fn step(
     contact: &Contact,

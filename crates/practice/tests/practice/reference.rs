@@ -29,8 +29,9 @@ fn errors(case: &Value, steps: f64) -> Errors {
     result.rows[0].eps_t.expect("errors of eps_t")
 }
 
-/// How far the limit of small steps that LAMMPS' results were extrapolated to is from the exact ε_t.
-/// LAMMPS' spheres overlap by 1e-7 of their radius, which changes ε_t by several times as much.
+/// How far the limit of small steps that LAMMPS' results were extrapolated to is from the exact
+/// ε_t. LAMMPS' spheres overlap by 1e-7 of their radius, which changes ε_t by several times as
+/// much.
 fn offset(case: &Value) -> f64 {
     let (exact, _) = Engine::Auto.collide(contact(case)).expect("a collision");
     // Their coefficient has the other sign.

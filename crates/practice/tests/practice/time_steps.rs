@@ -54,8 +54,9 @@ fn the_normal_motion_of_leaps_has_a_closed_form() {
         let omega_dt = 2.0 * (0.5 * dt).asin();
         for phase in [0.0, 0.1, 0.5, 0.97] {
             let found = stepped(&elastic, steps, phase).expect("an end");
-            // x_n = A sin(n ω dt + δ) with x_0 = −phase dt and x_1 − x_0 = dt, as long as x_0 counts as
-            // contact; leaps see the spring from x_1 on alone, so that the swing starts at x_1.
+            // x_n = A sin(n ω dt + δ) with x_0 = −phase dt and x_1 − x_0 = dt, as long as x_0
+            // counts as contact; leaps see the spring from x_1 on alone, so that the swing starts
+            // at x_1.
             let (x1, mut x, mut v) = ((1.0 - phase) * dt, (1.0 - phase) * dt, 1.0);
             let amplitude_at = |n: f64| {
                 // Solves A sin δ = x_1, A sin(δ + ω dt) = x_2 for x_{n+1}.
