@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use serde::Serialize;
+use stickslip_model::Contact;
 use stickslip_practice::time_steps::{self, Errors, Quantity, Row, Seconds, TimeSteps};
 
 use crate::args::Format;
@@ -147,8 +148,8 @@ fn line(result: &TimeSteps, quantity: Quantity, row: &Row) -> [String; 8] {
         number(|errors| errors.median),
         number(|errors| errors.root_mean_square),
         number(|errors| errors.worst.error),
-        parameter(worst.map(|contact| contact.kappa())),
-        parameter(worst.map(|contact| contact.psi())),
+        parameter(worst.map(Contact::kappa)),
+        parameter(worst.map(Contact::psi)),
         status,
     ]
 }
