@@ -2,7 +2,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use serde_json::Value;
 use stickslip_model::{
     Collider, Collision, CollisionError, Contact, Damping, End, Engine, EngineError, HistoryOf,
     Law, Normal, Regime, Snapshot, SpringEnergy, Tangential, exact, presets,
