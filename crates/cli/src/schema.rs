@@ -11,7 +11,7 @@ use stickslip_studies::{contact_laws, convergence, stiff_springs};
 pub const REPORT: &str = "stickslip.report/1";
 
 /// All layouts, those of the libraries included.
-pub const ALL: [&str; 8] = [
+pub const ALL: [&str; 9] = [
     document::COLLISION,
     document::IMPACT,
     atlas::SCHEMA,
