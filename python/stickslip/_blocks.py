@@ -74,6 +74,8 @@ class Engine:
     method: Method
     rtol: float | None
     atol: float | None
+    #: The law with its tangential damping, as for `collide`; nothing for the paper's.
+    law: Mapping[str, Any]
     quantities: tuple[str, ...]
     errors: OnError
 
@@ -83,6 +85,7 @@ class Engine:
         method: Method,
         rtol: float | None,
         atol: float | None,
+        law: Mapping[str, Any],
         quantities: Sequence[str],
         errors: OnError,
         threads: int | None,
@@ -95,17 +98,17 @@ class Engine:
             )
         # The engine checks the rest, here rather than on a worker.
         eps_t_and_switch_count(
-            [], [], [], method, rtol=rtol, atol=atol, errors=errors, threads=threads
+            [], [], [], method, rtol=rtol, atol=atol, **law, errors=errors, threads=threads
         )
         rtol = None if rtol is None else float(rtol)
         atol = None if atol is None else float(atol)
-        return cls(method, rtol, atol, names, errors)
+        return cls(method, rtol, atol, law, names, errors)
 
     def attributes(self) -> dict[str, Any]:
         """The attributes of the Dataset."""
         given = {"method": self.method, "rtol": self.rtol, "atol": self.atol}
         return {"schema": SCHEMA, "stickslip_version": _native.version()} | {
-            name: value for name, value in given.items() if value is not None
+            name: value for name, value in (given | self.law).items() if value is not None
         }
 
     def fields(self) -> np.dtype[Any]:
@@ -143,7 +146,7 @@ class Engine:
         try:
             found: Any = run(
                 kappa, psi, damping, self.method,
-                rtol=self.rtol, atol=self.atol, errors=self.errors, threads=threads,
+                rtol=self.rtol, atol=self.atol, **self.law, errors=self.errors, threads=threads,
             )  # fmt: skip
         except (ValueError, _native.ComputationError) as error:
             # The index counts within the piece; the parameters, which follow it, say where.

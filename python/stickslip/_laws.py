@@ -45,5 +45,12 @@ def arguments(law: Law | None, tangential_damping: float) -> tuple[str, float]:
     """The law as the compiled module takes it."""
     if law is None:
         law = "paper"
-    text = law if isinstance(law, str) else json.dumps(dict(law))
+    text = law if isinstance(law, str) else json.dumps(dict(law), sort_keys=True)
     return text, float(tangential_damping)
+
+
+def attributes(law: Law | None, tangential_damping: float) -> dict[str, str | float]:
+    """The law as it stands in files: nothing if it is the paper's."""
+    text, damping = arguments(law, tangential_damping)
+    is_paper = (text, damping) == ("paper", 0.0)
+    return {} if is_paper else {"law": text, "tangential_damping": damping}

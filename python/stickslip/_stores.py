@@ -27,6 +27,10 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 
+#: The attributes that say which law another than the paper's is.
+LAW = ("law", "tangential_damping")
+
+
 @functools.cache
 def build_of_process() -> dict[str, str]:
     """The version and the rounding of this process; results of equal builds have equal bits.
@@ -137,8 +141,10 @@ def refuse_another(
 ) -> None:
     """Raises unless the store is of this sweep."""
     marks: Any = group["_blocks"].attrs.asdict()
-    stored = {name: group.attrs.get(name) for name in ("method", "rtol", "atol")}
-    asked: dict[str, Any] = {name: getattr(engine, name) for name in stored}
+    names = ("method", "rtol", "atol", *LAW)
+    stored = {name: group.attrs.get(name) for name in names}
+    attributes = engine.attributes()
+    asked: dict[str, Any] = {name: attributes.get(name) for name in names}
     stored |= {name: tuple(marks[name]) for name in ("parameters", "quantities")}
     asked |= {"parameters": plan.parameters, "quantities": engine.quantities}
     differ = [
@@ -197,6 +203,7 @@ def write_block(store: str, place: tuple[int, ...], errors: OnError, threads: in
         attributes["method"],  # type: ignore[arg-type]
         attributes.get("rtol"),  # type: ignore[arg-type]
         attributes.get("atol"),  # type: ignore[arg-type]
+        {name: attributes[name] for name in LAW if name in attributes},
         tuple(marks["quantities"]),
         errors,
     )

@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from stickslip import _laws
+from stickslip._laws import Law
 from stickslip.collisions import (
     Floats,
     Method,
@@ -56,6 +58,8 @@ def map(
     method: Method = "auto",
     rtol: float | None = None,
     atol: float | None = None,
+    law: Law | None = None,
+    tangential_damping: float = 0.0,
     errors: OnError = "nan",
     threads: int | None = None,
 ) -> "Dataset":
@@ -63,7 +67,8 @@ def map(
 
     kappa, psi: intervals, 0 or above; collisions are at the centres of `size` = (columns, rows)
     cells. ratio: interval of g_t/g_n instead of psi. The result has the dimensions (psi, kappa), or
-    (ratio, kappa) with psi as a further coordinate. The other arguments are those of `eps_t`.
+    (ratio, kappa) with psi as a further coordinate. The other arguments are those of `eps_t`; a law is
+    an attribute of the result.
     """
     import xarray as xr
 
@@ -87,7 +92,8 @@ def map(
     coordinates["damping"] = ((), float(damping), ATTRIBUTES["damping"])
     found, counts = eps_t_and_switch_count(
         across[None, :], up[:, None], damping, method,
-        rtol=rtol, atol=atol, errors=errors, threads=threads,
+        rtol=rtol, atol=atol, law=law, tangential_damping=tangential_damping,
+        errors=errors, threads=threads,
     )  # fmt: skip
     dimensions = (row, "kappa")
     return xr.Dataset(
@@ -96,4 +102,5 @@ def map(
             "switch_count": (dimensions, counts, ATTRIBUTES["switch_count"]),
         },
         coordinates,
+        _laws.attributes(law, tangential_damping),
     )

@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stickslip import _stores
+from stickslip import _laws, _stores
 from stickslip._blocks import QUANTITIES, Chunks, Engine, Parameter, Plan, Quantity, aligned
+from stickslip._laws import Law
 from stickslip.collisions import (
     Floats,
     Method,
@@ -40,6 +41,8 @@ def sweep(
     method: Method = "auto",
     rtol: float | None = None,
     atol: float | None = None,
+    law: Law | None = None,
+    tangential_damping: float = 0.0,
     quantities: Sequence[Quantity] = ("eps_t", "switch_count"),
     chunks: Chunks | None = None,
     errors: OnError = "nan",
@@ -54,6 +57,9 @@ def sweep(
 
     ratio: impact ratios g_t/g_n instead of psi, with the friction mu (0.4 unless given) and the
     inertia alpha (2/7 unless given), which may be arrays too.
+
+    law: the contact law of all collisions, as for `collide`, with its tangential_damping; attributes of
+    the result.
 
     quantities: some of eps_t, switch_count, eps_n, contact_time, w_final and reversals. The first
     two take the least time and memory.
@@ -74,7 +80,9 @@ def sweep(
     """
     import xarray as xr
 
-    engine = Engine.of(method, rtol, atol, quantities, errors, threads)
+    engine = Engine.of(
+        method, rtol, atol, _laws.attributes(law, tangential_damping), quantities, errors, threads
+    )
     plan = Plan.of(kappa, psi, damping, ratio, mu, alpha)
     if chunks is None:
         found = engine.compute(plan.aligned(), threads)
@@ -97,6 +105,8 @@ def write_sweep(
     method: Method = "auto",
     rtol: float | None = None,
     atol: float | None = None,
+    law: Law | None = None,
+    tangential_damping: float = 0.0,
     quantities: Sequence[Quantity] = ("eps_t", "switch_count"),
     chunks: Chunks = "auto",
     errors: OnError = "nan",
@@ -118,7 +128,9 @@ def write_sweep(
 
     Raises ValueError for what is refused, and OSError where the store cannot be written.
     """
-    engine = Engine.of(method, rtol, atol, quantities, errors, threads)
+    engine = Engine.of(
+        method, rtol, atol, _laws.attributes(law, tangential_damping), quantities, errors, threads
+    )
     plan = Plan.of(kappa, psi, damping, ratio, mu, alpha)
     block = plan.block_shape(chunks)
     if "://" in os.fspath(store):

@@ -80,6 +80,41 @@ def test_values_are_those_of_collide_many(damping: float, method: Any) -> None:
     assert digest(quick) == digest(found[["eps_t", "switch_count"]])
 
 
+LAW: dict[str, Any] = {"law": {"tangential": "mindlin", "end": "overlap"}}
+
+
+@pytest.mark.parametrize("chunks", [None, 7])
+def test_laws(tmp_path: Path, chunks: Any) -> None:
+    law = LAW | {"tangential_damping": 0.5}
+    many = stickslip.collide_many(KAPPA[:, None], PSI, 0.2, **law)
+    found = sweep(KAPPA, PSI, 0.2, **law, quantities=ALL, chunks=chunks)
+    for name in ALL:
+        np.testing.assert_array_equal(found[name].values, getattr(many, name))
+    assert found.attrs["tangential_damping"] == 0.5
+    # The attribute is a law too.
+    again = sweep(KAPPA, PSI, 0.2, law=found.attrs["law"], tangential_damping=0.5, quantities=ALL)
+    assert digest(again) == digest(found.compute())
+    if chunks is not None:
+        arguments = {"kappa": KAPPA, "psi": PSI, "damping": 0.2, "quantities": ALL}
+        stored = write_sweep(tmp_path / "s", **arguments, **law, chunks=chunks)
+        assert digest(stored) == digest(again) and stored.attrs["law"] == found.attrs["law"]
+        with pytest.raises(ValueError, match="tangential_damping is 0.4, in the store 0.5"):
+            write_sweep(tmp_path / "s", **arguments, **law | {"tangential_damping": 0.4})
+    assert "law" not in sweep(KAPPA, PSI, 0.2).attrs
+    for wrong in ({"law": "hertz"}, {"law": {"normal": "hook"}}, LAW | {"tangential_damping": -1}):
+        with pytest.raises(ValueError, match="hertz|hook|tangential_damping"):
+            sweep(KAPPA, PSI, 0.2, **wrong, chunks=chunks, errors="raise").compute()
+
+
+def test_maps_of_laws() -> None:
+    found = stickslip.map((1.0, 9.0), (0.1, 2.0), (5, 4), 0.2, **LAW)
+    one = stickslip.collide(found.kappa[3].item(), found.psi[2].item(), 0.2, **LAW)
+    assert found.eps_t[2, 3] == one.eps_t and found.switch_count[2, 3] == one.switch_count
+    again = stickslip.map((1.0, 9.0), (0.1, 2.0), (5, 4), 0.2, **found.attrs)
+    assert digest(again) == digest(found)
+    assert not stickslip.map((1.0, 9.0), (0.1, 2.0), (5, 4)).attrs
+
+
 @pytest.mark.parametrize("order", [("eps_t", "switch_count"), ("switch_count", "eps_t")])
 def test_two_quantities_in_any_order(order: Any) -> None:
     found = sweep(KAPPA, 0.5, quantities=order)
@@ -423,6 +458,8 @@ def test_damaged_coordinates_are_refused(tmp_path: Path) -> None:
         ({"psi": None, "ratio": PSI, "chunks": {}}, "parameters is .*ratio"),
         ({"method": "dop853"}, "method is 'dop853', in the store 'auto'"),
         ({"rtol": 1e-9}, "rtol is 1e-09, in the store None"),
+        ({"law": "gran/hertz/history"}, "law is 'gran/hertz/history', in the store None"),
+        ({"tangential_damping": 0.5}, "law is 'paper', in the store None"),
         ({"quantities": ("eps_t",)}, "quantities is"),
         ({"chunks": 10}, r"chunks are \(10, 10\), in the store \(10, 7\)"),
     ],
