@@ -106,9 +106,9 @@ class Engine:
 
     def attributes(self) -> dict[str, Any]:
         """The attributes of the Dataset."""
-        given = {"method": self.method, "rtol": self.rtol, "atol": self.atol}
+        given: dict[str, Any] = {"method": self.method, "rtol": self.rtol, "atol": self.atol}
         return {"schema": SCHEMA, "stickslip_version": _native.version()} | {
-            name: value for name, value in (given | self.law).items() if value is not None
+            name: value for name, value in {**given, **self.law}.items() if value is not None
         }
 
     def fields(self) -> np.dtype[Any]:

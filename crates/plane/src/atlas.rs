@@ -35,6 +35,8 @@ pub use frame::{Frame, RatioRange, ToleranceRange, TooNarrow};
 #[cfg(feature = "geojson")]
 pub use geojson::{document_geojson, geojson};
 pub use locate::{Located, Unlocated};
+pub(crate) use polyline::polyline;
 pub use regions::{Atlas, Regions, switch_count};
 pub use tracing::{AtlasError, VerifiedAtlas, trace};
+pub(crate) use tracing::{trace_options, traceable};
 pub use verification::{EulerFields, LabelError, MismatchFields, VerificationReport};

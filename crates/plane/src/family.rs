@@ -8,6 +8,7 @@ use stickslip_tracer::{
     Family, FamilyError, FreeRun, HybridFamily, Itinerary, Point, Problem, Window,
 };
 
+pub(crate) mod gaining;
 pub(crate) mod general;
 
 pub use general::GeneralFamily;
@@ -149,18 +150,16 @@ impl CollisionPlane {
     /// The collisions as a family that is always integrated. Margins are accurate to about 1e-14.
     #[must_use]
     pub fn integrated(self) -> CollisionFamily {
-        let options = Options {
-            rtol: 1e-14,
-            atol: 1e-14,
-            first_step: Some(0.1),
-            max_step: 0.1,
-            ..Options::default()
-        };
-        let (method, end) = (Dop853, f64::INFINITY);
         if !self.low.obeys_paper() {
-            return CollisionFamily::General(GeneralFamily::new(self, options));
+            return CollisionFamily::General(self.general());
         }
+        let (method, options, end) = (Dop853, precise(), f64::INFINITY);
         CollisionFamily::Integrated(HybridFamily { problem: self, method, options, end })
+    }
+
+    /// The collisions as those of any law are integrated.
+    fn general(self) -> GeneralFamily {
+        GeneralFamily::new(self, precise())
     }
 
     /// The contact at a traced point. Where κ is not a number there is nothing to find, and any
@@ -189,6 +188,11 @@ impl Problem<STATE, GUARDS> for CollisionPlane {
         let system = Regularized::new(contact);
         (system, Start { mode: Phase::first(&contact), s: 0.0, state: system.start() })
     }
+}
+
+/// Options with which margins are accurate to about 1e-14.
+fn precise() -> Options {
+    Options { rtol: 1e-14, atol: 1e-14, first_step: Some(0.1), max_step: 0.1, ..Options::default() }
 }
 
 /// The guards that fire in an integrated collision. All contacts end, so that any other itinerary

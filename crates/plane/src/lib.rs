@@ -16,6 +16,7 @@
 //! - [`tile`] and [`sweep`]: the results of a grid, and how they are computed
 //! - [`progress`]: reports of how far a long computation has come
 //! - [`atlas`]: boundaries and regions, traced and verified
+//! - [`gaining`]: where |ε_t| is above 1
 //!
 //! ```
 //! use stickslip_plane::atlas::{Frame, trace};
@@ -37,6 +38,7 @@
 pub mod atlas;
 pub mod chart;
 pub mod family;
+pub mod gaining;
 pub mod grid;
 pub mod progress;
 pub mod range;

@@ -154,7 +154,9 @@ pub use hybrid::{
     Direction, Grazing, Guard, HybridSystem, Observer, Outcome, Pole, ReadableSystem, Run, Start,
     Statistics, SwitchEvent, Unfinished,
 };
-pub use margin::{Exit, Hint, Margin, Margins, NearMiss, Place, Way, margin, margins};
+pub use margin::{
+    Exit, Followed, Hint, Margin, Margins, NearMiss, Place, Way, follow, margin, margins,
+};
 pub use method::{
     Dense, Dop853, Dopri5, Method, Order, Pair, State, Step, Tableau, Trial, UnknownPair, fit_order,
 };

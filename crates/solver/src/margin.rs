@@ -42,8 +42,8 @@ mod prescribed;
 mod rate;
 
 use crate::error::RunError;
-use crate::hybrid::{HybridSystem, Outcome, Start};
-use crate::margin::prescribed::{Kind, Taken, Watch, watch};
+use crate::hybrid::{HybridSystem, Outcome, Run, Start};
+use crate::margin::prescribed::{Kind, Taken, Watch, Watched, watch};
 use crate::method::Method;
 use crate::options::Options;
 
@@ -119,11 +119,7 @@ where
     };
     let watched = watch(method, system, start, end, options, &exits, (margin.guard, what));
     let Some(watched) = watched.map_err(|(error, _)| error)? else { return Ok(None) };
-    let mut began = start.s;
-    for (exit, &s) in exits.iter_mut().zip(&watched.exits) {
-        exit.after = Hint(began + exit.part.0 * (s - began));
-        began = s;
-    }
+    move_along(&mut exits, start.s, &watched);
     let nearest = |near: Hint| {
         let distance = |taken: &&Taken| (taken.s - near.0).abs();
         watched.taken.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
@@ -144,4 +140,55 @@ where
     exits.truncate(margin.exits.len());
     let moved = Margin { exits, guard: margin.guard, place };
     Ok(Some(NearMiss { margin: moved, s: at.s, value: at.value }))
+}
+
+/// A run that has followed an itinerary.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Followed<Mode, const N: usize> {
+    /// The exits, whose hints have moved along.
+    pub exits: Vec<Exit>,
+    /// The run.
+    pub run: Run<Mode, N>,
+}
+
+/// The run that follows an itinerary.
+///
+/// What a run arrives at has kinks where the itinerary changes. With the itinerary prescribed it is
+/// a smooth function of the parameters. The result is `None` if the run cannot follow the
+/// itinerary, or if the system does not have its guards.
+///
+/// # Errors
+/// Those of [`run`](crate::run).
+pub fn follow<M, S, const N: usize, const G: usize>(
+    method: M,
+    system: &S,
+    start: Start<S::Mode, N>,
+    end: f64,
+    options: &Options,
+    exits: &[Exit],
+) -> Result<Option<Followed<S::Mode, N>>, RunError>
+where
+    M: Method,
+    S: HybridSystem<N, G>,
+{
+    if exits.iter().any(|exit| exit.guard >= G) {
+        return Ok(None);
+    }
+    let (began, nothing) = (start.s, (0, Watch::Nothing));
+    let followed = prescribed::follow(method, system, start, end, options, exits, nothing);
+    let followed = followed.map_err(|(error, _)| error)?;
+    Ok(followed.map(|(run, watched)| {
+        let mut exits = exits.to_vec();
+        move_along(&mut exits, began, &watched);
+        Followed { exits, run }
+    }))
+}
+
+/// Moves the hints of exits to where these have happened.
+fn move_along(exits: &mut [Exit], start: f64, watched: &Watched) {
+    let mut began = start;
+    for (exit, &s) in exits.iter_mut().zip(&watched.exits) {
+        exit.after = Hint(began + exit.part.0 * (s - began));
+        began = s;
+    }
 }

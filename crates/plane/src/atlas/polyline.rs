@@ -1,8 +1,9 @@
 //! Boundaries as straight lines.
 
-use stickslip_tracer::Cubic;
+use stickslip_tracer::{Cubic, Curve, Point};
 
 use super::regions::Atlas;
+use crate::chart::Chart;
 
 /// The largest number of straight lines between two points of a boundary.
 const MOST_LINES: f64 = 16.0;
@@ -15,19 +16,26 @@ impl Atlas {
     #[must_use]
     pub fn polylines(&self) -> Vec<Vec<[f64; 2]>> {
         let extent = self.regions.window().extent();
-        let polyline = |curve: &stickslip_tracer::Curve<_, _>| {
-            let mut points = vec![self.chart.parameters(&curve.nodes[0].point)];
-            for nodes in curve.nodes.windows(2) {
-                let cubic = Cubic::between(&nodes[0], &nodes[1]);
-                let length = (nodes[1].point - nodes[0].point).component_div(&extent).norm();
-                let lines = (LINES * length).ceil().clamp(1.0, MOST_LINES);
-                #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-                let count = lines as u32;
-                let parts = (1..=count).map(|line| f64::from(line) / lines);
-                points.extend(parts.map(|part| self.chart.parameters(&cubic.at(part))));
-            }
-            points
-        };
-        self.regions.curves().iter().map(polyline).collect()
+        let curves = self.regions.curves().iter();
+        curves.map(|curve| polyline(&self.chart, &extent, curve)).collect()
     }
+}
+
+/// The points (κ, ψ) of a boundary in a window of this extent.
+pub(crate) fn polyline<Label, Margin>(
+    chart: &Chart,
+    extent: &Point,
+    curve: &Curve<Label, Margin>,
+) -> Vec<[f64; 2]> {
+    let mut points = vec![chart.parameters(&curve.nodes[0].point)];
+    for nodes in curve.nodes.windows(2) {
+        let cubic = Cubic::between(&nodes[0], &nodes[1]);
+        let length = (nodes[1].point - nodes[0].point).component_div(extent).norm();
+        let lines = (LINES * length).ceil().clamp(1.0, MOST_LINES);
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let count = lines as u32;
+        let parts = (1..=count).map(|line| f64::from(line) / lines);
+        points.extend(parts.map(|part| chart.parameters(&cubic.at(part))));
+    }
+    points
 }

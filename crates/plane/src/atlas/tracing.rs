@@ -10,7 +10,7 @@ use stickslip_tracer::{
 };
 
 use super::boundary::{BoundaryKind, itinerary};
-use super::frame::{Frame, TooNarrow, noise};
+use super::frame::{Frame, ToleranceRange, TooNarrow, noise};
 use super::regions::{Atlas, Regions};
 use super::verification::{self, LabelError, VerificationReport};
 use crate::chart::Chart;
@@ -93,18 +93,9 @@ pub fn trace(
     tolerance: f64,
     progress: Report<'_>,
 ) -> Result<VerifiedAtlas, AtlasError> {
-    let plane = frame.plane()?;
-    frame.require_wide()?;
-    let possible = frame.tolerances();
-    if !(possible.finest..=possible.coarsest).contains(&tolerance) {
-        let (finest, coarsest) = (possible.finest, possible.coarsest);
-        return Err(AtlasError::Tolerance { tolerance, finest, coarsest });
-    }
+    let plane = traceable(&frame, tolerance)?;
     let window = plane.window();
     let any = plane.contact(&window.low)?;
-    for corner in [&any, &plane.contact(&window.high)?] {
-        Collider::require(corner)?;
-    }
     let family = plane.family();
     let options = trace_options(&frame, plane.chart(), tolerance);
     let failed = |error| AtlasError::of(&plane, error);
@@ -129,8 +120,23 @@ pub fn trace(
     }
 }
 
+/// The collisions in `frame`, if boundaries can be accurate to `tolerance` there, and verified.
+pub(crate) fn traceable(frame: &Frame, tolerance: f64) -> Result<CollisionPlane, AtlasError> {
+    let plane = frame.plane()?;
+    frame.require_wide()?;
+    let ToleranceRange { finest, coarsest, .. } = frame.tolerances();
+    if !(finest..=coarsest).contains(&tolerance) {
+        return Err(AtlasError::Tolerance { tolerance, finest, coarsest });
+    }
+    let window = plane.window();
+    for corner in [window.low, window.high] {
+        Collider::require(&plane.contact(&corner)?)?;
+    }
+    Ok(plane)
+}
+
 /// The options of a trace that is accurate to `tolerance` in ψ.
-fn trace_options(frame: &Frame, chart: &Chart, tolerance: f64) -> TraceOptions {
+pub(crate) fn trace_options(frame: &Frame, chart: &Chart, tolerance: f64) -> TraceOptions {
     let (usual, noise) = (TraceOptions::default(), noise(chart));
     TraceOptions {
         tolerance: usual.tolerance.max(0.1 * noise),
@@ -150,6 +156,18 @@ impl AtlasError {
                 Self::Run { kappa, psi, source }
             }
             error => Self::Trace(error),
+        }
+    }
+
+    /// The error of an atlas of `plane`.
+    pub(crate) fn of_atlas(
+        plane: &CollisionPlane,
+        error: stickslip_tracer::AtlasError<CollisionFamilyError>,
+    ) -> Self {
+        match error {
+            stickslip_tracer::AtlasError::Trace(error) => Self::of(plane, error),
+            stickslip_tracer::AtlasError::Subdivision(error) => Self::Subdivision(error),
+            stickslip_tracer::AtlasError::Verify(error) => Self::Verify(error),
         }
     }
 }

@@ -8,8 +8,8 @@ use stickslip_model::general::{Beginning, CREST, GUARDS, GeneralContact, Mode, S
 use stickslip_model::regularized::{END, OTHER_SIDE, SAME_SIDE};
 use stickslip_model::{Contact, Regime, Side};
 use stickslip_solver::{
-    Dop853, Exit, Margin, Margins, Observer, Options, Outcome, Place, Start, SwitchEvent, margin,
-    margins, run,
+    Dop853, Exit, Followed, Margin, Margins, Observer, Options, Outcome, Place, Start, State,
+    SwitchEvent, follow, margin, margins, run,
 };
 use stickslip_tracer::{FamilyError, FreeRun, Point};
 
@@ -20,6 +20,8 @@ use crate::atlas::BoundaryKind;
 const SLIPS_ON: usize = GUARDS;
 /// What is added to the place of a beginning in its list.
 const BEGINS: usize = GUARDS + 1;
+/// Numbers from here on stand for nothing in labels and margins.
+pub(super) const BEYOND_GUARDS: usize = BEGINS + BEGINNINGS.len();
 
 const BEGINNINGS: [Beginning; 4] =
     [Beginning::Stick, Beginning::Slip, Beginning::Reset, Beginning::Overturned];
@@ -62,6 +64,14 @@ impl GeneralFamily {
 
     /// The label of the run at a point.
     pub(super) fn label(&self, point: &Point) -> Result<Vec<usize>, CollisionFamilyError> {
+        self.labelled(point).map(|(label, _)| label)
+    }
+
+    /// The label of the run at a point, and its ε_t.
+    pub(super) fn labelled(
+        &self,
+        point: &Point,
+    ) -> Result<(Vec<usize>, f64), CollisionFamilyError> {
         let (system, start) = started(self.system(point));
         let mut fired = Fired(vec![code(system.beginning())]);
         let found = run(Dop853, &system, start, f64::INFINITY, &self.options, &mut fired)
@@ -70,7 +80,20 @@ impl GeneralFamily {
             return Err(CollisionFamilyError::Unfinished(found.outcome));
         }
         fired.0.pop();
-        Ok(fired.0)
+        Ok((fired.0, restitution(&system, &found.state)))
+    }
+
+    /// ε_t at a point, with the itinerary prescribed that `exits` name, and the exits there.
+    pub(super) fn prescribed(&self, point: &Point, exits: &[Exit]) -> Option<(Vec<Exit>, f64)> {
+        let (begins, exits) = exits.split_first()?;
+        let system = self.system(point).beginning_with(BEGINNINGS[begins.guard - BEGINS]);
+        let (system, start) = started(system);
+        // A run that cannot follow the itinerary has no such end.
+        let found = follow(Dop853, &system, start, self.span, &self.options, exits).ok()?;
+        let Followed { mut exits, run } = found?;
+        exits.insert(0, *begins);
+        let ended = run.outcome == (Outcome::EndedByGuard { guard: END });
+        ended.then(|| (exits, restitution(&system, &run.state)))
     }
 
     /// The label of the run at a point, and its margins.
@@ -137,6 +160,11 @@ pub fn is_sure(margin: &Margin) -> bool {
         Place::Exit(exit) => exit.guard == END,
         Place::Start { .. } => margin.exits.is_empty(),
     }
+}
+
+/// ε_t of a collision that ends in a state.
+fn restitution(system: &GeneralContact, end: &State<STATE>) -> f64 {
+    system.velocity(end) / system.contact().psi()
 }
 
 fn started(system: GeneralContact) -> System {

@@ -21,6 +21,8 @@ pub(super) enum Watch {
     Branch,
     /// The guard at the end of the run.
     End,
+    /// No guard.
+    Nothing,
 }
 
 /// On which side of zero an extremum is watched.
@@ -47,6 +49,9 @@ pub(super) struct Watched {
     pub taken: Vec<Taken>,
 }
 
+/// A run that has followed its exits, and what it found.
+type Ended<Mode, const N: usize> = (Run<Mode, N>, Watched);
+
 /// Follows `exits` and then watches `guard`. The result is `None` if the run cannot follow all
 /// exits. If the run fails while it looks for extrema, those before are the second result.
 pub(super) fn watch<M, S, const N: usize, const G: usize>(
@@ -56,8 +61,26 @@ pub(super) fn watch<M, S, const N: usize, const G: usize>(
     end: f64,
     options: &Options,
     exits: &[Exit],
-    (guard, watch): (usize, Watch),
+    what: (usize, Watch),
 ) -> Result<Option<Watched>, (RunError, Watched)>
+where
+    M: Method,
+    S: HybridSystem<N, G>,
+{
+    let followed = follow(method, system, start, end, options, exits, what)?;
+    Ok(followed.map(|(_, watched)| watched))
+}
+
+/// As [`watch`], with the run itself.
+pub(super) fn follow<M, S, const N: usize, const G: usize>(
+    method: M,
+    system: &S,
+    start: Start<S::Mode, N>,
+    end: f64,
+    options: &Options,
+    exits: &[Exit],
+    (guard, watch): (usize, Watch),
+) -> Result<Option<Ended<S::Mode, N>>, (RunError, Watched)>
 where
     M: Method,
     S: HybridSystem<N, G>,
@@ -85,10 +108,11 @@ where
         return Ok(None);
     }
     seen.taken.extend(prescribed.at_last::<M, N, G>(&run, &options));
-    match seen.taken.iter().find(|taken| taken.value.is_nan()) {
-        Some(&Taken { s, .. }) => Err((RunError::GuardNotANumber { guard, s }, seen)),
-        None => Ok(Some(seen)),
+    if let Some(&Taken { s, .. }) = seen.taken.iter().find(|taken| taken.value.is_nan()) {
+        return Err((RunError::GuardNotANumber { guard, s }, seen));
     }
+    let Run { outcome, s, mode, state, statistics } = run;
+    Ok(Some((Run { outcome, s, mode: mode.mode, state, statistics }, seen)))
 }
 
 /// Whether the condition of a transition is positive; `None` if it has none.
@@ -181,7 +205,7 @@ impl<S> Prescribed<'_, S> {
                 return (exit.guard, if passes { place } else { Awaited::Guard(exit.way) });
             }
             (None, Watch::Extrema { kind, .. }) if !stopped => Awaited::Extremum(kind),
-            (None, Watch::End) if !stopped => Awaited::End,
+            (None, Watch::End | Watch::Nothing) if !stopped => Awaited::End,
             _ => Awaited::Nothing,
         };
         (self.watched, awaited)
@@ -201,7 +225,9 @@ impl<S> Prescribed<'_, S> {
         let at = PhaseMode { mode, phase, progress: Progress::Start, began, order: 0 };
         let (subject, guards) = (self.subject(&at).0, self.system.guards(mode));
         let off = |guard: usize| guards[guard].direction() == Direction::Off;
-        let lost = off(subject) || (self.is_last(phase) && off(self.watched));
+        let watches = self.is_last(phase) && self.watch != Watch::Nothing;
+        let waits = watches || phase < self.exits.len();
+        let lost = (waits && off(subject)) || (watches && off(self.watched));
         let progress = if lost { Progress::Lost } else { Progress::Start };
         PhaseMode { progress, order: guards[subject].zero_order(), ..at }
     }
@@ -243,7 +269,7 @@ impl<S> Prescribed<'_, S> {
             Watch::Exit => self.value(mode, place),
             Watch::Branch => self.system.transition_condition(mode, self.watched, s, &run.state),
             Watch::End if regular => self.value(mode, place),
-            Watch::End | Watch::Extrema { .. } => return None,
+            Watch::End | Watch::Extrema { .. } | Watch::Nothing => return None,
         };
         Some(Taken { s, value })
     }
@@ -271,7 +297,8 @@ where
             let own = system[guard];
             // A zero at the start of the phase matters only there.
             let order = if at.progress == Progress::Start { own.zero_order() } else { 0 };
-            if own.ends_run() && !(last && guard == self.watched) {
+            let watched = self.watch != Watch::Nothing && guard == self.watched;
+            if own.ends_run() && !(last && watched) {
                 return Guard::new(own.direction()).from_zero(order).terminal();
             }
             if guard != subject {

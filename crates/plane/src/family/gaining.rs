@@ -1,0 +1,98 @@
+//! Collisions of a family with one more boundary: where |ε_t| is 1.
+//!
+//! ε_t is continuous, but has kinks where the itinerary changes. With the itinerary prescribed it is
+//! smooth, so that the boundary has another margin for each itinerary.
+
+use stickslip_model::general::CREST;
+use stickslip_solver::{Exit, Margin, Place};
+use stickslip_tracer::{Family, FreeRun, Point};
+
+use super::general::{self, BEYOND_GUARDS, GeneralFamily};
+use super::{CollisionFamilyError, CollisionPlane};
+
+/// What stands for a guard in the margin 1 − ε_t, and in the label where ε_t is above 1.
+const FORWARD: usize = BEYOND_GUARDS;
+/// What stands for a guard in the margin 1 + ε_t, and in the label where ε_t is below −1.
+const BACKWARD: usize = BEYOND_GUARDS + 1;
+
+/// Collisions with another law than the paper's, with labels that tell whether |ε_t| is above 1.
+#[derive(Clone, Copy, Debug)]
+pub struct GainingFamily(GeneralFamily);
+
+impl GainingFamily {
+    /// The collisions of a plane, whose law is another than the paper's.
+    pub fn new(plane: CollisionPlane) -> Self {
+        Self(plane.general())
+    }
+
+    fn level(&self, point: &Point, which: &Margin) -> Option<(Margin, f64)> {
+        let (exits, eps_t) = self.0.prescribed(point, &which.exits)?;
+        let value = if which.guard == FORWARD { 1.0 - eps_t } else { 1.0 + eps_t };
+        Some((Margin { exits, ..which.clone() }, value))
+    }
+}
+
+/// Whether collisions with this label have |ε_t| above 1.
+pub fn gains(label: &[usize]) -> bool {
+    matches!(label.last(), Some(&(FORWARD | BACKWARD)))
+}
+
+/// Whether |ε_t| is 1 where this margin vanishes.
+pub fn is_level(margin: &Margin) -> bool {
+    matches!(margin.guard, FORWARD | BACKWARD)
+}
+
+fn with_level(mut label: Vec<usize>, eps_t: f64) -> Vec<usize> {
+    label.extend((eps_t > 1.0).then_some(FORWARD));
+    label.extend((eps_t < -1.0).then_some(BACKWARD));
+    label
+}
+
+impl Family for GainingFamily {
+    type Label = Vec<usize>;
+    type Margin = Margin;
+    type Error = CollisionFamilyError;
+
+    fn label(&self, point: &Point) -> Result<Vec<usize>, CollisionFamilyError> {
+        self.0.labelled(point).map(|(label, eps_t)| with_level(label, eps_t))
+    }
+
+    fn margin(&self, point: &Point, margin: &Margin) -> Result<Option<f64>, CollisionFamilyError> {
+        let found = if is_level(margin) {
+            self.level(point, margin).map(|(_, value)| value)
+        } else {
+            self.0.margin(point, margin)
+        };
+        Ok(found)
+    }
+
+    fn moved(&self, point: &Point, margin: &Margin) -> Result<Margin, CollisionFamilyError> {
+        let found = if is_level(margin) {
+            self.level(point, margin)
+        } else {
+            self.0.near_miss(point, margin)
+        };
+        Ok(found.map_or_else(|| margin.clone(), |(moved, _)| moved))
+    }
+
+    fn is_sure(&self, margin: &Margin) -> bool {
+        is_level(margin) || general::is_sure(margin)
+    }
+
+    fn free_run(&self, point: &Point) -> Result<FreeRun<Vec<usize>, Margin>, CollisionFamilyError> {
+        let FreeRun { label, mut margins } = self.0.free_run(point)?;
+        // Those of the last phase have all exits.
+        let is_whole = |exits: &Vec<Exit>| {
+            exits.iter().filter(|exit| exit.guard != CREST).count() == label.len()
+        };
+        let exits = margins.iter().map(|(margin, _)| &margin.exits).find(|exits| is_whole(exits));
+        let Some(exits) = exits.cloned() else {
+            return Ok(FreeRun { label: self.label(point)?, margins });
+        };
+        for guard in [FORWARD, BACKWARD] {
+            let margin = Margin { exits: exits.clone(), guard, place: Place::End };
+            margins.extend(self.level(point, &margin));
+        }
+        Ok(FreeRun { label: self.label(point)?, margins })
+    }
+}

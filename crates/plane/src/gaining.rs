@@ -1,0 +1,105 @@
+//! Where in a window a contact law gives back more tangential energy than it took: the regions in
+//! which |ε_t| is above 1, with their boundary.
+
+use stickslip_model::Contact;
+use stickslip_solver::Margin;
+use stickslip_tracer::{Atlas, AtlasOptions, Curve, Location};
+
+use crate::atlas::{AtlasError, Frame, polyline, trace_options, traceable};
+use crate::chart::Chart;
+use crate::family::gaining::{GainingFamily, gains, is_level};
+use crate::family::{CollisionFamilyError, CollisionPlane};
+
+/// The regions of a window in which |ε_t| is above 1.
+#[derive(Clone, Debug)]
+pub struct Gaining {
+    /// The window.
+    pub frame: Frame,
+    plane: CollisionPlane,
+    /// All regions, also those of the switches, which divide those that are asked for.
+    atlas: Atlas<Vec<usize>, Margin, CollisionFamilyError>,
+}
+
+/// Traces where |ε_t| is 1, accurate to `tolerance` in ψ, with the boundaries of the switches, and
+/// compares the regions with runs.
+///
+/// With the paper's law |ε_t| is never above 1: nothing is traced.
+///
+/// ```
+/// use stickslip_model::presets;
+/// use stickslip_plane::Range;
+/// use stickslip_plane::atlas::Frame;
+/// use stickslip_plane::gaining;
+///
+/// let law = presets::find("gran/hertz/history").ok_or("no such law")?.law;
+/// let range = |low, high| Range { low, high };
+/// let frame = Frame { law, ..Frame::new(range(1.2, 1.4), range(0.5, 1.5), 0.0) };
+/// let gaining = gaining::trace(frame, frame.tolerances().usual)?;
+/// assert!(gaining.agrees());
+/// // The window crosses the region once: from its lower boundary to its upper one.
+/// assert_eq!(gaining.boundaries().len(), 2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`AtlasError`]: the window or the tolerance is not possible, a run fails, or the curves do not
+/// make regions. What cannot be resolved is no error: [`Gaining::agrees`] tells.
+pub fn trace(frame: Frame, tolerance: f64) -> Result<Gaining, AtlasError> {
+    let plane = traceable(&frame, tolerance)?;
+    let options = AtlasOptions {
+        trace: trace_options(&frame, plane.chart(), tolerance),
+        tolerance: frame.resolution(plane.chart(), tolerance),
+        ..AtlasOptions::default()
+    };
+    let atlas = Atlas::of(&GainingFamily::new(plane), &plane.window(), &options)
+        .map_err(|error| AtlasError::of_atlas(&plane, error))?;
+    Ok(Gaining { frame, plane, atlas })
+}
+
+impl Gaining {
+    /// The points (κ, ψ) along each boundary on which |ε_t| is 1. A boundary ends where the switches
+    /// change, and another goes on there.
+    #[must_use]
+    pub fn boundaries(&self) -> Vec<Vec<[f64; 2]>> {
+        let extent = self.atlas.plane.window().extent();
+        self.curves().map(|curve| polyline(self.chart(), &extent, curve)).collect()
+    }
+
+    fn curves(&self) -> impl Iterator<Item = &Curve<Vec<usize>, Margin>> {
+        self.atlas.plane.curves().iter().filter(|curve| is_level(&curve.margin))
+    }
+
+    fn chart(&self) -> &Chart {
+        self.plane.chart()
+    }
+
+    /// Whether |ε_t| of a contact in the window is above 1; `None` outside, on a boundary, and where
+    /// the regions are in doubt.
+    #[must_use]
+    pub fn gains(&self, contact: &Contact) -> Option<bool> {
+        let point = self.chart().point(contact.kappa(), contact.psi());
+        let Location::Region(region) = self.atlas.plane.locate(&point) else { return None };
+        if self.atlas.is_doubtful(region) {
+            return None;
+        }
+        self.atlas.plane.regions()[region].label.as_ref().map(|label| gains(label))
+    }
+
+    /// The least and the largest κ and ψ along the boundaries; `None` if there are none.
+    #[must_use]
+    pub fn extent(&self) -> Option<[[f64; 2]; 2]> {
+        let boundaries = self.boundaries();
+        let mut points = boundaries.iter().flatten();
+        let &[kappa, psi] = points.next()?;
+        let first = [[kappa, kappa], [psi, psi]];
+        Some(points.fold(first, |[k, p], &[kappa, psi]| {
+            [[k[0].min(kappa), k[1].max(kappa)], [p[0].min(psi), p[1].max(psi)]]
+        }))
+    }
+
+    /// Whether nothing speaks against the regions: all changes are explained, and all runs agree.
+    #[must_use]
+    pub fn agrees(&self) -> bool {
+        self.atlas.agrees()
+    }
+}
