@@ -8,6 +8,9 @@ use crate::method::{Method, State, Step, Trial};
 use crate::options::Options;
 use crate::runs::run;
 
+/// The rounding of a guard or of its rate, as a part of it; that of time is a sixteenth.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
 /// What a run watches in the phase after its last exit.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Watch {
@@ -319,7 +322,7 @@ where
                 Awaited::Extremum(_) => {
                     // The rate rises from zero after a minimum.
                     let after_minimum = at.progress == Progress::Extremum;
-                    let order = if after_minimum { 1 } else { order + u32::from(order > 0) };
+                    let order = u32::from(after_minimum);
                     Guard::new(Direction::Rising).from_zero(order)
                 }
                 Awaited::End => Guard::OFF,
@@ -340,15 +343,20 @@ where
             Awaited::Guard(Way::Rising) => -values[subject],
             Awaited::Extremum(kind) => {
                 let rate = self.reach.rate(self.system, at.mode, subject, (s, y));
-                let rate = match at.order {
-                    0 => rate,
-                    order => rate * (s - at.began) - values[subject] * f64::from(order),
+                let (rate, rounding) = match at.order {
+                    0 => (rate, 0.0),
+                    // The zero is divided out. Both terms are nearly equal soon after it.
+                    order => {
+                        let (since, due) = (s - at.began, values[subject] * f64::from(order));
+                        let terms = rate.abs() * (since + s.abs() / 16.0) + due.abs();
+                        (rate * since - due, ROUNDING * terms)
+                    }
                 };
                 let rises = self.system.guards(at.mode)[subject].direction() == Direction::Rising;
                 let rate = if rises == (kind == Kind::Minimum) { -rate } else { rate };
                 // A guard that does not change, or by less than its rounding, has passed its
                 // extremum.
-                if rate == 0.0 { f64::MIN_POSITIVE } else { rate }
+                if rate == 0.0 { f64::MIN_POSITIVE } else { rate + rounding }
             }
             Awaited::Guard(Way::AtOnce) | Awaited::Nothing => -1.0,
         };
