@@ -16,28 +16,32 @@ pub struct Gaining {
     /// The window.
     pub frame: Frame,
     plane: CollisionPlane,
-    /// All regions, also those of the switches, which divide those that are asked for.
-    atlas: Atlas<Vec<usize>, Margin, CollisionFamilyError>,
+    /// All regions in traced coordinates, also those of the switches, which divide those that are
+    /// asked for; with what speaks against them.
+    pub atlas: Atlas<Vec<usize>, Margin, CollisionFamilyError>,
 }
 
 /// Traces where |ε_t| is 1, accurate to `tolerance` in ψ, with the boundaries of the switches, and
 /// compares the regions with runs.
 ///
-/// With the paper's law |ε_t| is never above 1: nothing is traced.
+/// Where the boundary begins, at κψ = 1 with κ = 1, 4.5, 10.5, … for Mindlin's stiffness and history
+/// by displacement, it touches one of the switches. Within some 1e-6 of such a point changes stay
+/// unresolved, and the regions beside it are in doubt.
 ///
 /// ```
-/// use stickslip_model::presets;
+/// use stickslip_model::{Contact, presets};
 /// use stickslip_plane::Range;
 /// use stickslip_plane::atlas::Frame;
 /// use stickslip_plane::gaining;
 ///
 /// let law = presets::find("gran/hertz/history").ok_or("no such law")?.law;
 /// let range = |low, high| Range { low, high };
-/// let frame = Frame { law, ..Frame::new(range(1.2, 1.4), range(0.5, 1.5), 0.0) };
+/// let frame = Frame { law, ..Frame::new(range(1.2, 1.3), range(0.85, 1.0), 0.0) };
 /// let gaining = gaining::trace(frame, frame.tolerances().usual)?;
 /// assert!(gaining.agrees());
-/// // The window crosses the region once: from its lower boundary to its upper one.
-/// assert_eq!(gaining.boundaries().len(), 2);
+/// assert_eq!(gaining.boundaries().len(), 1);
+/// let gains = |psi| Contact::new(1.25, psi, 0.0)?.with_law(law, 0.0).map(|at| gaining.gains(&at));
+/// assert_eq!([gains(0.875)?, gains(0.99)?], [Some(true), Some(false)]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///

@@ -7,7 +7,7 @@ use stickslip_plane::atlas::{BoundaryKind, Frame, VerifiedAtlas};
 
 use crate::windows::{frame, traced};
 
-fn with_law(name: &str, damping: f64, window: Frame) -> Frame {
+pub fn with_law(name: &str, damping: f64, window: Frame) -> Frame {
     Frame { law: presets::find(name).unwrap().law, damping, ..window }
 }
 

@@ -3,6 +3,7 @@
 mod atlas;
 #[cfg(feature = "serde")]
 mod document;
+mod gaining;
 #[cfg(feature = "geojson")]
 mod geojson;
 mod grid;
