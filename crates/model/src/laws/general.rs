@@ -129,7 +129,7 @@ impl GeneralContact {
     /// The system of one contact.
     #[must_use]
     pub fn new(contact: Contact) -> Self {
-        let equations = Equations::new(&contact);
+        let equations = Equations::new(&contact).off_the_border(contact.psi());
         let beginning = equations.beginning(contact.psi());
         Self { contact, equations, beginning, reversals: false }
     }
@@ -164,7 +164,7 @@ impl GeneralContact {
     /// it may fall behind.
     #[must_use]
     pub fn beginning_margins(&self) -> [Option<f64>; 2] {
-        self.equations.beginning_margins(self.contact.psi())
+        Equations::new(&self.contact).beginning_margins(self.contact.psi())
     }
 
     /// The same system, with an event at every reversal of the tangential velocity.

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use stickslip_model::{
     Collider, Collision, CollisionError, Contact, Damping, End, Engine, EngineError, HistoryOf,
-    Law, Normal, Regime, Snapshot, SpringEnergy, Tangential, exact, presets,
-    regularized::Regularized,
+    Law, Normal, Regime, Snapshot, SpringEnergy, Tangential, exact, general::GeneralContact,
+    presets, regularized::Regularized,
 };
 
 use crate::common::file;
@@ -370,7 +370,7 @@ fn contacts_on_the_verge_of_slip_are_resolved() {
             let contact = Contact::new(kappa, psi, damping).unwrap();
             collide(contact.with_law(law, tangential_damping).unwrap()).eps_t()
         };
-        for exponent in 2..10 {
+        for exponent in 2..17 {
             let distance = 10.0_f64.powi(-exponent);
             let [below, above] = [at(verge * (1.0 - distance)), at(verge * (1.0 + distance))];
             // Some laws turn the force over at once.
@@ -382,6 +382,39 @@ fn contacts_on_the_verge_of_slip_are_resolved() {
             assert!(continuous || overturns, "{law:?} {distance:e}: {below} {above}");
         }
     }
+}
+
+/// Force and limit start alike: κψ = 1 without damping (2/3 of it with a history of force), and bψ = 1
+/// with it. Such a contact starts in stick, and has the ε_t of its neighbours.
+#[test]
+fn contacts_on_the_border_of_slip_stick() {
+    let mut checked = 0;
+    for preset in presets::ALL {
+        let border = if preset.law.history == HistoryOf::Force { 1.5 } else { 1.0 };
+        for (kappa, psi) in [(2.0, 0.5), (4.0, 0.25), (10.0, 0.1), (1.25, 0.8), (0.6, 1.0 / 0.6)] {
+            for (a, b) in [(0.0, 0.0), (0.2, 1.0 / psi)] {
+                let psi = if a > 0.0 { psi } else { psi * border };
+                let b = if a > 0.0 && preset.law.damping == Damping::None { continue } else { b };
+                let at = |part: f64| {
+                    let [kappa, b] = if a > 0.0 { [kappa, b * part] } else { [kappa * part, b] };
+                    Contact::new(kappa, psi, a).unwrap().with_law(preset.law, b).unwrap()
+                };
+                let general = GeneralContact::new(at(1.0));
+                let [Some(room), _] = general.beginning_margins() else { continue };
+                if room.abs() > 1e-15 {
+                    continue;
+                }
+                for part in [1.0, 1.0 - 2e-16, 1.0 + 3e-16] {
+                    let [on, beside] = [at(part), at(1.0 - 1e-13)].map(collide);
+                    assert_eq!(on.itinerary(), beside.itinerary(), "{} {kappa} {a}", preset.name);
+                    assert!((on.eps_t() - beside.eps_t()).abs() < 1e-10, "{}", preset.name);
+                    assert!(on.itinerary().starts_with('o'));
+                    checked += 1;
+                }
+            }
+        }
+    }
+    assert!(checked > 200, "{checked}");
 }
 
 #[test]

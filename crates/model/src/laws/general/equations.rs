@@ -16,6 +16,10 @@ use crate::laws::phase::{Regime, Side};
 /// [`regularized`](crate::regularized).
 const STRONG: f64 = 1.0;
 
+/// How near to 1 the ratio of the tangential force to its limit may be at the start of contact. Nearer
+/// contacts are computed at this distance: rounding would decide over them time and again.
+const BORDER: f64 = 5e-14;
+
 /// Highest power of u in any equation.
 const POWERS: usize = 9;
 
@@ -84,6 +88,21 @@ impl Equations {
             dashpot: contact.tangential_damping() * a * velocity_unit,
             spring_rate: f64::from(exponents.n) * omega * scale,
         }
+    }
+
+    /// The equations of a contact whose tangential force does not start as its limit does, to within
+    /// rounding. A force that has just reached its limit sticks, in particle codes too.
+    pub fn off_the_border(self, psi: f64) -> Self {
+        let [Some(room), _] = self.beginning_margins(psi) else { return self };
+        if room.abs() >= BORDER {
+            return self;
+        }
+        let part = (1.0 - BORDER) / (1.0 - room);
+        if self.exponents.damped {
+            let tangential_damping = self.tangential_damping * part;
+            return Self { tangential_damping, dashpot: self.dashpot * part, ..self };
+        }
+        Self { kappa: self.kappa * part, spring_rate: self.spring_rate * part, ..self }
     }
 
     /// The state at the start of contact.
