@@ -13,7 +13,7 @@
 //! - `polyline`, `geojson` and `document`: how it is drawn, exported, written and read back
 
 mod boundary;
-mod crossings;
+pub(crate) mod crossings;
 #[cfg(feature = "serde")]
 mod document;
 mod frame;

@@ -2,7 +2,7 @@
 
 use stickslip_model::exact::{self, ExactError};
 use stickslip_model::regularized::{GUARDS, OTHER_SIDE, Phase, Regularized, SAME_SIDE, STATE};
-use stickslip_model::{Collision, Contact, Engine, InvalidParameter, Law, Side};
+use stickslip_model::{Collision, Contact, Engine, InvalidParameter, Law, Pair, Side};
 use stickslip_solver::{Dop853, Margin, Options, Outcome, Start};
 use stickslip_tracer::{
     Family, FamilyError, FreeRun, HybridFamily, Itinerary, Point, Problem, Window,
@@ -14,6 +14,7 @@ pub(crate) mod general;
 pub use general::GeneralFamily;
 
 use crate::chart::Chart;
+use crate::oblique::Oblique;
 use crate::range::Range;
 
 /// Collisions with κ and ψ in a window and one scaled damping.
@@ -42,6 +43,7 @@ pub struct CollisionPlane {
     low: Contact,
     high: Contact,
     chart: Chart,
+    oblique: Option<Oblique>,
 }
 
 /// Collisions as a family of runs. The label of a run is the list of the guards that fired.
@@ -80,7 +82,26 @@ impl CollisionPlane {
             low: Contact::new(kappa.0, psi.0, damping)?,
             high: Contact::new(kappa.1, psi.1, damping)?,
             chart: Chart::of(range(kappa), range(psi)),
+            oblique: None,
         })
+    }
+
+    /// Impacts of a pair at one speed, at different angles: κ is that of normal incidence, and ψ
+    /// belongs to the angle at which tan θ = ψ μ/α. Stiffness and damping of the collisions depend
+    /// on the normal velocity.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`]: a value that no collision can have.
+    pub fn oblique(
+        oblique: Oblique,
+        kappa: (f64, f64),
+        psi: (f64, f64),
+    ) -> Result<Self, InvalidParameter> {
+        let Pair { law, .. } = oblique.pair;
+        let damping = oblique.pair.tangential_damping();
+        let plane = Self::new(kappa, psi, oblique.at(1.0, psi.0)?.damping())?;
+        let plane = Self { oblique: Some(oblique), ..plane.with_law(law, damping)? };
+        Ok(plane)
     }
 
     /// The same collisions in other traced coordinates.
@@ -133,7 +154,11 @@ impl CollisionPlane {
     /// [`InvalidParameter`]: κ or ψ is beyond the range of numbers.
     pub fn contact(&self, point: &Point) -> Result<Contact, InvalidParameter> {
         let [kappa, psi] = self.parameters(point);
-        Contact::new(kappa, psi.max(0.5 * self.low.psi()), self.low.damping())?
+        let psi = psi.max(0.5 * self.low.psi());
+        if let Some(oblique) = &self.oblique {
+            return oblique.at(kappa, psi);
+        }
+        Contact::new(kappa, psi, self.low.damping())?
             .with_law(self.low.law(), self.low.tangential_damping())
     }
 
@@ -160,6 +185,12 @@ impl CollisionPlane {
     /// The collisions as those of any law are integrated.
     fn general(self) -> GeneralFamily {
         GeneralFamily::new(self, precise())
+    }
+
+    /// Contacts with the first and the last of all normal motions of the plane.
+    pub(crate) fn normal_motions(&self) -> [Contact; 2] {
+        let Window { low, high } = self.window();
+        [low, high].map(|corner| self.contact_or_any(&corner))
     }
 
     /// The contact at a traced point. Where κ is not a number there is nothing to find, and any

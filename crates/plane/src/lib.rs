@@ -12,6 +12,7 @@
 //!
 //! - [`chart`]: the coordinates in which the plane is traced
 //! - [`family`]: collisions as a family for the tracer
+//! - [`oblique`]: impacts of one speed at all angles
 //! - [`mod@range`] and [`grid`]: windows, and windows divided into cells
 //! - [`tile`] and [`sweep`]: the results of a grid, and how they are computed
 //! - [`progress`]: reports of how far a long computation has come
@@ -40,6 +41,7 @@ pub mod chart;
 pub mod family;
 pub mod gaining;
 pub mod grid;
+pub mod oblique;
 pub mod progress;
 pub mod range;
 pub mod sweep;
@@ -48,6 +50,7 @@ pub mod tile;
 pub use chart::Chart;
 pub use family::{CollisionFamily, CollisionFamilyError, CollisionPlane};
 pub use grid::{Coordinates, Extent, Grid, GridAxis, Quantity};
+pub use oblique::Oblique;
 pub use range::Range;
 pub use tile::Tile;
 

@@ -21,6 +21,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod fit;
 pub mod time_steps;
 
 #[doc = include_str!("../README.md")]

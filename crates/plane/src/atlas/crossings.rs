@@ -1,6 +1,6 @@
-//! Where a vertical line crosses the boundaries of an atlas.
+//! Where a vertical line crosses boundaries.
 
-use stickslip_tracer::Cubic;
+use stickslip_tracer::{Cubic, Node, Point};
 
 use super::regions::Atlas;
 
@@ -9,23 +9,28 @@ impl Atlas {
     #[must_use]
     pub fn boundaries_at(&self, kappa: f64) -> Vec<f64> {
         let x = self.chart.point(kappa, self.frame.psi.low).x;
-        let mut psi = Vec::new();
-        for nodes in self.regions.curves().iter().flat_map(|curve| curve.nodes.windows(2)) {
-            let cubic = Cubic::between(&nodes[0], &nodes[1]);
-            let right = |t: f64| cubic.at(t).x > x;
-            let cuts = cubic.monotone_cuts();
-            let mut from = 0.0;
-            for to in cuts.into_iter().chain([1.0]) {
-                if right(from) != right(to) {
-                    let place = cubic.at(crossing(from, to, right));
-                    psi.push(self.chart.parameters(&place)[1]);
-                }
-                from = to;
-            }
-        }
+        let curves = self.regions.curves().iter().flat_map(|curve| curve.nodes.windows(2));
+        let psi = curves.flat_map(|nodes| crossings(nodes, x));
+        let mut psi: Vec<f64> = psi.map(|place| self.chart.parameters(&place)[1]).collect();
         psi.sort_by(f64::total_cmp);
         psi
     }
+}
+
+/// The places at which the cubic between two nodes crosses the line at `x`.
+pub fn crossings(nodes: &[Node], x: f64) -> Vec<Point> {
+    let [first, second] = nodes else { return Vec::new() };
+    let cubic = Cubic::between(first, second);
+    let right = |t: f64| cubic.at(t).x > x;
+    let mut found = Vec::new();
+    let mut from = 0.0;
+    for to in cubic.monotone_cuts().into_iter().chain([1.0]) {
+        if right(from) != right(to) {
+            found.push(cubic.at(crossing(from, to, right)));
+        }
+        from = to;
+    }
+    found
 }
 
 /// The place between `from` and `to` at which `right` changes, by bisection to the last bit.

@@ -37,7 +37,7 @@ pub struct GeneralFamily {
     pub(super) plane: CollisionPlane,
     pub(super) options: Options,
     /// Where runs stop that have not come to the end of contact. The normal motion, and with it
-    /// the end, is the same at all points of the plane.
+    /// the end, is the same at all points of the plane, or between two.
     span: f64,
 }
 
@@ -52,9 +52,12 @@ impl GeneralFamily {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1e7")]
         let max_steps = 1000 + (100.0 * oscillations) as usize;
         let options = Options { max_steps, ..options };
-        let (system, start) = started(GeneralContact::new(plane.low));
-        let found = run(Dop853, &system, start, f64::INFINITY, &options, &mut ());
-        let span = found.map_or(f64::INFINITY, |run| BEYOND * run.s);
+        let span = |contact| {
+            let (system, start) = started(GeneralContact::new(contact));
+            let found = run(Dop853, &system, start, f64::INFINITY, &options, &mut ());
+            found.map_or(f64::INFINITY, |run| BEYOND * run.s)
+        };
+        let span = plane.normal_motions().into_iter().map(span).fold(0.0, f64::max);
         Self { plane, options, span }
     }
 

@@ -5,6 +5,8 @@
 #[path = "../../../../tests/common/lammps.rs"]
 mod lammps;
 
+mod fit;
+mod oblique;
 mod reference;
 mod strangers;
 mod time_steps;

@@ -1,0 +1,124 @@
+//! The fit as a function of the angle, and where the switches change along it.
+
+use stickslip_model::Engine;
+use stickslip_plane::{Oblique, Range};
+
+use super::FitError;
+use super::bodies::{Bodies, Units, Values};
+use super::data::{Datum, Measured};
+use super::problem::predicted_at;
+use crate::time_steps::ContactFailure;
+
+/// The best fit at all angles, at one speed.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Course {
+    /// The angles from the normal in rad.
+    pub angles_rad: Range,
+    /// Where the switches change, in rising order of angles.
+    pub boundaries: Vec<Boundary>,
+    /// Whether the tracer of boundaries could explain everything that it saw.
+    pub resolved: bool,
+    /// What the model says of each measured quantity, at the best and the next minima.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(super) curves: Vec<Curve>,
+}
+
+/// An angle at which the switches change.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Boundary {
+    /// The angle from the normal in rad.
+    pub angle_rad: f64,
+    /// The itinerary at smaller angles.
+    pub below: String,
+    /// The itinerary at larger angles.
+    pub above: String,
+}
+
+/// A quantity over the angle, by one of the minima.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Curve {
+    pub quantity: Measured,
+    /// The index of the minimum.
+    pub minimum: usize,
+    /// Angles in degrees, and the quantity; angles too where it is one.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// Minima that are drawn.
+pub const DRAWN: usize = 3;
+/// Points of a curve.
+const POINTS: u32 = 361;
+
+impl Course {
+    /// The course of `minima`, the best one first, over the angles of the data and some more.
+    ///
+    /// # Errors
+    /// [`FitError`]: an impact cannot be computed.
+    pub fn new(
+        bodies: &Bodies,
+        units: &Units,
+        data: &[Datum],
+        minima: &[Values],
+    ) -> Result<Option<Self>, FitError> {
+        let angles = data.iter().map(Datum::angle_rad).filter(|angle| *angle > 0.0);
+        let (least, most) = angles
+            .fold((f64::INFINITY, 0.0), |(least, most): (f64, f64), angle| {
+                (least.min(angle), most.max(angle))
+            });
+        let Some(best) = minima.first().filter(|_| most > 0.0) else { return Ok(None) };
+        let right = std::f64::consts::FRAC_PI_2;
+        let angles_rad = Range { low: 0.5 * least, high: 0.5 * (most + right) };
+        let oblique = Oblique::new(bodies.with(units, best), units.speed_m_per_s)?;
+        let found = oblique.boundaries(angles_rad).map_err(Box::new)?;
+        let ends = [&[angles_rad.low], &found.angles_rad[..], &[angles_rad.high]].concat();
+        let itinerary = |ends: &[f64]| {
+            let contact = oblique.contact(f64::midpoint(ends[0], ends[1]))?;
+            let found = Engine::Auto.collide(contact);
+            let (collision, _) = found.map_err(|source| ContactFailure { contact, source })?;
+            Ok(collision.itinerary())
+        };
+        let itineraries: Result<Vec<String>, FitError> = ends.windows(2).map(itinerary).collect();
+        let itineraries = itineraries?;
+        let boundaries = found.angles_rad.iter().zip(itineraries.windows(2));
+        let boundaries = boundaries.map(|(angle, sides)| Boundary {
+            angle_rad: *angle,
+            below: sides[0].clone(),
+            above: sides[1].clone(),
+        });
+        // Some laws have boundaries on which only the order of other events changes.
+        let boundaries = boundaries.filter(|it| it.below != it.above).collect();
+        let curves = curves(bodies, units, data, minima, angles_rad)?;
+        Ok(Some(Self { angles_rad, boundaries, resolved: found.resolved, curves }))
+    }
+}
+
+fn curves(
+    bodies: &Bodies,
+    units: &Units,
+    data: &[Datum],
+    minima: &[Values],
+    angles_rad: Range,
+) -> Result<Vec<Curve>, FitError> {
+    let measured = |quantity: &Measured| data.iter().any(|datum| datum.quantity == *quantity);
+    let mut curves = Vec::new();
+    for quantity in Measured::ALL.into_iter().filter(measured) {
+        for (minimum, values) in minima.iter().take(DRAWN).enumerate() {
+            let point = |index: u32| {
+                let part = f64::from(index) / f64::from(POINTS - 1);
+                let angle = angles_rad.low + part * (angles_rad.high - angles_rad.low);
+                let value = predicted_at(bodies, units, values, quantity, angle)?;
+                Ok((angle.to_degrees(), shown(quantity, value)))
+            };
+            let points: Result<Vec<_>, FitError> = (0..POINTS).map(point).collect();
+            curves.push(Curve { quantity, minimum, points: points? });
+        }
+    }
+    Ok(curves)
+}
+
+/// A value of a quantity as it is drawn: angles are in degrees.
+pub(super) fn shown(quantity: Measured, value: f64) -> f64 {
+    if quantity == Measured::ReboundAngle { value.to_degrees() } else { value }
+}

@@ -1,0 +1,117 @@
+//! Intervals from profiles: where the least misfit over the other numbers is not above a threshold.
+
+use super::FitError;
+use super::quantile::{normal, student};
+use super::scan::{Line, Lines};
+use super::search::root;
+use super::settings::Free;
+
+/// The interval of a fitted number, which may consist of several pieces.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Interval {
+    /// The number.
+    pub parameter: Free,
+    /// The pieces, in rising order. `None` if there are as many free numbers as data and the size of
+    /// the errors is not known.
+    pub pieces: Option<Vec<Piece>>,
+}
+
+/// A piece of an interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Piece {
+    /// Its lower end.
+    pub low: f64,
+    /// Its upper end.
+    pub high: f64,
+    /// Whether the lower end is that of the range, and the piece may go on below.
+    pub from_end_of_range: bool,
+    /// Whether the upper end is that of the range, and the piece may go on above.
+    pub to_end_of_range: bool,
+}
+
+impl Interval {
+    /// Whether the interval holds a value; `None` without an interval.
+    #[must_use]
+    pub fn holds(&self, value: f64) -> Option<bool> {
+        let pieces = self.pieces.as_ref()?;
+        Some(pieces.iter().any(|piece| (piece.low..=piece.high).contains(&value)))
+    }
+}
+
+/// The misfit up to which values are in the intervals of one number each. `None` if there are no
+/// more data than free numbers, and the size of the errors is not known.
+///
+/// With known errors the least misfit over the other numbers, less the very least, has the
+/// distribution χ² with one degree of freedom. Otherwise its ratio to the very least over the degrees
+/// of freedom has the distribution F, with one degree of freedom in the numerator. Both hold for many
+/// data or a linear model.
+pub fn threshold(
+    least: f64,
+    level: f64,
+    (data, free): (usize, usize),
+    estimated: bool,
+) -> Option<f64> {
+    if !estimated {
+        return Some(least + normal(level).powi(2));
+    }
+    let freedom = data.checked_sub(free).filter(|freedom| *freedom > 0)?;
+    Some(least * (1.0 + student(level, freedom).powi(2) / freedom as f64))
+}
+
+/// A place of a profile.
+#[derive(Clone, Copy)]
+struct Place {
+    at: f64,
+    misfit: f64,
+}
+
+/// The interval of the outer axis, given its lines and the coordinates and misfits of all minima.
+pub fn interval(
+    lines: &Lines<'_>,
+    found: &[Line],
+    minima: impl Iterator<Item = (f64, f64)>,
+    threshold: Option<f64>,
+) -> Result<Interval, FitError> {
+    let parameter = lines.outer.free;
+    let Some(threshold) = threshold else { return Ok(Interval { parameter, pieces: None }) };
+    let mut places: Vec<Place> =
+        found.iter().map(|line| Place { at: line.at, misfit: line.best().misfit }).collect();
+    // A narrow piece may lie between two lines: then there is a minimum in it.
+    for (at, misfit) in minima {
+        places.push(Place { at, misfit: misfit.min(lines.profile(at)?) });
+    }
+    places.sort_by(|a, b| a.at.total_cmp(&b.at));
+    let inside = |place: &Place| place.misfit <= threshold;
+    let height = |at: f64| Ok(lines.profile(at)? - threshold);
+    let crossing = |a: &Place, b: &Place| {
+        let ends = [a, b].map(|place| (place.at, place.misfit - threshold));
+        root(ends, height)
+    };
+    let mut pieces = Vec::new();
+    let mut open: Option<(f64, bool)> = None;
+    for (index, place) in places.iter().enumerate() {
+        let before = index.checked_sub(1).map(|before| places[before]);
+        match (open, inside(place)) {
+            (None, true) => {
+                let low = before.map(|before| crossing(&before, place)).transpose()?;
+                open = Some((low.unwrap_or(place.at), low.is_none()));
+            }
+            (Some((low, from_end_of_range)), false) => {
+                let high = before.map(|before| crossing(&before, place)).transpose()?;
+                let high = high.unwrap_or(place.at);
+                pieces.push(Piece { low, high, from_end_of_range, to_end_of_range: false });
+                open = None;
+            }
+            _ => {}
+        }
+    }
+    if let (Some((low, from_end_of_range)), Some(last)) = (open, places.last()) {
+        pieces.push(Piece { low, high: last.at, from_end_of_range, to_end_of_range: true });
+    }
+    for piece in &mut pieces {
+        (piece.low, piece.high) = (lines.outer.value(piece.low), lines.outer.value(piece.high));
+    }
+    Ok(Interval { parameter, pieces: Some(pieces) })
+}

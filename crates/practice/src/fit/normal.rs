@@ -1,0 +1,89 @@
+//! The damping, which follows from the normal motion alone.
+
+use stickslip_model::{Contact, Engine};
+
+use super::FitError;
+use super::axis::Axis;
+use super::bodies::{Bodies, Units};
+use super::intervals::{Interval, interval, threshold};
+use super::problem::Problem;
+use super::scan::{Line, Lines, candidates};
+use super::settings::{Free, Settings};
+use crate::time_steps::ContactFailure;
+
+/// The fit of the damping to ε_n.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct DampingFit {
+    /// Damping a at normal incidence.
+    pub damping: f64,
+    /// The number of data.
+    pub data: usize,
+    /// Whether the size of the errors was estimated from the residuals.
+    pub estimated_errors: bool,
+    /// Sum of the squares of the residuals over their errors.
+    pub misfit: f64,
+    /// The interval of the damping.
+    pub interval: Interval,
+}
+
+/// The damping of the settings at normal incidence: fitted, given by ε_n, or that of the bodies.
+pub fn damping(settings: &Settings, units: &Units) -> Result<(f64, Option<DampingFit>), FitError> {
+    if let Some(eps_n) = settings.eps_n {
+        return Ok((with_eps_n(&settings.bodies, eps_n)?, None));
+    }
+    if !settings.free.contains(&Free::Damping) {
+        return Ok((settings.bodies.values(units).damping, None));
+    }
+    let data: Vec<_> = settings.data_of(true).map(|(_, datum)| *datum).collect();
+    let problem = Problem::new(settings.bodies, *units, data.iter());
+    let axis = Axis::new(Free::Damping, settings.ranges.damping, 1.0);
+    let fixed = settings.bodies.values(units);
+    let lines = Lines { problem: &problem, fixed, outer: &axis, inner: None };
+    let found: Result<Vec<Line>, _> = axis.places.iter().map(|at| lines.line(*at)).collect();
+    let found = found?;
+    let mut bottoms = Vec::new();
+    for start in candidates(&found) {
+        let bottom = lines.descend(start)?;
+        bottoms.push((bottom.values.damping, bottom.misfit));
+    }
+    let best = bottoms.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1));
+    let (damping, misfit) = best.ok_or_else(|| FitError::Search("no minimum".to_owned()))?;
+    let estimated_errors = settings.estimates_errors(true);
+    let threshold = threshold(misfit, settings.level, (data.len(), 1), estimated_errors);
+    let interval = interval(&lines, &found, bottoms.into_iter(), threshold)?;
+    let fit = DampingFit { damping, data: data.len(), estimated_errors, misfit, interval };
+    Ok((damping, Some(fit)))
+}
+
+/// ε_n at normal incidence with some damping.
+pub fn eps_n(bodies: &Bodies, damping: f64) -> Result<f64, FitError> {
+    // The normal motion does not depend on κ and ψ.
+    let contact = Contact::new(1.0, 1.0, damping)?.with_law(bodies.pair.law, 0.0)?;
+    let found = Engine::Auto.collide(contact);
+    let (collision, _) = found.map_err(|source| ContactFailure { contact, source })?;
+    Ok(collision.eps_n)
+}
+
+/// The damping at which ε_n has a value at normal incidence, by bisection to rounding: ε_n falls
+/// with the damping.
+fn with_eps_n(bodies: &Bodies, wanted: f64) -> Result<f64, FitError> {
+    /// The largest damping that is tried.
+    const MOST: f64 = 128.0;
+    if wanted == 1.0 {
+        return Ok(0.0);
+    }
+    let mut high = f64::min(MOST, (1.0 - 1e-9) * bodies.pair.law.endless_from());
+    let least = eps_n(bodies, high)?;
+    if least > wanted {
+        return Err(FitError::Unreachable { eps_n: wanted, least });
+    }
+    let mut low = 0.0;
+    loop {
+        let middle = f64::midpoint(low, high);
+        if !(low < middle && middle < high) {
+            return Ok(middle);
+        }
+        if eps_n(bodies, middle)? > wanted { low = middle } else { high = middle }
+    }
+}
