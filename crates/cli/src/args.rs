@@ -7,6 +7,7 @@ mod asymptote;
 mod collide;
 mod completions;
 mod converge;
+mod fit;
 mod impact;
 mod join;
 mod law;
@@ -28,6 +29,7 @@ pub use asymptote::AsymptoteArguments;
 pub use collide::CollideArguments;
 pub use completions::CompletionsArguments;
 pub use converge::ConvergeArguments;
+pub use fit::FitArguments;
 pub use impact::ImpactArguments;
 pub use join::JoinArguments;
 pub use law::LawArguments;
@@ -87,6 +89,9 @@ pub enum Command {
     /// Measure the errors of the time steps of particle codes
     #[command(long_about = timestep::ABOUT, after_long_help = timestep::EXAMPLES)]
     Timestep(TimestepArguments),
+    /// Fit a contact law to measured impacts
+    #[command(long_about = fit::ABOUT, after_long_help = fit::EXAMPLES)]
+    Fit(FitArguments),
     /// Print a script that completes commands and options in a shell
     #[command(after_long_help = completions::EXAMPLES)]
     Completions(CompletionsArguments),

@@ -4,6 +4,7 @@
 pub mod batch;
 pub mod collide;
 pub mod completions;
+pub mod fit;
 pub mod impact;
 pub mod join;
 pub mod laws;

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use stickslip_figure::FigureError;
 use stickslip_plane::atlas::AtlasError;
 use stickslip_plane::sweep::Failed;
+use stickslip_practice::fit::FitError;
 use stickslip_practice::time_steps::TimeStepsError;
 use stickslip_reproduction::ReproductionError;
 use stickslip_reproduction::figures::Objection;
@@ -64,6 +65,9 @@ pub enum Failure {
     /// Errors of time steps cannot be measured.
     #[error(transparent)]
     TimeSteps(#[from] TimeStepsError),
+    /// There is no fit.
+    #[error(transparent)]
+    Fit(#[from] FitError),
     /// A part of the reproduction has no result.
     #[error(transparent)]
     Reproduction(#[from] ReproductionError),

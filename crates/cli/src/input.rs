@@ -2,12 +2,14 @@
 //!
 //! Start reading in `number`; then, in this order: `range` (intervals and sizes), `part` (parts of maps), `parameter` (the
 //! parameters of a collision), `recipe` (from options and columns to a collision), `source` (files
-//! and standard input), `rows` (CSV files of collisions), `json`, `law`, `bodies` and `atlas` (JSON files).
+//! and standard input), `rows` (CSV files of collisions), `measured` (CSV files of measured impacts),
+//! `json`, `law`, `bodies` and `atlas` (JSON files).
 
 pub mod atlas;
 pub mod bodies;
 pub mod json;
 pub mod law;
+pub mod measured;
 pub mod number;
 pub mod parameter;
 pub mod part;

@@ -32,8 +32,8 @@ use args::{Arguments, Command};
 pub use error::Failure;
 use output::console::say;
 use plan::{
-    CollidePlan, ImpactPlan, JoinPlan, LocatePlan, MapPlan, ReproducePlan, StudyPlan, TimestepPlan,
-    TracePlan,
+    CollidePlan, FitPlan, ImpactPlan, JoinPlan, LocatePlan, MapPlan, ReproducePlan, StudyPlan,
+    TimestepPlan, TracePlan,
 };
 use version::NAME;
 
@@ -110,6 +110,7 @@ fn carry_out(arguments: &Arguments) -> Result<(), Failure> {
             commands::studies::run(&StudyPlan::convergence(arguments)?, convergence::run)
         }
         Command::Timestep(arguments) => commands::timestep::run(&TimestepPlan::new(arguments)?),
+        Command::Fit(arguments) => commands::fit::run(&FitPlan::new(arguments)?),
         Command::Completions(arguments) => commands::completions::run(*arguments),
         Command::Man(arguments) => commands::man::run(arguments),
     }

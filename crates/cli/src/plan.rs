@@ -8,6 +8,7 @@ mod collide;
 mod collision;
 mod engine;
 mod files;
+mod fit;
 mod impact;
 mod join;
 mod locate;
@@ -19,6 +20,7 @@ mod trace;
 mod window;
 
 pub use collide::{BatchPlan, CollidePlan, SinglePlan};
+pub use fit::FitPlan;
 pub use impact::ImpactPlan;
 pub use join::JoinPlan;
 pub use locate::LocatePlan;

@@ -18,12 +18,13 @@
 //!    ones is not above a threshold: it is computed over the whole range, and may have several pieces.
 //! 5. The angles at which the switches of the best fit change are traced.
 //!
-//! Start reading here; then, in this order: `data`, `bodies`, `settings` (what is asked), `problem`
+//! Start reading here; then, in this order: `data`, `columns`, `bodies`, `settings` (what is asked), `problem`
 //! (what the model says), `axis`, `scan`, `local` (the search), `quantile`, `intervals`, `normal`
 //! (damping), `course`, `picture`.
 
 mod axis;
 mod bodies;
+mod columns;
 mod course;
 mod data;
 mod intervals;
@@ -43,6 +44,7 @@ use stickslip_plane::progress::Report;
 
 use crate::time_steps::ContactFailure;
 pub use bodies::{Bodies, Values};
+pub use columns::{Column, InvalidColumns, data};
 pub use course::{Boundary, Course};
 pub use data::{Datum, Measured};
 pub use intervals::{Interval, Piece};

@@ -9,7 +9,7 @@ mod file;
 
 use std::path::Path;
 
-use stickslip_model::{Body, Encounter, Law, Pair};
+use stickslip_model::{Body, Encounter, Law, Pair, Sphere};
 
 use super::source;
 use crate::error::Failure;
@@ -24,12 +24,21 @@ use file::{Bodies, Other};
 /// [`Failure::Input`]: the file cannot be read, is not JSON, or does not describe two bodies. The
 /// message names the line or the field, and what is expected there.
 pub fn read_pair(path: &Path, law: Law) -> Result<Pair, Failure> {
+    read_sphere_and_pair(path, law).map(|(_, pair)| pair)
+}
+
+/// As [`read_pair`], with the first sphere.
+///
+/// # Errors
+/// As [`read_pair`].
+pub fn read_sphere_and_pair(path: &Path, law: Law) -> Result<(Sphere, Pair), Failure> {
     read(path, law, |Bodies { sphere: (sphere, _), other, forces }| {
         let other = match other {
             Other::Sphere(other, _) => Body::Sphere(other),
             Other::Wall(wall, _) => Body::Wall(wall),
         };
-        Pair::new(&sphere, &other, forces).map_err(|invalid| invalid.to_string())
+        let pair = Pair::new(&sphere, &other, forces).map_err(|invalid| invalid.to_string())?;
+        Ok((sphere, pair))
     })
 }
 

@@ -1,0 +1,272 @@
+//! Columns of measured impacts: their names, and the data in them.
+
+use std::f64::consts::FRAC_PI_2;
+
+use super::data::{Datum, Measured};
+
+/// A named column, in which values may be missing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// The name of a quantity with its unit, perhaps with `_error` at its end.
+    pub name: String,
+    /// A value for each row.
+    pub values: Vec<Option<f64>>,
+}
+
+/// A quantity that a column may hold, with the size of its unit in that of the fit.
+#[derive(Clone, Copy, PartialEq)]
+enum Meaning {
+    Angle(f64),
+    Speed,
+    Normal,
+    Tangential,
+    Measured(Measured, f64),
+    Error(Measured, f64),
+}
+
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+impl Meaning {
+    /// The names of all columns but those of errors.
+    const NAMES: [(&'static str, Self); 11] = [
+        ("centre_impact_angle_deg", Self::Angle(DEGREE)),
+        ("centre_impact_angle_rad", Self::Angle(1.0)),
+        ("speed_m_per_s", Self::Speed),
+        ("normal_m_per_s", Self::Normal),
+        ("tangential_m_per_s", Self::Tangential),
+        ("eps_n", Self::Measured(Measured::EpsN, 1.0)),
+        ("eps_t", Self::Measured(Measured::EpsT, 1.0)),
+        ("centre_e_t", Self::Measured(Measured::CentreRestitution, 1.0)),
+        ("spin_rad_per_s", Self::Measured(Measured::Spin, 1.0)),
+        ("centre_rebound_angle_deg", Self::Measured(Measured::ReboundAngle, DEGREE)),
+        ("centre_rebound_angle_rad", Self::Measured(Measured::ReboundAngle, 1.0)),
+    ];
+
+    fn find(name: &str) -> Option<Self> {
+        let known = |name: &str| {
+            Self::NAMES.iter().find(|(known, _)| *known == name).map(|(_, meaning)| *meaning)
+        };
+        known(name).or_else(|| match known(name.strip_suffix("_error")?)? {
+            Self::Measured(quantity, unit) => Some(Self::Error(quantity, unit)),
+            _ => None,
+        })
+    }
+
+    /// Whether two columns would hold the same.
+    fn clashes(self, other: Self) -> bool {
+        match (self, other) {
+            (Self::Angle(_), Self::Angle(_)) => true,
+            (Self::Measured(a, _), Self::Measured(b, _))
+            | (Self::Error(a, _), Self::Error(b, _)) => a == b,
+            _ => self == other,
+        }
+    }
+}
+
+/// The data in `columns`; `rows` are the numbers of the rows, which errors and residuals tell.
+///
+/// An impact is given by an angle and a speed, which may be the same `speed_m_per_s` for all rows, or
+/// by two velocities. Without bodies (`scaled`) all speeds are 1 and no column may tell them.
+///
+/// ```
+/// use stickslip_practice::fit::{Column, Measured, data};
+///
+/// let column = |name: &str, values: &[Option<f64>]| {
+///     Column { name: name.to_owned(), values: values.to_vec() }
+/// };
+/// let columns = [
+///     column("centre_impact_angle_deg", &[Some(30.0), Some(60.0)]),
+///     column("centre_e_t", &[Some(0.7), None]),
+///     column("spin_rad_per_s", &[Some(600.0), Some(400.0)]),
+/// ];
+/// let data = data(&columns, &[2, 3], Some(4.0), false)?;
+/// assert_eq!(data.len(), 3);
+/// assert_eq!((data[2].row, data[2].quantity, data[2].value), (3, Measured::Spin, 400.0));
+/// assert!((data[2].normal_m_per_s - 2.0).abs() < 1e-12);
+/// # Ok::<(), stickslip_practice::fit::InvalidColumns>(())
+/// ```
+///
+/// # Errors
+/// [`InvalidColumns`]: columns are missing, unknown or contradict each other, or a row has no
+/// impact. Values of quantities are checked by the fit.
+pub fn data(
+    columns: &[Column],
+    rows: &[usize],
+    speed_m_per_s: Option<f64>,
+    scaled: bool,
+) -> Result<Vec<Datum>, InvalidColumns> {
+    let mut known: Vec<(&Column, Meaning)> = Vec::new();
+    for column in columns {
+        let name = || column.name.clone();
+        let Some(meaning) = Meaning::find(&column.name) else {
+            return Err(InvalidColumns::Unknown { name: name() });
+        };
+        if let Some((other, _)) = known.iter().find(|(_, other)| meaning.clashes(*other)) {
+            return Err(InvalidColumns::Twice { first: other.name.clone(), second: name() });
+        }
+        known.push((column, meaning));
+    }
+    let impacts = Impacts::new(&known, speed_m_per_s, scaled)?;
+    let column = |meaning| known.iter().find(|(_, it)| *it == meaning).map(|(column, _)| *column);
+    if let Some((column, _)) = known.iter().find(|(_, it)| {
+        matches!(it, Meaning::Error(quantity, unit) if column(Meaning::Measured(*quantity, *unit)).is_none())
+    }) {
+        return Err(InvalidColumns::Alone { name: column.name.clone() });
+    }
+    let mut data = Vec::new();
+    for (index, &row) in rows.iter().enumerate() {
+        for (found, meaning) in &known {
+            let Meaning::Measured(quantity, unit) = *meaning else { continue };
+            let at = |column: &Column| column.values.get(index).copied().flatten();
+            let Some(value) = at(found) else { continue };
+            let (normal_m_per_s, tangential_m_per_s) = impacts.at(index, row)?;
+            let error = column(Meaning::Error(quantity, unit)).and_then(at);
+            data.push(Datum {
+                row,
+                normal_m_per_s,
+                tangential_m_per_s,
+                quantity,
+                value: value * unit,
+                error: error.map(|error| error * unit),
+            });
+        }
+    }
+    Ok(data)
+}
+
+/// Where the impact of a row is.
+enum Impacts<'a> {
+    Angle { angle: &'a Column, unit: f64, speed: Option<&'a Column>, all: Option<f64> },
+    Velocities { normal: &'a Column, tangential: &'a Column },
+}
+
+impl<'a> Impacts<'a> {
+    fn new(
+        known: &[(&'a Column, Meaning)],
+        all: Option<f64>,
+        scaled: bool,
+    ) -> Result<Self, InvalidColumns> {
+        let column = |meaning| known.iter().find(|(_, it)| *it == meaning).map(|(it, _)| *it);
+        let angle = known.iter().find_map(|(column, meaning)| match meaning {
+            Meaning::Angle(unit) => Some((*column, *unit)),
+            _ => None,
+        });
+        let speed = column(Meaning::Speed);
+        let velocities = (column(Meaning::Normal), column(Meaning::Tangential));
+        let told = [speed, velocities.0, velocities.1].into_iter().flatten().next();
+        if let (true, Some(column)) = (scaled, told) {
+            return Err(InvalidColumns::Scaled { name: column.name.clone() });
+        }
+        match (angle, velocities) {
+            (Some((angle, unit)), (None, None)) => {
+                let all = if scaled { Some(1.0) } else { all };
+                if speed.is_some() == all.is_some() {
+                    return Err(InvalidColumns::Speed { both: speed.is_some() });
+                }
+                Ok(Self::Angle { angle, unit, speed, all })
+            }
+            (None, (Some(normal), Some(tangential))) if speed.is_none() && all.is_none() => {
+                Ok(Self::Velocities { normal, tangential })
+            }
+            _ => Err(InvalidColumns::NoImpact),
+        }
+    }
+
+    /// The normal and the tangential velocity of a row.
+    fn at(&self, index: usize, row: usize) -> Result<(f64, f64), InvalidColumns> {
+        let number = |column: &Column| {
+            let name = || column.name.clone();
+            let value = column.values.get(index).copied().flatten();
+            value.ok_or_else(|| InvalidColumns::Missing { row, name: name() })
+        };
+        match self {
+            Self::Velocities { normal, tangential } => Ok((number(normal)?, number(tangential)?)),
+            Self::Angle { angle, unit, speed, all } => {
+                let value = number(angle)?;
+                let radians = value * unit;
+                if !(0.0..FRAC_PI_2).contains(&radians) {
+                    let (name, degrees) = (angle.name.clone(), *unit != 1.0);
+                    return Err(InvalidColumns::Angle { row, name, value, degrees });
+                }
+                let speed = match (speed, all) {
+                    (Some(column), _) => number(column)?,
+                    (None, Some(speed)) => *speed,
+                    (None, None) => f64::NAN,
+                };
+                Ok((speed * radians.cos(), speed * radians.sin()))
+            }
+        }
+    }
+}
+
+/// Columns do not describe measured impacts.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum InvalidColumns {
+    /// A column has no meaning.
+    #[error(
+        "column '{name}' is unknown; expected {}, or one of the measured quantities with _error",
+        Meaning::NAMES.map(|(name, _)| name).join(", ")
+    )]
+    Unknown {
+        /// Its name.
+        name: String,
+    },
+    /// Two columns have the same meaning.
+    #[error("the columns '{first}' and '{second}' are both given; expected one of them")]
+    Twice {
+        /// One name.
+        first: String,
+        /// The other name.
+        second: String,
+    },
+    /// Errors without their quantity.
+    #[error("column '{name}' is given without its quantity; expected both, in the same unit")]
+    Alone {
+        /// The name of the errors.
+        name: String,
+    },
+    /// The columns do not tell where the impacts are.
+    #[error(
+        "no impact; expected either the column centre_impact_angle_deg or centre_impact_angle_rad, or \
+         both normal_m_per_s and tangential_m_per_s without any speed"
+    )]
+    NoImpact,
+    /// The speed is not told once.
+    #[error(
+        "the speed is {}; expected either a column speed_m_per_s or one speed for all rows",
+        if *both { "given twice" } else { "missing" }
+    )]
+    Speed {
+        /// Whether it is told twice.
+        both: bool,
+    },
+    /// A velocity without bodies.
+    #[error("column '{name}' has no meaning without bodies; expected angles alone")]
+    Scaled {
+        /// The name of the column.
+        name: String,
+    },
+    /// A row has no impact.
+    #[error("row {row}: {name} is missing; expected a number")]
+    Missing {
+        /// The row.
+        row: usize,
+        /// The name of the column.
+        name: String,
+    },
+    /// An angle is out of range.
+    #[error(
+        "row {row}: {name} = {value:?} is out of range; expected an angle from 0 to below {}",
+        if *degrees { "90 degrees" } else { "π/2" }
+    )]
+    Angle {
+        /// The row.
+        row: usize,
+        /// The name of the column.
+        name: String,
+        /// The angle.
+        value: f64,
+        /// Whether it is in degrees.
+        degrees: bool,
+    },
+}
