@@ -11,7 +11,7 @@ use crate::output::console::print;
 use crate::output::file::publish;
 use crate::output::json;
 use crate::output::progress::Bar;
-use crate::output::text::{aligned, pairs};
+use crate::output::text::{aligned, number, pairs};
 use crate::plan::FitPlan;
 use crate::threads;
 
@@ -136,11 +136,11 @@ fn line(fit: &Fit, interval: &Interval) -> String {
         let piece = |piece: &Piece| {
             let Piece { low, high, from_end_of_range, to_end_of_range } = piece;
             let end = |is: &bool| if *is { " (end of range)" } else { "" };
-            let number = |value: f64| {
+            let shown = |value: f64| {
                 if unit == 1.0 { format!("{value:.6}") } else { format!("{:.6e}", value / unit) }
             };
             let (from, to) = (end(from_end_of_range), end(to_end_of_range));
-            format!("{}{from} to {}{to}", number(*low), number(*high))
+            format!("{}{from} to {}{to}", shown(*low), shown(*high))
         };
         pieces.iter().map(piece).collect::<Vec<_>>().join(" or ")
     };
@@ -173,7 +173,7 @@ fn of_mindlin(fit: &Fit, mindlin: &Mindlin) -> String {
 }
 
 fn residuals(out: &mut dyn Write, fit: &Fit) -> io::Result<()> {
-    let header = ["quantity", "row", "angle [°]", "measured", "error", "fit", "residual"];
+    let header = ["quantity", "line", "angle [°]", "measured", "error", "fit", "residual"];
     let rows = fit.residuals.iter().map(|residual| {
         let datum = &residual.datum;
         [

@@ -4,7 +4,7 @@ use std::process::Command;
 
 use crate::{Workspace, stickslip};
 
-const COMMANDS: [&str; 13] = [
+const COMMANDS: [&str; 14] = [
     "collide",
     "impact",
     "laws",
@@ -16,6 +16,7 @@ const COMMANDS: [&str; 13] = [
     "asymptote",
     "converge",
     "timestep",
+    "fit",
     "completions",
     "man",
 ];

@@ -13,6 +13,7 @@ mod batch_failures;
 mod collide;
 mod completions;
 mod converge;
+mod fit;
 mod impact;
 mod impact_failures;
 mod laws;

@@ -4,7 +4,7 @@ use std::process::Command;
 
 use crate::{Workspace, stickslip};
 
-const PAGES: [&str; 14] = [
+const PAGES: [&str; 15] = [
     "stickslip-asymptote.1",
     "stickslip-collide.1",
     "stickslip-completions.1",
@@ -17,6 +17,7 @@ const PAGES: [&str; 14] = [
     "stickslip-map.1",
     "stickslip-reproduce.1",
     "stickslip-timestep.1",
+    "stickslip-fit.1",
     "stickslip-trace.1",
     "stickslip.1",
 ];

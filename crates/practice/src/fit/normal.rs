@@ -73,10 +73,18 @@ fn with_eps_n(bodies: &Bodies, wanted: f64) -> Result<f64, FitError> {
     if wanted == 1.0 {
         return Ok(0.0);
     }
-    let mut high = f64::min(MOST, (1.0 - 1e-9) * bodies.pair.law.endless_from());
-    let least = eps_n(bodies, high)?;
-    if least > wanted {
-        return Err(FitError::Unreachable { eps_n: wanted, least });
+    let most = f64::min(MOST, (1.0 - 1e-9) * bodies.pair.law.endless_from());
+    // A contact with far too much damping takes long to compute.
+    let mut high = f64::min(0.5, most);
+    loop {
+        let least = eps_n(bodies, high)?;
+        if least <= wanted {
+            break;
+        }
+        if high >= most {
+            return Err(FitError::Unreachable { eps_n: wanted, least });
+        }
+        high = f64::min(2.0 * high, most);
     }
     let mut low = 0.0;
     loop {

@@ -6,6 +6,7 @@
 mod lammps;
 
 mod fit;
+mod fit_strangers;
 mod oblique;
 mod reference;
 mod strangers;

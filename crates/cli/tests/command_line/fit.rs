@@ -1,0 +1,157 @@
+//! Fits of measured impacts.
+
+use serde_json::Value;
+
+use crate::{Workspace, stickslip};
+
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../");
+
+/// The example in SI units.
+fn example() -> String {
+    format!(
+        "fit {ROOT}examples/oblique_impacts.csv --bodies \
+         {ROOT}examples/aluminium_oxide_on_glass.json --speed 3.9"
+    )
+}
+
+/// A few exact data: e_t of the centre with κ = 6, μ = 0.2 and α = 2/7, to five digits.
+const SCALED: &str = "\
+centre_impact_angle_deg,centre_e_t,centre_e_t_error
+4,0.61437,0.01
+10,0.57341,0.01
+";
+
+#[test]
+fn the_example_as_json_and_picture() {
+    let workspace = Workspace::new();
+    let picture = workspace.path("fit.svg");
+    let line = format!("{} --format json --plot {}", example(), picture.display());
+    let ran = stickslip(&line);
+    assert_eq!((ran.code, ran.stderr.as_str()), (0, ""), "{}", ran.stdout);
+    let found: Value = serde_json::from_str(&ran.stdout).expect("JSON");
+    assert_eq!(found["schema"], "stickslip.fit/1");
+    let best = &found["minima"][0];
+    let number = |value: &Value| value.as_f64().expect("a number");
+    assert!((number(&best["kappa"]) - 2.8666).abs() < 1e-3, "{best}");
+    // k_t and κ are the same stiffness.
+    let ratio = number(&best["kappa"]) / number(&best["stiffness"]);
+    assert!((ratio / number(&found["kappa_of_unit_stiffness"]) - 1.0).abs() < 1e-12);
+    assert!(number(&best["root_mean_squares"][0]["value"]) < 0.0335, "{best}");
+    assert_eq!(found["intervals"][0]["pieces"].as_array().map(Vec::len), Some(2));
+    assert_eq!(found["mindlin"]["excluded"], true);
+    assert_eq!(found["residuals"][0]["row"], 2);
+    let boundaries = found["course"]["boundaries"].as_array().expect("boundaries");
+    let switches: Vec<_> = boundaries.iter().map(|it| (&it["below"], &it["above"])).collect();
+    assert_eq!(switches, [(&"+o-o+".into(), &"+o-".into()), (&"+o-".into(), &"+".into())]);
+    assert!(workspace.read("fit.svg").contains("best fit"));
+}
+
+#[test]
+fn the_example_as_tables() {
+    let ran = stickslip(&format!("{} --range kappa=1:10", example()));
+    assert_eq!((ran.code, ran.stderr.as_str()), (0, ""), "{}", ran.stdout);
+    for part in [
+        "κ and the damping are those of normal incidence at 3.9",
+        "Warning: Mindlin's",
+        "k_t [kg/s²]",
+        "2.866624",
+        "+o- below, + above",
+    ] {
+        assert!(ran.stdout.contains(part), "{part}: {}", ran.stdout);
+    }
+}
+
+#[test]
+fn another_law_in_scaled_units() {
+    let workspace = Workspace::with_input(SCALED);
+    let line = format!(
+        "fit {} --law granular/hertz/tsuji/mindlin --free kappa --mu 0.2 --range kappa=1:3 --eps-n 0.9 \
+         --format json",
+        workspace.path("in.csv").display()
+    );
+    let ran = stickslip(&line);
+    assert_eq!((ran.code, ran.stderr.as_str()), (0, ""), "{}", ran.stdout);
+    let found: Value = serde_json::from_str(&ran.stdout).expect("JSON");
+    assert_eq!(found["speed_m_per_s"], Value::Null);
+    assert!((found["eps_n"].as_f64().expect("a number") - 0.9).abs() < 1e-9);
+    assert_eq!(found["minima"][0]["mu"], 0.2);
+}
+
+/// Whoever asks for the impossible reads what is wrong and what is expected.
+#[test]
+fn bad_data_and_options_are_refused() {
+    let data = "centre_impact_angle_deg,centre_e_t\n10,0.7\n20,0.6\n";
+    let cases: [(&str, &str, &str); 25] = [
+        ("", "", "is empty; expected a header row"),
+        ("centre_impact_angle_deg,centre_e_t\n", "", "has no rows"),
+        ("centre_impact_angle_deg,centre_e_t\n10,\n", "", "0 data; expected 1 to"),
+        (
+            "centre_impact_angle_deg,centre_e_t\n10,0.7\n",
+            "",
+            "1 data of the tangential motion for 2",
+        ),
+        (
+            "centre_impact_angle_deg,centre_e_t\n10,nan\n20,1\n",
+            "",
+            "line 2: centre_e_t = 'nan' is not a number",
+        ),
+        (
+            "centre_impact_angle_deg,centre_e_t\n90,0.7\n20,1\n",
+            "",
+            "centre_impact_angle_deg = 90.0 is out of range",
+        ),
+        (
+            "centre_impact_angle_deg,centre_e_t\n-1,0.7\n20,1\n",
+            "",
+            "expected an angle from 0 to below 90",
+        ),
+        (
+            "centre_impact_angle_deg,centre_e_t\n0,0.7\n20,1\n",
+            "",
+            "tangential_m_per_s = 0.0 is out of range",
+        ),
+        ("centre_impact_angle_deg,e_t\n10,0.7\n", "", "column 'e_t' is unknown; expected"),
+        ("centre_impact_angle_deg,centre_e_t,centre_e_t\n10,1,1\n", "", "are both given"),
+        ("centre_e_t\n0.7\n", "", "no impact; expected"),
+        (
+            "centre_impact_angle_deg,centre_e_t,centre_e_t_error\n10,0.7,0\n20,1,1\n",
+            "",
+            "row 2: centre_e_t_error = 0.0",
+        ),
+        (
+            "centre_impact_angle_deg,centre_e_t,centre_e_t_error\n10,0.7,\n20,1,1\n",
+            "",
+            "has no error, and others have one",
+        ),
+        (
+            "centre_impact_angle_deg,centre_e_t,eps_t\n10,0.7,1\n20,1,1\n",
+            "",
+            "have no errors; expected errors",
+        ),
+        (
+            "centre_impact_angle_deg,spin_rad_per_s\n10,7\n20,1\n",
+            "",
+            "none where no bodies are known",
+        ),
+        (
+            "centre_impact_angle_deg,speed_m_per_s,centre_e_t\n10,7,1\n20,1,1\n",
+            "",
+            "has no meaning without bodies",
+        ),
+        (data, "--law nonsense", "is neither a file nor a name"),
+        (data, "--free kappa,k_t", "kappa is free twice"),
+        (data, "--free kappa", "--mu is missing"),
+        (data, "--free kappa,mu --mu 0", "expected"),
+        (data, "--free kappa,friction", "nothing that can be fitted is named"),
+        (data, "--law yade/FrictPhys_CundallStrack --eps-n 0.9", "since this law has no damping"),
+        (data, "--free damping,mu --kappa 3", "0 data of eps_n for 1 free"),
+        (data, "--range kappa=0:3", "cannot be used; expected two rising numbers above 0"),
+        (data, "--level 1", "level = 1.0 is out of range"),
+    ];
+    for (text, options, expected) in cases {
+        let workspace = Workspace::with_input(text);
+        let ran = stickslip(&format!("fit {} {options}", workspace.path("in.csv").display()));
+        assert_eq!(ran.code, 2, "{text} {options}: {} {}", ran.stdout, ran.stderr);
+        assert!(ran.stderr.contains(expected), "{text} {options}: {}", ran.stderr);
+    }
+}
