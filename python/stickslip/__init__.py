@@ -2,7 +2,7 @@
 
 Start with `collide` (one collision), `eps_t` and `collide_many` (arrays), `impact` (SI units),
 `trace` (every boundary in a window), `map` and `sweep` (xarray), `timestep` (errors of the steps of
-particle codes), `solve` (systems of your own).
+particle codes), `fit` (contact laws to measured impacts), `solve` (systems of your own).
 """
 
 from stickslip import _native
@@ -23,6 +23,7 @@ from stickslip.collisions import (
     eps_t_and_switch_count,
     psi_of_ratio,
 )
+from stickslip.fits import Fit, fit
 from stickslip.hybrid import solve
 from stickslip.impacts import (
     Bodies,
@@ -61,6 +62,7 @@ __all__ = [
     "ComputationError",
     "DenseOutput",
     "Estimate",
+    "Fit",
     "Guard",
     "HybridSystem",
     "Impacts",
@@ -88,6 +90,7 @@ __all__ = [
     "converge",
     "eps_t",
     "eps_t_and_switch_count",
+    "fit",
     "impact",
     "laws",
     "map",

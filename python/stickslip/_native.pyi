@@ -98,6 +98,22 @@ class TimeSteps:
     def largest_step(self, quantity: str, wanted: float) -> float | None: ...
     def picture(self) -> str: ...
 
+@final
+class Fit:
+    @staticmethod
+    def make(
+        columns: list[tuple[str, _Floats]],
+        bodies: Pair | None,
+        scaled: tuple[_Law, float, tuple[float, float, float]],
+        speed: float | None,
+        question: tuple[
+            list[str], list[tuple[str, float, float]], float | None, float, bool
+        ],
+        threads: int,
+    ) -> Fit: ...
+    def json(self) -> str: ...
+    def picture(self) -> str | None: ...
+
 def asymptote(kappa: tuple[float, float], psi: list[float], threads: int) -> dict[str, Any]: ...
 def converge(
     contacts: list[tuple[float, float, float]] | None, damping: float, threads: int

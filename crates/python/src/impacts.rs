@@ -8,6 +8,7 @@ use stickslip_model::{
     Body, Elasticity, Encounter, Forces, ImpactReport, InvalidParameter, Motion, Sphere, Vector3,
     Wall, WallMotion, quantity,
 };
+use stickslip_practice::fit::Bodies;
 
 use crate::arrays::{expect_equal, numbers};
 use crate::engines::{Choice, LawChoice, document};
@@ -50,6 +51,13 @@ pub struct Pair {
     other: Body,
     forces: Forces,
     reduced: stickslip_model::Pair,
+}
+
+impl Pair {
+    /// The bodies of a fit.
+    pub fn fitted(&self) -> Bodies {
+        Bodies::of_sphere(&self.sphere, self.reduced)
+    }
 }
 
 #[pymethods]

@@ -4,13 +4,15 @@
 //! arrays, or the JSON that the program prints. Names, shapes and units are documented in the Python
 //! functions that call these, in `python/stickslip`.
 //!
-//! Start reading in `arrays`; then `collision`, `impacts`, `planes`, `steps`, `studies` (results), `hybrid`
+//! Start reading in `arrays`; then `collision`, `impacts`, `planes`, `steps`, `fits`, `studies`
+//! (results), `hybrid`
 //! (systems of one's own), `engines`, `parallel` and `failure` (what they share).
 
 mod arrays;
 mod collision;
 mod engines;
 mod failure;
+mod fits;
 mod hybrid;
 mod impacts;
 mod parallel;
@@ -29,6 +31,8 @@ mod _native {
     use super::engines::{has_fused_products, laws, processor_has_fused_products, version};
     #[pymodule_export]
     use super::failure::ComputationError;
+    #[pymodule_export]
+    use super::fits::Fit;
     #[pymodule_export]
     use super::hybrid::{evaluate_dense, run_hybrid};
     #[pymodule_export]

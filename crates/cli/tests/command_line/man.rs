@@ -9,6 +9,7 @@ const PAGES: [&str; 15] = [
     "stickslip-collide.1",
     "stickslip-completions.1",
     "stickslip-converge.1",
+    "stickslip-fit.1",
     "stickslip-impact.1",
     "stickslip-join.1",
     "stickslip-laws.1",
@@ -17,7 +18,6 @@ const PAGES: [&str; 15] = [
     "stickslip-map.1",
     "stickslip-reproduce.1",
     "stickslip-timestep.1",
-    "stickslip-fit.1",
     "stickslip-trace.1",
     "stickslip.1",
 ];

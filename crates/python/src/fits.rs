@@ -1,0 +1,112 @@
+//! Fits of contact laws to measured impacts.
+
+use numpy::PyReadonlyArray1;
+use pyo3::prelude::*;
+use serde_json::to_string;
+use stickslip_plane::Range;
+use stickslip_plane::progress::SILENT;
+use stickslip_practice::fit::{self, Bodies, Column, FitError, Free, Settings, Values};
+
+use crate::arrays::{expect_equal, numbers};
+use crate::engines::LawChoice;
+use crate::failure::{Failure, bad_input, failed};
+use crate::impacts::Pair;
+use crate::parallel::Threads;
+
+/// What is fitted, the ranges, ε_n, the level, and whether errors are relative.
+#[derive(FromPyObject)]
+struct Question(Vec<String>, Vec<(String, f64, f64)>, Option<f64>, f64, bool);
+
+/// The law, α, and κ, μ and the damping of bodies that are not known.
+#[derive(FromPyObject)]
+struct Scaled(LawChoice, f64, (f64, f64, f64));
+
+/// A fit.
+#[pyclass(frozen, module = "stickslip._native")]
+pub struct Fit(fit::Fit);
+
+#[pymethods]
+impl Fit {
+    /// Fits the data in columns, in which NaN is a missing value.
+    #[staticmethod]
+    fn make(
+        py: Python<'_>,
+        columns: Vec<(String, PyReadonlyArray1<'_, f64>)>,
+        bodies: Option<PyRef<'_, Pair>>,
+        scaled: Scaled,
+        speed: Option<f64>,
+        question: Question,
+        threads: usize,
+    ) -> PyResult<Self> {
+        let columns = columns.iter().map(|(name, values)| {
+            let values = numbers(values)?.into_iter();
+            let values = values.map(|value| (!value.is_nan()).then_some(value)).collect();
+            Ok(Column { name: name.clone(), values })
+        });
+        let columns: Vec<Column> = columns.collect::<PyResult<_>>()?;
+        expect_equal(columns.iter().map(|column| column.values.len()))?;
+        let rows: Vec<usize> = (0..columns.first().map_or(0, |it| it.values.len())).collect();
+        let bodies = bodies.map_or_else(|| scaled.bodies(), |pair| Ok(pair.fitted()))?;
+        let data = fit::data(&columns, &rows, speed, bodies.are_scaled()).map_err(bad_input)?;
+        let settings = question.settings(Settings::new(bodies, data))?;
+        let pool = Threads::pool(threads)?;
+        let found = py.detach(|| pool.install(|| fit::run(&settings, SILENT)));
+        found.map(Self).map_err(exception)
+    }
+
+    /// The JSON that the program prints.
+    fn json(&self) -> PyResult<String> {
+        to_string(&self.0).map_err(failed)
+    }
+
+    /// Data, fit and boundaries over the angle, as an SVG document, if there is an angle.
+    fn picture(&self) -> Option<String> {
+        self.0.picture().map(|picture| picture.document())
+    }
+}
+
+impl Question {
+    fn settings(self, settings: Settings) -> PyResult<Settings> {
+        let Self(free, ranges, eps_n, level, relative_errors) = self;
+        let find = |name: &str| {
+            Free::find(name).ok_or_else(|| {
+                let names = Free::ALL.map(Free::name);
+                bad_input(format!("free = {name:?}; expected \"k_t\" or one of {names:?}"))
+            })
+        };
+        let free = free.iter().map(|name| find(name)).collect::<PyResult<_>>()?;
+        let mut settings = Settings { free, eps_n, level, relative_errors, ..settings };
+        for (name, low, high) in ranges {
+            *settings.ranges.of_mut(find(&name)?) = Range { low, high };
+        }
+        Ok(settings)
+    }
+}
+
+impl Scaled {
+    fn bodies(&self) -> PyResult<Bodies> {
+        let Self(law, alpha, (kappa, mu, damping)) = self;
+        let (law, tangential_damping) = law.law()?;
+        let values =
+            Values { kappa: *kappa, mu: *mu, tangential_damping, damping: *damping };
+        stickslip_model::Contact::new(*kappa, 1.0, *damping)
+            .and_then(|contact| contact.with_law(law, tangential_damping))
+            .and_then(|_| Bodies::scaled(law, *alpha, &values))
+            .map_err(bad_input)
+    }
+}
+
+fn exception(error: FitError) -> PyErr {
+    match error {
+        FitError::Contact(failure) => {
+            let contact = &failure.contact;
+            let (kappa, psi, damping) = (contact.kappa(), contact.psi(), contact.damping());
+            let place = format!("kappa = {kappa:?}, psi = {psi:?}, damping = {damping:?}: ");
+            Failure::from(failure.source).exception(&place)
+        }
+        FitError::Boundaries(_) | FitError::Search(_) => failed(error),
+        FitError::Settings(_) | FitError::Parameter(_) | FitError::Unreachable { .. } => {
+            bad_input(error)
+        }
+    }
+}

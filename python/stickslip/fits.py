@@ -1,0 +1,135 @@
+"""Fits of contact laws to measured impacts."""
+
+import json
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from stickslip import _laws, _native
+from stickslip._laws import Law
+from stickslip.collisions import _threads
+from stickslip.impacts import Bodies
+
+
+@dataclass(frozen=True)
+class Minimum:
+    """A minimum of the misfit."""
+
+    #: Stiffness and damping at normal incidence, in scaled units.
+    kappa: float
+    mu: float
+    tangential_damping: float
+    damping: float
+    #: k_t in kg/s², or K in kg/(s² √m) where the stiffness is Mindlin's; None without bodies.
+    stiffness: float | None
+    #: Sum of the squares of the residuals over their errors, which count as 1 if none is known.
+    misfit: float
+    #: Root mean square of the residuals of each quantity.
+    root_mean_squares: Mapping[str, float]
+    #: Whether a free number is at an end of its range.
+    at_end_of_range: bool
+
+
+class Fit:
+    """A fit: all minima with the best one first, and intervals."""
+
+    def __init__(self, native: _native.Fit) -> None:
+        self._native = native
+        #: All numbers, as the program prints them.
+        self.data: dict[str, Any] = json.loads(native.json())
+        #: All minima in the ranges, the best one first.
+        self.minima: list[Minimum] = [_minimum(one) for one in self.data["minima"]]
+        #: The pieces (low, high) of the interval of each free number; None without an interval.
+        self.intervals: dict[str, list[tuple[float, float]] | None] = {
+            one["parameter"]: _pieces(one["pieces"]) for one in self.data["intervals"]
+        }
+
+    @property
+    def best(self) -> Minimum:
+        """The best minimum."""
+        return self.minima[0]
+
+    def picture(self) -> str | None:
+        """Data, fit and the boundaries of its switches over the angle as an SVG document."""
+        return self._native.picture()
+
+    def _repr_html_(self) -> str | None:
+        return self.picture()
+
+    def __repr__(self) -> str:
+        best = self.best
+        return f"<Fit: kappa = {best.kappa:.6g}, mu = {best.mu:.6g}, {len(self.minima)} minima>"
+
+
+def fit(
+    data: Mapping[str, ArrayLike],
+    bodies: Bodies | Mapping[str, Any] | str | os.PathLike[str] | None = None,
+    *,
+    speed_m_per_s: float | None = None,
+    free: Iterable[str] = ("k_t", "mu"),
+    ranges: Mapping[str, tuple[float, float]] | None = None,
+    eps_n: float | None = None,
+    level: float = 0.95,
+    relative_errors: bool = False,
+    law: Law | None = None,
+    kappa: float = 1.0,
+    mu: float = 1.0,
+    alpha: float = 2 / 7,
+    damping: float = 0.0,
+    tangential_damping: float = 0.0,
+    threads: int | None = None,
+) -> Fit:
+    """Fits the stiffness and the friction of a contact law, or other numbers, to measured impacts.
+
+    data: columns of equal length by name, in which NaN is a missing value; `stickslip fit --help`
+    lists the names. bodies: as in `impact`; without them all impacts have the same unknown speed,
+    and kappa, mu, alpha, damping and tangential_damping are what is not fitted. speed_m_per_s: that
+    of all impacts, if the data do not have it. free: up to two of "k_t" (or "kappa"), "mu" and
+    "tangential_damping"; and "damping", which needs data of eps_n. ranges: where each is looked for,
+    the stiffness as kappa at normal incidence. eps_n: at normal incidence, decides the damping.
+    level: of the intervals. relative_errors: use only the ratios of the errors, as without errors.
+    law: the contact law; `Bodies` have their own. threads: 1 to 1024, or None for one for each core;
+    results do not depend on it.
+
+    Raises ValueError for bad data and parameters, and ComputationError where an impact has no result.
+
+    >>> angles = [5.0, 10.0, 20.0, 30.0, 45.0, 60.0]
+    >>> e_t = [0.6069, 0.5735, 0.5669, 0.5848, 0.6571, 0.7735]
+    >>> data = {"centre_impact_angle_deg": angles, "centre_e_t": e_t}
+    >>> found = fit(data, free=["mu"], kappa=6.0)
+    >>> found.data["schema"], len(found.intervals["mu"])
+    ('stickslip.fit/1', 1)
+    """
+    pair = None
+    if bodies is not None:
+        if isinstance(bodies, Bodies) and law is not None:
+            raise ValueError(f"law = {law!r} is given for Bodies; expected in Bodies(..., law=...)")
+        pair = (bodies if isinstance(bodies, Bodies) else Bodies.read(bodies, law))._pair
+    columns = [(name, _column(name, values)) for name, values in data.items()]
+    chosen = (_laws.arguments(law, tangential_damping), float(alpha))
+    scaled = (*chosen, (float(kappa), float(mu), float(damping)))
+    limits = [(name, float(low), float(high)) for name, (low, high) in (ranges or {}).items()]
+    question = (list(free), limits, eps_n, float(level), bool(relative_errors))
+    speed = None if speed_m_per_s is None else float(speed_m_per_s)
+    native = _native.Fit.make(columns, pair, scaled, speed, question, _threads(threads))
+    return Fit(native)
+
+
+def _column(name: str, values: ArrayLike) -> np.ndarray[Any, np.dtype[np.float64]]:
+    column = np.array(values, dtype=np.float64)
+    if column.ndim != 1:
+        raise ValueError(f"{name} has {column.ndim} dimensions; expected 1")
+    return column
+
+
+def _minimum(fields: dict[str, Any]) -> Minimum:
+    squares = {one["quantity"]: one["value"] for one in fields["root_mean_squares"]}
+    return Minimum(**fields | {"root_mean_squares": squares})
+
+
+def _pieces(pieces: list[dict[str, Any]] | None) -> list[tuple[float, float]] | None:
+    return None if pieces is None else [(piece["low"], piece["high"]) for piece in pieces]
