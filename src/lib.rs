@@ -16,7 +16,7 @@ pub use stickslip_plane as plane;
 #[cfg(feature = "figure")]
 pub use stickslip_figure as figure;
 
-/// What users of particle codes ask: errors of time steps.
+/// What users of particle codes ask: errors of time steps, constants from experiments.
 #[cfg(feature = "practice")]
 pub use stickslip_practice as practice;
 

@@ -3,6 +3,9 @@
 //! [`time_steps`]: how wrong the coefficients of restitution are at the time step of a simulation,
 //! and which step keeps their errors below a wanted one.
 //!
+//! [`mod@fit`]: the stiffness, friction and damping of a contact law with which it comes
+//! closest to measured impacts.
+//!
 //! Each question is a function from plain settings to a result. Parallel loops run on the rayon
 //! pool of the caller, and results do not depend on the number of threads.
 //!

@@ -87,8 +87,7 @@ impl Scaled {
     fn bodies(&self) -> PyResult<Bodies> {
         let Self(law, alpha, (kappa, mu, damping)) = self;
         let (law, tangential_damping) = law.law()?;
-        let values =
-            Values { kappa: *kappa, mu: *mu, tangential_damping, damping: *damping };
+        let values = Values { kappa: *kappa, mu: *mu, tangential_damping, damping: *damping };
         stickslip_model::Contact::new(*kappa, 1.0, *damping)
             .and_then(|contact| contact.with_law(law, tangential_damping))
             .and_then(|_| Bodies::scaled(law, *alpha, &values))

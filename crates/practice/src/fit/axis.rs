@@ -93,7 +93,7 @@ fn rising(low: f64, high: f64, step: impl Fn(f64) -> f64) -> Vec<f64> {
     loop {
         at += step(at);
         // No place is so close to the end that rounding would count.
-        if !(at < high - 0.01 * step(at)) {
+        if at >= high - 0.01 * step(at) {
             places.push(high);
             return places;
         }

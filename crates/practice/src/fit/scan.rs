@@ -69,14 +69,14 @@ impl Lines<'_> {
             Some(inner) => inner.places.par_iter().map(|at| self.misfit(outer, *at)).collect(),
             None => vec![self.misfit(outer, 0.0)],
         };
-        self.line_of(outer, misfits.into_iter().collect::<Result<_, _>>()?)
+        self.line_of(outer, &misfits.into_iter().collect::<Result<Vec<_>, _>>()?)
     }
 
     /// The line whose misfits at the places of the inner axis are known.
-    pub fn line_of(&self, outer: f64, misfits: Vec<f64>) -> Result<Line, FitError> {
-        let (bottoms, basins) = bottoms(&misfits);
+    pub fn line_of(&self, outer: f64, misfits: &[f64]) -> Result<Line, FitError> {
+        let (bottoms, basins) = bottoms(misfits);
         let minima: Result<Vec<_>, _> =
-            bottoms.into_iter().map(|nodes| self.line_minimum(outer, nodes, &misfits)).collect();
+            bottoms.into_iter().map(|nodes| self.line_minimum(outer, nodes, misfits)).collect();
         Ok(Line { at: outer, basins, minima: minima? })
     }
 

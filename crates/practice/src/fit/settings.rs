@@ -193,8 +193,7 @@ impl Settings {
             let (least, open, most) = match free {
                 Free::Kappa => (0.0, true, Self::LARGEST_KAPPA),
                 Free::Mu => (0.0, true, 100.0),
-                Free::TangentialDamping => (0.0, false, 100.0),
-                Free::Damping => (0.0, false, 100.0),
+                Free::TangentialDamping | Free::Damping => (0.0, false, 100.0),
             };
             let above = if open { low > least } else { low >= least };
             if !(above && low < high && high <= most) {

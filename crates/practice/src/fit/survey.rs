@@ -145,7 +145,7 @@ impl Survey {
         settings.validate()?;
         let data = settings.data_of(false).map(|(_, datum)| datum);
         let problem = Problem::new(settings.bodies, self.units, data);
-        Self { problem, settings, ..self.clone() }.fit()
+        Self { settings, problem, ..self.clone() }.fit()
     }
 
     /// The misfit of the tangential motion with some values.
@@ -203,7 +203,7 @@ impl Survey {
                 let misfits = (0..others).map(|other| {
                     if outer == 0 { misfit(index, other) } else { misfit(other, index) }
                 });
-                plane.line_of(at, misfits.collect())
+                plane.line_of(at, &misfits.collect::<Vec<f64>>())
             })
             .collect();
         lines.into_iter().collect()
