@@ -50,7 +50,8 @@ fn tables(out: &mut dyn Write, fit: &Fit) -> io::Result<()> {
     writeln!(out, "Fit of {of_data}, law {}", fit.law.equations())?;
     match fit.speed_m_per_s {
         Some(speed) => {
-            writeln!(out, "κ and the damping are those of normal incidence at {speed} m/s")?
+            let speed = number(speed);
+            writeln!(out, "κ and the damping are those of normal incidence at {speed} m/s")?;
         }
         None => writeln!(out, "κ and the damping are those of normal incidence")?,
     }

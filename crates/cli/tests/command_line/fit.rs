@@ -139,7 +139,7 @@ fn bad_data_and_options_are_refused() {
             "has no meaning without bodies",
         ),
         (data, "--law nonsense", "is neither a file nor a name"),
-        (data, "--free kappa,k_t", "kappa is free twice"),
+        (data, "--free kappa,k_t --mu 0.2", "kappa is free twice"),
         (data, "--free kappa", "--mu is missing"),
         (data, "--free kappa,mu --mu 0", "expected"),
         (data, "--free kappa,friction", "nothing that can be fitted is named"),
