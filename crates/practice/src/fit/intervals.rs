@@ -62,9 +62,11 @@ pub fn threshold(
 
 /// A place of a profile.
 #[derive(Clone, Copy)]
-struct Place {
+struct Place<'a> {
     at: f64,
     misfit: f64,
+    /// The lines between which it is; twice the same if it is one of them.
+    between: [&'a Line; 2],
 }
 
 /// The interval of the outer axis, given its lines and the coordinates and misfits of all minima.
@@ -76,18 +78,22 @@ pub fn interval(
 ) -> Result<Interval, FitError> {
     let parameter = lines.outer.free;
     let Some(threshold) = threshold else { return Ok(Interval { parameter, pieces: None }) };
-    let mut places: Vec<Place> =
-        found.iter().map(|line| Place { at: line.at, misfit: line.best().misfit }).collect();
+    let mut places = Vec::new();
+    for line in found {
+        places.push(Place { at: line.at, misfit: line.best().misfit, between: [line, line] });
+    }
     // A narrow piece may lie between two lines: then there is a minimum in it.
     for (at, misfit) in minima {
-        places.push(Place { at, misfit: misfit.min(lines.profile(at)?) });
+        let upper = found.partition_point(|line| line.at < at).clamp(1, found.len() - 1);
+        let between = [&found[upper - 1], &found[upper]];
+        places.push(Place { at, misfit: misfit.min(lines.profile(at, between)?), between });
     }
     places.sort_by(|a, b| a.at.total_cmp(&b.at));
-    let inside = |place: &Place| place.misfit <= threshold;
-    let height = |at: f64| Ok(lines.profile(at)? - threshold);
-    let crossing = |a: &Place, b: &Place| {
+    let inside = |place: &Place<'_>| place.misfit <= threshold;
+    let crossing = |a: &Place<'_>, b: &Place<'_>| {
         let ends = [a, b].map(|place| (place.at, place.misfit - threshold));
-        root(ends, height)
+        let between = [a.between[0], b.between[1]];
+        root(ends, |at| Ok(lines.profile(at, between)? - threshold))
     };
     let mut pieces = Vec::new();
     let mut open: Option<(f64, bool)> = None;

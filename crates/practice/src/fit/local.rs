@@ -55,7 +55,7 @@ impl Lines<'_> {
         let (low, high) = self.outer.ends();
         let step = self.outer.step(start);
         let around = ((start - step).max(low), (start + step).min(high));
-        let (at, misfit) = least(around, |at| self.misfit(at, 0.0))?;
+        let (at, misfit) = least(around, 1e-8, |at| self.misfit(at, 0.0))?;
         Ok(if misfit < self.misfit(start, 0.0)? { at } else { start })
     }
 

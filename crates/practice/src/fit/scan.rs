@@ -42,6 +42,13 @@ pub struct Line {
     pub minima: Vec<LineMinimum>,
 }
 
+/// Tolerances of minima along lines, in parts of the distance of places: in the global search, and
+/// where the end of an interval is looked for.
+const SCANNED: f64 = 1e-4;
+const PROFILED: f64 = 1e-8;
+/// Places on both sides of a minimum at which that of a line nearby is looked for.
+const AROUND: usize = 3;
+
 /// Whether two misfits differ by no more than rounding.
 fn equal(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-12 * (1.0 + a.abs().max(b.abs()))
@@ -75,34 +82,55 @@ impl Lines<'_> {
     /// The line whose misfits at the places of the inner axis are known.
     pub fn line_of(&self, outer: f64, misfits: &[f64]) -> Result<Line, FitError> {
         let (bottoms, basins) = bottoms(misfits);
-        let minima: Result<Vec<_>, _> =
-            bottoms.into_iter().map(|nodes| self.line_minimum(outer, nodes, misfits)).collect();
-        Ok(Line { at: outer, basins, minima: minima? })
+        let minima =
+            bottoms.into_iter().map(|nodes| self.line_minimum(outer, nodes, (0, misfits), SCANNED));
+        Ok(Line { at: outer, basins, minima: minima.collect::<Result<_, _>>()? })
     }
 
+    /// The minimum around places of the inner axis that are the lowest of some, of which `start` is
+    /// the first.
     fn line_minimum(
         &self,
         outer: f64,
-        nodes: (usize, usize),
-        misfits: &[f64],
+        (first, last): (usize, usize),
+        (start, misfits): (usize, &[f64]),
+        tolerance: f64,
     ) -> Result<LineMinimum, FitError> {
-        let Some(inner) = self.inner else {
-            return Ok(LineMinimum { nodes, at: 0.0, misfit: misfits[0] });
-        };
-        let (first, last) = nodes;
-        let place = LineMinimum { nodes, at: inner.places[first], misfit: misfits[first] };
+        let nodes = (start + first, start + last);
+        let misfit = misfits[first];
+        let Some(inner) = self.inner else { return Ok(LineMinimum { nodes, at: 0.0, misfit }) };
+        let place = LineMinimum { nodes, at: inner.places[nodes.0], misfit };
         if first != last {
             return Ok(place);
         }
-        let low = inner.places[first.saturating_sub(1)];
-        let high = inner.places[(last + 1).min(inner.places.len() - 1)];
-        let (at, misfit) = least((low, high), |at| self.misfit(outer, at))?;
+        let low = inner.places[nodes.0.saturating_sub(1)];
+        let high = inner.places[(nodes.1 + 1).min(inner.places.len() - 1)];
+        let (at, misfit) = least((low, high), tolerance, |at| self.misfit(outer, at))?;
         Ok(if misfit < place.misfit { LineMinimum { nodes, at, misfit } } else { place })
     }
 
-    /// The least misfit over the inner axis, at a coordinate of the outer one.
-    pub fn profile(&self, outer: f64) -> Result<f64, FitError> {
-        Ok(self.line(outer)?.best().misfit)
+    /// The least misfit over the inner axis, at a coordinate of the outer one between two lines. It is
+    /// looked for around the minima of both.
+    pub fn profile(&self, outer: f64, between: [&Line; 2]) -> Result<f64, FitError> {
+        let Some(inner) = self.inner else { return self.misfit(outer, 0.0) };
+        let mut near = vec![false; inner.places.len()];
+        for minimum in between.iter().flat_map(|line| &line.minima) {
+            let end = (minimum.nodes.1 + AROUND + 1).min(near.len());
+            near[minimum.nodes.0.saturating_sub(AROUND)..end].fill(true);
+        }
+        let mut best = f64::INFINITY;
+        let mut first = 0;
+        while let Some(from) = near[first..].iter().position(|near| *near).map(|it| first + it) {
+            let to = near[from..].iter().position(|near| !near).map_or(near.len(), |it| from + it);
+            let misfits = inner.places[from..to].iter().map(|at| self.misfit(outer, *at));
+            let misfits = misfits.collect::<Result<Vec<f64>, _>>()?;
+            for nodes in bottoms(&misfits).0 {
+                let found = self.line_minimum(outer, nodes, (from, &misfits), PROFILED)?;
+                best = best.min(found.misfit);
+            }
+            first = to;
+        }
+        Ok(best)
     }
 }
 

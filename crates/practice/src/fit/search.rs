@@ -9,21 +9,22 @@ use argmin::solver::neldermead::NelderMead;
 
 use super::FitError;
 
-/// The place of the one minimum of `cost` in an interval and the value there, by Brent's method, to
-/// 1e-8 of the interval.
+/// The place of the one minimum of `cost` in an interval and the value there, by Brent's method, to a
+/// `tolerance` in parts of the interval.
 pub fn least(
     (low, high): (f64, f64),
+    tolerance: f64,
     cost: impl Fn(f64) -> Result<f64, FitError>,
 ) -> Result<(f64, f64), FitError> {
     let inside = |part: f64| low + part * (high - low);
-    let solver = BrentOpt::new(0.0, 1.0).set_tolerance(1e-8, 1e-8);
+    let solver = BrentOpt::new(0.0, 1.0).set_tolerance(tolerance, tolerance);
     let cost = |part: &f64| cost(inside(*part));
     let (part, value) = solve(cost, solver, |state| state.max_iters(100))?;
     Ok((inside(part), value))
 }
 
 /// The place of a zero of `height` between two places at which its values are known and have two
-/// signs, by Brent's method, to 1e-10 of their distance.
+/// signs, by Brent's method, to 1e-8 of their distance.
 pub fn root(
     [(low, at_low), (high, at_high)]: [(f64, f64); 2],
     height: impl Fn(f64) -> Result<f64, FitError>,
@@ -32,7 +33,7 @@ pub fn root(
         return Ok(if at_low == 0.0 { low } else { high });
     }
     let inside = |part: f64| low + part * (high - low);
-    let solver = BrentRoot::new(0.0, 1.0, 1e-10);
+    let solver = BrentRoot::new(0.0, 1.0, 1e-8);
     let height = |part: &f64| match *part {
         0.0 => Ok(at_low),
         1.0 => Ok(at_high),
@@ -114,13 +115,13 @@ mod tests {
 
     #[test]
     fn minima_and_roots() {
-        let (at, value) = least((1.0, 3.0), |x| Ok((x - 1.7).powi(2) + 2.0)).unwrap();
+        let (at, value) = least((1.0, 3.0), 1e-8, |x| Ok((x - 1.7).powi(2) + 2.0)).unwrap();
         assert!((at - 1.7).abs() < 1e-7 && (value - 2.0).abs() < 1e-14);
         // A kink is a minimum too.
-        let (at, _) = least((1.0, 3.0), |x: f64| Ok((x - 1.7).abs())).unwrap();
+        let (at, _) = least((1.0, 3.0), 1e-8, |x: f64| Ok((x - 1.7).abs())).unwrap();
         assert!((at - 1.7).abs() < 1e-7);
         let zero = root([(1.0, -1.0), (3.0, 7.0)], |x| Ok(x * x - 2.0)).unwrap();
-        assert!((zero - 2.0_f64.sqrt()).abs() < 1e-9);
+        assert!((zero - 2.0_f64.sqrt()).abs() < 1e-7);
         let bowl = |[x, y]: [f64; 2]| Ok(1e9 * ((x - 1.0).powi(2) + 3.0 * (y + 0.5).powi(2)));
         let ([x, y], _) = least_near([0.0, 0.0], [0.1, 0.1], bowl).unwrap();
         assert!((x - 1.0).abs() < 1e-6 && (y + 0.5).abs() < 1e-6, "{x} {y}");
@@ -129,7 +130,7 @@ mod tests {
     #[test]
     fn failures_come_through() {
         let expected = FitError::Search("broken".to_owned());
-        assert_eq!(least((0.0, 1.0), broken).unwrap_err(), expected);
+        assert_eq!(least((0.0, 1.0), 1e-8, broken).unwrap_err(), expected);
         assert_eq!(root([(0.0, -1.0), (1.0, 1.0)], broken).unwrap_err(), expected);
         assert_eq!(least_near([0.0; 2], [0.1; 2], broken).unwrap_err(), expected);
     }

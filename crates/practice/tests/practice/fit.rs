@@ -27,7 +27,8 @@ fn near(found: &Fit, kappa: f64, mu: f64) -> Option<&Minimum> {
 #[test]
 fn all_minima_of_the_aluminium_oxide_sphere() {
     let (bodies, data) = oblique::aluminium_oxide(Law::PAPER);
-    let found = fit::run(&Settings::new(bodies, data), SILENT).unwrap();
+    let settings = Settings::new(bodies, data);
+    let found = fit::run(&settings, SILENT).unwrap();
     let best = &found.minima[0];
     assert!((best.values.kappa - 2.8666).abs() < 1e-3, "{best:?}");
     assert!((best.values.mu - 0.09368).abs() < 1e-4, "{best:?}");
@@ -40,6 +41,19 @@ fn all_minima_of_the_aluminium_oxide_sphere() {
     assert_eq!(kappa.pieces.as_ref().unwrap().len(), 2, "{kappa:?}");
     assert!(kappa.holds(2.9) == Some(true) && kappa.holds(60.0) == Some(true), "{kappa:?}");
     assert_eq!(kappa.holds(27.0), Some(false));
+    // At the ends of the pieces the least misfit is the threshold.
+    let survey = Survey::new(&settings, SILENT).unwrap();
+    for piece in kappa.pieces.as_ref().unwrap() {
+        for kappa in [piece.low, piece.high] {
+            let misfit = |i: u32| {
+                let mu = 0.02 * 25.0_f64.powf(f64::from(i) / 40_000.0);
+                survey.misfit(&Values { kappa, mu, ..best.values }).unwrap()
+            };
+            let least = (0..=40_000).map(misfit).fold(f64::INFINITY, f64::min);
+            let expected = found.threshold.unwrap();
+            assert!((least / expected - 1.0).abs() < 1e-6, "{kappa}: {least} {expected}");
+        }
+    }
     // The friction that was measured.
     assert_eq!(found.intervals[1].holds(0.092), Some(true), "{:?}", found.intervals[1]);
     // Mindlin's stiffness looks like the obvious choice.
