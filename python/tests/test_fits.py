@@ -26,7 +26,7 @@ def test_exact_data_give_back_their_numbers() -> None:
     (piece,) = found.intervals["kappa"] or []
     assert piece[0] <= found.best.kappa <= piece[1]
     assert "best fit" in (found.picture() or "")
-    assert "2 minima" not in repr(found) or len(found.minima) == 2
+    assert f"{len(found.minima)} minima" in repr(found)
 
 
 def test_the_example_in_si_units() -> None:

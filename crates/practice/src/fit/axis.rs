@@ -25,12 +25,14 @@ pub struct Axis {
     pub free: Free,
     /// The places, as coordinates.
     pub places: Vec<f64>,
+    range: Range,
 }
 
 impl Axis {
     /// The axis of a number in a range. `phase` is the largest phase of the spring in a contact over
     /// √κ, where κ is that of normal incidence.
-    pub fn new(free: Free, Range { low, high }: Range, phase: f64) -> Self {
+    pub fn new(free: Free, range: Range, phase: f64) -> Self {
+        let Range { low, high } = range;
         let places = match free {
             Free::Kappa => {
                 let longest = PI / (PLACES_IN_HALF_PERIOD * phase);
@@ -41,11 +43,16 @@ impl Axis {
             Free::TangentialDamping => rising(low, high, |_| DASHPOT_STEP),
             Free::Damping => rising(low, high, |_| (high - low) / f64::from(DAMPING_PLACES - 1)),
         };
-        Self { free, places }
+        Self { free, places, range }
     }
 
     /// The value at a coordinate.
     pub fn value(&self, at: f64) -> f64 {
+        // The ends are those of the range, without rounding.
+        let ends = self.ends();
+        if at == ends.0 || at == ends.1 {
+            return if at == ends.0 { self.range.low } else { self.range.high };
+        }
         match self.free {
             Free::Kappa => at * at,
             Free::Mu => at.exp(),

@@ -69,7 +69,7 @@ struct Place<'a> {
     between: [&'a Line; 2],
 }
 
-/// The interval of the outer axis, given its lines and the coordinates and misfits of all minima.
+/// The interval of the outer axis, given its lines and the values and misfits of all minima.
 pub fn interval(
     lines: &Lines<'_>,
     found: &[Line],
@@ -83,7 +83,10 @@ pub fn interval(
         places.push(Place { at: line.at, misfit: line.best().misfit, between: [line, line] });
     }
     // A narrow piece may lie between two lines: then there is a minimum in it.
-    for (at, misfit) in minima {
+    let mut known = Vec::new();
+    for (value, misfit) in minima {
+        let at = lines.outer.coordinate(value);
+        known.push((at, value));
         let upper = found.partition_point(|line| line.at < at).clamp(1, found.len() - 1);
         let between = [&found[upper - 1], &found[upper]];
         places.push(Place { at, misfit: misfit.min(lines.profile(at, between)?), between });
@@ -116,8 +119,13 @@ pub fn interval(
     if let (Some((low, from_end_of_range)), Some(last)) = (open, places.last()) {
         pieces.push(Piece { low, high: last.at, from_end_of_range, to_end_of_range: true });
     }
+    // An interval that is one minimum holds it, whatever the rounding of its coordinate.
+    let value = |at: f64| {
+        let minimum = known.iter().find(|minimum| minimum.0 == at);
+        minimum.map_or_else(|| lines.outer.value(at), |minimum| minimum.1)
+    };
     for piece in &mut pieces {
-        (piece.low, piece.high) = (lines.outer.value(piece.low), lines.outer.value(piece.high));
+        (piece.low, piece.high) = (value(piece.low), value(piece.high));
     }
     Ok(Interval { parameter, pieces: Some(pieces) })
 }

@@ -88,9 +88,8 @@ impl Survey {
         let mut intervals = Vec::new();
         for (index, found) in lines.iter().enumerate() {
             let plane = self.lines(index);
-            let axis = plane.outer;
-            let minima = bottoms.iter();
-            let minima = minima.map(|it| (axis.coordinate(of(axis.free, &it.values)), it.misfit));
+            let free = plane.outer.free;
+            let minima = bottoms.iter().map(|it| (of(free, &it.values), it.misfit));
             intervals.push(interval(&plane, found, minima, threshold)?);
         }
         let minima: Result<Vec<_>, _> = bottoms.iter().map(|it| self.minimum(it)).collect();
