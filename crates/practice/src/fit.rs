@@ -18,7 +18,7 @@
 //!    ones is not above a threshold: it is computed over the whole range, and may have several pieces.
 //! 5. The angles at which the switches of the best fit change are traced.
 //!
-//! Start reading here; then, in this order: `data`, `columns`, `bodies`, `settings` (what is asked), `problem`
+//! Start reading here; then, in this order: `data`, `columns`, `bodies`, `free`, `settings` (what is asked), `problem`
 //! (what the model says), `axis`, `scan`, `local` (the search), `quantile`, `intervals`, `normal`
 //! (damping), `course`, `picture`.
 
@@ -27,6 +27,7 @@ mod bodies;
 mod columns;
 mod course;
 mod data;
+mod free;
 mod intervals;
 mod local;
 mod normal;
@@ -47,9 +48,10 @@ pub use bodies::{Bodies, Values};
 pub use columns::{Column, InvalidColumns, data};
 pub use course::{Boundary, Course};
 pub use data::{Datum, Measured};
+pub use free::{Free, Ranges};
 pub use intervals::{Interval, Piece};
 pub use normal::DampingFit;
-pub use settings::{Free, InvalidFit, Ranges, Settings};
+pub use settings::{InvalidFit, Settings};
 pub use survey::Survey;
 
 /// The name of the layout of the JSON, with its version.

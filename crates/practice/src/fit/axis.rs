@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use stickslip_plane::Range;
 
 use super::bodies::Values;
-use super::settings::Free;
+use super::free::Free;
 
 /// Places of the global search in half a period of the tangential spring. ε_t goes up and down once
 /// while the phase √κ t_c of the spring grows by 2π.

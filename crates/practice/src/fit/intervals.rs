@@ -1,10 +1,10 @@
 //! Intervals from profiles: where the least misfit over the other numbers is not above a threshold.
 
 use super::FitError;
+use super::free::Free;
 use super::quantile::{normal, student};
 use super::scan::{Line, Lines};
 use super::search::root;
-use super::settings::Free;
 
 /// The interval of a fitted number, which may consist of several pieces.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,10 +7,10 @@
 use super::FitError;
 use super::axis::Axis;
 use super::bodies::Values;
+use super::free::Free;
 use super::problem::{Problem, Slopes};
 use super::scan::Lines;
 use super::search::{least, least_near};
-use super::settings::Free;
 
 /// The bottom of a valley.
 #[derive(Clone, Copy, Debug)]

@@ -5,10 +5,11 @@ use stickslip_model::{Contact, Engine};
 use super::FitError;
 use super::axis::Axis;
 use super::bodies::{Bodies, Units};
+use super::free::Free;
 use super::intervals::{Interval, interval, threshold};
 use super::problem::Problem;
 use super::scan::{Line, Lines, candidates};
-use super::settings::{Free, Settings};
+use super::settings::Settings;
 use crate::time_steps::ContactFailure;
 
 /// The fit of the damping to ε_n.

@@ -7,12 +7,13 @@ use super::axis::Axis;
 use super::bodies::{Units, Values};
 use super::course::Course;
 use super::data::{Datum, Measured};
+use super::free::Free;
 use super::intervals::{interval, threshold};
 use super::local::{Bottom, different, of};
 use super::normal;
 use super::problem::Problem;
 use super::scan::{Line, Lines, candidates};
-use super::settings::{Free, Settings};
+use super::settings::Settings;
 use super::{Fit, FitError, InvalidFit, Mindlin, Minimum, Residual, RootMeanSquare, SCHEMA};
 use crate::time_steps::undamped_contact_time;
 
