@@ -18,9 +18,9 @@
 //!    ones is not above a threshold: it is computed over the whole range, and may have several pieces.
 //! 5. The angles at which the switches of the best fit change are traced.
 //!
-//! Start reading here; then, in this order: `data`, `columns`, `bodies`, `free`, `settings` (what is asked), `problem`
-//! (what the model says), `axis`, `scan`, `local` (the search), `quantile`, `intervals`, `normal`
-//! (damping), `course`, `picture`.
+//! Start reading here; then, in this order: `data`, `columns`, `bodies`, `free`, `settings` (what is
+//! asked), `problem` (what the model says), `axis`, `scan`, `local`, `survey` (the search),
+//! `quantile`, `intervals`, `normal` (damping), `course`, `picture`.
 
 mod axis;
 mod bodies;
