@@ -44,7 +44,7 @@ mod spheres;
 
 pub use contact::{Contact, InvalidParameter, OtherLaw};
 pub use engines::domain::OutOfDomain;
-pub use engines::history::{History, PhaseHistory, Snapshot};
+pub use engines::history::{History, Moment, PhaseHistory, Snapshot};
 #[doc(hidden)]
 pub use engines::integrator as collision;
 pub use engines::integrator::{Collider, CollisionError};
@@ -60,6 +60,7 @@ pub use result::{Collision, EnergyLedger, FEW_SWITCHES, NotFinite, Switch, Switc
 pub use spheres::bodies::{Body, Elasticity, Material, Sphere, Wall};
 pub use spheres::encounter::{Encounter, EncounterError, Motion, WallMotion};
 pub use spheres::forces::{Constants, Forces, InvalidForces};
+pub use spheres::moment::ForceSnapshot;
 pub use spheres::observed::Observed;
 pub use spheres::outcome::{EnergyAccount, ForceSwitch, Outcome};
 pub use spheres::reduction::Reduction;

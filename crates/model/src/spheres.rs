@@ -5,6 +5,7 @@
 pub mod bodies;
 pub mod encounter;
 pub mod forces;
+pub(crate) mod moment;
 pub(crate) mod observed;
 pub(crate) mod outcome;
 pub mod quantity;

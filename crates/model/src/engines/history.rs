@@ -74,6 +74,19 @@ pub struct PhaseHistory<'a> {
     index: usize,
 }
 
+/// One moment of a [`History`], with what holds there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// The state.
+    pub snapshot: Snapshot,
+    /// The law that holds; at a switch, that of the phase that begins.
+    pub regime: Regime,
+    /// The side of sliding, as [`PhaseHistory::side`].
+    pub side: Side,
+    /// The number of the switch that happens at this moment, from 0.
+    pub switch: Option<usize>,
+}
+
 impl History {
     /// Most steps of the integrator that are kept; they take about 160 MB.
     ///
@@ -115,6 +128,45 @@ impl History {
     #[must_use]
     pub fn at(&self, time: f64) -> Option<Snapshot> {
         (0.0..=self.duration()).contains(&time).then(|| self.course().at(time))
+    }
+
+    /// `intervals` + 1 moments evenly spaced in time from the first to the last, at least these two,
+    /// and between them every switch. A moment of the time of a switch is the switch.
+    ///
+    /// ```
+    /// use stickslip_model::{Collider, Contact};
+    ///
+    /// let history = Collider::default().history(Contact::new(63.0, 0.5, 0.0)?)?;
+    /// let moments: Vec<_> = history.moments(100).collect();
+    /// // +o-o+o- has six switches.
+    /// assert_eq!(moments.len(), 101 + 6);
+    /// assert!(moments.is_sorted_by(|one, next| one.snapshot.time < next.snapshot.time));
+    /// assert_eq!(moments.iter().filter_map(|it| it.switch).collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn moments(&self, intervals: usize) -> impl Iterator<Item = Moment> {
+        let (duration, intervals) = (self.duration(), intervals.max(1));
+        let time = move |index: usize| duration * (index as f64 / intervals as f64);
+        let mut next = 1;
+        let last = self.phases().len() - 1;
+        self.phases().enumerate().flat_map(move |(index, phase)| {
+            let in_phase = move |snapshot| {
+                let (regime, side) = (phase.regime(), phase.side());
+                Moment { snapshot, regime, side, switch: None }
+            };
+            let begin = Moment { switch: index.checked_sub(1), ..in_phase(phase.begin()) };
+            let end = in_phase(phase.end());
+            while next < intervals && time(next) <= begin.snapshot.time {
+                next += 1;
+            }
+            let from = next;
+            while next < intervals && time(next) < end.snapshot.time {
+                next += 1;
+            }
+            let between = (from..next).map(move |index| in_phase(self.course().at(time(index))));
+            let end = (index == last).then_some(end);
+            std::iter::once(begin).chain(between).chain(end)
+        })
     }
 }
 

@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 
 use super::bodies::{Body, Sphere, Wall};
 use super::forces::Forces;
+use super::quantity;
 use super::scaling::{Impact, Pair};
 use crate::contact::{Contact, InvalidParameter};
 
@@ -156,6 +157,54 @@ impl Encounter {
         Self::new(pair, partners, normal, position_m - normal * height_m)
     }
 
+    /// The encounter of bodies without spin whose surfaces have the velocities g_n and g_t in m/s.
+    ///
+    /// The second body rests, a sphere with its centre at the origin, a wall in the plane z = 0. The
+    /// first one comes from above: n is along z and t along x. g_t = 0 is a central impact.
+    ///
+    /// ```
+    /// use stickslip_model::{Body, Encounter, Material, Pair, Sphere, Surface};
+    ///
+    /// let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
+    /// let surface = Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e9, damping_time_s: 0.0 };
+    /// let sphere = Sphere::homogeneous(0.02, &steel);
+    /// let encounter = Encounter::of_velocities(&sphere, &Body::Sphere(sphere), (20.0, 4.0), &surface)?;
+    /// let pair = Pair::equal_spheres(0.02, &steel, &surface)?;
+    /// assert_eq!(encounter.impact, pair.impact(20.0, 4.0)?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`EncounterError`]: a quantity is out of its range.
+    pub fn of_velocities(
+        sphere: &Sphere,
+        other: &Body,
+        (normal_m_per_s, tangential_m_per_s): (f64, f64),
+        forces: impl Into<Forces>,
+    ) -> Result<Self, EncounterError> {
+        quantity::NORMAL_VELOCITY.check(normal_m_per_s)?;
+        quantity::TANGENTIAL_VELOCITY.check(tangential_m_per_s)?;
+        let pair = Pair::new(sphere, other, forces)?;
+        let (below, below_m) = match other {
+            Body::Sphere(below) => (Some(*below), below.radius_m),
+            Body::Wall(_) => (None, 0.0),
+        };
+        let zero = Vector3::zeros();
+        let still = Motion { position_m: zero, velocity_m_per_s: zero, spin_rad_per_s: zero };
+        let motion = Motion {
+            position_m: Vector3::z() * (sphere.radius_m + below_m),
+            velocity_m_per_s: Vector3::new(tangential_m_per_s, 0.0, -normal_m_per_s),
+            ..still
+        };
+        let partners = [
+            Partner { sphere: Some(*sphere), arm_m: sphere.radius_m, motion },
+            Partner { sphere: below, arm_m: below_m, motion: still },
+        ];
+        let sliding = (tangential_m_per_s > 0.0).then(|| (Vector3::x(), tangential_m_per_s));
+        let place = (Vector3::z(), Vector3::z() * below_m);
+        Self::assembled(pair, partners, place, (normal_m_per_s, sliding))
+    }
+
     /// The parameters of the scaled collision that decides the outcome. For a central impact, the
     /// collision has the same normal motion.
     #[must_use]
@@ -181,14 +230,6 @@ impl Encounter {
         contact_point_m: Vector3<f64>,
     ) -> Result<Self, EncounterError> {
         let [one, two] = partners.map(|partner| partner.motion);
-        let turning = partners.iter().filter_map(|partner| {
-            partner
-                .sphere
-                .map(|sphere| partner.arm_m * partner.arm_m / sphere.moment_of_inertia_kg_m2)
-        });
-        let alpha = 1.0 / (1.0 + pair.effective_mass_kg * turning.sum::<f64>());
-        let pair = Pair { alpha, ..pair };
-
         let approach = one.velocity_m_per_s - two.velocity_m_per_s;
         let turn = one.spin_rad_per_s * partners[0].arm_m + two.spin_rad_per_s * partners[1].arm_m;
         let normal_m_per_s = -approach.dot(&normal);
@@ -203,8 +244,27 @@ impl Encounter {
             let Motion { velocity_m_per_s, spin_rad_per_s, .. } = partner.motion;
             velocity_m_per_s.norm() + partner.arm_m * spin_rad_per_s.norm()
         });
-        let (tangent, tangential_m_per_s) = direction(&sliding, speeds[0] + speeds[1])
-            .map_or((None, 0.0), |(tangent, speed)| (Some(tangent), speed));
+        let sliding = direction(&sliding, speeds[0] + speeds[1]);
+        Self::assembled(pair, partners, (normal, contact_point_m), (normal_m_per_s, sliding))
+    }
+
+    /// The encounter of bodies whose surfaces approach with the first of the velocities, and slide in
+    /// a direction with a velocity.
+    fn assembled(
+        pair: Pair,
+        partners: [Partner; 2],
+        (normal, contact_point_m): (Vector3<f64>, Vector3<f64>),
+        (normal_m_per_s, sliding): (f64, Option<(Vector3<f64>, f64)>),
+    ) -> Result<Self, EncounterError> {
+        let turning = partners.iter().filter_map(|partner| {
+            partner
+                .sphere
+                .map(|sphere| partner.arm_m * partner.arm_m / sphere.moment_of_inertia_kg_m2)
+        });
+        let alpha = 1.0 / (1.0 + pair.effective_mass_kg * turning.sum::<f64>());
+        let pair = Pair { alpha, ..pair };
+        let (tangent, tangential_m_per_s) =
+            sliding.map_or((None, 0.0), |(tangent, speed)| (Some(tangent), speed));
         // The normal motion does not depend on the tangential one: a central impact may use any.
         let tangential_or_any_m_per_s =
             if tangent.is_some() { tangential_m_per_s } else { normal_m_per_s };

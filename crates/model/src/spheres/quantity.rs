@@ -1,5 +1,7 @@
 //! The quantities that describe bodies and surfaces, with their ranges.
 
+use std::f64::consts::FRAC_PI_2;
+
 use crate::contact::InvalidParameter;
 
 /// A quantity in SI units: its name, which contains the unit, and its range.
@@ -64,12 +66,27 @@ pub const DAMPING_RATIO: Quantity =
 /// Ratio of tangential and normal damping.
 pub const TANGENTIAL_DAMPING_RATIO: Quantity =
     not_negative("tangential_damping_ratio", "a finite number, 0 or above, without unit");
+/// Normal velocity g_n of the surfaces at the contact.
+pub const NORMAL_VELOCITY: Quantity =
+    positive("normal_m_per_s", "a finite number above 0, in m/s");
+/// Tangential velocity g_t of the surfaces at the contact; 0 is a central impact.
+pub const TANGENTIAL_VELOCITY: Quantity =
+    not_negative("tangential_m_per_s", "a finite number, 0 or above, in m/s");
+/// Velocity of the surfaces at the contact.
+pub const SPEED: Quantity = positive("speed_m_per_s", "a finite number above 0, in m/s");
+/// Angle between the velocity of the surfaces and the normal.
+pub const ANGLE: Quantity = Quantity {
+    name: "angle_rad",
+    expected: "a number, 0 or above and below π/2, in rad",
+    range: Range::Acute,
+};
 
 #[derive(Clone, Copy, Debug)]
 enum Range {
     Positive,
     NotNegative,
     Poisson,
+    Acute,
 }
 
 impl Quantity {
@@ -82,6 +99,7 @@ impl Quantity {
             Range::Positive => value > 0.0,
             Range::NotNegative => value >= 0.0,
             Range::Poisson => value > -1.0 && value <= 0.5,
+            Range::Acute => (0.0..FRAC_PI_2).contains(&value),
         };
         if ok && value.is_finite() {
             Ok(value)
