@@ -1,12 +1,14 @@
 //! What may be typed: options with their syntax and ranges, and the help text.
 //!
-//! Start reading here; then, in this order: `shared` and `method` (options that several commands
-//! have), and one file for each command.
+//! Start reading here; then, in this order: `shared`, `method`, `law`, `batch` and `course` (options
+//! that several commands have), and one file for each command.
 
 mod asymptote;
+mod batch;
 mod collide;
 mod completions;
 mod converge;
+mod course;
 mod fit;
 mod impact;
 mod join;
@@ -26,11 +28,13 @@ use clap::{Parser, Subcommand};
 use crate::version;
 
 pub use asymptote::AsymptoteArguments;
+pub use batch::BatchArguments;
 pub use collide::CollideArguments;
 pub use completions::CompletionsArguments;
 pub use converge::ConvergeArguments;
 pub use fit::FitArguments;
-pub use impact::ImpactArguments;
+pub use course::CourseArguments;
+pub use impact::{ImpactArguments, VelocityArguments};
 pub use join::JoinArguments;
 pub use law::LawArguments;
 pub use laws::LawsArguments;
@@ -59,7 +63,7 @@ pub enum Command {
     /// Compute one collision, or a file of them
     #[command(long_about = collide::ABOUT, after_long_help = collide::EXAMPLES)]
     Collide(CollideArguments),
-    /// Compute the impact of two spheres, or of a sphere and a wall, in SI units
+    /// Compute the impact of two spheres, or of a sphere and a wall, in SI units, or a file of them
     #[command(long_about = impact::ABOUT, after_long_help = impact::EXAMPLES)]
     Impact(ImpactArguments),
     /// List the contact laws that have names, or print one of them

@@ -1,10 +1,11 @@
-//! What each command does. One file for each; `collide` with a file of collisions is `batch`, and
-//! `reproduce` with statements alone is `statements`.
+//! What each command does. One file for each; `batch` is what files of collisions and of impacts
+//! have in common, `course` writes courses, and `reproduce` with statements alone is `statements`.
 
 pub mod batch;
 pub mod collide;
 pub mod completions;
 pub mod fit;
+pub mod course;
 pub mod impact;
 pub mod join;
 pub mod laws;

@@ -91,9 +91,12 @@ fn carry_out(arguments: &Arguments) -> Result<(), Failure> {
     match &arguments.command {
         Command::Collide(arguments) => match CollidePlan::new(arguments)? {
             CollidePlan::Single(plan) => commands::collide::run(&plan),
-            CollidePlan::Batch(plan) => commands::batch::run(&plan),
+            CollidePlan::Batch(plan) => commands::collide::batch::run(&plan),
         },
-        Command::Impact(arguments) => commands::impact::run(&ImpactPlan::new(arguments)?),
+        Command::Impact(arguments) => match ImpactPlan::new(arguments)? {
+            ImpactPlan::Single(plan) => commands::impact::run(&plan),
+            ImpactPlan::Batch(plan) => commands::impact::batch::run(*plan),
+        },
         Command::Laws(arguments) => commands::laws::run(arguments),
         Command::Map(arguments) => commands::map::run(&MapPlan::new(arguments)?),
         Command::Join(arguments) => commands::join::run(&JoinPlan::new(arguments)?),

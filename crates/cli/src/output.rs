@@ -1,13 +1,14 @@
 //! Results written. A file is complete or not there at all.
 //!
 //! Start reading in `file`; then, in this order: `partial` (what is not complete), `directory`,
-//! `csv`, `rows` (of a batch), `json`, `text` (tables for readers), `picture`, `study` (all files of
+//! `csv`, `rows` and `impact_rows` (of batches), `json`, `text` (tables for readers), `picture`, `study` (all files of
 //! a study), `console` (standard output and standard error), `progress`.
 
 pub mod console;
 pub mod csv;
 pub mod directory;
 pub mod file;
+pub mod impact_rows;
 pub mod json;
 pub mod partial;
 pub mod picture;

@@ -1,11 +1,13 @@
 //! What the options mean together: arguments become a plan that a command can carry out.
 //!
 //! One file for each command. Rules that several of them need are in `collision` (one collision
-//! from options), `window` (intervals of κ and ψ), `engine` (what computes collisions) and `files`
-//! (outputs are files of their own).
+//! from options), `window` (intervals of κ and ψ), `engine` (what computes collisions), `batch` and
+//! `course` (their files) and `files` (outputs are files of their own).
 
+mod batch;
 mod collide;
 mod collision;
+mod course;
 mod engine;
 mod files;
 mod fit;
@@ -19,9 +21,11 @@ mod timestep;
 mod trace;
 mod window;
 
+pub use batch::BatchFiles;
 pub use collide::{BatchPlan, CollidePlan, SinglePlan};
 pub use fit::FitPlan;
-pub use impact::ImpactPlan;
+pub use course::CoursePlan;
+pub use impact::{Engines, ImpactBatch, ImpactPlan, SingleImpact};
 pub use join::JoinPlan;
 pub use locate::LocatePlan;
 pub use map::{MapFormat, MapOutput, MapPlan};

@@ -1,7 +1,7 @@
 //! The options of `collide`.
 
-use std::path::PathBuf;
-
+use super::batch::BatchArguments;
+use super::course::CourseArguments;
 use super::law::LawArguments;
 use super::method::MethodArguments;
 use super::shared::{self, CollisionArguments, Format};
@@ -52,22 +52,13 @@ pub struct CollideArguments {
     #[arg(value_parser = shared::picture())]
     pub plot: Option<PictureFile>,
 
-    /// CSV file with a header row and one collision per row; - is standard input
-    #[arg(long, value_name = "IN.csv", help_heading = "Batch", requires = "out")]
-    pub batch: Option<PathBuf>,
+    /// The course of one collision.
+    #[command(flatten, next_help_heading = "Output")]
+    pub course: CourseArguments,
 
-    /// CSV file for the results, one row per collision in the order of the input
-    #[arg(long, value_name = "OUT.csv", help_heading = "Batch", requires = "batch")]
-    pub out: Option<PathBuf>,
-
-    /// CSV file for every switch of every collision
-    #[arg(long, value_name = "EV.csv", help_heading = "Batch", requires = "batch")]
-    pub events: Option<PathBuf>,
-
-    /// Threads for a batch; 1 to 1024 [default: one for each core]; results do not depend on it
-    #[arg(long, value_name = "N", help_heading = "Batch", allow_hyphen_values = true)]
-    #[arg(value_parser = shared::threads())]
-    pub threads: Option<u16>,
+    /// A file of collisions.
+    #[command(flatten)]
+    pub batch: BatchArguments,
 }
 
 /// What `collide --help` says first.
@@ -83,9 +74,14 @@ tangential velocity are also divided by μ/α. Numbers are written like 18, 1.5e
 pub const EXAMPLES: &str = "\
 Batch files:
   The header of IN.csv names any of kappa, psi, ratio, mu, alpha, damping, tangential_damping;
-  the options of the same names give what the file does not. Other columns pass through. OUT.csv has the columns of the input
-  followed by eps_n, eps_t, switch_count, itinerary, contact_time, reversals, status. A row that
+  the options of the same names give what the file does not. Other columns pass through. OUT.csv
+  has the columns of the input followed by eps_n, eps_t, switch_count, itinerary, contact_time, reversals, status. A row that
   cannot be computed has no results; its status says why, and the exit code is 1.
+
+Course:
+  FILE.csv of --course has the columns time, regime, side, switch, compression, normal_velocity,
+  normal_force, tangential_force (F_t/μ), velocity (w) and spring (y), at times that are evenly
+  spaced and at every switch, whose number, from 0, is in the column switch.
 
 Accuracy at the default tolerances, for kappa 1e-6 to 1e6, psi 1e-10 to 10, damping up to 1e4:
   dop853  2e-11 in eps_t; 4e-12 in contact_time and eps_n, relative
@@ -96,6 +92,7 @@ Accuracy at the default tolerances, for kappa 1e-6 to 1e6, psi 1e-10 to 10, damp
 Examples:
   stickslip collide --kappa 63 --psi 0.5
   stickslip collide --kappa 63 --psi 0.5 --plot collision.svg
+  stickslip collide --kappa 63 --psi 0.5 --course course.csv
   stickslip collide --kappa 18 --ratio 1.4 --mu 0.4 --alpha 2/7 --method exact
   stickslip collide --kappa 18 --psi 1 --damping 0.05 --format json
   stickslip collide --kappa 18 --psi 1.99 --estimate

@@ -1,15 +1,14 @@
-//! A file of collisions, which is read in portions, computed in parallel, and written in the order
-//! of the input.
+//! A file with a case in each row, which is read in portions, computed in parallel, and written in
+//! the order of the input.
 
 use rayon::prelude::*;
 
 use crate::error::Failure;
-use crate::input::rows::{Columns, Input, Row};
+use crate::input::rows::{Input, Reading, Row};
 use crate::output::csv::{CsvFile, Rows};
 use crate::output::file::publish;
 use crate::output::progress::Bar;
-use crate::output::rows::{self, ESTIMATES, EVENTS, RESULTS};
-use crate::plan::BatchPlan;
+use crate::plan::BatchFiles;
 use crate::threads;
 
 /// Largest number of rows that are computed as one piece of work.
@@ -18,21 +17,53 @@ const ROWS_AT_ONCE: usize = 128;
 /// 100 MB as text. The memory of more rows is then that of the largest collision.
 const SWITCHES: f64 = 1e6;
 
+/// The column that tells whether a row has results.
+const STATUS: &str = "status";
+
+/// What is computed for the rows of a file.
+pub trait Work: Sync {
+    /// What a row gives.
+    type Case: Send + Sync;
+
+    /// The columns of results, `status` among them.
+    fn results(&self) -> &[&'static str];
+
+    /// The columns of the file of switches.
+    fn events(&self) -> &'static [&'static str];
+
+    /// About the number of switches.
+    fn switches(&self, case: &Self::Case) -> f64;
+
+    /// Writes the results of a case, and its switches if they are `wanted`, with its number.
+    /// Returns whether everything could be computed, which `status` says too.
+    ///
+    /// # Errors
+    /// The reason why there are no results. Nothing is written then.
+    fn write(
+        &self,
+        case: &Self::Case,
+        results: &mut Rows,
+        wanted: Option<(&mut Rows, u64)>,
+    ) -> Result<bool, String>;
+}
+
 /// Computes every row of the input.
 ///
 /// # Errors
-/// The input cannot be used, an output cannot be written, or some rows have no result. In the last
+/// The input cannot be read, an output cannot be written, or some rows have no result. In the last
 /// case the outputs are complete.
-pub fn run(plan: &BatchPlan) -> Result<(), Failure> {
-    let names: &[&str] = if plan.estimate { &ESTIMATED } else { &RESULTS };
-    let mut input = Input::open(&plan.input, &plan.given, &Columns::of_collisions(names))?;
-    let pool = threads::pool(plan.threads)?;
-    let mut results = CsvFile::create(&plan.out)?;
-    let mut events = plan.events.as_deref().map(CsvFile::create).transpose()?;
-    results
-        .write(&header(input.header().iter().chain(names.iter().map(|name| name.as_bytes()))))?;
+pub fn run<R: Reading>(
+    files: &BatchFiles,
+    mut input: Input<R>,
+    work: &impl Work<Case = R::Case>,
+) -> Result<(), Failure> {
+    let pool = threads::pool(files.threads)?;
+    let mut results = CsvFile::create(&files.out)?;
+    let mut events = files.events.as_deref().map(CsvFile::create).transpose()?;
+    let names = work.results().iter().map(|name| name.as_bytes());
+    results.write(&header(input.header().iter().chain(names)))?;
     if let Some(events) = &mut events {
-        events.write(&header(EVENTS))?;
+        events.write(&header(work.events()))?;
     }
 
     let bar = Bar::bytes(input.size());
@@ -43,9 +74,9 @@ pub fn run(plan: &BatchPlan) -> Result<(), Failure> {
         let position = input.position();
         let mut rest = &portion[..];
         while !rest.is_empty() {
-            let (present, later) = rest.split_at(together(rest));
+            let (present, later) = rest.split_at(together(work, rest));
             // The next portion is read while the last rows of this one are computed.
-            let compute = || compute(plan, present, count, &mut computed);
+            let compute = || compute(work, present, (count, events.is_some()), &mut computed);
             let read = || if later.is_empty() { input.read_portion(&mut next) } else { Ok(()) };
             let ((), read) = pool.join(compute, read);
             for part in &computed {
@@ -70,18 +101,10 @@ pub fn run(plan: &BatchPlan) -> Result<(), Failure> {
     let stored = [Some(results), events].into_iter().flatten().map(CsvFile::store);
     publish(stored.collect::<Result<Vec<_>, _>>()?)?;
     if failed > 0 {
-        return Err(Failure::Rows { failed, rows: count, path: plan.out.clone() });
+        return Err(Failure::Rows { failed, rows: count, path: files.out.clone() });
     }
     Ok(())
 }
-
-/// The columns of results with estimates.
-const ESTIMATED: [&str; RESULTS.len() + ESTIMATES.len()] = {
-    let mut names = [""; RESULTS.len() + ESTIMATES.len()];
-    names.split_at_mut(RESULTS.len()).0.copy_from_slice(&RESULTS);
-    names.split_at_mut(RESULTS.len()).1.copy_from_slice(&ESTIMATES);
-    names
-};
 
 /// The header of a file.
 fn header<T: AsRef<[u8]>>(names: impl IntoIterator<Item = T>) -> Rows {
@@ -92,12 +115,11 @@ fn header<T: AsRef<[u8]>>(names: impl IntoIterator<Item = T>) -> Rows {
 }
 
 /// The number of the first `rows` that are computed together.
-fn together(rows: &[Row]) -> usize {
+fn together<W: Work>(work: &W, rows: &[Row<W::Case>]) -> usize {
     let mut switches = 0.0;
     let fits = rows.iter().take_while(|row| {
         let before = switches;
-        // Without damping the number of switches grows as √κ t_c/π.
-        switches += row.contact.as_ref().map_or(0.0, |contact| contact.kappa().sqrt());
+        switches += row.case.as_ref().map_or(0.0, |case| work.switches(case));
         before < SWITCHES
     });
     fits.count()
@@ -112,26 +134,36 @@ struct Computed {
     failed: u64,
 }
 
-/// Computes `rows`, the first of which is the case `first`. Rows do not depend on each other, and
-/// so results do not depend on the order of the work.
-fn compute(plan: &BatchPlan, rows: &[Row], first: u64, computed: &mut Vec<Computed>) {
+/// Computes `rows`, the first of which is the case `first`, with their switches if they are
+/// `wanted`. Rows do not depend on each other, and so results do not depend on the order of the
+/// work.
+fn compute<W: Work>(
+    work: &W,
+    rows: &[Row<W::Case>],
+    (first, wanted): (u64, bool),
+    computed: &mut Vec<Computed>,
+) {
     let piece = piece(rows.len(), rayon::current_num_threads());
     computed.resize_with(rows.len().div_ceil(piece), Computed::default);
-    let work = computed.par_iter_mut().zip(rows.par_chunks(piece)).enumerate();
-    work.for_each(|(index, (part, rows))| {
-        part.results.clear();
-        part.events.clear();
-        part.failed = 0;
-        for (row, case) in rows.iter().zip(first + (index * piece) as u64..) {
-            part.results.fields(&row.fields);
-            if let Err(reason) = part.add(plan, row, case) {
-                rows::write_failure(&mut part.results, &reason);
-                if plan.estimate {
-                    part.results.fields([""; ESTIMATES.len()]);
-                }
-                part.failed += 1;
+    let pieces = computed.par_iter_mut().zip(rows.par_chunks(piece)).enumerate();
+    pieces.for_each(|(index, (part, rows))| {
+        let Computed { results, events, failed } = part;
+        results.clear();
+        events.clear();
+        *failed = 0;
+        for (row, number) in rows.iter().zip(first + (index * piece) as u64..) {
+            results.fields(&row.fields);
+            let events = wanted.then_some((&mut *events, number));
+            let written = match &row.case {
+                Ok(case) => work.write(case, results, events),
+                Err(reason) => Err(reason.clone()),
+            };
+            if let Err(reason) = &written {
+                let blank = |name: &&str| if *name == STATUS { reason } else { "" };
+                results.fields(work.results().iter().map(blank));
             }
-            part.results.end();
+            results.end();
+            *failed += u64::from(written != Ok(true));
         }
     });
 }
@@ -140,33 +172,6 @@ fn compute(plan: &BatchPlan, rows: &[Row], first: u64, computed: &mut Vec<Comput
 /// `rows` are computed together.
 fn piece(rows: usize, threads: usize) -> usize {
     (rows / (4 * threads)).clamp(1, ROWS_AT_ONCE)
-}
-
-impl Computed {
-    /// Adds what the row of the input with the number `case` makes, or adds nothing and returns the
-    /// reason.
-    fn add(&mut self, plan: &BatchPlan, row: &Row, case: u64) -> Result<(), String> {
-        let contact = row.contact.clone()?;
-        let (collision, _) = plan.engine.collide(contact).map_err(|error| error.to_string())?;
-        let estimate = plan.estimate.then(|| plan.engine.estimate(&collision));
-        match estimate {
-            None => rows::write_collision(&mut self.results, &collision, "ok"),
-            Some(Ok(estimate)) => {
-                rows::write_collision(&mut self.results, &collision, "ok");
-                rows::write_estimate(&mut self.results, &estimate);
-            }
-            Some(Err(error)) => {
-                let status = format!("no estimate: {error}");
-                rows::write_collision(&mut self.results, &collision, &status);
-                self.results.fields([""; ESTIMATES.len()]);
-                self.failed += 1;
-            }
-        }
-        if plan.events.is_some() {
-            rows::write_switches(&mut self.events, case, &collision);
-        }
-        Ok(())
-    }
 }
 
 #[cfg(test)]

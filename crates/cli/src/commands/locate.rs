@@ -19,7 +19,8 @@ use crate::threads;
 /// located. In the last case the output is complete.
 pub fn run(plan: &LocatePlan) -> Result<(), Failure> {
     let atlas = atlas::read(&plan.atlas)?;
-    let mut input = Input::open(&plan.input, &Given::default(), &Columns::POINTS)?;
+    let points = |header: &_| Columns::POINTS.recipe(header, &Given::default());
+    let mut input = Input::open(&plan.input, points)?;
     let pool = threads::pool(Some(1))?;
     let mut table = CsvFile::create(&plan.out)?;
     let mut text = Rows::default();
@@ -34,7 +35,7 @@ pub fn run(plan: &LocatePlan) -> Result<(), Failure> {
             break;
         }
         for row in &portion {
-            let located = row.contact.as_ref().map(|contact| atlas.locate(contact));
+            let located = row.case.as_ref().map(|contact| atlas.locate(contact));
             let distance = located.as_ref().ok().and_then(|located| located.distance);
             let region = match located {
                 Ok(located) => located.region.map_err(|why| format!("row {}: {why}", rows + 1)),

@@ -1,5 +1,6 @@
 //! The parameters of a collision: their names and ranges on the command line and in files.
 
+use stickslip_model::quantity::Quantity;
 use stickslip_model::{Contact, Law, quantity};
 
 use crate::input::number::{self, NotANumber, SYNTAX};
@@ -77,6 +78,16 @@ impl Parameter {
         // NaN is in no range, so that each parameter answers here.
         self.check(f64::NAN).err().unwrap_or("a finite number")
     }
+}
+
+/// The value of a quantity in SI units in `text`.
+///
+/// # Errors
+/// [`BadValue`]: not a number, or out of the quantity's range.
+pub fn quantity(quantity: &Quantity, text: &str) -> Result<f64, BadValue> {
+    let expected = quantity.expected;
+    let value = number::parse(text).map_err(|problem| BadValue::Number { problem, expected })?;
+    quantity.check(value).map_err(|_| BadValue::Range { expected })
 }
 
 /// The reason why a text is not the value of a parameter.

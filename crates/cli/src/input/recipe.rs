@@ -210,7 +210,7 @@ pub enum ValueError {
 }
 
 /// `text` as it is shown in messages: in quotation marks, on one line, and not too long.
-fn quoted(text: &str) -> String {
+pub fn quoted(text: &str) -> String {
     const LONGEST: usize = 40;
     let mut shown: String = text.chars().take(LONGEST).flat_map(char::escape_debug).collect();
     if text.chars().nth(LONGEST).is_some() {

@@ -101,6 +101,14 @@ impl CsvFile {
         Ok(Self(OutputFile::create(path)?))
     }
 
+    /// Makes sure that `path` can be written.
+    ///
+    /// # Errors
+    /// [`Failure::Output`]: the file cannot be created.
+    pub fn probe(path: &Path) -> Result<(), Failure> {
+        OutputFile::create(path).map(drop)
+    }
+
     /// Writes rows.
     ///
     /// # Errors

@@ -36,12 +36,6 @@ pub fn write_estimate(rows: &mut Rows, estimate: &Estimate) {
     rows.field(if estimate.certain { "true" } else { "false" });
 }
 
-/// Writes `reason` instead of results, which it takes the place of as the status.
-pub fn write_failure(rows: &mut Rows, reason: &str) {
-    rows.fields([""; RESULTS.len() - 1]);
-    rows.field(reason);
-}
-
 /// Writes the switches of the collision in row `case`.
 pub fn write_switches(rows: &mut Rows, case: u64, collision: &Collision) {
     for (index, switch) in collision.switches.iter().enumerate() {

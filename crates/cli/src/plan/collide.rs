@@ -1,12 +1,13 @@
 //! What `collide` is to do.
 
-use std::path::PathBuf;
+use std::path::Path;
 
 use stickslip_model::{Contact, Engine};
 
+use super::batch::BatchFiles;
 use super::collision::contact;
+use super::course::CoursePlan;
 use super::engine::engine;
-use super::files::require_different;
 use crate::args::{CollideArguments, CollisionArguments, Format, Method};
 use crate::error::Failure;
 use crate::input::law;
@@ -33,6 +34,8 @@ pub struct SinglePlan {
     pub format: Format,
     /// The file of its picture, if it is drawn.
     pub plot: Option<PictureFile>,
+    /// The file of its course, if it is wanted.
+    pub course: Option<CoursePlan>,
     /// Whether the error is estimated.
     pub estimate: bool,
 }
@@ -40,18 +43,12 @@ pub struct SinglePlan {
 /// A file of collisions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BatchPlan {
-    /// The file of the collisions.
-    pub input: PathBuf,
-    /// The file for the results.
-    pub out: PathBuf,
-    /// The file for the switches, if they are wanted.
-    pub events: Option<PathBuf>,
+    /// The file of the collisions, and those for the results.
+    pub files: BatchFiles,
     /// Values that all rows have in common.
     pub given: Given,
     /// What computes the collisions.
     pub engine: Engine,
-    /// The number of threads; `None` is one for each core.
-    pub threads: Option<u16>,
     /// Whether errors are estimated.
     pub estimate: bool,
 }
@@ -77,24 +74,19 @@ impl CollidePlan {
             tangential_damping,
             law,
         };
-        let (Some(input), Some(out)) = (&arguments.batch, &arguments.out) else {
-            let contact = contact(&given)?;
-            let (format, plot) = (arguments.format, arguments.plot.clone());
+        let law = ("--law", arguments.law.law.as_deref().map(Path::new));
+        if let Some(files) = BatchFiles::new(&arguments.batch, &[law])? {
             let estimate = arguments.estimate;
-            return Ok(Self::Single(SinglePlan { contact, engine, format, plot, estimate }));
-        };
-        let events = arguments.events.as_ref();
-        require_different(
-            &[("--out", Some(out)), ("--events", arguments.events.as_deref())],
-            &[("--batch", Some(input))],
-        )?;
-        Ok(Self::Batch(BatchPlan {
-            input: input.clone(),
-            out: out.clone(),
-            events: events.cloned(),
-            given,
+            return Ok(Self::Batch(BatchPlan { files, given, engine, estimate }));
+        }
+        let plot = arguments.plot.clone();
+        let picture = ("--plot", plot.as_ref().map(PictureFile::path));
+        Ok(Self::Single(SinglePlan {
+            contact: contact(&given)?,
             engine,
-            threads: arguments.threads,
+            format: arguments.format,
+            course: CoursePlan::new(&arguments.course, &[picture], &[law])?,
+            plot,
             estimate: arguments.estimate,
         }))
     }

@@ -69,7 +69,7 @@ type Impacts = (Vec<Contact>, Reduction, Option<Seconds>);
 fn impacts(arguments: &TimestepArguments) -> Result<Impacts, Failure> {
     let Some(path) = &arguments.bodies else { return scaled(arguments) };
     let name = arguments.law.law.as_deref();
-    let encounter = bodies::read_encounter(path, law::by_name_or_file(name)?)?;
+    let encounter = bodies::read_encounter(path, law::by_name_or_file(name)?, None)?;
     law::permits(name, "tangential damping", encounter.contact().tangential_damping())?;
     if encounter.is_central() {
         let reason = "the impact is central; expected a tangential velocity, without which there \

@@ -67,8 +67,7 @@ pub const DAMPING_RATIO: Quantity =
 pub const TANGENTIAL_DAMPING_RATIO: Quantity =
     not_negative("tangential_damping_ratio", "a finite number, 0 or above, without unit");
 /// Normal velocity g_n of the surfaces at the contact.
-pub const NORMAL_VELOCITY: Quantity =
-    positive("normal_m_per_s", "a finite number above 0, in m/s");
+pub const NORMAL_VELOCITY: Quantity = positive("normal_m_per_s", "a finite number above 0, in m/s");
 /// Tangential velocity g_t of the surfaces at the contact; 0 is a central impact.
 pub const TANGENTIAL_VELOCITY: Quantity =
     not_negative("tangential_m_per_s", "a finite number, 0 or above, in m/s");

@@ -11,6 +11,7 @@ use stickslip_model::Vector3;
 use stickslip_model::quantity::Quantity;
 
 /// A struct that is written as an object. serde alone would also accept an array of its fields.
+#[derive(Clone, Default)]
 pub struct Object<T>(pub T);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Object<T> {

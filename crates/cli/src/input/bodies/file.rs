@@ -1,5 +1,7 @@
 //! The layout of the file: its fields, and what they mean.
 
+mod numbers;
+
 use serde::Deserialize;
 use serde_json::Value;
 use stickslip_model::quantity;
@@ -10,6 +12,7 @@ use stickslip_model::{
 
 use super::field::{Object, number, required, vector};
 use crate::input::json;
+pub use numbers::Slot;
 
 /// What a file describes. Motions that are not in the file are `None`.
 pub struct Bodies {
@@ -30,20 +33,20 @@ pub enum Other {
 }
 
 impl Bodies {
-    /// The bodies that `text` describes, under a contact law.
-    ///
-    /// # Errors
-    /// What is wrong, where, and what is expected.
-    pub fn parse(text: &[u8], law: Law) -> Result<Self, String> {
-        let Object(file): Object<File> = json::parse(text)?;
-        file.resolve(law)
+    /// Whether the motion of a body is not in the file.
+    pub fn lacks_motion(&self) -> bool {
+        let other = match self.other {
+            Other::Sphere(_, motion) => motion.is_none(),
+            Other::Wall(_, motion) => motion.is_none(),
+        };
+        self.sphere.1.is_none() || other
     }
 }
 
 /// The file as it is written. A field that is missing is `None`.
-#[derive(Deserialize)]
+#[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+pub struct File {
     #[serde(rename = "$schema")]
     _schema: Option<String>,
     #[serde(rename = "comment")]
@@ -53,9 +56,9 @@ struct File {
     surface: Option<Object<SurfaceFields>>,
 }
 
-#[derive(Deserialize)]
+#[derive(Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct SphereFields {
+pub struct SphereFields {
     #[serde(rename = "comment")]
     _comment: Option<String>,
     radius_m: Option<Value>,
@@ -65,9 +68,9 @@ struct SphereFields {
     motion: Option<Object<MotionFields>>,
 }
 
-#[derive(Deserialize)]
+#[derive(Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct WallFields {
+pub struct WallFields {
     #[serde(rename = "comment")]
     _comment: Option<String>,
     rigid: Option<bool>,
@@ -75,9 +78,9 @@ struct WallFields {
     motion: Option<Object<WallMotionFields>>,
 }
 
-#[derive(Deserialize)]
+#[derive(Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct MaterialFields {
+pub struct MaterialFields {
     #[serde(rename = "comment")]
     _comment: Option<String>,
     young_modulus_pa: Option<Value>,
@@ -85,9 +88,9 @@ struct MaterialFields {
     density_kg_per_m3: Option<Value>,
 }
 
-#[derive(Deserialize)]
+#[derive(Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct MotionFields {
+pub struct MotionFields {
     #[serde(rename = "comment")]
     _comment: Option<String>,
     position_m: Option<Value>,
@@ -95,9 +98,9 @@ struct MotionFields {
     spin_rad_per_s: Option<Value>,
 }
 
-#[derive(Deserialize)]
+#[derive(Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct WallMotionFields {
+pub struct WallMotionFields {
     #[serde(rename = "comment")]
     _comment: Option<String>,
     point_m: Option<Value>,
@@ -105,9 +108,9 @@ struct WallMotionFields {
     velocity_m_per_s: Option<Value>,
 }
 
-#[derive(Deserialize)]
+#[derive(Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct SurfaceFields {
+pub struct SurfaceFields {
     #[serde(rename = "comment")]
     _comment: Option<String>,
     friction: Option<Value>,
@@ -121,30 +124,63 @@ struct SurfaceFields {
     tangential_damping_ratio: Option<Value>,
 }
 
+/// The places of the spheres; a third one is refused.
+const SPHERES: [&str; 2] = ["spheres[0]", "spheres[1]"];
+
 const POSITION: &str = "in m";
 const VELOCITY: (&str, &str) = ("velocity_m_per_s", "in m/s");
 
 impl File {
-    fn resolve(self, law: Law) -> Result<Bodies, String> {
+    /// The file that `text` is.
+    ///
+    /// # Errors
+    /// What is wrong with its layout, and where.
+    pub fn parse(text: &[u8]) -> Result<Self, String> {
+        json::parse(text).map(|Object(file)| file)
+    }
+
+    /// The bodies that the file describes, under a contact law.
+    ///
+    /// # Errors
+    /// What is wrong, where, and what is expected.
+    pub fn resolve(&self, law: Law) -> Result<Bodies, String> {
         let mut spheres = Vec::new();
-        for (index, Object(sphere)) in self.spheres.unwrap_or_default().iter().enumerate() {
-            spheres.push(sphere.resolve(&format!("spheres[{index}]"))?);
+        for (index, Object(sphere)) in self.spheres.iter().flatten().enumerate() {
+            spheres.push(sphere.resolve(SPHERES.get(index).unwrap_or(&"spheres[…]"))?);
         }
-        let wall = self.wall.map(|Object(wall)| wall.resolve()).transpose()?;
+        let wall = self.wall.as_ref().map(|Object(wall)| wall.resolve()).transpose()?;
         let (sphere, other) = match (&spheres[..], wall) {
             (&[first, (sphere, motion)], None) => (first, Other::Sphere(sphere, motion)),
             (&[first], Some((wall, motion))) => (first, Other::Wall(wall, motion)),
-            (_, wall) => {
-                return Err(format!(
-                    "spheres has {} entries, and there is {} wall; expected two spheres, or one \
-                     sphere and a wall",
-                    spheres.len(),
-                    if wall.is_some() { "a" } else { "no" }
-                ));
-            }
+            _ => return Err(self.not_two()),
         };
-        let Object(surface) = required("surface", self.surface)?;
+        let Object(surface) = required("surface", self.surface.as_ref())?;
         Ok(Bodies { sphere, other, forces: surface.resolve(law)? })
+    }
+}
+
+impl File {
+    /// The number of spheres.
+    pub fn spheres(&self) -> usize {
+        self.spheres.iter().flatten().count()
+    }
+
+    /// Refuses other numbers of spheres and walls than two bodies.
+    ///
+    /// # Errors
+    /// What there is, and what is expected.
+    pub fn require_two(&self) -> Result<(), String> {
+        let two = self.spheres() + usize::from(self.wall.is_some()) == 2 && self.spheres() > 0;
+        if two { Ok(()) } else { Err(self.not_two()) }
+    }
+
+    fn not_two(&self) -> String {
+        format!(
+            "spheres has {} entries, and there is {} wall; expected two spheres, or one sphere and a \
+             wall",
+            self.spheres(),
+            if self.wall.is_some() { "a" } else { "no" }
+        )
     }
 }
 

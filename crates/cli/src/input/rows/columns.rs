@@ -1,4 +1,4 @@
-//! The columns of a CSV file that have a meaning.
+//! The columns of a CSV file that have a meaning: those of a file of collisions.
 
 use std::collections::HashSet;
 
@@ -45,23 +45,7 @@ impl Columns {
     /// # Errors
     /// What is wrong with the columns, and what is expected.
     pub fn recipe(&self, header: &ByteRecord, given: &Given) -> Result<Recipe, String> {
-        if header.is_empty() {
-            return Err("is empty; expected a header row, for example kappa,psi".to_owned());
-        }
-        let names: Vec<&[u8]> = header.iter().map(<[u8]>::trim_ascii).collect();
-        let mut seen = HashSet::new();
-        for name in &names {
-            let shown = String::from_utf8_lossy(name);
-            if !seen.insert(name) {
-                return Err(format!("two columns are named '{shown}'; expected different names"));
-            }
-            if self.results.iter().any(|result| result.as_bytes() == *name) {
-                return Err(format!(
-                    "column {shown} has the name of a result; expected names other than {}",
-                    self.results.join(", ")
-                ));
-            }
-        }
+        let names = names(header, self.results, "kappa,psi")?;
         let column = |parameter: Parameter| {
             let place = names.iter().position(|name| *name == parameter.name().as_bytes());
             place.filter(|_| self.parameters.contains(&parameter))
@@ -76,6 +60,35 @@ impl Columns {
             format!("{problem}; the columns are: {}", String::from_utf8_lossy(&names))
         })
     }
+}
+
+/// The names of the columns of `header`, without blanks around them. A header may be like `example`.
+///
+/// # Errors
+/// There is no header, two columns have the same name, or one has the name of one of `results`.
+pub fn names<'a>(
+    header: &'a ByteRecord,
+    results: &[&str],
+    example: &str,
+) -> Result<Vec<&'a [u8]>, String> {
+    if header.is_empty() {
+        return Err(format!("is empty; expected a header row, for example {example}"));
+    }
+    let names: Vec<&[u8]> = header.iter().map(<[u8]>::trim_ascii).collect();
+    let mut seen = HashSet::new();
+    for name in &names {
+        let shown = String::from_utf8_lossy(name);
+        if !seen.insert(name) {
+            return Err(format!("two columns are named '{shown}'; expected different names"));
+        }
+        if results.iter().any(|result| result.as_bytes() == *name) {
+            return Err(format!(
+                "column {shown} has the name of a result; expected names other than {}",
+                results.join(", ")
+            ));
+        }
+    }
+    Ok(names)
 }
 
 /// What is wrong with the columns and options.
