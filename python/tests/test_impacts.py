@@ -1,6 +1,10 @@
 """Impacts in SI units."""
 
+import csv
 import json
+import os
+import shutil
+import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -64,6 +68,43 @@ def test_files_of_the_program() -> None:
             assert found["schema"] == "stickslip.impact/1" and found["switch_count"] >= 0
         alone = impact(path, 1.0, 0.5, law=law)
         assert alone.eps_t == impact(bodies, 1.0, 0.5).eps_t
+
+
+def program() -> str:
+    """The program `stickslip`, from STICKSLIP_PROGRAM or where shells find it."""
+    found = os.environ.get("STICKSLIP_PROGRAM") or shutil.which("stickslip")
+    if found is None:
+        pytest.skip("there is no program stickslip; STICKSLIP_PROGRAM names it")
+    return found
+
+
+@pytest.mark.parametrize(
+    ("name", "law"),
+    [
+        ("steel_pair.json", None),
+        ("glass_on_wall.json", None),
+        ("hooke_spheres.json", "gran/hooke/history"),
+    ],
+)
+def test_a_batch_of_the_program_is_the_arrays(tmp_path: Path, name: str, law: str | None) -> None:
+    normal, tangential = np.meshgrid(np.geomspace(0.01, 3, 9), np.geomspace(0.003, 5, 11))
+    pairs = zip(normal.ravel().tolist(), tangential.ravel().tolist(), strict=True)
+    lines = [f"{n!r},{t!r}\n" for n, t in pairs]
+    (tmp_path / "in.csv").write_text("normal_m_per_s,tangential_m_per_s\n" + "".join(lines))
+    command = [program(), "impact", "--batch", "in.csv", "--bodies", str(EXAMPLES / name)]
+    command += ["--out", "out.csv", "--method", "auto", *(["--law", law] if law else [])]
+    subprocess.run(command, cwd=tmp_path, check=True)
+    with (tmp_path / "out.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    found = impact(EXAMPLES / name, normal, tangential, law=law)
+    for column, expected in [
+        ("eps_n", found.eps_n),
+        ("eps_t", found.eps_t),
+        ("contact_time_s", found.contact_time_s),
+        ("switch_count", found.switch_count),
+    ]:
+        # Bit for bit.
+        assert [float(row[column]) for row in rows] == expected.ravel().tolist()
 
 
 def test_an_encounter_keeps_momentum() -> None:

@@ -207,7 +207,7 @@ fn a_row_that_cannot_be_computed_does_not_stop_the_others() {
         assert_eq!(field(&table, row, "status"), expected);
         assert_eq!(field(&table, row, "eps_n"), "");
     }
-    assert!(field(&table, 10, "status").contains("not a finite number"));
+    assert!(field(&table, 10, "status").contains("out of the range of the integrator"));
     assert_eq!(table[1][4..], table[11][4..]);
 }
 
@@ -221,7 +221,7 @@ fn a_contact_that_never_ends() {
     let table = rows(&workspace.read("out.csv"));
     let status = [1, 2, 3].map(|row| field(&table, row, "status"));
     assert_eq!((status[0], status[2]), ("ok", "ok"));
-    assert!(status[1].contains("damping = 5"), "{}", status[1]);
+    assert!(status[1].contains("contacts of this law never end"), "{}", status[1]);
 }
 
 /// Runs a batch that must be refused as a whole with a message that contains all of `parts`.
