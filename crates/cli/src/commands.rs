@@ -4,8 +4,8 @@
 pub mod batch;
 pub mod collide;
 pub mod completions;
-pub mod fit;
 pub mod course;
+pub mod fit;
 pub mod impact;
 pub mod join;
 pub mod laws;

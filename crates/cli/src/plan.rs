@@ -23,8 +23,8 @@ mod window;
 
 pub use batch::BatchFiles;
 pub use collide::{BatchPlan, CollidePlan, SinglePlan};
-pub use fit::FitPlan;
 pub use course::CoursePlan;
+pub use fit::FitPlan;
 pub use impact::{Engines, ImpactBatch, ImpactPlan, SingleImpact};
 pub use join::JoinPlan;
 pub use locate::LocatePlan;
