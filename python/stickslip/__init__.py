@@ -2,7 +2,8 @@
 
 Start with `collide` (one collision), `eps_t` and `collide_many` (arrays), `impact` (SI units),
 `trace` (every boundary in a window), `map` and `sweep` (xarray), `timestep` (errors of the steps of
-particle codes), `fit` (contact laws to measured impacts), `solve` (systems of your own).
+particle codes), `fit` (contact laws to measured impacts), `table` (restitution to be looked up),
+`solve` (systems of your own).
 """
 
 from stickslip import _native
@@ -47,6 +48,7 @@ from stickslip.studies import (
     reproduction_parts,
 )
 from stickslip.sweeps import sweep, write_sweep
+from stickslip.tables import RestitutionTable, load_table, table
 from stickslip.timesteps import StepErrors, TimeSteps, timestep
 
 __version__ = _native.version()
@@ -72,6 +74,7 @@ __all__ = [
     "Motion",
     "NamedLaw",
     "Region",
+    "RestitutionTable",
     "Sensitivity",
     "Solution",
     "Sphere",
@@ -93,12 +96,14 @@ __all__ = [
     "fit",
     "impact",
     "laws",
+    "load_table",
     "map",
     "psi_of_ratio",
     "reproduce",
     "reproduction_parts",
     "solve",
     "sweep",
+    "table",
     "timestep",
     "trace",
     "write_sweep",

@@ -20,6 +20,7 @@ mod map;
 mod method;
 mod reproduce;
 mod shared;
+mod table;
 mod timestep;
 mod trace;
 
@@ -44,6 +45,7 @@ pub use map::MapArguments;
 pub use method::{Method, MethodArguments};
 pub use reproduce::{AuditFormat, ReproduceArguments};
 pub use shared::{CollisionArguments, Format};
+pub use table::TableArguments;
 pub use timestep::TimestepArguments;
 pub use trace::TraceArguments;
 
@@ -96,6 +98,9 @@ pub enum Command {
     /// Fit a contact law to measured impacts
     #[command(long_about = fit::ABOUT, after_long_help = fit::EXAMPLES)]
     Fit(FitArguments),
+    /// Make a table of the restitution, to be looked up in nanoseconds
+    #[command(long_about = table::ABOUT, after_long_help = table::EXAMPLES)]
+    Table(TableArguments),
     /// Print a script that completes commands and options in a shell
     #[command(after_long_help = completions::EXAMPLES)]
     Completions(CompletionsArguments),

@@ -15,5 +15,6 @@ pub mod map;
 pub mod reproduce;
 pub mod statements;
 pub mod studies;
+pub mod table;
 pub mod timestep;
 pub mod trace;

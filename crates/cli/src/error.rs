@@ -8,6 +8,7 @@ use stickslip_figure::FigureError;
 use stickslip_plane::atlas::AtlasError;
 use stickslip_plane::sweep::Failed;
 use stickslip_practice::fit::FitError;
+use stickslip_practice::tables::TableError;
 use stickslip_practice::time_steps::TimeStepsError;
 use stickslip_reproduction::ReproductionError;
 use stickslip_reproduction::figures::Objection;
@@ -68,6 +69,9 @@ pub enum Failure {
     /// There is no fit.
     #[error(transparent)]
     Fit(#[from] FitError),
+    /// There is no table.
+    #[error("there is no table: {0}")]
+    Table(TableError),
     /// A part of the reproduction has no result.
     #[error(transparent)]
     Reproduction(#[from] ReproductionError),
@@ -163,6 +167,17 @@ impl Failure {
         match self {
             Self::Usage(_) | Self::Input { .. } => 2,
             _ => 1,
+        }
+    }
+}
+
+impl From<TableError> for Failure {
+    /// The failure of a table whose window comes from options.
+    fn from(error: TableError) -> Self {
+        match error {
+            TableError::Settings(_) | TableError::Parameter(_) => Self::Usage(error.to_string()),
+            TableError::Atlas(error) => error.into(),
+            error => Self::Table(error),
         }
     }
 }

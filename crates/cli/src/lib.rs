@@ -33,7 +33,7 @@ pub use error::Failure;
 use output::console::say;
 use plan::{
     CollidePlan, FitPlan, ImpactPlan, JoinPlan, LocatePlan, MapPlan, ReproducePlan, StudyPlan,
-    TimestepPlan, TracePlan,
+    TablePlan, TimestepPlan, TracePlan,
 };
 use version::NAME;
 
@@ -114,6 +114,7 @@ fn carry_out(arguments: &Arguments) -> Result<(), Failure> {
         }
         Command::Timestep(arguments) => commands::timestep::run(&TimestepPlan::new(arguments)?),
         Command::Fit(arguments) => commands::fit::run(&FitPlan::new(arguments)?),
+        Command::Table(arguments) => commands::table::run(&TablePlan::new(arguments)?),
         Command::Completions(arguments) => commands::completions::run(*arguments),
         Command::Man(arguments) => commands::man::run(arguments),
     }

@@ -1,8 +1,9 @@
 //! Results written. A file is complete or not there at all.
 //!
 //! Start reading in `file`; then, in this order: `partial` (what is not complete), `directory`,
-//! `csv`, `rows` and `impact_rows` (of batches), `json`, `text` (tables for readers), `picture`, `study` (all files of
-//! a study), `console` (standard output and standard error), `progress`.
+//! `csv`, `rows` and `impact_rows` (of batches), `json`, `npz`, `text` (tables for readers),
+//! `picture`, `study` (all files of a study), `console` (standard output and standard error),
+//! `progress`.
 
 pub mod console;
 pub mod csv;
@@ -10,6 +11,7 @@ pub mod directory;
 pub mod file;
 pub mod impact_rows;
 pub mod json;
+pub mod npz;
 pub mod partial;
 pub mod picture;
 pub mod progress;

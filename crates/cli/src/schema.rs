@@ -3,7 +3,7 @@
 
 use stickslip_model::document;
 use stickslip_plane::atlas;
-use stickslip_practice::{fit, time_steps};
+use stickslip_practice::{fit, tables, time_steps};
 use stickslip_reproduction::statements;
 use stickslip_studies::{contact_laws, convergence, stiff_springs};
 
@@ -11,7 +11,7 @@ use stickslip_studies::{contact_laws, convergence, stiff_springs};
 pub const REPORT: &str = "stickslip.report/1";
 
 /// All layouts, those of the libraries included.
-pub const ALL: [&str; 10] = [
+pub const ALL: [&str; 11] = [
     document::COLLISION,
     document::IMPACT,
     atlas::SCHEMA,
@@ -19,6 +19,7 @@ pub const ALL: [&str; 10] = [
     convergence::SCHEMA,
     stiff_springs::SCHEMA,
     statements::SCHEMA,
+    tables::SCHEMA,
     time_steps::SCHEMA,
     fit::SCHEMA,
     REPORT,

@@ -25,6 +25,7 @@
 //! ```
 
 pub mod fit;
+pub mod tables;
 pub mod time_steps;
 
 #[doc = include_str!("../README.md")]

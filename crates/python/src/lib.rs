@@ -4,9 +4,9 @@
 //! arrays, or the JSON that the program prints. Names, shapes and units are documented in the Python
 //! functions that call these, in `python/stickslip`.
 //!
-//! Start reading in `arrays`; then `collision`, `impacts`, `planes`, `steps`, `fits`, `studies`
-//! (results), `hybrid`
-//! (systems of one's own), `engines`, `parallel` and `failure` (what they share).
+//! Start reading in `arrays`; then `collision`, `impacts`, `planes`, `steps`, `fits`, `tables`,
+//! `studies` (results), `hybrid` (systems of one's own), `engines`, `parallel` and `failure` (what
+//! they share).
 
 mod arrays;
 mod collision;
@@ -19,6 +19,7 @@ mod parallel;
 mod planes;
 mod steps;
 mod studies;
+mod tables;
 
 /// The module that Python loads. It has no state of its own, and needs no lock of the interpreter.
 #[pyo3::pymodule(gil_used = false)]
@@ -43,4 +44,6 @@ mod _native {
     use super::steps::TimeSteps;
     #[pymodule_export]
     use super::studies::{asymptote, compare_laws, converge, reproduce, reproduction_parts};
+    #[pymodule_export]
+    use super::tables::RestitutionTable;
 }

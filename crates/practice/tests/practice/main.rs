@@ -10,4 +10,5 @@ mod fit_strangers;
 mod oblique;
 mod reference;
 mod strangers;
+mod tables;
 mod time_steps;

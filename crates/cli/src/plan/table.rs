@@ -1,0 +1,79 @@
+//! What `table` is to do.
+
+use std::path::{Path, PathBuf};
+
+use stickslip_practice::tables::Settings;
+
+use super::files::require_different;
+use crate::args::TableArguments;
+use crate::error::Failure;
+
+/// A table to be made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TablePlan {
+    /// The window and the bound.
+    pub settings: Settings,
+    /// What names in a C header begin with.
+    pub prefix: String,
+    /// The files, and their formats.
+    pub out: Vec<(PathBuf, TableFormat)>,
+    /// The number of threads; `None` is one for each core.
+    pub threads: Option<u16>,
+}
+
+/// The format of a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TableFormat {
+    /// JSON.
+    Json,
+    /// NumPy arrays.
+    Npz,
+    /// A header for C.
+    Header,
+}
+
+impl TablePlan {
+    /// The plan that `arguments` make.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`]: an option is out of range, or a file has no known format or is named
+    /// twice.
+    pub fn new(arguments: &TableArguments) -> Result<Self, Failure> {
+        let settings = Settings {
+            kappa: arguments.kappa,
+            psi: arguments.psi,
+            damping: arguments.damping.unwrap_or(0.0),
+            bound: arguments.bound,
+            regions: arguments.regions,
+        };
+        settings.validate().map_err(|invalid| Failure::Usage(format!("--{invalid}")))?;
+        let named: Vec<_> =
+            arguments.out.iter().map(|out| ("--out", Some(out.as_path()))).collect();
+        require_different(&named, &[])?;
+        let out = arguments.out.iter().map(|out| Ok((out.clone(), TableFormat::of(out)?)));
+        let prefix = arguments.prefix.clone();
+        stickslip_practice::tables::require_prefix(&prefix)
+            .map_err(|invalid| Failure::Usage(format!("--{invalid}")))?;
+        Ok(Self {
+            settings,
+            prefix,
+            out: out.collect::<Result<_, Failure>>()?,
+            threads: arguments.threads,
+        })
+    }
+}
+
+impl TableFormat {
+    /// The format that the name of the file `out` tells.
+    fn of(out: &Path) -> Result<Self, Failure> {
+        match out.extension().and_then(|extension| extension.to_str()) {
+            Some("json") => Ok(Self::Json),
+            Some("npz") => Ok(Self::Npz),
+            Some("h") => Ok(Self::Header),
+            _ => Err(Failure::Usage(format!(
+                "--out {}: the name does not tell the format; expected FILE.json, FILE.npz or FILE.h",
+                out.display()
+            ))),
+        }
+    }
+}

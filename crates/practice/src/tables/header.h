@@ -1,0 +1,118 @@
+/* @SUMMARY@
+ *
+ *   double @prefix@_eps_t(double kappa, double psi)
+ *       the coefficient of tangential restitution; NAN outside the table
+ *   int @prefix@_region(double kappa, double psi)
+ *       @REGION@
+ *   @PREFIX@_EPS_N
+ *       the coefficient of normal restitution
+ *
+ * Both arguments are numbers without units:
+ *
+ *   kappa = k_t/(alpha m beta^(4/5) g_n^(2/5))   scaled stiffness
+ *   psi   = (g_t/g_n) alpha/mu                   reduced impact ratio
+ *
+ * with the effective mass m, the normal force rho x^(3/2) at the overlap x, beta = rho/m, the
+ * coefficient of friction mu, the tangential inertia alpha (2/7 for homogeneous spheres), and the
+ * normal and tangential velocities g_n > 0 and g_t > 0 before the impact.
+ *
+ * C99 and later, and C++; nothing but the standard library is needed. Results have the bits of
+ * the program that wrote this file unless the compiler fuses products with sums; gcc and clang do
+ * not with -ffp-contract=off. The bound holds in either case.
+ */
+#ifndef @PREFIX@_TABLE_H
+#define @PREFIX@_TABLE_H
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#define @PREFIX@_KAPPA_LOW @KAPPA_LOW@
+#define @PREFIX@_KAPPA_HIGH @KAPPA_HIGH@
+#define @PREFIX@_PSI_LOW @PSI_LOW@
+#define @PREFIX@_PSI_HIGH @PSI_HIGH@
+#define @PREFIX@_DAMPING @DAMPING@
+#define @PREFIX@_EPS_N @EPS_N@
+#define @PREFIX@_BOUND @BOUND@
+
+@ARRAYS@
+/* A coordinate from 0 to 1, stretched: 0 not at all, 1 and 2 by the root of the distance from 0 and
+ * from 1. */
+static inline double @prefix@_stretched(unsigned stretch, double z)
+{
+    if (stretch == 0)
+        return z;
+    return stretch == 1 ? sqrt(z) : 1.0 - sqrt(1.0 - z);
+}
+
+/* The first bits of a number. */
+static inline uint64_t @prefix@_bits(double value, unsigned shift)
+{
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits >> shift;
+}
+
+/* The lower side of a strip. */
+static inline double @prefix@_side(uint32_t strip, double along)
+{
+    const double *c = @prefix@_graphs[strip];
+    double x = 2.0 * along - 1.0;
+    double x2 = x * x;
+    double low = (c[0] + c[1] * x) + (c[2] + c[3] * x) * x2;
+    double high = (c[4] + c[5] * x) + (c[6] + c[7] * x) * x2;
+    return low + high * (x2 * x2);
+}
+
+/* Whether the table has a value at kappa and psi; if so, the strip and the coordinates in it. */
+static inline int @prefix@_place(double kappa, double psi, uint32_t *strip, double *along,
+                               double *across)
+{
+    uint32_t slab, at, end;
+    double part, low, high;
+    if (!(kappa >= @PREFIX@_KAPPA_LOW && kappa <= @PREFIX@_KAPPA_HIGH
+          && psi >= @PREFIX@_PSI_LOW && psi <= @PREFIX@_PSI_HIGH))
+        return 0;
+    slab = @prefix@_slab_hints[@prefix@_bits(kappa, @SLAB_SHIFT@) - @SLAB_FIRST@];
+    while (slab + 1 < @SLABS@ && @prefix@_walls[slab + 1] <= kappa)
+        slab++;
+    part = (kappa - @prefix@_walls[slab]) * @prefix@_scales[slab];
+    *along = @prefix@_stretched(@prefix@_slab_stretches[slab], part < 1.0 ? part : 1.0);
+    at = @prefix@_first_strips[slab]
+        + @prefix@_strip_hints[slab][@prefix@_bits(psi, @STRIP_SHIFT@) - @STRIP_FIRST@];
+    end = @prefix@_first_strips[slab + 1];
+    low = @prefix@_side(at, *along);
+    high = @prefix@_side(at + 1, *along);
+    while (at + 2 < end && high <= psi) {
+        at++;
+        low = high;
+        high = @prefix@_side(at + 1, *along);
+    }
+    part = (psi - low) / (high - low);
+    part = part > 0.0 ? (part < 1.0 ? part : 1.0) : 0.0;
+    *across = @prefix@_stretched(@prefix@_strip_stretches[at], part);
+    *strip = at;
+    return 1;
+}
+
+static inline double @prefix@_eps_t(double kappa, double psi)
+{
+    double sums[12] = {0.0}, four[4], along, across, x, y, y2, y4;
+    uint32_t strip, row, first;
+    int j;
+    if (!@prefix@_place(kappa, psi, &strip, &along, &across))
+        return NAN;
+    x = 2.0 * along - 1.0;
+    y = 2.0 * across - 1.0;
+    first = @prefix@_first_rows[strip];
+    for (row = @prefix@_first_rows[strip + 1]; row-- > first;)
+        for (j = 0; j < 12; j++)
+            sums[j] = sums[j] * x + @prefix@_rows[row][j];
+    y2 = y * y;
+    y4 = y2 * y2;
+    for (j = 0; j < 4; j++)
+        four[j] = (sums[j + 8] * y4 + sums[j + 4]) * y4 + sums[j];
+    return (four[0] + four[2] * y2) + (four[1] + four[3] * y2) * y;
+}
+@REGIONS@
+#endif

@@ -1,0 +1,275 @@
+//! Tables of ε_t.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use fastrand::Rng;
+use stickslip_model::{Contact, Engine, exact};
+use stickslip_plane::{Range, progress};
+use stickslip_practice::tables::{self, Document, InvalidTable, Settings, Table, TableError};
+
+/// A window of every kind of boundary: ends of contact, grazes in stick and in slip, crossings.
+fn small(bound: f64) -> Settings {
+    Settings {
+        kappa: Range { low: 0.5, high: 4.5 },
+        psi: Range { low: 0.2, high: 2.4 },
+        bound,
+        regions: true,
+        ..Settings::default()
+    }
+}
+
+fn made(settings: &Settings) -> Table {
+    tables::run(settings, progress::SILENT).expect("a table")
+}
+
+fn exact_eps_t(table: &Table, kappa: f64, psi: f64) -> f64 {
+    let contact = Contact::new(kappa, psi, table.damping).expect("a contact");
+    Engine::Exact.collide(contact).expect("a collision").0.eps_t()
+}
+
+/// The largest error at random points of a table.
+fn largest_error(table: &Table, points: u32) -> f64 {
+    let mut random = Rng::with_seed(7);
+    let mut largest = 0.0_f64;
+    for _ in 0..points {
+        let at = |[low, high]: [f64; 2], part: f64| low + (high - low) * part;
+        let (kappa, psi) = (at(table.kappa, random.f64()), at(table.psi, random.f64()));
+        largest = largest.max((table.eps_t(kappa, psi) - exact_eps_t(table, kappa, psi)).abs());
+    }
+    largest
+}
+
+#[test]
+fn errors_are_within_the_bound() {
+    for bound in [1e-3, 1e-6] {
+        let table = made(&small(bound));
+        assert!(table.verification.largest_error <= bound);
+        let largest = largest_error(&table, 20_000);
+        assert!(largest <= bound && largest > 1e-6 * bound, "{bound:e}: {largest:e}");
+        assert_eq!((table.eps_n, table.bound), (1.0, bound));
+    }
+}
+
+#[test]
+fn a_kink_stays_a_kink() {
+    // Where a stick phase comes to graze, the slope of ε_t jumps from −0.26 to −2.81.
+    let settings = Settings {
+        kappa: Range { low: 4.9, high: 5.1 },
+        psi: Range { low: 0.25, high: 0.28 },
+        bound: 1e-8,
+        ..Settings::default()
+    };
+    let table = made(&settings);
+    let (kappa, boundary) = (4.982599522946337, 0.26518218756776374);
+    let slope = |step: f64| {
+        let difference = table.eps_t(kappa, boundary + step) - table.eps_t(kappa, boundary);
+        difference / step
+    };
+    assert!((slope(-1e-5) + 0.2594).abs() < 2e-3, "{}", slope(-1e-5));
+    assert!((slope(1e-5) + 2.828).abs() < 2e-3, "{}", slope(1e-5));
+}
+
+#[test]
+fn with_damping_too() {
+    let settings = Settings {
+        kappa: Range { low: 2.0, high: 8.0 },
+        psi: Range { low: 0.1, high: 1.5 },
+        damping: 0.3,
+        bound: 1e-5,
+        regions: false,
+    };
+    let table = made(&settings);
+    assert!(largest_error(&table, 5_000) <= 1e-5);
+    let contact = Contact::new(3.0, 1.0, 0.3).unwrap();
+    assert!((table.eps_n - exact::collide(contact).unwrap().eps_n).abs() < 1e-14);
+    assert!(table.regions.is_empty() && table.region(3.0, 1.0).is_none());
+}
+
+#[test]
+fn regions_have_the_switches_of_collisions() {
+    let table = made(&small(1e-4));
+    let mut random = Rng::with_seed(3);
+    let mut known = 0;
+    for _ in 0..5_000 {
+        let kappa = 0.5 + 4.0 * random.f64();
+        let psi = 0.2 + 2.2 * random.f64();
+        let itinerary = exact::collide(Contact::new(kappa, psi, 0.0).unwrap()).unwrap().itinerary();
+        if let Some(region) = table.region(kappa, psi) {
+            assert_eq!(table.regions[region], itinerary, "{kappa} {psi}");
+            known += 1;
+        }
+    }
+    assert!(known > 4_990, "{known}");
+}
+
+#[test]
+fn edges_belong_to_the_table_and_nothing_else_has_a_value() {
+    let table = made(&small(1e-4));
+    let ([k0, k1], [p0, p1]) = (table.kappa, table.psi);
+    for (kappa, psi) in [(k0, p0), (k1, p1), (k0, p1), (k1, p0), (2.0, p1), (2.0, p0), (k0, 1.0)] {
+        let error = (table.eps_t(kappa, psi) - exact_eps_t(&table, kappa, psi)).abs();
+        assert!(error <= 1e-4, "{kappa} {psi}: {error:e}");
+    }
+    // Boundaries, walls and a vertex themselves.
+    for (kappa, psi) in [(1.0, 2.0), (1.568459250641868, 1.0), (0.5701023788418932, 2.0)] {
+        let error = (table.eps_t(kappa, psi) - exact_eps_t(&table, kappa, psi)).abs();
+        assert!(error <= 1e-4, "{kappa} {psi}: {error:e}");
+    }
+    for &kappa in &table.arrays().walls {
+        assert!((table.eps_t(kappa, 0.9) - exact_eps_t(&table, kappa, 0.9)).abs() <= 1e-4);
+    }
+    let (nan, infinity) = (f64::NAN, f64::INFINITY);
+    let beyond = [0.0, -0.0, -1.0, nan, -nan, infinity, -infinity, 5e-324, f64::MAX];
+    for value in beyond.into_iter().chain([k0.next_down(), k1.next_up()]) {
+        assert!(table.eps_t(value, 1.0).is_nan() && table.region(value, 1.0).is_none());
+    }
+    for value in beyond.into_iter().chain([p0.next_down(), p1.next_up()]) {
+        assert!(table.eps_t(1.0, value).is_nan() && table.region(1.0, value).is_none());
+    }
+}
+
+#[test]
+fn threads_change_no_bit() {
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| made(&small(1e-4)))
+    };
+    assert_eq!(with(1), with(3));
+}
+
+#[test]
+fn a_document_makes_the_same_table() {
+    let table = made(&small(1e-4));
+    let text = serde_json::to_string(&Document::from(&table)).unwrap();
+    let document: Document = serde_json::from_str(&text).unwrap();
+    assert_eq!(Table::try_from(document), Ok(table));
+}
+
+#[test]
+fn documents_that_contradict_themselves_are_refused() {
+    let document = Document::from(&made(&small(1e-3)));
+    let refused = |change: &dyn Fn(&mut Document)| {
+        let mut changed = document.clone();
+        change(&mut changed);
+        let error = Table::try_from(changed).expect_err("a contradiction");
+        assert!(!error.to_string().is_empty());
+    };
+    refused(&|it| it.schema = "stickslip.table/0".to_owned());
+    refused(&|it| it.kappa[0] = 0.0);
+    refused(&|it| it.psi[1] = f64::NAN);
+    refused(&|it| it.kappa[1] = f64::INFINITY);
+    refused(&|it| it.psi.swap(0, 1));
+    refused(&|it| it.eps_n = -1.0);
+    refused(&|it| it.arrays.scales.clear());
+    refused(&|it| it.arrays.walls.swap(1, 2));
+    refused(&|it| it.arrays.walls[3] = f64::NAN);
+    refused(&|it| it.arrays.rows[0] = f64::INFINITY);
+    refused(&|it| it.arrays.rows.truncate(24));
+    refused(&|it| it.arrays.graphs.push(0.0));
+    refused(&|it| it.arrays.first_strips[1] = 1);
+    refused(&|it| *it.arrays.first_strips.last_mut().unwrap() += 1);
+    refused(&|it| it.arrays.first_rows[2] = u32::MAX);
+    refused(&|it| it.arrays.slab_hints[0] = 9);
+    refused(&|it| it.arrays.slab_keys.first += 1);
+    refused(&|it| it.arrays.strip_hints[0] = 5000);
+    refused(&|it| it.arrays.strip_hints.clear());
+    refused(&|it| it.arrays.regions[0] = 1000);
+    refused(&|it| it.regions.clear());
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_numbers() {
+    let refused = |change: fn(&mut Settings)| {
+        let mut settings = small(1e-4);
+        change(&mut settings);
+        tables::run(&settings, progress::SILENT).expect_err("no table")
+    };
+    let bound = |value| TableError::Settings(InvalidTable::Bound { value });
+    assert_eq!(refused(|it| it.bound = 1e-13), bound(1e-13));
+    assert_eq!(refused(|it| it.bound = 0.1), bound(0.1));
+    assert!(refused(|it| it.bound = f64::NAN).to_string().contains("1e-12 to 1e-3"));
+    let empty = refused(|it| it.kappa = Range { low: 3.0, high: 3.0 });
+    assert!(matches!(empty, TableError::Settings(InvalidTable::Range { name: "kappa", .. })));
+    assert!(matches!(refused(|it| it.psi.low = -1.0), TableError::Settings(_)));
+    assert!(matches!(refused(|it| it.damping = -0.1), TableError::Atlas(_)));
+    let narrow = refused(|it| it.kappa = Range { low: 3.0, high: 3.0 + 1e-8 });
+    assert!(matches!(narrow, TableError::Atlas(_)), "{narrow}");
+}
+
+#[test]
+fn prefixes_that_begin_no_name_are_refused() {
+    let table = made(&small(1e-3));
+    for prefix in ["", "1a", "_a", "a-b", "a b", "é", "a\n", "*/"] {
+        assert!(table.c_header(prefix).is_err(), "{prefix:?}");
+    }
+}
+
+/// Bits of ε_t and the region at points, as a C program prints them that includes the header.
+const PROGRAM: &str = r#"
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+#include "first.h"
+#include "second.h"
+int main(void)
+{
+    double kappa, psi;
+    while (scanf("%lf %lf", &kappa, &psi) == 2) {
+        double value = first_eps_t(kappa, psi);
+        uint64_t bits;
+        memcpy(&bits, &value, sizeof bits);
+        printf("%" PRIx64 " %d %d\n", value == value ? bits : 0, first_region(kappa, psi),
+               second_eps_t(kappa, psi) == value);
+    }
+    return FIRST_EPS_N == 1.0 && first_itineraries[0][0] != '\0' ? 0 : 3;
+}
+"#;
+
+/// The header compiles without a warning, and its results have the bits of the table. Nothing is
+/// compared where there is no C compiler.
+#[test]
+fn the_header_for_c_has_the_same_bits() {
+    if Command::new("cc").arg("--version").output().is_err() {
+        return;
+    }
+    let settings = Settings { kappa: Range { low: 0.9, high: 4.5 }, ..small(1e-6) };
+    let table = made(&settings);
+    let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("table_header");
+    fs::create_dir_all(&directory).unwrap();
+    for prefix in ["first", "second"] {
+        fs::write(directory.join(prefix).with_extension("h"), table.c_header(prefix).unwrap())
+            .unwrap();
+    }
+    fs::write(directory.join("main.c"), PROGRAM).unwrap();
+    let mut points = vec![(0.9, 0.2), (4.5, 2.4), (0.5, 1.0), (2.0, 3.0), (2.0, 2.0), (2.0, 0.2)];
+    let mut random = Rng::with_seed(1);
+    points.extend((0..5_000).map(|_| (0.9 + 3.6 * random.f64(), 0.2 + 2.2 * random.f64())));
+    points.extend(table.arrays().walls.iter().map(|&wall| (wall, 1.0)));
+    let lines: Vec<_> = points.iter().map(|(kappa, psi)| format!("{kappa:?} {psi:?}\n")).collect();
+    fs::write(directory.join("points.txt"), lines.concat() + "nan nan\ninf 1\n-1 1\n1 -inf\n")
+        .unwrap();
+    let built = Command::new("cc")
+        .args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-O1"])
+        .args(["-ffp-contract=off", "-o", "main", "main.c", "-lm"])
+        .current_dir(&directory)
+        .output()
+        .unwrap();
+    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+    let input = fs::File::open(directory.join("points.txt")).unwrap();
+    let ran = Command::new(directory.join("main")).stdin(input).output().unwrap();
+    assert!(ran.status.success());
+    let printed = String::from_utf8(ran.stdout).unwrap();
+    let region = |kappa, psi| table.region(kappa, psi).map_or(-1, |it| i64::try_from(it).unwrap());
+    let expected = points.iter().map(|&(kappa, psi)| {
+        let value = table.eps_t(kappa, psi);
+        let bits = if value.is_nan() { 0 } else { value.to_bits() };
+        format!("{bits:x} {} {}\n", region(kappa, psi), i32::from(!value.is_nan()))
+    });
+    let expected = expected.collect::<String>() + &"0 -1 0\n".repeat(4);
+    for (k, (printed, expected)) in printed.lines().zip(expected.lines()).enumerate() {
+        assert_eq!(printed, expected, "{:?}", points.get(k));
+    }
+    assert_eq!(printed.len(), expected.len());
+}
