@@ -17,6 +17,7 @@ const COMMANDS: [&str; 14] = [
     "converge",
     "timestep",
     "fit",
+    "table",
     "completions",
     "man",
 ];

@@ -34,6 +34,7 @@ mod pictures;
 mod reproduce;
 #[cfg(unix)]
 mod streams;
+mod table;
 mod timestep;
 mod usage;
 mod version;

@@ -17,6 +17,7 @@ const PAGES: [&str; 15] = [
     "stickslip-man.1",
     "stickslip-map.1",
     "stickslip-reproduce.1",
+    "stickslip-table.1",
     "stickslip-timestep.1",
     "stickslip-trace.1",
     "stickslip.1",

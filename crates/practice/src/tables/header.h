@@ -97,22 +97,37 @@ static inline int @prefix@_place(double kappa, double psi, uint32_t *strip, doub
 
 static inline double @prefix@_eps_t(double kappa, double psi)
 {
-    double sums[12] = {0.0}, four[4], along, across, x, y, y2, y4;
+    double s0 = 0.0, s1 = 0.0, s2 = 0.0, s3 = 0.0, s4 = 0.0, s5 = 0.0;
+    double s6 = 0.0, s7 = 0.0, s8 = 0.0, s9 = 0.0, s10 = 0.0, s11 = 0.0;
+    double along, across, x, y, y2, y4;
     uint32_t strip, row, first;
-    int j;
     if (!@prefix@_place(kappa, psi, &strip, &along, &across))
         return NAN;
     x = 2.0 * along - 1.0;
     y = 2.0 * across - 1.0;
     first = @prefix@_first_rows[strip];
-    for (row = @prefix@_first_rows[strip + 1]; row-- > first;)
-        for (j = 0; j < 12; j++)
-            sums[j] = sums[j] * x + @prefix@_rows[row][j];
+    for (row = @prefix@_first_rows[strip + 1]; row-- > first;) {
+        const double *c = @prefix@_rows[row];
+        s0 = s0 * x + c[0];
+        s1 = s1 * x + c[1];
+        s2 = s2 * x + c[2];
+        s3 = s3 * x + c[3];
+        s4 = s4 * x + c[4];
+        s5 = s5 * x + c[5];
+        s6 = s6 * x + c[6];
+        s7 = s7 * x + c[7];
+        s8 = s8 * x + c[8];
+        s9 = s9 * x + c[9];
+        s10 = s10 * x + c[10];
+        s11 = s11 * x + c[11];
+    }
     y2 = y * y;
     y4 = y2 * y2;
-    for (j = 0; j < 4; j++)
-        four[j] = (sums[j + 8] * y4 + sums[j + 4]) * y4 + sums[j];
-    return (four[0] + four[2] * y2) + (four[1] + four[3] * y2) * y;
+    s0 = (s8 * y4 + s4) * y4 + s0;
+    s1 = (s9 * y4 + s5) * y4 + s1;
+    s2 = (s10 * y4 + s6) * y4 + s2;
+    s3 = (s11 * y4 + s7) * y4 + s3;
+    return (s0 + s2 * y2) + (s1 + s3 * y2) * y;
 }
 @REGIONS@
 #endif

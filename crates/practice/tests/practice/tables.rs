@@ -7,7 +7,9 @@ use std::process::Command;
 use fastrand::Rng;
 use stickslip_model::{Contact, Engine, exact};
 use stickslip_plane::{Range, progress};
-use stickslip_practice::tables::{self, Document, InvalidTable, Settings, Table, TableError};
+#[cfg(feature = "serde")]
+use stickslip_practice::tables::Document;
+use stickslip_practice::tables::{self, InvalidTable, Settings, Table, TableError};
 
 /// A window of every kind of boundary: ends of contact, grazes in stick and in slip, crossings.
 fn small(bound: f64) -> Settings {
@@ -140,6 +142,7 @@ fn threads_change_no_bit() {
 }
 
 #[test]
+#[cfg(feature = "serde")]
 fn a_document_makes_the_same_table() {
     let table = made(&small(1e-4));
     let text = serde_json::to_string(&Document::from(&table)).unwrap();
@@ -148,6 +151,7 @@ fn a_document_makes_the_same_table() {
 }
 
 #[test]
+#[cfg(feature = "serde")]
 fn documents_that_contradict_themselves_are_refused() {
     let document = Document::from(&made(&small(1e-3)));
     let refused = |change: &dyn Fn(&mut Document)| {

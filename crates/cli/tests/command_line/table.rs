@@ -1,0 +1,65 @@
+//! Tables of the restitution.
+
+use serde_json::Value;
+
+use crate::{Workspace, stickslip};
+
+const WINDOW: &str = "--kappa 1:2 --psi 0.5:1.5 --bound 1e-4";
+
+#[test]
+fn one_run_writes_all_formats() {
+    let workspace = Workspace::new();
+    let path = |name: &str| workspace.path(name).display().to_string();
+    let (json, npz, header) = (path("t.json"), path("t.npz"), path("t.h"));
+    let ran = stickslip(&format!(
+        "table {WINDOW} --regions --prefix gas --out {json} --out {npz} --out {header}"
+    ));
+    assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
+    for part in ["bound of the error of ε_t", "points compared", "ε_n"] {
+        assert!(ran.stdout.contains(part), "{part}: {}", ran.stdout);
+    }
+    let table: Value = serde_json::from_str(&workspace.read("t.json")).expect("JSON");
+    assert_eq!((&table["schema"], &table["bound"]), (&"stickslip.table/1".into(), &1e-4.into()));
+    assert!(table["verification"]["largest_error"].as_f64().expect("a number") <= 1e-4);
+    assert!(table["regions"].as_array().expect("regions").contains(&"+o-".into()));
+    let text = workspace.read("t.h");
+    for part in ["double gas_eps_t(double", "int gas_region(double", "GAS_EPS_N 1.0", "\"+o-\""] {
+        assert!(text.contains(part), "{part}");
+    }
+    let archive = std::fs::read(workspace.path("t.npz")).expect("an archive");
+    let rows = b"rows.npy";
+    assert!(archive.windows(rows.len()).any(|part| part == rows));
+    // Any number of threads writes the same bytes.
+    let other = path("o.json");
+    let ran = stickslip(&format!("table {WINDOW} --regions --threads 1 --out {other}"));
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    assert_eq!(workspace.read("o.json"), workspace.read("t.json"));
+}
+
+#[test]
+fn what_cannot_be_is_refused() {
+    let workspace = Workspace::new();
+    let out = workspace.path("t.json").display().to_string();
+    for (line, expected) in [
+        ("--bound 1e-13 --out", "1e-12 to 1e-3"),
+        ("--bound nan --out", "nan"),
+        ("--kappa 2:1 --out", "kappa"),
+        ("--psi 0:1 --out", "psi"),
+        ("--damping -1 --out", "damping"),
+        ("--prefix 1a --out", "prefix"),
+        ("--out x.csv --out", "FILE.json, FILE.npz or FILE.h"),
+        ("--out ./t.json --out t.json --out", "t.json"),
+    ] {
+        let window = ["--kappa 1:2", "--psi 0.5:1.5"];
+        let missing = window.iter().filter(|it| !line.contains(&it[..5])).copied();
+        let window = missing.collect::<Vec<_>>().join(" ");
+        let ran = stickslip(&format!("table {window} {line} {out}"));
+        assert_eq!(ran.code, 2, "{line}: {}", ran.stderr);
+        assert!(ran.stderr.contains(expected), "{line}: {}", ran.stderr);
+        assert!(!workspace.path("t.json").exists(), "{line}");
+    }
+    // A window that has no atlas loses nothing.
+    let ran = stickslip(&format!("table --kappa 1:1.000000001 --psi 0.5:1.5 --out {out}"));
+    assert_eq!(ran.code, 1, "{}", ran.stderr);
+    assert!(ran.stderr.contains("kappa") && !workspace.path("t.json").exists());
+}
