@@ -6,6 +6,9 @@
 //! [`mod@fit`]: the stiffness, friction and damping of a contact law with which it comes
 //! closest to measured impacts.
 //!
+//! [`tables`]: the restitution over a window of parameters, to be looked up in nanoseconds, with a
+//! bound of its error.
+//!
 //! Each question is a function from plain settings to a result. Parallel loops run on the rayon
 //! pool of the caller, and results do not depend on the number of threads.
 //!

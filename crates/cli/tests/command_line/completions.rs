@@ -4,7 +4,7 @@ use std::process::Command;
 
 use crate::{Workspace, stickslip};
 
-const COMMANDS: [&str; 14] = [
+const COMMANDS: [&str; 15] = [
     "collide",
     "impact",
     "laws",

@@ -4,7 +4,7 @@ use std::process::Command;
 
 use crate::{Workspace, stickslip};
 
-const PAGES: [&str; 15] = [
+const PAGES: [&str; 16] = [
     "stickslip-asymptote.1",
     "stickslip-collide.1",
     "stickslip-completions.1",

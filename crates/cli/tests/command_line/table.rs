@@ -58,8 +58,7 @@ fn what_cannot_be_is_refused() {
         assert!(ran.stderr.contains(expected), "{line}: {}", ran.stderr);
         assert!(!workspace.path("t.json").exists(), "{line}");
     }
-    // A window that has no atlas loses nothing.
     let ran = stickslip(&format!("table --kappa 1:1.000000001 --psi 0.5:1.5 --out {out}"));
-    assert_eq!(ran.code, 1, "{}", ran.stderr);
-    assert!(ran.stderr.contains("kappa") && !workspace.path("t.json").exists());
+    assert_eq!(ran.code, 2, "{}", ran.stderr);
+    assert!(ran.stderr.contains("too narrow") && !workspace.path("t.json").exists());
 }
