@@ -25,7 +25,8 @@ fn look_up(criterion: &mut Criterion) {
     group.throughput(Throughput::Elements(POINTS as u64));
     for (name, points) in [("at random", &points), ("a hundred points", &near)] {
         group.bench_function(name, |bencher| {
-            bencher.iter(|| points.iter().map(|&[kappa, psi]| table.eps_t(kappa, psi)).sum::<f64>());
+            bencher
+                .iter(|| points.iter().map(|&[kappa, psi]| table.eps_t(kappa, psi)).sum::<f64>());
         });
     }
     group.sample_size(10);

@@ -44,6 +44,9 @@ pub struct GeneralFamily {
 /// What the runs of the family are made of.
 type System = (GeneralContact, Start<Mode, STATE>);
 
+/// Where else a run is looked at that fails, in traced coordinates.
+const BESIDE: [(f64, f64); 4] = [(1e-12, 0.0), (-1e-12, 0.0), (0.0, 1e-12), (0.0, -1e-12)];
+
 impl GeneralFamily {
     /// The family, with options for every run.
     pub(super) fn new(plane: CollisionPlane, options: Options) -> Self {
@@ -71,10 +74,18 @@ impl GeneralFamily {
     }
 
     /// The label of the run at a point, and its ε_t.
+    ///
+    /// On a boundary, a last phase can be as short as rounding, so that its guards cannot be looked
+    /// at. Then the run beside the point counts, at a distance far below the accuracy of traces.
     pub(super) fn labelled(
         &self,
         point: &Point,
     ) -> Result<(Vec<usize>, f64), CollisionFamilyError> {
+        let beside = |(x, y)| self.labelled_at(&Point::new(point.x + x, point.y + y)).ok();
+        self.labelled_at(point).or_else(|error| BESIDE.into_iter().find_map(beside).ok_or(error))
+    }
+
+    fn labelled_at(&self, point: &Point) -> Result<(Vec<usize>, f64), CollisionFamilyError> {
         let (system, start) = started(self.system(point));
         let mut fired = Fired(vec![code(system.beginning())]);
         let found = run(Dop853, &system, start, f64::INFINITY, &self.options, &mut fired)
@@ -105,8 +116,11 @@ impl GeneralFamily {
         point: &Point,
     ) -> Result<FreeRun<Vec<usize>, Margin>, CollisionFamilyError> {
         let (system, start) = started(self.system(point));
-        let found = margins(Dop853, &system, start, self.span, &self.options)
-            .map_err(|error| FamilyError { point: *point, error })?;
+        // Where a last phase is as short as rounding, its guards cannot be looked at. The label is
+        // known without them, and changes beside such a point need the margins of its neighbours.
+        let Ok(found) = margins(Dop853, &system, start, self.span, &self.options) else {
+            return Ok(FreeRun { label: self.label(point)?, margins: Vec::new() });
+        };
         let label = match known_label(&found, system.beginning()) {
             Some(label) => label,
             None => self.label(point)?,
