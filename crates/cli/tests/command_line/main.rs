@@ -25,6 +25,7 @@ mod map_failures;
 #[cfg(unix)]
 mod map_interrupted;
 mod notebooks_data;
+mod particle_codes;
 mod parts;
 mod parts_failures;
 #[cfg(unix)]
