@@ -9,6 +9,7 @@ mod estimate;
 pub mod exact;
 pub mod history;
 pub mod integrator;
+pub mod linear;
 pub mod sensitivity;
 
 use crate::contact::Contact;
@@ -38,7 +39,7 @@ pub enum Engine {
     Dop853(Tolerances),
     /// Dormand–Prince 5(4).
     Dopri5(Tolerances),
-    /// The exact solution.
+    /// The exact solution: that of the paper's law, or of a linear contact.
     Exact,
     /// The best engine for a contact: the exact solution where its law is the paper's, otherwise
     /// Dormand–Prince 8(5,3).
@@ -210,8 +211,12 @@ impl Engine {
                 let collider = Collider::with_tolerances(Dopri5, rtol, atol);
                 Some(collider.collide_into(contact, collision)?)
             }
-            Self::Exact | Self::Auto => {
+            Self::Exact | Self::Auto if contact.obeys_paper() => {
                 exact::collide_into(contact, collision)?;
+                None
+            }
+            Self::Exact | Self::Auto => {
+                linear::collide_into(contact, collision)?;
                 None
             }
         };

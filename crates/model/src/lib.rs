@@ -11,7 +11,7 @@
 //! | folder | modules |
 //! |---|---|
 //! | `laws` | [`Law`]: a contact law as data; [`presets`]: those of particle codes; [`regularized`], [`general`]: the equations of the paper's law and of any law as hybrid systems |
-//! | `engines` | [`integrator`], [`exact`]: two ways to a collision; [`history`]: its course in time; [`sensitivity`]: its derivatives |
+//! | `engines` | [`integrator`], [`exact`]: two ways to a collision; [`linear`]: an exact one for linear contacts; [`history`]: its course in time; [`sensitivity`]: its derivatives |
 //! | `result` | what every engine returns: [`Collision`], [`Switch`], [`EnergyLedger`] |
 //! | `spheres` | SI units: [`quantity`], [`bodies`], [`scaling`] to a [`Contact`], [`encounter`] in three dimensions, its [`Outcome`] and [`ImpactReport`] |
 //! | `limits` | [`normal`], [`coulomb`], [`largest`], [`inner`]: closed forms and limits to compare with |
@@ -50,7 +50,7 @@ pub use engines::integrator as collision;
 pub use engines::integrator::{Collider, CollisionError};
 pub use engines::sensitivity::{Derived, Sensitivity};
 pub use engines::{Engine, EngineError, Estimate, InvalidChoice, Tolerances};
-pub use engines::{exact, history, integrator, sensitivity};
+pub use engines::{exact, history, integrator, linear, sensitivity};
 pub use laws::law::{Damping, End, HistoryOf, Law, Normal, SpringEnergy, Tangential};
 pub use laws::phase::{Regime, Side};
 pub use laws::{general, presets, regularized};

@@ -54,6 +54,19 @@ const EXACT_DAMPED: Domain = Domain {
     damping: (1e-60, 1e4),
 };
 
+/// The range of the exact solution of linear contacts.
+const LINEAR: Domain = Domain {
+    engine: "the exact solution of linear contacts",
+    kappa: (1e-60, 1e10),
+    psi: (1e-60, 1e60),
+    pull: (1e-100, 1e70),
+    damping: (1e-60, 1e4),
+};
+
+/// The largest damping for it where the normal force attracts. Near 2, where contacts become
+/// endless, the coefficient of normal restitution leaves the range of doubles.
+const ATTRACTING: f64 = 1.9999;
+
 /// The range of the integrators without damping.
 ///
 /// Below this ψ, rounding of v costs too many digits of w.
@@ -86,6 +99,17 @@ pub(crate) fn integrated(contact: &Contact) -> Result<(), OutOfDomain> {
 /// Checks that `contact` is in the range of the exact solution.
 pub(crate) fn exact(contact: &Contact) -> Result<(), OutOfDomain> {
     if contact.damping() > 0.0 { EXACT_DAMPED.check(contact) } else { EXACT.check(contact) }
+}
+
+/// Checks that `contact`, whose normal force may attract, is in the range of the exact solution of
+/// linear contacts.
+pub(crate) fn linear(contact: &Contact, attracts: bool) -> Result<(), OutOfDomain> {
+    let damping = match (contact.damping() > 0.0, attracts) {
+        (false, _) => (0.0, 0.0),
+        (true, false) => LINEAR.damping,
+        (true, true) => (LINEAR.damping.0, ATTRACTING),
+    };
+    Domain { damping, ..LINEAR }.check(contact)
 }
 
 impl Domain {
