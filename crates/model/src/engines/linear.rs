@@ -32,6 +32,11 @@ use slip::Drive;
 /// How many times ε the sum of the sizes of its terms a number may be off.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
+/// A number, but 0 where it may be the rounding of numbers of this size.
+fn unless_rounding(value: f64, size: f64) -> f64 {
+    if value.abs() <= ROUNDING * size { 0.0 } else { value }
+}
+
 /// Whether a contact is linear: its normal force is F = x + a v, or x without damping, and the
 /// stiffness of its spring is constant and its history not rescaled.
 #[must_use]

@@ -14,6 +14,7 @@ mod exact;
 mod forces;
 mod impacts;
 mod laws;
+mod linear;
 mod margins;
 mod properties;
 mod reference;

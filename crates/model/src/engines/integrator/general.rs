@@ -32,6 +32,7 @@ pub fn collide<O: Observer<Mode, STATE>>(
         elapsed: 0.0,
         sliding: 0.0,
         lasting: 0.0,
+        forward: true,
     };
     let mut observed = Observed { account, course };
     let run = run_with(pair, &system, start, f64::INFINITY, options, &mut observed)?;
@@ -63,7 +64,12 @@ struct Account<'a> {
     sliding: f64,
     /// The time since the last recorded switch.
     lasting: f64,
+    /// Whether w is positive, as far as the reversals say.
+    forward: bool,
 }
+
+/// Velocity in units of ψ below which its sign is due to tolerances.
+const NO_VELOCITY: f64 = 1e-9;
 
 impl Account<'_> {
     /// Closes the phase in state `y`.
@@ -72,9 +78,20 @@ impl Account<'_> {
             let [w0, w1] = [&self.entered, y].map(|y| self.system.velocity(y));
             self.sliding += 0.5 * (w0 - w1) * (w0 + w1);
         }
+        // A reversal at the moment of a switch is no event of its own.
+        let w = self.system.velocity(y);
+        let moves = w.abs() > NO_VELOCITY * self.collision.contact.psi();
+        if moves && (w > 0.0) != self.forward {
+            self.reverse();
+        }
         self.elapsed += y[T];
         self.lasting += y[T];
         self.entered = *y;
+    }
+
+    fn reverse(&mut self) {
+        self.forward = !self.forward;
+        self.collision.reversals += 1;
     }
 
     /// Records the switch from the phase, which ends in state `before`, to `next`.
@@ -135,7 +152,7 @@ impl Account<'_> {
 impl Observer<Mode, STATE> for Account<'_> {
     fn on_switch(&mut self, event: &SwitchEvent<Mode, STATE>) {
         match event.guard {
-            REVERSAL => self.collision.reversals += 1,
+            REVERSAL => self.reverse(),
             // The phase goes on.
             CREST => self.phase.stage = event.to.stage,
             END if event.from.stage == event.to.stage => {}

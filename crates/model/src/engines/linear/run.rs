@@ -55,24 +55,19 @@ fn first<'a>(linear: &'a Linear, collision: &mut Collision) -> Phase<'a> {
     let (kappa, psi, damping) = (contact.kappa(), contact.psi(), contact.damping());
     let at = (Stage::Main, linear.normal.start());
     let damped = damping > 0.0;
-    // The ratio of force and limit, whose distance from 1 has the right sign.
     let ratio = if damped { contact.tangential_damping() } else { kappa };
-    let room = (-ratio).mul_add(psi, 1.0);
+    let room = super::unless_rounding((-ratio).mul_add(psi, 1.0), 1.0);
     let slope = 1.0 - damping * damping;
-    let force = damping * contact.tangential_damping() * psi;
-    let excess = if damped {
-        kappa * psi - linear.dashpot * damping.min(force) - slope
-    } else {
-        -room
-    };
     collision.start = Regime::Stick;
     if room >= 0.0 {
+        let force = linear.dashpot * psi;
         let pull = kappa * psi - linear.dashpot * force;
-        let near = (damping * room, -excess);
+        let near = (damping * room, if damped { slope - pull } else { room });
         let far = (damping + force, slope + pull);
-        let near = if damped { (near.0, slope - pull) } else { near };
         return Phase::Stick(Stick::new(linear, at, Side::Positive, [psi, force], [near, far]));
     }
+    // The history is reset to the limit, which is a.
+    let excess = if damped { kappa * psi - linear.dashpot * damping - slope } else { -room };
     if excess < 0.0 {
         return Phase::Stick(Stick::at_limit(linear, at, Side::Positive, psi, -excess));
     }
@@ -131,6 +126,7 @@ impl<'a> Run<'a, '_> {
         let tail = (Stage::Tail, moment);
         let (_, slope) = self.linear.normal.limit(Stage::Tail, &moment);
         let excess = self.linear.kappa * side.sign() * velocity - slope;
+        let excess = super::unless_rounding(excess, slope);
         Next::Phase(if excess >= 0.0 {
             Phase::Slip(Slip::new(self.linear, tail, side, velocity, excess))
         } else {

@@ -80,7 +80,8 @@ impl<'a> Slip<'a> {
         let (s, p) = self.basis(place.since);
         let Drive { value, integral, .. } = self.drive;
         let moment = self.start.after(place);
-        let here = self.linear.drive(&self.linear.normal.at(self.stage, &moment));
+        let (limit, slope) = self.linear.normal.limit(self.stage, &moment);
+        let here = self.linear.drive_of(limit, slope);
         Jet {
             value: self.excess - (value * s + integral * p),
             slope: -here.value,

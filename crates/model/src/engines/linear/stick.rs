@@ -23,6 +23,7 @@ use super::normal::{Moment, Place, Stage};
 use super::oscillator::Oscillator;
 use super::places::falling;
 use super::slip::Drive;
+use super::unless_rounding;
 use crate::laws::phase::Side;
 use crate::numerics::root::{Jet, bracketed};
 
@@ -99,7 +100,7 @@ impl<'a> Stick<'a> {
     pub fn touched(linear: &'a Linear, at: (Stage, Moment), side: Side, velocity: f64) -> Self {
         let (_, slope) = linear.normal.limit(at.0, &at.1);
         let pull = side.sign() * linear.kappa * velocity;
-        let gaps = [(0.0, slope - pull), (0.0, slope + pull)];
+        let gaps = [slope - pull, slope + pull].map(|gap| (0.0, unless_rounding(gap, slope)));
         Self::new(linear, at, side, [velocity, 0.0], gaps)
     }
 
@@ -170,17 +171,14 @@ impl<'a> Stick<'a> {
         (value, slope / time)
     }
 
-    /// The size of the rounding of both gaps.
-    fn rounding(&self, place: Place) -> f64 {
-        let Linear { kappa, dashpot, spring, .. } = self.linear;
-        let rate = kappa * self.velocity - dashpot * self.force;
-        let (limit, _) = self.linear.normal.limit(self.stage, &self.start.after(place));
-        super::ROUNDING * (limit + spring.rounding(self.force, rate, place.since))
-    }
-
     fn edge(&self, place: Place) -> Edge {
         let (gaps, _) = self.gaps_at(place);
-        Edge { place, gaps, rounding: self.rounding(place) }
+        let Linear { kappa, dashpot, spring, .. } = self.linear;
+        let rate = kappa * self.velocity - dashpot * self.force;
+        // The gaps are L ∓ Q.
+        let limit = 0.5 * (gaps[0].value + gaps[1].value).abs();
+        let rounding = super::ROUNDING * (limit + spring.rounding(self.force, rate, place.since));
+        Edge { place, gaps, rounding }
     }
 
     /// Whether a gap closes as the phase begins.
@@ -243,9 +241,9 @@ impl<'a> Stick<'a> {
             let (gaps, drive) = self.gaps_at(at(since));
             self.weighed_jet(since - middle, gaps[index], drive)
         });
-        let lowest = at(lowest);
-        let closed = gap(lowest).value < -self.rounding(lowest);
-        closed.then(|| falling(&self.start, [from.place, lowest], guess, gap))
+        let lowest = self.edge(at(lowest));
+        let closed = lowest.gaps[index].value < -lowest.rounding;
+        closed.then(|| falling(&self.start, [from.place, lowest.place], guess, gap))
     }
 
     /// W over a positive number, at a time from the middle of an interval.
