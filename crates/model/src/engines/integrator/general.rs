@@ -68,7 +68,7 @@ struct Account<'a> {
     forward: bool,
 }
 
-/// Velocity in units of ψ below which its sign is due to tolerances.
+/// Velocity, and rate of velocity, in units of ψ below which the sign is due to tolerances.
 const NO_VELOCITY: f64 = 1e-9;
 
 impl Account<'_> {
@@ -80,13 +80,17 @@ impl Account<'_> {
         }
         // A reversal at the moment of a switch is no event of its own.
         let w = self.system.velocity(y);
-        let moves = w.abs() > NO_VELOCITY * self.collision.contact.psi();
-        if moves && (w > 0.0) != self.forward {
+        if self.counts(w) && (w > 0.0) != self.forward {
             self.reverse();
         }
         self.elapsed += y[T];
         self.lasting += y[T];
         self.entered = *y;
+    }
+
+    /// Whether a velocity or its rate is known to have its sign.
+    fn counts(&self, value: f64) -> bool {
+        value.abs() > NO_VELOCITY * self.collision.contact.psi()
     }
 
     fn reverse(&mut self) {
@@ -152,7 +156,12 @@ impl Account<'_> {
 impl Observer<Mode, STATE> for Account<'_> {
     fn on_switch(&mut self, event: &SwitchEvent<Mode, STATE>) {
         match event.guard {
-            REVERSAL => self.reverse(),
+            REVERSAL => {
+                // A strong dashpot stops the motion, and the rest is noise.
+                if self.counts(self.system.tangential_force(event.from, &event.before)) {
+                    self.reverse();
+                }
+            }
             // The phase goes on.
             CREST => self.phase.stage = event.to.stage,
             END if event.from.stage == event.to.stage => {}

@@ -26,6 +26,8 @@ pub struct Response {
     pub s: f64,
     /// Ṡ.
     pub ds: f64,
+    /// S̈.
+    pub dds: f64,
     /// C = Ṡ + c S, with C(0) = 1 and Ċ(0) = 0. Its rate is −k S.
     pub c: f64,
 }
@@ -49,19 +51,26 @@ impl Oscillator {
     /// The response after a time of 0 or more.
     #[inline]
     pub fn after(&self, time: f64) -> Response {
+        let Self { damping, stiffness, half, frequency, slow, .. } = *self;
         if self.oscillates {
-            let decay = (-self.half * time).exp();
-            let (sine, cosine) = (self.frequency * time).sin_cos();
-            let s = decay * sine / self.frequency;
-            let (cosine, drag) = (decay * cosine, self.half * s);
-            return Response { s, ds: cosine - drag, c: cosine + drag };
+            let decay = (-half * time).exp();
+            let (sine, cosine) = (frequency * time).sin_cos();
+            let s = decay * sine / frequency;
+            let (cosine, drag) = (decay * cosine, half * s);
+            let ds = cosine - drag;
+            return Response { s, ds, dds: -damping * ds - stiffness * s, c: cosine + drag };
         }
-        let spread = 2.0 * self.frequency;
-        let decay = (-self.slow * time).exp();
+        let spread = 2.0 * frequency;
+        let decay = (-slow * time).exp();
         let rest = (-spread * time).exp();
         let part = if spread > 0.0 { -(-spread * time).exp_m1() / spread } else { time };
-        let lag = self.slow * part;
-        Response { s: decay * part, ds: decay * (rest - lag), c: decay * (1.0 + lag) }
+        let lag = slow * part;
+        Response {
+            s: decay * part,
+            ds: decay * (rest - lag),
+            dds: decay * (slow * lag - damping * rest),
+            c: decay * (1.0 + lag),
+        }
     }
 
     /// ∫ S dt from 0 to `time`, which is (1 − C)/k, accurate relative to itself.
@@ -82,18 +91,34 @@ impl Oscillator {
         sum
     }
 
-    /// The size of the terms of which a value consists that starts at `position` with `velocity`,
-    /// and of what rounding of the angle changes: it has an error of a few times ε of this.
-    pub fn rounding(&self, position: f64, velocity: f64, time: f64) -> f64 {
-        let Self { half, frequency, oscillates, slow, .. } = *self;
-        let (position, velocity) = (position.abs(), velocity.abs());
+    /// The size of the terms of p S + q Ṡ − r S̈ after `time`, and of what rounding of the time makes
+    /// of them: the sum has an error of a few times ε of this.
+    pub fn size(&self, factors: [f64; 3], time: f64) -> f64 {
+        let Self { damping, stiffness, half, frequency, oscillates, slow, .. } = *self;
+        let [p, q, r] = factors.map(f64::abs);
         if oscillates {
-            let angle = frequency * time;
-            let swing = position + (velocity + half * position) * time.min(1.0 / frequency);
-            return (-half * time).exp() * swing * (1.0 + angle);
+            let longest = time.min(1.0 / frequency);
+            let swing = q * (1.0 + half * longest) + r * damping;
+            let turn = (p + r * (half * damping + stiffness)) * longest;
+            return (-half * time).exp() * (swing + turn) * (1.0 + frequency * time);
         }
-        let part = if frequency > 0.0 { time.min(0.5 / frequency) } else { time };
-        (-slow * time).exp() * (position + velocity * part) * (1.0 + slow * time)
+        let spread = 2.0 * frequency * time;
+        let part = if spread > 1.0 { 0.5 / frequency } else { time };
+        let (rest, lag) = ((-spread).exp() * (1.0 + spread), slow * part);
+        let swing = p * part + q * (rest + lag) + r * (damping * rest + slow * lag);
+        (-slow * time).exp() * swing * (1.0 + slow * time)
+    }
+
+    /// A bound on all values of p S + q Ṡ − r S̈ after `time`; infinite where there are no swings.
+    pub fn amplitude(&self, [p, q, r]: [f64; 3], time: f64) -> f64 {
+        let Self { damping, stiffness, half, frequency, oscillates, .. } = *self;
+        if !oscillates {
+            return f64::INFINITY;
+        }
+        // e^{−ct/2} times a sum of sine and cosine.
+        let cosine = q + damping * r;
+        let sine = (p + stiffness * r - half * cosine) / frequency;
+        (-half * time).exp() * cosine.hypot(sine)
     }
 
     /// How often a value that starts at `position` with `velocity` and is `now` after `time` has

@@ -64,7 +64,7 @@ fn first<'a>(linear: &'a Linear, collision: &mut Collision) -> Phase<'a> {
         let pull = kappa * psi - linear.dashpot * force;
         let near = (damping * room, if damped { slope - pull } else { room });
         let far = (damping + force, slope + pull);
-        return Phase::Stick(Stick::new(linear, at, Side::Positive, [psi, force], [near, far]));
+        return Phase::Stick(Stick::relaxed(linear, at, Side::Positive, psi, [near, far]));
     }
     // The history is reset to the limit, which is a.
     let excess = if damped { kappa * psi - linear.dashpot * damping - slope } else { -room };
@@ -114,8 +114,10 @@ impl<'a> Run<'a, '_> {
         if let Some(place) = slip.onset() {
             let velocity = self.slipped(slip, place);
             let moment = slip.start.after(place);
-            let stick = Stick::at_limit(self.linear, (slip.stage, moment), side, velocity, 0.0);
-            self.switch(&moment, (Regime::Stick, side), stick.force, velocity);
+            let at = (slip.stage, moment);
+            let (limit, _) = self.linear.normal.limit(slip.stage, &moment);
+            self.switch(&moment, (Regime::Stick, side), side.sign() * limit, velocity);
+            let stick = Stick::at_limit(self.linear, at, side, velocity, 0.0);
             return Next::Phase(Phase::Stick(stick));
         }
         let velocity = self.slipped(slip, slip.end());

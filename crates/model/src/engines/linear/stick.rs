@@ -41,8 +41,10 @@ pub struct Stick<'a> {
     pub side: Side,
     /// w at the start.
     pub velocity: f64,
-    /// Q at the start.
-    pub force: f64,
+    /// Q at the start, but 0 in a relaxed phase, whose Q is that of the dashpot.
+    force: f64,
+    /// Whether the spring has no elongation at the start.
+    relaxed: bool,
     /// The gaps at the start, and their rates: on the side of the phase, and on the other one.
     gaps: [(f64, f64); 2],
     drive: Drive,
@@ -69,39 +71,40 @@ struct Edge {
 }
 
 impl<'a> Stick<'a> {
-    /// The phase that starts with the velocity and the force Q, where the gaps on the side of the
-    /// phase and on the other one, with their rates, are `gaps`.
-    pub fn new(
-        linear: &'a Linear,
-        (stage, start): (Stage, Moment),
-        side: Side,
-        [velocity, force]: [f64; 2],
-        gaps: [(f64, f64); 2],
-    ) -> Self {
-        let drive = linear.drive(&linear.normal.at(stage, &start));
-        Self { linear, stage, start, side, velocity, force, gaps, drive }
-    }
-
-    /// The phase that a slip phase with the same side and velocity ends with.
-    pub fn at_limit(
+    /// The phase that starts with the velocity `velocity` and a spring without elongation, where
+    /// the gaps on the side of the phase and on the other one, with their rates, are `gaps`.
+    pub fn relaxed(
         linear: &'a Linear,
         (stage, start): (Stage, Moment),
         side: Side,
         velocity: f64,
-        gap_rate: f64,
+        gaps: [(f64, f64); 2],
     ) -> Self {
-        let (limit, slope) = linear.normal.limit(stage, &start);
-        let far = (2.0 * limit, 2.0 * slope - gap_rate);
-        let force = side.sign() * limit;
-        Self::new(linear, (stage, start), side, [velocity, force], [(0.0, gap_rate), far])
+        let drive = linear.drive(&linear.normal.at(stage, &start));
+        Self { linear, stage, start, side, velocity, force: 0.0, relaxed: true, gaps, drive }
     }
 
-    /// The phase that starts where limit and spring vanish.
+    /// The phase that starts where the force has its limit on side `side`, from which it recedes at
+    /// the rate `gap_rate`.
+    pub fn at_limit(
+        linear: &'a Linear,
+        at: (Stage, Moment),
+        side: Side,
+        velocity: f64,
+        gap_rate: f64,
+    ) -> Self {
+        let (limit, slope) = linear.normal.limit(at.0, &at.1);
+        let gaps = [(0.0, gap_rate), (2.0 * limit, 2.0 * slope - gap_rate)];
+        let force = side.sign() * limit;
+        Self { force, relaxed: false, ..Self::relaxed(linear, at, side, velocity, gaps) }
+    }
+
+    /// The phase that starts where the limit vanishes, and with it the force of spring and dashpot.
     pub fn touched(linear: &'a Linear, at: (Stage, Moment), side: Side, velocity: f64) -> Self {
         let (_, slope) = linear.normal.limit(at.0, &at.1);
         let pull = side.sign() * linear.kappa * velocity;
         let gaps = [slope - pull, slope + pull].map(|gap| (0.0, unless_rounding(gap, slope)));
-        Self::new(linear, at, side, [velocity, 0.0], gaps)
+        Self { relaxed: false, ..Self::relaxed(linear, at, side, velocity, gaps) }
     }
 
     /// The end of its stage.
@@ -109,10 +112,21 @@ impl<'a> Stick<'a> {
         self.linear.end(&self.start, self.stage)
     }
 
+    /// The factors of S, Ṡ and −S̈ in Q, with the responses of the spring. Those of a relaxed phase
+    /// lose no digits where the dashpot is strong.
+    fn factors(&self) -> [f64; 3] {
+        let Self { velocity, force, .. } = *self;
+        if self.relaxed { [0.0, 0.0, velocity] } else { [self.linear.kappa * velocity, force, 0.0] }
+    }
+
     /// w and Q after a part of the phase.
     pub fn motion_at(&self, since: f64) -> [f64; 2] {
         let response = self.linear.spring.after(since);
         let Self { velocity, force, .. } = *self;
+        if self.relaxed {
+            // y = w₀ S.
+            return [velocity * response.ds, -velocity * response.dds];
+        }
         [
             velocity * response.c - force * response.s,
             force * response.ds + self.linear.kappa * velocity * response.s,
@@ -121,7 +135,9 @@ impl<'a> Stick<'a> {
 
     /// How often w changes its sign until it is `now`.
     pub fn reversals(&self, since: f64, now: f64) -> usize {
-        self.linear.spring.sign_changes(self.velocity, -self.force, now, since)
+        let Self { velocity, .. } = *self;
+        let force = if self.relaxed { self.linear.dashpot * velocity } else { self.force };
+        self.linear.spring.sign_changes(velocity, -force, now, since)
     }
 
     fn signs(&self) -> [f64; 2] {
@@ -173,11 +189,10 @@ impl<'a> Stick<'a> {
 
     fn edge(&self, place: Place) -> Edge {
         let (gaps, _) = self.gaps_at(place);
-        let Linear { kappa, dashpot, spring, .. } = self.linear;
-        let rate = kappa * self.velocity - dashpot * self.force;
         // The gaps are L ∓ Q.
         let limit = 0.5 * (gaps[0].value + gaps[1].value).abs();
-        let rounding = super::ROUNDING * (limit + spring.rounding(self.force, rate, place.since));
+        let force = self.linear.spring.size(self.factors(), place.since);
+        let rounding = super::ROUNDING * (limit + force);
         Edge { place, gaps, rounding }
     }
 
@@ -195,27 +210,52 @@ impl<'a> Stick<'a> {
             return Some(self.released(index, place));
         }
         let Oscillator { frequency, oscillates, .. } = self.linear.spring;
-        let longest = if oscillates { INTERVAL / frequency } else { f64::INFINITY };
+        let interval = if oscillates { INTERVAL / frequency } else { f64::INFINITY };
         let mut from = self.edge(Place { since: 0.0, left: self.start.left });
+        let mut leap = interval;
         let turn = self.linear.turn(&self.start, self.stage);
         for stop in turn.into_iter().chain([self.end()]) {
             while from.place.since < stop.since {
-                let since = from.place.since + longest;
-                let place = Place { since, left: self.start.left - since };
-                let to = self.edge(if since < stop.since { place } else { stop });
-                let closed = [0, 1].map(|index| self.closing(index, [&from, &to]));
-                let first = match closed {
-                    [Some(near), Some(far)] if far.since < near.since => Some((1, far)),
-                    [Some(near), _] => Some((0, near)),
-                    [None, far] => far.map(|far| (1, far)),
+                let ahead = |length: f64| {
+                    let since = from.place.since + length;
+                    let place = Place { since, left: self.start.left - since };
+                    self.edge(if since < stop.since { place } else { stop })
                 };
-                if let Some((index, place)) = first {
-                    return Some(self.released(index, place));
+                // Far from the limit many swings are decided at once.
+                let mut to = ahead(leap);
+                while leap > interval && !self.stays_below(&from, &to) {
+                    leap = (0.25 * leap).max(interval);
+                    to = ahead(leap);
+                }
+                if !self.stays_below(&from, &to) {
+                    if let Some((index, place)) = self.first_closing([&from, &to]) {
+                        return Some(self.released(index, place));
+                    }
+                } else {
+                    leap *= 2.0;
                 }
                 from = to;
             }
         }
         None
+    }
+
+    /// Whether the swings of the spring are below the limit throughout an interval. The limit has no
+    /// minimum inside a stage.
+    fn stays_below(&self, from: &Edge, to: &Edge) -> bool {
+        let limit = |edge: &Edge| 0.5 * (edge.gaps[0].value + edge.gaps[1].value);
+        let least = limit(from).min(limit(to));
+        let most = self.linear.spring.amplitude(self.factors(), from.place.since);
+        most + from.rounding.max(to.rounding) < least
+    }
+
+    /// Which gap closes first in an interval on which P has one sign, and where.
+    fn first_closing(&self, ends: [&Edge; 2]) -> Option<(usize, Place)> {
+        match [0, 1].map(|index| self.closing(index, ends)) {
+            [Some(near), Some(far)] if far.since < near.since => Some((1, far)),
+            [Some(near), _] => Some((0, near)),
+            [None, far] => far.map(|far| (1, far)),
+        }
     }
 
     /// Where a gap closes in an interval on which P has one sign, if it does.
