@@ -13,9 +13,8 @@ pub fn falling(
     f: impl Fn(Place) -> Jet,
 ) -> Place {
     let since = |since: f64| Place { since, left: start.left - since };
-    let from_start = |end: Place| {
-        since(bracketed(above.since, end.since, guess, |time| f(since(time))))
-    };
+    let from_start =
+        |end: Place| since(bracketed(above.since, end.since, guess, |time| f(since(time))));
     // The tail begins where the force vanishes: there the time since then is known.
     if start.left <= 0.0 || below.since <= below.left {
         return from_start(below);

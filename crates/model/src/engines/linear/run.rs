@@ -149,7 +149,14 @@ impl<'a> Run<'a, '_> {
         let Linear { kappa, normal, .. } = self.linear;
         let time_left = at.left + normal.rest;
         let spring = force / kappa;
-        self.collision.switches.push(Switch { time: at.time, time_left, to, side, spring, velocity });
+        self.collision.switches.push(Switch {
+            time: at.time,
+            time_left,
+            to,
+            side,
+            spring,
+            velocity,
+        });
     }
 
     fn require_few(&self) -> Result<(), ExactError> {

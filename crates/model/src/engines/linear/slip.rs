@@ -93,7 +93,8 @@ impl<'a> Slip<'a> {
     fn rounding(&self, place: Place) -> f64 {
         let (limit, slope) = self.linear.normal.limit(self.stage, &self.start.after(place));
         let Linear { kappa, dashpot, .. } = *self.linear;
-        let sizes = [kappa * self.velocity, kappa * self.velocity_at(place), dashpot * limit, slope];
+        let sizes =
+            [kappa * self.velocity, kappa * self.velocity_at(place), dashpot * limit, slope];
         super::ROUNDING * sizes.into_iter().map(f64::abs).sum::<f64>()
     }
 

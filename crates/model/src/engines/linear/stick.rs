@@ -146,7 +146,8 @@ impl<'a> Stick<'a> {
 
     /// Both gaps, and P, at a place.
     fn gaps_at(&self, place: Place) -> ([Jet; 2], Drive) {
-        let Linear { normal, spring: Oscillator { damping, stiffness, .. }, fast, .. } = *self.linear;
+        let Linear { normal, spring: Oscillator { damping, stiffness, .. }, fast, .. } =
+            *self.linear;
         let (limit, slope) = normal.limit(self.stage, &self.start.after(place));
         let drive = self.linear.drive_of(limit, slope);
         let early = place.since * fast <= 1.0;
