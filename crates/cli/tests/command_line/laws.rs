@@ -98,13 +98,27 @@ fn what_is_no_law_is_refused() {
         ("granular/hertz/tsuji/mindlin --damping 2.3", "never end", 2),
         ("yade/FrictPhys_CundallStrack --damping 0.1", "this law has no damping", 2),
         ("mfix/LSD --damping 0.1 --tangential-damping 1", "has no meaning in the law mfix/LSD", 2),
-        ("gran/hooke/history --method exact", "there is no exact solution", 1),
+        ("gran/hertz/history --method exact", "there is no exact solution", 1),
         ("gran/hooke/history --estimate", "for the paper's contact law only", 1),
     ] {
         let ran = directory.run(&format!("collide --kappa 3 --psi 0.4 --law {law}"));
         assert_eq!(ran.code, code, "{law}: {}", ran.stderr);
         assert!(ran.stderr.contains(expected), "{law}: {}", ran.stderr);
     }
+}
+
+#[test]
+fn linear_contacts_have_an_exact_solution() {
+    let options = "--kappa 3 --psi 0.4 --damping 0.3 --law gran/hooke/history --format json";
+    let [exact, integrated] = ["exact", "dop853"].map(|method| {
+        let ran = stickslip(&format!("collide {options} --method {method}"));
+        assert_eq!(ran.code, 0, "{}", ran.stderr);
+        serde_json::from_str::<Value>(&ran.stdout).unwrap()
+    });
+    assert_eq!(exact["method"]["name"], "exact");
+    assert_eq!(exact["itinerary"], integrated["itinerary"]);
+    let eps_t = [&exact, &integrated].map(|found| found["eps_t"].as_f64().unwrap());
+    assert!((eps_t[0] - eps_t[1]).abs() < 1e-11, "{eps_t:?}");
 }
 
 #[test]
