@@ -228,12 +228,10 @@ impl<'a> Stick<'a> {
                     leap = (0.25 * leap).max(interval);
                     to = ahead(leap);
                 }
-                if !self.stays_below(&from, &to) {
-                    if let Some((index, place)) = self.first_closing([&from, &to]) {
-                        return Some(self.released(index, place));
-                    }
-                } else {
+                if self.stays_below(&from, &to) {
                     leap *= 2.0;
+                } else if let Some((index, place)) = self.first_closing([&from, &to]) {
+                    return Some(self.released(index, place));
                 }
                 from = to;
             }
