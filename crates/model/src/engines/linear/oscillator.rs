@@ -75,9 +75,15 @@ impl Oscillator {
 
     /// ∫ S dt from 0 to `time`, which is (1 − C)/k, accurate relative to itself.
     pub fn position_integral(&self, time: f64, response: &Response) -> f64 {
-        let Self { damping, stiffness, fast, .. } = *self;
+        let Self { damping, stiffness, fast, oscillates, slow, .. } = *self;
         if time * fast > NEAR {
-            return (1.0 - response.c) / stiffness;
+            let fallen = if oscillates {
+                1.0 - response.c
+            } else {
+                // C = e^{−λt} + λ S.
+                -(-slow * time).exp_m1() - slow * response.s
+            };
+            return fallen / stiffness;
         }
         // P̈ + c Ṗ + k P = 1.
         let (mut before, mut term) = (0.0, 0.5 * time * time);
