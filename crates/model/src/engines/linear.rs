@@ -66,7 +66,7 @@ pub fn solves(contact: &Contact) -> bool {
 /// assert!((sliding.eps_t() - 0.5).abs() < 1e-15);
 /// // With κψ ≤ 1 the spring holds at first.
 /// let sticking = linear::collide(contact(0.3)?)?;
-/// assert_eq!(sticking.itinerary(), "o+");
+/// assert_eq!(sticking.itinerary(), "o-");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
