@@ -84,7 +84,15 @@ fn errors(pair: Pair, step: f64, truth: &[Collision]) -> [f64; 2] {
     for truth in truth {
         let found = match collider.collide(truth.contact) {
             Ok(found) if found.itinerary() == truth.itinerary() => found,
-            _ => return [f64::NAN; 2],
+            other => {
+                if std::env::var_os("VERBOSE").is_some() {
+                    let other = other.map(|found| found.itinerary());
+                    let (contact, itinerary) = (truth.contact, truth.itinerary());
+                    let (kappa, psi) = (contact.kappa(), contact.psi());
+                    println!("    {step:.3e}: {other:?} for {itinerary} at κ {kappa} ψ {psi}");
+                }
+                return [f64::NAN; 2];
+            }
         };
         velocities.push(found.final_velocity - truth.final_velocity);
         let pairs = found.switches.iter().zip(&truth.switches);

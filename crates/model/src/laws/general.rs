@@ -371,7 +371,13 @@ impl ReadableSystem<STATE, GUARDS> for GeneralContact {
         let slips = mode.regime == Regime::Slip && self.excess_in_tail(mode, y) >= 0.0;
         let next = self.after(mode, guard, slips);
         if guard == CREST {
-            return (next, self.equations.turn(array(y)).into());
+            let turned = self.equations.turn(array(y));
+            // A contact that begins to stick here would lose the gap to its limit in rounding.
+            if mode.progress == Progress::Switched && self.equations.is_at_limit(mode, array(y)) {
+                let next = Mode { progress: Progress::Switched, ..next };
+                return (next, self.equations.at_limit(next, turned).into());
+            }
+            return (next, turned.into());
         }
         (next, self.equations.enter(next, array(y)).into())
     }

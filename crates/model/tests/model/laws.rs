@@ -8,6 +8,8 @@ use stickslip_model::{
     presets, regularized::Regularized,
 };
 
+use stickslip_solver::Dop853;
+
 use crate::common::file;
 use crate::lammps::contact;
 
@@ -415,6 +417,29 @@ fn contacts_on_the_border_of_slip_stick() {
         }
     }
     assert!(checked > 200, "{checked}");
+}
+
+/// With ψ = 1 and no damping the first slip ends at greatest compression, from where a rescaled history
+/// obeys other equations.
+#[test]
+fn switches_at_greatest_compression_are_made_once() {
+    let rescaled = laws().into_iter().filter(|law| law.rescaled && law.damping == Damping::None);
+    for law in rescaled.filter(|law| law.end == End::Force) {
+        for kappa in (1..=60).map(|it| 1.25 * 1.07_f64.powi(it)).chain([2.0, 5.0, 10.0, 18.0]) {
+            let at = |psi: f64, collider: Collider| {
+                let contact = Contact::new(kappa, psi, 0.0).unwrap().with_law(law, 0.0).unwrap();
+                collider.collide(contact).unwrap_or_else(|error| panic!("{contact:?}: {error}"))
+            };
+            let beside = [1.0 - 1e-6, 1.0 + 1e-6].map(|psi| at(psi, Collider::default()));
+            if beside[0].itinerary() != beside[1].itinerary() {
+                continue;
+            }
+            for tolerance in [1e-13, 4e-13, 1e-10, 1e-8] {
+                let on = at(1.0, Collider::with_tolerances(Dop853, tolerance, tolerance));
+                assert_eq!(on.itinerary(), beside[0].itinerary(), "{law:?} {kappa} {tolerance}");
+            }
+        }
+    }
 }
 
 #[test]

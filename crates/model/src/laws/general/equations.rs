@@ -20,6 +20,9 @@ const STRONG: f64 = 1.0;
 /// contacts are computed at this distance: rounding would decide over them time and again.
 const BORDER: f64 = 5e-14;
 
+/// The gap over the limit below which a stick phase has only begun.
+const AT_LIMIT: f64 = 1e-12;
+
 /// Highest power of u in any equation.
 const POWERS: usize = 9;
 
@@ -402,6 +405,22 @@ impl Equations {
         if mode.progress != Progress::Switched {
             y[RATE] = near.1 / rate;
         }
+    }
+
+    /// Whether the gap on the side of a stick phase, in its first step, is within rounding of 0.
+    pub fn is_at_limit(&self, mode: Mode, y: &[f64; STATE]) -> bool {
+        let u = &powers(y[U]);
+        let limit = u[self.exponents.d - self.exponents.of(mode.stage).shared] * self.push(u, y);
+        mode.regime == Regime::Stick && y[GAP] * self.scale < AT_LIMIT * limit
+    }
+
+    /// The state `y` with the gaps with which a stick phase begins.
+    pub fn at_limit(&self, mode: Mode, mut y: [f64; STATE]) -> [f64; STATE] {
+        for component in [GAP, RATE, FAR_GAP, FAR_RATE] {
+            y[component] = 0.0;
+        }
+        self.open(mode, &mut y);
+        y
     }
 
     /// The state at greatest compression, with the history that is carried from there on.
