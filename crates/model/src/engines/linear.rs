@@ -50,6 +50,9 @@ pub fn solves(contact: &Contact) -> bool {
 
 /// The collision of a linear contact from its closed form.
 ///
+/// Against 180 contacts with 24 digits, κ from 0.01 to 400, ε_t is within 1e-15 max(1, √κ) and the
+/// times of switches within 4e-15; ε_n and the contact time have relative errors below 1e-15.
+///
 /// The itinerary is right unless one of its switches, or the lack of one, is due to a difference
 /// within rounding: a spring that touches its limit and does not exceed it by more is not a switch.
 /// A force that begins at its limit sticks first, if only for no time. Damping at which the

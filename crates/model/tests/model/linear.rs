@@ -7,7 +7,7 @@ use stickslip_model::{
     Tangential, exact::ExactError, linear, presets,
 };
 
-use crate::common::file;
+use crate::common::{file, number};
 use crate::lammps;
 
 const ATTRACTING: Law = Law {
@@ -103,6 +103,32 @@ fn collisions_are_those_of_lammps() {
         compared += 1;
     }
     assert!(compared > 30, "{compared}");
+}
+
+/// 40-digit solutions by Taylor series, whose switches are decided by Descartes' rule.
+#[test]
+fn collisions_are_those_of_the_reference() {
+    let reference = file("linear_contacts");
+    let mut worst = [0.0_f64; 4];
+    for case in reference["cases"].as_array().unwrap() {
+        let parameters = [0, 1, 2, 3].map(|index| case[index].as_f64().unwrap());
+        let law = if case[4] == "overlap" { ATTRACTING } else { TO_ZERO_FORCE };
+        let contact = contact(law, parameters);
+        let collision = collide(contact);
+        assert_eq!(collision.itinerary(), case[5].as_str().unwrap(), "{contact:?}");
+        let [eps_t, eps_n, contact_time] = [6, 7, 8].map(|index| number(&case[index]));
+        let times = case[9].as_array().unwrap().iter().map(number);
+        let late = collision.switches.iter().zip(times).map(|(found, time)| found.time - time);
+        let errors = [
+            (collision.eps_t() - eps_t) / contact.kappa().sqrt().max(1.0),
+            (collision.eps_n - eps_n) / eps_n,
+            (collision.contact_time - contact_time) / contact_time,
+            late.fold(0.0, |most, error: f64| if error.abs() > most { error.abs() } else { most }),
+        ];
+        worst = std::array::from_fn(|index| worst[index].max(errors[index].abs()));
+    }
+    let [eps_t, eps_n, contact_time, switch] = worst;
+    assert!(eps_t < 2e-15 && eps_n < 2e-15 && contact_time < 1e-15 && switch < 1e-14, "{worst:?}");
 }
 
 #[test]
