@@ -31,12 +31,13 @@ pub use document::{
     BoundaryEnd, BoundaryFields, Document, DocumentError, ExtremalParameter, ExtremumFields,
     Meeting, RegionFields, SCHEMA, Switching, VertexFields, WindowFields,
 };
-pub use frame::{Frame, RatioRange, ToleranceRange, TooNarrow};
+pub use frame::{Frame, RatioRange};
 #[cfg(feature = "geojson")]
 pub use geojson::{document_geojson, geojson};
 pub use locate::{Located, Unlocated};
 pub(crate) use polyline::polyline;
 pub use regions::{Atlas, Regions, switch_count};
-pub use tracing::{AtlasError, VerifiedAtlas, trace};
-pub(crate) use tracing::{trace_options, traceable};
+pub use tracing::{AtlasError, Division, VerifiedAtlas, divide, trace};
+pub(crate) use tracing::{require_traceable, trace_options};
+pub use crate::sheet::{ToleranceRange, TooNarrow};
 pub use verification::{EulerFields, LabelError, MismatchFields, VerificationReport};

@@ -32,27 +32,54 @@ impl Chart {
     /// The chart of a window.
     #[must_use]
     pub fn of(kappa: Range, psi: Range) -> Self {
-        /// The least extent of an ordinary window in plain coordinates.
+        /// The least ψ of an ordinary window.
+        const SMALLEST: f64 = 1e-3;
+        if psi.low >= SMALLEST && Self::PLAIN.is_even(kappa, psi) {
+            return Self::PLAIN;
+        }
+        Self::unit(kappa, psi)
+    }
+
+    /// The chart of a window of two velocities, which take the places of κ and ψ: their logarithms
+    /// from 0 on, or from 0 to 1 if the window is narrow or long.
+    #[must_use]
+    pub fn of_velocities(normal: Range, tangential: Range) -> Self {
+        let plain = Self::logarithms(normal, tangential);
+        if plain.is_even(normal, tangential) { plain } else { Self::unit(normal, tangential) }
+    }
+
+    /// The logarithms of κ and ψ, from 0 on.
+    fn logarithms(kappa: Range, psi: Range) -> Self {
+        Self { kappa: kappa.low, width: 1.0, psi: psi.low, spread: psi.low, height: 1.0 }
+    }
+
+    /// The logarithms of κ and ψ, from 0 to 1.
+    fn unit(kappa: Range, psi: Range) -> Self {
+        let logarithms = Self::logarithms(kappa, psi);
+        let extent = logarithms.window(kappa, psi).extent();
+        Self { width: extent.x, height: extent.y, ..logarithms }
+    }
+
+    /// Whether a window is neither narrow nor long in this chart.
+    fn is_even(&self, kappa: Range, psi: Range) -> bool {
+        /// The least extent.
         const SHORTEST: f64 = 0.01;
         /// The greatest ratio of the two extents.
         const LONGEST: f64 = 16.0;
-        /// The least ψ of an ordinary window.
-        const SMALLEST: f64 = 1e-3;
-        let extent = Self::PLAIN.window(kappa, psi).extent();
-        let ordinary = extent.min() >= SHORTEST && extent.max() <= LONGEST * extent.min();
-        if ordinary && psi.low >= SMALLEST {
-            return Self::PLAIN;
-        }
-        let unit =
-            Self { kappa: kappa.low, width: 1.0, psi: psi.low, spread: psi.low, height: 1.0 };
-        let extent = unit.window(kappa, psi).extent();
-        Self { width: extent.x, height: extent.y, ..unit }
+        let extent = self.window(kappa, psi).extent();
+        extent.min() >= SHORTEST && extent.max() <= LONGEST * extent.min()
+    }
+
+    /// x of κ.
+    #[must_use]
+    pub fn abscissa(&self, kappa: f64) -> f64 {
+        (kappa / self.kappa).ln() / self.width
     }
 
     /// The traced point of κ and ψ.
     #[must_use]
     pub fn point(&self, kappa: f64, psi: f64) -> Point {
-        let x = (kappa / self.kappa).ln() / self.width;
+        let x = self.abscissa(kappa);
         let y = ((psi - self.psi) / self.spread).ln_1p() / self.height;
         Point::new(x, y)
     }

@@ -16,8 +16,10 @@ pub use general::GeneralFamily;
 use crate::chart::Chart;
 use crate::oblique::Oblique;
 use crate::range::Range;
+use crate::sheet::Sheet;
 
-/// Collisions with κ and ψ in a window and one scaled damping.
+/// Collisions over a window of two parameters: κ and ψ at one scaled damping, or the velocities of two
+/// bodies.
 ///
 /// They are traced in the coordinates of a [`Chart`]; [`Self::point`] and [`Self::parameters`]
 /// convert.
@@ -40,10 +42,21 @@ use crate::range::Range;
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct CollisionPlane {
-    low: Contact,
-    high: Contact,
-    chart: Chart,
-    oblique: Option<Oblique>,
+    sheet: Sheet,
+    parameters: Parameters,
+    /// The contact at the lower ends of both parameters. Its law is that of all.
+    first: Contact,
+}
+
+/// What the two parameters of a plane are.
+#[derive(Clone, Copy, Debug)]
+enum Parameters {
+    /// κ and ψ, at one damping.
+    Scaled,
+    /// κ at normal incidence and ψ, at one speed.
+    Oblique(Oblique),
+    /// The normal and the tangential velocity in m/s of two bodies.
+    Velocities(Pair),
 }
 
 /// Collisions as a family of runs. The label of a run is the list of the guards that fired.
@@ -72,18 +85,21 @@ pub enum CollisionFamilyError {
 }
 
 impl CollisionPlane {
+    /// The names of κ and ψ as parameters.
+    pub const SCALED: [&'static str; 2] = ["kappa", "psi"];
+    /// The names of the two velocities as parameters.
+    pub const VELOCITIES: [&'static str; 2] = ["normal_m_per_s", "tangential_m_per_s"];
+
     /// Collisions with κ and ψ between two values each.
     ///
     /// # Errors
     /// [`InvalidParameter`]: a value that no collision can have.
     pub fn new(kappa: (f64, f64), psi: (f64, f64), damping: f64) -> Result<Self, InvalidParameter> {
-        let range = |(low, high)| Range { low, high };
-        Ok(Self {
-            low: Contact::new(kappa.0, psi.0, damping)?,
-            high: Contact::new(kappa.1, psi.1, damping)?,
-            chart: Chart::of(range(kappa), range(psi)),
-            oblique: None,
-        })
+        let sides = [kappa, psi].map(|(low, high)| Range { low, high });
+        let first = Contact::new(kappa.0, psi.0, damping)?;
+        Contact::new(kappa.1, psi.1, damping)?;
+        let sheet = Sheet { sides, chart: Chart::of(sides[0], sides[1]) };
+        Ok(Self { sheet, parameters: Parameters::Scaled, first })
     }
 
     /// Impacts of a pair at one speed, at different angles: κ is that of normal incidence, and ψ
@@ -100,14 +116,43 @@ impl CollisionPlane {
         let Pair { law, .. } = oblique.pair;
         let damping = oblique.pair.tangential_damping();
         let plane = Self::new(kappa, psi, oblique.at(1.0, psi.0)?.damping())?;
-        let plane = Self { oblique: Some(oblique), ..plane.with_law(law, damping)? };
+        let parameters = Parameters::Oblique(oblique);
+        Ok(Self { parameters, ..plane.with_law(law, damping)? })
+    }
+
+    /// Impacts of a pair with normal and tangential velocities of the surfaces in m/s between two
+    /// values each. The normal velocity decides κ and the damping, and both together decide ψ.
+    ///
+    /// ```
+    /// use stickslip_model::{Material, Pair, Surface};
+    /// use stickslip_plane::{CollisionPlane, Range};
+    ///
+    /// let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
+    /// let surface =
+    ///     Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e9, damping_time_s: 1e-6 };
+    /// let pair = Pair::equal_spheres(0.02, &steel, &surface)?;
+    /// let sides = [Range { low: 0.1, high: 10.0 }, Range { low: 0.01, high: 20.0 }];
+    /// let plane = CollisionPlane::velocities(pair, sides)?;
+    /// let impact = pair.impact(2.0, 0.5)?;
+    /// assert_eq!(plane.contact_at([2.0, 0.5])?, impact.contact);
+    /// # Ok::<(), stickslip_model::InvalidParameter>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`InvalidParameter`]: a velocity is not above 0, or a value that no collision can have.
+    pub fn velocities(pair: Pair, sides: [Range; 2]) -> Result<Self, InvalidParameter> {
+        let [normal, tangential] = sides;
+        let first = pair.impact(normal.low, tangential.low)?.contact;
+        let sheet = Sheet { sides, chart: Chart::of_velocities(normal, tangential) };
+        let plane = Self { sheet, parameters: Parameters::Velocities(pair), first };
+        plane.corners().into_iter().try_for_each(|corner| plane.contact_at(corner).map(drop))?;
         Ok(plane)
     }
 
     /// The same collisions in other traced coordinates.
     #[must_use]
     pub fn with_chart(self, chart: Chart) -> Self {
-        Self { chart, ..self }
+        Self { sheet: Sheet { chart, ..self.sheet }, ..self }
     }
 
     /// The same collisions with another law.
@@ -115,34 +160,66 @@ impl CollisionPlane {
     /// # Errors
     /// [`InvalidParameter`]: no collision has this law with the dampings.
     pub fn with_law(self, law: Law, tangential_damping: f64) -> Result<Self, InvalidParameter> {
-        let low = self.low.with_law(law, tangential_damping)?;
-        let high = self.high.with_law(law, tangential_damping)?;
-        Ok(Self { low, high, ..self })
+        Ok(Self { first: self.first.with_law(law, tangential_damping)?, ..self })
+    }
+
+    /// The names of the two parameters.
+    #[must_use]
+    pub fn names(&self) -> [&'static str; 2] {
+        match self.parameters {
+            Parameters::Scaled | Parameters::Oblique(_) => Self::SCALED,
+            Parameters::Velocities(_) => Self::VELOCITIES,
+        }
+    }
+
+    /// The window in its traced coordinates.
+    #[must_use]
+    pub fn sheet(&self) -> &Sheet {
+        &self.sheet
     }
 
     /// The traced coordinates.
     #[must_use]
     pub fn chart(&self) -> &Chart {
-        &self.chart
+        &self.sheet.chart
     }
 
-    /// The traced point of κ and ψ.
+    /// The traced point of two parameters: κ and ψ, or the velocities.
     #[must_use]
-    pub fn point(&self, kappa: f64, psi: f64) -> Point {
-        self.chart.point(kappa, psi)
+    pub fn point(&self, x: f64, y: f64) -> Point {
+        self.chart().point(x, y)
     }
 
-    /// κ and ψ of a traced point: the inverse of [`Self::point`].
+    /// The two parameters of a traced point: the inverse of [`Self::point`].
     #[must_use]
     pub fn parameters(&self, point: &Point) -> [f64; 2] {
-        self.chart.parameters(point)
+        self.chart().parameters(point)
     }
 
     /// The window in traced coordinates.
     #[must_use]
     pub fn window(&self) -> Window {
-        let corner = |contact: &Contact| self.point(contact.kappa(), contact.psi());
-        Window { low: corner(&self.low), high: corner(&self.high) }
+        self.sheet.window()
+    }
+
+    /// The parameters of the four corners of the window.
+    #[must_use]
+    pub fn corners(&self) -> [[f64; 2]; 4] {
+        let [x, y] = self.sheet.sides;
+        [[x.low, y.low], [x.high, y.low], [x.low, y.high], [x.high, y.high]]
+    }
+
+    /// The collision with two parameters: κ and ψ, or the velocities.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`]: no collision has these values.
+    pub fn contact_at(&self, [x, y]: [f64; 2]) -> Result<Contact, InvalidParameter> {
+        match &self.parameters {
+            Parameters::Scaled => Contact::new(x, y, self.first.damping())?
+                .with_law(self.first.law(), self.first.tangential_damping()),
+            Parameters::Oblique(oblique) => oblique.at(x, y),
+            Parameters::Velocities(pair) => pair.impact(x, y).map(|impact| impact.contact),
+        }
     }
 
     /// The collision at a traced point.
@@ -153,20 +230,21 @@ impl CollisionPlane {
     /// # Errors
     /// [`InvalidParameter`]: κ or ψ is beyond the range of numbers.
     pub fn contact(&self, point: &Point) -> Result<Contact, InvalidParameter> {
-        let [kappa, psi] = self.parameters(point);
-        let psi = psi.max(0.5 * self.low.psi());
-        if let Some(oblique) = &self.oblique {
-            return oblique.at(kappa, psi);
+        let [x, y] = self.parameters(point);
+        match self.parameters {
+            Parameters::Scaled | Parameters::Oblique(_) => {
+                self.contact_at([x, y.max(0.5 * self.sheet.sides[1].low)])
+            }
+            // Logarithms lead to no velocity of 0.
+            Parameters::Velocities(_) => self.contact_at([x, y]),
         }
-        Contact::new(kappa, psi, self.low.damping())?
-            .with_law(self.low.law(), self.low.tangential_damping())
     }
 
     /// The collisions as a family: by the exact solution wherever there is one, which makes a trace
     /// ten times as fast, and by integration elsewhere.
     #[must_use]
     pub fn family(self) -> CollisionFamily {
-        match Engine::Auto.resolved(&self.low) {
+        match Engine::Auto.resolved(&self.first) {
             Engine::Exact => CollisionFamily::Exact(self),
             _ => self.integrated(),
         }
@@ -175,7 +253,7 @@ impl CollisionPlane {
     /// The collisions as a family that is always integrated. Margins are accurate to about 1e-14.
     #[must_use]
     pub fn integrated(self) -> CollisionFamily {
-        if !self.low.obeys_paper() {
+        if !self.first.obeys_paper() {
             return CollisionFamily::General(self.general());
         }
         let (method, options, end) = (Dop853, precise(), f64::INFINITY);
@@ -187,16 +265,17 @@ impl CollisionPlane {
         GeneralFamily::new(self, precise())
     }
 
-    /// Contacts with the first and the last of all normal motions of the plane.
+    /// Contacts with the first and the last of all normal motions of the plane, one of which has the
+    /// largest κ.
     pub(crate) fn normal_motions(&self) -> [Contact; 2] {
         let Window { low, high } = self.window();
         [low, high].map(|corner| self.contact_or_any(&corner))
     }
 
-    /// The contact at a traced point. Where κ is not a number there is nothing to find, and any
-    /// contact will do.
-    fn contact_or_any(&self, point: &Point) -> Contact {
-        self.contact(point).unwrap_or(self.low)
+    /// The contact at a traced point. Where a parameter is not a number there is nothing to find,
+    /// and any contact will do.
+    pub(crate) fn contact_or_any(&self, point: &Point) -> Contact {
+        self.contact(point).unwrap_or(self.first)
     }
 
     /// The label of a collision, whichever engine computed it.

@@ -5,7 +5,7 @@ use stickslip_model::Contact;
 use stickslip_solver::Margin;
 use stickslip_tracer::{Atlas, AtlasOptions, Curve, Location};
 
-use crate::atlas::{AtlasError, Frame, polyline, trace_options, traceable};
+use crate::atlas::{AtlasError, Frame, polyline, require_traceable, trace_options};
 use crate::chart::Chart;
 use crate::family::gaining::{GainingFamily, gains, is_level};
 use crate::family::{CollisionFamilyError, CollisionPlane};
@@ -49,10 +49,11 @@ pub struct Gaining {
 /// [`AtlasError`]: the window or the tolerance is not possible, a run fails, or the curves do not
 /// make regions. What cannot be resolved is no error: [`Gaining::agrees`] tells.
 pub fn trace(frame: Frame, tolerance: f64) -> Result<Gaining, AtlasError> {
-    let plane = traceable(&frame, tolerance)?;
+    let plane = frame.plane()?;
+    require_traceable(&plane, tolerance)?;
     let options = AtlasOptions {
-        trace: trace_options(&frame, plane.chart(), tolerance),
-        tolerance: frame.resolution(plane.chart(), tolerance),
+        trace: trace_options(&plane, tolerance),
+        tolerance: plane.sheet().resolution(tolerance),
         ..AtlasOptions::default()
     };
     let atlas = Atlas::of(&GainingFamily::new(plane), &plane.window(), &options)

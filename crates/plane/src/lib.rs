@@ -13,6 +13,7 @@
 //! - [`chart`]: the coordinates in which the plane is traced
 //! - [`family`]: collisions as a family for the tracer
 //! - [`oblique`]: impacts of one speed at all angles
+//! - [`sheet`]: a window in traced coordinates, and the accuracy of boundaries in it
 //! - [`mod@range`] and [`grid`]: windows, and windows divided into cells
 //! - [`tile`] and [`sweep`]: the results of a grid, and how they are computed
 //! - [`progress`]: reports of how far a long computation has come
@@ -44,6 +45,7 @@ pub mod grid;
 pub mod oblique;
 pub mod progress;
 pub mod range;
+pub mod sheet;
 pub mod sweep;
 pub mod tile;
 
@@ -52,6 +54,7 @@ pub use family::{CollisionFamily, CollisionFamilyError, CollisionPlane};
 pub use grid::{Coordinates, Extent, Grid, GridAxis, Quantity};
 pub use oblique::Oblique;
 pub use range::Range;
+pub use sheet::Sheet;
 pub use tile::Tile;
 
 #[doc = include_str!("../README.md")]

@@ -1,10 +1,33 @@
-//! Tables of ε_t.
+//! Tables of ε_t and ε_n.
 //!
-//! A particle code can look ε_t up. [`run`] makes a [`Table`] of it over (κ, ψ), with an error below
-//! a bound everywhere. Pieces of polynomials follow the boundaries of the atlas, on which the
-//! switches of a collision change and on which ε_t has kinks or roots.
+//! A particle code can look the restitution up. [`run`] makes a [`Table`] of it over (κ, ψ) at one
+//! damping, or over the velocities (g_n, g_t) of two bodies, with errors below a bound everywhere.
+//! Pieces of polynomials follow the boundaries on which the switches of a collision change and on
+//! which ε_t has kinks or roots.
 //!
-//! Start reading here; then, in this order: `settings`, `boundaries` (graphs of the atlas over κ),
+//! The two axes are x and y in the code: κ and ψ, or g_n and g_t in m/s.
+//!
+//! ```
+//! use stickslip_model::{Material, Pair, Surface};
+//! use stickslip_plane::{Range, progress};
+//! use stickslip_practice::tables::{self, Settings, Window};
+//!
+//! let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
+//! let surface =
+//!     Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e9, damping_time_s: 1e-6 };
+//! let window = Window::Velocities {
+//!     pair: Pair::equal_spheres(0.02, &steel, &surface)?,
+//!     normal_m_per_s: Range { low: 1.0, high: 2.0 },
+//!     tangential_m_per_s: Range { low: 1.0, high: 3.0 },
+//! };
+//! let settings = Settings { window, bound: 1e-5, regions: false };
+//! let table = tables::run(&settings, progress::SILENT)?;
+//! // Faster impacts lose more of their normal velocity.
+//! assert!(table.eps_n(2.0) < table.eps_n(1.0) && table.eps_t(1.5, 2.0) < 1.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Start reading here; then, in this order: `settings`, `boundaries` (graphs of boundaries over x),
 //! `stretch` (coordinates in which roots are smooth), `slab`, `strip` (polynomials), `assembly`,
 //! `table` (the arrays and the look-up), `verification`.
 
@@ -22,8 +45,11 @@ mod strip;
 mod table;
 mod verification;
 
-use stickslip_model::{Contact, Engine, EngineError, InvalidParameter};
-use stickslip_plane::atlas::{AtlasError, Frame, trace};
+use std::fmt;
+
+use stickslip_model::{Collision, Contact, EngineError, InvalidParameter};
+use stickslip_plane::CollisionPlane;
+use stickslip_plane::atlas::{AtlasError, divide};
 use stickslip_plane::progress::{Progress, Report, SILENT};
 
 pub use chebyshev::{ACROSS, ALONG};
@@ -31,51 +57,75 @@ pub use chebyshev::{ACROSS, ALONG};
 pub use document::{Document, DocumentError, SCHEMA};
 pub use header::{InvalidPrefix, require_prefix};
 pub use hints::Keys;
-pub use settings::{InvalidTable, Settings};
+pub use settings::{InvalidTable, Settings, Window};
 pub use stretch::Stretch;
 pub use table::{Arrays, NO_REGION, Table};
 pub use verification::Verification;
 
-/// Makes a table of ε_t and verifies it, on the threads of the current rayon pool.
+/// Makes a table of ε_t and ε_n and verifies it, on the threads of the current rayon pool.
 ///
 /// # Errors
-/// [`TableError`]: the settings are out of range, there is no atlas or something speaks against it,
-/// a collision cannot be computed, or the bound is not reached.
+/// [`TableError`]: the settings are out of range, the boundaries cannot be traced or something
+/// speaks against them, a collision cannot be computed, or the bound is not reached.
 pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Table, TableError> {
     settings.validate()?;
-    let frame = Frame::new(settings.kappa, settings.psi, settings.damping);
-    let traced = trace(frame, frame.tolerances().usual, SILENT)?;
-    if !traced.report.agrees {
-        return Err(TableError::Doubtful);
+    let plane = settings.window.plane()?;
+    let division = divide(&plane, plane.sheet().tolerances().usual, SILENT)?;
+    if let Some(objection) = division.report.objection() {
+        return Err(TableError::Doubtful { objection });
     }
     let begin = |steps| progress(Progress::Begin { steps });
     let done = || progress(Progress::Advance { steps: 1 });
-    let arrays = assembly::arrays(settings, &traced.atlas, begin, done)?;
-    let middle = Contact::new(settings.kappa.low, settings.psi.low, settings.damping)?;
-    let (collision, _) = Engine::Exact.collide(middle).map_err(|source| TableError::Engine {
-        kappa: settings.kappa.low,
-        psi: settings.psi.low,
-        source,
-    })?;
-    let regions = 0..traced.atlas.regions.regions().len();
-    let named = regions.map(|region| traced.atlas.itinerary(region).to_owned());
-    let none = Verification { points: 0, largest_error: 0.0, kappa: 0.0, psi: 0.0 };
+    let arrays = assembly::arrays(settings, &division, begin, done)?;
+    let constant_eps_n = match settings.window {
+        Window::Scaled { .. } => {
+            let mut collision = Collision::before(Contact::new(1.0, 1.0, 0.0)?);
+            Some(strip::restitution(&plane, plane.corners()[0], &mut collision)?[1])
+        }
+        Window::Velocities { .. } => None,
+    };
+    let regions = 0..division.regions.regions().len();
+    let named = regions.map(|region| division.itinerary(region).to_owned());
     let mut table = Table {
-        damping: settings.damping,
-        eps_n: collision.eps_n,
+        window: settings.window,
+        constant_eps_n,
         bound: settings.bound,
-        kappa: [settings.kappa.low, settings.kappa.high],
-        psi: [settings.psi.low, settings.psi.high],
-        verification: none,
+        verification: Verification::NONE,
         regions: if settings.regions { named.collect() } else { Vec::new() },
+        sides: settings.window.sides(),
         arrays,
     };
-    table.verification = verification::verify(&table)?;
-    let Verification { largest_error, kappa, psi, .. } = table.verification;
+    table.verification = verification::verify(&table, &plane)?;
+    let Verification { largest_error, largest_error_of_eps_n, x, y, .. } = table.verification;
     if !strip::within(largest_error, settings.bound) {
-        return Err(TableError::Coarse { kappa, psi, error: largest_error });
+        return Err(TableError::Coarse { place: Place::of(&plane, [x, y]), error: largest_error });
+    }
+    if !strip::within(largest_error_of_eps_n, settings.bound) {
+        return Err(TableError::CoarseNormal { error: largest_error_of_eps_n });
     }
     Ok(table)
+}
+
+/// A place of a window, shown as the names of both axes with their values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// The names of the axes.
+    pub names: [&'static str; 2],
+    /// The values.
+    pub at: [f64; 2],
+}
+
+impl Place {
+    fn of(plane: &CollisionPlane, at: [f64; 2]) -> Self {
+        Self { names: plane.names(), at }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { names: [x, y], at } = self;
+        write!(f, "{x} = {:?}, {y} = {:?}", at[0], at[1])
+    }
 }
 
 /// Why there is no table.
@@ -87,30 +137,35 @@ pub enum TableError {
     /// No collision has the parameters of the window.
     #[error(transparent)]
     Parameter(#[from] InvalidParameter),
-    /// The window has no atlas.
+    /// The boundaries of the window cannot be traced.
     #[error(transparent)]
     Atlas(#[from] AtlasError),
-    /// Something speaks against the atlas.
-    #[error("something speaks against the atlas of this window; `stickslip trace` says what")]
-    Doubtful,
+    /// Something speaks against the traced boundaries.
+    #[error("something speaks against the boundaries of this window: {objection}")]
+    Doubtful {
+        /// What it is.
+        objection: String,
+    },
     /// A collision cannot be computed.
-    #[error("kappa = {kappa:?}, psi = {psi:?}: {source}")]
+    #[error("{place}: {source}")]
     Engine {
-        /// κ of the collision.
-        kappa: f64,
-        /// ψ of the collision.
-        psi: f64,
+        /// The place of the collision.
+        place: Place,
         /// What the engine reports.
         source: EngineError,
     },
     /// The bound is not reached.
-    #[error("the bound is not reached: the error is {error:e} at kappa = {kappa:?}, psi = {psi:?}")]
+    #[error("the bound is not reached: the error is {error:e} at {place}")]
     Coarse {
-        /// κ of the place.
-        kappa: f64,
-        /// ψ of the place.
-        psi: f64,
+        /// The place.
+        place: Place,
         /// The error there.
+        error: f64,
+    },
+    /// The bound is not reached by ε_n.
+    #[error("the bound is not reached: the error of eps_n is {error:e}")]
+    CoarseNormal {
+        /// The largest error.
         error: f64,
     },
     /// The table has too many strips.

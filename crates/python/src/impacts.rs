@@ -54,6 +54,11 @@ pub struct Pair {
 }
 
 impl Pair {
+    /// What the contact feels of the bodies.
+    pub fn reduced(&self) -> stickslip_model::Pair {
+        self.reduced
+    }
+
     /// The bodies of a fit.
     pub fn fitted(&self) -> Bodies {
         Bodies::of_sphere(&self.sphere, self.reduced)

@@ -4,19 +4,22 @@ use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use stickslip_plane::Range;
 use stickslip_plane::progress::SILENT;
-use stickslip_practice::tables::{self, Document, SCHEMA, Settings, Table, TableError};
+use stickslip_practice::tables::{
+    self, Document, SCHEMA, Settings, Table, TableError, Verification, Window,
+};
 
 use crate::arrays::{expect_equal, numbers};
 use crate::failure::{bad_input, failed, of_atlas};
+use crate::impacts::Pair;
 use crate::parallel::Threads;
 
-/// ε_t over a window of (κ, ψ), to be looked up.
+/// ε_t and ε_n over a window, to be looked up.
 #[pyclass(frozen, module = "stickslip._native")]
 pub struct RestitutionTable(Table);
 
 #[pymethods]
 impl RestitutionTable {
-    /// Makes and verifies the table of a window.
+    /// Makes and verifies the table of a window of κ and ψ at one damping.
     #[staticmethod]
     fn make(
         py: Python<'_>,
@@ -27,15 +30,27 @@ impl RestitutionTable {
         regions: bool,
         threads: usize,
     ) -> PyResult<Self> {
-        let range = |(low, high)| Range { low, high };
-        let settings = Settings { kappa: range(kappa), psi: range(psi), damping, bound, regions };
-        let pool = Threads::pool(threads)?;
-        let made = py.detach(|| pool.install(|| tables::run(&settings, SILENT)));
-        made.map(Self).map_err(|error| match error {
-            TableError::Settings(_) | TableError::Parameter(_) => bad_input(error),
-            TableError::Atlas(error) => of_atlas(&error),
-            error => failed(error),
-        })
+        let window = Window::Scaled { kappa: range(kappa), psi: range(psi), damping };
+        Self::of(py, &Settings { window, bound, regions }, threads)
+    }
+
+    /// Makes and verifies the table of a window of velocities of two bodies.
+    #[staticmethod]
+    fn make_of_velocities(
+        py: Python<'_>,
+        pair: PyRef<'_, Pair>,
+        normal: (f64, f64),
+        tangential: (f64, f64),
+        bound: f64,
+        regions: bool,
+        threads: usize,
+    ) -> PyResult<Self> {
+        let window = Window::Velocities {
+            pair: pair.reduced(),
+            normal_m_per_s: range(normal),
+            tangential_m_per_s: range(tangential),
+        };
+        Self::of(py, &Settings { window, bound, regions }, threads)
     }
 
     /// The table in the text of a file that `table` has written.
@@ -59,13 +74,24 @@ impl RestitutionTable {
         self.0.c_header(prefix).map_err(bad_input)
     }
 
-    /// κ, ψ, damping, the bound, ε_n, and the largest error with the number of points compared.
+    /// The ends of both axes, the bound, the largest error of ε_t, that of ε_n, and the number of
+    /// points compared.
     #[getter]
     #[expect(clippy::type_complexity, reason = "Python takes it apart")]
-    fn facts(&self) -> ((f64, f64), (f64, f64), f64, f64, f64, (f64, u64)) {
-        let Table { kappa, psi, damping, bound, eps_n, verification, .. } = &self.0;
-        let checked = (verification.largest_error, verification.points);
-        ((kappa[0], kappa[1]), (psi[0], psi[1]), *damping, *bound, *eps_n, checked)
+    fn facts(&self) -> ((f64, f64), (f64, f64), f64, (f64, f64, u64)) {
+        let [x, y] = self.0.window.sides().map(|side| (side.low, side.high));
+        let Verification { points, largest_error, largest_error_of_eps_n, .. } =
+            self.0.verification;
+        (x, y, self.0.bound, (largest_error, largest_error_of_eps_n, points))
+    }
+
+    /// The damping and ε_n of a table over κ and ψ; `None` of one over velocities.
+    #[getter]
+    fn scaled(&self) -> Option<(f64, f64)> {
+        match self.0.window {
+            Window::Scaled { damping, .. } => Some((damping, self.0.constant_eps_n?)),
+            Window::Velocities { .. } => None,
+        }
     }
 
     /// The itineraries of the regions.
@@ -85,21 +111,32 @@ impl RestitutionTable {
     fn eps_t<'py>(
         &self,
         py: Python<'py>,
-        kappa: PyReadonlyArray1<'py, f64>,
-        psi: PyReadonlyArray1<'py, f64>,
+        x: PyReadonlyArray1<'py, f64>,
+        y: PyReadonlyArray1<'py, f64>,
         threads: usize,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        expect_equal([kappa.len()?, psi.len()?])?;
-        let (kappa, psi) = (numbers(&kappa)?, numbers(&psi)?);
-        let mut found = Vec::with_capacity(kappa.len());
+        expect_equal([x.len()?, y.len()?])?;
+        let (x, y) = (numbers(&x)?, numbers(&y)?);
+        let mut found = Vec::with_capacity(x.len());
         let work = |part: std::ops::Range<usize>| -> Vec<f64> {
-            let points = kappa[part.clone()].iter().zip(&psi[part]);
-            points.map(|(&kappa, &psi)| self.0.eps_t(kappa, psi)).collect()
+            let points = x[part.clone()].iter().zip(&y[part]);
+            points.map(|(&x, &y)| self.0.eps_t(x, y)).collect()
         };
-        Threads::new(threads, kappa.len())?.each(py, kappa.len(), work, |part| {
+        Threads::new(threads, x.len())?.each(py, x.len(), work, |part| {
             found.extend(part);
             Ok(())
         })?;
+        Ok(found.into_pyarray(py))
+    }
+
+    /// ε_n along the first axis; NaN outside the table.
+    fn eps_n<'py>(
+        &self,
+        py: Python<'py>,
+        x: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let x = numbers(&x)?;
+        let found: Vec<f64> = py.detach(|| x.iter().map(|&x| self.0.eps_n(x)).collect());
         Ok(found.into_pyarray(py))
     }
 
@@ -107,15 +144,32 @@ impl RestitutionTable {
     fn region<'py>(
         &self,
         py: Python<'py>,
-        kappa: PyReadonlyArray1<'py, f64>,
-        psi: PyReadonlyArray1<'py, f64>,
+        x: PyReadonlyArray1<'py, f64>,
+        y: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<i64>>> {
-        expect_equal([kappa.len()?, psi.len()?])?;
-        let (kappa, psi) = (numbers(&kappa)?, numbers(&psi)?);
-        let region = |(&kappa, &psi): (&f64, &f64)| {
-            self.0.region(kappa, psi).and_then(|it| i64::try_from(it).ok()).unwrap_or(-1)
+        expect_equal([x.len()?, y.len()?])?;
+        let (x, y) = (numbers(&x)?, numbers(&y)?);
+        let region = |(&x, &y): (&f64, &f64)| {
+            self.0.region(x, y).and_then(|it| i64::try_from(it).ok()).unwrap_or(-1)
         };
-        let found: Vec<i64> = py.detach(|| kappa.iter().zip(psi.iter()).map(region).collect());
+        let found: Vec<i64> = py.detach(|| x.iter().zip(y.iter()).map(region).collect());
         Ok(found.into_pyarray(py))
     }
+}
+
+impl RestitutionTable {
+    /// Makes and verifies the table that settings ask for.
+    fn of(py: Python<'_>, settings: &Settings, threads: usize) -> PyResult<Self> {
+        let pool = Threads::pool(threads)?;
+        let made = py.detach(|| pool.install(|| tables::run(settings, SILENT)));
+        made.map(Self).map_err(|error| match error {
+            TableError::Settings(_) | TableError::Parameter(_) => bad_input(error),
+            TableError::Atlas(error) => of_atlas(&error),
+            error => failed(error),
+        })
+    }
+}
+
+fn range((low, high): (f64, f64)) -> Range {
+    Range { low, high }
 }

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use rawzip::ZipArchiveWriter;
-use stickslip_practice::tables::{self, ACROSS, ALONG, Document, Table};
+use stickslip_practice::tables::{self, ACROSS, ALONG, Document, Table, Verification, Window};
 
 use crate::error::Failure;
 use crate::output::console::print;
@@ -43,17 +43,29 @@ pub fn run(plan: &TablePlan) -> Result<(), Failure> {
 }
 
 fn summary(out: &mut dyn Write, table: &Table) -> io::Result<()> {
-    let tables::Verification { points, largest_error, kappa, psi } = table.verification;
+    let Verification { points, largest_error, x, y, largest_error_of_eps_n } = table.verification;
     let [slabs, strips] = table.pieces();
+    let (names, units) = match table.window {
+        Window::Scaled { .. } => (["κ", "ψ"], ""),
+        Window::Velocities { .. } => (["g_n", "g_t"], " m/s"),
+    };
+    let [first, second] = names;
+    let normal = match table.constant_eps_n {
+        Some(eps_n) => ("ε_n", format!("{eps_n:?}")),
+        None => ("largest error of ε_n", format!("{largest_error_of_eps_n:.2e}")),
+    };
     pairs(
         out,
         &[
-            ("bound of the error of ε_t", format!("{:?}", table.bound)),
-            ("largest error found", format!("{largest_error:.2e} at κ = {kappa:?}, ψ = {psi:?}")),
+            ("bound of the errors", format!("{:?}", table.bound)),
+            (
+                "largest error of ε_t",
+                format!("{largest_error:.2e} at {first} = {x:?}{units}, {second} = {y:?}{units}"),
+            ),
+            normal,
             ("points compared", points.to_string()),
-            ("pieces", format!("{strips} in {slabs} intervals of κ")),
+            ("pieces", format!("{strips} in {slabs} intervals of {first}")),
             ("size in memory", format!("{} bytes", table.bytes())),
-            ("ε_n", format!("{:?}", table.eps_n)),
         ],
     )
 }
@@ -65,10 +77,14 @@ fn archive(table: &Table) -> io::Result<Vec<u8>> {
     let mut archive = ZipArchiveWriter::new(&mut bytes);
     let graphs = format!("{}, {ALONG}", arrays.graphs.len() / ALONG);
     let rows = format!("{}, {ACROSS}", arrays.rows.len() / ACROSS);
+    let normals = format!("{}, {ALONG}", arrays.normals.len() / ALONG);
     let line = |length: usize| format!("{length},");
+    let ends = table.window.sides().map(|side| [side.low, side.high]);
+    let [first, second] = table.window.names();
     for (name, shape, values) in [
-        ("kappa", line(2), &table.kappa[..]),
-        ("psi", line(2), &table.psi),
+        (first, line(2), &ends[0][..]),
+        (second, line(2), &ends[1]),
+        ("normals", normals, &arrays.normals),
         ("walls", line(arrays.walls.len()), &arrays.walls),
         ("scales", line(arrays.scales.len()), &arrays.scales),
         ("graphs", graphs, &arrays.graphs),
@@ -105,12 +121,19 @@ fn archive(table: &Table) -> io::Result<Vec<u8>> {
             out.write_all(&keys.first.to_le_bytes())
         })?;
     }
-    for (name, value) in [
-        ("damping", table.damping),
-        ("eps_n", table.eps_n),
+    let mut numbers = vec![
         ("bound", table.bound),
         ("largest_error", table.verification.largest_error),
-    ] {
+        ("largest_error_of_eps_n", table.verification.largest_error_of_eps_n),
+    ];
+    match table.window {
+        Window::Scaled { damping, .. } => numbers.push(("damping", damping)),
+        Window::Velocities { pair, .. } => {
+            text(&mut archive, "pair", &serde_json::to_string(&pair)?)?;
+        }
+    }
+    numbers.extend(table.constant_eps_n.map(|eps_n| ("eps_n", eps_n)));
+    for (name, value) in numbers {
         number(&mut archive, name, value)?;
     }
     text(&mut archive, "itineraries", &table.regions.join(" "))?;

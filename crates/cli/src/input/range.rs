@@ -17,6 +17,15 @@ pub fn parse_for(parameter: Parameter, text: &str) -> Result<Range, NotARange> {
     }
 }
 
+/// Reads an interval `LO:HI` above 0.
+///
+/// # Errors
+/// [`NotARange`] says what is wrong and what is expected.
+pub fn parse_above_0(text: &str) -> Result<Range, NotARange> {
+    let range = parse(text)?;
+    if range.low > 0.0 { Ok(range) } else { Err(NotARange::Zero) }
+}
+
 /// One value of a parameter, or an interval of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum OneOrRange {

@@ -2,11 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use stickslip_practice::tables::Settings;
+use stickslip_model::Law;
+use stickslip_practice::tables::{Settings, Window};
 
 use super::files::require_different;
 use crate::args::TableArguments;
 use crate::error::Failure;
+use crate::input::bodies::read_pair;
 
 /// A table to be made.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,17 +41,12 @@ impl TablePlan {
     /// [`Failure::Usage`]: an option is out of range, or a file has no known format or is named
     /// twice.
     pub fn new(arguments: &TableArguments) -> Result<Self, Failure> {
-        let settings = Settings {
-            kappa: arguments.kappa,
-            psi: arguments.psi,
-            damping: arguments.damping.unwrap_or(0.0),
-            bound: arguments.bound,
-            regions: arguments.regions,
-        };
+        let window = window(arguments)?;
+        let settings = Settings { window, bound: arguments.bound, regions: arguments.regions };
         settings.validate().map_err(|invalid| Failure::Usage(format!("--{invalid}")))?;
         let named: Vec<_> =
             arguments.out.iter().map(|out| ("--out", Some(out.as_path()))).collect();
-        require_different(&named, &[])?;
+        require_different(&named, &[("--bodies", arguments.bodies.as_deref())])?;
         let out = arguments.out.iter().map(|out| Ok((out.clone(), TableFormat::of(out)?)));
         let prefix = arguments.prefix.clone();
         stickslip_practice::tables::require_prefix(&prefix)
@@ -60,6 +57,25 @@ impl TablePlan {
             out: out.collect::<Result<_, Failure>>()?,
             threads: arguments.threads,
         })
+    }
+}
+
+/// The window that the options give: of κ and ψ, or of velocities.
+fn window(arguments: &TableArguments) -> Result<Window, Failure> {
+    let TableArguments { kappa, psi, damping, bodies, normal, tangential, .. } = arguments;
+    match (bodies, normal, tangential, kappa, psi) {
+        (Some(file), &Some(normal_m_per_s), &Some(tangential_m_per_s), _, _) => {
+            let pair = read_pair(file, Law::PAPER)?;
+            Ok(Window::Velocities { pair, normal_m_per_s, tangential_m_per_s })
+        }
+        (None, _, _, &Some(kappa), &Some(psi)) => {
+            Ok(Window::Scaled { kappa, psi, damping: damping.unwrap_or(0.0) })
+        }
+        // The parser of the options asks for either.
+        _ => {
+            let expected = "expected --kappa and --psi, or --bodies, --normal and --tangential";
+            Err(Failure::Usage(format!("no window; {expected}")))
+        }
     }
 }
 

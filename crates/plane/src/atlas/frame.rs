@@ -1,11 +1,12 @@
-//! The window of an atlas, and the accuracy that boundaries can have in it.
+//! The window of an atlas.
 
 use stickslip_model::{InvalidParameter, Law, Reduction};
-use stickslip_tracer::Window;
+use stickslip_tracer::{Point, Window};
 
 use crate::chart::Chart;
 use crate::family::CollisionPlane;
 use crate::range::Range;
+use crate::sheet::{Sheet, ToleranceRange, TooNarrow};
 
 /// The window of an atlas, and what all its collisions have in common.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,42 +34,6 @@ pub struct RatioRange {
     pub reduction: Reduction,
 }
 
-/// The accuracies in ψ that boundaries can have in a window.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ToleranceRange {
-    /// The finest: margins are known to some 1e-13.
-    pub finest: f64,
-    /// The usual one.
-    pub usual: f64,
-    /// The coarsest: the tracer tells curves apart by 1e-8 of an ordinary window's shorter side.
-    pub coarsest: f64,
-}
-
-/// A window is too narrow for the accuracy of its boundaries.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "the window is too narrow: {width:e} in ln(kappa) by {height:e} in ln(psi); expected from \
-     {NARROWEST:e} each"
-)]
-pub struct TooNarrow {
-    /// The width of the window in ln κ.
-    pub width: f64,
-    /// The height of the window in ln ψ.
-    pub height: f64,
-}
-
-/// The smallest distance between a boundary and its curve, in traced coordinates.
-const FINEST: f64 = 1e-11;
-/// The error of margins, which limits the places of boundaries.
-const NOISE: f64 = 1e-13;
-/// The least width and height of a window in ln κ and ln ψ.
-const NARROWEST: f64 = 2e-7;
-
-/// The error of a place in traced coordinates that comes from that of margins.
-pub(super) fn noise(chart: &Chart) -> f64 {
-    NOISE / chart.width.min(chart.height).min(1.0)
-}
-
 impl Frame {
     /// A window of collisions that obey the paper's law.
     #[must_use]
@@ -82,37 +47,29 @@ impl Frame {
         Chart::of(self.kappa, self.psi)
     }
 
+    /// The window in these coordinates.
+    #[must_use]
+    pub fn sheet(&self, chart: &Chart) -> Sheet {
+        Sheet { sides: [self.kappa, self.psi], chart: *chart }
+    }
+
     /// The window in traced coordinates.
     #[must_use]
     pub fn window(&self, chart: &Chart) -> Window {
-        chart.window(self.kappa, self.psi)
+        self.sheet(chart).window()
     }
 
-    /// The distance in traced coordinates between a boundary and a curve that is accurate to
-    /// `tolerance` in ψ.
-    #[must_use]
-    pub fn interpolation(&self, chart: &Chart, tolerance: f64) -> f64 {
-        // The finest tolerance may be lost by rounding.
-        (tolerance / chart.scale(self.psi.high)).max(FINEST)
-    }
-
-    /// The distance from a curve within which the side of a point is left open. It is ten times the
-    /// curve's error, and at least 1e-9, since vertices are known less well.
+    /// The distance from a curve within which the side of a point is left open, see
+    /// [`Sheet::resolution`].
     #[must_use]
     pub fn resolution(&self, chart: &Chart, tolerance: f64) -> f64 {
-        (10.0 * self.interpolation(chart, tolerance)).max(1e3 * noise(chart)).max(1e-9)
+        self.sheet(chart).resolution(tolerance)
     }
 
     /// The accuracies in ψ that boundaries can have.
     #[must_use]
     pub fn tolerances(&self) -> ToleranceRange {
-        let chart = self.chart();
-        let shorter = self.window(&chart).extent().min().min(1.0);
-        let finest = FINEST.max(10.0 * noise(&chart));
-        let [finest, usual, coarsest] =
-            [finest, (1e-10 * shorter).max(finest), (1e-9 * shorter).max(10.0 * finest)]
-                .map(|part| part * chart.scale(self.psi.high));
-        ToleranceRange { finest, usual, coarsest }
+        self.sheet(&self.chart()).tolerances()
     }
 
     /// Refuses a window that is too narrow for the accuracy of its boundaries.
@@ -120,21 +77,13 @@ impl Frame {
     /// # Errors
     /// [`TooNarrow`] has the size of the window.
     pub fn require_wide(&self) -> Result<(), TooNarrow> {
-        let [width, height] = [self.kappa, self.psi].map(|side| (side.high / side.low).ln());
-        if width >= NARROWEST && height >= NARROWEST {
-            return Ok(());
-        }
-        Err(TooNarrow { width, height })
+        self.sheet(&self.chart()).require_wide(CollisionPlane::SCALED)
     }
 
-    /// (κ, ψ), moved onto an edge of the window if it differs from the edge by rounding alone.
+    /// κ and ψ of a traced point, see [`Sheet::snapped`].
     #[must_use]
-    pub fn snapped(&self, [kappa, psi]: [f64; 2]) -> [f64; 2] {
-        let snap = |value: f64, Range { low, high }: Range| {
-            let near = |edge: &f64| (value - edge).abs() <= 1e-14 * edge;
-            [low, high].into_iter().find(near).unwrap_or(value)
-        };
-        [snap(kappa, self.kappa), snap(psi, self.psi)]
+    pub fn snapped(&self, chart: &Chart, point: &Point) -> [f64; 2] {
+        self.sheet(chart).snapped(point)
     }
 
     /// The collisions in the window.

@@ -33,9 +33,18 @@ impl Atlas {
     /// If there is no region with this index.
     #[must_use]
     pub fn itinerary(&self, region: usize) -> &str {
-        let own = self.regions.regions()[region].label.as_ref();
-        own.or_else(|| self.unbounded.get(&region)).map_or("", String::as_str)
+        itinerary_in(&self.regions, &self.unbounded, region)
     }
+}
+
+/// The itinerary of a region, with those of the regions that no boundary touches.
+pub(super) fn itinerary_in<'a>(
+    regions: &'a Regions,
+    unbounded: &'a BTreeMap<usize, String>,
+    region: usize,
+) -> &'a str {
+    let own = regions.regions()[region].label.as_ref();
+    own.or_else(|| unbounded.get(&region)).map_or("", String::as_str)
 }
 
 /// The number of switches of an itinerary, which has one character per phase.

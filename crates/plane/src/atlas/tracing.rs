@@ -10,12 +10,12 @@ use stickslip_tracer::{
 };
 
 use super::boundary::{BoundaryKind, itinerary};
-use super::frame::{Frame, ToleranceRange, TooNarrow, noise};
-use super::regions::{Atlas, Regions};
+use super::frame::Frame;
+use super::regions::{Atlas, Regions, itinerary_in};
 use super::verification::{self, LabelError, VerificationReport};
-use crate::chart::Chart;
 use crate::family::{CollisionFamilyError, CollisionPlane};
 use crate::progress::{Progress, Report};
+use crate::sheet::{ToleranceRange, TooNarrow};
 
 /// An atlas with the result of its verification.
 #[derive(Clone, Debug)]
@@ -26,6 +26,34 @@ pub struct VerifiedAtlas {
     pub extrema: Vec<Extremum>,
     /// What the verification found.
     pub report: VerificationReport,
+}
+
+/// A plane of collisions that boundaries divide into regions, with the result of the verification.
+#[derive(Clone, Debug)]
+pub struct Division {
+    /// The collisions, and the traced coordinates, in which the boundaries are cubics.
+    pub plane: CollisionPlane,
+    /// Accuracy of the boundaries in the second parameter.
+    pub tolerance: f64,
+    /// Boundaries, vertices and regions.
+    pub regions: Regions,
+    /// Itineraries of the regions that no boundary touches, by the index of the region.
+    pub unbounded: BTreeMap<usize, String>,
+    /// The points at which boundaries turn back in one of the parameters.
+    pub extrema: Vec<Extremum>,
+    /// What the verification found.
+    pub report: VerificationReport,
+}
+
+impl Division {
+    /// The itinerary of a region: one character per phase, `+` and `-` for slip, `o` for stick.
+    ///
+    /// # Panics
+    /// If there is no region with this index.
+    #[must_use]
+    pub fn itinerary(&self, region: usize) -> &str {
+        itinerary_in(&self.regions, &self.unbounded, region)
+    }
 }
 
 /// The reason why a window has no atlas.
@@ -79,26 +107,59 @@ pub enum AtlasError {
 /// The largest number of rounds, each with a trace and a verification.
 const ROUNDS: u64 = 8;
 
-/// Traces the boundaries in `frame`, accurate to `tolerance` in ψ, and verifies the regions.
-///
-/// The verification computes collisions on the threads of the current rayon pool. If it finds
-/// other switches than the atlas has, the tracer looks again there, in up to eight rounds.
-/// `progress` is told when a round begins and ends.
+/// Traces the boundaries in `frame`, accurate to `tolerance` in ψ, and verifies the regions, as
+/// [`divide`] does.
 ///
 /// # Errors
-/// [`AtlasError`]: the window or the tolerance is not possible, a run fails, or the curves do not
-/// make regions. What speaks against an atlas is not an error but part of its report.
+/// As [`divide`].
 pub fn trace(
     frame: Frame,
     tolerance: f64,
     progress: Report<'_>,
 ) -> Result<VerifiedAtlas, AtlasError> {
-    let plane = traceable(&frame, tolerance)?;
+    let plane = frame.plane()?;
+    let Division { regions, unbounded, extrema, report, .. } =
+        divide(&plane, tolerance, progress)?;
+    let atlas = Atlas { frame, chart: *plane.chart(), tolerance, regions, unbounded };
+    Ok(VerifiedAtlas { atlas, extrema, report })
+}
+
+/// Traces the boundaries in the window of a plane, accurate to `tolerance` in its second parameter,
+/// and verifies the regions.
+///
+/// The verification computes collisions on the threads of the current rayon pool. If it finds
+/// other switches than the regions have, the tracer looks again there, in up to eight rounds.
+/// `progress` is told when a round begins and ends.
+///
+/// ```
+/// use stickslip_model::{Material, Pair, Surface};
+/// use stickslip_plane::{CollisionPlane, Range, atlas, progress};
+///
+/// let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
+/// let surface =
+///     Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e9, damping_time_s: 1e-6 };
+/// let pair = Pair::equal_spheres(0.02, &steel, &surface)?;
+/// let sides = [Range { low: 15.0, high: 25.0 }, Range { low: 2.0, high: 6.0 }];
+/// let plane = CollisionPlane::velocities(pair, sides)?;
+/// let division = atlas::divide(&plane, plane.sheet().tolerances().usual, progress::SILENT)?;
+/// assert!(division.report.agrees);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`AtlasError`]: the window or the tolerance is not possible, a run fails, or the curves do not
+/// make regions. What speaks against the regions is not an error but part of the report.
+pub fn divide(
+    plane: &CollisionPlane,
+    tolerance: f64,
+    progress: Report<'_>,
+) -> Result<Division, AtlasError> {
+    require_traceable(plane, tolerance)?;
     let window = plane.window();
     let any = plane.contact(&window.low)?;
     let family = plane.family();
-    let options = trace_options(&frame, plane.chart(), tolerance);
-    let failed = |error| AtlasError::of(&plane, error);
+    let options = trace_options(plane, tolerance);
+    let failed = |error| AtlasError::of(plane, error);
     let mut tracer = Tracer::new(&family, &window, &options).map_err(failed)?;
     progress(Progress::Begin { steps: 1 });
     tracer.explore().map_err(failed)?;
@@ -106,41 +167,41 @@ pub fn trace(
     loop {
         let mut network = tracer.network();
         network.name_vertices();
-        let unresolved = verification::unresolved(plane.chart(), &network);
-        let atlas = atlas(frame, tolerance, network, &any)?;
-        let (report, brackets) = verification::verify(&atlas, unresolved, round)?;
+        let unresolved = verification::unresolved(plane, &network);
+        let regions = regions(plane, tolerance, network, &any)?;
+        let (report, brackets) =
+            verification::verify(plane, tolerance, &regions, unresolved, round)?;
         progress(Progress::Advance { steps: 1 });
         let again = round < ROUNDS && tracer.look_between(&brackets).map_err(failed)?;
         if !again {
             let extrema = tracer.extrema().map_err(failed)?;
-            return Ok(VerifiedAtlas { atlas, extrema, report });
+            let unbounded = unbounded(plane, &regions)?;
+            return Ok(Division { plane: *plane, tolerance, regions, unbounded, extrema, report });
         }
         progress(Progress::Begin { steps: 1 });
         round += 1;
     }
 }
 
-/// The collisions in `frame`, if boundaries can be accurate to `tolerance` there, and verified.
-pub(crate) fn traceable(frame: &Frame, tolerance: f64) -> Result<CollisionPlane, AtlasError> {
-    let plane = frame.plane()?;
-    frame.require_wide()?;
-    let ToleranceRange { finest, coarsest, .. } = frame.tolerances();
+/// Refuses a plane in which boundaries cannot be accurate to `tolerance`, or not be verified.
+pub(crate) fn require_traceable(plane: &CollisionPlane, tolerance: f64) -> Result<(), AtlasError> {
+    plane.sheet().require_wide(plane.names())?;
+    let ToleranceRange { finest, coarsest, .. } = plane.sheet().tolerances();
     if !(finest..=coarsest).contains(&tolerance) {
         return Err(AtlasError::Tolerance { tolerance, finest, coarsest });
     }
-    let window = plane.window();
-    for corner in [window.low, window.high] {
-        Collider::require(&plane.contact(&corner)?)?;
+    for corner in plane.corners() {
+        Collider::require(&plane.contact_at(corner)?)?;
     }
-    Ok(plane)
+    Ok(())
 }
 
-/// The options of a trace that is accurate to `tolerance` in ψ.
-pub(crate) fn trace_options(frame: &Frame, chart: &Chart, tolerance: f64) -> TraceOptions {
-    let (usual, noise) = (TraceOptions::default(), noise(chart));
+/// The options of a trace that is accurate to `tolerance` in the second parameter.
+pub(crate) fn trace_options(plane: &CollisionPlane, tolerance: f64) -> TraceOptions {
+    let (usual, noise) = (TraceOptions::default(), plane.sheet().noise());
     TraceOptions {
         tolerance: usual.tolerance.max(0.1 * noise),
-        interpolation: frame.interpolation(chart, tolerance),
+        interpolation: plane.sheet().interpolation(tolerance),
         offset: usual.offset.max(10.0 * noise),
         ..usual
     }
@@ -152,8 +213,8 @@ impl AtlasError {
     pub fn of(plane: &CollisionPlane, error: TraceError<CollisionFamilyError>) -> Self {
         match error {
             TraceError::Run { point, source } => {
-                let [kappa, psi] = plane.parameters(&point);
-                Self::Run { kappa, psi, source }
+                let contact = plane.contact_or_any(&point);
+                Self::Run { kappa: contact.kappa(), psi: contact.psi(), source }
             }
             error => Self::Trace(error),
         }
@@ -172,41 +233,32 @@ impl AtlasError {
     }
 }
 
-/// The atlas that the traced curves make.
-fn atlas(
-    frame: Frame,
-    tolerance: f64,
-    network: Network<Vec<usize>, Margin>,
-    any: &Contact,
-) -> Result<Atlas, AtlasError> {
-    let chart = frame.chart();
-    let regions = regions(&frame, &chart, tolerance, network, any)?;
-    let unbounded = regions
-        .regions()
-        .iter()
-        .enumerate()
+/// The itineraries of the regions that no boundary touches.
+fn unbounded(
+    plane: &CollisionPlane,
+    regions: &Regions,
+) -> Result<BTreeMap<usize, String>, LabelError> {
+    let regions = regions.regions().iter().enumerate();
+    regions
         .filter(|(_, region)| region.label.is_none())
-        .map(|(index, region)| {
-            Ok((index, verification::itinerary(&frame, &chart, &region.sample)?))
-        })
-        .collect::<Result<BTreeMap<_, _>, LabelError>>()?;
-    Ok(Atlas { frame, chart, tolerance, regions, unbounded })
+        .map(|(index, region)| Ok((index, verification::itinerary(plane, &region.sample)?)))
+        .collect()
 }
 
 /// The regions that the traced curves make.
 ///
-/// Points are converted to (κ, ψ) and back, because a file holds κ and ψ. A file then makes the
-/// same regions, bit for bit.
+/// Points are converted to the two parameters and back, because a file holds κ and ψ. A file then
+/// makes the same regions, bit for bit.
 fn regions(
-    frame: &Frame,
-    chart: &Chart,
+    plane: &CollisionPlane,
     tolerance: f64,
     network: Network<Vec<usize>, Margin>,
     any: &Contact,
 ) -> Result<Regions, AtlasError> {
+    let sheet = plane.sheet();
     let written = |point: &Point| {
-        let [kappa, psi] = frame.snapped(chart.parameters(point));
-        chart.point(kappa, psi)
+        let [x, y] = sheet.snapped(point);
+        plane.point(x, y)
     };
     let curves = network.curves.into_iter().map(|curve| Curve {
         margin: BoundaryKind::of(any, &curve.margin),
@@ -225,6 +277,5 @@ fn regions(
         margins: Vec::new(),
     });
     let vertices: Vec<_> = vertices.collect();
-    let resolution = frame.resolution(chart, tolerance);
-    Ok(Subdivision::new(frame.window(chart), curves, vertices, resolution)?)
+    Ok(Subdivision::new(sheet.window(), curves, vertices, sheet.resolution(tolerance))?)
 }

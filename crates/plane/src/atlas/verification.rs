@@ -7,9 +7,8 @@ use stickslip_tracer::{
     verify_with,
 };
 
-use super::frame::Frame;
-use super::regions::Atlas;
-use crate::chart::Chart;
+use super::regions::Regions;
+use crate::family::CollisionPlane;
 
 /// What the verification of an atlas found, in the layout of the atlas file.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,7 +76,7 @@ pub struct MismatchFields {
     pub near_boundary: bool,
 }
 
-/// Compares the regions of `atlas` with collisions at the points of a round, in parallel.
+/// Compares the regions of a plane with collisions at the points of a round, in parallel.
 ///
 /// `unresolved` is what the tracer left open. Besides the report, the result has pairs of places
 /// between which a boundary is missing.
@@ -86,21 +85,22 @@ pub struct MismatchFields {
 /// [`VerifyError`]: the distances from boundaries are not in order. This would be a defect of this
 /// module.
 pub(super) fn verify(
-    atlas: &Atlas,
+    plane: &CollisionPlane,
+    tolerance: f64,
+    regions: &Regions,
     mut unresolved: Vec<String>,
     round: u64,
 ) -> Result<(VerificationReport, Vec<[Point; 2]>), VerifyError> {
-    let Atlas { frame, chart, tolerance, regions, .. } = atlas;
-    let nearest = 10.0 * frame.resolution(chart, *tolerance);
+    let nearest = 10.0 * plane.sheet().resolution(tolerance);
     let farthest = nearest.max(1e-3 * regions.window().extent().min());
     let options =
         VerifyOptions { random_points: 20_000, near_points: 20, nearest, farthest, seed: round };
     let verification = verify_with(regions, &options, |points| {
-        points.par_iter().map(|point| itinerary(frame, chart, point)).collect()
+        points.par_iter().map(|point| itinerary(plane, point)).collect()
     })?;
     let mut undecided = 0;
     for open in &verification.unverified {
-        let [kappa, psi] = chart.parameters(&open.checkpoint.point);
+        let [kappa, psi] = scaled(plane, &open.checkpoint.point);
         let what = match &open.reason {
             Reason::Location(Location::OnBoundary { .. }) => {
                 undecided += 1;
@@ -116,7 +116,7 @@ pub(super) fn verify(
     let agrees = verification.agrees() && unresolved.is_empty();
     let Verification { euler, mismatches, tried, untried_curves, .. } = verification;
     let mismatches = mismatches.into_iter().map(|mismatch| {
-        let [kappa, psi] = chart.parameters(&mismatch.checkpoint.point);
+        let [kappa, psi] = scaled(plane, &mismatch.checkpoint.point);
         MismatchFields {
             kappa,
             psi,
@@ -190,18 +190,23 @@ pub enum LabelError {
 ///
 /// # Errors
 /// [`LabelError`] says why the collision cannot be computed.
-pub(super) fn itinerary(frame: &Frame, chart: &Chart, point: &Point) -> Result<String, LabelError> {
-    let contact = frame.plane()?.with_chart(*chart).contact(point)?;
-    Ok(Collider::default().collide(contact)?.itinerary())
+pub(super) fn itinerary(plane: &CollisionPlane, point: &Point) -> Result<String, LabelError> {
+    Ok(Collider::default().collide(plane.contact(point)?)?.itinerary())
+}
+
+/// κ and ψ of the collision at a traced point.
+fn scaled(plane: &CollisionPlane, point: &Point) -> [f64; 2] {
+    let contact = plane.contact_or_any(point);
+    [contact.kappa(), contact.psi()]
 }
 
 /// What the tracer saw and could not explain, in sentences.
 pub(super) fn unresolved<Label, Margin>(
-    chart: &Chart,
+    plane: &CollisionPlane,
     network: &Network<Label, Margin>,
 ) -> Vec<String> {
     let at = |point: &Point| {
-        let [kappa, psi] = chart.parameters(point);
+        let [kappa, psi] = scaled(plane, point);
         format!("kappa = {kappa:?}, psi = {psi:?}")
     };
     let describe = |open: &Unresolved<Label>| match open {

@@ -51,7 +51,9 @@ impl GeneralFamily {
     /// The family, with options for every run.
     pub(super) fn new(plane: CollisionPlane, options: Options) -> Self {
         // A run that follows a prescribed itinerary may never end.
-        let oscillations = plane.high.kappa().sqrt().min(1e5);
+        let motions = plane.normal_motions();
+        let stiffest = motions[0].kappa().max(motions[1].kappa());
+        let oscillations = stiffest.sqrt().min(1e5);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1e7")]
         let max_steps = 1000 + (100.0 * oscillations) as usize;
         let options = Options { max_steps, ..options };
@@ -60,7 +62,7 @@ impl GeneralFamily {
             let found = run(Dop853, &system, start, f64::INFINITY, &options, &mut ());
             found.map_or(f64::INFINITY, |run| BEYOND * run.s)
         };
-        let span = plane.normal_motions().into_iter().map(span).fold(0.0, f64::max);
+        let span = motions.into_iter().map(span).fold(0.0, f64::max);
         Self { plane, options, span }
     }
 

@@ -1,19 +1,19 @@
-//! Traced boundaries as graphs over κ.
+//! Traced boundaries as graphs over the first axis.
 
-use stickslip_model::{Collision, Contact, Engine};
-use stickslip_plane::Chart;
-use stickslip_plane::atlas::Atlas;
+use stickslip_model::{Collision, Engine};
+use stickslip_plane::atlas::Division;
+use stickslip_plane::{CollisionPlane, Range};
 use stickslip_tracer::{Cubic, Node, Point};
 
-/// The least distance at which a boundary is looked for, as a part of ψ.
+/// The least distance at which a boundary is looked for, as a part of y.
 const NEAREST: f64 = 1e-12;
-/// Walls that are closer than this part of κ are one: atlases are not finer.
+/// Walls that are closer than this part of x are one: traced boundaries are not finer.
 const MERGED: f64 = 1e-11;
 
-/// A part of a boundary along which κ rises, as ψ over κ.
+/// A part of a boundary along which x rises, as y over x. These are the two axes of the table, and
+/// not the traced coordinates.
 pub struct Chain {
-    chart: Chart,
-    damping: f64,
+    plane: CollisionPlane,
     /// Parts along which x rises, in the order of x.
     cubics: Vec<Cubic>,
     /// The itineraries of collisions below and above.
@@ -24,43 +24,43 @@ impl Chain {
     fn ends(&self) -> [f64; 2] {
         let first = self.cubics[0].points[0];
         let last = self.cubics[self.cubics.len() - 1].points[3];
-        [first, last].map(|point| self.chart.parameters(&point)[0])
+        [first, last].map(|point| self.plane.parameters(&point)[0])
     }
 
-    /// Whether the chain has a point at `kappa`.
-    pub fn covers(&self, kappa: f64) -> bool {
+    /// Whether the chain has a point at `x`.
+    pub fn covers(&self, x: f64) -> bool {
         let [low, high] = self.ends();
-        (low..=high).contains(&kappa)
+        (low..=high).contains(&x)
     }
 
-    /// ψ of the chain at `kappa`, or at its nearer end, as accurate as the atlas.
-    pub fn psi_at(&self, kappa: f64) -> f64 {
-        let x = (kappa / self.chart.kappa).ln() / self.chart.width;
+    /// y of the chain at `x`, or at its nearer end, as accurate as it was traced.
+    pub fn y_at(&self, x: f64) -> f64 {
+        let x = self.plane.chart().abscissa(x);
         let behind = self.cubics.partition_point(|cubic| cubic.points[3].x < x);
         let cubic = &self.cubics[behind.min(self.cubics.len() - 1)];
-        self.chart.parameters(&cubic.at(parameter_at(cubic, x)))[1]
+        self.plane.parameters(&cubic.at(parameter_at(cubic, x)))[1]
     }
 
-    /// The lesser of the differences in ψ from the chain at the `distance` in κ on both sides.
-    pub fn rise(&self, kappa: f64, distance: f64) -> f64 {
-        let psi = self.psi_at(kappa);
-        let rise = |kappa| (self.psi_at(kappa) - psi).abs();
-        rise(kappa - distance).min(rise(kappa + distance))
+    /// The lesser of the differences in y from the chain at the `distance` in x on both sides.
+    pub fn rise(&self, x: f64, distance: f64) -> f64 {
+        let y = self.y_at(x);
+        let rise = |x| (self.y_at(x) - y).abs();
+        rise(x - distance).min(rise(x + distance))
     }
 
-    /// ψ of the boundary at `kappa` to the last digits, by bisection of what collisions do from
-    /// `psi` on, up to the distance `reach`. It is `psi` itself where collisions so near do not have
-    /// the switches of the two sides.
-    pub fn refined(&self, kappa: f64, psi: f64, reach: f64, collision: &mut Collision) -> f64 {
-        let mut side_of = |psi: f64| {
-            let contact = Contact::new(kappa, psi, self.damping).ok()?;
+    /// y of the boundary at `x` to the last digits, by bisection of what collisions do from `y` on,
+    /// up to the distance `reach`. It is `y` itself where collisions so near do not have the
+    /// switches of the two sides.
+    pub fn refined(&self, x: f64, y: f64, reach: f64, collision: &mut Collision) -> f64 {
+        let mut side_of = |y: f64| {
+            let contact = self.plane.contact_at([x, y]).ok()?;
             Engine::Exact.collide_into(contact, collision).ok()?;
             let itinerary = collision.itinerary();
             self.sides.iter().position(|side| *side == itinerary)
         };
-        let mut distance = NEAREST * psi;
+        let mut distance = NEAREST * y;
         while distance <= reach {
-            let (mut low, mut high) = (psi - distance, psi + distance);
+            let (mut low, mut high) = (y - distance, y + distance);
             if side_of(low) == Some(0) && side_of(high) == Some(1) {
                 loop {
                     let middle = f64::midpoint(low, high);
@@ -70,13 +70,13 @@ impl Chain {
                     match side_of(middle) {
                         Some(0) => low = middle,
                         Some(_) => high = middle,
-                        None => return psi,
+                        None => return y,
                     }
                 }
             }
             distance *= 4.0;
         }
-        psi
+        y
     }
 }
 
@@ -99,22 +99,24 @@ fn parameter_at(cubic: &Cubic, x: f64) -> f64 {
     }
 }
 
-/// The boundaries of an atlas as chains, and all κ at which a chain begins or ends, with the ends of
-/// the window, in ascending order.
+/// Boundaries as chains, and all x at which a chain begins or ends, with the ends of the window, in
+/// ascending order.
 pub struct Boundaries {
     pub chains: Vec<Chain>,
     pub walls: Vec<f64>,
 }
 
 impl Boundaries {
-    pub fn of(atlas: &Atlas) -> Self {
-        let width = atlas.regions.window().extent().x;
+    pub fn of(division: &Division) -> Self {
+        let Division { plane, regions, .. } = division;
+        let width = regions.window().extent().x;
+        let Range { low, high } = plane.sheet().sides[0];
         let mut chains = Vec::new();
-        let mut walls = vec![atlas.frame.kappa.low, atlas.frame.kappa.high];
-        for curve in atlas.regions.curves() {
+        let mut walls = vec![low, high];
+        for curve in regions.curves() {
             let mut nodes = curve.nodes.clone();
             if let Some([first, last]) = curve.ends {
-                let vertices = atlas.regions.vertices();
+                let vertices = regions.vertices();
                 let end = nodes.len() - 1;
                 nodes[0].point = vertices[first].point;
                 nodes[end].point = vertices[last].point;
@@ -125,17 +127,16 @@ impl Boundaries {
                 // The left side is above where the curve runs to the right.
                 let [left, right] = curve.sides.clone();
                 let sides = if rises { [right, left] } else { [left, right] };
-                let [first, last] = [cubics[0].points[0].x, cubics[cubics.len() - 1].points[3].x];
-                let chain =
-                    Chain { chart: atlas.chart, damping: atlas.frame.damping, cubics, sides };
+                let [from, to] = [cubics[0].points[0].x, cubics[cubics.len() - 1].points[3].x];
+                let chain = Chain { plane: *plane, cubics, sides };
                 walls.extend(chain.ends());
                 // Otherwise the boundary is a wall.
-                if last - first > MERGED * width {
+                if to - from > MERGED * width {
                     chains.push(chain);
                 }
             }
         }
-        Self { chains, walls: merged(walls, atlas.frame.kappa.low, atlas.frame.kappa.high) }
+        Self { chains, walls: merged(walls, low, high) }
     }
 }
 

@@ -5,9 +5,9 @@
 
 use std::f64::consts::PI;
 
-/// The number of coefficients along κ, at most.
+/// The number of coefficients along the first axis, at most.
 pub const ALONG: usize = 8;
-/// The number of coefficients across κ.
+/// The number of coefficients across it.
 pub const ACROSS: usize = 12;
 
 /// The value of a polynomial at `place` in [0, 1].
@@ -21,7 +21,7 @@ pub fn value(c: &[f64; ALONG], place: f64) -> f64 {
 }
 
 /// The value of a polynomial in two variables. Each of its `rows` has the twelve coefficients across
-/// for one power along κ.
+/// for one power along the first axis.
 #[inline(always)]
 pub fn double_value(rows: &[[f64; ACROSS]], along: f64, across: f64) -> f64 {
     let x = 2.0 * along - 1.0;
@@ -81,7 +81,7 @@ pub fn powers<const N: usize>(c: &[f64; N]) -> [f64; N] {
 }
 
 /// The coefficients in Chebyshev's basis of the polynomial in two variables with `values[k][l]` at
-/// the k-th node along κ and the l-th across.
+/// the k-th node along the first axis and the l-th across.
 pub fn double_coefficients(values: &[[f64; ACROSS]; ALONG]) -> [[f64; ACROSS]; ALONG] {
     columns(&values.each_ref().map(coefficients), coefficients)
 }

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use stickslip_plane::Range;
 
 use super::chebyshev::{ACROSS, ALONG};
+use super::settings::Window;
 use super::table::{Arrays, NO_REGION, Table};
 use super::verification::Verification;
 
@@ -17,11 +18,9 @@ pub const SCHEMA: &str = "stickslip.table/1";
 pub struct Document {
     /// [`SCHEMA`].
     pub schema: String,
-    pub damping: f64,
-    pub eps_n: f64,
+    pub window: Window,
+    pub constant_eps_n: Option<f64>,
     pub bound: f64,
-    pub kappa: [f64; 2],
-    pub psi: [f64; 2],
     pub verification: Verification,
     pub regions: Vec<String>,
     pub arrays: Arrays,
@@ -65,11 +64,9 @@ impl From<&Table> for Document {
     fn from(table: &Table) -> Self {
         Self {
             schema: SCHEMA.to_owned(),
-            damping: table.damping,
-            eps_n: table.eps_n,
+            window: table.window,
+            constant_eps_n: table.constant_eps_n,
             bound: table.bound,
-            kappa: table.kappa,
-            psi: table.psi,
             verification: table.verification,
             regions: table.regions.clone(),
             arrays: table.arrays().clone(),
@@ -83,24 +80,34 @@ impl TryFrom<Document> for Table {
     /// The table of a document. Everything is checked that a look-up relies on; that the
     /// coefficients are right is not.
     fn try_from(document: Document) -> Result<Self, DocumentError> {
-        let Document { schema, damping, eps_n, bound, kappa, psi, verification, regions, arrays } =
+        let Document { schema, window, constant_eps_n, bound, verification, regions, arrays } =
             document;
         if schema != SCHEMA {
             return Err(DocumentError::Schema(schema));
         }
+        let damping = match window {
+            Window::Scaled { damping, .. } => damping,
+            Window::Velocities { pair, .. } => pair.surface.damping_time_s,
+        };
+        let eps_n = constant_eps_n.unwrap_or(1.0);
+        let sides @ [x, y] = window.sides();
+        let [x_name, y_name] = window.names();
         for (name, value, ok) in [
             ("damping", damping, damping >= 0.0),
-            ("eps_n", eps_n, eps_n > 0.0 && eps_n <= 1.0 + 1e-12),
+            ("constant_eps_n", eps_n, eps_n > 0.0 && eps_n <= 1.0 + 1e-12),
             ("bound", bound, bound > 0.0),
-            ("kappa", kappa[0], kappa[0] > 0.0 && kappa[0] < kappa[1]),
-            ("psi", psi[0], psi[0] > 0.0 && psi[0] < psi[1]),
-            ("kappa", kappa[1], true),
-            ("psi", psi[1], true),
+            (x_name, x.low, x.low > 0.0 && x.low < x.high),
+            (y_name, y.low, y.low > 0.0 && y.low < y.high),
+            (x_name, x.high, true),
+            (y_name, y.high, true),
         ] {
             require(ok && value.is_finite(), DocumentError::Number { name, value })?;
         }
-        arrays.check(kappa, psi, regions.len())?;
-        Ok(Self { damping, eps_n, bound, kappa, psi, verification, regions, arrays })
+        let is_scaled = matches!(window, Window::Scaled { .. });
+        let contradiction = DocumentError::Contradiction { name: "constant_eps_n", index: 0 };
+        require(constant_eps_n.is_some() == is_scaled, contradiction)?;
+        arrays.check(sides, regions.len(), is_scaled)?;
+        Ok(Self { window, constant_eps_n, bound, verification, regions, sides, arrays })
     }
 }
 
@@ -110,14 +117,21 @@ fn require(ok: bool, error: DocumentError) -> Result<(), DocumentError> {
 
 impl Arrays {
     /// Checks everything that a look-up relies on.
-    fn check(&self, kappa: [f64; 2], psi: [f64; 2], regions: usize) -> Result<(), DocumentError> {
+    fn check(
+        &self,
+        sides: [Range; 2],
+        regions: usize,
+        is_scaled: bool,
+    ) -> Result<(), DocumentError> {
         let slabs = self.scales.len();
+        let normals = if is_scaled { 0 } else { ALONG * slabs };
         let sides = self.strip_stretches.len();
         let with_regions = if regions == 0 { 0 } else { sides };
         for (name, length, expected) in [
             ("scales", slabs, slabs.max(1)),
             ("walls", self.walls.len(), slabs + 1),
             ("slab_stretches", self.slab_stretches.len(), slabs),
+            ("normals", self.normals.len(), normals),
             ("first_strips", self.first_strips.len(), slabs + 1),
             ("graphs", self.graphs.len(), ALONG * sides),
             ("first_rows", self.first_rows.len(), sides),
@@ -129,6 +143,7 @@ impl Arrays {
         for (name, values) in [
             ("walls", &self.walls),
             ("scales", &self.scales),
+            ("normals", &self.normals),
             ("graphs", &self.graphs),
             ("rows", &self.rows),
         ] {
@@ -140,7 +155,7 @@ impl Arrays {
             index.map_or(Ok(()), |index| Err(DocumentError::Contradiction { name, index }))
         };
         contradiction("walls", self.walls.windows(2).position(|pair| pair[0] >= pair[1]))?;
-        let ends = [self.walls[0], self.walls[slabs]] == kappa;
+        let ends = [self.walls[0], self.walls[slabs]] == [sides[0].low, sides[0].high];
         contradiction("walls", (!ends).then_some(0))?;
         // Each slab has a strip and the upper edge.
         let short = |pair: &[u32]| u64::from(pair[1]) < u64::from(pair[0]) + 2;
@@ -154,8 +169,7 @@ impl Arrays {
         let unknown = |&region: &u32| region != NO_REGION && region as usize >= regions;
         contradiction("regions", self.regions.iter().position(unknown))?;
         let mut expected = self.clone();
-        let range = |[low, high]: [f64; 2]| Range { low, high };
-        let set = expected.set_hints(range(kappa), range(psi)).is_ok();
+        let set = expected.set_hints(sides).is_ok();
         let same = |name, same: bool| contradiction(name, (!(set && same)).then_some(0));
         same("slab_keys", self.slab_keys == expected.slab_keys)?;
         same("strip_keys", self.strip_keys == expected.strip_keys)?;

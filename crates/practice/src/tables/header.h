@@ -1,20 +1,12 @@
 /* @SUMMARY@
  *
- *   double @prefix@_eps_t(double kappa, double psi)
+ *   double @prefix@_eps_t(double @x@, double @y@)
  *       the coefficient of tangential restitution; NAN outside the table
- *   int @prefix@_region(double kappa, double psi)
+ *   int @prefix@_region(double @x@, double @y@)
  *       @REGION@
- *   @PREFIX@_EPS_N
- *       the coefficient of normal restitution
+ *   @NORMAL@
  *
- * Both arguments are numbers without units:
- *
- *   kappa = k_t/(alpha m beta^(4/5) g_n^(2/5))   scaled stiffness
- *   psi   = (g_t/g_n) alpha/mu                   reduced impact ratio
- *
- * with the effective mass m, the normal force rho x^(3/2) at the overlap x, beta = rho/m, the
- * coefficient of friction mu, the tangential inertia alpha (2/7 for homogeneous spheres), and the
- * normal and tangential velocities g_n > 0 and g_t > 0 before the impact.
+@AXES@
  *
  * C99 and later, and C++; nothing but the standard library is needed. Results have the bits of
  * the program that wrote this file unless the compiler fuses products with sums; gcc and clang do
@@ -27,13 +19,11 @@
 #include <stdint.h>
 #include <string.h>
 
-#define @PREFIX@_KAPPA_LOW @KAPPA_LOW@
-#define @PREFIX@_KAPPA_HIGH @KAPPA_HIGH@
-#define @PREFIX@_PSI_LOW @PSI_LOW@
-#define @PREFIX@_PSI_HIGH @PSI_HIGH@
-#define @PREFIX@_DAMPING @DAMPING@
-#define @PREFIX@_EPS_N @EPS_N@
-#define @PREFIX@_BOUND @BOUND@
+#define @PREFIX@_@X@_LOW @X_LOW@
+#define @PREFIX@_@X@_HIGH @X_HIGH@
+#define @PREFIX@_@Y@_LOW @Y_LOW@
+#define @PREFIX@_@Y@_HIGH @Y_HIGH@
+@CONSTANTS@#define @PREFIX@_BOUND @BOUND@
 
 @ARRAYS@
 /* A coordinate from 0 to 1, stretched: 0 not at all, 1 and 2 by the root of the distance from 0 and
@@ -53,10 +43,9 @@ static inline uint64_t @prefix@_bits(double value, unsigned shift)
     return bits >> shift;
 }
 
-/* The lower side of a strip. */
-static inline double @prefix@_side(uint32_t strip, double along)
+/* A polynomial with eight coefficients. */
+static inline double @prefix@_value(const double *c, double along)
 {
-    const double *c = @prefix@_graphs[strip];
     double x = 2.0 * along - 1.0;
     double x2 = x * x;
     double low = (c[0] + c[1] * x) + (c[2] + c[3] * x) * x2;
@@ -64,44 +53,55 @@ static inline double @prefix@_side(uint32_t strip, double along)
     return low + high * (x2 * x2);
 }
 
-/* Whether the table has a value at kappa and psi; if so, the strip and the coordinates in it. */
-static inline int @prefix@_place(double kappa, double psi, uint32_t *strip, double *along,
+/* Whether the table has values at @x@; if so, the interval and the coordinate in it. */
+static inline int @prefix@_slab(double @x@, uint32_t *slab, double *along)
+{
+    uint32_t at;
+    double part;
+    if (!(@x@ >= @PREFIX@_@X@_LOW && @x@ <= @PREFIX@_@X@_HIGH))
+        return 0;
+    at = @prefix@_slab_hints[@prefix@_bits(@x@, @SLAB_SHIFT@) - @SLAB_FIRST@];
+    while (at + 1 < @SLABS@ && @prefix@_walls[at + 1] <= @x@)
+        at++;
+    part = (@x@ - @prefix@_walls[at]) * @prefix@_scales[at];
+    *along = @prefix@_stretched(@prefix@_slab_stretches[at], part < 1.0 ? part : 1.0);
+    *slab = at;
+    return 1;
+}
+
+/* Whether the table has a value at @x@ and @y@; if so, the strip and the coordinates in it. */
+static inline int @prefix@_place(double @x@, double @y@, uint32_t *strip, double *along,
                                double *across)
 {
     uint32_t slab, at, end;
     double part, low, high;
-    if (!(kappa >= @PREFIX@_KAPPA_LOW && kappa <= @PREFIX@_KAPPA_HIGH
-          && psi >= @PREFIX@_PSI_LOW && psi <= @PREFIX@_PSI_HIGH))
+    if (!(@y@ >= @PREFIX@_@Y@_LOW && @y@ <= @PREFIX@_@Y@_HIGH)
+        || !@prefix@_slab(@x@, &slab, along))
         return 0;
-    slab = @prefix@_slab_hints[@prefix@_bits(kappa, @SLAB_SHIFT@) - @SLAB_FIRST@];
-    while (slab + 1 < @SLABS@ && @prefix@_walls[slab + 1] <= kappa)
-        slab++;
-    part = (kappa - @prefix@_walls[slab]) * @prefix@_scales[slab];
-    *along = @prefix@_stretched(@prefix@_slab_stretches[slab], part < 1.0 ? part : 1.0);
     at = @prefix@_first_strips[slab]
-        + @prefix@_strip_hints[slab][@prefix@_bits(psi, @STRIP_SHIFT@) - @STRIP_FIRST@];
+        + @prefix@_strip_hints[slab][@prefix@_bits(@y@, @STRIP_SHIFT@) - @STRIP_FIRST@];
     end = @prefix@_first_strips[slab + 1];
-    low = @prefix@_side(at, *along);
-    high = @prefix@_side(at + 1, *along);
-    while (at + 2 < end && high <= psi) {
+    low = @prefix@_value(@prefix@_graphs[at], *along);
+    high = @prefix@_value(@prefix@_graphs[at + 1], *along);
+    while (at + 2 < end && high <= @y@) {
         at++;
         low = high;
-        high = @prefix@_side(at + 1, *along);
+        high = @prefix@_value(@prefix@_graphs[at + 1], *along);
     }
-    part = (psi - low) / (high - low);
+    part = (@y@ - low) / (high - low);
     part = part > 0.0 ? (part < 1.0 ? part : 1.0) : 0.0;
     *across = @prefix@_stretched(@prefix@_strip_stretches[at], part);
     *strip = at;
     return 1;
 }
 
-static inline double @prefix@_eps_t(double kappa, double psi)
+static inline double @prefix@_eps_t(double @x@, double @y@)
 {
     double s0 = 0.0, s1 = 0.0, s2 = 0.0, s3 = 0.0, s4 = 0.0, s5 = 0.0;
     double s6 = 0.0, s7 = 0.0, s8 = 0.0, s9 = 0.0, s10 = 0.0, s11 = 0.0;
     double along, across, x, y, y2, y4;
     uint32_t strip, row, first;
-    if (!@prefix@_place(kappa, psi, &strip, &along, &across))
+    if (!@prefix@_place(@x@, @y@, &strip, &along, &across))
         return NAN;
     x = 2.0 * along - 1.0;
     y = 2.0 * across - 1.0;
@@ -129,5 +129,5 @@ static inline double @prefix@_eps_t(double kappa, double psi)
     s3 = (s11 * y4 + s7) * y4 + s3;
     return (s0 + s2 * y2) + (s1 + s3 * y2) * y;
 }
-@REGIONS@
+@FUNCTIONS@
 #endif

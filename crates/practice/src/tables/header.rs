@@ -2,24 +2,62 @@
 
 use std::fmt::{Display, Write};
 
+use stickslip_model::Surface;
+use stickslip_plane::CollisionPlane;
+
 use super::chebyshev::{ACROSS, ALONG};
+use super::settings::Window;
 use super::stretch::Stretch;
 use super::table::{NO_REGION, Table};
+use super::verification::Verification;
 
 /// The header, with names between @ for what differs.
 const TEMPLATE: &str = include_str!("header.h");
 
-/// The part of the header about regions.
+/// The function of regions.
 const REGIONS: &str = "
-static inline int @prefix@_region(double kappa, double psi)
+static inline int @prefix@_region(double @x@, double @y@)
 {
     uint32_t strip;
     double along, across;
-    if (!@prefix@_place(kappa, psi, &strip, &along, &across))
+    if (!@prefix@_place(@x@, @y@, &strip, &along, &across))
         return -1;
     return @prefix@_strip_regions[strip];
 }
 ";
+
+/// The function of ε_n.
+const NORMALS: &str = "
+static inline double @prefix@_eps_n(double @x@)
+{
+    uint32_t slab;
+    double along;
+    if (!@prefix@_slab(@x@, &slab, &along))
+        return NAN;
+    return @prefix@_value(@prefix@_normals[slab], along);
+}
+";
+
+/// What κ and ψ are.
+const SCALED: &str = " * Both arguments are numbers without units:
+ *
+ *   kappa = k_t/(alpha m beta^(4/5) g_n^(2/5))   scaled stiffness
+ *   psi   = (g_t/g_n) alpha/mu                   reduced impact ratio
+ *
+ * with the effective mass m, the normal force rho x^(3/2) at the overlap x, beta = rho/m, the
+ * coefficient of friction mu, the tangential inertia alpha (2/7 for homogeneous spheres), and the
+ * normal and tangential velocities g_n > 0 and g_t > 0 before the impact.";
+
+/// What the velocities are, and whose.
+const VELOCITIES: &str = " * Both arguments are velocities of the surfaces at the contact before the
+ * impact, in m/s: the normal velocity g_n > 0 and the tangential velocity g_t > 0, for two bodies with
+ *
+ *   effective mass            @MASS@ kg
+ *   normal force / x^(3/2)    @ELASTIC@ kg/(s^2 m^0.5) at the overlap x
+ *   damping time              @TIME@ s
+ *   tangential stiffness      @STIFFNESS@ kg/s^2
+ *   coefficient of friction   @FRICTION@
+ *   tangential inertia        @ALPHA@ (2/7 for homogeneous spheres)";
 
 /// The prefix cannot begin names in C.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -47,24 +85,29 @@ impl Table {
         require_prefix(prefix)?;
         let arrays = self.arrays();
         let with_regions = !arrays.regions.is_empty();
-        let mut text = TEMPLATE.to_owned();
-        let mut fill = |name: &str, value: &str| text = text.replace(name, value);
-        fill("@REGIONS@", if with_regions { REGIONS } else { "" });
+        let (normal, constants) = self.c_normal();
+        let mut functions = String::new();
+        functions.push_str(if arrays.normals.is_empty() { "" } else { NORMALS });
+        functions.push_str(if with_regions { REGIONS } else { "" });
         let region = if with_regions {
             "the number of the region of the atlas, an index of @prefix@_itineraries; or -1"
         } else {
             "not in this file, which was written without regions"
         };
+        let mut text = TEMPLATE.to_owned();
+        let mut fill = |name: &str, value: &str| text = text.replace(name, value);
+        fill("@FUNCTIONS@", &functions);
         fill("@REGION@", region);
+        fill("@NORMAL@", normal);
+        fill("@AXES@", &self.c_explanation());
+        fill("@CONSTANTS@", &constants);
         fill("@ARRAYS@", &self.c_arrays());
         fill("@SUMMARY@", &self.summary());
         for (name, value) in [
-            ("@KAPPA_LOW@", self.kappa[0]),
-            ("@KAPPA_HIGH@", self.kappa[1]),
-            ("@PSI_LOW@", self.psi[0]),
-            ("@PSI_HIGH@", self.psi[1]),
-            ("@DAMPING@", self.damping),
-            ("@EPS_N@", self.eps_n),
+            ("@X_LOW@", self.sides[0].low),
+            ("@X_HIGH@", self.sides[0].high),
+            ("@Y_LOW@", self.sides[1].low),
+            ("@Y_HIGH@", self.sides[1].high),
             ("@BOUND@", self.bound),
         ] {
             fill(name, &format!("{value:?}"));
@@ -74,26 +117,67 @@ impl Table {
             fill(&format!("@{name}_FIRST@"), &format!("UINT64_C({})", keys.first));
         }
         fill("@SLABS@", &arrays.scales.len().to_string());
+        for (axis, name) in ["x", "y"].into_iter().zip(self.c_names()) {
+            fill(&format!("@{axis}@"), name);
+            fill(&format!("@{}@", axis.to_uppercase()), &name.to_uppercase());
+        }
         fill("@prefix@", prefix);
         fill("@PREFIX@", &prefix.to_uppercase());
         Ok(text)
     }
 
+    /// The names of both axes.
+    fn c_names(&self) -> [&'static str; 2] {
+        match self.window {
+            Window::Scaled { .. } => CollisionPlane::SCALED,
+            Window::Velocities { .. } => ["g_n", "g_t"],
+        }
+    }
+
+    /// What the header says of ε_n, and its constants.
+    fn c_normal(&self) -> (&'static str, String) {
+        if let (Window::Scaled { damping, .. }, Some(eps_n)) = (self.window, self.constant_eps_n) {
+            let constants = format!(
+                "#define @PREFIX@_DAMPING {damping:?}\n#define @PREFIX@_EPS_N {eps_n:?}\n"
+            );
+            return ("@PREFIX@_EPS_N\n *       the coefficient of normal restitution", constants);
+        }
+        let function = "double @prefix@_eps_n(double @x@)\n *       the coefficient of normal \
+                        restitution; NAN outside the table";
+        (function, String::new())
+    }
+
+    /// What the arguments of the functions are.
+    fn c_explanation(&self) -> String {
+        let Window::Velocities { pair, .. } = self.window else { return SCALED.to_owned() };
+        let Surface { friction, tangential_stiffness_kg_per_s2, damping_time_s } = pair.surface;
+        let mut text = VELOCITIES.to_owned();
+        for (name, value) in [
+            ("@MASS@", pair.effective_mass_kg),
+            ("@ELASTIC@", pair.elastic_constant),
+            ("@TIME@", damping_time_s),
+            ("@STIFFNESS@", tangential_stiffness_kg_per_s2),
+            ("@FRICTION@", friction),
+            ("@ALPHA@", pair.alpha),
+        ] {
+            text = text.replace(name, &format!("{value:?}"));
+        }
+        text
+    }
+
     fn summary(&self) -> String {
-        let [kappa, psi] = [self.kappa, self.psi];
+        let ([x, y], [x_name, y_name]) = (self.sides, self.c_names());
+        let rest = match self.window {
+            Window::Scaled { damping, .. } => format!(" at the scaled damping\n * {damping:?}"),
+            Window::Velocities { .. } => " in m/s".to_owned(),
+        };
+        let Verification { points, largest_error, .. } = self.verification;
         format!(
             "The restitution of two frictional spheres (Schwager, Becker and Poeschel, Eur. Phys. J. \
-             E\n * 27, 107, 2008) for kappa from {:?} to {:?} and psi from {:?} to {:?} at the scaled \
-             damping\n * {:?}. The error of eps_t is below {:?}; at {} points it was at most {:.2e}.\n \
-             * Written by stickslip.",
-            kappa[0],
-            kappa[1],
-            psi[0],
-            psi[1],
-            self.damping,
-            self.bound,
-            self.verification.points,
-            self.verification.largest_error
+             E\n * 27, 107, 2008) for {x_name} from {:?} to {:?} and {y_name} from {:?} to {:?}{rest}. \
+             Errors are below\n * {:?}; at {points} points that of eps_t was at most \
+             {largest_error:.2e}. Written by stickslip.",
+            x.low, x.high, y.low, y.high, self.bound,
         )
     }
 
@@ -109,6 +193,10 @@ impl Table {
         doubles(&mut out, "scales", &arrays.scales);
         list(&mut out, "unsigned char", "slab_stretches", &stretches(&arrays.slab_stretches));
         list(&mut out, "uint32_t", "first_strips", &arrays.first_strips);
+        let (normals, _) = arrays.normals.as_chunks::<ALONG>();
+        if !normals.is_empty() {
+            nested(&mut out, "normals", normals);
+        }
         nested(&mut out, "graphs", graphs);
         let keys = arrays.strip_hints.len() / arrays.scales.len();
         open(&mut out, "uint16_t", "strip_hints", &format!("[][{keys}]"));

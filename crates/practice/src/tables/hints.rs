@@ -11,7 +11,7 @@ use super::settings::Settings;
 use super::slab::Graph;
 use super::table::Arrays;
 
-/// Most keys of κ, and of ψ in each slab.
+/// Most keys of x, and of y in each slab.
 const MOST_KEYS: [u64; 2] = [2048, 128];
 
 /// The first bits of numbers above 0, which tell roughly how large they are.
@@ -57,9 +57,9 @@ impl Arrays {
     ///
     /// # Errors
     /// [`TableError::Many`]: there are too many strips.
-    pub(super) fn set_hints(&mut self, kappa: Range, psi: Range) -> Result<(), TableError> {
-        self.slab_keys = Keys::new(kappa.low, kappa.high, MOST_KEYS[0]);
-        self.strip_keys = Keys::new(psi.low, psi.high, MOST_KEYS[1]);
+    pub(super) fn set_hints(&mut self, [x, y]: [Range; 2]) -> Result<(), TableError> {
+        self.slab_keys = Keys::new(x.low, x.high, MOST_KEYS[0]);
+        self.strip_keys = Keys::new(y.low, y.high, MOST_KEYS[1]);
         (self.slab_hints, self.strip_hints) = (Vec::new(), Vec::new());
         let inner = &self.walls[1..self.scales.len()];
         for least in self.slab_keys.least() {

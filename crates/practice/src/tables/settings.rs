@@ -1,32 +1,86 @@
 //! What is asked of a table.
 
-use stickslip_plane::Range;
+use stickslip_model::{InvalidParameter, Law, Pair};
+use stickslip_plane::atlas::Frame;
+use stickslip_plane::{CollisionPlane, Range};
 
 /// The window of a table and its bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Scaled stiffness κ.
-    pub kappa: Range,
-    /// Reduced impact ratio ψ.
-    pub psi: Range,
-    /// Scaled damping.
-    pub damping: f64,
-    /// The bound of the error of ε_t, from [`Self::FINEST`] to [`Self::COARSEST`].
+    /// The window.
+    pub window: Window,
+    /// The bound of the errors, from [`Self::FINEST`] to [`Self::COARSEST`].
     pub bound: f64,
     /// Whether the table has the regions of the atlas.
     pub regions: bool,
 }
 
+/// The window of a table: intervals of its two axes, which are above 0, and what all its collisions
+/// have in common.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case", deny_unknown_fields))]
+pub enum Window {
+    /// κ and ψ at one damping.
+    Scaled {
+        /// Scaled stiffness κ.
+        kappa: Range,
+        /// Reduced impact ratio ψ.
+        psi: Range,
+        /// Scaled damping.
+        damping: f64,
+    },
+    /// The velocities of the surfaces of two bodies.
+    Velocities {
+        /// The bodies, which obey the paper's law.
+        pair: Pair,
+        /// Normal velocity g_n in m/s.
+        normal_m_per_s: Range,
+        /// Tangential velocity g_t in m/s.
+        tangential_m_per_s: Range,
+    },
+}
+
+impl Window {
+    /// The names of both axes.
+    #[must_use]
+    pub fn names(&self) -> [&'static str; 2] {
+        match self {
+            Self::Scaled { .. } => CollisionPlane::SCALED,
+            Self::Velocities { .. } => CollisionPlane::VELOCITIES,
+        }
+    }
+
+    /// The intervals of both axes.
+    #[must_use]
+    pub fn sides(&self) -> [Range; 2] {
+        match *self {
+            Self::Scaled { kappa, psi, .. } => [kappa, psi],
+            Self::Velocities { normal_m_per_s, tangential_m_per_s, .. } => {
+                [normal_m_per_s, tangential_m_per_s]
+            }
+        }
+    }
+
+    /// The collisions of the window.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`]: a value that no collision can have.
+    pub fn plane(&self) -> Result<CollisionPlane, InvalidParameter> {
+        match *self {
+            Self::Scaled { kappa, psi, damping } => Frame::new(kappa, psi, damping).plane(),
+            Self::Velocities { pair, .. } => CollisionPlane::velocities(pair, self.sides()),
+        }
+    }
+}
+
 impl Default for Settings {
     /// κ from 0.5 to 100 and ψ from 0.01 to 3 without damping, to 1e-8, without regions.
     fn default() -> Self {
-        Self {
-            kappa: Range { low: 0.5, high: 100.0 },
-            psi: Range { low: 0.01, high: 3.0 },
-            damping: 0.0,
-            bound: 1e-8,
-            regions: false,
-        }
+        let kappa = Range { low: 0.5, high: 100.0 };
+        let psi = Range { low: 0.01, high: 3.0 };
+        let window = Window::Scaled { kappa, psi, damping: 0.0 };
+        Self { window, bound: 1e-8, regions: false }
     }
 }
 
@@ -46,12 +100,20 @@ impl Settings {
         if !(Self::FINEST..=Self::COARSEST).contains(&self.bound) {
             return Err(InvalidTable::Bound { value: self.bound });
         }
-        for (name, Range { low, high }) in [("kappa", self.kappa), ("psi", self.psi)] {
+        for (name, Range { low, high }) in self.window.names().into_iter().zip(self.window.sides())
+        {
             if !(low > 0.0 && high > low && high.is_finite()) {
                 return Err(InvalidTable::Range { name, low, high });
             }
         }
-        Ok(())
+        match self.window {
+            Window::Velocities { pair, .. }
+                if pair.law != Law::PAPER || pair.tangential_damping_ratio != 0.0 =>
+            {
+                Err(InvalidTable::Law)
+            }
+            _ => Ok(()),
+        }
     }
 }
 
@@ -71,11 +133,14 @@ pub enum InvalidTable {
     /// An interval is empty or out of range.
     #[error("{name} = {low:?} to {high:?} is out of range; expected an ascending interval above 0")]
     Range {
-        /// `kappa` or `psi`.
+        /// The name of the axis.
         name: &'static str,
         /// The lower end.
         low: f64,
         /// The upper end.
         high: f64,
     },
+    /// The bodies have another contact law.
+    #[error("the bodies have another contact law; expected the paper's, which tables are made for")]
+    Law,
 }

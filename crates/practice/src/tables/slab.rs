@@ -1,8 +1,8 @@
-//! Slabs: intervals of κ in which no boundary begins, ends or turns back, so that boundaries have an
-//! order.
+//! Slabs: intervals of the first axis x in which no boundary begins, ends or turns back, so that
+//! boundaries have an order.
 
-use stickslip_model::{Collision, Contact};
-use stickslip_plane::Range;
+use stickslip_model::Collision;
+use stickslip_plane::{CollisionPlane, Range};
 
 use super::boundaries::{Boundaries, Chain};
 use super::chebyshev::{ALONG, coefficients, nodes, powers, value};
@@ -12,11 +12,11 @@ use super::strip::rounded;
 /// A boundary, or an edge of the window, over the stretched coordinate of a slab.
 pub type Graph = [f64; ALONG];
 
-/// The boundaries over an interval of κ, upwards.
+/// The boundaries over an interval of x, upwards.
 pub struct Stack<'a> {
     pub chains: Vec<&'a Chain>,
-    pub psi: Range,
-    /// The largest relative error of graphs, in ψ or in κ.
+    pub plane: CollisionPlane,
+    /// The largest relative error of graphs, in y or in x.
     pub bound: f64,
     /// The places after the decimal point to which coefficients are rounded.
     pub grid: i32,
@@ -30,7 +30,7 @@ pub struct Slab {
     pub stretch: Stretch,
 }
 
-/// The narrowest slab, as a part of κ. The boundaries of an atlas are not finer.
+/// The narrowest slab, as a part of x. Traced boundaries are not finer.
 const NARROWEST: f64 = 1e-11;
 /// Places at which the error of a graph is looked at, and one more.
 const PLACES: u32 = 18;
@@ -47,10 +47,10 @@ impl Slab {
         ]
     }
 
-    /// κ at a stretched coordinate.
-    pub fn kappa(&self, along: f64) -> f64 {
-        let kappa = self.low + (self.high - self.low) * self.stretch.inverse(along);
-        kappa.clamp(self.low, self.high)
+    /// x at a stretched coordinate.
+    pub fn x(&self, along: f64) -> f64 {
+        let x = self.low + (self.high - self.low) * self.stretch.inverse(along);
+        x.clamp(self.low, self.high)
     }
 
     /// Both halves of the slab.
@@ -63,61 +63,62 @@ impl Slab {
         ]
     }
 
-    /// Whether the slab is as narrow as the accuracy of boundaries in κ.
+    /// Whether the slab is as narrow as the accuracy of boundaries in x.
     pub fn is_narrow(&self) -> bool {
         self.high - self.low <= NARROWEST * self.high
     }
 }
 
 impl<'a> Stack<'a> {
-    /// The boundaries at `kappa`.
-    pub fn at(boundaries: &'a Boundaries, kappa: f64, psi: Range) -> Self {
-        let chains = boundaries.chains.iter().filter(|chain| chain.covers(kappa));
+    /// The boundaries of a plane at `x`.
+    pub fn at(boundaries: &'a Boundaries, plane: CollisionPlane, x: f64) -> Self {
+        let chains = boundaries.chains.iter().filter(|chain| chain.covers(x));
         let mut chains: Vec<&Chain> = chains.collect();
-        chains.sort_by(|one, other| one.psi_at(kappa).total_cmp(&other.psi_at(kappa)));
-        Self { chains, psi, bound: 0.0, grid: 0 }
+        chains.sort_by(|one, other| one.y_at(x).total_cmp(&other.y_at(x)));
+        Self { chains, plane, bound: 0.0, grid: 0 }
     }
 
     /// The graphs of a slab, upwards, the first and the last of which are the edges of the window.
     /// `None` if the slab has to be divided for them.
     pub fn graphs(&self, slab: &Slab) -> Option<Vec<Graph>> {
-        let edge = |psi: f64| std::array::from_fn(|i| if i == 0 { psi } else { 0.0 });
-        let at_nodes = nodes::<ALONG>().map(|along| self.heights(slab.kappa(along)));
+        let Range { low, high } = self.plane.sheet().sides[1];
+        let edge = |y: f64| std::array::from_fn(|i| if i == 0 { y } else { 0.0 });
+        let at_nodes = nodes::<ALONG>().map(|along| self.heights(slab.x(along)));
         let graph = |chain: usize| {
             let c = powers(&coefficients(&at_nodes.each_ref().map(|heights| heights[chain])));
             c.map(|c| rounded(c, self.grid))
         };
-        let mut graphs: Vec<Graph> = vec![edge(self.psi.low)];
+        let mut graphs: Vec<Graph> = vec![edge(low)];
         graphs.extend((0..self.chains.len()).map(graph));
         let is_close = |k: u32| {
             let along = f64::from(k) / f64::from(PLACES);
-            let kappa = slab.kappa(along);
-            let heights = self.heights(kappa).into_iter().zip(&self.chains);
+            let x = slab.x(along);
+            let heights = self.heights(x).into_iter().zip(&self.chains);
             let mut pairs = heights.zip(&graphs[1..]);
-            pairs.all(|((psi, chain), graph)| {
-                let error = (value(graph, along) - psi).abs();
-                error <= self.bound * psi || error <= chain.rise(kappa, self.bound * kappa)
+            pairs.all(|((y, chain), graph)| {
+                let error = (value(graph, along) - y).abs();
+                error <= self.bound * y || error <= chain.rise(x, self.bound * x)
             })
         };
         if !slab.is_narrow() && !(0..=PLACES).all(is_close) {
             return None;
         }
-        graphs.push(edge(self.psi.high));
+        graphs.push(edge(high));
         Some(graphs)
     }
 
-    /// ψ of all chains at `kappa`, to the last digits where they are apart.
-    fn heights(&self, kappa: f64) -> Vec<f64> {
-        let Range { low, high } = self.psi;
-        let coarse = self.chains.iter().map(|chain| chain.psi_at(kappa).clamp(low, high));
+    /// y of all chains at `x`, to the last digits where they are apart.
+    fn heights(&self, x: f64) -> Vec<f64> {
+        let Range { low, high } = self.plane.sheet().sides[1];
+        let coarse = self.chains.iter().map(|chain| chain.y_at(x).clamp(low, high));
         let coarse: Vec<f64> = coarse.collect();
-        let Ok(contact) = Contact::new(kappa, low, 0.0) else { return coarse };
+        let Ok(contact) = self.plane.contact_at([x, low]) else { return coarse };
         let mut collision = Collision::before(contact);
-        let refined = self.chains.iter().zip(&coarse).enumerate().map(|(k, (chain, &psi))| {
+        let refined = self.chains.iter().zip(&coarse).enumerate().map(|(k, (chain, &y))| {
             let below = if k == 0 { low } else { coarse[k - 1] };
             let above = coarse.get(k + 1).copied().unwrap_or(high);
-            let reach = APART * (psi - below).min(above - psi);
-            chain.refined(kappa, psi, reach, &mut collision)
+            let reach = APART * (y - below).min(above - y);
+            chain.refined(x, y, reach, &mut collision)
         });
         refined.collect()
     }

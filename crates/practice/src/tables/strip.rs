@@ -1,8 +1,9 @@
 //! Strips of a slab between two graphs, each with a polynomial.
 
 use stickslip_model::{Collision, Contact, Engine};
+use stickslip_plane::CollisionPlane;
 
-use super::TableError;
+use super::{Place, TableError};
 use super::chebyshev::{
     ACROSS, ALONG, coefficients, double_coefficients, double_powers, double_value, extrema, nodes,
     powers, value,
@@ -13,7 +14,7 @@ use super::stretch::Stretch;
 /// What strips must hold to.
 #[derive(Clone, Copy)]
 pub struct Demand {
-    pub damping: f64,
+    pub plane: CollisionPlane,
     /// The largest error at the places where a strip is looked at.
     pub bound: f64,
     /// The places after the decimal point to which coefficients are rounded.
@@ -32,7 +33,7 @@ pub fn rounded(value: f64, places: i32) -> f64 {
 /// The strip between two graphs.
 pub struct Strip {
     pub low: Graph,
-    /// How ψ is stretched.
+    /// How y is stretched.
     pub stretch: Stretch,
     /// One to eight rows of coefficients.
     pub rows: Vec<[f64; ACROSS]>,
@@ -63,8 +64,8 @@ pub struct Gap<'a> {
 
 /// Why a gap has no strips.
 pub enum Refusal {
-    /// The slab has to be divided: at this ψ on its middle, the error is this large.
-    Wide { psi: f64, error: f64 },
+    /// The slab has to be divided: at this y on its middle, the error is this large.
+    Wide { y: f64, error: f64 },
     /// A collision cannot be computed.
     Failed(TableError),
 }
@@ -78,7 +79,7 @@ impl From<TableError> for Refusal {
 impl Gap<'_> {
     /// The strips of the gap, upwards.
     ///
-    /// Of all ways to stretch ψ, the one is taken with which a line across the middle of the slab
+    /// Of all ways to stretch y, the one is taken with which a line across the middle of the slab
     /// needs the fewest strips.
     ///
     /// # Errors
@@ -126,8 +127,8 @@ impl Gap<'_> {
 
     /// The refusal at a part of the way across.
     fn wide(&self, across: f64, error: f64) -> Refusal {
-        let [_, psi] = self.parameters(0.5, across);
-        Refusal::Wide { psi, error }
+        let [_, y] = self.place(0.5, across);
+        Refusal::Wide { y, error }
     }
 
     /// The parts into which a line across the middle is divided, if they are at most `most`.
@@ -167,7 +168,7 @@ impl Gap<'_> {
         Ok(Some(done))
     }
 
-    /// The polynomial on a part, or its error and the tails of its coefficients along κ and across.
+    /// The polynomial on a part, or its error and the tails of its coefficients along x and across.
     fn strip(
         &self,
         part: Part,
@@ -216,14 +217,15 @@ impl Gap<'_> {
         (1..ALONG).find(small).unwrap_or(ALONG)
     }
 
-    /// κ and ψ at the stretched coordinate of the slab and a part of the way across.
-    fn parameters(&self, along: f64, across: f64) -> [f64; 2] {
+    /// x and y at the stretched coordinate of the slab and a part of the way across.
+    fn place(&self, along: f64, across: f64) -> [f64; 2] {
         let [low, high] = [self.low, self.high].map(|graph| value(graph, along));
-        [self.slab.kappa(along), low + (high - low) * across]
+        [self.slab.x(along), low + (high - low) * across]
     }
 
     fn eps_t(&self, along: f64, across: f64, collision: &mut Collision) -> Result<f64, TableError> {
-        exact_eps_t(self.parameters(along, across), self.demand.damping, collision)
+        let place = self.place(along, across);
+        restitution(&self.demand.plane, place, collision).map(|[eps_t, _]| eps_t)
     }
 }
 
@@ -248,23 +250,23 @@ pub fn within(error: f64, bound: f64) -> bool {
     error <= bound
 }
 
-/// The sums of the sizes of the last coefficients along κ and across.
+/// The sums of the sizes of the last coefficients along x and across.
 fn tails(terms: &[[f64; ACROSS]; ALONG]) -> [f64; 2] {
     let along = terms[ALONG - 1].iter().map(|c| c.abs()).sum();
     [along, terms.iter().map(|row| row[ACROSS - 1].abs()).sum()]
 }
 
-/// ε_t of the exact engine, computed in `collision`.
+/// ε_t and ε_n at a place of a plane, by the exact engine, computed in `collision`.
 ///
 /// # Errors
 /// [`TableError::Engine`]: the collision cannot be computed.
-pub fn exact_eps_t(
-    [kappa, psi]: [f64; 2],
-    damping: f64,
+pub fn restitution(
+    plane: &CollisionPlane,
+    place: [f64; 2],
     collision: &mut Collision,
-) -> Result<f64, TableError> {
-    let contact = Contact::new(kappa, psi, damping)?;
+) -> Result<[f64; 2], TableError> {
+    let contact = plane.contact_at(place)?;
     let computed = Engine::Exact.collide_into(contact, collision);
-    computed.map_err(|source| TableError::Engine { kappa, psi, source })?;
-    Ok(collision.eps_t())
+    computed.map_err(|source| TableError::Engine { place: Place::of(plane, place), source })?;
+    Ok([collision.eps_t(), collision.eps_n])
 }

@@ -1,34 +1,38 @@
 //! A table: its arrays, and how it is looked up.
 
+use stickslip_plane::Range;
+
 use super::chebyshev::{double_value, value};
 use super::hints::Keys;
+use super::settings::Window;
 use super::stretch::Stretch;
 use super::verification::Verification;
 
 /// No region.
 pub const NO_REGION: u32 = u32::MAX;
 
-/// ε_t over (κ, ψ), and ε_n, at one damping.
+/// ε_t and ε_n over a window.
 ///
-/// A look-up finds the slab of κ, then the strip between two graphs, and evaluates the polynomial
+/// The first axis x is κ, or the normal velocity g_n in m/s; the second axis y is ψ, or the tangential
+/// velocity g_t in m/s.
+///
+/// A look-up finds the slab of x, then the strip between two graphs, and evaluates the polynomial
 /// of the strip. It uses sums, products, quotients and square roots only. The C header
 /// does the same in the same order and has the same bits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// Scaled damping.
-    pub damping: f64,
-    /// ε_n, which is one number at one damping.
-    pub eps_n: f64,
-    /// The bound of the error of ε_t.
+    /// The window.
+    pub window: Window,
+    /// ε_n of a table over (κ, ψ), which is one number at one damping.
+    pub constant_eps_n: Option<f64>,
+    /// The bound of the errors of ε_t and ε_n.
     pub bound: f64,
-    /// The ends of κ.
-    pub kappa: [f64; 2],
-    /// The ends of ψ.
-    pub psi: [f64; 2],
     /// What the verification found.
     pub verification: Verification,
     /// The itineraries of the atlas' regions, by their numbers; empty unless they were asked for.
     pub regions: Vec<String>,
+    /// The intervals of x and y, those of the window.
+    pub(super) sides: [Range; 2],
     /// The arrays that are looked up.
     pub(super) arrays: Arrays,
 }
@@ -40,32 +44,34 @@ pub struct Table {
 pub struct Arrays {
     /// How slabs are found.
     pub slab_keys: Keys,
-    /// The slab of the least κ with each key.
+    /// The slab of the least x with each key.
     pub slab_hints: Vec<u32>,
     /// How strips are found.
     pub strip_keys: Keys,
-    /// For each slab and key of ψ, the number of strips of the slab that are surely below.
+    /// For each slab and key of y, the number of strips of the slab that are surely below.
     pub strip_hints: Vec<u16>,
-    /// The κ between which slabs lie, ascending; one more than slabs.
+    /// The x between which slabs lie, ascending; one more than slabs.
     pub walls: Vec<f64>,
-    /// 1/(width in κ) of each slab.
+    /// 1/(width in x) of each slab.
     pub scales: Vec<f64>,
-    /// How κ is stretched in each slab.
+    /// How x is stretched in each slab.
     pub slab_stretches: Vec<Stretch>,
+    /// Eight coefficients of ε_n in each slab, over the stretched x; empty where ε_n is one number.
+    pub normals: Vec<f64>,
     /// The first strip of each slab, and the number of strips at the end. The last strip of a slab
     /// is only the upper edge of the window, for the one below it.
     pub first_strips: Vec<u32>,
-    /// Eight coefficients of ψ on the lower side of each strip, over the stretched κ.
+    /// Eight coefficients of y on the lower side of each strip, over the stretched x.
     pub graphs: Vec<f64>,
-    /// How ψ is stretched in each strip.
+    /// How y is stretched in each strip.
     pub strip_stretches: Vec<Stretch>,
     /// The region of each strip, [`NO_REGION`] if it has none; empty unless regions were asked for.
     pub regions: Vec<u32>,
     /// The first row of each strip, of which it has up to eight; its end is where that of the next
     /// strip is.
     pub first_rows: Vec<u32>,
-    /// Rows of twelve coefficients of ε_t, for the powers of the stretched κ. Coefficients are for
-    /// powers of the stretched ψ.
+    /// Rows of twelve coefficients of ε_t, for the powers of the stretched x. Coefficients are for
+    /// powers of the stretched y.
     pub rows: Vec<f64>,
 }
 
@@ -79,17 +85,27 @@ struct Place {
 }
 
 impl Table {
-    /// ε_t at κ and ψ; not a number outside the table, or if κ or ψ is not a number.
+    /// ε_t at x and y; not a number outside the table, or if x or y is not a number.
     #[must_use]
-    pub fn eps_t(&self, kappa: f64, psi: f64) -> f64 {
-        self.place(kappa, psi).map_or(f64::NAN, |place| self.arrays.value(place))
+    pub fn eps_t(&self, x: f64, y: f64) -> f64 {
+        self.place(x, y).map_or(f64::NAN, |place| self.arrays.value(place))
     }
 
-    /// The number of the region at κ and ψ, an index of [`Self::regions`]. `None` outside the table,
+    /// ε_n at x; not a number outside the table, or if x is not a number.
+    #[must_use]
+    pub fn eps_n(&self, x: f64) -> f64 {
+        match self.constant_eps_n {
+            _ if !is_inside(x, self.sides[0]) => f64::NAN,
+            Some(constant) => constant,
+            None => self.arrays.normal(x),
+        }
+    }
+
+    /// The number of the region at x and y, an index of [`Self::regions`]. `None` outside the table,
     /// in a strip too thin to have one, or if regions were not asked for.
     #[must_use]
-    pub fn region(&self, kappa: f64, psi: f64) -> Option<usize> {
-        let strip = self.place(kappa, psi)?.strip;
+    pub fn region(&self, x: f64, y: f64) -> Option<usize> {
+        let strip = self.place(x, y)?.strip;
         let region = *self.arrays.regions.get(strip)?;
         (region != NO_REGION).then_some(region as usize)
     }
@@ -115,43 +131,59 @@ impl Table {
     }
 
     #[inline(always)]
-    fn place(&self, kappa: f64, psi: f64) -> Option<Place> {
-        let inside = kappa >= self.kappa[0]
-            && kappa <= self.kappa[1]
-            && psi >= self.psi[0]
-            && psi <= self.psi[1];
-        inside.then(|| self.arrays.place(kappa, psi))
+    fn place(&self, x: f64, y: f64) -> Option<Place> {
+        let inside = is_inside(x, self.sides[0]) && is_inside(y, self.sides[1]);
+        inside.then(|| self.arrays.place(x, y))
     }
 }
 
+/// Whether a value is in an interval.
+#[inline(always)]
+fn is_inside(value: f64, Range { low, high }: Range) -> bool {
+    value >= low && value <= high
+}
+
 impl Arrays {
-    /// The place of a point of the window.
+    /// The slab of an x of the window, and the stretched coordinate in it.
     #[inline(always)]
-    fn place(&self, kappa: f64, psi: f64) -> Place {
+    fn slab(&self, x: f64) -> (usize, f64) {
         let last = self.scales.len() - 1;
-        let mut slab = self.slab_hints[self.slab_keys.of(kappa)] as usize;
-        while slab < last && self.walls[slab + 1] <= kappa {
+        let mut slab = self.slab_hints[self.slab_keys.of(x)] as usize;
+        while slab < last && self.walls[slab + 1] <= x {
             slab += 1;
         }
-        let part = ((kappa - self.walls[slab]) * self.scales[slab]).min(1.0);
-        let along = self.slab_stretches[slab].of(part);
+        let part = ((x - self.walls[slab]) * self.scales[slab]).min(1.0);
+        (slab, self.slab_stretches[slab].of(part))
+    }
+
+    /// ε_n at an x of the window.
+    fn normal(&self, x: f64) -> f64 {
+        let (slab, along) = self.slab(x);
+        let (normals, _) = self.normals.as_chunks();
+        value(&normals[slab], along)
+    }
+
+    /// The place of a point of the window.
+    #[inline(always)]
+    fn place(&self, x: f64, y: f64) -> Place {
+        let (slab, along) = self.slab(x);
         let [first, end] = [slab, slab + 1].map(|slab| self.first_strips[slab] as usize);
         let row = slab * self.strip_keys.count;
-        let mut strip = first + usize::from(self.strip_hints[row + self.strip_keys.of(psi)]);
+        let mut strip = first + usize::from(self.strip_hints[row + self.strip_keys.of(y)]);
         let mut low = self.side(strip, along);
         let mut high = self.side(strip + 1, along);
-        while strip + 2 < end && high <= psi {
+        while strip + 2 < end && high <= y {
             strip += 1;
             low = high;
             high = self.side(strip + 1, along);
         }
-        let part = (psi - low) / (high - low);
+        let part = (y - low) / (high - low);
         // Also where a strip has no width and the quotient is not a number.
         let part = if part > 0.0 { part.min(1.0) } else { 0.0 };
         Place { strip, along, across: self.strip_stretches[strip].of(part) }
     }
 
-    /// ψ on the lower side of a strip.
+    /// y on the lower side of a strip.
     #[inline(always)]
     fn side(&self, strip: usize, along: f64) -> f64 {
         let (graphs, _) = self.graphs.as_chunks();
@@ -168,7 +200,7 @@ impl Arrays {
 
     /// The size of the arrays in bytes.
     fn bytes(&self) -> usize {
-        let doubles = [&self.walls, &self.scales, &self.graphs];
+        let doubles = [&self.walls, &self.scales, &self.normals, &self.graphs];
         let doubles = doubles.map(Vec::len).iter().sum::<usize>() + self.rows.len();
         let fours = [&self.slab_hints, &self.first_strips, &self.regions, &self.first_rows];
         let ones = self.slab_stretches.len() + self.strip_stretches.len();

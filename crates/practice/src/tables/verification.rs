@@ -2,16 +2,17 @@
 
 use rayon::prelude::*;
 use stickslip_model::{Collision, Contact};
+use stickslip_plane::CollisionPlane;
 
 use super::TableError;
 use super::chebyshev::value;
-use super::strip::{exact_eps_t, within};
+use super::strip::{restitution, within};
 use super::table::{Arrays, Table};
 
 /// What the comparison of a table with collisions found.
 ///
 /// The points are none of those with which the table was made: points at random in each strip, and
-/// points on both sides of each boundary, at distances in ψ from 1e-15 to 0.1 of its strip.
+/// points on both sides of each boundary, at distances in y from 1e-15 to 0.1 of its strip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
@@ -20,10 +21,18 @@ pub struct Verification {
     pub points: u64,
     /// The largest error of ε_t.
     pub largest_error: f64,
-    /// κ at the largest error.
-    pub kappa: f64,
-    /// ψ at the largest error.
-    pub psi: f64,
+    /// x at the largest error of ε_t: κ, or g_n in m/s.
+    pub x: f64,
+    /// y at the largest error of ε_t: ψ, or g_t in m/s.
+    pub y: f64,
+    /// The largest error of ε_n.
+    pub largest_error_of_eps_n: f64,
+}
+
+impl Verification {
+    /// No comparison.
+    pub(super) const NONE: Self =
+        Self { points: 0, largest_error: 0.0, x: 0.0, y: 0.0, largest_error_of_eps_n: 0.0 };
 }
 
 /// Points at random in each strip.
@@ -35,32 +44,38 @@ const BESIDE: u32 = 16;
 ///
 /// # Errors
 /// [`TableError::Engine`]: a collision cannot be computed.
-pub fn verify(table: &Table) -> Result<Verification, TableError> {
+pub fn verify(table: &Table, plane: &CollisionPlane) -> Result<Verification, TableError> {
     let slabs = 0..table.arrays().scales.len();
-    let found = slabs.into_par_iter().map(|slab| in_slab(table, slab));
+    let found = slabs.into_par_iter().map(|slab| in_slab(table, plane, slab));
     let found: Vec<Result<Verification, TableError>> = found.collect();
-    let none = Verification { points: 0, largest_error: 0.0, kappa: 0.0, psi: 0.0 };
-    found.into_iter().try_fold(none, |all, next| {
+    found.into_iter().try_fold(Verification::NONE, |all, next| {
         let next = next?;
         let worse = !within(next.largest_error, all.largest_error);
         let points = all.points + next.points;
-        Ok(Verification { points, ..if worse { next } else { all } })
+        let largest_error_of_eps_n = larger(all.largest_error_of_eps_n, next.largest_error_of_eps_n);
+        Ok(Verification { points, largest_error_of_eps_n, ..if worse { next } else { all } })
     })
 }
 
-fn in_slab(table: &Table, slab: usize) -> Result<Verification, TableError> {
+fn in_slab(
+    table: &Table,
+    plane: &CollisionPlane,
+    slab: usize,
+) -> Result<Verification, TableError> {
     let arrays = table.arrays();
     let mut random = fastrand::Rng::with_seed(slab as u64);
     let mut collision = Collision::before(Contact::new(1.0, 1.0, 0.0)?);
-    let mut found = Verification { points: 0, largest_error: 0.0, kappa: 0.0, psi: 0.0 };
-    let mut compare = |[kappa, psi]: [f64; 2]| {
-        let kappa = kappa.clamp(table.kappa[0], table.kappa[1]);
-        let psi = psi.clamp(table.psi[0], table.psi[1]);
-        let exact = exact_eps_t([kappa, psi], table.damping, &mut collision)?;
-        let error = (table.eps_t(kappa, psi) - exact).abs();
+    let mut found = Verification::NONE;
+    let mut compare = |[x, y]: [f64; 2]| {
+        let x = x.clamp(table.sides[0].low, table.sides[0].high);
+        let y = y.clamp(table.sides[1].low, table.sides[1].high);
+        let [eps_t, eps_n] = restitution(plane, [x, y], &mut collision)?;
+        let error = (table.eps_t(x, y) - eps_t).abs();
         if !within(error, found.largest_error) {
-            (found.largest_error, found.kappa, found.psi) = (error, kappa, psi);
+            (found.largest_error, found.x, found.y) = (error, x, y);
         }
+        let error = (table.eps_n(x) - eps_n).abs();
+        found.largest_error_of_eps_n = larger(found.largest_error_of_eps_n, error);
         found.points += 1;
         Ok::<(), TableError>(())
     };
@@ -82,14 +97,19 @@ fn in_slab(table: &Table, slab: usize) -> Result<Verification, TableError> {
     Ok(found)
 }
 
+/// The larger one of two errors. What is not a number is larger.
+fn larger(one: f64, other: f64) -> f64 {
+    if within(one, other) { other } else { one }
+}
+
 impl Arrays {
-    /// κ and ψ at a part of a slab and of a strip.
+    /// x and y at a part of a slab and of a strip.
     fn inside(&self, slab: usize, strip: usize, along: f64, across: f64) -> [f64; 2] {
         let (low, high) = (self.walls[slab], self.walls[slab + 1]);
-        let kappa = low + (high - low) * along;
+        let x = low + (high - low) * along;
         let stretched = self.slab_stretches[slab].of(along);
         let (graphs, _) = self.graphs.as_chunks();
         let [low, high] = [strip, strip + 1].map(|strip| value(&graphs[strip], stretched));
-        [kappa, low + (high - low) * across]
+        [x, low + (high - low) * across]
     }
 }

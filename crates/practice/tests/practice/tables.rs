@@ -9,17 +9,16 @@ use stickslip_model::{Contact, Engine, exact};
 use stickslip_plane::{Range, progress};
 #[cfg(feature = "serde")]
 use stickslip_practice::tables::Document;
-use stickslip_practice::tables::{self, InvalidTable, Settings, Table, TableError};
+use stickslip_practice::tables::{self, InvalidTable, Settings, Table, TableError, Window};
 
 /// A window of every kind of boundary: ends of contact, grazes in stick and in slip, crossings.
 fn small(bound: f64) -> Settings {
-    Settings {
-        kappa: Range { low: 0.5, high: 4.5 },
-        psi: Range { low: 0.2, high: 2.4 },
-        bound,
-        regions: true,
-        ..Settings::default()
-    }
+    Settings { window: scaled((0.5, 4.5), (0.2, 2.4), 0.0), bound, regions: true }
+}
+
+fn scaled(kappa: (f64, f64), psi: (f64, f64), damping: f64) -> Window {
+    let [kappa, psi] = [kappa, psi].map(|(low, high)| Range { low, high });
+    Window::Scaled { kappa, psi, damping }
 }
 
 fn made(settings: &Settings) -> Table {
@@ -27,7 +26,8 @@ fn made(settings: &Settings) -> Table {
 }
 
 fn exact_eps_t(table: &Table, kappa: f64, psi: f64) -> f64 {
-    let contact = Contact::new(kappa, psi, table.damping).expect("a contact");
+    let Window::Scaled { damping, .. } = table.window else { panic!("another window") };
+    let contact = Contact::new(kappa, psi, damping).expect("a contact");
     Engine::Exact.collide(contact).expect("a collision").0.eps_t()
 }
 
@@ -36,8 +36,8 @@ fn largest_error(table: &Table, points: u32) -> f64 {
     let mut random = Rng::with_seed(7);
     let mut largest = 0.0_f64;
     for _ in 0..points {
-        let at = |[low, high]: [f64; 2], part: f64| low + (high - low) * part;
-        let (kappa, psi) = (at(table.kappa, random.f64()), at(table.psi, random.f64()));
+        let [kappa, psi] =
+            table.window.sides().map(|side| side.low + (side.high - side.low) * random.f64());
         largest = largest.max((table.eps_t(kappa, psi) - exact_eps_t(table, kappa, psi)).abs());
     }
     largest
@@ -50,19 +50,16 @@ fn errors_are_within_the_bound() {
         assert!(table.verification.largest_error <= bound);
         let largest = largest_error(&table, 20_000);
         assert!(largest <= bound && largest > 1e-6 * bound, "{bound:e}: {largest:e}");
-        assert_eq!((table.eps_n, table.bound), (1.0, bound));
+        assert_eq!((table.constant_eps_n, table.bound), (Some(1.0), bound));
+        assert_eq!(table.eps_n(1.0), 1.0);
     }
 }
 
 #[test]
 fn a_kink_stays_a_kink() {
     // Where a stick phase comes to graze, the slope of ε_t jumps from −0.26 to −2.81.
-    let settings = Settings {
-        kappa: Range { low: 4.9, high: 5.1 },
-        psi: Range { low: 0.25, high: 0.28 },
-        bound: 1e-8,
-        ..Settings::default()
-    };
+    let window = scaled((4.9, 5.1), (0.25, 0.28), 0.0);
+    let settings = Settings { window, ..Settings::default() };
     let table = made(&settings);
     let (kappa, boundary) = (4.982599522946337, 0.26518218756776374);
     let slope = |step: f64| {
@@ -75,17 +72,12 @@ fn a_kink_stays_a_kink() {
 
 #[test]
 fn with_damping_too() {
-    let settings = Settings {
-        kappa: Range { low: 2.0, high: 8.0 },
-        psi: Range { low: 0.1, high: 1.5 },
-        damping: 0.3,
-        bound: 1e-5,
-        regions: false,
-    };
+    let window = scaled((2.0, 8.0), (0.1, 1.5), 0.3);
+    let settings = Settings { window, bound: 1e-5, regions: false };
     let table = made(&settings);
     assert!(largest_error(&table, 5_000) <= 1e-5);
     let contact = Contact::new(3.0, 1.0, 0.3).unwrap();
-    assert!((table.eps_n - exact::collide(contact).unwrap().eps_n).abs() < 1e-14);
+    assert!((table.eps_n(3.0) - exact::collide(contact).unwrap().eps_n).abs() < 1e-14);
     assert!(table.regions.is_empty() && table.region(3.0, 1.0).is_none());
 }
 
@@ -109,7 +101,7 @@ fn regions_have_the_switches_of_collisions() {
 #[test]
 fn edges_belong_to_the_table_and_nothing_else_has_a_value() {
     let table = made(&small(1e-4));
-    let ([k0, k1], [p0, p1]) = (table.kappa, table.psi);
+    let [(k0, k1), (p0, p1)] = table.window.sides().map(|side| (side.low, side.high));
     for (kappa, psi) in [(k0, p0), (k1, p1), (k0, p1), (k1, p0), (2.0, p1), (2.0, p0), (k0, 1.0)] {
         let error = (table.eps_t(kappa, psi) - exact_eps_t(&table, kappa, psi)).abs();
         assert!(error <= 1e-4, "{kappa} {psi}: {error:e}");
@@ -126,6 +118,7 @@ fn edges_belong_to_the_table_and_nothing_else_has_a_value() {
     let beyond = [0.0, -0.0, -1.0, nan, -nan, infinity, -infinity, 5e-324, f64::MAX];
     for value in beyond.into_iter().chain([k0.next_down(), k1.next_up()]) {
         assert!(table.eps_t(value, 1.0).is_nan() && table.region(value, 1.0).is_none());
+        assert!(table.eps_n(value).is_nan());
     }
     for value in beyond.into_iter().chain([p0.next_down(), p1.next_up()]) {
         assert!(table.eps_t(1.0, value).is_nan() && table.region(1.0, value).is_none());
@@ -161,11 +154,19 @@ fn documents_that_contradict_themselves_are_refused() {
         assert!(!error.to_string().is_empty());
     };
     refused(&|it| it.schema = "stickslip.table/0".to_owned());
-    refused(&|it| it.kappa[0] = 0.0);
-    refused(&|it| it.psi[1] = f64::NAN);
-    refused(&|it| it.kappa[1] = f64::INFINITY);
-    refused(&|it| it.psi.swap(0, 1));
-    refused(&|it| it.eps_n = -1.0);
+    for (kappa, psi) in [
+        ((0.0, 4.5), (0.2, 2.4)),
+        ((0.5, 4.5), (0.2, f64::NAN)),
+        ((0.5, f64::INFINITY), (0.2, 2.4)),
+        ((0.5, 4.5), (2.4, 0.2)),
+        ((0.5, 5.0), (0.2, 2.4)),
+    ] {
+        refused(&|it| it.window = scaled(kappa, psi, 0.0));
+    }
+    refused(&|it| it.window = scaled((0.5, 4.5), (0.2, 2.4), -1.0));
+    refused(&|it| it.constant_eps_n = Some(-1.0));
+    refused(&|it| it.constant_eps_n = None);
+    refused(&|it| it.arrays.normals = vec![0.0; 8]);
     refused(&|it| it.arrays.scales.clear());
     refused(&|it| it.arrays.walls.swap(1, 2));
     refused(&|it| it.arrays.walls[3] = f64::NAN);
@@ -194,11 +195,13 @@ fn what_cannot_be_is_refused_with_numbers() {
     assert_eq!(refused(|it| it.bound = 1e-13), bound(1e-13));
     assert_eq!(refused(|it| it.bound = 0.1), bound(0.1));
     assert!(refused(|it| it.bound = f64::NAN).to_string().contains("1e-12 to 1e-3"));
-    let empty = refused(|it| it.kappa = Range { low: 3.0, high: 3.0 });
+    let empty = refused(|it| it.window = scaled((3.0, 3.0), (0.2, 2.4), 0.0));
     assert!(matches!(empty, TableError::Settings(InvalidTable::Range { name: "kappa", .. })));
-    assert!(matches!(refused(|it| it.psi.low = -1.0), TableError::Settings(_)));
-    assert!(matches!(refused(|it| it.damping = -0.1), TableError::Atlas(_)));
-    let narrow = refused(|it| it.kappa = Range { low: 3.0, high: 3.0 + 1e-8 });
+    let negative = refused(|it| it.window = scaled((0.5, 4.5), (-1.0, 2.4), 0.0));
+    assert!(matches!(negative, TableError::Settings(_)));
+    let negative = refused(|it| it.window = scaled((0.5, 4.5), (0.2, 2.4), -0.1));
+    assert!(matches!(negative, TableError::Parameter(_)));
+    let narrow = refused(|it| it.window = scaled((3.0, 3.0 + 1e-8), (0.2, 2.4), 0.0));
     assert!(matches!(narrow, TableError::Atlas(_)), "{narrow}");
 }
 
@@ -238,7 +241,7 @@ fn the_header_for_c_has_the_same_bits() {
     if Command::new("cc").arg("--version").output().is_err() {
         return;
     }
-    let settings = Settings { kappa: Range { low: 0.9, high: 4.5 }, ..small(1e-6) };
+    let settings = Settings { window: scaled((0.9, 4.5), (0.2, 2.4), 0.0), ..small(1e-6) };
     let table = made(&settings);
     let directory = Path::new(env!("CARGO_TARGET_TMPDIR")).join("table_header");
     fs::create_dir_all(&directory).unwrap();

@@ -4,8 +4,8 @@ use stickslip_model::InvalidParameter;
 use stickslip_tracer::{Finding, SubdivisionError};
 
 use super::layout::SCHEMA;
-use crate::atlas::frame::TooNarrow;
 use crate::chart::Chart;
+use crate::sheet::TooNarrow;
 
 /// The reason why a document is not an atlas.
 ///

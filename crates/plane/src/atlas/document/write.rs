@@ -61,7 +61,7 @@ impl BoundaryFields {
             Some(Meeting::WindowEdge | Meeting::WindowCorner) => BoundaryEnd::Window,
             Some(_) => BoundaryEnd::Vertex,
         };
-        let point = |node: &Node| atlas.frame.snapped(atlas.chart.parameters(&node.point));
+        let point = |node: &Node| atlas.frame.snapped(&atlas.chart, &node.point);
         Self {
             id,
             kind: curve.margin,
@@ -90,7 +90,7 @@ fn vertices(atlas: &Atlas) -> Vec<VertexFields> {
     let vertices = regions.vertices().iter().zip(ending).enumerate();
     vertices
         .map(|(id, (vertex, boundaries))| {
-            let [kappa, psi] = frame.snapped(chart.parameters(&vertex.point));
+            let [kappa, psi] = frame.snapped(chart, &vertex.point);
             VertexFields { id, kind: vertex.kind.into(), kappa, psi, boundaries }
         })
         .collect()

@@ -1,0 +1,115 @@
+//! A window in its traced coordinates, and the accuracy that boundaries can have in it.
+
+use stickslip_tracer::{Point, Window};
+
+use crate::chart::Chart;
+use crate::range::Range;
+
+/// A window of two parameters above 0, and its chart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sheet {
+    /// The intervals of both parameters.
+    pub sides: [Range; 2],
+    /// The traced coordinates.
+    pub chart: Chart,
+}
+
+/// The accuracies that boundaries can have in a window, in units of its second parameter: ψ, or the
+/// tangential velocity in m/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ToleranceRange {
+    /// The finest: margins are known to some 1e-13.
+    pub finest: f64,
+    /// The usual one.
+    pub usual: f64,
+    /// The coarsest: the tracer tells curves apart by 1e-8 of an ordinary window's shorter side.
+    pub coarsest: f64,
+}
+
+/// A window is too narrow for the accuracy of its boundaries.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "the window is too narrow: {width:e} in ln({}) by {height:e} in ln({}); expected from \
+     {NARROWEST:e} each",
+    names[0], names[1]
+)]
+pub struct TooNarrow {
+    /// The names of both parameters.
+    pub names: [&'static str; 2],
+    /// The width of the window in the logarithm of the first parameter.
+    pub width: f64,
+    /// The height of the window in the logarithm of the second parameter.
+    pub height: f64,
+}
+
+/// The smallest distance between a boundary and its curve, in traced coordinates.
+const FINEST: f64 = 1e-11;
+/// The error of margins, which limits the places of boundaries.
+const NOISE: f64 = 1e-13;
+/// The least width and height of a window in the logarithms of its parameters.
+const NARROWEST: f64 = 2e-7;
+
+impl Sheet {
+    /// The window in traced coordinates.
+    #[must_use]
+    pub fn window(&self) -> Window {
+        let [x, y] = self.sides;
+        self.chart.window(x, y)
+    }
+
+    /// The error of a place in traced coordinates that comes from that of margins.
+    pub(crate) fn noise(&self) -> f64 {
+        NOISE / self.chart.width.min(self.chart.height).min(1.0)
+    }
+
+    /// The distance in traced coordinates between a boundary and a curve that is accurate to
+    /// `tolerance` in the second parameter.
+    #[must_use]
+    pub fn interpolation(&self, tolerance: f64) -> f64 {
+        // The finest tolerance may be lost by rounding.
+        (tolerance / self.chart.scale(self.sides[1].high)).max(FINEST)
+    }
+
+    /// The distance from a curve within which the side of a point is left open. It is ten times the
+    /// curve's error, and at least 1e-9, since vertices are known less well.
+    #[must_use]
+    pub fn resolution(&self, tolerance: f64) -> f64 {
+        (10.0 * self.interpolation(tolerance)).max(1e3 * self.noise()).max(1e-9)
+    }
+
+    /// The accuracies that boundaries can have.
+    #[must_use]
+    pub fn tolerances(&self) -> ToleranceRange {
+        let shorter = self.window().extent().min().min(1.0);
+        let finest = FINEST.max(10.0 * self.noise());
+        let [finest, usual, coarsest] =
+            [finest, (1e-10 * shorter).max(finest), (1e-9 * shorter).max(10.0 * finest)]
+                .map(|part| part * self.chart.scale(self.sides[1].high));
+        ToleranceRange { finest, usual, coarsest }
+    }
+
+    /// Refuses a window that is too narrow for the accuracy of its boundaries. The error calls both
+    /// parameters by their `names`.
+    ///
+    /// # Errors
+    /// [`TooNarrow`] has the size of the window.
+    pub fn require_wide(&self, names: [&'static str; 2]) -> Result<(), TooNarrow> {
+        let [width, height] = self.sides.map(|side| (side.high / side.low).ln());
+        if width >= NARROWEST && height >= NARROWEST {
+            return Ok(());
+        }
+        Err(TooNarrow { names, width, height })
+    }
+
+    /// Both parameters of a traced point, moved onto an edge of the window if they differ from the
+    /// edge by rounding alone.
+    #[must_use]
+    pub fn snapped(&self, point: &Point) -> [f64; 2] {
+        let snap = |value: f64, Range { low, high }: Range| {
+            let near = |edge: &f64| (value - edge).abs() <= 1e-14 * edge;
+            [low, high].into_iter().find(near).unwrap_or(value)
+        };
+        let [x, y] = self.chart.parameters(point);
+        [snap(x, self.sides[0]), snap(y, self.sides[1])]
+    }
+}
