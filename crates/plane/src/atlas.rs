@@ -25,6 +25,7 @@ mod regions;
 mod tracing;
 mod verification;
 
+pub use crate::sheet::{ToleranceRange, TooNarrow};
 pub use boundary::BoundaryKind;
 #[cfg(feature = "serde")]
 pub use document::{
@@ -39,5 +40,4 @@ pub(crate) use polyline::polyline;
 pub use regions::{Atlas, Regions, switch_count};
 pub use tracing::{AtlasError, Division, VerifiedAtlas, divide, trace};
 pub(crate) use tracing::{require_traceable, trace_options};
-pub use crate::sheet::{ToleranceRange, TooNarrow};
 pub use verification::{EulerFields, LabelError, MismatchFields, VerificationReport};

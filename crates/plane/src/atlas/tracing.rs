@@ -118,8 +118,7 @@ pub fn trace(
     progress: Report<'_>,
 ) -> Result<VerifiedAtlas, AtlasError> {
     let plane = frame.plane()?;
-    let Division { regions, unbounded, extrema, report, .. } =
-        divide(&plane, tolerance, progress)?;
+    let Division { regions, unbounded, extrema, report, .. } = divide(&plane, tolerance, progress)?;
     let atlas = Atlas { frame, chart: *plane.chart(), tolerance, regions, unbounded };
     Ok(VerifiedAtlas { atlas, extrema, report })
 }

@@ -5,7 +5,6 @@ use stickslip_model::{Collision, Contact};
 use stickslip_plane::atlas::Division;
 use stickslip_tracer::Location;
 
-use super::{Place, TableError};
 use super::boundaries::Boundaries;
 use super::chebyshev::{ACROSS, ALONG, coefficients, extrema, nodes, powers, value};
 use super::settings::{Settings, Window};
@@ -13,6 +12,7 @@ use super::slab::{Graph, Slab, Stack};
 use super::stretch::Stretch;
 use super::strip::{Demand, Gap, Refusal, Strip, restitution, rounded, within};
 use super::table::{Arrays, NO_REGION};
+use super::{Place, TableError};
 
 /// The relative error of graphs as a part of the bound: at a graze the slope of ε_t over ln y jumps
 /// by less than the inverse.

@@ -119,7 +119,7 @@ impl Arrays {
     /// Checks everything that a look-up relies on.
     fn check(
         &self,
-        sides: [Range; 2],
+        [x, y]: [Range; 2],
         regions: usize,
         is_scaled: bool,
     ) -> Result<(), DocumentError> {
@@ -155,7 +155,7 @@ impl Arrays {
             index.map_or(Ok(()), |index| Err(DocumentError::Contradiction { name, index }))
         };
         contradiction("walls", self.walls.windows(2).position(|pair| pair[0] >= pair[1]))?;
-        let ends = [self.walls[0], self.walls[slabs]] == [sides[0].low, sides[0].high];
+        let ends = [self.walls[0], self.walls[slabs]] == [x.low, x.high];
         contradiction("walls", (!ends).then_some(0))?;
         // Each slab has a strip and the upper edge.
         let short = |pair: &[u32]| u64::from(pair[1]) < u64::from(pair[0]) + 2;
@@ -169,7 +169,7 @@ impl Arrays {
         let unknown = |&region: &u32| region != NO_REGION && region as usize >= regions;
         contradiction("regions", self.regions.iter().position(unknown))?;
         let mut expected = self.clone();
-        let set = expected.set_hints(sides).is_ok();
+        let set = expected.set_hints([x, y]).is_ok();
         let same = |name, same: bool| contradiction(name, (!(set && same)).then_some(0));
         same("slab_keys", self.slab_keys == expected.slab_keys)?;
         same("strip_keys", self.strip_keys == expected.strip_keys)?;

@@ -137,9 +137,8 @@ impl Table {
     /// What the header says of ε_n, and its constants.
     fn c_normal(&self) -> (&'static str, String) {
         if let (Window::Scaled { damping, .. }, Some(eps_n)) = (self.window, self.constant_eps_n) {
-            let constants = format!(
-                "#define @PREFIX@_DAMPING {damping:?}\n#define @PREFIX@_EPS_N {eps_n:?}\n"
-            );
+            let constants =
+                format!("#define @PREFIX@_DAMPING {damping:?}\n#define @PREFIX@_EPS_N {eps_n:?}\n");
             return ("@PREFIX@_EPS_N\n *       the coefficient of normal restitution", constants);
         }
         let function = "double @prefix@_eps_n(double @x@)\n *       the coefficient of normal \

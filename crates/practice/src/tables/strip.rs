@@ -3,13 +3,13 @@
 use stickslip_model::{Collision, Contact, Engine};
 use stickslip_plane::CollisionPlane;
 
-use super::{Place, TableError};
 use super::chebyshev::{
     ACROSS, ALONG, coefficients, double_coefficients, double_powers, double_value, extrema, nodes,
     powers, value,
 };
 use super::slab::{Graph, Slab};
 use super::stretch::Stretch;
+use super::{Place, TableError};
 
 /// What strips must hold to.
 #[derive(Clone, Copy)]

@@ -52,16 +52,13 @@ pub fn verify(table: &Table, plane: &CollisionPlane) -> Result<Verification, Tab
         let next = next?;
         let worse = !within(next.largest_error, all.largest_error);
         let points = all.points + next.points;
-        let largest_error_of_eps_n = larger(all.largest_error_of_eps_n, next.largest_error_of_eps_n);
+        let largest_error_of_eps_n =
+            larger(all.largest_error_of_eps_n, next.largest_error_of_eps_n);
         Ok(Verification { points, largest_error_of_eps_n, ..if worse { next } else { all } })
     })
 }
 
-fn in_slab(
-    table: &Table,
-    plane: &CollisionPlane,
-    slab: usize,
-) -> Result<Verification, TableError> {
+fn in_slab(table: &Table, plane: &CollisionPlane, slab: usize) -> Result<Verification, TableError> {
     let arrays = table.arrays();
     let mut random = fastrand::Rng::with_seed(slab as u64);
     let mut collision = Collision::before(Contact::new(1.0, 1.0, 0.0)?);

@@ -12,3 +12,4 @@ mod reference;
 mod strangers;
 mod tables;
 mod time_steps;
+mod velocity_tables;
