@@ -48,7 +48,13 @@ from stickslip.studies import (
     reproduction_parts,
 )
 from stickslip.sweeps import sweep, write_sweep
-from stickslip.tables import RestitutionTable, load_table, table
+from stickslip.tables import (
+    RestitutionTable,
+    VelocityTable,
+    load_table,
+    table,
+    table_of_velocities,
+)
 from stickslip.timesteps import StepErrors, TimeSteps, timestep
 
 __version__ = _native.version()
@@ -83,6 +89,7 @@ __all__ = [
     "Surface",
     "Table",
     "TimeSteps",
+    "VelocityTable",
     "Vertex",
     "Wall",
     "WallMotion",
@@ -104,6 +111,7 @@ __all__ = [
     "solve",
     "sweep",
     "table",
+    "table_of_velocities",
     "timestep",
     "trace",
     "write_sweep",

@@ -92,6 +92,6 @@ Files:
 Examples:
   stickslip table --kappa 0.5:100 --psi 0.01:3 --out table.h --out table.json
   stickslip table --kappa 1:20 --psi 0.05:2.5 --damping 0.3 --bound 1e-6 --regions --out table.npz
-  stickslip table --bodies examples/steel_pair.json --normal 0.1:10 --tangential 0.01:20 --out t.h
+  stickslip table --bodies examples/glass_on_wall.json --normal 0.1:10 --tangential 0.01:20 --out t.h
 
 Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";
