@@ -28,7 +28,7 @@
 //! ```
 //!
 //! Start reading here; then, in this order: `settings`, `boundaries` (graphs of boundaries over x),
-//! `stretch` (coordinates in which roots are smooth), `slab`, `strip` (polynomials), `assembly`,
+//! `turns` (where they turn back), `stretch` (coordinates in which roots are smooth), `slab`, `strip` (polynomials), `assembly`,
 //! `table` (the arrays and the look-up), `verification`.
 
 mod assembly;
@@ -43,6 +43,7 @@ mod slab;
 mod stretch;
 mod strip;
 mod table;
+mod turns;
 mod verification;
 
 use std::fmt;

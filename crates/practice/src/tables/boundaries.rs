@@ -5,6 +5,8 @@ use stickslip_plane::atlas::Division;
 use stickslip_plane::{CollisionPlane, Range};
 use stickslip_tracer::{Cubic, Node, Point};
 
+use super::turns::turn;
+
 /// The least distance at which a boundary is looked for, as a part of y.
 const NEAREST: f64 = 1e-12;
 /// Walls that are closer than this part of x are one: traced boundaries are not finer.
@@ -13,39 +15,47 @@ const MERGED: f64 = 1e-11;
 /// A part of a boundary along which x rises, as y over x. These are the two axes of the table, and
 /// not the traced coordinates.
 pub struct Chain {
-    plane: CollisionPlane,
+    pub plane: CollisionPlane,
+    /// x of both ends.
+    pub ends: [f64; 2],
+    /// By how much x of both ends was less as it was traced.
+    pub shifts: [f64; 2],
+    /// The itineraries of collisions below and above.
+    pub sides: [String; 2],
     /// Parts along which x rises, in the order of x.
     cubics: Vec<Cubic>,
-    /// The itineraries of collisions below and above.
-    sides: [String; 2],
 }
 
 impl Chain {
-    fn ends(&self) -> [f64; 2] {
-        let first = self.cubics[0].points[0];
-        let last = self.cubics[self.cubics.len() - 1].points[3];
-        [first, last].map(|point| self.plane.parameters(&point)[0])
-    }
-
     /// Whether the chain has a point at `x`.
     pub fn covers(&self, x: f64) -> bool {
-        let [low, high] = self.ends();
+        let [low, high] = self.ends;
         (low..=high).contains(&x)
     }
 
     /// y of the chain at `x`, or at its nearer end, as accurate as it was traced.
     pub fn y_at(&self, x: f64) -> f64 {
-        let x = self.plane.chart().abscissa(x);
+        let [low, high] = self.ends;
+        let part = (x - low) / (high - low);
+        let shift = self.shifts[0] * (1.0 - part) + self.shifts[1] * part;
+        let x = self.plane.chart().abscissa(x - shift);
         let behind = self.cubics.partition_point(|cubic| cubic.points[3].x < x);
         let cubic = &self.cubics[behind.min(self.cubics.len() - 1)];
         self.plane.parameters(&cubic.at(parameter_at(cubic, x)))[1]
     }
 
-    /// The lesser of the differences in y from the chain at the `distance` in x on both sides.
+    /// Moves an end a little, and the rest of the chain with it.
+    fn move_end(&mut self, end: usize, x: f64) {
+        self.shifts[end] = x - self.ends[end];
+        self.ends[end] = x;
+    }
+
+    /// The lesser of the differences in y from the chain at the `distance` in x on both sides, as far
+    /// as the chain reaches.
     pub fn rise(&self, x: f64, distance: f64) -> f64 {
         let y = self.y_at(x);
-        let rise = |x| (self.y_at(x) - y).abs();
-        rise(x - distance).min(rise(x + distance))
+        let sides = [x - distance, x + distance].into_iter().filter(|&x| self.covers(x));
+        sides.map(|x| (self.y_at(x) - y).abs()).reduce(f64::min).unwrap_or(0.0)
     }
 
     /// y of the boundary at `x` to the last digits, by bisection of what collisions do from `y` on,
@@ -53,9 +63,7 @@ impl Chain {
     /// switches of the two sides.
     pub fn refined(&self, x: f64, y: f64, reach: f64, collision: &mut Collision) -> f64 {
         let mut side_of = |y: f64| {
-            let contact = self.plane.contact_at([x, y]).ok()?;
-            Engine::Exact.collide_into(contact, collision).ok()?;
-            let itinerary = collision.itinerary();
+            let itinerary = self.itinerary_at([x, y], collision)?;
             self.sides.iter().position(|side| *side == itinerary)
         };
         let mut distance = NEAREST * y;
@@ -77,6 +85,13 @@ impl Chain {
             distance *= 4.0;
         }
         y
+    }
+
+    /// The itinerary of the collision at a place, computed in `collision`; `None` if there is none.
+    pub fn itinerary_at(&self, place: [f64; 2], collision: &mut Collision) -> Option<String> {
+        let contact = self.plane.contact_at(place).ok()?;
+        Engine::Exact.collide_into(contact, collision).ok()?;
+        Some(collision.itinerary())
     }
 }
 
@@ -109,9 +124,9 @@ pub struct Boundaries {
 impl Boundaries {
     pub fn of(division: &Division) -> Self {
         let Division { plane, regions, .. } = division;
-        let width = regions.window().extent().x;
+        let shortest = MERGED * regions.window().extent().x;
         let Range { low, high } = plane.sheet().sides[0];
-        let mut chains = Vec::new();
+        let mut all = Vec::new();
         let mut walls = vec![low, high];
         for curve in regions.curves() {
             let mut nodes = curve.nodes.clone();
@@ -123,21 +138,48 @@ impl Boundaries {
             } else {
                 nodes.push(nodes[0]);
             }
-            for (rises, cubics) in monotone(&nodes) {
-                // The left side is above where the curve runs to the right.
-                let [left, right] = curve.sides.clone();
-                let sides = if rises { [right, left] } else { [left, right] };
-                let [from, to] = [cubics[0].points[0].x, cubics[cubics.len() - 1].points[3].x];
-                let chain = Chain { plane: *plane, cubics, sides };
-                walls.extend(chain.ends());
-                // Otherwise the boundary is a wall.
-                if to - from > MERGED * width {
-                    chains.push(chain);
+            let mut chains = chains(plane, &nodes, &curve.sides);
+            // Otherwise the boundary is a wall.
+            let is_long = |chain: &Chain| {
+                let first = chain.cubics[0].points[0];
+                chain.cubics[chain.cubics.len() - 1].points[3].x - first.x > shortest
+            };
+            for k in 1..chains.len() {
+                let ((_, one), (rises, other)) = (&chains[k - 1], &chains[k]);
+                // The first one falls, and both begin at the turn; or it rises, and both end there.
+                let end = usize::from(!rises);
+                let both = is_long(one) && is_long(other);
+                if let Some(turn) = both.then(|| turn(one, other, end)).flatten() {
+                    chains[k - 1].1.move_end(end, turn);
+                    chains[k].1.move_end(end, turn);
+                }
+            }
+            for (_, chain) in chains {
+                walls.extend(chain.ends);
+                if is_long(&chain) {
+                    all.push(chain);
                 }
             }
         }
-        Self { chains, walls: merged(walls, low, high) }
+        Self { chains: all, walls: merged(walls, low, high) }
     }
+}
+
+/// The chains of a curve, in its order, and whether x rises in its direction.
+fn chains(
+    plane: &CollisionPlane,
+    nodes: &[Node],
+    [left, right]: &[String; 2],
+) -> Vec<(bool, Chain)> {
+    let chain = |(rises, cubics): (bool, Vec<Cubic>)| {
+        // The left side is above where the curve runs to the right.
+        let [below, above] = if rises { [right, left] } else { [left, right] };
+        let ends = [cubics[0].points[0], cubics[cubics.len() - 1].points[3]];
+        let ends = ends.map(|point| plane.parameters(&point)[0]);
+        let sides = [below.clone(), above.clone()];
+        (rises, Chain { plane: *plane, ends, shifts: [0.0; 2], sides, cubics })
+    };
+    monotone(nodes).into_iter().map(chain).collect()
 }
 
 /// The parts of a curve along which x rises or falls, each in the direction in which it rises, and
