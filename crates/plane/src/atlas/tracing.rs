@@ -196,12 +196,21 @@ pub(crate) fn require_traceable(plane: &CollisionPlane, tolerance: f64) -> Resul
 }
 
 /// The options of a trace that is accurate to `tolerance` in the second parameter.
+///
+/// In a window whose sides are many e-folds long, cells and steps are smaller parts of a side.
 pub(crate) fn trace_options(plane: &CollisionPlane, tolerance: f64) -> TraceOptions {
+    /// The e-folds up to which the usual parts of a side will do.
+    const SIDE: f64 = 4.0;
     let (usual, noise) = (TraceOptions::default(), plane.sheet().noise());
+    let fineness = (plane.window().extent().min() / SIDE).max(1.0);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "32 to 1024")]
+    let cells = (usual.cells as f64 * fineness.min(32.0)).ceil() as usize;
     TraceOptions {
         tolerance: usual.tolerance.max(0.1 * noise),
         interpolation: plane.sheet().interpolation(tolerance),
         offset: usual.offset.max(10.0 * noise),
+        max_step: usual.max_step / fineness,
+        cells,
         ..usual
     }
 }
