@@ -17,7 +17,7 @@ fn look_up(criterion: &mut Criterion) {
     let settings = Settings::default();
     let table = tables::run(&settings, progress::SILENT).expect("a table");
     let mut random = Rng::with_seed(1);
-    let [[k0, k1], [p0, p1]] = [table.kappa, table.psi];
+    let [(k0, k1), (p0, p1)] = table.window.sides().map(|side| (side.low, side.high));
     let mut point = || [(k0 * (k1 / k0).powf(random.f64())).min(k1), p0 + (p1 - p0) * random.f64()];
     let points: Vec<[f64; 2]> = (0..POINTS).map(|_| point()).collect();
     let near: Vec<[f64; 2]> = (0..POINTS).map(|k| points[k % 100]).collect();

@@ -8,9 +8,9 @@ use std::sync::LazyLock;
 use fastrand::Rng;
 use stickslip_model::{Body, Engine, Law, Material, Pair, Sphere, Surface, Wall, presets};
 use stickslip_plane::{Range, progress};
-use stickslip_practice::tables::{
-    self, Document, InvalidTable, Settings, Table, TableError, Window,
-};
+#[cfg(feature = "serde")]
+use stickslip_practice::tables::Document;
+use stickslip_practice::tables::{self, InvalidTable, Settings, Table, TableError, Window};
 
 /// Steel spheres of 2 cm. κ is 7.4 and the scaled damping 0.27 at 1 m/s.
 fn spheres() -> Pair {
@@ -193,6 +193,7 @@ fn threads_change_no_bit() {
     assert_eq!(pool.install(|| made(&small(1e-4))), alone);
 }
 
+#[cfg(feature = "serde")]
 #[test]
 fn a_document_makes_the_same_table() {
     let table = common();

@@ -17,7 +17,7 @@ impl Bilinear {
     /// The table of `bytes` bytes, with as many points along ψ as along ln κ.
     pub fn of_size(settings: &Settings, bytes: usize) -> Result<Self, Box<dyn Error>> {
         let size = (bytes / 8).isqrt();
-        let (kappa, psi) = (settings.kappa, settings.psi);
+        let [kappa, psi] = settings.window.sides();
         let low = [kappa.low.ln(), psi.low];
         let steps = (size - 1) as f64;
         let scales = [steps / (kappa.high / kappa.low).ln(), steps / (psi.high - psi.low)];

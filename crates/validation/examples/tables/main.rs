@@ -49,7 +49,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("bilinear table of {} x {} points", bilinear.sizes[0], bilinear.sizes[1]);
 
     report("at random", &errors(points, &table, &bilinear, |random| at_random(&settings, random))?);
-    let frame = Frame::new(settings.kappa, settings.psi, settings.damping);
+    let [kappa, psi] = settings.window.sides();
+    let frame = Frame::new(kappa, psi, 0.0);
     let atlas = trace(frame, frame.tolerances().usual, SILENT)?.atlas;
     report(
         "beside boundaries",
@@ -71,7 +72,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// A point of the window, even in ln κ and ψ.
 fn at_random(settings: &Settings, random: &mut Rng) -> [f64; 2] {
-    let (kappa, psi) = (settings.kappa, settings.psi);
+    let [kappa, psi] = settings.window.sides();
     let power = random.f64();
     let kappa = (kappa.low * (kappa.high / kappa.low).powf(power)).clamp(kappa.low, kappa.high);
     [kappa, psi.low + (psi.high - psi.low) * random.f64()]
