@@ -68,7 +68,7 @@ fn what_cannot_be_is_refused() {
 fn velocities_of_two_bodies() {
     let workspace = Workspace::new();
     let path = |name: &str| workspace.path(name).display().to_string();
-    let bodies = example("glass_on_wall.json").display();
+    let bodies = example("glass_on_wall.json").display().to_string();
     let (json, npz, header) = (path("t.json"), path("t.npz"), path("t.h"));
     let window = format!("--bodies {bodies} --normal 1:2 --tangential 1:3 --bound 1e-4");
     let ran = stickslip(&format!("table {window} --out {json} --out {npz} --out {header}"));
