@@ -4,7 +4,7 @@
  *     --bound 1e-6 --prefix gas --out gas_table.h
  *   cc -O2 -I. examples/gas.c -o gas -lm
  *   ./gas 4000 60 table > table.csv
- *   ./gas 4000 60 0.211 > constant.csv
+ *   ./gas 4000 60 0.21 > constant.csv
  *
  * The arguments are the number of spheres, the number of collisions a sphere, and what the
  * coefficient of tangential restitution is: that of the table, or one number. The normal one is
