@@ -106,13 +106,12 @@ class Fit:
         bodies: Pair | None,
         scaled: tuple[_Law, float, tuple[float, float, float]],
         speed: float | None,
-        question: tuple[
-            list[str], list[tuple[str, float, float]], float | None, float, bool
-        ],
+        question: tuple[list[str], list[tuple[str, float, float]], float | None, float, bool],
         threads: int,
     ) -> Fit: ...
     def json(self) -> str: ...
     def picture(self) -> str | None: ...
+
 @final
 class RestitutionTable:
     @staticmethod

@@ -120,9 +120,7 @@ class VelocityTable(_Table):
         normal, _, shape = _points(normal_m_per_s, 1.0)
         return self._native.eps_n(normal).reshape(shape)
 
-    def region(
-        self, normal_m_per_s: ArrayLike, tangential_m_per_s: ArrayLike
-    ) -> NDArray[np.int64]:
+    def region(self, normal_m_per_s: ArrayLike, tangential_m_per_s: ArrayLike) -> NDArray[np.int64]:
         """The numbers of the regions; -1 where there is none. Arrays broadcast."""
         return self._region(normal_m_per_s, tangential_m_per_s)
 
