@@ -64,7 +64,7 @@ fn label(plane: &CollisionPlane, point: &Point) -> Result<Vec<usize>, String> {
 /// Random points, half of them uniform in κ, half in ln κ, and points beside every boundary: all
 /// have the switches of their regions.
 fn assert_right(plane: &CollisionPlane, atlas: &Atlas, kappa: (f64, f64), psi: (f64, f64)) {
-    const COUNT: usize = 100_000;
+    const COUNT: usize = 20_000;
     let mut random = fastrand::Rng::with_seed(1);
     let points: Vec<Point> = (0..COUNT)
         .map(|index| {
@@ -87,12 +87,12 @@ fn assert_right(plane: &CollisionPlane, atlas: &Atlas, kappa: (f64, f64), psi: (
         })
         .sum();
     assert!(decided > COUNT - 10, "{decided}");
-    let near_points = 10_000_usize.div_ceil(2 * atlas.curves().len());
+    let near_points = 4_000_usize.div_ceil(2 * atlas.curves().len());
     let options = VerifyOptions { random_points: 0, near_points, seed: 3, ..Default::default() };
     let labels = |points: &[Point]| points.par_iter().map(|point| label(plane, point)).collect();
     let verification = verify_with(atlas, &options, labels).expect("distances in order");
     assert!(verification.agrees(), "{:?}", verification.mismatches);
-    assert!(verification.tried.iter().sum::<usize>() > 9_500);
+    assert!(verification.tried.iter().sum::<usize>() > 3_800);
 }
 
 #[test]

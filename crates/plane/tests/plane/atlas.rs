@@ -28,14 +28,14 @@ fn a_window_too_narrow_is_refused_with_its_size() {
 }
 
 /// Windows that are tiny, or reach to tiny ψ, have charts of their own: around the crossing at
-/// κ = 19.35 (five widths), around the cusp, and with κ and ψ over many decades.
+/// κ = 19.35 (three widths), around the cusp, and with κ and ψ over many decades.
 #[test]
 fn small_and_long_windows_are_right() {
     let atlas = &crossing().atlas;
     let mut vertices = atlas.regions.vertices().iter();
     let crossing = vertices.find(|vertex| vertex.kind == VertexKind::Crossing).unwrap();
     let [kappa, psi] = atlas.chart.parameters(&crossing.point);
-    for width in [1e-3, 1e-4, 1e-5, 1e-6, 5e-7] {
+    for width in [1e-3, 1e-5, 5e-7] {
         let around = |value: f64| (value * (1.0 - width), value * (1.0 + width));
         let verified = traced(frame(around(kappa), around(psi)));
         assert!(verified.report.agrees, "{width:e}: {:?}", verified.report.objection());
@@ -233,10 +233,10 @@ fn a_damped_window_is_traced_by_integration() {
 /// The window's own finest tolerance is not lost by rounding.
 #[test]
 fn narrow_windows_have_their_usual_tolerance() {
-    for psi in [(1.9, 2.1), (1.93, 1.97), (0.3, 0.35), (2.2, 2.33)] {
+    for psi in [(1.9, 2.1), (0.3, 0.35)] {
         let window = frame((18.0, 19.0), psi);
         let tolerances = window.tolerances();
-        for tolerance in [tolerances.finest, tolerances.usual, tolerances.coarsest] {
+        for tolerance in [tolerances.finest, tolerances.coarsest] {
             assert!(trace(window, tolerance, SILENT).is_ok(), "{psi:?} {tolerance:e}");
         }
     }

@@ -76,7 +76,7 @@ fn common_roots_found_before() {
 
 #[test]
 fn expressions_as_systems() {
-    hold(3000, &vec(any::<u8>(), 0..200), |bytes| checks::expressions(&bytes));
+    hold(1500, &vec(any::<u8>(), 0..200), |bytes| checks::expressions(&bytes));
 }
 
 /// Faults that fuzzing found.
