@@ -58,6 +58,7 @@ where
         clock: Clock::new(start.s),
         phase,
         state: start.state.to_vec(),
+        rest: vec![0.0; n],
         slope: vec![0.0; n],
         other_h: None,
         h: 0.0,
@@ -91,6 +92,8 @@ struct Runner<'a, S: DynamicSystem, O> {
     clock: Clock,
     phase: Phase<S::Mode>,
     state: Vec<f64>,
+    /// What rounding has cut off from the state.
+    rest: Vec<f64>,
     /// The derivative of the state.
     slope: Vec<f64>,
     /// The size of the next step.
@@ -159,6 +162,7 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
                 Err((guard, place)) => {
                     self.statistics.too_coarse += 1;
                     cuts += 1;
+                    self.rest.fill(0.0);
                     // A step to the event is tried once, then shorter ones.
                     let again = target.is_some();
                     target = place.filter(|&place| !again && place < h);
@@ -206,7 +210,8 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
     fn take<M: Method>(&mut self, h: f64) -> f64 {
         let (system, mode) = (self.system, self.phase.mode);
         let field = |s: f64, y: &[f64], slope: &mut [f64]| system.field(mode, s, y, slope);
-        let origin = Origin { s: self.clock.s, y: &self.state, slope: &self.slope };
+        let origin =
+            Origin { s: self.clock.s, y: &self.state, rest: &self.rest, slope: &self.slope };
         self.step.take::<M>(&field, origin, h, (self.options.rtol, self.options.atol));
         self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
         match self.options.step_size {
@@ -228,7 +233,12 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
         let mut examination = Examination {
             system: self.system,
             phase: &self.phase,
-            origin: Origin { s: self.clock.s, y: &self.state, slope: &self.slope },
+            origin: Origin {
+                s: self.clock.s,
+                y: &self.state,
+                rest: &self.rest,
+                slope: &self.slope,
+            },
             guard_scale: self.options.scale_of_guards(),
             tolerances: (self.options.rtol, self.options.atol),
             notes: &mut self.notes,
@@ -253,13 +263,15 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
     fn accept<M: Method>(&mut self, h: f64) {
         let (system, mode) = (self.system, self.phase.mode);
         let field = |s: f64, y: &[f64], slope: &mut [f64]| system.field(mode, s, y, slope);
-        let origin = Origin { s: self.clock.s, y: &self.state, slope: &self.slope };
+        let origin =
+            Origin { s: self.clock.s, y: &self.state, rest: &self.rest, slope: &self.slope };
         if O::WANTS_SEGMENTS {
             self.statistics.field += self.step.extend::<M>(&field, origin);
             self.observer.on_segment(mode, &self.step.dense::<M>(origin.s));
         }
         self.statistics.field += self.step.finish::<M>(&field, origin);
         self.state.copy_from_slice(&self.step.y1);
+        self.rest.copy_from_slice(&self.step.rest);
         self.slope.copy_from_slice(self.step.slope_at_end::<M>());
         self.clock.advance(h);
     }
@@ -271,7 +283,8 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
         }
         let (system, mode) = (self.system, self.phase.mode);
         let field = |s: f64, y: &[f64], slope: &mut [f64]| system.field(mode, s, y, slope);
-        let origin = Origin { s: self.clock.s, y: &self.state, slope: &self.slope };
+        let origin =
+            Origin { s: self.clock.s, y: &self.state, rest: &self.rest, slope: &self.slope };
         let part = &mut self.work.restep;
         part.take_end::<M>(&field, origin, h);
         self.statistics.field += M::STAGES - 1 + part.extend::<M>(&field, origin);
@@ -325,6 +338,7 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
             };
             self.show_part::<M>(elapsed);
             self.state.copy_from_slice(&self.notes[index].state);
+            self.rest.fill(0.0);
             self.clock.arrive(s);
             return Some(outcome);
         }
@@ -341,6 +355,7 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
         }
         let ends = self.phase.guards[guard].ends_run();
         self.state.copy_from_slice(&event.state);
+        self.rest.fill(0.0);
         let to = if ends { from } else { self.system.transition(from, guard, s, &mut self.state) };
         self.count(guard);
         self.statistics.switches += usize::from(!ends);
@@ -406,7 +421,8 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
         let field = |s: f64, y: &[f64], slope: &mut [f64]| system.field(mode, s, y, slope);
         self.statistics.field += 1;
         let longest = self.clock.until(self.end).min(self.options.max_step);
-        let origin = Origin { s: self.clock.s, y: &self.state, slope: &self.slope };
+        let origin =
+            Origin { s: self.clock.s, y: &self.state, rest: &self.rest, slope: &self.slope };
         let tolerances = (self.options.rtol, self.options.atol);
         let Work { moved, state, .. } = &mut self.work;
         first_step::<M>(&field, origin, tolerances, longest, (moved, state))

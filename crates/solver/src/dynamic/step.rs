@@ -18,6 +18,8 @@ const BLOCK: usize = 16;
 pub(crate) struct Origin<'a> {
     pub(crate) s: f64,
     pub(crate) y: &'a [f64],
+    /// What rounding has cut off from `y`.
+    pub(crate) rest: &'a [f64],
     pub(crate) slope: &'a [f64],
 }
 
@@ -29,6 +31,8 @@ pub(crate) struct Step {
     pub(crate) h: f64,
     /// The state at the end.
     pub(crate) y1: Vec<f64>,
+    /// What rounding has cut off from the state at the end.
+    pub(crate) rest: Vec<f64>,
     /// The estimated error relative to the tolerances, as [`Step::error`](crate::Step::error).
     pub(crate) error: f64,
     /// The slopes at the stages, one after another.
@@ -53,6 +57,7 @@ impl Step {
             n,
             h: 0.0,
             y1: room(1),
+            rest: room(1),
             error: 0.0,
             k: room(MAX_STAGES),
             interior: room(INTERIOR_NODES.len()),
@@ -67,7 +72,7 @@ impl Step {
     /// Takes a step of size `h`, without its error and its interior.
     pub(crate) fn take_end<M: Method>(&mut self, field: &dyn Field, from: Origin<'_>, h: f64) {
         let tableau: &'static Tableau = const { &M::TABLEAU };
-        let Self { n, k, stage, interior, y1, .. } = self;
+        let Self { n, k, stage, interior, y1, rest, .. } = self;
         let n = *n;
         k[..n].copy_from_slice(from.slope);
         for i in 1..M::STAGES {
@@ -87,7 +92,11 @@ impl Step {
             }
             field(from.s + tableau.c[i] * h, stage, &mut new[..n]);
         }
-        weighted_sums(&tableau.b, k, n, M::STAGES, |c, sum| y1[c] = from.y[c] + sum * h);
+        weighted_sums(&tableau.b, k, n, M::STAGES, |c, sum| {
+            let rise = add_product(from.rest[c], sum, h);
+            y1[c] = from.y[c] + rise;
+            rest[c] = rise - (y1[c] - from.y[c]);
+        });
         (self.h, self.finished, self.dense) = (h, false, false);
     }
 

@@ -77,7 +77,8 @@ impl Reach {
         let mut h = self.distance.get() / REACH;
         // More would be below the rounding of any time.
         for _ in 0..50 {
-            system.step::<M>(mode, &Trial { s, y, slope: &slope, h, tolerances }, &mut step);
+            let trial = Trial { s, y, rest: Trial::NO_REST, slope: &slope, h, tolerances };
+            system.step::<M>(mode, &trial, &mut step);
             if step.error < 1.0 {
                 break;
             }
@@ -121,7 +122,8 @@ impl Reach {
         let slope = system.field(mode, s, y);
         let mut step = Step::blank();
         let at = |h: f64| {
-            let trial = Trial { s, y, slope: &slope, h, tolerances: (1.0, 1.0) };
+            let (rest, tolerances) = (Trial::NO_REST, (1.0, 1.0));
+            let trial = Trial { s, y, rest, slope: &slope, h, tolerances };
             system.step::<M>(mode, &trial, &mut step);
             self.rate(system, mode, guard, (s + h, &step.y1))
         };

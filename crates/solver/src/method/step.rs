@@ -1,5 +1,7 @@
 //! One step with a Runge–Kutta pair, as a pure function.
 
+use nalgebra::ArrayStorage;
+
 use crate::method::dense::Dense;
 use crate::method::state::{State, add_multiple, combine};
 use crate::method::tableau::{INTERIOR_NODES, MAX_STAGES, Method};
@@ -11,12 +13,20 @@ pub struct Trial<'a, const N: usize> {
     pub s: f64,
     /// The state at the start.
     pub y: &'a State<N>,
+    /// The part of the state that rounding has cut off from `y`: [`Step::rest`] of the step before,
+    /// or [`Self::NO_REST`].
+    pub rest: &'a State<N>,
     /// The derivative of the state at the start.
     pub slope: &'a State<N>,
     /// The size of the step.
     pub h: f64,
     /// The relative and the absolute tolerance that scale the error.
     pub tolerances: (f64, f64),
+}
+
+impl<const N: usize> Trial<'_, N> {
+    /// Nothing that rounding has cut off.
+    pub const NO_REST: &'static State<N> = &State::from_array_storage(ArrayStorage([[0.0; N]; 1]));
 }
 
 /// A step of size `h` from `y0` at `s` to `y1`.
@@ -32,11 +42,16 @@ pub struct Step<const N: usize> {
     pub slope0: State<N>,
     /// The state at the end of the step.
     pub y1: State<N>,
+    /// The part of the state at the end that rounding has cut off from `y1`. With it the errors of
+    /// rounding of many short steps do not add up.
+    pub rest: State<N>,
     /// The states at [`INTERIOR_NODES`].
     pub interior: [State<N>; 4],
     /// The estimated error of `y1` relative to `atol + rtol·max(|y0|, |y1|)`, as a root mean
     /// square over the components. The step is good if this is below 1. NaN is not below 1.
     pub error: f64,
+    /// What rounding has cut off from `y0`.
+    rest0: State<N>,
     /// The derivative of the state at the end of the step, once it is known.
     slope1: Option<State<N>>,
 }
@@ -52,8 +67,10 @@ impl<const N: usize> Step<N> {
             y0: zero,
             slope0: zero,
             y1: zero,
+            rest: zero,
             interior: [zero; 4],
             error: 0.0,
+            rest0: zero,
             slope1: None,
         }
     }
@@ -82,10 +99,12 @@ impl<const N: usize> Step<N> {
         let mut k = stages::<M, N>(field, trial, &mut self.interior);
         self.s = s;
         self.h = h;
-        self.y0 = *y0;
+        (self.y0, self.rest0) = (*y0, *trial.rest);
         self.slope0 = *slope;
-        let y1 = y0 + combine(&M::TABLEAU.b, &k, M::STAGES) * h;
+        let rise = add_multiple(trial.rest, &combine(&M::TABLEAU.b, &k, M::STAGES), h);
+        let y1 = y0 + rise;
         self.y1 = y1;
+        self.rest = rise - (y1 - y0);
         self.slope1 = None;
         if M::ERROR_USES_END {
             k[M::STAGES] = field(s + h, &y1);
@@ -128,13 +147,14 @@ impl<const N: usize> Step<N> {
 
     /// A trial step of size `h` from the same start, whose error does not matter.
     pub(crate) fn shortened(&self, h: f64) -> Trial<'_, N> {
-        Trial { s: self.s, y: &self.y0, slope: &self.slope0, h, tolerances: (1.0, 1.0) }
+        let (y, rest) = (&self.y0, &self.rest0);
+        Trial { s: self.s, y, rest, slope: &self.slope0, h, tolerances: (1.0, 1.0) }
     }
 
     /// The step of size 0 from the same start.
     pub(crate) fn shrunk_to_start(&self) -> Self {
-        let (h, y1, interior) = (0.0, self.y0, [self.y0; 4]);
-        Self { h, y1, interior, slope1: Some(self.slope0), ..*self }
+        let (h, y1, rest, interior) = (0.0, self.y0, self.rest0, [self.y0; 4]);
+        Self { h, y1, rest, interior, slope1: Some(self.slope0), ..*self }
     }
 
     /// Makes this the same step in −s, whose right-hand side has the other sign.

@@ -54,6 +54,7 @@ where
         clock: Clock::new(start.s),
         phase: Phase::enter(system, start.mode, (start.s, &start.state), &[0; G])?,
         state: start.state,
+        rest: State::zeros(),
         slope: State::zeros(),
         other_h: None,
         h: 0.0,
@@ -84,6 +85,8 @@ struct Runner<'a, S: HybridSystem<N, G>, O, const N: usize, const G: usize> {
     clock: Clock,
     phase: Phase<S::Mode, G>,
     state: State<N>,
+    /// What rounding has cut off from the state.
+    rest: State<N>,
     /// The derivative of the state.
     slope: State<N>,
     /// The size of the next step.
@@ -156,6 +159,7 @@ where
             let trial = Trial {
                 s: self.clock.s,
                 y: &self.state,
+                rest: &self.rest,
                 slope: &self.slope,
                 h,
                 tolerances: (self.options.rtol, self.options.atol),
@@ -187,6 +191,8 @@ where
             {
                 self.statistics.too_coarse += 1;
                 cuts += 1;
+                // A step may become so short that it is less than the rest.
+                self.rest = State::zeros();
                 self.h = 0.2 * h;
                 // A step that does not move the time is useless.
                 if cuts > 60 || self.h <= f64::EPSILON * self.clock.s.abs() {
@@ -222,7 +228,7 @@ where
             }
             self.tell_until(f64::INFINITY);
             self.show::<M>(mode, step);
-            self.state = step.y1;
+            (self.state, self.rest) = (step.y1, step.rest);
             self.slope = step.finish::<M>(&mut field);
             self.statistics.field += usize::from(!M::ERROR_USES_END);
             self.clock.advance(h);
@@ -255,7 +261,8 @@ where
     ) -> Result<Option<usize>, RunError> {
         self.notices.clear();
         let tolerances = (self.options.rtol, self.options.atol);
-        let trial = Trial { s: self.clock.s, y: &self.state, slope: &self.slope, h, tolerances };
+        let (y, rest, slope) = (&self.state, &self.rest, &self.slope);
+        let trial = Trial { s: self.clock.s, y, rest, slope, h, tolerances };
         let mut examination = Examination {
             system: self.system,
             phase: &self.phase,
@@ -322,7 +329,7 @@ where
             } else {
                 continue;
             };
-            self.state = note.after;
+            (self.state, self.rest) = (note.after, State::zeros());
             self.clock.arrive(note.s);
             return Some(outcome);
         }
@@ -355,7 +362,7 @@ where
             before: event.state,
             after,
         });
-        self.state = after;
+        (self.state, self.rest) = (after, State::zeros());
         if ends {
             return Ok(Some(Outcome::EndedByGuard { guard }));
         }

@@ -84,7 +84,8 @@ where
             break Outcome::StepLimit;
         }
         let (h, last) = clock.step_towards(end, step_size);
-        let trial = Trial { s: clock.s, y: &state, slope: &slope, h, tolerances: (1.0, 1.0) };
+        let (rest, tolerances) = (Trial::NO_REST, (1.0, 1.0));
+        let trial = Trial { s: clock.s, y: &state, rest, slope: &slope, h, tolerances };
         system.step::<M>(mode, &trial, &mut step);
         statistics.accepted += 1;
         statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);

@@ -106,7 +106,8 @@ fn weights_of_dense<M: Method>() -> (Step<MAX_STAGES>, Dense<MAX_STAGES>) {
     };
     let mut step = Step::blank();
     let (y, slope) = (State::zeros(), unit(0));
-    let trial = Trial { s: 0.0, y: &y, slope: &slope, h: 1.0, tolerances: (1.0, 1.0) };
+    let (rest, tolerances) = (Trial::NO_REST, (1.0, 1.0));
+    let trial = Trial { s: 0.0, y: &y, rest, slope: &slope, h: 1.0, tolerances };
     step.take::<M>(&mut field, &trial);
     // The dense output takes the stages again.
     next.set(0);
@@ -336,7 +337,8 @@ fn a_single_step_has_one_order_more_than_the_method() {
         let mut step = Step::blank();
         let mut field = kepler;
         let slope = kepler(1.0, &y0);
-        let trial = Trial { s: 1.0, y: &y0, slope: &slope, h, tolerances: (1.0, 1.0) };
+        let (rest, tolerances) = (Trial::NO_REST, (1.0, 1.0));
+        let trial = Trial { s: 1.0, y: &y0, rest, slope: &slope, h, tolerances };
         step.take::<M>(&mut field, &trial);
         let inside = step.dense::<M>(&mut field).at(0.4) - on_ellipse(1.0 + 0.4 * h);
         ((step.y1 - on_ellipse(1.0 + h)).norm(), inside.norm())

@@ -1,7 +1,7 @@
 //! Smooth problems: published results of other codes, the DETEST problems, and work counters.
 
 use serde_json::Value;
-use stickslip_solver::{Dop853, Dopri5, Method, Options, Outcome, Run, State, integrate};
+use stickslip_solver::{Dop853, Dopri5, Method, Options, Outcome, Run, State, StepSize, integrate};
 
 /// The restricted three-body problem on a closed orbit of Arenstorf (Hairer, Nørsett and Wanner,
 /// *Solving Ordinary Differential Equations I*, 2nd ed., section II.0).
@@ -53,6 +53,21 @@ fn the_orbit_repeats_the_published_run_of_dopri5() {
     let off = (run.state - published).norm();
     println!("off by {off:.1e}");
     assert!(off < 2e-9, "{off:e}");
+}
+
+/// The errors of rounding of many short steps do not add up: over a million steps, sums without the
+/// part that rounding cuts off are off by 1e-13.
+#[test]
+fn a_million_steps_lose_no_digits() {
+    let step_size = StepSize::Fixed(1e-5);
+    let options = Options { step_size, max_steps: 2_000_000, ..Options::default() };
+    let circle = |_: f64, y: &State<2>| State::from([y[1], -y[0]]);
+    let start = State::from([0.0, 1.0]);
+    let run = integrate(Dop853, circle, 0.0, start, 10.0, &options, &mut ()).unwrap();
+    assert!(run.statistics.accepted >= 1_000_000);
+    let off = (run.state - State::from([10_f64.sin(), 10_f64.cos()])).norm();
+    println!("off by {off:.1e}");
+    assert!(off < 4e-15, "{off:e}");
 }
 
 /// Van der Pol's oscillator in the scaling of Hairer and Wanner's examples.
