@@ -169,7 +169,7 @@ impl Arrays {
         let unknown = |&region: &u32| region != NO_REGION && region as usize >= regions;
         contradiction("regions", self.regions.iter().position(unknown))?;
         let mut expected = self.clone();
-        let set = expected.set_hints([x, y]).is_ok();
+        let set = expected.restore_hints([x, y]).is_ok();
         let same = |name, same: bool| contradiction(name, (!(set && same)).then_some(0));
         same("slab_keys", self.slab_keys == expected.slab_keys)?;
         same("strip_keys", self.strip_keys == expected.strip_keys)?;

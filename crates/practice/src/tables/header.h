@@ -95,39 +95,53 @@ static inline int @prefix@_place(double @x@, double @y@, uint32_t *strip, double
     return 1;
 }
 
-static inline double @prefix@_eps_t(double @x@, double @y@)
+/* The sums over rows of twelve coefficients times powers of x. Two of them at once, where the compiler
+ * can, have the bits of one after the other. */
+static inline void @prefix@_sums(const double (*rows)[12], uint32_t count, double x, double sums[12])
 {
-    double s0 = 0.0, s1 = 0.0, s2 = 0.0, s3 = 0.0, s4 = 0.0, s5 = 0.0;
-    double s6 = 0.0, s7 = 0.0, s8 = 0.0, s9 = 0.0, s10 = 0.0, s11 = 0.0;
-    double along, across, x, y, y2, y4;
-    uint32_t strip, row, first;
-    if (!@prefix@_place(@x@, @y@, &strip, &along, &across))
-        return NAN;
-    x = 2.0 * along - 1.0;
-    y = 2.0 * across - 1.0;
-    first = @prefix@_first_rows[strip];
-    for (row = @prefix@_first_rows[strip + 1]; row-- > first;) {
-        const double *c = @prefix@_rows[row];
+#ifdef __GNUC__
+    typedef double two __attribute__((vector_size(16)));
+    two s0 = {0.0, 0.0}, s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, c[6];
+    while (count-- > 0) {
+        memcpy(c, rows[count], sizeof c);
         s0 = s0 * x + c[0];
         s1 = s1 * x + c[1];
         s2 = s2 * x + c[2];
         s3 = s3 * x + c[3];
         s4 = s4 * x + c[4];
         s5 = s5 * x + c[5];
-        s6 = s6 * x + c[6];
-        s7 = s7 * x + c[7];
-        s8 = s8 * x + c[8];
-        s9 = s9 * x + c[9];
-        s10 = s10 * x + c[10];
-        s11 = s11 * x + c[11];
     }
+    memcpy(sums, &s0, sizeof s0);
+    memcpy(sums + 2, &s1, sizeof s1);
+    memcpy(sums + 4, &s2, sizeof s2);
+    memcpy(sums + 6, &s3, sizeof s3);
+    memcpy(sums + 8, &s4, sizeof s4);
+    memcpy(sums + 10, &s5, sizeof s5);
+#else
+    int j;
+    for (j = 0; j < 12; j++)
+        sums[j] = 0.0;
+    while (count-- > 0)
+        for (j = 0; j < 12; j++)
+            sums[j] = sums[j] * x + rows[count][j];
+#endif
+}
+
+static inline double @prefix@_eps_t(double @x@, double @y@)
+{
+    double s[12], along, across, y, y2, y4;
+    uint32_t strip, first;
+    int j;
+    if (!@prefix@_place(@x@, @y@, &strip, &along, &across))
+        return NAN;
+    first = @prefix@_first_rows[strip];
+    @prefix@_sums(@prefix@_rows + first, @prefix@_first_rows[strip + 1] - first, 2.0 * along - 1.0, s);
+    y = 2.0 * across - 1.0;
     y2 = y * y;
     y4 = y2 * y2;
-    s0 = (s8 * y4 + s4) * y4 + s0;
-    s1 = (s9 * y4 + s5) * y4 + s1;
-    s2 = (s10 * y4 + s6) * y4 + s2;
-    s3 = (s11 * y4 + s7) * y4 + s3;
-    return (s0 + s2 * y2) + (s1 + s3 * y2) * y;
+    for (j = 0; j < 4; j++)
+        s[j] = (s[j + 8] * y4 + s[j + 4]) * y4 + s[j];
+    return (s[0] + s[2] * y2) + (s[1] + s[3] * y2) * y;
 }
 @FUNCTIONS@
 #endif

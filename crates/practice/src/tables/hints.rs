@@ -12,7 +12,7 @@ use super::slab::Graph;
 use super::table::Arrays;
 
 /// Most keys of x, and of y in each slab.
-const MOST_KEYS: [u64; 2] = [2048, 128];
+const MOST_KEYS: [u64; 2] = [2048, 256];
 
 /// The first bits of numbers above 0, which tell roughly how large they are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -30,13 +30,17 @@ pub struct Keys {
 impl Keys {
     /// At most `most` keys of the numbers from `low` to `high`.
     pub(super) fn new(low: f64, high: f64, most: u64) -> Self {
-        let (low, high) = (low.to_bits(), high.to_bits());
-        let is_short = |&shift: &u32| (high >> shift) - (low >> shift) < most;
-        let shift = (0..u64::BITS).find(is_short).unwrap_or(0);
+        let [first, last] = [low, high].map(f64::to_bits);
+        let is_short = |&shift: &u32| (last >> shift) - (first >> shift) < most;
+        Self::with_shift((0..u64::BITS).find(is_short).unwrap_or(0), low, high)
+    }
+
+    /// The keys that leave out `shift` bits.
+    fn with_shift(shift: u32, low: f64, high: f64) -> Self {
+        let [first, last] = [low, high].map(|end| end.to_bits() >> shift);
         // There are few.
         #[allow(clippy::cast_possible_truncation)]
-        let count = ((high >> shift) - (low >> shift) + 1) as usize;
-        Self { shift, first: low >> shift, count }
+        Self { shift, first, count: (last - first + 1) as usize }
     }
 
     /// The key of a number.
@@ -58,8 +62,26 @@ impl Arrays {
     /// # Errors
     /// [`TableError::Many`]: there are too many strips.
     pub(super) fn set_hints(&mut self, [x, y]: [Range; 2]) -> Result<(), TableError> {
+        self.set_keys([x, y]);
+        self.fill_hints()
+    }
+
+    fn set_keys(&mut self, [x, y]: [Range; 2]) {
         self.slab_keys = Keys::new(x.low, x.high, MOST_KEYS[0]);
         self.strip_keys = Keys::new(y.low, y.high, MOST_KEYS[1]);
+    }
+
+    /// Sets keys and hints as [`Self::set_hints`] does, but with keys as long as they are unless these
+    /// are too many: tables had half as many keys of y once.
+    pub(super) fn restore_hints(&mut self, [x, y]: [Range; 2]) -> Result<(), TableError> {
+        let shift = self.strip_keys.shift;
+        self.set_keys([x, y]);
+        let shift = shift.clamp(self.strip_keys.shift, u64::BITS - 1);
+        self.strip_keys = Keys::with_shift(shift, y.low, y.high);
+        self.fill_hints()
+    }
+
+    fn fill_hints(&mut self) -> Result<(), TableError> {
         (self.slab_hints, self.strip_hints) = (Vec::new(), Vec::new());
         let inner = &self.walls[1..self.scales.len()];
         for least in self.slab_keys.least() {
