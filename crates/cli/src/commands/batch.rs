@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::error::Failure;
 use crate::input::rows::{Input, Reading, Row};
 use crate::output::csv::{CsvFile, Rows};
-use crate::output::file::publish;
+use crate::output::file::{StoredFile, publish};
 use crate::output::progress::Bar;
 use crate::plan::BatchFiles;
 use crate::threads;
@@ -14,8 +14,9 @@ use crate::threads;
 /// Largest number of rows that are computed as one piece of work.
 const ROWS_AT_ONCE: usize = 128;
 /// Rows are computed together until their collisions have about this many switches, which take
-/// 100 MB as text. The memory of more rows is then that of the largest collision.
-const SWITCHES: f64 = 1e6;
+/// 50 MB as text, beside those that are written meanwhile. The memory of more rows is then that of
+/// the largest collision.
+const SWITCHES: f64 = 5e5;
 
 /// The column that tells whether a row has results.
 const STATUS: &str = "status";
@@ -58,52 +59,87 @@ pub fn run<R: Reading>(
     work: &impl Work<Case = R::Case>,
 ) -> Result<(), Failure> {
     let pool = threads::pool(files.threads)?;
-    let mut results = CsvFile::create(&files.out)?;
-    let mut events = files.events.as_deref().map(CsvFile::create).transpose()?;
+    let mut output = Output::create(files)?;
     let names = work.results().iter().map(|name| name.as_bytes());
-    results.write(&header(input.header().iter().chain(names)))?;
-    if let Some(events) = &mut events {
+    output.results.write(&header(input.header().iter().chain(names)))?;
+    if let Some(events) = &mut output.events {
         events.write(&header(work.events()))?;
     }
 
     let bar = Bar::bytes(input.size());
     let (mut count, mut failed) = (0, 0);
-    let (mut portion, mut next, mut computed) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut portion, mut next) = (Vec::new(), Vec::new());
+    let (mut computed, mut ready) = (Vec::new(), Vec::new());
     pool.install(|| input.read_portion(&mut portion))?;
-    while !portion.is_empty() {
+    while !portion.is_empty() && !output.is_unheard() {
         let position = input.position();
         let mut rest = &portion[..];
         while !rest.is_empty() {
             let (present, later) = rest.split_at(together(work, rest));
-            // The next portion is read while the last rows of this one are computed.
-            let compute = || compute(work, present, (count, events.is_some()), &mut computed);
+            // The rows before these are written meanwhile, and while the last ones of this portion
+            // are computed, the next portion is read.
+            let wanted = output.events.is_some();
+            let compute = || compute(work, present, (count, wanted), &mut computed);
             let read = || if later.is_empty() { input.read_portion(&mut next) } else { Ok(()) };
-            let ((), read) = pool.join(compute, read);
-            for part in &computed {
-                results.write(&part.results)?;
-                if let Some(events) = &mut events {
-                    events.write(&part.events)?;
-                }
-                failed += part.failed;
+            let write = || output.write(&ready);
+            let (((), read), written) = pool.join(|| rayon::join(compute, read), write);
+            written?;
+            failed += computed.iter().map(|part| part.failed).sum::<u64>();
+            std::mem::swap(&mut computed, &mut ready);
+            if read.is_err() {
+                output.write(&ready)?;
             }
             read?;
             count += present.len() as u64;
             rest = later;
         }
-        if [Some(&results), events.as_ref()].into_iter().flatten().all(CsvFile::is_unheard) {
-            break;
-        }
         std::mem::swap(&mut portion, &mut next);
         bar.reach(position);
     }
+    output.write(&ready)?;
     drop(bar);
 
-    let stored = [Some(results), events].into_iter().flatten().map(CsvFile::store);
-    publish(stored.collect::<Result<Vec<_>, _>>()?)?;
+    publish(pool.install(|| output.store())?)?;
     if failed > 0 {
         return Err(Failure::Rows { failed, rows: count, path: files.out.clone() });
     }
     Ok(())
+}
+
+/// The files of a batch.
+struct Output {
+    results: CsvFile,
+    events: Option<CsvFile>,
+}
+
+impl Output {
+    fn create(files: &BatchFiles) -> Result<Self, Failure> {
+        let results = CsvFile::create(&files.out)?;
+        let events = files.events.as_deref().map(CsvFile::create).transpose()?;
+        Ok(Self { results, events })
+    }
+
+    fn write(&mut self, parts: &[Computed]) -> Result<(), Failure> {
+        for part in parts {
+            self.results.write(&part.results)?;
+            if let Some(events) = &mut self.events {
+                events.write(&part.events)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether nobody reads any of them any more.
+    fn is_unheard(&self) -> bool {
+        self.results.is_unheard() && self.events.as_ref().is_none_or(CsvFile::is_unheard)
+    }
+
+    fn store(self) -> Result<Vec<StoredFile>, Failure> {
+        let Self { results, events } = self;
+        let (results, events) =
+            rayon::join(|| results.store(), || events.map(CsvFile::store).transpose());
+        Ok([Some(results?), events?].into_iter().flatten().collect())
+    }
 }
 
 /// The header of a file.
