@@ -4,11 +4,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 
-def numbers(name: str, values: ArrayLike) -> NDArray[np.float64]:
-    """A copy of `values` as doubles that lie one after another, NaN where they are masked."""
+def real(name: str, values: ArrayLike) -> NDArray[np.float64]:
+    """The values as doubles, NaN where they are masked; the array itself if it is one of doubles."""
     if np.ma.isMaskedArray(values):
         values = np.ma.filled(np.ma.asarray(values, dtype=np.float64), np.nan)
     array = np.asarray(values)
     if array.dtype.kind not in "iufO":
         raise TypeError(f"{name} has the type {array.dtype}; expected real numbers")
-    return np.array(array, dtype=np.float64, order="C")
+    return np.asarray(array, dtype=np.float64)
+
+
+def numbers(name: str, values: ArrayLike) -> NDArray[np.float64]:
+    """A copy of `values` as doubles that lie one after another, NaN where they are masked."""
+    return np.array(real(name, values), order="C")

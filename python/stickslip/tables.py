@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _native
-from stickslip.collisions import _broadcast, _threads
+from stickslip._arrays import real
+from stickslip.collisions import _threads
 from stickslip.impacts import Bodies
 
 
@@ -212,7 +213,6 @@ def _points(
     x: ArrayLike, y: ArrayLike
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], tuple[int, ...]]:
     """The points as flat arrays of equal length, and their shape."""
-    _, (flat_x, flat_y, _), shape = _broadcast(x, y, 0.0)
-    size = (int(np.prod(shape)),)
-    x, y = (np.ascontiguousarray(np.broadcast_to(one, size)) for one in (flat_x, flat_y))
-    return x, y, shape
+    given = np.broadcast_arrays(real("x", x), real("y", y))
+    flat_x, flat_y = (np.require(one, requirements="CA").reshape(-1) for one in given)
+    return flat_x, flat_y, given[0].shape

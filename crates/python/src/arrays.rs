@@ -3,14 +3,15 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use numpy::{IntoPyArray, PyArrayMethods, PyReadonlyArray1};
+use numpy::ndarray::s;
+use numpy::{Element, IntoPyArray, PyArray1, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use stickslip_model::{Collision, Contact, Engine, Law, Regime};
 
 use crate::engines::{Choice, LawChoice};
 use crate::failure::{Failure, bad_input};
-use crate::parallel::Threads;
+use crate::parallel::{PIECE, Threads};
 
 /// Parameters of collisions: κ, ψ and damping, each with one value for all or for each.
 pub struct Points {
@@ -45,10 +46,64 @@ pub fn expect_equal(lengths: impl IntoIterator<Item = usize>) -> PyResult<()> {
 /// Those that do not lie as Rust reads them, such as a field of records, are refused: the package
 /// passes copies.
 pub fn numbers(array: &PyReadonlyArray1<'_, f64>) -> PyResult<Vec<f64>> {
-    if array.data().is_aligned() {
-        Ok(array.as_array().to_vec())
-    } else {
-        Err(bad_input("an array that is not aligned; expected a copy of it"))
+    if array.data().is_aligned() { Ok(array.as_array().to_vec()) } else { Err(unaligned()) }
+}
+
+fn unaligned() -> PyErr {
+    bad_input("an array that is not aligned; expected a copy of it")
+}
+
+/// Two arrays of numbers, of one length.
+pub struct Pairs<'py>([PyReadonlyArray1<'py, f64>; 2]);
+
+impl<'py> Pairs<'py> {
+    pub fn new(x: PyReadonlyArray1<'py, f64>, y: PyReadonlyArray1<'py, f64>) -> PyResult<Self> {
+        expect_equal([x.len()?, y.len()?])?;
+        let arrays = [x, y];
+        if arrays.iter().all(|array| array.data().is_aligned()) {
+            Ok(Self(arrays))
+        } else {
+            Err(unaligned())
+        }
+    }
+
+    pub fn count(&self) -> usize {
+        self.0[0].as_array().len()
+    }
+
+    /// The values of all pairs.
+    pub fn map<T: Element + Copy + Send>(
+        &self,
+        py: Python<'py>,
+        threads: &Threads,
+        value: impl Fn(f64, f64) -> T + Sync,
+    ) -> PyResult<Bound<'py, PyArray1<T>>> {
+        // NumPy takes large pages for large arrays.
+        let values = PyArray1::zeros(py, self.count(), false);
+        let mut written = values.readwrite();
+        let mut columns = [const { Vec::new() }; 2];
+        for (index, found) in written.as_slice_mut()?.chunks_mut(PIECE).enumerate() {
+            // Other threads may write to the arrays, so that pieces are copied. The same memory again
+            // and again is quicker than much new one.
+            let piece = index * PIECE..index * PIECE + found.len();
+            for (column, array) in columns.iter_mut().zip(&self.0) {
+                let view = array.as_array();
+                let part = view.slice(s![piece.clone()]);
+                column.clear();
+                match part.as_slice() {
+                    Some(part) => column.extend_from_slice(part),
+                    None => column.extend(part),
+                }
+            }
+            threads.fill(py, found, |first, found| {
+                let [x, y] = columns.each_ref().map(|column| &column[first..]);
+                for ((found, &x), &y) in found.iter_mut().zip(x).zip(y) {
+                    *found = value(x, y);
+                }
+            })?;
+        }
+        drop(written);
+        Ok(values)
     }
 }
 

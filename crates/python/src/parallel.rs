@@ -11,7 +11,7 @@ use crate::failure::failed;
 /// Cases that one thread computes together.
 const PART: usize = 256;
 /// Cases after which Ctrl-C is looked for.
-const PIECE: usize = 1 << 15;
+pub const PIECE: usize = 1 << 15;
 
 /// The threads of one call; none where the caller's own is enough.
 pub struct Threads(Option<ThreadPool>);
@@ -54,5 +54,22 @@ impl Threads {
             py.check_signals()?;
         }
         Ok(())
+    }
+
+    /// Gives parts of `all`, of at most a [`PIECE`], to `work`, each with the number of its first.
+    pub fn fill<T: Send>(
+        &self,
+        py: Python<'_>,
+        all: &mut [T],
+        work: impl Fn(usize, &mut [T]) + Sync,
+    ) -> PyResult<()> {
+        py.detach(|| match &self.0 {
+            Some(pool) => pool.install(|| {
+                let parts = all.par_chunks_mut(PART).enumerate();
+                parts.for_each(|(index, part)| work(index * PART, part));
+            }),
+            None => work(0, all),
+        });
+        py.check_signals()
     }
 }

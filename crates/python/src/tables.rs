@@ -8,7 +8,7 @@ use stickslip_practice::tables::{
     self, Document, SCHEMA, Settings, Table, TableError, Verification, Window,
 };
 
-use crate::arrays::{expect_equal, numbers};
+use crate::arrays::{Pairs, numbers};
 use crate::failure::{bad_input, failed, of_atlas};
 use crate::impacts::Pair;
 use crate::parallel::Threads;
@@ -115,18 +115,9 @@ impl RestitutionTable {
         y: PyReadonlyArray1<'py, f64>,
         threads: usize,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        expect_equal([x.len()?, y.len()?])?;
-        let (x, y) = (numbers(&x)?, numbers(&y)?);
-        let mut found = Vec::with_capacity(x.len());
-        let work = |part: std::ops::Range<usize>| -> Vec<f64> {
-            let points = x[part.clone()].iter().zip(&y[part]);
-            points.map(|(&x, &y)| self.0.eps_t(x, y)).collect()
-        };
-        Threads::new(threads, x.len())?.each(py, x.len(), work, |part| {
-            found.extend(part);
-            Ok(())
-        })?;
-        Ok(found.into_pyarray(py))
+        let points = Pairs::new(x, y)?;
+        let threads = Threads::new(threads, points.count())?;
+        points.map(py, &threads, |x, y| self.0.eps_t(x, y))
     }
 
     /// ε_n along the first axis; NaN outside the table.
@@ -147,13 +138,10 @@ impl RestitutionTable {
         x: PyReadonlyArray1<'py, f64>,
         y: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<i64>>> {
-        expect_equal([x.len()?, y.len()?])?;
-        let (x, y) = (numbers(&x)?, numbers(&y)?);
-        let region = |(&x, &y): (&f64, &f64)| {
-            self.0.region(x, y).and_then(|it| i64::try_from(it).ok()).unwrap_or(-1)
-        };
-        let found: Vec<i64> = py.detach(|| x.iter().zip(y.iter()).map(region).collect());
-        Ok(found.into_pyarray(py))
+        let points = Pairs::new(x, y)?;
+        let region = |x, y| self.0.region(x, y).and_then(|it| i64::try_from(it).ok());
+        let threads = Threads::new(1, points.count())?;
+        points.map(py, &threads, |x, y| region(x, y).unwrap_or(-1))
     }
 }
 

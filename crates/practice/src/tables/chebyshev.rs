@@ -5,6 +5,8 @@
 
 use std::f64::consts::PI;
 
+use wide::f64x4;
+
 /// The number of coefficients along the first axis, at most.
 pub const ALONG: usize = 8;
 /// The number of coefficients across it.
@@ -26,15 +28,17 @@ pub fn value(c: &[f64; ALONG], place: f64) -> f64 {
 pub fn double_value(rows: &[[f64; ACROSS]], along: f64, across: f64) -> f64 {
     let x = 2.0 * along - 1.0;
     let y = 2.0 * across - 1.0;
-    let mut sums = [0.0; ACROSS];
+    let (xs, y2) = (f64x4::splat(x), y * y);
+    let y4 = f64x4::splat(y2 * y2);
+    // Four at once have the bits of one after the other.
+    let mut sums = [f64x4::ZERO; ACROSS / 4];
     for row in rows.iter().rev() {
-        for (sum, c) in sums.iter_mut().zip(row) {
-            *sum = *sum * x + c;
+        for (sums, c) in sums.iter_mut().zip(row.as_chunks::<4>().0) {
+            *sums = *sums * xs + f64x4::from(*c);
         }
     }
-    let y2 = y * y;
-    let y4 = y2 * y2;
-    let four: [f64; 4] = std::array::from_fn(|j| (sums[j + 8] * y4 + sums[j + 4]) * y4 + sums[j]);
+    let [low, middle, high] = sums;
+    let four = ((high * y4 + middle) * y4 + low).to_array();
     (four[0] + four[2] * y2) + (four[1] + four[3] * y2) * y
 }
 
