@@ -96,10 +96,10 @@ static inline int @prefix@_place(double @x@, double @y@, uint32_t *strip, double
 }
 
 /* The sums over rows of twelve coefficients times powers of x. Two of them at once, where the compiler
- * can, have the bits of one after the other. */
+ * can and @PREFIX@_ONE_BY_ONE is not defined, have the bits of one after the other. */
 static inline void @prefix@_sums(const double (*rows)[12], uint32_t count, double x, double sums[12])
 {
-#ifdef __GNUC__
+#if defined(__GNUC__) && !defined(@PREFIX@_ONE_BY_ONE)
     typedef double two __attribute__((vector_size(16)));
     two s0 = {0.0, 0.0}, s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, c[6];
     while (count-- > 0) {

@@ -281,17 +281,23 @@ fn the_header_for_c_has_the_same_bits() {
     let lines: Vec<_> = points.iter().map(|(kappa, psi)| format!("{kappa:?} {psi:?}\n")).collect();
     fs::write(directory.join("points.txt"), lines.concat() + "nan nan\ninf 1\n-1 1\n1 -inf\n")
         .unwrap();
-    let built = Command::new("cc")
-        .args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-O1"])
-        .args(["-ffp-contract=off", "-o", "main", "main.c", "-lm"])
-        .current_dir(&directory)
-        .output()
-        .unwrap();
-    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
-    let input = fs::File::open(directory.join("points.txt")).unwrap();
-    let ran = Command::new(directory.join("main")).stdin(input).output().unwrap();
-    assert!(ran.status.success());
-    let printed = String::from_utf8(ran.stdout).unwrap();
+    let printed = |options: &[&str]| {
+        let built = Command::new("cc")
+            .args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-O1"])
+            .args(["-ffp-contract=off", "-o", "main", "main.c", "-lm"])
+            .args(options)
+            .current_dir(&directory)
+            .output()
+            .unwrap();
+        assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+        let input = fs::File::open(directory.join("points.txt")).unwrap();
+        let ran = Command::new(directory.join("main")).stdin(input).output().unwrap();
+        assert!(ran.status.success());
+        String::from_utf8(ran.stdout).unwrap()
+    };
+    let one_by_one = printed(&["-DFIRST_ONE_BY_ONE", "-DSECOND_ONE_BY_ONE"]);
+    let printed = printed(&[]);
+    assert_eq!(printed, one_by_one);
     let region = |kappa, psi| table.region(kappa, psi).map_or(-1, |it| i64::try_from(it).unwrap());
     let expected = points.iter().map(|&(kappa, psi)| {
         let value = table.eps_t(kappa, psi);
