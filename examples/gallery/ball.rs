@@ -5,6 +5,7 @@ use stickslip::solver::{Direction, Guard, HybridSystem, Start, State};
 use stickslip::tracer::{Point, Window};
 
 pub const WINDOW: Window = Window { low: Point::new(0.3, 0.3), high: Point::new(1.5, 0.9) };
+pub const AXES: [&str; 2] = ["amplitude of the table's acceleration in units of g", "restitution"];
 
 pub struct Table {
     amplitude: f64,

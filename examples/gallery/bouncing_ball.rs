@@ -4,6 +4,7 @@ use stickslip::solver::{Direction, Guard, HybridSystem, Start, State};
 use stickslip::tracer::{Point, Window};
 
 pub const WINDOW: Window = Window { low: Point::new(0.5, 0.3), high: Point::new(2.0, 0.8) };
+pub const AXES: [&str; 2] = ["height of the drop (g = 1)", "restitution"];
 
 pub struct Ball {
     restitution: f64,

@@ -2,10 +2,11 @@
 //! when the current reaches its reference. Then the diode conducts until the current vanishes.
 
 use stickslip::solver::{Direction, Guard, HybridSystem, Start, State};
-use stickslip::tracer::{Point, Window};
+use stickslip::tracer::{Itinerary, Point, Window};
 
 /// Supply and reference.
 pub const WINDOW: Window = Window { low: Point::new(0.5, 0.5), high: Point::new(1.5, 2.0) };
+pub const AXES: [&str; 2] = ["supply voltage (inductance and period 1)", "reference current"];
 
 const LOAD: f64 = 2.0;
 const CAPACITY: f64 = 2.0;
@@ -67,4 +68,12 @@ impl HybridSystem<2, 3> for Converter {
 pub fn boost(point: &Point) -> (Converter, Start<(Switch, u32), 2>) {
     let converter = Converter { supply: point.x, reference: point.y };
     (converter, Start { mode: (Switch::Closed, 1), s: 0.0, state: State::zeros() })
+}
+
+/// The current rises as Et, so that k ticks come before it reaches a reference between kE and
+/// (k + 1)E.
+pub fn fits(point: &Point, label: &Itinerary) -> bool {
+    let fired = label.fired().unwrap_or_default();
+    let ticks = fired.iter().take_while(|guard| **guard == 0).count();
+    ticks as f64 == (point.y / point.x).floor()
 }

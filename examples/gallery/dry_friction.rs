@@ -6,6 +6,8 @@ use stickslip::tracer::{Point, Window};
 
 /// Frequency Ω and amplitude A; F = 1.
 pub const WINDOW: Window = Window { low: Point::new(0.3, 1.2), high: Point::new(1.8, 4.0) };
+pub const AXES: [&str; 2] =
+    ["frequency Ω in units of √(k/m)", "amplitude of the force in units of the friction"];
 
 pub struct Shaken {
     frequency: f64,

@@ -5,6 +5,7 @@ use stickslip::tracer::{Point, Window};
 
 /// Frequency and restitution.
 pub const WINDOW: Window = Window { low: Point::new(2.0, 0.2), high: Point::new(3.5, 0.95) };
+pub const AXES: [&str; 2] = ["frequency Ω in units of √(k/m)", "restitution"];
 pub struct Oscillator {
     frequency: f64,
     restitution: f64,

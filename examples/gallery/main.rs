@@ -1,14 +1,20 @@
 //! A gallery of atlases: piecewise-smooth systems, each with two parameters.
 //!
-//! Each file beside this one is a family: its equations, its window, and the time at which its runs
-//! end. Here they are traced and verified, and compared with runs at random points and, where there
-//! are any, with closed forms. Sequences are told apart up to the eighth switch, because switches
-//! accumulate in some of the windows.
+//! Each file beside this one is a family: its equations, its window, and the names of its two
+//! parameters; the belt is that of the example `belt_atlas`. Here they are traced and verified, and
+//! compared with runs at random points and, where there are any, with closed forms. Sequences are
+//! told apart up to the eighth event, because events accumulate in some of the windows.
 //!
-//! Run with `cargo run --release --example gallery -- [POINTS] [NAME]`.
+//! Run with `cargo run --release --example gallery -- [POINTS] [NAME] [FOLDER]`. Pictures are written
+//! into the folder, if there is one.
 
 mod ball;
+#[path = "../belt_atlas/belt.rs"]
+mod belt;
 mod bouncing_ball;
+#[path = "../belt_atlas/closed_form.rs"]
+#[expect(dead_code, reason = "the other example also compares boundaries")]
+mod closed_form;
 mod converter;
 mod dry_friction;
 mod impact_oscillator;
@@ -16,12 +22,19 @@ mod relay;
 mod two_masses;
 
 use std::error::Error;
+use std::fs;
+use std::path::Path;
 use std::time::Instant;
 
-use stickslip::solver::{Dop853, Options};
+use stickslip::plane::progress::InParallel;
+use stickslip::solver::{Dop853, Margin, Options, Place};
 use stickslip::tracer::{
-    Atlas, AtlasOptions, Family, HybridFamily, Point, Problem, VerifyOptions, Window,
+    AtlasOptions, Family, HybridFamily, Itinerary, Point, Problem, Surveyor, VerifyOptions, Watch,
+    Window,
 };
+use stickslip_figure::pictures::family::{Captions, draw};
+
+use belt::{BELT, Belt, OBSERVED, POSITION};
 
 /// What a family shows.
 struct Row {
@@ -34,85 +47,150 @@ struct Row {
     /// Points at which a region that is not in doubt has another label than the run, or than the
     /// closed form.
     wrong: usize,
+    picture: String,
 }
 
-/// A name, and what the family shows at so many random points.
-type Exhibit = (&'static str, fn(usize) -> Result<Row, Box<dyn Error>>);
+/// A family with the ends of its runs, in words.
+struct Room {
+    name: &'static str,
+    axes: [&'static str; 2],
+    window: Window,
+    end: f64,
+}
 
-const GALLERY: [Exhibit; 7] = [
-    ("bouncing ball", |points| {
-        let known = |point: &Point| Some(bouncing_ball::bounces(point));
-        show(bouncing_ball::drop, &bouncing_ball::WINDOW, 5.0, known, points)
-    }),
-    ("ball on a table", |points| show(ball::throw, &ball::WINDOW, 8.0, |_| None, points)),
-    ("impact oscillator", |points| {
-        show(impact_oscillator::start, &impact_oscillator::WINDOW, 10.0, |_| None, points)
-    }),
-    ("relay", |points| show(relay::start, &relay::WINDOW, 20.0, |_| None, points)),
-    ("dry friction", |points| {
-        show(dry_friction::shake, &dry_friction::WINDOW, 20.0, |_| None, points)
-    }),
-    ("two masses", |points| show(two_masses::belt, &two_masses::WINDOW, 11.0, |_| None, points)),
-    ("boost converter", |points| {
-        show(converter::boost, &converter::WINDOW, 12.0, |_| None, points)
-    }),
+/// Traces a family and compares it with runs at so many random points.
+type Exhibit = (Room, fn(&Room, usize) -> Result<Row, Box<dyn Error>>);
+
+/// The greatest number of events of a sequence.
+const MOST: usize = 8;
+
+const BELT_AXES: [&str; 2] =
+    ["frequency Ω in units of √(k/m)", "amplitude f in units of the friction"];
+
+/// There is no closed form.
+fn unknown(_: &Point, _: &Itinerary) -> bool {
+    true
+}
+
+/// Whether a sequence has so many events, up to those that are told apart.
+fn has(label: &Itinerary, events: usize) -> bool {
+    label.fired().map(<[usize]>::len) == Some(events.min(MOST))
+}
+
+#[rustfmt::skip]
+const GALLERY: [Exhibit; 8] = [
+    (Room { name: "bouncing ball", axes: bouncing_ball::AXES, window: bouncing_ball::WINDOW, end: 5.0 },
+     |room, points| show(bouncing_ball::drop, room, |at, label| has(label, bouncing_ball::bounces(at)), points)),
+    (Room { name: "ball on a table", axes: ball::AXES, window: ball::WINDOW, end: 8.0 },
+     |room, points| show(ball::throw, room, unknown, points)),
+    (Room { name: "impact oscillator", axes: impact_oscillator::AXES, window: impact_oscillator::WINDOW, end: 10.0 },
+     |room, points| show(impact_oscillator::start, room, unknown, points)),
+    (Room { name: "relay", axes: relay::AXES, window: relay::WINDOW, end: 20.0 },
+     |room, points| show(relay::start, room, |at, label| !relay::is_still(at) || has(label, 0), points)),
+    (Room { name: "dry friction", axes: dry_friction::AXES, window: dry_friction::WINDOW, end: 20.0 },
+     |room, points| show(dry_friction::shake, room, unknown, points)),
+    (Room { name: "two masses", axes: two_masses::AXES, window: two_masses::WINDOW, end: 11.0 },
+     |room, points| show(two_masses::belt, room, unknown, points)),
+    (Room { name: "boost converter", axes: converter::AXES, window: converter::WINDOW, end: 12.0 },
+     |room, points| show(converter::boost, room, converter::fits, points)),
+    (Room { name: "shaken belt", axes: BELT_AXES, window: belt::WINDOW, end: f64::INFINITY },
+     |room, points| {
+         let switches = |at: &Point| Belt { frequency: at.x, amplitude: at.y }.switches();
+         let fits = |at: &Point, label: &Itinerary| has(label, switches(at));
+         show(belt::Belts, room, fits, points)
+     }),
 ];
 
-/// Traces a family whose runs end at `end`, and compares it with runs at twice so many random
-/// points: the tracer looks again where the first half disagrees. `known` is the number of switches in closed form.
+/// Traces a family and compares it with runs at twice so many random points: the tracer looks again
+/// where the first half disagrees. `fits` compares a label with the closed form.
 fn show<P, const N: usize, const G: usize>(
     problem: P,
-    window: &Window,
-    end: f64,
-    known: impl Fn(&Point) -> Option<usize>,
+    room: &Room,
+    fits: impl Fn(&Point, &Itinerary) -> bool,
     points: usize,
 ) -> Result<Row, Box<dyn Error>>
 where
-    P: Problem<N, G>,
+    P: Problem<N, G> + Sync,
 {
+    let Room { name, axes, window, end } = room;
     let accurate = Options::with_tolerance(1e-13);
-    let options = Options { max_step: 0.3, max_switches: 8, ..accurate };
-    let family = HybridFamily { problem, method: Dop853, options, end };
+    let options = Options { max_step: 0.3, max_switches: MOST, ..accurate };
+    let family = HybridFamily { problem, method: Dop853, options, end: *end };
     let verify = VerifyOptions { random_points: points, ..VerifyOptions::default() };
-    let atlas = Atlas::of(&family, window, &AtlasOptions { verify, ..AtlasOptions::default() })?;
+    let options = AtlasOptions { verify, ..AtlasOptions::default() };
+    let surveyor = Surveyor { options, executor: InParallel, watch: Watch::SILENT };
+    let atlas = surveyor.atlas(&family, window)?;
     let mut random = fastrand::Rng::with_seed(2);
     let mut wrong = 0;
     for _ in 0..points {
         let part = Point::new(random.f64(), random.f64());
         let point = window.low + window.extent().component_mul(&part);
         let Some(label) = atlas.label(&point) else { continue };
-        let count = label.fired().map(<[usize]>::len);
-        let is_known = known(&point).is_none_or(|known| count == Some(known.min(8)));
-        wrong += usize::from(*label != family.label(&point)? || !is_known);
+        wrong += usize::from(*label != family.label(&point)? || !fits(&point, label));
     }
+    let (curves, regions) = (atlas.plane.curves().len(), atlas.plane.regions().len());
+    let title =
+        format!("{name}: {curves} boundaries, {regions} regions with their number of events");
+    let captions =
+        Captions { title: &title, axes: *axes, kinds: &KINDS, kind: &kind, text: &number };
     Ok(Row {
-        curves: atlas.plane.curves().len(),
-        regions: atlas.plane.regions().len(),
+        curves,
+        regions,
         unresolved: atlas.unresolved.len(),
         findings: atlas.plane.findings().len(),
         sure: atlas.sure_area(),
         wrong,
+        picture: draw(&atlas, &captions).document(),
     })
 }
 
-/// Prints the table.
+/// The kinds of boundaries in the pictures.
+const KINDS: [&str; 4] = ["event at the end", "graze", "order of events", "start or branch"];
+
+fn kind(margin: &Margin) -> usize {
+    match margin.place {
+        Place::End => 0,
+        Place::Minimum { .. } | Place::Maximum { .. } => 1,
+        Place::Exit(_) => 2,
+        Place::Start { .. } | Place::Branch(_) => 3,
+    }
+}
+
+/// The number of events in the pictures.
+fn number(label: &Itinerary) -> String {
+    match label {
+        Itinerary::Fires(guards) => guards.len().to_string(),
+        Itinerary::Begins(guards) => format!("{}+", guards.len()),
+        Itinerary::Accumulates => "∞".to_owned(),
+        Itinerary::Unfinished | Itinerary::Fails => "–".to_owned(),
+    }
+}
+
+/// Prints the table, and writes the pictures.
 ///
 /// # Errors
-/// A family cannot be traced.
+/// A family cannot be traced, or a picture not be written.
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let points = arguments.next().map_or(Ok(10_000), |points| points.parse())?;
     let name = arguments.next().unwrap_or_default();
+    let folder = arguments.next();
     println!("| family | curves | regions | unresolved | findings | sure area | wrong | time |");
     println!("|---|---|---|---|---|---|---|---|");
-    for (own, family) in GALLERY.iter().filter(|(own, _)| own.contains(&name)) {
+    for (room, family) in GALLERY.iter().filter(|(room, _)| room.name.contains(&name)) {
         let began = Instant::now();
-        let Row { curves, regions, unresolved, findings, sure, wrong } = family(points)?;
+        let Row { curves, regions, unresolved, findings, sure, wrong, picture } =
+            family(room, points)?;
         let seconds = began.elapsed().as_secs_f64();
         println!(
-            "| {own} | {curves} | {regions} | {unresolved} | {findings} | {sure:.6} \
-             | {wrong} of {points} | {seconds:.1} s |"
+            "| {} | {curves} | {regions} | {unresolved} | {findings} | {sure:.6} \
+             | {wrong} of {points} | {seconds:.1} s |",
+            room.name
         );
+        if let Some(folder) = &folder {
+            let file = format!("{}.svg", room.name.replace(' ', "_"));
+            fs::write(Path::new(folder).join(file), picture)?;
+        }
     }
     Ok(())
 }
@@ -121,8 +199,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 #[test]
 fn small_families_hold() {
     for name in ["bouncing ball", "relay", "boost converter"] {
-        let (_, family) = GALLERY.iter().find(|(own, _)| *own == name).expect("a name");
-        let row = family(200).expect("an atlas");
+        let (room, family) = GALLERY.iter().find(|(room, _)| room.name == name).expect("a name");
+        let row = family(room, 200).expect("an atlas");
         assert_eq!((row.unresolved, row.findings, row.wrong), (0, 0, 0), "{name}");
+        assert!(row.picture.contains(room.axes[0]) && row.picture.contains(room.axes[1]));
     }
 }

@@ -6,6 +6,7 @@ use stickslip::tracer::{Point, Window};
 
 /// Damping and hysteresis.
 pub const WINDOW: Window = Window { low: Point::new(0.05, 0.1), high: Point::new(0.6, 2.5) };
+pub const AXES: [&str; 2] = ["damping ratio ζ", "hysteresis h in units of the relay's force"];
 
 pub struct Relay {
     damping: f64,
@@ -34,4 +35,12 @@ impl HybridSystem<2, 1> for Relay {
 pub fn start(point: &Point) -> (Relay, Start<bool, 2>) {
     let relay = Relay { damping: point.x, hysteresis: point.y };
     (relay, Start { mode: true, s: 0.0, state: State::zeros() })
+}
+
+/// Whether the relay never switches: its hysteresis is above the first peak of the step response,
+/// 1 + exp(−πζ/√(1 − ζ²)). K. Ogata, *Modern Control Engineering* (2010), section 5-3.
+pub fn is_still(point: &Point) -> bool {
+    let (damping, hysteresis) = (point.x, point.y);
+    let overshoot = (-std::f64::consts::PI * damping / (1.0 - damping * damping).sqrt()).exp();
+    hysteresis > 1.0 + overshoot
 }

@@ -7,6 +7,8 @@ use stickslip::tracer::{Point, Window};
 
 /// Stiffness of the coupling, and velocity of the belt.
 pub const WINDOW: Window = Window { low: Point::new(0.3, 0.1), high: Point::new(2.0, 0.6) };
+pub const AXES: [&str; 2] =
+    ["stiffness of the coupling in units of k", "velocity of the belt in units of F/√(km)"];
 
 pub struct Masses {
     coupling: f64,

@@ -2,12 +2,14 @@
 //!
 //! Start reading in [`course`] and [`collision`]. Then [`gallery`] (many collisions), [`chart`]
 //! (series of points), [`map`] and [`grid`] (quantities on a plane), [`atlas`] (boundaries on a
-//! plane).
+//! plane), and [`family`] (an atlas of any family).
 
 pub mod atlas;
 pub mod chart;
 pub mod collision;
 pub mod course;
+pub mod family;
 pub mod gallery;
 pub mod grid;
 pub mod map;
+mod regions;

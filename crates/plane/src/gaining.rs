@@ -3,12 +3,13 @@
 
 use stickslip_model::Contact;
 use stickslip_solver::Margin;
-use stickslip_tracer::{Atlas, AtlasOptions, Curve, Location};
+use stickslip_tracer::{Atlas, AtlasOptions, Curve, Location, Surveyor};
 
 use crate::atlas::{AtlasError, Frame, polyline, require_traceable, trace_options};
 use crate::chart::Chart;
+use crate::family::CollisionPlane;
 use crate::family::gaining::{GainingFamily, gains, is_level};
-use crate::family::{CollisionFamilyError, CollisionPlane};
+use crate::progress::{InParallel, Watch};
 
 /// The regions of a window in which |ε_t| is above 1.
 #[derive(Clone, Debug)]
@@ -18,7 +19,7 @@ pub struct Gaining {
     plane: CollisionPlane,
     /// All regions in traced coordinates, also those of the switches, which divide those that are
     /// asked for; with what speaks against them.
-    pub atlas: Atlas<Vec<usize>, Margin, CollisionFamilyError>,
+    pub atlas: Atlas<Vec<usize>, Margin>,
 }
 
 /// Traces where |ε_t| is 1, accurate to `tolerance` in ψ, with the boundaries of the switches, and
@@ -56,7 +57,9 @@ pub fn trace(frame: Frame, tolerance: f64) -> Result<Gaining, AtlasError> {
         tolerance: plane.sheet().resolution(tolerance),
         ..AtlasOptions::default()
     };
-    let atlas = Atlas::of(&GainingFamily::new(plane), &plane.window(), &options)
+    let surveyor = Surveyor { options, executor: InParallel, watch: Watch::SILENT };
+    let atlas = surveyor
+        .atlas(&GainingFamily::new(plane), &plane.window())
         .map_err(|error| AtlasError::of_atlas(&plane, error))?;
     Ok(Gaining { frame, plane, atlas })
 }

@@ -16,7 +16,7 @@
 //! - [`sheet`]: a window in traced coordinates, and the accuracy of boundaries in it
 //! - [`mod@range`] and [`grid`]: windows, and windows divided into cells
 //! - [`tile`] and [`sweep`]: the results of a grid, and how they are computed
-//! - [`progress`]: reports of how far a long computation has come
+//! - [`progress`]: reports of how far a long computation has come, cancellation and threads
 //! - [`atlas`]: boundaries and regions, traced and verified
 //! - [`gaining`]: where |ε_t| is above 1
 //!

@@ -6,19 +6,22 @@ use crate::regions::finding::{Finding, SubdivisionError};
 use crate::regions::locate::Location;
 use crate::regions::subdivision::Subdivision;
 use crate::regions::verify::report::{Verification, VerifyError};
-use crate::regions::verify::{VerifyOptions, verify};
-use crate::tracing::network::{NetworkOf, TraceStatistics, Unresolved};
-use crate::tracing::trace::Tracer;
+use crate::regions::verify::{VerifyOptions, verify_unless_cancelled};
+use crate::survey::Surveyor;
+use crate::tracing::network::{Network, TraceStatistics, Unresolved};
+use crate::tracing::state::State;
 use crate::window::{Point, Window};
 
 /// The options of an [`Atlas`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct AtlasOptions {
     /// How boundaries are traced.
     pub trace: TraceOptions,
     /// The accuracy that is claimed for the curves, see [`Subdivision::new`].
     pub tolerance: f64,
-    /// Where the regions are compared with runs.
+    /// Where the regions are compared with runs. The seed is that of the first round; each further
+    /// round has the next one, and so other points.
     pub verify: VerifyOptions,
     /// The greatest number of rounds, at least 1. In each round the regions are verified, and the
     /// tracer looks again where runs have other labels.
@@ -63,23 +66,25 @@ impl Default for AtlasOptions {
 /// # Ok::<(), stickslip_tracer::AtlasError<Infallible>>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Atlas<Label, Margin, Error> {
+pub struct Atlas<Label, Margin> {
     /// The regions.
     pub plane: Subdivision<Label, Margin>,
     /// What the trace could not explain.
     pub unresolved: Vec<Unresolved<Label>>,
-    /// What the comparison with runs found.
-    pub verification: Verification<Label, Error>,
+    /// What the comparison with runs found. Errors of runs are sentences here.
+    pub verification: Verification<Label, String>,
     /// The work of the trace.
     pub statistics: TraceStatistics,
     /// The number of rounds.
     pub rounds: usize,
     /// Whether each region is in doubt.
-    doubtful: Vec<bool>,
+    pub(crate) doubtful: Vec<bool>,
+    /// Where the survey goes on, if it was cancelled.
+    pub(crate) unfinished: Option<Box<State<Label, Margin>>>,
 }
 
 /// The atlas of a family.
-pub type AtlasOf<F> = Atlas<<F as Family>::Label, <F as Family>::Margin, <F as Family>::Error>;
+pub type AtlasOf<F> = Atlas<<F as Family>::Label, <F as Family>::Margin>;
 
 /// Why there is no atlas.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -95,49 +100,29 @@ pub enum AtlasError<E: std::error::Error + 'static> {
     Verify(#[from] VerifyError),
 }
 
-impl<Label: Clone + Ord, Margin: Clone, Error> Atlas<Label, Margin, Error> {
-    /// Traces, subdivides and verifies a family in a window, and looks again where the verification
-    /// finds other labels, until it finds none or nothing new comes.
-    ///
-    /// What cannot be resolved is part of the result: [`Self::unresolved`] and
-    /// [`Self::verification`] say what and where, and the regions that it touches are in doubt.
+impl<Label: Clone + Ord, Margin: Clone> Atlas<Label, Margin> {
+    /// The atlas that a [`Surveyor`] with these options makes on this thread.
     ///
     /// # Errors
-    /// The options or the window are not possible, or a run fails.
+    /// The options or the window are not possible, or a run of the tracer fails.
     pub fn of<F>(
         family: &F,
         window: &Window,
         options: &AtlasOptions,
-    ) -> Result<Self, AtlasError<Error>>
+    ) -> Result<Self, AtlasError<F::Error>>
     where
-        F: Family<Label = Label, Margin = Margin, Error = Error>,
-        Error: std::error::Error + 'static,
+        F: Family<Label = Label, Margin = Margin>,
     {
-        let mut tracer = Tracer::new(family, window, &options.trace)?;
-        tracer.explore()?;
-        let mut rounds = 1;
-        loop {
-            let atlas = Self::assemble(family, tracer.network(), options, rounds)?;
-            let brackets = atlas.verification.brackets();
-            if rounds >= options.rounds || !tracer.look_between(&brackets)? {
-                return Ok(atlas);
-            }
-            rounds += 1;
-        }
+        Surveyor { options: *options, ..Surveyor::default() }.atlas(family, window)
     }
 
-    /// The regions of a network, verified.
-    fn assemble<F>(
-        family: &F,
-        network: NetworkOf<F>,
+    /// The regions of a network, of which none is verified yet.
+    pub(crate) fn unverified(
+        network: Network<Label, Margin>,
         options: &AtlasOptions,
         rounds: usize,
-    ) -> Result<Self, AtlasError<Error>>
-    where
-        F: Family<Label = Label, Margin = Margin, Error = Error>,
-        Error: std::error::Error + 'static,
-    {
-        let NetworkOf::<F> { window, mut curves, vertices, statistics, mut unresolved } = network;
+    ) -> Result<Self, SubdivisionError> {
+        let Network { window, mut curves, vertices, statistics, mut unresolved } = network;
         let plane = loop {
             let made =
                 Subdivision::new(window, curves.clone(), vertices.clone(), options.tolerance);
@@ -150,24 +135,53 @@ impl<Label: Clone + Ord, Margin: Clone, Error> Atlas<Label, Margin, Error> {
                 made => break made?,
             }
         };
-        let verification = verify(&plane, family, &options.verify)?;
+        let verification = Verification::untried(&plane);
         let doubtful = doubtful(&plane, &unresolved, &verification);
-        Ok(Self { plane, unresolved, verification, statistics, rounds, doubtful })
+        let unfinished = None;
+        Ok(Self { plane, unresolved, verification, statistics, rounds, doubtful, unfinished })
+    }
+
+    /// Verifies the regions by the labels at many points. Returns `false` if this was cancelled,
+    /// which `labels` tells by `None`.
+    pub(crate) fn verify(
+        &mut self,
+        options: &AtlasOptions,
+        labels: impl FnOnce(&[Point]) -> Option<Vec<Result<Label, String>>>,
+    ) -> Result<bool, VerifyError> {
+        let seed = options.verify.seed.wrapping_add(self.rounds as u64 - 1);
+        let points = VerifyOptions { seed, ..options.verify };
+        let Some(found) = verify_unless_cancelled(&self.plane, &points, labels)? else {
+            return Ok(false);
+        };
+        self.verification = found;
+        self.doubtful = doubtful(&self.plane, &self.unresolved, &self.verification);
+        Ok(true)
     }
 }
 
-impl<Label, Margin, Error> Atlas<Label, Margin, Error> {
-    /// Whether nothing speaks against the atlas: nothing is unresolved, and the verification agrees.
+impl<Label, Margin> Atlas<Label, Margin> {
+    /// Whether nothing speaks against the atlas: the survey is finished, nothing is unresolved, the
+    /// verification agrees, and none of its runs failed.
     #[must_use]
     pub fn agrees(&self) -> bool {
-        self.unresolved.is_empty() && self.verification.agrees()
+        self.is_finished()
+            && self.unresolved.is_empty()
+            && self.verification.agrees()
+            && self.verification.failed().next().is_none()
+    }
+
+    /// Whether the survey came to its end. If it was cancelled, all regions are in doubt, and
+    /// [`Surveyor::resume`] goes on.
+    #[must_use]
+    pub fn is_finished(&self) -> bool {
+        self.unfinished.is_none()
     }
 
     /// Whether a region is in doubt: something unresolved, inconsistent, or refuted by a run lies in
     /// it or on its boundary. An index without a region is in doubt.
     #[must_use]
     pub fn is_doubtful(&self, region: usize) -> bool {
-        self.doubtful.get(region).is_none_or(|doubtful| *doubtful)
+        !self.is_finished() || self.doubtful.get(region).is_none_or(|doubtful| *doubtful)
     }
 
     /// The label at a point; `None` outside the window, on a boundary, and in a region in doubt.
@@ -181,20 +195,43 @@ impl<Label, Margin, Error> Atlas<Label, Margin, Error> {
         }
     }
 
+    /// The label at a point of the window, decided everywhere: within the error of a curve or of the
+    /// window's edge, and in regions in doubt, by the family's run there. `None` outside the window.
+    ///
+    /// # Errors
+    /// The run failed.
+    pub fn decide<F>(&self, family: &F, point: &Point) -> Result<Option<Label>, F::Error>
+    where
+        F: Family<Label = Label>,
+        Label: Clone,
+    {
+        let Window { low, high } = *self.plane.window();
+        if !self.plane.window().contains(point) {
+            return Ok(None);
+        }
+        // A curve may lie on the edge of the window.
+        let inside = (point - low).inf(&(high - point)).min() > self.plane.tolerance();
+        match self.label(point).filter(|_| inside) {
+            Some(label) => Ok(Some(label.clone())),
+            None => family.label(point).map(Some),
+        }
+    }
+
     /// The part of the window's area in regions that are not in doubt.
     #[must_use]
     pub fn sure_area(&self) -> f64 {
-        let regions = self.plane.regions().iter().zip(&self.doubtful);
-        let sure = regions.filter(|(_, doubtful)| !**doubtful).map(|(region, _)| region.area);
+        let regions = self.plane.regions().iter().enumerate();
+        let sure = regions.filter(|(index, _)| !self.is_doubtful(*index));
+        let sure = sure.map(|(_, region)| region.area);
         sure.sum::<f64>() / self.plane.window().extent().product()
     }
 }
 
 /// Whether something speaks against each region.
-fn doubtful<Label, Margin, Error>(
+pub(crate) fn doubtful<Label, Margin>(
     plane: &Subdivision<Label, Margin>,
     unresolved: &[Unresolved<Label>],
-    verification: &Verification<Label, Error>,
+    verification: &Verification<Label, String>,
 ) -> Vec<bool> {
     let mut regions: Vec<usize> = Vec::new();
     let at = |point: &Point, regions: &mut Vec<usize>| match plane.locate(point) {
@@ -231,6 +268,9 @@ fn doubtful<Label, Margin, Error>(
         }
     }
     regions.extend(verification.mismatches.iter().map(|mismatch| mismatch.region));
+    for open in verification.failed() {
+        at(&open.checkpoint.point, &mut regions);
+    }
     let mut doubtful = vec![false; plane.regions().len()];
     for region in regions {
         doubtful[region] = true;

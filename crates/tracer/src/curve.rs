@@ -1,9 +1,11 @@
 //! Curves as a trace returns them: nodes with tangents, between vertices.
 
+use crate::cubic::Cubic;
 use crate::window::Point;
 
 /// A point of a boundary, with the boundary's direction there.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Node {
     /// The point, which lies on the boundary to the tolerance of the trace.
     pub point: Point,
@@ -17,6 +19,7 @@ pub struct Node {
 /// [`Cubic::between`](crate::Cubic::between). The trace keeps the distance of the cubic from the
 /// boundary below [`interpolation`](crate::TraceOptions::interpolation).
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Curve<Label, Margin> {
     /// The margin that vanishes on the curve.
     pub margin: Margin,
@@ -28,8 +31,31 @@ pub struct Curve<Label, Margin> {
     pub ends: Option<[usize; 2]>,
 }
 
+impl<Label, Margin> Curve<Label, Margin> {
+    /// Points along the curve that are so close that straight lines between them look smooth in a
+    /// picture of a window of this extent.
+    #[must_use]
+    pub fn polyline(&self, extent: &Point) -> Vec<Point> {
+        /// The largest number of straight lines between two nodes.
+        const MOST_LINES: f64 = 16.0;
+        /// The number of straight lines for a piece of the curve as long as the window is high.
+        const LINES: f64 = 60.0;
+        let mut points = vec![self.nodes[0].point];
+        for nodes in self.nodes.windows(2) {
+            let cubic = Cubic::between(&nodes[0], &nodes[1]);
+            let length = (nodes[1].point - nodes[0].point).component_div(extent).norm();
+            let lines = (LINES * length).ceil().clamp(1.0, MOST_LINES);
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+            let count = lines as u32;
+            points.extend((1..=count).map(|line| cubic.at(f64::from(line) / lines)));
+        }
+        points
+    }
+}
+
 /// A place where boundaries end or meet.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Vertex<Margin> {
     /// The place.
     pub point: Point,
@@ -44,6 +70,8 @@ pub struct Vertex<Margin> {
 /// A trace tells the first four kinds apart. For hybrid systems,
 /// [`Network::name_vertices`](crate::Network::name_vertices) tells all of them apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum VertexKind {
     /// A boundary leaves the window.
     WindowEdge,

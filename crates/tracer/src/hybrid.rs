@@ -37,6 +37,8 @@ pub type ModeOf<P, const N: usize, const G: usize> =
 
 /// What a run of a [`HybridFamily`] does.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Itinerary {
     /// The run comes to its end, or to a terminal guard. The guards that fire before, in order.
     Fires(Vec<usize>),

@@ -10,8 +10,10 @@
 //! - A [`Subdivision`] holds the regions between the curves and answers in which region a point
 //!   lies.
 //! - [`verify`] compares the labels of the regions with runs at random points.
-//! - An [`Atlas`] does all of this, looks again where runs disagree, and knows which regions are in
-//!   doubt.
+//! - [`follow()`] follows one boundary from a place on it, and records what the caller wants to know
+//!   along it.
+//! - An [`Atlas`] has all of this, and knows which regions are in doubt. A [`Surveyor`] makes it, on
+//!   the threads of the caller, and looks again where runs disagree.
 //!
 //! In this example the system is a bouncing ball; its height and its restitution are the
 //! parameters. The label of a region lists the guards that fire in its runs:
@@ -82,23 +84,34 @@
 //! - `curve`: what a trace returns
 //! - `cubic`: curves between nodes
 //! - `options`: options and errors of a trace
+//! - `executor` and `watch`: threads, progress and cancellation, which the caller gives
 //! - `tracing`: how boundaries are found and followed
 //! - `regions`: the regions between the curves
-//! - `atlas`: regions that are traced, verified, and looked at again
+//! - `survey`: tracing and verifying in turn, until nothing is missing
+//! - `atlas`: the result, with all that speaks against it
+//! - `document`: atlases of any family, written and read back (feature `serde`)
 
 mod atlas;
 mod cubic;
 mod curve;
+#[cfg(feature = "serde")]
+mod document;
+mod executor;
 mod family;
 mod hybrid;
 mod options;
 mod regions;
+mod survey;
 mod tracing;
+mod watch;
 mod window;
 
 pub use atlas::{Atlas, AtlasError, AtlasOf, AtlasOptions};
 pub use cubic::Cubic;
 pub use curve::{Curve, Node, Vertex, VertexKind};
+#[cfg(feature = "serde")]
+pub use document::{Document, DocumentError, SCHEMA};
+pub use executor::{Executor, FreeRunOf, LabelOf, Serial};
 pub use family::{Family, FreeRun};
 pub use hybrid::{FamilyError, HybridFamily, Itinerary, ModeOf, Problem};
 pub use options::{InvalidTraceOption, TraceError, TraceOptions};
@@ -110,14 +123,18 @@ pub use regions::subdivision::Subdivision;
 pub use regions::verify::report::{
     Checkpoint, Mismatch, Origin, Reason, Unverified, Verification, VerifyError,
 };
-pub use regions::verify::{VerifyOptions, verify, verify_with};
+pub use regions::verify::{VerifyOptions, verify, verify_unless_cancelled, verify_with};
+pub use survey::{Found, Survey, Surveyor};
 pub use tracing::branch::Branch;
 pub use tracing::branch::end::{End, Special, Stop};
 pub use tracing::extrema::Extremum;
+pub use tracing::follow::{Followed, Monitor, MonitorZero, follow};
 pub use tracing::network::{Network, NetworkOf, TraceStatistics, Unresolved};
 pub use tracing::runs::Runs;
 pub use tracing::seed::Seed;
+pub use tracing::special_points::SpecialPoint;
 pub use tracing::trace::{Tracer, trace};
+pub use watch::{Progress, Report, Watch};
 pub use window::{Point, Window};
 
 #[doc = include_str!("../README.md")]

@@ -6,6 +6,7 @@ use crate::window::{Point, Window};
 ///
 /// Lengths are in the coordinates of the window.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TraceOptions {
     /// The largest distance of a node from its boundary, above 0, up to 1e-6.
     pub tolerance: f64,

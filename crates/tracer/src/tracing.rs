@@ -3,6 +3,8 @@
 //! In reading order:
 //!
 //! - `trace`: all boundaries in a window
+//! - `stages`: the order of the search, in steps
+//! - `state`: what a search must remember to go on later
 //! - `scan`: the boundaries that cross a segment
 //! - `seed`: from a change of the label to a place on a boundary
 //! - `island`: closed boundaries between the places of the grid
@@ -12,16 +14,22 @@
 //! - `builder`: the network that grows
 //! - `network`: what a trace finds
 //! - `naming`: the kinds of vertices
+//! - `special_points`: the names of points at which two conditions hold together
 //! - `extrema`: where boundaries are extremal in a coordinate
+//! - `follow`: one boundary, with monitors
 
 pub mod branch;
 mod builder;
 mod corrector;
 pub mod extrema;
+pub mod follow;
 mod island;
 mod naming;
 pub mod network;
 pub mod runs;
 mod scan;
 pub mod seed;
+pub mod special_points;
+pub(crate) mod stages;
+pub(crate) mod state;
 pub mod trace;

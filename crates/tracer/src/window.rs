@@ -9,6 +9,7 @@ pub type Point = Vector2<f64>;
 
 /// A rectangle of the parameter plane, in the coordinates of [`Point`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Window {
     /// The corner with the least coordinates.
     pub low: Point,

@@ -5,18 +5,17 @@
 mod closed_forms;
 
 use stickslip_plane::atlas::{Atlas, BoundaryKind, switch_count};
-use stickslip_tracer::{Location, VertexKind};
+use stickslip_tracer::Location;
 
 use closed_forms::ClosedForms;
 
+use crate::canvas::Legend;
 use crate::canvas::number::number;
 use crate::canvas::panel::{Edge, Panel, Scale};
 use crate::canvas::shape::{Rectangle, Stroke};
-use crate::canvas::style::{
-    BOUNDARY_END, BOUNDARY_SLIP, BOUNDARY_START, BOUNDARY_STICK, FRAME, INK, SMALL, TITLE,
-};
+use crate::canvas::style::{BOUNDARY_END, BOUNDARY_SLIP, BOUNDARY_START, BOUNDARY_STICK, TITLE};
 use crate::canvas::svg::{Anchor, Svg, Words};
-use crate::canvas::{Cells, Legend, place};
+use crate::pictures::regions;
 
 const WIDTH: f64 = 900.0;
 const HEIGHT: f64 = 660.0;
@@ -27,11 +26,6 @@ const LEGEND_AT: (f64, f64) = (72.0, 50.0);
 const LINE: f64 = 18.0;
 /// Width of the key of a line in the legend.
 const KEY: f64 = 28.0;
-/// Half the side of a vertex's mark.
-const MARK: f64 = 2.5;
-/// Columns and rows of cells in which labels are placed; a cell has one to two pixels.
-const COLUMNS: u16 = 540;
-const ROWS: u16 = 356;
 
 /// All kinds of boundaries in the order of the legend, with their names.
 const KINDS: [(BoundaryKind, &str, &str); 5] = [
@@ -136,62 +130,18 @@ fn title(atlas: &Atlas) -> String {
 
 /// Draws the vertices inside the window, and adds their marks to the legend.
 fn vertices(svg: &mut Svg, atlas: &Atlas, panel: &Panel, legend: &mut Legend) {
-    let others = [VertexKind::Degenerate, VertexKind::GrazeAtEnd, VertexKind::VanishingPhase];
-    for (class, text, kinds, colour) in [
-        ("crossings", "crossing", &[VertexKind::Crossing][..], INK),
-        ("other-vertices", "other vertex", &others, "#FFFFFF"),
-    ] {
-        let square = |svg: &mut Svg, (x, y): (f64, f64)| {
-            let (left, top, side) = (x - MARK, y - MARK, 2.0 * MARK);
-            let at = Rectangle { left, top, width: side, height: side };
-            svg.fill(at, colour);
-            svg.outline(at, FRAME);
-        };
-        let vertices = atlas.regions.vertices().iter();
-        let mut vertices = vertices.filter(|vertex| kinds.contains(&vertex.kind)).peekable();
-        if vertices.peek().is_some() {
-            legend.entry(svg, 2.0 * MARK, text, |svg, key| {
-                square(svg, (key.left + MARK, key.top + 0.5 * key.height));
-            });
-        }
-        svg.begin_group(class);
-        for vertex in vertices {
-            square(svg, panel.place(atlas.chart.parameters(&vertex.point).into()));
-        }
-        svg.end_group();
-    }
+    let places = atlas.regions.vertices().iter();
+    let places = places
+        .map(|vertex| (vertex.kind, panel.place(atlas.chart.parameters(&vertex.point).into())));
+    regions::vertices(svg, &places.collect::<Vec<_>>(), legend);
 }
 
 /// Writes the number of switches into each region that has room for it.
 fn labels(svg: &mut Svg, atlas: &Atlas, panel: &Panel) {
-    let frame = &panel.frame;
-    let cell = (frame.width / f64::from(COLUMNS), frame.height / f64::from(ROWS));
-    let middle = |column: f64, row: f64| {
-        (frame.left + (column + 0.5) * cell.0, frame.top + (row + 0.5) * cell.1)
+    let region = |(kappa, psi)| match atlas.regions.locate(&atlas.chart.point(kappa, psi)) {
+        Location::Region(region) => Some(region),
+        _ => None,
     };
-    let region = |column: u16, row: u16| {
-        let (kappa, psi) = panel.value(middle(f64::from(column), f64::from(row)));
-        match atlas.regions.locate(&atlas.chart.point(kappa, psi)) {
-            Location::Region(region) => i32::try_from(region).unwrap_or(-1),
-            _ => -1,
-        }
-    };
-    let cells = (0..ROWS).flat_map(|row| (0..COLUMNS).map(move |column| (column, row)));
-    let values: Vec<i32> = cells.map(|(column, row)| region(column, row)).collect();
-    let text = |value: i32| {
-        let region = usize::try_from(value).ok();
-        region.map(|region| switch_count(atlas.itinerary(region)).to_string()).unwrap_or_default()
-    };
-    // Figures are 0.64 of the font size wide and 0.73 high.
-    let half_size = |value: i32| {
-        let digits = text(value).len() as f64;
-        ((0.32 * SMALL * digits + 2.0) / cell.0, (0.365 * SMALL + 2.0) / cell.1)
-    };
-    let cells = Cells { columns: usize::from(COLUMNS), values: &values };
-    svg.begin_group("regions");
-    for label in place(cells, half_size).into_iter().filter(|label| label.value >= 0) {
-        let at = middle(label.column as f64, label.row as f64);
-        svg.words(at, Words::new(&text(label.value), SMALL, Anchor::Middle));
-    }
-    svg.end_group();
+    let text = |region: usize| switch_count(atlas.itinerary(region)).to_string();
+    regions::labels(svg, panel, region, text);
 }

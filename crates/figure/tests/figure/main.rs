@@ -4,6 +4,7 @@ mod atlases;
 mod charts;
 mod collisions;
 mod examples;
+mod families;
 mod layout;
 mod maps;
 mod svg;

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use stickslip_model::{Collider, Contact, InvalidParameter, OutOfDomain};
 use stickslip_solver::Margin;
 use stickslip_tracer::{
-    Curve, Extremum, Network, Node, Point, Subdivision, SubdivisionError, TraceError, TraceOptions,
-    Tracer, VerifyError, Vertex,
+    AtlasOptions, Curve, Extremum, Network, Node, Point, Subdivision, SubdivisionError, Survey,
+    Surveyor, TraceError, TraceOptions, Tracer, VerifyError, Vertex,
 };
 
 use super::boundary::{BoundaryKind, itinerary};
@@ -14,7 +14,7 @@ use super::frame::Frame;
 use super::regions::{Atlas, Regions, itinerary_in};
 use super::verification::{self, LabelError, VerificationReport};
 use crate::family::{CollisionFamilyError, CollisionPlane};
-use crate::progress::{Progress, Report};
+use crate::progress::{InParallel, Watch};
 use crate::sheet::{ToleranceRange, TooNarrow};
 
 /// An atlas with the result of its verification.
@@ -92,7 +92,7 @@ pub enum AtlasError {
     },
     /// The tracer failed for another reason than a run.
     #[error(transparent)]
-    Trace(TraceError<CollisionFamilyError>),
+    Trace(#[from] TraceError<CollisionFamilyError>),
     /// The curves do not make regions.
     #[error(transparent)]
     Subdivision(#[from] SubdivisionError),
@@ -105,20 +105,20 @@ pub enum AtlasError {
 }
 
 /// The largest number of rounds, each with a trace and a verification.
-const ROUNDS: u64 = 8;
+const ROUNDS: usize = 8;
 
 /// Traces the boundaries in `frame`, accurate to `tolerance` in ψ, and verifies the regions, as
 /// [`divide`] does.
 ///
 /// # Errors
 /// As [`divide`].
-pub fn trace(
+pub fn trace<'w>(
     frame: Frame,
     tolerance: f64,
-    progress: Report<'_>,
+    watch: impl Into<Watch<'w>>,
 ) -> Result<VerifiedAtlas, AtlasError> {
     let plane = frame.plane()?;
-    let Division { regions, unbounded, extrema, report, .. } = divide(&plane, tolerance, progress)?;
+    let Division { regions, unbounded, extrema, report, .. } = divide(&plane, tolerance, watch)?;
     let atlas = Atlas { frame, chart: *plane.chart(), tolerance, regions, unbounded };
     Ok(VerifiedAtlas { atlas, extrema, report })
 }
@@ -126,9 +126,10 @@ pub fn trace(
 /// Traces the boundaries in the window of a plane, accurate to `tolerance` in its second parameter,
 /// and verifies the regions.
 ///
-/// The verification computes collisions on the threads of the current rayon pool. If it finds
-/// other switches than the regions have, the tracer looks again there, in up to eight rounds.
-/// `progress` is told when a round begins and ends.
+/// The runs of the grid and of the verification are computed on the threads of the current rayon
+/// pool. If the verification finds other switches than the regions have, the tracer looks again
+/// there, in up to eight rounds. `watch` is told of every step. If it cancels, the division is what
+/// was found so far, and its report says so.
 ///
 /// ```
 /// use stickslip_model::{Material, Pair, Surface};
@@ -148,38 +149,53 @@ pub fn trace(
 /// # Errors
 /// [`AtlasError`]: the window or the tolerance is not possible, a run fails, or the curves do not
 /// make regions. What speaks against the regions is not an error but part of the report.
-pub fn divide(
+pub fn divide<'w>(
     plane: &CollisionPlane,
     tolerance: f64,
-    progress: Report<'_>,
+    watch: impl Into<Watch<'w>>,
 ) -> Result<Division, AtlasError> {
     require_traceable(plane, tolerance)?;
-    let window = plane.window();
-    let any = plane.contact(&window.low)?;
+    let surveyor =
+        Surveyor { options: AtlasOptions::default(), executor: InParallel, watch: watch.into() };
+    let any = plane.contact(&plane.window().low)?;
     let family = plane.family();
     let options = trace_options(plane, tolerance);
     let failed = |error| AtlasError::of(plane, error);
-    let mut tracer = Tracer::new(&family, &window, &options).map_err(failed)?;
-    progress(Progress::Begin { steps: 1 });
-    tracer.explore().map_err(failed)?;
-    let mut round = 1;
-    loop {
-        let mut network = tracer.network();
-        network.name_vertices();
-        let unresolved = verification::unresolved(plane, &network);
-        let regions = regions(plane, tolerance, network, &any)?;
-        let (report, brackets) =
-            verification::verify(plane, tolerance, &regions, unresolved, round)?;
-        progress(Progress::Advance { steps: 1 });
-        let again = round < ROUNDS && tracer.look_between(&brackets).map_err(failed)?;
-        if !again {
-            let extrema = tracer.extrema().map_err(failed)?;
-            let unbounded = unbounded(plane, &regions)?;
-            return Ok(Division { plane: *plane, tolerance, regions, unbounded, extrema, report });
-        }
-        progress(Progress::Begin { steps: 1 });
-        round += 1;
+    let mut tracer = Tracer::new(&family, &plane.window(), &options).map_err(failed)?;
+    let survey = surveyor.survey(&mut tracer, ROUNDS, Survey::BEGINNING, |network, round| {
+        let found = assess(plane, tolerance, network, &any)?;
+        verification::verify(plane, tolerance, found, round as u64, &surveyor.watch)
+    });
+    let survey = survey.map_err(|error| match error {
+        AtlasError::Trace(error) => failed(error),
+        error => error,
+    })?;
+    let (regions, mut report) = if let Some(found) = survey.result {
+        found
+    } else {
+        let (regions, unresolved) = assess(plane, tolerance, tracer.network(), &any)?;
+        let report = VerificationReport::untried(plane, tolerance, &regions, unresolved);
+        (regions, report)
+    };
+    if !survey.finished {
+        report.agrees = false;
+        report.unresolved.insert(0, "cancelled before the end".to_owned());
     }
+    let extrema = tracer.extrema().map_err(failed)?;
+    let unbounded = unbounded(plane, &regions)?;
+    Ok(Division { plane: *plane, tolerance, regions, unbounded, extrema, report })
+}
+
+/// The regions of a network, and what the tracer could not explain.
+fn assess(
+    plane: &CollisionPlane,
+    tolerance: f64,
+    mut network: Network<Vec<usize>, Margin>,
+    any: &Contact,
+) -> Result<(Regions, Vec<String>), AtlasError> {
+    network.name_vertices();
+    let unresolved = verification::unresolved(plane, &network);
+    Ok((regions(plane, tolerance, network, any)?, unresolved))
 }
 
 /// Refuses a plane in which boundaries cannot be accurate to `tolerance`, or not be verified.

@@ -3,12 +3,14 @@
 use rayon::prelude::*;
 use stickslip_model::{Collider, CollisionError, InvalidParameter};
 use stickslip_tracer::{
-    Location, Network, Origin, Point, Reason, Unresolved, Verification, VerifyError, VerifyOptions,
-    verify_with,
+    Found, Location, Network, Origin, Point, Reason, Unresolved, Verification, VerifyOptions,
+    verify_unless_cancelled,
 };
 
 use super::regions::Regions;
+use super::tracing::AtlasError;
 use crate::family::CollisionPlane;
+use crate::progress::Watch;
 
 /// What the verification of an atlas found, in the layout of the atlas file.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,81 +78,112 @@ pub struct MismatchFields {
     pub near_boundary: bool,
 }
 
-/// Compares the regions of a plane with collisions at the points of a round, in parallel.
+/// Compares regions of a plane with collisions at the points of a round, in parallel; `None` if
+/// `watch` cancels.
 ///
 /// `unresolved` is what the tracer left open. Besides the report, the result has pairs of places
 /// between which a boundary is missing.
 ///
 /// # Errors
-/// [`VerifyError`]: the distances from boundaries are not in order. This would be a defect of this
+/// [`AtlasError::Verify`]: the distances from boundaries are not in order. This would be a defect of this
 /// module.
 pub(super) fn verify(
     plane: &CollisionPlane,
     tolerance: f64,
-    regions: &Regions,
-    mut unresolved: Vec<String>,
+    (regions, unresolved): (Regions, Vec<String>),
     round: u64,
-) -> Result<(VerificationReport, Vec<[Point; 2]>), VerifyError> {
+    watch: &Watch<'_>,
+) -> Result<Option<Found<(Regions, VerificationReport)>>, AtlasError> {
+    let options = options(plane, tolerance, &regions, round);
+    let labels = |portion: &[Point]| -> Vec<_> {
+        portion.par_iter().map(|point| itinerary(plane, point)).collect()
+    };
+    let labels = |points: &[Point]| watch.in_portions(points, labels);
+    let Some(found) = verify_unless_cancelled(&regions, &options, labels)? else {
+        return Ok(None);
+    };
+    let brackets = found.brackets();
+    let report = VerificationReport::new(plane, &options, &regions, unresolved, found);
+    Ok(Some(Found { result: (regions, report), brackets }))
+}
+
+/// The points of a round.
+fn options(plane: &CollisionPlane, tolerance: f64, regions: &Regions, round: u64) -> VerifyOptions {
     let nearest = 10.0 * plane.sheet().resolution(tolerance);
     let farthest = nearest.max(1e-3 * regions.window().extent().min());
-    let options =
-        VerifyOptions { random_points: 20_000, near_points: 20, nearest, farthest, seed: round };
-    let verification = verify_with(regions, &options, |points| {
-        points.par_iter().map(|point| itinerary(plane, point)).collect()
-    })?;
-    let mut undecided = 0;
-    for open in &verification.unverified {
-        let [kappa, psi] = scaled(plane, &open.checkpoint.point);
-        let what = match &open.reason {
-            Reason::Location(Location::OnBoundary { .. }) => {
-                undecided += 1;
-                continue;
-            }
-            Reason::Location(_) => "it lies in no region".to_owned(),
-            Reason::NoLabel { region } => format!("region {region} has no known switches"),
-            Reason::Run(error) => error.to_string(),
-        };
-        unresolved.push(format!("kappa = {kappa:?}, psi = {psi:?}: {what}"));
-    }
-    let brackets = verification.brackets();
-    let agrees = verification.agrees() && unresolved.is_empty();
-    let Verification { euler, mismatches, tried, untried_curves, .. } = verification;
-    let mismatches = mismatches.into_iter().map(|mismatch| {
-        let [kappa, psi] = scaled(plane, &mismatch.checkpoint.point);
-        MismatchFields {
-            kappa,
-            psi,
-            region: mismatch.region,
-            expected: mismatch.expected,
-            found: mismatch.found,
-            near_boundary: matches!(mismatch.checkpoint.origin, Origin::Near { .. }),
-        }
-    });
-    let report = VerificationReport {
-        agrees,
-        method: "dop853".to_owned(),
-        euler: EulerFields {
-            vertices: euler.vertices,
-            edges: euler.edges,
-            faces: euler.faces,
-            components: euler.components,
-            holds: euler.holds(),
-        },
-        random_points: options.random_points,
-        near_points: options.near_points,
-        tried: tried.iter().sum(),
-        undecided,
-        mismatches: mismatches.collect(),
-        unresolved,
-        findings: regions.findings().iter().map(ToString::to_string).collect(),
-        untried_boundaries: untried_curves,
-        share_tried: verification.tried_area,
-        share_wrong_bound: verification.wrong_area_bound,
-    };
-    Ok((report, brackets))
+    VerifyOptions { random_points: 20_000, near_points: 20, nearest, farthest, seed: round }
 }
 
 impl VerificationReport {
+    /// The report of regions of which none has been compared with collisions.
+    pub(super) fn untried(
+        plane: &CollisionPlane,
+        tolerance: f64,
+        regions: &Regions,
+        unresolved: Vec<String>,
+    ) -> Self {
+        let options = options(plane, tolerance, regions, 1);
+        Self::new(plane, &options, regions, unresolved, Verification::untried(regions))
+    }
+
+    /// The report of a verification.
+    fn new(
+        plane: &CollisionPlane,
+        options: &VerifyOptions,
+        regions: &Regions,
+        mut unresolved: Vec<String>,
+        verification: Verification<String, LabelError>,
+    ) -> Self {
+        let mut undecided = 0;
+        for open in &verification.unverified {
+            let [kappa, psi] = scaled(plane, &open.checkpoint.point);
+            let what = match &open.reason {
+                Reason::Location(Location::OnBoundary { .. }) => {
+                    undecided += 1;
+                    continue;
+                }
+                Reason::Location(_) => "it lies in no region".to_owned(),
+                Reason::NoLabel { region } => format!("region {region} has no known switches"),
+                Reason::Run(error) => error.to_string(),
+            };
+            unresolved.push(format!("kappa = {kappa:?}, psi = {psi:?}: {what}"));
+        }
+        let agrees = verification.agrees() && unresolved.is_empty();
+        let Verification { euler, mismatches, tried, untried_curves, .. } = verification;
+        let mismatches = mismatches.into_iter().map(|mismatch| {
+            let [kappa, psi] = scaled(plane, &mismatch.checkpoint.point);
+            MismatchFields {
+                kappa,
+                psi,
+                region: mismatch.region,
+                expected: mismatch.expected,
+                found: mismatch.found,
+                near_boundary: matches!(mismatch.checkpoint.origin, Origin::Near { .. }),
+            }
+        });
+        Self {
+            agrees,
+            method: "dop853".to_owned(),
+            euler: EulerFields {
+                vertices: euler.vertices,
+                edges: euler.edges,
+                faces: euler.faces,
+                components: euler.components,
+                holds: euler.holds(),
+            },
+            random_points: options.random_points,
+            near_points: options.near_points,
+            tried: tried.iter().sum(),
+            undecided,
+            mismatches: mismatches.collect(),
+            unresolved,
+            findings: regions.findings().iter().map(ToString::to_string).collect(),
+            untried_boundaries: untried_curves,
+            share_tried: verification.tried_area,
+            share_wrong_bound: verification.wrong_area_bound,
+        }
+    }
+
     /// A line that says what speaks against the atlas; `None` if nothing does.
     #[must_use]
     pub fn objection(&self) -> Option<String> {

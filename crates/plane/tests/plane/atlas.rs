@@ -3,7 +3,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use stickslip_model::{Collider, Contact, exact};
 use stickslip_plane::Range;
 use stickslip_plane::atlas::{AtlasError, BoundaryKind, Frame, Unlocated, switch_count, trace};
-use stickslip_plane::progress::{Progress, SILENT};
+use stickslip_plane::progress::{Progress, SILENT, Watch};
 use stickslip_tracer::{Location, VertexKind};
 
 use crate::windows::{crossing, empty, frame, traced};
@@ -239,5 +239,27 @@ fn narrow_windows_have_their_usual_tolerance() {
         for tolerance in [tolerances.finest, tolerances.coarsest] {
             assert!(trace(window, tolerance, SILENT).is_ok(), "{psi:?} {tolerance:e}");
         }
+    }
+}
+
+/// The runs of the grid and of the verification are computed in parallel, and a cancelled trace says
+/// that it is not finished.
+#[test]
+fn threads_do_not_change_an_atlas_and_cancelling_shows() {
+    let frame = frame((18.0, 21.0), (0.55, 0.65));
+    let tolerance = frame.tolerances().usual;
+    for threads in [1, 4] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let verified = pool.install(|| trace(frame, tolerance, SILENT)).unwrap();
+        assert_eq!(verified.atlas.regions.curves(), crossing().atlas.regions.curves());
+        assert_eq!(verified.report, crossing().report, "{threads} threads");
+    }
+    for last in [0, 30, 300, 3000] {
+        let asked = AtomicUsize::new(0);
+        let cancel = || asked.fetch_add(1, Ordering::Relaxed) >= last;
+        let watch = Watch::SILENT.cancelled_by(&cancel);
+        let report = trace(frame, tolerance, watch).unwrap().report;
+        let objection = report.objection().unwrap();
+        assert!(!report.agrees && objection.contains("cancelled before the end"), "{objection}");
     }
 }

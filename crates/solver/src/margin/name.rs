@@ -6,6 +6,7 @@ use std::hash::{Hash, Hasher};
 /// A place that moves with the parameters. All hints are equal, so that margins which differ only
 /// in their hints are equal.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Hint(pub f64);
 
 impl PartialEq for Hint {
@@ -34,6 +35,8 @@ impl Hash for Hint {
 
 /// How a guard fires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Way {
     /// It falls through zero.
     Falling,
@@ -45,6 +48,7 @@ pub enum Way {
 
 /// How a phase of a prescribed run ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Exit {
     /// The guard that fires.
     pub guard: usize,
@@ -70,6 +74,8 @@ impl Exit {
 
 /// The place where a margin is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Place {
     /// The start of the phase.
     Start {
@@ -108,6 +114,7 @@ pub enum Place {
 /// Hints tell which of several extrema is meant. When the parameters move,
 /// [`margin`](crate::margin()) returns the name with hints that have moved along.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Margin {
     /// The exits of the earlier phases, in order.
     pub exits: Vec<Exit>,

@@ -78,6 +78,7 @@ pub enum Finding<Label> {
 /// Vertices, edges and components are counted in the graph, and faces in the plane. The formula is
 /// therefore a check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Euler {
     /// The number of vertices with an edge, including corners of the window, and one for every
     /// closed curve.

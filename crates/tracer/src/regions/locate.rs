@@ -6,6 +6,8 @@ use crate::window::Point;
 
 /// Where a point lies in a subdivision.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Location {
     /// In the region with this index.
     Region(usize),

@@ -9,6 +9,7 @@ use crate::window::Point;
 
 /// A connected part of the window that no curve enters.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Region<Label> {
     /// The label that the curves around the region have on this side; the most frequent label if
     /// they disagree, and `None` if no curve bounds the region.
@@ -25,6 +26,8 @@ pub struct Region<Label> {
 
 /// A side of a curve, seen in the direction of the curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Side {
     /// The left side.
     Left,

@@ -17,6 +17,7 @@ use crate::window::Point;
 
 /// Where labels are computed, besides the sample point of every region.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct VerifyOptions {
     /// The number of random points, spread evenly over the window.
     pub random_points: usize,
@@ -62,6 +63,19 @@ pub fn verify_with<Label: Clone + Ord, Margin, Error>(
     options: &VerifyOptions,
     labels: impl FnOnce(&[Point]) -> Vec<Result<Label, Error>>,
 ) -> Result<Verification<Label, Error>, VerifyError> {
+    let found = verify_unless_cancelled(plane, options, |points| Some(labels(points)))?;
+    Ok(found.unwrap_or_else(|| Verification::untried(plane)))
+}
+
+/// As [`verify_with`]; `None` if `labels` returns `None`, because it was cancelled.
+///
+/// # Errors
+/// As [`verify_with`].
+pub fn verify_unless_cancelled<Label: Clone + Ord, Margin, Error>(
+    plane: &Subdivision<Label, Margin>,
+    options: &VerifyOptions,
+    labels: impl FnOnce(&[Point]) -> Option<Vec<Result<Label, Error>>>,
+) -> Result<Option<Verification<Label, Error>>, VerifyError> {
     let VerifyOptions { nearest, farthest, .. } = *options;
     if !(nearest > 0.0 && nearest <= farthest && farthest.is_finite()) {
         return Err(VerifyError::Distances { nearest, farthest });
@@ -79,7 +93,7 @@ pub fn verify_with<Label: Clone + Ord, Margin, Error>(
         }
     }
     let points: Vec<Point> = places.iter().map(|(checkpoint, _)| checkpoint.point).collect();
-    let labels = labels(&points);
+    let Some(labels) = labels(&points) else { return Ok(None) };
     if labels.len() != points.len() {
         return Err(VerifyError::Labels { points: points.len(), labels: labels.len() });
     }
@@ -87,7 +101,7 @@ pub fn verify_with<Label: Clone + Ord, Margin, Error>(
     for ((checkpoint, region), label) in places.into_iter().zip(labels) {
         judge.consider(checkpoint, region, label);
     }
-    Ok(judge.finish())
+    Ok(Some(judge.finish()))
 }
 
 /// The points at which labels are computed. Sample points come first, so that the label of a region

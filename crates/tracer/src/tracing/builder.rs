@@ -43,6 +43,14 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         Self { network, stops: Vec::new(), suspects: Vec::new(), scale, cells }
     }
 
+    /// A network that was begun before.
+    pub fn of(stops: Vec<Stop>, network: Network<Label, Margin>, suspects: Vec<usize>) -> Self {
+        let mut builder = Self { stops, suspects, ..Self::new(network.window) };
+        builder.network = network;
+        builder.rebuild_index();
+        builder
+    }
+
     /// Adds a vertex, unless it is known, and returns its index. A new vertex divides the curves
     /// that pass through it, and their parts become [suspects](Self::suspects).
     pub fn add_vertex(&mut self, special: &Special<Margin>) -> usize {

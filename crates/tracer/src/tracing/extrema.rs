@@ -34,7 +34,9 @@ pub(crate) fn extrema<F: Family>(
         for axis in 0..2 {
             let mut places = Vec::new();
             for bracket in brackets(curve, axis) {
-                places.extend(solve(runs, curve, axis, &bracket)?);
+                let component = |node: &Node| node.tangent[axis];
+                let is_straight = |component: f64| component.abs() <= STRAIGHT;
+                places.extend(solve(runs, curve, &bracket, component, is_straight)?);
             }
             let known = 10.0 * runs.options.interpolation;
             for (place, point) in pronounced(curve, axis, places, known) {
@@ -73,11 +75,11 @@ fn pronounced<Label, Margin>(
         .collect()
 }
 
-/// Successive nodes of a curve between which a component of the tangent changes its sign.
-struct Bracket {
+/// Successive nodes of a curve between which a value changes its sign.
+pub(crate) struct Bracket {
     /// The index of the first node.
-    first: usize,
-    nodes: Vec<Node>,
+    pub first: usize,
+    pub nodes: Vec<Node>,
 }
 
 fn brackets<Label, Margin>(curve: &Curve<Label, Margin>, axis: usize) -> Vec<Bracket> {
@@ -112,23 +114,24 @@ impl Bracket {
     }
 }
 
-/// The extremum in a bracket, with its place along the curve counted in pieces.
+/// The zero of a value in a bracket, with its place along the curve counted in pieces.
 ///
-/// There the component of the tangent vanishes on the boundary itself. It is solved for by the
-/// Illinois method (Dowell and Jarratt, 1971). `None` if the component does not vanish but jumps,
-/// for instance at the end of a curve whose tangent there is not known, or if the boundary cannot
-/// be followed.
-fn solve<F: Family>(
+/// The value is taken at nodes on the boundary itself; it is solved for by the Illinois method
+/// (Dowell and Jarratt, 1971), until the place does not move and `is_small` of the value. `None` if
+/// the value does not vanish but jumps, for instance the tangent at the end of a curve where it is
+/// not known, or if the boundary cannot be followed.
+pub(crate) fn solve<F: Family>(
     runs: &Runs<'_, F>,
     curve: &Curve<F::Label, F::Margin>,
-    axis: usize,
     bracket: &Bracket,
+    value: impl Fn(&Node) -> f64,
+    is_small: impl Fn(f64) -> bool,
 ) -> Traced<Option<(f64, Point)>, F> {
     const ROUNDS: usize = 60;
     let margin = margin(runs, curve, bracket)?;
     let (mut low, mut high) = (0.0, (bracket.nodes.len() - 1) as f64);
     let [mut below, mut above] =
-        [0, bracket.nodes.len() - 1].map(|node| bracket.nodes[node].tangent[axis]);
+        [0, bracket.nodes.len() - 1].map(|node| value(&bracket.nodes[node]));
     let chord = (bracket.nodes[0].point - bracket.nodes[bracket.nodes.len() - 1].point).norm();
     let close = 1e-10 * runs.scale / chord;
     let mut last = f64::INFINITY;
@@ -137,19 +140,19 @@ fn solve<F: Family>(
         let place = (low * above - high * below) / (above - below);
         let (arc, theta) = bracket.piece(place);
         let Some(node) = on_boundary(runs, &margin, &arc, theta)? else { return Ok(None) };
-        let component = node.tangent[axis];
-        if component.abs() <= STRAIGHT && (place - last).abs() <= close || component == 0.0 {
+        let here = value(&node);
+        if is_small(here) && (place - last).abs() <= close || here == 0.0 {
             return Ok(Some((bracket.first as f64 + place, node.point)));
         }
         last = place;
-        if (component < 0.0) == (below < 0.0) {
-            (low, below) = (place, component);
+        if (here < 0.0) == (below < 0.0) {
+            (low, below) = (place, here);
             if kept_low == Some(false) {
                 above *= 0.5;
             }
             kept_low = Some(false);
         } else {
-            (high, above) = (place, component);
+            (high, above) = (place, here);
             if kept_low == Some(true) {
                 below *= 0.5;
             }

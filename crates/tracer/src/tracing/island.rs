@@ -7,22 +7,22 @@ use crate::tracing::corrector::derivatives;
 use crate::tracing::runs::{Runs, Sampled, Traced};
 use crate::window::Point;
 
-/// Segments from places of the grid to places nearby where a margin has the other sign.
+/// Segments from a place of the grid to places nearby where a margin has the other sign.
 ///
-/// A search starts from each place where a margin is closer to zero than at the neighbours. `grid`
-/// holds columns of `rows` places each; `cell` is the distance between neighbours.
-pub(crate) fn islands<F: Family>(
+/// A search starts for each margin that is closer to zero than at the neighbours. `grid` holds
+/// columns of `rows` places each; `cell` is the distance between neighbours.
+pub(crate) fn beside<F: Family>(
     runs: &Runs<'_, F>,
     grid: &[Sampled<F>],
     rows: usize,
+    index: usize,
     cell: &Point,
 ) -> Traced<Vec<[Point; 2]>, F> {
+    let (point, run) = &grid[index];
     let mut found = Vec::new();
-    for (index, (point, run)) in grid.iter().enumerate() {
-        for (margin, value) in &run.margins {
-            if *value != 0.0 && is_least(grid, rows, index, margin, *value) {
-                found.extend(dive(runs, point, margin, *value, cell)?.map(|low| [*point, low]));
-            }
+    for (margin, value) in &run.margins {
+        if *value != 0.0 && is_least(grid, rows, index, margin, *value) {
+            found.extend(dive(runs, point, margin, *value, cell)?.map(|low| [*point, low]));
         }
     }
     Ok(found)

@@ -4,6 +4,7 @@ use stickslip_solver::{Margin, Place};
 
 use crate::curve::VertexKind;
 use crate::tracing::network::Network;
+use crate::tracing::special_points::same_phase;
 
 impl<Label> Network<Label, Margin> {
     /// Sets the kinds of the vertices inside the window by the margins of the curves that end
@@ -49,10 +50,4 @@ fn kind(margins: &[&Margin]) -> VertexKind {
     } else {
         VertexKind::Degenerate
     }
-}
-
-/// Whether the same guards fired before. From which place each guard is watched does not matter.
-fn same_phase(one: &Margin, other: &Margin) -> bool {
-    let [one, other] = [one, other].map(|margin| margin.exits.iter().map(|exit| exit.guard));
-    one.eq(other)
 }

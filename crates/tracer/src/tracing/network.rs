@@ -6,6 +6,7 @@ use crate::window::{Point, Window};
 
 /// The curves in a window on which the label changes, with the vertices at which they end.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Network<Label, Margin> {
     /// The window that was traced.
     pub window: Window,
@@ -25,6 +26,7 @@ pub type NetworkOf<F> = Network<<F as Family>::Label, <F as Family>::Margin>;
 
 /// The work of a trace.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TraceStatistics {
     /// The number of free runs.
     pub free_runs: usize,
@@ -40,6 +42,8 @@ pub struct TraceStatistics {
 
 /// Something that a trace saw and could not explain.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Unresolved<Label> {
     /// The label changes between two places, but no margin was found that vanishes between them.
     Change {

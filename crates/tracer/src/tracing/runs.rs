@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 
+use crate::executor::FreeRunOf;
 use crate::family::{Family, FreeRun};
 use crate::options::{TraceError, TraceOptions};
 use crate::window::{Point, Window};
@@ -55,6 +56,20 @@ impl<'a, F: Family> Runs<'a, F> {
         [self.free.get(), self.prescribed.get()]
     }
 
+    pub(crate) fn family(&self) -> &'a F {
+        self.family
+    }
+
+    /// The same runs, with the numbers of free runs and of prescribed runs before.
+    pub(crate) fn counted(self, [free, prescribed]: [usize; 2]) -> Self {
+        Self { free: Cell::new(free), prescribed: Cell::new(prescribed), ..self }
+    }
+
+    /// Counts free runs that were computed elsewhere.
+    pub(crate) fn count_free(&self, count: usize) {
+        self.free.set(self.free.get() + count);
+    }
+
     pub(crate) fn label(&self, point: &Point) -> Traced<F::Label, F> {
         self.free.set(self.free.get() + 1);
         self.family.label(point).map_err(|source| TraceError::Run { point: *point, source })
@@ -62,14 +77,7 @@ impl<'a, F: Family> Runs<'a, F> {
 
     pub(crate) fn free(&self, point: &Point) -> Traced<FreeRun<F::Label, F::Margin>, F> {
         self.free.set(self.free.get() + 1);
-        let run = self
-            .family
-            .free_run(point)
-            .map_err(|source| TraceError::Run { point: *point, source })?;
-        if run.margins.iter().any(|(_, value)| value.is_nan()) {
-            return Err(TraceError::NotANumber { point: *point });
-        }
-        Ok(run)
+        checked::<F>(point, self.family.free_run(point))
     }
 
     pub(crate) fn margin(&self, point: &Point, margin: &F::Margin) -> Traced<Option<f64>, F> {
@@ -182,4 +190,16 @@ impl<'a, F: Family> Runs<'a, F> {
     pub(crate) fn resolution(&self, slope: f64) -> f64 {
         self.options.tolerance.max(self.options.noise / slope)
     }
+}
+
+/// A free run with its place, if it has no error and its margins are numbers.
+pub(crate) fn checked<F: Family>(
+    point: &Point,
+    run: FreeRunOf<F>,
+) -> Traced<FreeRun<F::Label, F::Margin>, F> {
+    let run = run.map_err(|source| TraceError::Run { point: *point, source })?;
+    if run.margins.iter().any(|(_, value)| value.is_nan()) {
+        return Err(TraceError::NotANumber { point: *point });
+    }
+    Ok(run)
 }

@@ -1,15 +1,18 @@
 //! All boundaries in a window: where they are searched for.
 
 use crate::curve::{Node, VertexKind};
+use crate::executor::Serial;
 use crate::family::{Family, FreeRun};
 use crate::options::{TraceError, TraceOptions};
 use crate::tracing::branch::end::{SHORTEST, Special};
 use crate::tracing::builder::Builder;
 use crate::tracing::corrector::crossing;
 use crate::tracing::extrema::{Extremum, extrema};
-use crate::tracing::island::islands;
 use crate::tracing::network::NetworkOf;
 use crate::tracing::runs::{Runs, Sampled, Traced};
+use crate::tracing::stages::Stage;
+use crate::tracing::state::StateOf;
+use crate::watch::Watch;
 use crate::window::{Point, Window};
 
 /// Traces every boundary of a family in a window, with a new [`Tracer`].
@@ -42,7 +45,12 @@ pub struct Tracer<'f, F: Family> {
     pub(crate) runs: Runs<'f, F>,
     pub(crate) builder: Builder<F::Label, F::Margin>,
     /// The number of vertices around which boundaries were searched for.
-    probed: usize,
+    pub(super) probed: usize,
+    pub(super) stage: Stage,
+    /// The runs that the stage begins with.
+    pub(super) sampled: Vec<Sampled<F>>,
+    /// The state before a second look, while it lasts.
+    pub(super) before_look: Option<Box<StateOf<F>>>,
 }
 
 /// The radii of the circles around a vertex, as fractions of the window's shorter extent.
@@ -55,7 +63,8 @@ impl<'f, F: Family> Tracer<'f, F> {
     /// An option is out of its range, or the window is not a rectangle.
     pub fn new(family: &'f F, window: &Window, options: &TraceOptions) -> Traced<Self, F> {
         let runs = Runs::new(family, *window, *options)?;
-        Ok(Self { runs, builder: Builder::new(*window), probed: 0 })
+        let (builder, stage) = (Builder::new(*window), Stage::Edges { next: 0 });
+        Ok(Self { runs, builder, probed: 0, stage, sampled: Vec::new(), before_look: None })
     }
 
     /// Searches the whole window.
@@ -63,11 +72,8 @@ impl<'f, F: Family> Tracer<'f, F> {
     /// # Errors
     /// A run fails, or a margin is not a number.
     pub fn explore(&mut self) -> Traced<(), F> {
-        self.edges()?;
-        self.vertices()?;
-        self.grid()?;
-        self.close_vertices()?;
-        self.polish()
+        self.stage = Stage::Edges { next: 0 };
+        self.proceed(&Serial, &Watch::SILENT).map(drop)
     }
 
     /// Searches between pairs of places for boundaries that are not known yet. Returns whether the
@@ -77,14 +83,14 @@ impl<'f, F: Family> Tracer<'f, F> {
     /// A run fails, or a margin is not a number.
     pub fn look_between(&mut self, pairs: &[[Point; 2]]) -> Traced<bool, F> {
         let before = self.builder.network.curves.len();
-        for &[a, b] in pairs {
-            let labels = [self.runs.label(&a)?, self.runs.label(&b)?];
-            self.scan([a, b], labels)?;
-            self.vertices()?;
-        }
-        self.close_vertices()?;
-        self.polish()?;
+        self.begin_between(pairs.to_vec());
+        self.proceed(&Serial, &Watch::SILENT)?;
         Ok(self.builder.network.curves.len() != before)
+    }
+
+    /// Makes a search between pairs of places what [`Self::proceed`] does next.
+    pub(crate) fn begin_between(&mut self, pairs: Vec<[Point; 2]>) {
+        self.stage = Stage::Pairs { next: 0, pairs };
     }
 
     /// The network that has been found so far.
@@ -108,27 +114,15 @@ impl<'f, F: Family> Tracer<'f, F> {
         extrema(&self.runs, &self.builder.network.curves)
     }
 
-    /// Searches along the window's edges, a ten-millionth of its shorter extent inside.
-    fn edges(&mut self) -> Traced<(), F> {
-        let inset = Point::repeat(1e-7 * self.runs.scale);
-        let (low, high) = (self.runs.window.low + inset, self.runs.window.high - inset);
-        let corners = [low, Point::new(high.x, low.y), high, Point::new(low.x, high.y), low];
-        let parts = 2 * self.runs.options.cells;
-        let mut last = (low, self.runs.free(&low)?);
-        for side in corners.windows(2) {
-            for i in 1..=parts {
-                let place = side[0].lerp(&side[1], i as f64 / parts as f64);
-                let next = (place, self.runs.free(&place)?);
-                self.divide(&last, &next, DIVISIONS)?;
-                last = next;
-            }
-        }
-        Ok(())
-    }
-
     /// Scans a segment. It is first halved if the run in its middle is not what the runs at its
     /// ends suggest.
-    fn divide(&mut self, a: &Sampled<F>, b: &Sampled<F>, depth: u32) -> Traced<(), F> {
+    pub(super) fn divide(&mut self, a: &Sampled<F>, b: &Sampled<F>) -> Traced<(), F> {
+        /// How often a segment is halved, at most.
+        const DIVISIONS: u32 = 4;
+        self.divide_up_to(a, b, DIVISIONS)
+    }
+
+    fn divide_up_to(&mut self, a: &Sampled<F>, b: &Sampled<F>, depth: u32) -> Traced<(), F> {
         if depth == 0 {
             return self.scan([a.0, b.0], [a.1.label.clone(), b.1.label.clone()]);
         }
@@ -137,46 +131,41 @@ impl<'f, F: Family> Tracer<'f, F> {
         if is_expected(&a.1, &middle.1, &b.1) {
             return self.scan([a.0, b.0], [a.1.label.clone(), b.1.label.clone()]);
         }
-        self.divide(a, &middle, depth - 1)?;
-        self.divide(&middle, b, depth - 1)
+        self.divide_up_to(a, &middle, depth - 1)?;
+        self.divide_up_to(&middle, b, depth - 1)
     }
 
-    /// Searches on two circles around every new vertex that does not lie on the window's edge.
-    fn vertices(&mut self) -> Traced<(), F> {
-        while let Some(vertex) = self.builder.network.vertices.get(self.probed) {
-            let (point, kind) = (vertex.point, vertex.kind);
-            self.probed += 1;
-            if matches!(kind, VertexKind::WindowEdge | VertexKind::WindowCorner) {
-                continue;
-            }
+    /// Searches on two circles around the next new vertex, unless it lies on the window's edge.
+    /// Returns whether there was a new vertex.
+    pub(super) fn examine_vertex(&mut self) -> Traced<bool, F> {
+        let Some(vertex) = self.builder.network.vertices.get(self.probed) else {
+            return Ok(false);
+        };
+        let (point, kind) = (vertex.point, vertex.kind);
+        self.probed += 1;
+        if !matches!(kind, VertexKind::WindowEdge | VertexKind::WindowCorner) {
             for radius in CIRCLES {
                 self.circle(&point, radius * self.runs.scale)?;
             }
         }
-        Ok(())
+        Ok(true)
     }
 
-    /// Searches on a circle around every vertex with another one inside its circles. The circle
-    /// passes between the two, where it crosses curves from one to the other.
-    fn close_vertices(&mut self) -> Traced<(), F> {
-        let mut done = 0;
-        while done < self.builder.stops.len() {
-            let point = self.builder.stops[done].point;
-            let distances = self.builder.stops.iter().map(|stop| (stop.point - point).norm());
-            let nearest =
-                distances.filter(|&distance| distance > 0.0).fold(f64::INFINITY, f64::min);
-            done += 1;
-            if nearest < CIRCLES[0] * self.runs.scale {
-                self.circle(&point, 0.3 * nearest)?;
-                self.vertices()?;
-            }
+    /// Searches on a circle around a vertex with another one inside its circles. The circle passes
+    /// between the two, where it crosses curves from one to the other.
+    pub(super) fn search_beside(&mut self, vertex: usize) -> Traced<(), F> {
+        let point = self.builder.stops[vertex].point;
+        let distances = self.builder.stops.iter().map(|stop| (stop.point - point).norm());
+        let nearest = distances.filter(|&distance| distance > 0.0).fold(f64::INFINITY, f64::min);
+        if nearest < CIRCLES[0] * self.runs.scale {
+            self.circle(&point, 0.3 * nearest)?;
         }
         Ok(())
     }
 
     /// Solves again for inaccurate vertices, with the margins of all curves that end there. Two of
     /// these may meet at a large angle, which makes their crossing accurate.
-    fn polish(&mut self) -> Traced<(), F> {
+    pub(super) fn polish(&mut self) -> Traced<(), F> {
         for index in 0..self.builder.stops.len() {
             let stop = self.builder.stops[index];
             if stop.uncertainty <= SHORTEST * self.runs.scale {
@@ -233,40 +222,6 @@ impl<'f, F: Family> Tracer<'f, F> {
         self.walk(&places)
     }
 
-    /// Searches along the edges of the grid, and for islands between its places.
-    fn grid(&mut self) -> Traced<(), F> {
-        let cells = self.runs.options.cells;
-        let window = self.runs.window;
-        let cell = window.extent() / cells as f64;
-        let mut grid: Vec<Sampled<F>> = Vec::with_capacity(cells * cells);
-        for column in 0..cells {
-            for row in 0..cells {
-                let part = Point::new(column as f64 + 0.5, row as f64 + 0.5);
-                let point = window.low + cell.component_mul(&part);
-                grid.push((point, self.runs.free(&point)?));
-            }
-        }
-        for index in 0..grid.len() {
-            let (column, row) = (index / cells, index % cells);
-            let (here, run) = &grid[index];
-            for (inside, other) in
-                [(row + 1 < cells, index + 1), (column + 1 < cells, index + cells)]
-            {
-                if inside {
-                    let (there, next) = &grid[other];
-                    self.scan([*here, *there], [run.label.clone(), next.label.clone()])?;
-                    self.vertices()?;
-                }
-            }
-        }
-        for segment in islands(&self.runs, &grid, cells, &cell)? {
-            let labels = [self.runs.label(&segment[0])?, self.runs.label(&segment[1])?];
-            self.scan(segment, labels)?;
-            self.vertices()?;
-        }
-        Ok(())
-    }
-
     /// Scans the sides of a polygon.
     fn walk(&mut self, places: &[Point]) -> Traced<(), F> {
         let mut labels = Vec::with_capacity(places.len());
@@ -279,9 +234,6 @@ impl<'f, F: Family> Tracer<'f, F> {
         Ok(())
     }
 }
-
-/// How often a segment on the window's edge is halved, at most.
-const DIVISIONS: u32 = 4;
 
 /// Whether a run between two others is what they suggest: it has the same label, and margins near
 /// the mean of theirs.

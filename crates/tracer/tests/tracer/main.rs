@@ -1,11 +1,15 @@
 //! Traces and subdivisions with known answers.
 
+#[cfg(feature = "serde")]
+mod documents;
 mod every_change;
 mod extrema;
+mod following;
 mod guards;
 mod known_curves;
 mod leaving_minimum;
 mod random_circles;
 mod random_guards;
 mod subdivision;
+mod surveys;
 mod vertex_kinds;

@@ -1,8 +1,11 @@
 //! Vertices of known kinds. Each guard is a cubic in u, for u from −1/2 to 1/2. It fires when it
 //! falls through zero and, after it has fired, when it rises again.
 
-use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
-use stickslip_tracer::{HybridFamily, Point, Problem, TraceOptions, VertexKind, Window, trace};
+use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Margin, Options, Start, State};
+use stickslip_tracer::{
+    HybridFamily, Itinerary, Network, Point, Problem, SpecialPoint, TraceOptions, VertexKind,
+    Window, trace,
+};
 
 /// The coefficients of the cubic guard at every point.
 struct CubicGuards(fn(&Point) -> [f64; 4]);
@@ -50,16 +53,27 @@ impl Problem<1, 2> for CubicGuards {
     }
 }
 
-/// The vertices inside the window, without those at its edge, and the number of curves.
-fn vertices(cubic: fn(&Point) -> [f64; 4]) -> (Vec<(VertexKind, Point)>, usize) {
+/// The network of a cubic guard, with its kinds of vertices.
+fn network(cubic: fn(&Point) -> [f64; 4]) -> Network<Itinerary, Margin> {
     let options = Options { rtol: 1e-14, atol: 1e-14, max_step: 0.1, ..Options::default() };
     let family = HybridFamily { problem: CubicGuards(cubic), method: Dop853, options, end: 2.0 };
     let window = Window { low: Point::new(-0.1, -0.11), high: Point::new(0.12, 0.1) };
     let mut network = trace(&family, &window, &TraceOptions::default()).unwrap();
     assert_eq!(network.unresolved, []);
     network.name_vertices();
+    network
+}
+
+/// The vertices inside the window, without those at its edge, and the number of curves.
+fn vertices(cubic: fn(&Point) -> [f64; 4]) -> (Vec<(VertexKind, Point)>, usize) {
+    let network = network(cubic);
     let inside = network.vertices.iter().filter(|vertex| vertex.kind != VertexKind::WindowEdge);
     (inside.map(|vertex| (vertex.kind, vertex.point)).collect(), network.curves.len())
+}
+
+/// The names of the vertices inside the window.
+fn names(cubic: fn(&Point) -> [f64; 4]) -> Vec<SpecialPoint> {
+    network(cubic).special_points().into_iter().map(|(_, name)| name).collect()
 }
 
 /// Asserts that there is one vertex, at the origin, and `of` curves.
@@ -78,6 +92,7 @@ fn assert_single(
 fn a_minimum_that_leaves_through_the_end_is_a_graze_at_the_end() {
     let parabola = |p: &Point| [p.y + (0.5 + p.x).powi(2), -1.0 - 2.0 * p.x, 1.0, 0.0];
     assert_single(vertices(parabola), VertexKind::GrazeAtEnd, 3);
+    assert_eq!(names(parabola), [SpecialPoint::GrazeAtEnd]);
 }
 
 /// The guard y (1/2 + u)² + (1/2 − u)(x + 6 (u + 0.1)²). Its value at the end is y. Where y
@@ -86,13 +101,17 @@ fn a_minimum_that_leaves_through_the_end_is_a_graze_at_the_end() {
 fn a_minimum_and_an_end_of_one_phase_cross() {
     let cubic = |p: &Point| [0.25 * p.y + 0.5 * p.x + 0.03, p.y - p.x + 0.54, p.y + 1.8, -6.0];
     assert_single(vertices(cubic), VertexKind::Crossing, 4);
+    assert_eq!(names(cubic), [SpecialPoint::Crossing]);
 }
 
 /// The guard y − x u − 4u³. For x < 0 it has a minimum and a maximum. They merge at x = 0, and
 /// vanish there for y = 0.
 #[test]
 fn a_minimum_that_merges_with_a_maximum_is_degenerate() {
-    let (vertices, curves) = vertices(|p| [p.y, -p.x, 0.0, -4.0]);
+    let cubic = |p: &Point| [p.y, -p.x, 0.0, -4.0];
+    let names = names(cubic);
+    assert!(!names.is_empty() && names.iter().all(|name| *name == SpecialPoint::Cusp), "{names:?}");
+    let (vertices, curves) = vertices(cubic);
     assert_eq!(curves, 2);
     // Each branch may have an end of its own there, because margins are cubic in the distance. The
     // measured distance is 6e-8.

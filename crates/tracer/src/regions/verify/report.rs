@@ -3,10 +3,13 @@
 use crate::regions::finding::Euler;
 use crate::regions::locate::Location;
 use crate::regions::region::Side;
+use crate::regions::subdivision::Subdivision;
+use crate::regions::verify::judge::Judge;
 use crate::window::Point;
 
 /// A point at which a label was computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Checkpoint {
     /// The point.
     pub point: Point,
@@ -16,6 +19,8 @@ pub struct Checkpoint {
 
 /// Why a point was chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Origin {
     /// The sample point of a region.
     Sample,
@@ -34,6 +39,7 @@ pub enum Origin {
 
 /// A point at which the label is not that of its region.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Mismatch<Label> {
     /// The point.
     pub checkpoint: Checkpoint,
@@ -50,6 +56,7 @@ pub struct Mismatch<Label> {
 
 /// A point that could not be verified.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Unverified<Error> {
     /// The point.
     pub checkpoint: Checkpoint,
@@ -59,6 +66,8 @@ pub struct Unverified<Error> {
 
 /// Why a point could not be verified.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Reason<Error> {
     /// The point is closer to a curve than the tolerance, or in no region.
     Location(Location),
@@ -73,6 +82,7 @@ pub enum Reason<Error> {
 
 /// What a verification found.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Verification<Label, Error> {
     /// The counts of Euler's formula.
     pub euler: Euler,
@@ -93,6 +103,14 @@ pub struct Verification<Label, Error> {
     pub wrong_area_bound: f64,
 }
 
+impl<Label: Clone + Ord, Error> Verification<Label, Error> {
+    /// A verification that has not compared anything yet.
+    #[must_use]
+    pub fn untried<Margin>(plane: &Subdivision<Label, Margin>) -> Self {
+        Judge::new(plane, Vec::new()).finish()
+    }
+}
+
 impl<Label, Error> Verification<Label, Error> {
     /// Pairs of points in one region, the first with the label of the region and the second with
     /// another one. Between them passes a boundary, which
@@ -103,6 +121,15 @@ impl<Label, Error> Verification<Label, Error> {
             mismatch.agreeing.map(|agreeing| [agreeing, mismatch.checkpoint.point])
         };
         self.mismatches.iter().filter_map(bracket).collect()
+    }
+
+    /// The points whose label nobody knows: the run failed, or the point is in no region. Points
+    /// within the error of a curve are not among them, since their region is open for a reason.
+    pub fn failed(&self) -> impl Iterator<Item = &Unverified<Error>> {
+        let on_curve = |reason: &Reason<Error>| {
+            matches!(reason, Reason::Location(Location::OnBoundary { .. }))
+        };
+        self.unverified.iter().filter(move |open| !on_curve(&open.reason))
     }
 
     /// Whether there is no evidence against the subdivision.

@@ -1,0 +1,205 @@
+//! The stages of a search, in steps between which it can stop and go on.
+
+use crate::executor::Executor;
+use crate::family::Family;
+use crate::tracing::island;
+use crate::tracing::runs::{Sampled, Traced, checked};
+use crate::tracing::trace::Tracer;
+use crate::watch::{Progress, Watch};
+use crate::window::Point;
+
+/// What a search does next. New vertices are examined before every step but those along the edges.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+pub(crate) enum Stage {
+    /// Along the segments of the window's edges.
+    Edges { next: usize },
+    /// Along the edges of the grid.
+    Grid { next: usize },
+    /// For islands beside the places of the grid; `pending` are segments that have to be searched.
+    Islands { next: usize, pending: Vec<[Point; 2]> },
+    /// Between pairs of places.
+    Pairs { next: usize, pairs: Vec<[Point; 2]> },
+    /// Between vertices that are close together.
+    CloseVertices { next: usize },
+    /// For better places of inaccurate vertices.
+    Polish,
+    /// Nothing.
+    Done,
+}
+
+impl<F: Family> Tracer<'_, F> {
+    /// Goes on with the search to its end, or until `watch` cancels. Returns whether the end is
+    /// reached; if not, a later call goes on from there, to the same result.
+    ///
+    /// # Errors
+    /// A run fails, or a margin is not a number.
+    pub fn proceed<E: Executor<F>>(&mut self, executor: &E, watch: &Watch<'_>) -> Traced<bool, F> {
+        let mut left = self.steps_left();
+        watch.report(Progress::Begin { steps: left });
+        while self.stage != Stage::Done {
+            if watch.is_cancelled() {
+                return Ok(false);
+            }
+            if !self.sample(executor, watch)? {
+                return Ok(false);
+            }
+            let stage = std::mem::discriminant(&self.stage);
+            let along_edges = matches!(self.stage, Stage::Edges { .. });
+            if along_edges || !self.examine_vertex()? {
+                self.step()?;
+            }
+            let ahead = self.steps_left();
+            if std::mem::discriminant(&self.stage) != stage {
+                watch.report(Progress::Advance { steps: left });
+                watch.report(Progress::Begin { steps: ahead });
+                // The places around islands are those of the grid.
+                if !matches!(self.stage, Stage::Islands { .. }) {
+                    self.sampled.clear();
+                }
+            } else if ahead < left {
+                watch.report(Progress::Advance { steps: left - ahead });
+            } else {
+                watch.report(Progress::Begin { steps: ahead - left });
+            }
+            left = ahead;
+        }
+        self.before_look = None;
+        Ok(true)
+    }
+
+    /// The number of steps of the stage that are not done yet.
+    fn steps_left(&self) -> usize {
+        let cells = self.runs.options.cells;
+        match &self.stage {
+            Stage::Edges { next } => 8 * cells - next,
+            Stage::Grid { next } => 2 * cells * cells - next,
+            Stage::Islands { next, pending } => cells * cells - next + pending.len(),
+            Stage::Pairs { next, pairs } => pairs.len() - next,
+            Stage::CloseVertices { next } => self.builder.stops.len() - next,
+            Stage::Polish => 1,
+            Stage::Done => 0,
+        }
+    }
+
+    /// Computes the runs with which the stage begins, unless they are known. Returns `false` if
+    /// `watch` cancels.
+    fn sample<E: Executor<F>>(&mut self, executor: &E, watch: &Watch<'_>) -> Traced<bool, F> {
+        let samples =
+            matches!(self.stage, Stage::Edges { .. } | Stage::Grid { .. } | Stage::Islands { .. });
+        if !samples || !self.sampled.is_empty() {
+            return Ok(true);
+        }
+        let points = self.places();
+        let free = |portion: &[Point]| executor.free_runs(self.runs.family(), portion);
+        let Some(runs) = watch.in_portions(&points, free) else { return Ok(false) };
+        let runs = points.into_iter().zip(runs);
+        let checked = runs.map(|(point, run)| Ok((point, checked::<F>(&point, run)?)));
+        self.sampled = checked.collect::<Traced<_, F>>()?;
+        Ok(true)
+    }
+
+    /// The places of the stage's runs: along the window's edges, or in the middle of every cell.
+    fn places(&self) -> Vec<Point> {
+        let cells = self.runs.options.cells;
+        if matches!(self.stage, Stage::Edges { .. }) {
+            return self.edge_places();
+        }
+        let cell = self.cell();
+        let place = |index: usize| {
+            let (column, row) = (index / cells, index % cells);
+            let part = Point::new(column as f64 + 0.5, row as f64 + 0.5);
+            self.runs.window.low + cell.component_mul(&part)
+        };
+        (0..cells * cells).map(place).collect()
+    }
+
+    /// The extent of a cell of the grid.
+    fn cell(&self) -> Point {
+        self.runs.window.extent() / self.runs.options.cells as f64
+    }
+
+    /// The places at the ends of all segments, a ten-millionth of the window's shorter extent inside
+    /// its edges.
+    fn edge_places(&self) -> Vec<Point> {
+        let inset = Point::repeat(1e-7 * self.runs.scale);
+        let (low, high) = (self.runs.window.low + inset, self.runs.window.high - inset);
+        let corners = [low, Point::new(high.x, low.y), high, Point::new(low.x, high.y), low];
+        let parts = 2 * self.runs.options.cells;
+        let sides = corners.windows(2).flat_map(|side| {
+            (1..=parts).map(move |i| side[0].lerp(&side[1], i as f64 / parts as f64))
+        });
+        std::iter::once(low).chain(sides).collect()
+    }
+
+    /// Does one step of the stage, or goes on to the next stage.
+    fn step(&mut self) -> Traced<(), F> {
+        let cells = self.runs.options.cells;
+        self.stage = match std::mem::replace(&mut self.stage, Stage::Done) {
+            Stage::Edges { next } => {
+                if next == 0 {
+                    self.runs.count_free(self.sampled.len());
+                }
+                let [last, here] = [next, next + 1].map(|index| self.sampled[index].clone());
+                self.divide(&last, &here)?;
+                if next + 1 < 8 * cells {
+                    Stage::Edges { next: next + 1 }
+                } else {
+                    Stage::Grid { next: 0 }
+                }
+            }
+            Stage::Grid { next } => {
+                if next == 0 {
+                    self.runs.count_free(self.sampled.len());
+                }
+                let index = next / 2;
+                let (column, row) = (index / cells, index % cells);
+                let (inside, other) =
+                    [(row + 1 < cells, index + 1), (column + 1 < cells, index + cells)][next % 2];
+                if inside {
+                    let [(here, run), (there, other)]: [&Sampled<F>; 2] =
+                        [&self.sampled[index], &self.sampled[other]];
+                    let (segment, labels) =
+                        ([*here, *there], [run.label.clone(), other.label.clone()]);
+                    self.scan(segment, labels)?;
+                }
+                if next + 1 < 2 * cells * cells {
+                    Stage::Grid { next: next + 1 }
+                } else {
+                    Stage::Islands { next: 0, pending: Vec::new() }
+                }
+            }
+            Stage::Islands { next, mut pending } if !pending.is_empty() => {
+                self.search(pending.remove(0))?;
+                Stage::Islands { next, pending }
+            }
+            Stage::Islands { next, .. } if next < self.sampled.len() => {
+                let pending = island::beside(&self.runs, &self.sampled, cells, next, &self.cell())?;
+                Stage::Islands { next: next + 1, pending }
+            }
+            Stage::Pairs { next, pairs } if next < pairs.len() => {
+                self.search(pairs[next])?;
+                Stage::Pairs { next: next + 1, pairs }
+            }
+            Stage::Islands { .. } | Stage::Pairs { .. } => Stage::CloseVertices { next: 0 },
+            Stage::CloseVertices { next } if next < self.builder.stops.len() => {
+                self.search_beside(next)?;
+                Stage::CloseVertices { next: next + 1 }
+            }
+            Stage::CloseVertices { .. } => Stage::Polish,
+            Stage::Polish => {
+                self.polish()?;
+                Stage::Done
+            }
+            Stage::Done => Stage::Done,
+        };
+        Ok(())
+    }
+
+    /// Searches along a segment.
+    fn search(&mut self, segment: [Point; 2]) -> Traced<(), F> {
+        let labels = [self.runs.label(&segment[0])?, self.runs.label(&segment[1])?];
+        self.scan(segment, labels)
+    }
+}

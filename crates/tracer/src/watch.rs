@@ -1,0 +1,96 @@
+//! What a caller sees of a long computation, and how it cancels one.
+
+use crate::window::Point;
+
+/// What a computation reports while it runs, from any thread and in any order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Progress {
+    /// A stage of the computation begins.
+    Begin {
+        /// The number of steps that it takes.
+        steps: usize,
+    },
+    /// Steps of the stage are done.
+    Advance {
+        /// The number of steps since the last report.
+        steps: usize,
+    },
+}
+
+/// Receives the reports of a computation.
+pub type Report<'a> = &'a (dyn Fn(Progress) + Sync);
+
+/// A caller that watches a computation, and may cancel it.
+///
+/// A report, or a reference to a closure that takes [`Progress`], is a watch that never cancels.
+#[derive(Clone, Copy)]
+pub struct Watch<'a> {
+    report: Report<'a>,
+    cancelled: &'a (dyn Fn() -> bool + Sync),
+}
+
+impl Watch<'static> {
+    /// A watch that ignores all reports and never cancels.
+    pub const SILENT: Self = Self { report: &|_| {}, cancelled: &|| false };
+}
+
+impl<'a> Watch<'a> {
+    /// The number of points between two questions whether to go on.
+    const PORTION: usize = 256;
+
+    /// The same watch, which cancels when `cancelled` returns `true`; from then on it should always
+    /// do so. It is asked between tasks, which are short: one search along an edge of the grid,
+    /// around a vertex, or some hundred runs.
+    #[must_use]
+    pub fn cancelled_by(self, cancelled: &'a (dyn Fn() -> bool + Sync)) -> Self {
+        Self { cancelled, ..self }
+    }
+
+    /// Whether the computation should end.
+    #[must_use]
+    pub fn is_cancelled(&self) -> bool {
+        (self.cancelled)()
+    }
+
+    /// Reports progress.
+    pub fn report(&self, progress: Progress) {
+        (self.report)(progress);
+    }
+
+    /// Calls `compute` for one portion of `points` after the other, and reports each point as a
+    /// step. `None` if the watch cancels before the end.
+    pub fn in_portions<T>(
+        &self,
+        points: &[Point],
+        mut compute: impl FnMut(&[Point]) -> Vec<T>,
+    ) -> Option<Vec<T>> {
+        self.report(Progress::Begin { steps: points.len() });
+        let mut results = Vec::with_capacity(points.len());
+        for portion in points.chunks(Self::PORTION) {
+            if self.is_cancelled() {
+                return None;
+            }
+            results.extend(compute(portion));
+            self.report(Progress::Advance { steps: portion.len() });
+        }
+        Some(results)
+    }
+}
+
+impl<'a> From<Report<'a>> for Watch<'a> {
+    fn from(report: Report<'a>) -> Self {
+        Self { report, ..Watch::SILENT }
+    }
+}
+
+impl<'a, R: Fn(Progress) + Sync> From<&'a R> for Watch<'a> {
+    fn from(report: &'a R) -> Self {
+        Self { report, ..Watch::SILENT }
+    }
+}
+
+impl std::fmt::Debug for Watch<'_> {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.debug_struct("Watch").finish_non_exhaustive()
+    }
+}

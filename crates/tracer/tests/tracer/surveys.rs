@@ -1,0 +1,193 @@
+//! Surveys on several threads, cancelled anywhere, and resumed.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+
+use stickslip_tracer::{
+    AtlasOf, AtlasOptions, Executor, Family, FreeRun, FreeRunOf, LabelOf, Point, Progress,
+    Surveyor, TraceOptions, VerifyOptions, Watch, Window,
+};
+
+/// A circle, a cubic, and a small disc, whose margin is only listed beside it: the grid does not
+/// show it, but a verification does.
+pub struct Shapes {
+    /// The radius of a hole around (−0.6, 0.6) in which runs fail.
+    pub hole: f64,
+}
+
+pub const WINDOW: Window = Window { low: Point::new(-1.0, -1.0), high: Point::new(1.0, 1.0) };
+
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("a run in the hole")]
+pub struct InHole;
+
+impl Shapes {
+    fn values(point: &Point) -> [f64; 3] {
+        let disc = point - Point::new(0.5, -0.5);
+        [point.norm_squared() - 0.25, point.y - point.x.powi(3) - 0.1, disc.norm_squared() - 0.0064]
+    }
+}
+
+impl Family for Shapes {
+    type Label = Vec<bool>;
+    type Margin = usize;
+    type Error = InHole;
+
+    fn label(&self, point: &Point) -> Result<Vec<bool>, InHole> {
+        if (point - Point::new(-0.6, 0.6)).norm() < self.hole {
+            return Err(InHole);
+        }
+        Ok(Self::values(point).map(|value| value < 0.0).to_vec())
+    }
+
+    fn margin(&self, point: &Point, margin: &usize) -> Result<Option<f64>, InHole> {
+        Ok(Some(Self::values(point)[*margin]))
+    }
+
+    fn free_run(&self, point: &Point) -> Result<FreeRun<Vec<bool>, usize>, InHole> {
+        let values = Self::values(point).into_iter().enumerate();
+        let margins = values.filter(|&(index, value)| index < 2 || value < 0.002).collect();
+        Ok(FreeRun { label: self.label(point)?, margins })
+    }
+}
+
+pub fn options() -> AtlasOptions {
+    let trace = TraceOptions { cells: 4, ..TraceOptions::default() };
+    let verify = VerifyOptions { random_points: 2500, ..VerifyOptions::default() };
+    AtlasOptions { trace, verify, ..AtlasOptions::default() }
+}
+
+/// Asserts that two atlases have the same bits.
+pub fn assert_same(one: &AtlasOf<Shapes>, other: &AtlasOf<Shapes>) {
+    assert_eq!(one.plane.curves(), other.plane.curves());
+    assert_eq!(one.plane.vertices(), other.plane.vertices());
+    assert_eq!(one.plane.regions(), other.plane.regions());
+    assert_eq!(one.unresolved, other.unresolved);
+    assert_eq!(one.verification, other.verification);
+    assert_eq!(one.statistics, other.statistics);
+    assert_eq!(one.rounds, other.rounds);
+    assert_eq!(one.is_finished(), other.is_finished());
+}
+
+/// So many threads, each with every so manieth point.
+struct Threads(usize);
+
+impl Threads {
+    fn map<T: Send>(&self, points: &[Point], run: impl Fn(&Point) -> T + Sync) -> Vec<T> {
+        let mut results: Vec<Option<T>> = points.iter().map(|_| None).collect();
+        let size = points.len().div_ceil(self.0).max(1);
+        thread::scope(|scope| {
+            for (points, results) in points.chunks(size).zip(results.chunks_mut(size)) {
+                scope.spawn(|| {
+                    for (point, result) in points.iter().zip(results) {
+                        *result = Some(run(point));
+                    }
+                });
+            }
+        });
+        results.into_iter().flatten().collect()
+    }
+}
+
+impl<F> Executor<F> for Threads
+where
+    F: Family<Label: Send, Margin: Send, Error: Send> + Sync,
+{
+    fn free_runs(&self, family: &F, points: &[Point]) -> Vec<FreeRunOf<F>> {
+        self.map(points, |point| family.free_run(point))
+    }
+
+    fn labels(&self, family: &F, points: &[Point]) -> Vec<LabelOf<F>> {
+        self.map(points, |point| family.label(point))
+    }
+}
+
+#[test]
+fn threads_do_not_change_a_bit() {
+    let family = Shapes { hole: 0.0 };
+    let serial = Surveyor { options: options(), ..Surveyor::default() };
+    let atlas = serial.atlas(&family, &WINDOW).unwrap();
+    assert!(atlas.agrees(), "{:?}", atlas.verification);
+    let margins: Vec<usize> = atlas.plane.curves().iter().map(|curve| curve.margin).collect();
+    assert!(atlas.rounds > 1, "the disc is found by a second look: {margins:?}");
+    assert_eq!(atlas.plane.regions().len(), 5);
+    for threads in [1, 4] {
+        let options = options();
+        let parallel = Surveyor { options, executor: Threads(threads), watch: Watch::SILENT };
+        assert_same(&parallel.atlas(&family, &WINDOW).unwrap(), &atlas);
+    }
+}
+
+/// A survey is cancelled at each place at which it asks, and resumed.
+#[test]
+fn a_survey_cancelled_anywhere_goes_on_to_the_same_bits() {
+    let family = Shapes { hole: 0.0 };
+    let asked = AtomicUsize::new(0);
+    let count = || asked.fetch_add(1, Ordering::Relaxed) == usize::MAX;
+    let surveyor = Surveyor { options: options(), ..Surveyor::default() };
+    let counting = Surveyor { watch: Watch::SILENT.cancelled_by(&count), ..surveyor };
+    let whole = counting.atlas(&family, &WINDOW).unwrap();
+    let all = asked.load(Ordering::Relaxed);
+    assert!(all > 100, "{all}");
+    let mut curves = vec![0; whole.plane.curves().len() + 1];
+    for last in (0..all).step_by(3) {
+        let asked = AtomicUsize::new(0);
+        let cancel = || asked.fetch_add(1, Ordering::Relaxed) >= last;
+        let cancelled = Surveyor { watch: Watch::SILENT.cancelled_by(&cancel), ..surveyor };
+        let begun = cancelled.atlas(&family, &WINDOW).unwrap();
+        assert!(!begun.is_finished() && !begun.agrees(), "{last}");
+        assert_eq!(begun.sure_area(), 0.0, "{last}");
+        assert_eq!(begun.label(&Point::new(0.1, 0.0)), None, "{last}");
+        curves[begun.plane.curves().len()] += 1;
+        assert_same(&surveyor.resume(&family, begun).unwrap(), &whole);
+    }
+    // It was cancelled with nothing, with a part, and with the whole.
+    assert!(curves[0] > 0 && curves[whole.plane.curves().len()] > 0, "{curves:?}");
+    assert!(curves.iter().filter(|&&count| count > 0).count() > 2, "{curves:?}");
+}
+
+#[test]
+fn progress_tells_of_as_many_steps_as_it_announced() {
+    let (announced, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let report = |progress| {
+        let (counter, steps) = match progress {
+            Progress::Begin { steps } => (&announced, steps),
+            Progress::Advance { steps } => (&done, steps),
+        };
+        counter.fetch_add(steps, Ordering::Relaxed);
+    };
+    let watch = Watch::from(&report);
+    let surveyor = Surveyor { options: options(), watch, ..Surveyor::default() };
+    surveyor.atlas(&Shapes { hole: 0.0 }, &WINDOW).unwrap();
+    assert!(done.load(Ordering::Relaxed) > 2000);
+    assert_eq!(announced.into_inner(), done.into_inner());
+}
+
+/// The tracer does not come to the hole, but the verification does.
+#[test]
+fn runs_that_fail_speak_against_an_atlas() {
+    let family = Shapes { hole: 0.05 };
+    let surveyor = Surveyor { options: options(), ..Surveyor::default() };
+    let atlas = surveyor.atlas(&family, &WINDOW).unwrap();
+    assert!(atlas.unresolved.is_empty() && atlas.verification.agrees());
+    assert!(atlas.verification.failed().count() > 0);
+    assert!(!atlas.agrees());
+    // The region around the hole is in doubt, another one is not.
+    assert_eq!(atlas.label(&Point::new(-0.6, 0.5)), None);
+    assert_eq!(atlas.label(&Point::new(0.0, -0.1)), Some(&vec![true, true, false]));
+}
+
+/// Points on a curve, on the window's edge and outside.
+#[test]
+fn every_point_is_decided() {
+    let family = Shapes { hole: 0.0 };
+    let surveyor = Surveyor { options: options(), ..Surveyor::default() };
+    let atlas = surveyor.atlas(&family, &WINDOW).unwrap();
+    let on_circle = Point::new(0.3, 0.4);
+    assert_eq!(atlas.label(&on_circle), None);
+    for point in [on_circle, Point::new(-1.0, 0.3), Point::new(0.1, 0.0)] {
+        let decided = atlas.decide(&family, &point).unwrap();
+        assert_eq!(decided, Some(family.label(&point).unwrap()), "{point:?}");
+    }
+    assert_eq!(atlas.decide(&family, &Point::new(1.1, 0.0)).unwrap(), None);
+}
