@@ -17,7 +17,8 @@ pub const SILENT: Report<'static> = &|_| {};
 ///
 /// let plane = CollisionPlane::new((5.0, 8.0), (0.8, 1.2), 0.0)?;
 /// let surveyor = Surveyor::default();
-/// let parallel = Surveyor { executor: InParallel, ..surveyor };
+/// let Surveyor { options, watch, .. } = surveyor;
+/// let parallel = Surveyor { options, executor: InParallel, watch };
 /// let atlas = parallel.atlas(&plane.family(), &plane.window())?;
 /// assert!(atlas.agrees());
 /// let serial = surveyor.atlas(&plane.family(), &plane.window())?;

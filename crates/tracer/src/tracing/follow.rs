@@ -88,15 +88,15 @@ type WalkOf<F> = (Vec<Node>, End<<F as Family>::Margin>);
 /// let window = Window { low: Point::new(0.5, 0.5), high: Point::new(2.0, 0.8) };
 ///
 /// // The second bounce is at the time √(2x)(1 + 2y) = 2.4, and the ball falls from its top,
-/// // y²x, before. Where is that top at the height 0.3?
-/// let top = |point: &Point| point.y * point.y * point.x - 0.3;
+/// // y²x, before. Where is that top at the height 0.2?
+/// let top = |point: &Point| point.y * point.y * point.x - 0.2;
 /// let places = [Point::new(0.6, 0.55), Point::new(1.9, 0.75)];
 /// let trace = TraceOptions::default();
 /// let found = follow(&family, &window, &trace, &places, &[&top])?.ok_or("no boundary")?;
 /// let [zero] = found.zeros[..] else { panic!("one zero") };
-/// // y √(2x) = √0.6, so that √(2x) = 2.4 − 2√0.6.
-/// let root: f64 = 2.4 - 2.0 * 0.6_f64.sqrt();
-/// let exact = Point::new(0.5 * root * root, 0.6_f64.sqrt() / root);
+/// // y √(2x) = √0.4, so that √(2x) = 2.4 − 2√0.4.
+/// let root: f64 = 2.4 - 2.0 * 0.4_f64.sqrt();
+/// let exact = Point::new(0.5 * root * root, 0.4_f64.sqrt() / root);
 /// assert!((zero.point.ok_or("not located")? - exact).norm() < 1e-10);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
