@@ -187,3 +187,33 @@ fn only_the_last_phase_leaves_a_margin_at_the_end() {
     let phases: Vec<usize> = at_end.map(|miss| miss.margin.exits.len()).collect();
     assert_eq!((run.fired.len(), &phases[..]), (6, &[6][..]));
 }
+
+/// With little damping the limit falls faster than the spring over many half swings before the end
+/// of contact. The graze at the end belongs to the last of them alone, and its margin is smooth on
+/// both sides of the boundary, and where the least gap leaves through the end of contact.
+#[test]
+fn a_late_graze_has_one_margin() {
+    let contact = |kappa: f64, psi: f64| Contact::new(kappa, psi, 5.4e-5).unwrap();
+    // All is stick from the start, and at κ = 77.1977 the spring swings through nine half swings.
+    let near = exact::margins(&contact(77.2054, 1.1e-4)).unwrap().near_misses;
+    let grazes: Vec<_> = near
+        .iter()
+        .filter(|(which, value)| {
+            which.exits.is_empty() && matches!(which.place, Place::Minimum { .. }) && *value < 1.0
+        })
+        .collect();
+    let [(graze, _)] = grazes[..] else { panic!("{grazes:?}") };
+    let value = |kappa, psi| exact::margin(&contact(kappa, psi), graze).unwrap().unwrap();
+    let across: Vec<f64> =
+        (-4..=4).map(|i| value(77.197_696 * (1.0 + 1e-4 * f64::from(i)), 1.1e-4)).collect();
+    assert!(across[0] < 0.0 && across[8] > 0.0, "{across:?}");
+    for pair in across.windows(2) {
+        assert!((2.8e-3..2.9e-3).contains(&(pair[1] - pair[0])), "{across:?}");
+    }
+    // The least gap is at the end of contact for κψ = √a, which is ψ = 9.52e-5.
+    let along: Vec<f64> = (0..=40).map(|i| value(77.25, 8.5e-5 + 5e-7 * f64::from(i))).collect();
+    for triple in along.windows(3) {
+        let bend = triple[2] - 2.0 * triple[1] + triple[0];
+        assert!((-4e-8..-1.5e-8).contains(&bend), "{bend:e} {along:?}");
+    }
+}

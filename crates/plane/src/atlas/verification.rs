@@ -224,7 +224,7 @@ pub enum LabelError {
 /// # Errors
 /// [`LabelError`] says why the collision cannot be computed.
 pub(super) fn itinerary(plane: &CollisionPlane, point: &Point) -> Result<String, LabelError> {
-    Ok(Collider::default().collide(plane.contact(point)?)?.itinerary())
+    Ok(Collider::deciding().collide(plane.contact(point)?)?.itinerary())
 }
 
 /// κ and ψ of the collision at a traced point.

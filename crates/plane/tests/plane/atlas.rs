@@ -46,6 +46,16 @@ fn small_and_long_windows_are_right() {
     assert!(long.report.agrees, "{:?}", long.report.objection());
 }
 
+/// With little damping and small ψ: grazes just before the end of contact, and the place where one
+/// leaves through it, at κψ = √a.
+#[test]
+fn a_window_of_late_grazes_is_right() {
+    let window = Frame { damping: 5.4e-5, ..frame((77.0, 77.4), (8e-5, 1.2e-4)) };
+    let verified = traced(window);
+    assert!(verified.report.agrees, "{:?}", verified.report.objection());
+    assert!(verified.atlas.regions.regions().len() > 1);
+}
+
 #[test]
 fn a_tolerance_out_of_range_is_refused_with_the_range() {
     let frame = frame((18.0, 21.0), (0.55, 0.65));

@@ -102,16 +102,21 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         self.stops[index] = Stop { point: special.point, uncertainty: special.uncertainty };
         self.network.vertices[index].point = special.point;
         self.network.vertices[index].kind = special.kind;
-        for curve in &mut self.network.curves {
-            let Some([start, end]) = curve.ends else { continue };
-            let last = curve.nodes.len() - 1;
-            for (node, vertex) in [(0, start), (last, end)] {
+        for curve in 0..self.network.curves.len() {
+            let Some(ends) = self.network.curves[curve].ends else { continue };
+            if !ends.contains(&index) {
+                continue;
+            }
+            self.leave(curve);
+            let nodes = &mut self.network.curves[curve].nodes;
+            let last = nodes.len() - 1;
+            for (node, vertex) in [0, last].into_iter().zip(ends) {
                 if vertex == index {
-                    curve.nodes[node].point = special.point;
+                    nodes[node].point = special.point;
                 }
             }
+            self.enter(curve);
         }
-        self.rebuild_index();
     }
 
     /// Adds a curve. Of nodes that nearly coincide one is kept, preferably the end of the curve.
@@ -136,10 +141,8 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         }
         curve.nodes = nodes;
         let index = self.network.curves.len();
-        for piece in 0..curve.nodes.len() - 1 {
-            self.enter(index, piece, &Cubic::between(&curve.nodes[piece], &curve.nodes[piece + 1]));
-        }
         self.network.curves.push(curve);
+        self.enter(index);
         Some(index)
     }
 
@@ -190,12 +193,24 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         })
     }
 
-    /// Enters a piece into the index.
-    fn enter(&mut self, curve: usize, piece: usize, arc: &Cubic) {
-        let [columns, rows] = self.cell_range(&arc.bounds());
-        for column in columns[0]..=columns[1] {
-            for row in rows[0]..=rows[1] {
-                self.cells[column * CELLS + row].push((curve, piece));
+    /// Enters the pieces of a curve into the index.
+    fn enter(&mut self, curve: usize) {
+        self.each_cell(curve, |cell, piece| cell.push((curve, piece)));
+    }
+
+    /// Takes the pieces of a curve out of the index, before the curve changes.
+    fn leave(&mut self, curve: usize) {
+        self.each_cell(curve, |cell, _| cell.retain(|&(other, _)| other != curve));
+    }
+
+    /// Calls `f` with every cell that a piece of a curve may reach into, and the piece.
+    fn each_cell(&mut self, curve: usize, f: impl Fn(&mut Vec<(usize, usize)>, usize)) {
+        for piece in 0..self.network.curves[curve].nodes.len() - 1 {
+            let [columns, rows] = self.cell_range(&self.arc(curve, piece).bounds());
+            for column in columns[0]..=columns[1] {
+                for row in rows[0]..=rows[1] {
+                    f(&mut self.cells[column * CELLS + row], piece);
+                }
             }
         }
     }
@@ -231,13 +246,11 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
                 hits.push((curve, piece, theta));
             }
         }
-        if hits.is_empty() {
-            return;
-        }
         for (curve, piece, theta) in hits {
             let tangent = self.arc(curve, piece).tangent(theta);
             let here = Node { point, tangent };
             self.suspects.push(curve);
+            self.leave(curve);
             let own = &mut self.network.curves[curve];
             let after: Vec<Node> =
                 std::iter::once(here).chain(own.nodes[piece + 1..].iter().copied()).collect();
@@ -246,8 +259,10 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
             if let Some([start, end]) = own.ends {
                 own.ends = Some([start, vertex]);
                 let rest = Curve { nodes: after, ends: Some([vertex, end]), ..own.clone() };
-                self.suspects.push(self.network.curves.len());
+                let index = self.network.curves.len();
+                self.suspects.push(index);
                 self.network.curves.push(rest);
+                self.enter(index);
             } else {
                 // A closed curve stays whole and starts at the vertex.
                 let mut nodes = after;
@@ -255,8 +270,8 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
                 own.nodes = nodes;
                 own.ends = Some([vertex, vertex]);
             }
+            self.enter(curve);
         }
-        self.rebuild_index();
     }
 
     /// Removes curves.
@@ -266,16 +281,10 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
             index += 1;
             !removed.contains(&(index - 1))
         });
-        self.rebuild_index();
-    }
-
-    fn rebuild_index(&mut self) {
+        // All later curves have other indices now.
         self.cells.iter_mut().for_each(Vec::clear);
         for curve in 0..self.network.curves.len() {
-            for piece in 0..self.network.curves[curve].nodes.len() - 1 {
-                let arc = self.arc(curve, piece);
-                self.enter(curve, piece, &arc);
-            }
+            self.enter(curve);
         }
     }
 }

@@ -244,8 +244,9 @@ struct LateHalfSwing {
     k: u32,
     /// The peak or the last turn, where R rises and the gap D falls.
     first: Moment,
-    /// The end of the half swing.
-    zero: Moment,
+    /// A moment at which D rises again: the end of the half swing or of the contact, or just beyond.
+    /// There may be none as far as the motion is continued.
+    high: Option<Moment>,
 }
 
 impl LateHalfSwing {
@@ -260,7 +261,17 @@ impl LateHalfSwing {
             return None;
         }
         let gap = swing.gap(k, &swing.path.at(first));
-        (gap.turning() > 0.0 && gap.rate < 0.0).then_some(Self { k, first, zero })
+        if !(gap.turning() > 0.0 && gap.rate < 0.0) {
+            return None;
+        }
+        let rises = |&moment: &Moment| swing.gap(k, &swing.path.at(moment)).rate > 0.0;
+        // Where the limit falls faster than the spring up to the next peak, which is on the other
+        // side, D has no minimum: it is least on a later half swing of the same side.
+        let is_last = swing.moment_at_angle((f64::from(k) + 0.5) * PI) == Moment::END;
+        let beyond = Moment { root: -swing.path.beyond_end(), ..Moment::END };
+        let ends = [zero, Moment::END, beyond];
+        let high = ends[..if is_last { 3 } else { 1 }].iter().copied().find(rises);
+        (is_last || high.is_some()).then_some(Self { k, first, high })
     }
 
     /// (1 + D/A)² − 1 where the gap D is least.
@@ -268,14 +279,9 @@ impl LateHalfSwing {
     /// If the top of R is at the peak, this is 1/R² − 1. But where the top is close to the end of
     /// contact, R is no smooth function of the parameters. D is, since L falls to 0 at an even rate.
     fn margin<T: Trajectory>(&self, swing: &Swing<T>) -> Option<f64> {
-        /// How far, in the root coordinate, the motion is continued beyond the end of contact.
-        const BEYOND: f64 = 0.05;
-        let &Self { k, first, zero } = self;
+        let &Self { k, first, high } = self;
         let path = swing.path;
-        let rises = |&moment: &Moment| swing.gap(k, &path.at(moment)).rate > 0.0;
-        let beyond = Moment { root: -BEYOND, ..Moment::END };
-        let high = [zero, Moment::END, beyond].into_iter().find(rises)?;
-        let least = root_between(path, first, high, None, |at| {
+        let least = root_between(path, first, high?, None, |at| {
             let Gap { rate, acceleration, .. } = swing.gap(k, at);
             along_root(path, at, -rate, -acceleration, 0.0)
         });

@@ -185,6 +185,9 @@ pub trait Trajectory: Debug + Sized {
     /// The last two zeros of P, if P falls through 0 anywhere: where it falls, and where it rises
     /// again.
     fn turns(&self, spring: &Spring) -> Option<[Moment; 2]>;
+    /// How far beyond the end of contact, in the root coordinate, the motion is continued: there L
+    /// is negative and has passed its minimum, or this is as far as the expansion is good.
+    fn beyond_end(&self) -> f64;
     /// The moment at which both [`Self::turns`] meet, as κ is increased.
     fn split(&self) -> Moment;
 

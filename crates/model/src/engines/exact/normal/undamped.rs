@@ -234,6 +234,11 @@ impl Trajectory for Undamped {
             .map(|root| [Half::Compression, Half::Decompression].map(|half| Moment { half, root }))
     }
 
+    /// L is least at the end itself.
+    fn beyond_end(&self) -> f64 {
+        0.0
+    }
+
     fn split(&self) -> Moment {
         Moment { half: Half::Compression, root: MIDDLE_ROOT }
     }

@@ -343,6 +343,17 @@ impl Trajectory for Viscoelastic {
         })
     }
 
+    /// With V constant, L is least where U is 1/√3 of that at the end; where U vanishes, L̇ is
+    /// infinite, and from there on time would run back.
+    fn beyond_end(&self) -> f64 {
+        /// As far as the expansion is good.
+        const FARTHEST: f64 = 0.05;
+        /// The part of U that is lost, a little more than 1 − 1/√3.
+        const PART: f64 = 0.45;
+        let State { u, v, .. } = self.halves[1].nodes[0].state;
+        FARTHEST.min(PART * u / -v)
+    }
+
     fn split(&self) -> Moment {
         let extremes = self.extremes.get_or_init(|| Extremes::of(self));
         extremes.as_ref().map_or(Moment::START, |extremes| extremes.split(self))
