@@ -134,6 +134,23 @@ class Collision:
         return str(self._fields["itinerary"])
 
     @property
+    def start_margin(self) -> float | None:
+        """1 - the ratio of tangential force and limit at the start, above 0 for stick.
+
+        None where one of the two grows faster, and with the paper's law. With a history of force and
+        without damping, a particle code needs some 1/abs(start_margin) steps in contact to tell how
+        it starts.
+        """
+        margin = self._fields.get("start_margin")
+        return None if margin is None else float(margin)
+
+    @property
+    def start_layer(self) -> float | None:
+        """How badly the start is conditioned: a number of first overlaps; None if it is not."""
+        layer = self._fields.get("start_layer")
+        return None if layer is None else float(layer)
+
+    @property
     def switch_count(self) -> int:
         """Number of switches between slip and stick."""
         return len(self._fields["switches"])

@@ -48,6 +48,18 @@ def test_arrays_and_single_collisions_agree() -> None:
     assert many.itinerary[0].startswith("-")
 
 
+def test_starts_that_are_badly_conditioned_are_told() -> None:
+    force = "granular/hertz/tsuji/mindlin/force"
+    margin = stickslip.collide(2.0, 0.745, law=force).start_margin
+    assert margin is not None and abs(margin - 1 / 150) < 1e-14
+    overturned = stickslip.collide(
+        3.0, 0.5, 0.3, law="granular/hertz/tsuji/mindlin", tangential_damping=4.0
+    )
+    assert overturned.start_layer is not None and abs(overturned.start_layer - 81.0) < 1e-9
+    plain = stickslip.collide(2.0, 0.745)
+    assert plain.start_margin is None and plain.start_layer is None
+
+
 def test_laws_have_names() -> None:
     named = stickslip.laws()["yade/FrictPhys_CundallStrack"]
     assert named.code == "YADE" and named.equations.startswith("F = x;")

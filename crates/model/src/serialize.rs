@@ -67,7 +67,7 @@ impl Serialize for Side {
 /// The contact as `parameters`, and the results, computed ones included.
 impl Serialize for Collision {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut object = serializer.serialize_struct("Collision", 11)?;
+        let mut object = serializer.serialize_struct("Collision", 12)?;
         object.serialize_field("parameters", &self.contact)?;
         object.serialize_field("eps_n", &self.eps_n)?;
         object.serialize_field("eps_t", &self.eps_t())?;
@@ -79,6 +79,10 @@ impl Serialize for Collision {
         match self.contact.start_layer() {
             Some(layer) => object.serialize_field("start_layer", &layer)?,
             None => object.skip_field("start_layer")?,
+        }
+        match self.contact.start_margin() {
+            Some(margin) => object.serialize_field("start_margin", &margin)?,
+            None => object.skip_field("start_margin")?,
         }
         object.serialize_field("switches", &self.switches[..])?;
         object.serialize_field("energy", &self.energy)?;

@@ -82,9 +82,17 @@ pub fn describe(engine: &Engine) -> String {
 /// # Errors
 /// `out` cannot be written.
 pub fn law(out: &mut dyn Write, contact: &Contact) -> io::Result<()> {
+    /// A start whose tangential force differs by less than this part from its limit is worth a line.
+    const NEAR: f64 = 0.01;
     if !contact.obeys_paper() {
         writeln!(out, "Law {}", contact.law().equations())?;
         writeln!(out, "Tangential damping b = {:?}", contact.tangential_damping())?;
+    }
+    if let Some(margin) = contact.start_margin().filter(|margin| margin.abs() < NEAR) {
+        writeln!(
+            out,
+            "Near the border of stick and slip at the start: 1 - force/limit = {margin:.3e}"
+        )?;
     }
     if let Some(layer) = contact.start_layer() {
         writeln!(

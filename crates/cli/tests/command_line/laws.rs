@@ -50,6 +50,22 @@ fn a_collision_is_the_same_by_name_by_file_and_in_a_batch() {
 }
 
 #[test]
+fn a_start_near_its_border_is_told() {
+    let at = |psi: &str| {
+        format!("collide --kappa 2 --psi {psi} --law granular/hertz/tsuji/mindlin/force")
+    };
+    let near = stickslip(&at("0.7499"));
+    assert!(near.stdout.contains("Near the border of stick and slip"), "{}", near.stdout);
+    let found = stickslip(&format!("{} --format json", at("0.7499")));
+    let found: Value = serde_json::from_str(&found.stdout).unwrap();
+    let margin = found["start_margin"].as_f64().unwrap();
+    assert!((margin - (1.0 - 4.0 / 3.0 * 0.7499)).abs() < 1e-14, "{margin}");
+    assert!(!stickslip(&at("0.5")).stdout.contains("Near the border"));
+    let paper = stickslip("collide --kappa 2 --psi 0.5 --format json");
+    assert!(!paper.stdout.contains("start_margin"));
+}
+
+#[test]
 fn collisions_are_those_of_lammps() {
     let directory = Workspace::new();
     for case in reference("lammps_laws.json", "cases").iter().step_by(20) {

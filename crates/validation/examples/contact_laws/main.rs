@@ -3,8 +3,9 @@
 //!
 //! For each law, contacts are log-uniform in κ from 0.05 to 400, ψ from 0.01 to 3 and the damping
 //! from 0.01 to 2 (or to 0.95 of that with which contacts never end); every second has a tangential
-//! damping from 0 to 5. A contact on which two opinions differ in the number of switches is looked
-//! into: the distance is the least relative change of ψ or κ that changes the integrator's number.
+//! damping from 0 to 5. Where plain time has other switches, the least relative change of κ, ψ or a
+//! damping is searched for with which the integrator has them too: the distance from the boundary.
+//! Contacts farther from it than 1e-6 are printed.
 //!
 //! Run with `cargo run --release -p validation --example contact_laws -- [CONTACTS]`, the number for
 //! each law and both opinions; 1000 without an argument.
@@ -93,6 +94,8 @@ struct Tally {
     counts: [usize; 3],
     largest: [f64; 3],
     worst: [Option<Contact>; 3],
+    /// How many contacts with other switches in plain time are up to each of [`DISTANCES`] from them.
+    near: [usize; DISTANCES.len()],
     failure: Option<String>,
 }
 
@@ -104,6 +107,7 @@ impl Default for Tally {
             counts: [0; 3],
             largest: [0.0; 3],
             worst: [None; 3],
+            near: [0; DISTANCES.len()],
             failure: None,
         }
     }
@@ -114,6 +118,9 @@ impl Tally {
         self.contacts += other.contacts;
         self.failed += other.failed;
         self.failure = self.failure.or(other.failure);
+        for (own, other) in self.near.iter_mut().zip(other.near) {
+            *own += other;
+        }
         for i in 0..3 {
             self.counts[i] += other.counts[i];
             if other.largest[i] > self.largest[i] {
@@ -130,6 +137,12 @@ impl std::fmt::Display for Tally {
         write!(f, "{} of {}", self.failed, self.contacts)?;
         for (count, largest) in self.counts.iter().zip(self.largest) {
             write!(f, " | {count}, {largest:.1e}")?;
+        }
+        if self.counts[2] > 0 {
+            write!(f, "\n      in plain time, with the same switches within")?;
+            for (distance, near) in DISTANCES.iter().zip(self.near) {
+                write!(f, " {distance:e}: {near}")?;
+            }
         }
         if let Some(failure) = &self.failure {
             write!(f, "\n      {failure}")?;
@@ -185,6 +198,35 @@ fn longer(phases: impl Iterator<Item = (char, f64)>, end: f64) -> String {
     itinerary
 }
 
+/// Relative changes of a parameter by which a contact may have other switches.
+const DISTANCES: [f64; 5] = [1e-10, 1e-8, 1e-6, 1e-4, 1e-2];
+
+/// The least relative change of κ, ψ or a damping with which the integrator finds these phases; up to
+/// a factor of √10, and at most the last of [`DISTANCES`].
+fn distance(contact: &Contact, phases: &str) -> Option<f64> {
+    let changes = (0..=16).map(|half| 1e-10 * 10.0_f64.powf(0.5 * f64::from(half)));
+    changes.into_iter().find(|change| {
+        (0..8).any(|which| {
+            let part = |parameter: usize| {
+                let sign = if which % 2 == 0 { 1.0 } else { -1.0 };
+                if which / 2 == parameter { 1.0 + sign * change } else { 1.0 }
+            };
+            let beside = Contact::new(
+                contact.kappa() * part(0),
+                contact.psi() * part(1),
+                contact.damping() * part(2),
+            )
+            .and_then(|beside| {
+                beside.with_law(contact.law(), contact.tangential_damping() * part(3))
+            });
+            beside.is_ok_and(|beside| {
+                let found = Engine::Dop853(Tolerances::DOP853).collide(beside);
+                found.is_ok_and(|(collision, _)| lasting(&collision) == phases)
+            })
+        })
+    })
+}
+
 /// The opinions on one contact.
 fn compared(law: Law, seed: u64) -> Tally {
     let contact = random(law, seed);
@@ -214,10 +256,16 @@ fn compared(law: Law, seed: u64) -> Tally {
         let difference = (eps_t - collision.eps_t()).abs();
         if itinerary != lasting(&collision) {
             tally.counts[i] += 1;
-            if std::env::var_os("VERBOSE").is_some() {
+            let distance = distance(&contact, &itinerary);
+            if i == 2 {
+                let reached = |limit: f64| distance.is_some_and(|it| it <= limit * 1.1);
+                tally.near = DISTANCES.map(|limit| usize::from(reached(limit)));
+            }
+            if distance.is_none_or(|distance| distance > 1.1e-6) {
                 println!(
-                    "{i} {itinerary} for {} Δ {difference:.1e} κ {:?} ψ {:?} a {:?} b {:?}",
+                    "{i} {itinerary} for {} at {distance:?}, start {:?} Δ {difference:.1e} κ {:?} ψ {:?} a {:?} b {:?}",
                     lasting(&collision),
+                    contact.start_margin(),
                     contact.kappa(),
                     contact.psi(),
                     contact.damping(),
