@@ -12,6 +12,7 @@
 //! - [`verify`] compares the labels of the regions with runs at random points.
 //! - An [`Atlas`] does all of this, looks again where runs disagree, and knows which regions are in
 //!   doubt.
+//! - A [`Stack`] holds atlases over a third parameter, and locates the changes between them.
 //!
 //! In this example the system is a bouncing ball; its height and its restitution are the
 //! parameters. The label of a region lists the guards that fire in its runs:
@@ -85,6 +86,7 @@
 //! - `tracing`: how boundaries are found and followed
 //! - `regions`: the regions between the curves
 //! - `atlas`: regions that are traced, verified, and looked at again
+//! - `stack`: atlases over a third parameter, and where their structure changes
 
 mod atlas;
 mod cubic;
@@ -93,6 +95,7 @@ mod family;
 mod hybrid;
 mod options;
 mod regions;
+mod stack;
 mod tracing;
 mod window;
 
@@ -111,6 +114,9 @@ pub use regions::verify::report::{
     Checkpoint, Mismatch, Origin, Reason, Unverified, Verification, VerifyError,
 };
 pub use regions::verify::{VerifyOptions, verify, verify_with};
+pub use stack::change::{Change, Effect};
+pub use stack::meeting::{Meeting, MeetingKind};
+pub use stack::{Layer, Stack, StackError, StackOf, StackOptions};
 pub use tracing::branch::Branch;
 pub use tracing::branch::end::{End, Special, Stop};
 pub use tracing::extrema::Extremum;

@@ -7,5 +7,6 @@ mod known_curves;
 mod leaving_minimum;
 mod random_circles;
 mod random_guards;
+mod stack;
 mod subdivision;
 mod vertex_kinds;
