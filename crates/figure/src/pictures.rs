@@ -2,7 +2,7 @@
 //!
 //! Start reading in [`course`] and [`collision`]. Then [`gallery`] (many collisions), [`chart`]
 //! (series of points), [`map`] and [`grid`] (quantities on a plane), [`atlas`] (boundaries on a
-//! plane).
+//! plane), [`stack`] (atlases over the damping).
 
 pub mod atlas;
 pub mod chart;
@@ -11,3 +11,4 @@ pub mod course;
 pub mod gallery;
 pub mod grid;
 pub mod map;
+pub mod stack;
