@@ -195,7 +195,7 @@ fn follow(
     let changes = stack.changes.iter().map(|change| DampingChange {
         between: change.between,
         meeting: change.meeting.map(|meeting| {
-            let [kappa, psi] = sample.parameters(&meeting.point);
+            let [kappa, psi] = sample.sheet().snapped(&meeting.point);
             DampingMeeting { kind: name(meeting.kind), damping: meeting.value, kappa, psi }
         }),
         doubtful: change.doubtful,

@@ -13,7 +13,8 @@ pub struct Change<Label> {
     /// The codimension-2 points that meet between these values; `None` if no conditions could be
     /// solved that explain the change.
     pub meeting: Option<Meeting>,
-    /// Whether atlases between the two values are in doubt, so that there may be several changes.
+    /// Whether there may be several changes: atlases between the two values are in doubt, or have
+    /// other structures at values that are too close to each other.
     pub doubtful: bool,
     /// What becomes of the regions as the third parameter grows. If there is nothing, only
     /// neighbours change.
@@ -47,6 +48,7 @@ impl<Label: Clone + Ord> Change<Label> {
     /// again between the two values is not mentioned.
     pub(super) fn join(&mut self, later: Self) {
         self.between[1] = later.between[1];
+        self.meeting = self.meeting.or(later.meeting);
         self.doubtful = true;
         for effect in later.effects {
             let undone = match &effect {

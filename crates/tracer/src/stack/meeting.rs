@@ -172,6 +172,8 @@ pub(super) fn solve<F: Family>(
             let inside = at.xy().iter().all(|part| (-1e-6..=1.0 + 1e-6).contains(part))
                 && at.z > 0.0
                 && at.z < 1.0;
+            // On the edge of the window, the place is beside it by rounding.
+            at = at.map(|part| part.clamp(0.0, 1.0));
             let (value, point) = (within.value(&at), within.point(&at));
             return inside.then_some(Meeting { kind, value, point });
         }

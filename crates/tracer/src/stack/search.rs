@@ -194,15 +194,15 @@ impl<'a, F: Family, At: Fn(f64) -> F> Search<'a, F, At> {
     }
 
     /// The changes found, in order, with the structure behind each. Brackets that almost touch each
-    /// other are one, in doubt: what changes there changes in steps that are too small to follow.
+    /// other are one, in doubt, unless both are solved for: there the structure changes in steps that
+    /// are too small to tell one change from several.
     pub fn joined(self) -> Vec<Found<F>> {
         /// The greatest gap between brackets that are joined, in widths.
         const GAP: f64 = 10.0;
         let mut joined: Vec<Found<F>> = Vec::new();
         for (change, behind) in self.found {
             if let Some((last, structure)) = joined.last_mut()
-                && last.meeting.is_none()
-                && change.meeting.is_none()
+                && (last.meeting.is_none() || change.meeting.is_none())
                 && change.between[0] - last.between[1]
                     <= GAP * self.options.width * change.between[1].abs()
             {
