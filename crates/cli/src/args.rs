@@ -20,6 +20,7 @@ mod map;
 mod method;
 mod reproduce;
 mod shared;
+mod stack;
 mod table;
 mod timestep;
 mod trace;
@@ -45,6 +46,7 @@ pub use map::MapArguments;
 pub use method::{Method, MethodArguments};
 pub use reproduce::{AuditFormat, ReproduceArguments};
 pub use shared::{CollisionArguments, Format};
+pub use stack::StackArguments;
 pub use table::TableArguments;
 pub use timestep::TimestepArguments;
 pub use trace::TraceArguments;
@@ -80,6 +82,9 @@ pub enum Command {
     /// Trace every boundary in a window on which the switches change
     #[command(long_about = trace::ABOUT, after_long_help = trace::EXAMPLES)]
     Trace(TraceArguments),
+    /// Trace atlases at several dampings, and find where regions are born and die between them
+    #[command(long_about = stack::ABOUT, after_long_help = stack::EXAMPLES)]
+    Stack(StackArguments),
     /// Look up the switches of collisions in an atlas
     #[command(long_about = locate::ABOUT, after_long_help = locate::EXAMPLES)]
     Locate(LocateArguments),

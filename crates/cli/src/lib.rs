@@ -32,8 +32,8 @@ use args::{Arguments, Command};
 pub use error::Failure;
 use output::console::say;
 use plan::{
-    CollidePlan, FitPlan, ImpactPlan, JoinPlan, LocatePlan, MapPlan, ReproducePlan, StudyPlan,
-    TablePlan, TimestepPlan, TracePlan,
+    CollidePlan, FitPlan, ImpactPlan, JoinPlan, LocatePlan, MapPlan, ReproducePlan, StackPlan,
+    StudyPlan, TablePlan, TimestepPlan, TracePlan,
 };
 use version::NAME;
 
@@ -101,6 +101,7 @@ fn carry_out(arguments: &Arguments) -> Result<(), Failure> {
         Command::Map(arguments) => commands::map::run(&MapPlan::new(arguments)?),
         Command::Join(arguments) => commands::join::run(&JoinPlan::new(arguments)?),
         Command::Trace(arguments) => commands::trace::run(&TracePlan::new(arguments)?),
+        Command::Stack(arguments) => commands::stack::run(&StackPlan::new(arguments)?),
         Command::Locate(arguments) => commands::locate::run(&LocatePlan::new(arguments)?),
         Command::Reproduce(arguments) => match ReproducePlan::new(arguments) {
             ReproducePlan::Page(plan) => commands::reproduce::run(&plan),

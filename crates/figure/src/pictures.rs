@@ -2,7 +2,7 @@
 //!
 //! Start reading in [`course`] and [`collision`]. Then [`gallery`] (many collisions), [`chart`]
 //! (series of points), [`map`] and [`grid`] (quantities on a plane), [`atlas`] (boundaries on a
-//! plane), and [`family`] (an atlas of any family).
+//! plane), [`family`] (an atlas of any family), and [`stack`] (atlases over the damping).
 
 pub mod atlas;
 pub mod chart;
@@ -13,3 +13,4 @@ pub mod gallery;
 pub mod grid;
 pub mod map;
 mod regions;
+pub mod stack;

@@ -27,6 +27,7 @@ mod verification;
 
 pub use crate::sheet::{ToleranceRange, TooNarrow};
 pub use boundary::BoundaryKind;
+pub(crate) use boundary::itinerary;
 #[cfg(feature = "serde")]
 pub use document::{
     BoundaryEnd, BoundaryFields, Document, DocumentError, ExtremalParameter, ExtremumFields,

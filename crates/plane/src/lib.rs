@@ -18,6 +18,7 @@
 //! - [`tile`] and [`sweep`]: the results of a grid, and how they are computed
 //! - [`progress`]: reports of how far a long computation has come, cancellation and threads
 //! - [`atlas`]: boundaries and regions, traced and verified
+//! - [`mod@stack`]: atlases over the damping, and what changes between them
 //! - [`gaining`]: where |ε_t| is above 1
 //!
 //! ```
@@ -46,6 +47,7 @@ pub mod oblique;
 pub mod progress;
 pub mod range;
 pub mod sheet;
+pub mod stack;
 pub mod sweep;
 pub mod tile;
 

@@ -14,6 +14,7 @@
 //!   along it.
 //! - An [`Atlas`] has all of this, and knows which regions are in doubt. A [`Surveyor`] makes it, on
 //!   the threads of the caller, and looks again where runs disagree.
+//! - A [`Stack`] holds atlases over a third parameter, and locates the changes between them.
 //!
 //! In this example the system is a bouncing ball; its height and its restitution are the
 //! parameters. The label of a region lists the guards that fire in its runs:
@@ -90,6 +91,7 @@
 //! - `survey`: tracing and verifying in turn, until nothing is missing
 //! - `atlas`: the result, with all that speaks against it
 //! - `document`: atlases of any family, written and read back (feature `serde`)
+//! - `stack`: atlases over a third parameter, and where their structure changes
 
 mod atlas;
 mod cubic;
@@ -101,6 +103,7 @@ mod family;
 mod hybrid;
 mod options;
 mod regions;
+mod stack;
 mod survey;
 mod tracing;
 mod watch;
@@ -124,6 +127,9 @@ pub use regions::verify::report::{
     Checkpoint, Mismatch, Origin, Reason, Unverified, Verification, VerifyError,
 };
 pub use regions::verify::{VerifyOptions, verify, verify_unless_cancelled, verify_with};
+pub use stack::change::{Change, Effect};
+pub use stack::meeting::{Meeting, MeetingKind};
+pub use stack::{Layer, Stack, StackError, StackOf, StackOptions};
 pub use survey::{Found, Survey, Surveyor};
 pub use tracing::branch::Branch;
 pub use tracing::branch::end::{End, Special, Stop};

@@ -4,13 +4,14 @@ use std::process::Command;
 
 use crate::{Workspace, stickslip};
 
-const COMMANDS: [&str; 15] = [
+const COMMANDS: [&str; 16] = [
     "collide",
     "impact",
     "laws",
     "map",
     "join",
     "trace",
+    "stack",
     "locate",
     "reproduce",
     "asymptote",

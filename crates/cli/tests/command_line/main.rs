@@ -33,6 +33,7 @@ mod parts_interrupted;
 mod pictures;
 
 mod reproduce;
+mod stack;
 #[cfg(unix)]
 mod streams;
 mod table;

@@ -4,7 +4,7 @@ use std::process::Command;
 
 use crate::{Workspace, stickslip};
 
-const PAGES: [&str; 16] = [
+const PAGES: [&str; 17] = [
     "stickslip-asymptote.1",
     "stickslip-collide.1",
     "stickslip-completions.1",
@@ -17,6 +17,7 @@ const PAGES: [&str; 16] = [
     "stickslip-man.1",
     "stickslip-map.1",
     "stickslip-reproduce.1",
+    "stickslip-stack.1",
     "stickslip-table.1",
     "stickslip-timestep.1",
     "stickslip-trace.1",

@@ -28,7 +28,7 @@ const LINE: f64 = 18.0;
 const KEY: f64 = 28.0;
 
 /// All kinds of boundaries in the order of the legend, with their names.
-const KINDS: [(BoundaryKind, &str, &str); 5] = [
+pub(super) const KINDS: [(BoundaryKind, &str, &str); 5] = [
     (BoundaryKind::EndOfContact, "end-of-contact", "switch at the end of contact"),
     (BoundaryKind::StickGraze, "stick-graze", "graze while sticking"),
     (BoundaryKind::SlipGraze, "slip-graze", "graze while sliding"),

@@ -41,7 +41,7 @@ impl BoundaryKind {
 }
 
 /// The itinerary of a collision in which `guards` fired: one character per phase.
-pub(super) fn itinerary(contact: &Contact, guards: &[usize]) -> String {
+pub(crate) fn itinerary(contact: &Contact, guards: &[usize]) -> String {
     if !contact.obeys_paper() {
         return general::itinerary(contact, guards);
     }

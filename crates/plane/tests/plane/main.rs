@@ -8,5 +8,6 @@ mod gaining;
 mod geojson;
 mod grid;
 mod laws;
+mod stack;
 mod sweep;
 mod windows;

@@ -47,7 +47,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
     pub fn of(stops: Vec<Stop>, network: Network<Label, Margin>, suspects: Vec<usize>) -> Self {
         let mut builder = Self { stops, suspects, ..Self::new(network.window) };
         builder.network = network;
-        builder.rebuild_index();
+        builder.enter_all();
         builder
     }
 
@@ -283,6 +283,10 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         });
         // All later curves have other indices now.
         self.cells.iter_mut().for_each(Vec::clear);
+        self.enter_all();
+    }
+
+    fn enter_all(&mut self) {
         for curve in 0..self.network.curves.len() {
             self.enter(curve);
         }

@@ -1,0 +1,71 @@
+//! The options of `stack`.
+
+use std::path::PathBuf;
+
+use stickslip_plane::Range;
+
+use super::shared;
+use crate::input::parameter::Parameter;
+use crate::input::{number, range};
+use crate::output::picture::PictureFile;
+
+/// Options of `stack`.
+#[derive(Debug, clap::Args)]
+pub struct StackArguments {
+    /// Interval of the scaled stiffness κ = k_t/(α m β^⅘ g_n^⅖), above 0
+    #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| range::parse_for(Parameter::Kappa, text))]
+    pub kappa: Range,
+
+    /// Interval of the reduced impact ratio ψ = (g_t/g_n)·α/μ, above 0
+    #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
+    #[arg(value_parser = |text: &str| range::parse_for(Parameter::Psi, text))]
+    pub psi: Range,
+
+    /// Scaled dampings a = A β^⅖ g_n^⅕ of the atlases, in ascending order: two above 0 or more, and
+    /// 0 before them or not
+    #[arg(long, value_name = "A,B,…", help_heading = "Window", allow_hyphen_values = true)]
+    #[arg(value_delimiter = ',', default_value = "0,1e-6,0.1,0.2,0.5,1,1.5,2")]
+    #[arg(value_parser = |text: &str| Parameter::Damping.parse(text))]
+    pub damping: Vec<f64>,
+
+    /// Accuracy of boundaries in ψ, also between their points; from 1e-11·(1 + HI) to 1e-9·(1 +
+    /// HI) with HI of ψ, and less in narrow windows [default: 1e-10·(1 + HI)]
+    #[arg(long, value_name = "T", help_heading = "Window", allow_hyphen_values = true)]
+    #[arg(value_parser = number::parse_option)]
+    pub tolerance: Option<f64>,
+
+    /// JSON file for the atlases' regions and the changes between them
+    #[arg(long, value_name = "STACK.json", help_heading = "Output")]
+    pub out: PathBuf,
+
+    /// Picture of the atlases, and of the births and deaths of regions over the damping
+    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
+    #[arg(value_parser = shared::picture())]
+    pub plot: Option<PictureFile>,
+
+    /// Threads for the atlases; 1 to 1024 [default: one for each core]; results do not depend on
+    /// it
+    #[arg(long, value_name = "N", help_heading = "Output", allow_hyphen_values = true)]
+    #[arg(value_parser = shared::threads())]
+    pub threads: Option<u16>,
+}
+
+/// What `stack --help` says first.
+pub const ABOUT: &str = "\
+Trace the atlases of a window at several dampings, and find the dampings between them at which \
+regions are born, split, merge and die.
+
+Where a special point meets another one or the edge of the window, or where a boundary touches \
+another one or the edge, or shrinks to a point, the damping is solved for. A change for which \
+nothing can be solved is enclosed between two dampings. Without damping all regions are others, so \
+that an atlas at 0 stands beside the others. If something speaks against an atlas, or if changes \
+are in doubt, the result is written and says so, and the exit code is 1.";
+
+/// What `stack --help` says last.
+pub const EXAMPLES: &str = "\
+Examples:
+  stickslip stack --kappa 0.5:30 --psi 0.05:2 --out stack.json --plot stack.svg
+  stickslip stack --kappa 5:8 --psi 0.5:1.2 --damping 0.05,0.2,0.4 --out stack.json
+
+Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

@@ -1,0 +1,98 @@
+//! Atlases over the damping.
+
+use std::collections::BTreeMap;
+
+use stickslip_model::exact;
+use stickslip_model::{Contact, InvalidParameter};
+use stickslip_plane::progress::SILENT;
+use stickslip_plane::stack::{DampingStack, DampingStackError, stack};
+
+use crate::windows::frame;
+
+fn made(dampings: &[f64]) -> Result<DampingStack, DampingStackError> {
+    let frame = frame((5.0, 20.0), (0.2, 2.5));
+    stack(frame, dampings, frame.tolerances().usual, SILENT)
+}
+
+/// Between two atlases that were traced directly, the number of regions with each itinerary changes
+/// as the changes between them say.
+#[test]
+fn changes_lead_from_one_atlas_to_the_next() {
+    let stack = made(&[0.0, 0.05, 0.2, 0.4]).unwrap();
+    assert_eq!(stack.objection(), None);
+    assert!(!stack.changes.is_empty());
+    assert_eq!(stack.layers[0].as_stacked, None);
+    let mut undamped = stack.layers[0].region_counts();
+    undamped.retain(|itinerary, _| stack.layers[1].region_counts().contains_key(itinerary));
+    assert!(undamped.is_empty(), "{undamped:?}");
+    for pair in stack.layers[1..].windows(2) {
+        assert_eq!(pair[1].as_stacked, Some(true));
+        let [low, high] = [pair[0].damping, pair[1].damping];
+        let mut counts: BTreeMap<String, i64> = BTreeMap::new();
+        let mut add = |itinerary: &str, count: i64| {
+            *counts.entry(itinerary.to_owned()).or_default() += count;
+        };
+        for (itinerary, count) in pair[0].region_counts() {
+            add(&itinerary, i64::try_from(count).unwrap());
+        }
+        for change in &stack.changes {
+            let [from, to] = change.between;
+            assert!(from < to && to - from < 1e-3 * to, "{change:?}");
+            if from < low || to > high {
+                continue;
+            }
+            for effect in &change.effects {
+                add(
+                    &effect.itinerary,
+                    if ["born", "splits"].contains(&effect.effect) { 1 } else { -1 },
+                );
+            }
+        }
+        for (itinerary, count) in pair[1].region_counts() {
+            add(&itinerary, -i64::try_from(count).unwrap());
+        }
+        counts.retain(|_, count| *count != 0);
+        assert!(counts.is_empty(), "{low} to {high}: {counts:?} in {:?}", stack.changes);
+    }
+}
+
+/// Where a region is born, a collision beside the place has its switches a little later, and none
+/// has them before.
+#[test]
+fn the_itinerary_of_a_region_appears_where_it_is_born() -> Result<(), InvalidParameter> {
+    let stack = made(&[0.05, 0.2, 0.4]).unwrap();
+    let mut tried = 0;
+    for change in &stack.changes {
+        let Some(meeting) = &change.meeting else { continue };
+        let [low, high] = change.between;
+        assert!(low < meeting.damping && meeting.damping < high);
+        for effect in change.effects.iter().filter(|effect| effect.effect == "born") {
+            tried += 1;
+            let seen = |damping: f64| -> Result<bool, InvalidParameter> {
+                for (i, j) in (-60..=60).flat_map(|i| (-60..=60).map(move |j| (i, j))) {
+                    let kappa = meeting.kappa * (1.0 + 1e-4 * f64::from(i));
+                    let psi = meeting.psi * (1.0 + 1e-4 * f64::from(j));
+                    if !((5.0..=20.0).contains(&kappa) && (0.2..=2.5).contains(&psi)) {
+                        continue;
+                    }
+                    let collision = exact::collide(Contact::new(kappa, psi, damping)?).unwrap();
+                    if collision.itinerary() == effect.itinerary {
+                        return Ok(true);
+                    }
+                }
+                Ok(false)
+            };
+            assert!(seen(meeting.damping * 1.01)?, "{change:?}");
+            assert!(!seen(meeting.damping * 0.99)?, "{change:?}");
+        }
+    }
+    assert!(tried > 0, "{:?}", stack.changes);
+    Ok(())
+}
+
+#[test]
+fn dampings_ascend_from_above_zero() {
+    for dampings in [&[][..], &[0.0, 0.1], &[0.2, 0.1], &[0.1, 0.0, 0.2], &[-0.1, 0.1], &[0.1]] {
+        assert_eq!(made(dampings).unwrap_err(), DampingStackError::Dampings, "{dampings:?}");
+    }
+}

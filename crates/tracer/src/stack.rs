@@ -1,0 +1,208 @@
+//! Atlases of a family with a third parameter, and where their structure changes.
+//!
+//! In reading order:
+//!
+//! - `structure`: atlases compared as planar graphs with labels
+//! - `candidates`: which codimension-2 points may have met between two atlases
+//! - `meeting`: where they meet, by Newton's method in all three parameters
+//! - `change`: what a change does to the regions
+//! - `search`: how changes are isolated
+
+mod candidates;
+pub mod change;
+pub mod meeting;
+mod search;
+mod structure;
+
+use crate::atlas::{Atlas, AtlasError, AtlasOptions};
+use crate::family::Family;
+use crate::options::TraceError;
+use crate::stack::change::Change;
+use crate::stack::search::Search;
+use crate::stack::structure::Structure;
+use crate::window::{Point, Window};
+
+/// The options of a [`Stack`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StackOptions {
+    /// The options of every atlas.
+    pub atlas: AtlasOptions,
+    /// The width of the bracket in which a change is isolated, relative to the greater one of the
+    /// two values, from 1e-9 to 0.1. Around a change that is solved for, the bracket is wider if
+    /// narrower ones have atlases that are in doubt.
+    pub width: f64,
+    /// The greatest number of atlases. Changes between the last ones are brackets in doubt.
+    pub atlases: usize,
+}
+
+impl Default for StackOptions {
+    fn default() -> Self {
+        Self { atlas: AtlasOptions::default(), width: 1e-5, atlases: 2000 }
+    }
+}
+
+/// Atlases of a family at several values of a third parameter, and the changes of their structure
+/// between these values.
+///
+/// Atlases have the same structure if their regions are planar graphs that cannot be told apart by
+/// labels. Where neighbours differ, atlases between them isolate each change. What changes is the
+/// way in which codimension-2 points are connected, so two of them meet, or one meets the edge of
+/// the window, or a boundary touches another one or the edge, or shrinks to a point. Three
+/// conditions hold there, which Newton's method solves for the place and the value. A solution
+/// counts only if the atlases on both sides of it differ in structure. Changes that undo each
+/// other between two values at which there is an atlas are not seen.
+///
+/// ```
+/// use std::convert::Infallible;
+/// use stickslip_tracer::{Family, FreeRun, Point, Stack, StackOptions, Window};
+///
+/// /// A guard that fires inside a circle, whose radius is the third parameter.
+/// struct Disc(f64);
+///
+/// impl Family for Disc {
+///     type Label = bool;
+///     type Margin = ();
+///     type Error = Infallible;
+///     fn label(&self, p: &Point) -> Result<bool, Infallible> {
+///         Ok(p.norm() < self.0)
+///     }
+///     fn margin(&self, p: &Point, (): &()) -> Result<Option<f64>, Infallible> {
+///         Ok(Some(p.norm_squared() - self.0 * self.0))
+///     }
+///     fn free_run(&self, p: &Point) -> Result<FreeRun<bool, ()>, Infallible> {
+///         Ok(FreeRun { label: self.label(p)?, margins: vec![((), p.norm_squared() - self.0 * self.0)] })
+///     }
+/// }
+///
+/// let window = Window { low: Point::new(-1.0, -1.0), high: Point::new(1.0, 2.0) };
+/// let stack = Stack::of(Disc, &window, &[0.5, 1.2], &StackOptions::default())?;
+/// // The circle touches three sides of the window at once, and cuts off the corners below.
+/// let change = &stack.changes[0];
+/// assert!((change.meeting.unwrap().value - 1.0).abs() < 1e-9);
+/// assert_eq!(stack.changes.len(), 1);
+/// # Ok::<(), stickslip_tracer::StackError<Infallible>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Stack<Label, Margin> {
+    /// The atlases at the values asked for.
+    pub layers: Vec<Layer<Label, Margin>>,
+    /// The changes of the structure, in the order of the third parameter.
+    pub changes: Vec<Change<Label>>,
+    /// The number of atlases that were traced.
+    pub atlases: usize,
+    /// The structures of the first and the last layer that is not in doubt, and those behind each
+    /// change.
+    structures: Vec<(f64, Structure<Label>)>,
+}
+
+/// The stack of a family.
+pub type StackOf<F> = Stack<<F as Family>::Label, <F as Family>::Margin>;
+
+/// An atlas at a value of the third parameter.
+#[derive(Clone, Debug)]
+pub struct Layer<Label, Margin> {
+    /// The value.
+    pub value: f64,
+    /// The atlas. If it does not [agree](Atlas::agrees), its structure is not compared.
+    pub atlas: Atlas<Label, Margin>,
+}
+
+/// Why there is no stack.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StackError<E: std::error::Error + 'static> {
+    /// The values are fewer than two, not finite, or not in ascending order.
+    #[error("expected two values or more, finite and in ascending order")]
+    Values,
+    /// The width is out of its range.
+    #[error("the width is {0}, expected 1e-9 to 0.1")]
+    Width(f64),
+    /// An atlas failed.
+    #[error("at the value {value}")]
+    Atlas {
+        /// The value of the third parameter.
+        value: f64,
+        /// The error of the atlas.
+        source: AtlasError<E>,
+    },
+}
+
+impl<Label: Clone + Ord, Margin: Clone + PartialEq> Stack<Label, Margin> {
+    /// The stack of the family that `family` gives at each value of the third parameter, with
+    /// atlases at `values`, which ascend. The family is only asked for between the first and the
+    /// last value.
+    ///
+    /// # Errors
+    /// The values or the options are not possible, or an atlas fails. An atlas that is in doubt is
+    /// no error: changes are then searched between its neighbours.
+    pub fn of<F>(
+        family: impl Fn(f64) -> F,
+        window: &Window,
+        values: &[f64],
+        options: &StackOptions,
+    ) -> Result<Self, StackError<F::Error>>
+    where
+        F: Family<Label = Label, Margin = Margin>,
+    {
+        let ascend = values.windows(2).all(|pair| pair[0] < pair[1]);
+        if values.len() < 2 || !ascend || !values.iter().all(|value| value.is_finite()) {
+            return Err(StackError::Values);
+        }
+        if !(1e-9..=0.1).contains(&options.width) {
+            return Err(StackError::Width(options.width));
+        }
+        let mut search = Search::new(&family, *window, *options);
+        let mut samples = Vec::with_capacity(values.len());
+        for &value in values {
+            samples.push(search.sample(value)?);
+        }
+        let sure: Vec<_> = samples.iter().filter(|sample| sample.atlas.agrees()).collect();
+        for pair in sure.windows(2) {
+            search.refine(pair[0], pair[1])?;
+        }
+        let first = sure.first().map(|sample| (sample.value, sample.structure.clone()));
+        let last = sure.last().map(|sample| (sample.value, sample.structure.clone()));
+        let mut structures: Vec<_> = first.into_iter().collect();
+        let atlases = search.count();
+        let (changes, behind): (Vec<_>, Vec<_>) = search.joined().into_iter().unzip();
+        let ends = changes.iter().map(|change: &Change<Label>| change.between[1]);
+        structures.extend(ends.zip(behind));
+        structures.extend(last);
+        let layers = samples
+            .into_iter()
+            .map(|sample| Layer { value: sample.value, atlas: sample.atlas })
+            .collect();
+        Ok(Self { layers, changes, atlases, structures })
+    }
+
+    /// The labels of all regions at a value of the third parameter, in order; `None` inside the
+    /// bracket of a change, and beyond the layers that are not in doubt.
+    #[must_use]
+    pub fn labels(&self, value: f64) -> Option<Vec<Label>> {
+        let inside =
+            |change: &Change<Label>| change.between[0] < value && value < change.between[1];
+        let (first, last) = (self.structures.first()?.0, self.structures.last()?.0);
+        if !(first..=last).contains(&value) || self.changes.iter().any(inside) {
+            return None;
+        }
+        let before = self.structures.partition_point(|(start, _)| *start <= value);
+        Some(self.structures[before.checked_sub(1)?].1.labels())
+    }
+}
+
+impl<E: std::error::Error + 'static> StackError<E> {
+    /// The error of an atlas at a value.
+    fn at(value: f64) -> impl Fn(AtlasError<E>) -> Self {
+        move |source| Self::Atlas { value, source }
+    }
+
+    /// The error of a run at a place of an atlas, if that is why there is no stack.
+    #[must_use]
+    pub fn run(&self) -> Option<(f64, Point, &E)> {
+        match self {
+            Self::Atlas { value, source: AtlasError::Trace(TraceError::Run { point, source }) } => {
+                Some((*value, *point, source))
+            }
+            _ => None,
+        }
+    }
+}

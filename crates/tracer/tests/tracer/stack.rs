@@ -1,0 +1,178 @@
+//! Stacks of families whose changes have closed forms.
+
+use std::convert::Infallible;
+
+use stickslip_tracer::{
+    AtlasOptions, Change, Effect, Family, FreeRun, MeetingKind, Point, Stack, StackOptions,
+    TraceOptions, VerifyOptions, Window,
+};
+
+use crate::guards::SQUARE;
+
+/// Guards that depend on a third parameter. Each fires where its function is negative.
+struct Moving {
+    guards: &'static [fn(&Point, f64) -> f64],
+    value: f64,
+}
+
+impl Family for Moving {
+    type Label = Vec<bool>;
+    type Margin = usize;
+    type Error = Infallible;
+
+    fn label(&self, point: &Point) -> Result<Vec<bool>, Infallible> {
+        Ok(self.guards.iter().map(|guard| guard(point, self.value) < 0.0).collect())
+    }
+
+    fn margin(&self, point: &Point, margin: &usize) -> Result<Option<f64>, Infallible> {
+        Ok(Some(self.guards[*margin](point, self.value)))
+    }
+
+    fn free_run(&self, point: &Point) -> Result<FreeRun<Vec<bool>, usize>, Infallible> {
+        let margins = self.guards.iter().enumerate();
+        let margins = margins.map(|(index, guard)| (index, guard(point, self.value))).collect();
+        Ok(FreeRun { label: self.label(point)?, margins })
+    }
+}
+
+fn options() -> StackOptions {
+    let trace = TraceOptions { noise: 1e-15, ..TraceOptions::default() };
+    let verify = VerifyOptions { random_points: 1000, ..VerifyOptions::default() };
+    let atlas = AtlasOptions { trace, verify, ..AtlasOptions::default() };
+    StackOptions { atlas, ..StackOptions::default() }
+}
+
+/// The changes in the square, each of which must be solved for to 1e-9 and lie within its bracket,
+/// which is narrow.
+fn changes(
+    guards: &'static [fn(&Point, f64) -> f64],
+    values: &[f64],
+    expected: &[(MeetingKind, f64, Point)],
+) -> Vec<Change<Vec<bool>>> {
+    let family = |value| Moving { guards, value };
+    let stack = Stack::of(family, &SQUARE, values, &options()).unwrap();
+    assert_eq!(stack.changes.len(), expected.len(), "{:?}", stack.changes);
+    for (change, (kind, value, point)) in stack.changes.iter().zip(expected) {
+        let meeting = change.meeting.unwrap_or_else(|| panic!("no meeting: {change:?}"));
+        assert_eq!(meeting.kind, *kind, "{change:?}");
+        assert!((meeting.value - value).abs() < 1e-9, "{change:?}, expected {value}");
+        assert!((meeting.point - point).norm() < 1e-8, "{change:?}, expected {point}");
+        let [low, high] = change.between;
+        assert!(low < *value && *value < high && high - low < 1e-3, "{change:?}");
+        assert!(!change.doubtful);
+        assert_eq!(stack.labels(*value), None);
+        assert!(stack.labels(low).is_some() && stack.labels(high).is_some());
+        assert_ne!(stack.labels(low), None);
+    }
+    stack.changes
+}
+
+/// A disc of radius 0.3 around (t, 0.05) passes through a disc of radius 0.4 around the origin.
+#[test]
+fn discs_touch_from_outside_and_from_inside() {
+    const DISCS: [fn(&Point, f64) -> f64; 2] = [
+        |point, _| point.norm_squared() - 0.16,
+        |point, at| (point - Point::new(at, 0.05)).norm_squared() - 0.09,
+    ];
+    // The centres have the distance √(t² + 0.05²).
+    let [outside, inside] = [0.7_f64, 0.1].map(|distance| (distance * distance - 0.0025).sqrt());
+    let touch = |at: f64| (MeetingKind::Touch, at, Point::new(at, 0.05).normalize() * 0.4);
+    let expected = [-outside, -inside, inside, outside].map(touch);
+    let found = changes(&DISCS, &[-0.699, 0.0, 0.699], &expected);
+    let [both, second] = [vec![true, true], vec![false, true]];
+    assert_eq!(found[0].effects, [Effect::Born(both.clone())]);
+    assert_eq!(found[1].effects, [Effect::Dies(second.clone())]);
+    assert_eq!(found[2].effects, [Effect::Born(second)]);
+    assert_eq!(found[3].effects, [Effect::Dies(both)]);
+}
+
+/// A disc of radius √t is born at t = 0, and touches one side of the window after the other.
+#[test]
+fn a_disc_is_born_and_meets_the_edge() {
+    const DISC: [fn(&Point, f64) -> f64; 1] =
+        [|point, t| (point - Point::new(0.25, 0.125)).norm_squared() - t];
+    let found = changes(
+        &DISC,
+        &[-0.5, 0.5, 0.7, 0.9],
+        &[
+            (MeetingKind::Flat, 0.0, Point::new(0.25, 0.125)),
+            (MeetingKind::EdgeTouch, 0.75 * 0.75, Point::new(1.0, 0.125)),
+            (MeetingKind::EdgeTouch, 0.875 * 0.875, Point::new(0.25, 1.0)),
+        ],
+    );
+    assert_eq!(found[0].effects, [Effect::Born(vec![true])]);
+    assert_eq!(found[1].effects, []);
+    assert_eq!(found[2].effects, [Effect::Splits(vec![false])]);
+}
+
+/// The lines y = 0.3 x, y = −0.5 x and y = 0.1 + t cross at t = −0.1.
+#[test]
+fn three_lines_pass_through_one_point() {
+    const LINES: [fn(&Point, f64) -> f64; 3] = [
+        |point, _| point.y - 0.3 * point.x,
+        |point, _| point.y + 0.5 * point.x,
+        |point, t| point.y - 0.1 - t,
+    ];
+    let found = changes(&LINES, &[-0.3, 0.1], &[(MeetingKind::Crossing, -0.1, Point::zeros())]);
+    let born = Effect::Born(vec![false, false, true]);
+    assert_eq!(found[0].effects, [born, Effect::Dies(vec![true, true, false])]);
+}
+
+/// The line x = 0.8 y + t passes through a corner at t = 0.2, and crosses the line x = 0.7 − y on the
+/// edge at t = 1 + 0.8 · 0.3.
+#[test]
+fn a_line_passes_through_a_corner_and_a_crossing_leaves() {
+    const LINES: [fn(&Point, f64) -> f64; 2] =
+        [|point, t| point.x - 0.8 * point.y - t, |point, _| point.x + point.y - 0.7];
+    let found = changes(
+        &LINES,
+        &[0.0, 0.4, 1.6],
+        &[
+            (MeetingKind::Corner, 0.2, Point::new(1.0, 1.0)),
+            (MeetingKind::Edge, 1.24, Point::new(1.0, -0.3)),
+        ],
+    );
+    assert_eq!(found[0].effects, []);
+    assert_eq!(found[1].effects, [Effect::Dies(vec![false, false])]);
+}
+
+/// The hyperbola x y = t reconnects at t = 0.
+#[test]
+fn the_branches_of_a_hyperbola_reconnect() {
+    const HYPERBOLA: [fn(&Point, f64) -> f64; 1] = [|point, t| point.x * point.y - t];
+    let found = changes(&HYPERBOLA, &[-0.2, 0.3], &[(MeetingKind::Flat, 0.0, Point::zeros())]);
+    assert_eq!(found[0].effects, [Effect::Merge(vec![true]), Effect::Splits(vec![false])]);
+}
+
+/// What no conditions explain is a bracket: the guard jumps.
+#[test]
+fn a_jump_is_a_bracket() {
+    const JUMP: [fn(&Point, f64) -> f64; 1] =
+        [|point, t| point.norm_squared() - if t < 0.3 { 0.2 } else { 1.5 }];
+    let stack =
+        Stack::of(|value| Moving { guards: &JUMP, value }, &SQUARE, &[0.1, 0.6], &options())
+            .unwrap();
+    let [change] = &stack.changes[..] else { panic!("{:?}", stack.changes) };
+    let [low, high] = change.between;
+    assert!(change.meeting.is_none() && !change.doubtful);
+    assert!(low < 0.3 && 0.3 <= high && high - low <= 1e-5 * high, "{change:?}");
+    assert_eq!(stack.labels(0.2), Some(vec![vec![false], vec![true]]));
+    assert_eq!(stack.labels(0.5).unwrap().len(), 5);
+    assert_eq!(stack.labels(0.61), None);
+}
+
+/// Values have to ascend.
+#[test]
+fn values_are_checked() {
+    const LINE: [fn(&Point, f64) -> f64; 1] = [|point, t| point.x - t];
+    let stack = |values: &[f64]| {
+        let window = Window { low: Point::zeros(), high: Point::new(1.0, 1.0) };
+        Stack::of(|value| Moving { guards: &LINE, value }, &window, values, &options())
+    };
+    for values in [&[][..], &[0.5], &[0.5, 0.5], &[0.5, 0.2], &[0.1, f64::NAN]] {
+        assert!(stack(values).is_err(), "{values:?}");
+    }
+    let wide = StackOptions { width: 0.5, ..options() };
+    let family = |value| Moving { guards: &LINE, value };
+    assert!(Stack::of(family, &SQUARE, &[0.1, 0.2], &wide).is_err());
+}
