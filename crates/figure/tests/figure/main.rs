@@ -6,5 +6,6 @@ mod collisions;
 mod examples;
 mod layout;
 mod maps;
+mod stacks;
 mod svg;
 mod unusual;
