@@ -1,9 +1,9 @@
 """Collisions of frictional spheres and other piecewise-smooth ODEs, with every switch found.
 
 Start with `collide` (one collision), `eps_t` and `collide_many` (arrays), `impact` (SI units),
-`trace` (every boundary in a window), `map` and `sweep` (xarray), `timestep` (errors of the steps of
-particle codes), `fit` (contact laws to measured impacts), `table` (restitution to be looked up),
-`solve` (systems of your own).
+`trace` (every boundary in a window), `stack` (regions over the damping), `map` and `sweep`
+(xarray), `timestep` (errors of the steps of particle codes), `fit` (contact laws to measured
+impacts), `table` (restitution to be looked up), `solve` (systems of your own).
 """
 
 from stickslip import _native
@@ -38,6 +38,7 @@ from stickslip.impacts import (
     impact,
 )
 from stickslip.maps import map
+from stickslip.stacks import Change, Layer, Stack, stack
 from stickslip.studies import (
     Study,
     Table,
@@ -64,6 +65,7 @@ __all__ = [
     "AtlasWarning",
     "Bodies",
     "Boundary",
+    "Change",
     "Collision",
     "Collisions",
     "Compiled",
@@ -74,6 +76,7 @@ __all__ = [
     "Guard",
     "HybridSystem",
     "Impacts",
+    "Layer",
     "Located",
     "Material",
     "Mode",
@@ -84,6 +87,7 @@ __all__ = [
     "Sensitivity",
     "Solution",
     "Sphere",
+    "Stack",
     "StepErrors",
     "Study",
     "Surface",
@@ -109,6 +113,7 @@ __all__ = [
     "reproduce",
     "reproduction_parts",
     "solve",
+    "stack",
     "sweep",
     "table",
     "table_of_velocities",

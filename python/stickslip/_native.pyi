@@ -83,6 +83,13 @@ class Atlas:
     def picture(self) -> str: ...
     def locate(self, kappa: _Floats, psi: _Floats) -> tuple[NDArray[np.int64], _Floats]: ...
 
+def stack(
+    kappa: tuple[float, float],
+    psi: tuple[float, float],
+    dampings: list[float],
+    tolerance: float | None,
+    threads: int,
+) -> tuple[str, str, str | None]: ...
 @final
 class TimeSteps:
     @staticmethod

@@ -4,9 +4,9 @@
 //! arrays, or the JSON that the program prints. Names, shapes and units are documented in the Python
 //! functions that call these, in `python/stickslip`.
 //!
-//! Start reading in `arrays`; then `collision`, `impacts`, `planes`, `steps`, `fits`, `tables`,
-//! `studies` (results), `hybrid` (systems of one's own), `engines`, `parallel` and `failure` (what
-//! they share).
+//! Start reading in `arrays`; then `collision`, `impacts`, `planes`, `stacks`, `steps`, `fits`,
+//! `tables`, `studies` (results), `hybrid` (systems of one's own), `engines`, `parallel` and
+//! `failure` (what they share).
 
 mod arrays;
 mod collision;
@@ -17,6 +17,7 @@ mod hybrid;
 mod impacts;
 mod parallel;
 mod planes;
+mod stacks;
 mod steps;
 mod studies;
 mod tables;
@@ -40,6 +41,8 @@ mod _native {
     use super::impacts::{Pair, homogeneous_mass};
     #[pymodule_export]
     use super::planes::Atlas;
+    #[pymodule_export]
+    use super::stacks::stack;
     #[pymodule_export]
     use super::steps::TimeSteps;
     #[pymodule_export]

@@ -7,5 +7,6 @@ mod examples;
 mod families;
 mod layout;
 mod maps;
+mod stacks;
 mod svg;
 mod unusual;

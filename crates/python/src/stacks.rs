@@ -1,0 +1,35 @@
+//! Atlases over the damping.
+
+use pyo3::prelude::*;
+use stickslip_figure::pictures;
+use stickslip_plane::Range;
+use stickslip_plane::atlas::Frame;
+use stickslip_plane::progress::SILENT;
+use stickslip_plane::stack::{DampingStackError, StackDocument, stack as stacked};
+
+use crate::failure::{bad_input, failed, of_atlas};
+use crate::parallel::Threads;
+
+/// The stack of a window as JSON, its picture as SVG, and what speaks against it.
+#[pyfunction]
+pub fn stack(
+    py: Python<'_>,
+    kappa: (f64, f64),
+    psi: (f64, f64),
+    dampings: Vec<f64>,
+    tolerance: Option<f64>,
+    threads: usize,
+) -> PyResult<(String, String, Option<String>)> {
+    let range = |(low, high): (f64, f64)| Range { low, high };
+    let frame = Frame::new(range(kappa), range(psi), 0.0);
+    let tolerance = tolerance.unwrap_or_else(|| frame.tolerances().usual);
+    let pool = Threads::pool(threads)?;
+    let made = py
+        .detach(|| pool.install(|| stacked(frame, &dampings, tolerance, SILENT)))
+        .map_err(|error| match error {
+            DampingStackError::Dampings => bad_input(error),
+            DampingStackError::Atlas { source, .. } => of_atlas(&source),
+        })?;
+    let json = serde_json::to_string(&StackDocument::from(&made)).map_err(failed)?;
+    Ok((json, pictures::stack::draw(&made).document(), made.objection()))
+}
