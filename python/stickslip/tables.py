@@ -214,5 +214,5 @@ def _points(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], tuple[int, ...]]:
     """The points as flat arrays of equal length, and their shape."""
     given = np.broadcast_arrays(real("x", x), real("y", y))
-    flat_x, flat_y = (np.require(one, requirements="CA").reshape(-1) for one in given)
+    flat_x, flat_y = (np.require(one, requirements=("C", "A")).reshape(-1) for one in given)
     return flat_x, flat_y, given[0].shape
