@@ -82,8 +82,14 @@ pub struct RegionEffect {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DampingStackError {
     /// The dampings are not possible.
-    #[error("expected two dampings above 0 or more, in ascending order, and 0 before them or not")]
-    Dampings,
+    #[error(
+        "{dampings:?}; expected two dampings above 0 or more, in ascending order, and 0 before \
+         them or not"
+    )]
+    Dampings {
+        /// The dampings.
+        dampings: Vec<f64>,
+    },
     /// An atlas failed.
     #[error("damping = {damping:?}: {source}")]
     Atlas {
@@ -102,14 +108,15 @@ pub enum DampingStackError {
 /// see [`stickslip_tracer::Stack`]; `as_stacked` tells whether both agree. The atlases are computed
 /// on the threads of the current rayon pool. `progress` is told about each of `dampings`.
 ///
-/// ```no_run
+/// ```
 /// use stickslip_plane::atlas::Frame;
 /// use stickslip_plane::{Range, progress, stack};
 ///
-/// let frame = Frame::new(Range { low: 0.5, high: 30.0 }, Range { low: 0.05, high: 2.0 }, 0.0);
-/// let dampings = [0.0, 1e-6, 0.1, 0.5, 1.0, 2.0];
-/// let stack = stack::stack(frame, &dampings, frame.tolerances().usual, progress::SILENT)?;
-/// assert!(stack.layers.iter().all(|layer| layer.as_stacked != Some(false)));
+/// let frame = Frame::new(Range { low: 5.0, high: 20.0 }, Range { low: 0.2, high: 2.5 }, 0.0);
+/// let tolerance = frame.tolerances().usual;
+/// let stack = stack::stack(frame, &[0.05, 0.2], tolerance, progress::SILENT)?;
+/// assert!(stack.layers.iter().all(|layer| layer.as_stacked == Some(true)));
+/// assert!(stack.changes.iter().all(|change| !change.doubtful));
 /// # Ok::<(), stack::DampingStackError>(())
 /// ```
 ///
@@ -121,12 +128,8 @@ pub fn stack(
     tolerance: f64,
     progress: Report<'_>,
 ) -> Result<DampingStack, DampingStackError> {
-    let undamped = usize::from(dampings.first() == Some(&0.0));
-    let damped = &dampings[undamped..];
-    let ascend = dampings.windows(2).all(|pair| pair[0] < pair[1]);
-    if damped.len() < 2 || !ascend || !damped.iter().all(|&damping| damping > 0.0) {
-        return Err(DampingStackError::Dampings);
-    }
+    let damped = damped(dampings)?;
+    let undamped = dampings.len() - damped.len();
     let at = |damping: f64| Frame { damping, ..frame };
     progress(Progress::Begin { steps: dampings.len() + 1 });
     let layer = |&damping: &f64| {
@@ -148,6 +151,20 @@ pub fn stack(
         layer.as_stacked = labels.map(|labels| labels == itineraries(&layer.atlas));
     }
     Ok(DampingStack { frame, layers, changes, atlases })
+}
+
+/// The dampings above 0, if `dampings` are those of a stack.
+///
+/// # Errors
+/// [`DampingStackError::Dampings`]: they do not ascend, or fewer than two are above 0.
+pub fn damped(dampings: &[f64]) -> Result<&[f64], DampingStackError> {
+    let damped = &dampings[usize::from(dampings.first() == Some(&0.0))..];
+    let ascend = dampings.windows(2).all(|pair| pair[0] < pair[1]);
+    if damped.len() >= 2 && ascend && damped.iter().all(|&damping| damping > 0.0) {
+        Ok(damped)
+    } else {
+        Err(DampingStackError::Dampings { dampings: dampings.to_vec() })
+    }
 }
 
 /// What the search for changes finds.
@@ -188,7 +205,9 @@ fn follow(
             StackError::Atlas { value, source } => {
                 failed(value, AtlasError::of_atlas(&sample, source))
             }
-            StackError::Values | StackError::Width(_) => DampingStackError::Dampings,
+            StackError::Values | StackError::Width(_) => {
+                DampingStackError::Dampings { dampings: dampings.to_vec() }
+            }
         })?;
     let any = sample.contact_or_any(&sample.window().low);
     let text = |label: &Vec<usize>| itinerary(&any, label);

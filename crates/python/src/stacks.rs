@@ -27,7 +27,7 @@ pub fn stack(
     let made = py
         .detach(|| pool.install(|| stacked(frame, &dampings, tolerance, SILENT)))
         .map_err(|error| match error {
-            DampingStackError::Dampings => bad_input(error),
+            DampingStackError::Dampings { .. } => bad_input(error),
             DampingStackError::Atlas { source, .. } => of_atlas(&source),
         })?;
     let json = serde_json::to_string(&StackDocument::from(&made)).map_err(failed)?;

@@ -16,11 +16,10 @@ mod structure;
 
 use crate::atlas::{Atlas, AtlasError, AtlasOptions};
 use crate::family::Family;
-use crate::options::TraceError;
 use crate::stack::change::Change;
 use crate::stack::search::Search;
 use crate::stack::structure::Structure;
-use crate::window::{Point, Window};
+use crate::window::Window;
 
 /// The options of a [`Stack`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -193,16 +192,5 @@ impl<E: std::error::Error + 'static> StackError<E> {
     /// The error of an atlas at a value.
     fn at(value: f64) -> impl Fn(AtlasError<E>) -> Self {
         move |source| Self::Atlas { value, source }
-    }
-
-    /// The error of a run at a place of an atlas, if that is why there is no stack.
-    #[must_use]
-    pub fn run(&self) -> Option<(f64, Point, &E)> {
-        match self {
-            Self::Atlas { value, source: AtlasError::Trace(TraceError::Run { point, source }) } => {
-                Some((*value, *point, source))
-            }
-            _ => None,
-        }
     }
 }

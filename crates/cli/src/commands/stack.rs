@@ -25,7 +25,7 @@ pub fn run(plan: &StackPlan) -> Result<(), Failure> {
     let made = pool.install(|| stack(plan.frame, &plan.dampings, plan.tolerance, &report));
     drop(bar);
     let made = made.map_err(|error| match error {
-        DampingStackError::Dampings => Failure::Usage(format!("--damping: {error}")),
+        DampingStackError::Dampings { .. } => Failure::Usage(format!("--damping: {error}")),
         DampingStackError::Atlas { source, .. } => source.into(),
     })?;
     let line = json::line(&StackDocument::from(&made)).map_err(|error| file.failure(error))?;

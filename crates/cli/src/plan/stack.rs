@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use stickslip_plane::atlas::Frame;
+use stickslip_plane::stack::damped;
 
 use super::files::require_different;
 use crate::args::StackArguments;
@@ -33,13 +34,7 @@ impl StackPlan {
     /// [`Failure::Usage`]: the dampings do not ascend, or two files are the same.
     pub fn new(arguments: &StackArguments) -> Result<Self, Failure> {
         let StackArguments { kappa, psi, damping, tolerance, out, plot, threads } = arguments;
-        let ascend = damping.windows(2).all(|pair| pair[0] < pair[1]);
-        if !ascend || damping.iter().filter(|&&damping| damping > 0.0).count() < 2 {
-            return Err(Failure::Usage(format!(
-                "--damping has {damping:?}; expected two dampings above 0 or more, in ascending \
-                 order, and 0 before them or not"
-            )));
-        }
+        damped(damping).map_err(|error| Failure::Usage(format!("--damping: {error}")))?;
         let picture = plot.as_ref().map(PictureFile::path);
         require_different(&[("--out", Some(&**out)), ("--plot", picture)], &[])?;
         let frame = Frame::new(*kappa, *psi, 0.0);

@@ -93,6 +93,7 @@ fn the_itinerary_of_a_region_appears_where_it_is_born() -> Result<(), InvalidPar
 #[test]
 fn dampings_ascend_from_above_zero() {
     for dampings in [&[][..], &[0.0, 0.1], &[0.2, 0.1], &[0.1, 0.0, 0.2], &[-0.1, 0.1], &[0.1]] {
-        assert_eq!(made(dampings).unwrap_err(), DampingStackError::Dampings, "{dampings:?}");
+        let refused = DampingStackError::Dampings { dampings: dampings.to_vec() };
+        assert_eq!(made(dampings).unwrap_err(), refused);
     }
 }

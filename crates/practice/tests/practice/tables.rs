@@ -2,7 +2,6 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 use fastrand::Rng;
 use stickslip_model::{Contact, Engine, exact};
@@ -10,6 +9,8 @@ use stickslip_plane::{Range, progress};
 use stickslip_practice::tables::{self, InvalidTable, Settings, Table, TableError, Window};
 #[cfg(feature = "serde")]
 use stickslip_practice::tables::{Document, Keys};
+
+use crate::c_program;
 
 /// A window of every kind of boundary: ends of contact, grazes in stick and in slip, crossings.
 fn small(bound: f64) -> Settings {
@@ -262,7 +263,7 @@ int main(void)
 /// compared where there is no C compiler.
 #[test]
 fn the_header_for_c_has_the_same_bits() {
-    if Command::new("cc").arg("--version").output().is_err() {
+    if !c_program::can_be_compiled() {
         return;
     }
     let settings = Settings { window: scaled((0.9, 4.5), (0.2, 2.4), 0.0), ..small(1e-6) };
@@ -281,20 +282,7 @@ fn the_header_for_c_has_the_same_bits() {
     let lines: Vec<_> = points.iter().map(|(kappa, psi)| format!("{kappa:?} {psi:?}\n")).collect();
     fs::write(directory.join("points.txt"), lines.concat() + "nan nan\ninf 1\n-1 1\n1 -inf\n")
         .unwrap();
-    let printed = |options: &[&str]| {
-        let built = Command::new("cc")
-            .args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-O1"])
-            .args(["-ffp-contract=off", "-o", "main", "main.c", "-lm"])
-            .args(options)
-            .current_dir(&directory)
-            .output()
-            .unwrap();
-        assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
-        let input = fs::File::open(directory.join("points.txt")).unwrap();
-        let ran = Command::new(directory.join("main")).stdin(input).output().unwrap();
-        assert!(ran.status.success());
-        String::from_utf8(ran.stdout).unwrap()
-    };
+    let printed = |options: &[&str]| c_program::printed(&directory, options);
     let one_by_one = printed(&["-DFIRST_ONE_BY_ONE", "-DSECOND_ONE_BY_ONE"]);
     let printed = printed(&[]);
     assert_eq!(printed, one_by_one);

@@ -2,7 +2,6 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 use std::sync::LazyLock;
 
 use fastrand::Rng;
@@ -11,6 +10,8 @@ use stickslip_plane::{Range, progress};
 #[cfg(feature = "serde")]
 use stickslip_practice::tables::Document;
 use stickslip_practice::tables::{self, InvalidTable, Settings, Table, TableError, Window};
+
+use crate::c_program;
 
 /// Steel spheres of 2 cm. κ is 7.4 and the scaled damping 0.27 at 1 m/s.
 fn spheres() -> Pair {
@@ -274,7 +275,7 @@ int main(void)
 /// compared where there is no C compiler.
 #[test]
 fn the_header_for_c_has_the_same_bits() {
-    if Command::new("cc").arg("--version").output().is_err() {
+    if !c_program::can_be_compiled() {
         return;
     }
     let table = common();
@@ -288,17 +289,7 @@ fn the_header_for_c_has_the_same_bits() {
     points.extend(table.arrays().walls.iter().map(|&wall| (wall, 1.0)));
     let lines: Vec<_> = points.iter().map(|(x, y)| format!("{x:?} {y:?}\n")).collect();
     fs::write(directory.join("points.txt"), lines.concat() + "nan nan\ninf 1\n").unwrap();
-    let built = Command::new("cc")
-        .args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-O1"])
-        .args(["-ffp-contract=off", "-o", "main", "main.c", "-lm"])
-        .current_dir(&directory)
-        .output()
-        .unwrap();
-    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
-    let input = fs::File::open(directory.join("points.txt")).unwrap();
-    let ran = Command::new(directory.join("main")).stdin(input).output().unwrap();
-    assert!(ran.status.success());
-    let printed = String::from_utf8(ran.stdout).unwrap();
+    let printed = c_program::printed(&directory, &[]);
     let bits = |value: f64| if value.is_nan() { 0 } else { value.to_bits() };
     let expected = points.iter().map(|&(x, y)| {
         let region = table.region(x, y).map_or(-1, |it| i64::try_from(it).unwrap());
