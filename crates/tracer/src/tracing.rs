@@ -8,6 +8,7 @@
 //! - `scan`: the boundaries that cross a segment
 //! - `seed`: from a change of the label to a place on a boundary
 //! - `island`: closed boundaries between the places of the grid
+//! - `sliver`: boundaries of regions between two places with the same label
 //! - `branch`: one boundary, followed from its seed
 //! - `corrector`: from a guess to the zero of a margin
 //! - `runs`: the runs of a family, counted
@@ -29,6 +30,7 @@ pub mod network;
 pub mod runs;
 mod scan;
 pub mod seed;
+mod sliver;
 pub mod special_points;
 pub(crate) mod stages;
 pub(crate) mod state;

@@ -240,6 +240,21 @@ fn a_damped_window_is_traced_by_integration() {
     assert_eq!(switch_count(itinerary) % 2, 1, "a damped contact begins in stick: {itinerary}");
 }
 
+/// A slip phase within the second stick phase, in a region 2e-4 of ψ wide that ends at κ = 1.558. The
+/// places of the grid have the same switches on both sides of it.
+#[test]
+fn a_region_thinner_than_a_cell_is_found() {
+    let kappa = Range { low: 1.553_434_774_302_522_5, high: 3.0 };
+    let frame = Frame::new(kappa, Range { low: 0.5, high: 1.5 }, 0.028_228_728_691_607_554);
+    let verified = traced(frame);
+    assert!(verified.report.agrees, "{:?}", verified.report);
+    let atlas = verified.atlas;
+    let thin = Contact::new(1.5535, 0.9791, frame.damping).unwrap();
+    let region = atlas.locate(&thin).region.unwrap();
+    assert_eq!(atlas.itinerary(region), "o+o+o-");
+    assert_eq!(Collider::deciding().collide(thin).unwrap().itinerary(), "o+o+o-");
+}
+
 /// The window's own finest tolerance is not lost by rounding.
 #[test]
 fn narrow_windows_have_their_usual_tolerance() {

@@ -4,6 +4,7 @@ use crate::executor::Executor;
 use crate::family::Family;
 use crate::tracing::island;
 use crate::tracing::runs::{Sampled, Traced, checked};
+use crate::tracing::sliver;
 use crate::tracing::trace::Tracer;
 use crate::watch::{Progress, Watch};
 use crate::window::Point;
@@ -143,6 +144,10 @@ impl<F: Family> Tracer<'_, F> {
                 }
                 let [last, here] = [next, next + 1].map(|index| self.sampled[index].clone());
                 self.divide(&last, &here)?;
+                let side = 2 * cells;
+                let before = (next % side > 0).then(|| next - 1);
+                let after = ((next + 1) % side > 0).then_some(next + 2);
+                self.search_slivers(before, [next, next + 1], after)?;
                 if next + 1 < 8 * cells {
                     Stage::Edges { next: next + 1 }
                 } else {
@@ -155,14 +160,18 @@ impl<F: Family> Tracer<'_, F> {
                 }
                 let index = next / 2;
                 let (column, row) = (index / cells, index % cells);
-                let (inside, other) =
+                let (inside, neighbour) =
                     [(row + 1 < cells, index + 1), (column + 1 < cells, index + cells)][next % 2];
                 if inside {
                     let [(here, run), (there, other)]: [&Sampled<F>; 2] =
-                        [&self.sampled[index], &self.sampled[other]];
+                        [&self.sampled[index], &self.sampled[neighbour]];
                     let (segment, labels) =
                         ([*here, *there], [run.label.clone(), other.label.clone()]);
                     self.scan(segment, labels)?;
+                    let (place, stride) = [(row, 1), (column, cells)][next % 2];
+                    let before = (place > 0).then(|| index - stride);
+                    let after = (place + 2 < cells).then_some(index + 2 * stride);
+                    self.search_slivers(before, [index, neighbour], after)?;
                 }
                 if next + 1 < 2 * cells * cells {
                     Stage::Grid { next: next + 1 }
@@ -194,6 +203,28 @@ impl<F: Family> Tracer<'_, F> {
             }
             Stage::Done => Stage::Done,
         };
+        Ok(())
+    }
+
+    /// Searches between two neighbouring places of the stage, along the line from the place before
+    /// them to that after them, for regions that none of these places lies in.
+    fn search_slivers(
+        &mut self,
+        before: Option<usize>,
+        [one, other]: [usize; 2],
+        after: Option<usize>,
+    ) -> Traced<(), F> {
+        for (behind, here, there) in [(before, one, other), (after, other, one)] {
+            let [here, there] = [here, there].map(|index| &self.sampled[index]);
+            let behind = behind.map(|index| &self.sampled[index]);
+            let ends = [here.0, there.0];
+            let passages = self.builder.passages(&here.0, &there.0);
+            let known: Vec<f64> = passages.iter().map(|passage| passage.place).collect();
+            for place in sliver::between(&self.runs, &known, behind, here, there)? {
+                self.search([ends[0], place])?;
+                self.search([place, ends[1]])?;
+            }
+        }
         Ok(())
     }
 

@@ -33,10 +33,11 @@ pub fn trace<F: Family>(
 /// A search for boundaries in a window. It keeps what it has found and can be continued.
 ///
 /// Boundaries are searched for along the window's edges, on circles around every vertex, along the
-/// edges of a grid, and near minima of margins between places of the grid. A curve can be missed if
-/// none of these searches crosses it and its margin has no minimum that the grid shows. It may be
-/// the edge of a narrow strip or of a small island. A verification may find a point of such a
-/// region, and [`Self::look_between`] then finds the curve.
+/// edges of a grid, and near minima of margins between places of the grid. Along edges, margins that
+/// fall towards zero are followed, so that narrow strips are found. A curve can be missed if none of
+/// these searches crosses it and its margin has no minimum that the grid shows. It may be the edge of
+/// a small island. A verification may find a point of such a region, and [`Self::look_between`] then
+/// finds the curve.
 ///
 /// The family is evaluated up to a hundredth of the window's extent outside the window. The
 /// distance of nodes from their boundary is at most `options.tolerance`, or what the noise of

@@ -10,6 +10,7 @@ mod known_curves;
 mod leaving_minimum;
 mod random_circles;
 mod random_guards;
+mod slivers;
 mod stack;
 mod subdivision;
 mod surveys;
