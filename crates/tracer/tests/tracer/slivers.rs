@@ -36,9 +36,10 @@ impl Family for Sliver {
     }
 
     fn free_run(&self, point: &Point) -> Result<FreeRun<bool, usize>, Infallible> {
-        let margins = self.margins(point).into_iter().flat_map(|margins| {
-            margins.into_iter().enumerate().filter(|(_, value)| *value >= 0.0)
-        });
+        let margins = self
+            .margins(point)
+            .into_iter()
+            .flat_map(|margins| margins.into_iter().enumerate().filter(|(_, value)| *value >= 0.0));
         Ok(FreeRun { label: self.label(point)?, margins: margins.collect() })
     }
 }
