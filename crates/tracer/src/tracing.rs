@@ -9,6 +9,7 @@
 //! - `seed`: from a change of the label to a place on a boundary
 //! - `island`: closed boundaries between the places of the grid
 //! - `sliver`: boundaries of regions between two places with the same label
+//! - `tangency`: ends of curves that touch another one with a square root
 //! - `branch`: one boundary, followed from its seed
 //! - `corrector`: from a guess to the zero of a margin
 //! - `runs`: the runs of a family, counted
@@ -34,4 +35,5 @@ mod sliver;
 pub mod special_points;
 pub(crate) mod stages;
 pub(crate) mod state;
+mod tangency;
 pub mod trace;

@@ -119,6 +119,58 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         }
     }
 
+    /// Leads the curves that end at a vertex to a better place, which may be another known vertex.
+    /// Then the first vertex is removed, with the short curve from there to this place.
+    pub fn lead_to(&mut self, index: usize, special: &Special<Margin>) {
+        let from = self.stops[index].point;
+        let target = self.add_vertex(special);
+        if target == index {
+            return;
+        }
+        // A curve that it divides loses the part with the wrong labels below.
+        self.suspects.clear();
+        let point = self.stops[target].point;
+        let farthest = 2.0 * (point - from).norm();
+        let mut removed = Vec::new();
+        for curve in 0..self.network.curves.len() {
+            let Some(ends) = self.network.curves[curve].ends.filter(|ends| ends.contains(&index))
+            else {
+                continue;
+            };
+            self.leave(curve);
+            let own = &mut self.network.curves[curve];
+            let is_short = own.nodes.iter().all(|node| (node.point - point).norm() <= farthest);
+            if is_short && ends.contains(&target) {
+                removed.push(curve);
+            }
+            let last = own.nodes.len() - 1;
+            for (node, vertex) in [0, last].into_iter().zip(ends) {
+                if vertex == index {
+                    own.nodes[node].point = point;
+                }
+            }
+            own.ends = Some(ends.map(|vertex| if vertex == index { target } else { vertex }));
+            self.enter(curve);
+        }
+        self.remove_curves(&removed);
+        self.remove_vertex(index);
+    }
+
+    /// Removes a vertex at which no curve ends. All later ones have other indices then.
+    fn remove_vertex(&mut self, index: usize) {
+        self.stops.remove(index);
+        self.network.vertices.remove(index);
+        let moved = |vertex: usize| vertex - usize::from(vertex > index);
+        for curve in &mut self.network.curves {
+            curve.ends = curve.ends.map(|ends| ends.map(moved));
+        }
+        for open in &mut self.network.unresolved {
+            if let Unresolved::Stalled { vertex } = open {
+                *vertex = moved(*vertex);
+            }
+        }
+    }
+
     /// Adds a curve. Of nodes that nearly coincide one is kept, preferably the end of the curve.
     pub fn add_curve(&mut self, mut curve: Curve<Label, Margin>) -> Option<usize> {
         let shortest = SHORTEST * self.scale;

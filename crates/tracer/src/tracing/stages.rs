@@ -199,6 +199,7 @@ impl<F: Family> Tracer<'_, F> {
             Stage::CloseVertices { .. } => Stage::Polish,
             Stage::Polish => {
                 self.polish()?;
+                self.move_to_tangencies()?;
                 Stage::Done
             }
             Stage::Done => Stage::Done,

@@ -11,6 +11,7 @@ mod leaving_minimum;
 mod random_circles;
 mod random_guards;
 mod slivers;
+mod special_points;
 mod stack;
 mod subdivision;
 mod surveys;

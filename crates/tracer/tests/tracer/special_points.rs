@@ -1,0 +1,91 @@
+//! Names of points at which two conditions hold together, all at the origin. Runs have a clock and
+//! two guards; each fires once.
+
+use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
+use stickslip_tracer::{
+    HybridFamily, Point, SpecialPoint, TraceOptions, VertexKind, Window, trace,
+};
+
+const END: f64 = 2.0;
+
+/// The values of the guards at a time, a place of the plane, and the time at which the first one
+/// fired, or 0.
+type Values = fn(f64, &Point, f64) -> [f64; 2];
+
+/// A run at a place of the plane. Its mode says which guards have fired, and its state is the time at
+/// which the first one did.
+struct Run {
+    values: Values,
+    point: Point,
+}
+
+impl HybridSystem<1, 2> for Run {
+    type Mode = [bool; 2];
+
+    fn field(&self, _: [bool; 2], _s: f64, _: &State<1>) -> State<1> {
+        State::from([0.0])
+    }
+    fn guards(&self, fired: [bool; 2]) -> [Guard; 2] {
+        fired.map(|fired| if fired { Guard::OFF } else { Guard::new(Direction::Below) })
+    }
+    fn guard_values(&self, _: [bool; 2], s: f64, y: &State<1>) -> [f64; 2] {
+        (self.values)(s, &self.point, y[0])
+    }
+    fn transition(
+        &self,
+        mut fired: [bool; 2],
+        guard: usize,
+        s: f64,
+        y: &State<1>,
+    ) -> ([bool; 2], State<1>) {
+        fired[guard] = true;
+        (fired, if guard == 0 { State::from([s]) } else { *y })
+    }
+}
+
+/// The name of the vertex at the origin, how far it is from there, and the number of curves.
+fn named(values: Values) -> (SpecialPoint, f64, usize) {
+    let problem = move |point: &Point| {
+        let start = Start { mode: [false; 2], s: 0.0, state: State::from([0.0]) };
+        (Run { values, point: *point }, start)
+    };
+    let options = Options { rtol: 1e-13, atol: 1e-13, max_step: 0.25, ..Options::default() };
+    let family = HybridFamily { problem, method: Dop853, options, end: END };
+    let window = Window { low: Point::new(-0.1, -0.11), high: Point::new(0.12, 0.1) };
+    let network = trace(&family, &window, &TraceOptions::default()).unwrap();
+    assert_eq!(network.unresolved, []);
+    let inside = network.vertices.iter().filter(|vertex| vertex.kind != VertexKind::WindowEdge);
+    let [vertex] = inside.collect::<Vec<_>>()[..] else { panic!("{:?}", network.vertices) };
+    let [(_, name)] = network.special_points()[..] else { panic!("one name for one vertex") };
+    (name, vertex.point.norm(), network.curves.len())
+}
+
+#[test]
+fn two_extrema_that_graze_in_one_run() {
+    let (name, off, curves) =
+        named(|s, p, _| [(s - 0.5).powi(2) + p.y - p.x, (s - 1.5).powi(2) + p.y + 2.0 * p.x]);
+    assert_eq!((name, curves), (SpecialPoint::DoubleGraze, 4));
+    assert!(off < 1e-10, "{off:e}");
+}
+
+#[test]
+fn two_events_at_the_end_of_the_run() {
+    let (name, off, curves) =
+        named(|s, p, _| [END + p.y - p.x - s, 2.0 * (END - s) + p.y + 2.0 * p.x]);
+    assert_eq!(name, SpecialPoint::SimultaneousEvents);
+    // Where both fire, they also swap their order: 2 (y − x) = y + 2 x.
+    assert_eq!(curves, 5);
+    assert!(off < 1e-10, "{off:e}");
+}
+
+/// Behind the graze of the first guard, where it fires at 1/2 − √−y, the least value of the second
+/// one has a square root: it is x + √−y for y < 0 and x otherwise.
+#[test]
+fn a_graze_behind_a_graze_touches_it() {
+    let (name, off, curves) = named(|s, p, first| {
+        let earlier = if first > 0.0 { 0.5 - first } else { 0.0 };
+        [(s - 0.5).powi(2) + p.y, (s - 1.5).powi(2) + p.x + earlier]
+    });
+    assert_eq!((name, curves), (SpecialPoint::Tangency, 4));
+    assert!(off < 1e-7, "{off:e}");
+}
