@@ -44,7 +44,8 @@ impl Measured {
     pub(super) fn expected(self) -> &'static str {
         match self {
             Self::EpsN => "a number above 0, at most 1",
-            Self::EpsT | Self::CentreRestitution | Self::Spin => "a finite number",
+            Self::EpsT | Self::CentreRestitution => "a number from -1e6 to 1e6",
+            Self::Spin => "a number from -1e12 to 1e12",
             Self::ReboundAngle => "an angle between -π/2 and π/2, in rad",
         }
     }
@@ -52,7 +53,8 @@ impl Measured {
     pub(super) fn allows(self, value: f64) -> bool {
         match self {
             Self::EpsN => value > 0.0 && value <= 1.0,
-            Self::EpsT | Self::CentreRestitution | Self::Spin => value.is_finite(),
+            Self::EpsT | Self::CentreRestitution => value.abs() <= 1e6,
+            Self::Spin => value.abs() <= 1e12,
             Self::ReboundAngle => value.abs() < std::f64::consts::FRAC_PI_2,
         }
     }
@@ -79,7 +81,7 @@ pub struct Datum {
     pub quantity: Measured,
     /// Its value.
     pub value: f64,
-    /// Its standard error, above 0.
+    /// Its standard error, from 1e-12 to 1e12.
     pub error: Option<f64>,
 }
 

@@ -195,7 +195,7 @@ fn valid(datum: &Datum, scaled: bool) -> Result<(), InvalidFit> {
         return bad(quantity.name(), value, quantity.expected());
     }
     match error {
-        Some(error) if !(error > 0.0 && error.is_finite()) => {
+        Some(error) if !(1e-12..=1e12).contains(&error) => {
             Err(InvalidFit::Error { row, name: quantity.name(), error })
         }
         _ => Ok(()),
@@ -224,9 +224,7 @@ pub enum InvalidFit {
         expected: &'static str,
     },
     /// An error is out of range.
-    #[error(
-        "row {row}: {name}_error = {error:?} is out of range; expected a finite number above 0"
-    )]
+    #[error("row {row}: {name}_error = {error:?} is out of range; expected 1e-12 to 1e12")]
     Error {
         /// Its row.
         row: usize,

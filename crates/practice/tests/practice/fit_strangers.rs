@@ -41,6 +41,9 @@ fn bad_data_are_refused() {
     for (value, error) in [
         (f64::NAN, None),
         (f64::INFINITY, None),
+        // Squares of these are no numbers.
+        (1e300, None),
+        (0.1, Some(1e-300)),
         (0.1, Some(0.0)),
         (0.1, Some(-1.0)),
         (0.1, Some(f64::NAN)),
