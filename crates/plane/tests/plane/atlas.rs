@@ -144,6 +144,33 @@ fn damped_boundaries_have_the_integrators_switches_beside_them() {
     assert_eq!(beside, ["o+", "o-"]);
 }
 
+/// Grazes while sliding and while sticking end at one vertex, in which the two turns of the limit
+/// meet and the slip phase grazes.
+#[test]
+fn damped_grazes_end_in_one_cusp() {
+    let damping = 0.41;
+    let verified = traced(Frame { damping, ..frame((1.3, 1.9), (0.6, 1.0)) });
+    assert_eq!(verified.report.objection(), None, "{:?}", verified.report);
+    let (regions, chart) = (&verified.atlas.regions, &verified.atlas.chart);
+    let ends_of = |kind: BoundaryKind| {
+        let curves = regions.curves().iter().filter(move |curve| curve.margin == kind);
+        curves.filter_map(|curve| curve.ends).flatten().collect::<Vec<_>>()
+    };
+    // The slip graze crosses a stick graze at its other end.
+    let slip = ends_of(BoundaryKind::SlipGraze);
+    let is_cusp = |end: &&usize| regions.vertices()[**end].kind == VertexKind::Degenerate;
+    let cusp = *slip.iter().find(is_cusp).unwrap();
+    assert_eq!((slip.len(), ends_of(BoundaryKind::StickGraze).contains(&cusp)), (2, true));
+    let [kappa, psi] = chart.parameters(&regions.vertices()[cusp].point);
+    let place = Contact::new(kappa, psi, damping).unwrap();
+    let near = exact::margins(&Contact::new(1.5, 0.76, damping).unwrap()).unwrap();
+    let graze = near.near_misses.iter().find_map(|(margin, _)| exact::cusp(&place, margin));
+    for margin in graze.unwrap() {
+        let value = exact::margin(&place, &margin).unwrap().unwrap();
+        assert!(value.abs() < 1e-14, "{margin:?} {value:e}");
+    }
+}
+
 #[test]
 fn a_region_that_no_boundary_touches_has_an_itinerary() {
     let atlas = &empty().atlas;
@@ -272,4 +299,24 @@ fn threads_do_not_change_an_atlas_and_cancelling_shows() {
         let objection = report.objection().unwrap();
         assert!(!report.agrees && objection.contains("cancelled before the end"), "{objection}");
     }
+}
+
+/// With a small ψ the last graze is so close to the end of contact that its top leaves through the
+/// end within 1e-11 of the boundary.
+#[test]
+fn grazes_at_the_very_end_of_contact_are_traced() {
+    let verified = traced(frame((0.9, 1.0), (1e-6, 2e-6)));
+    assert_eq!(verified.report.objection(), None);
+    let regions = &verified.atlas.regions;
+    assert_eq!((regions.curves().len(), regions.regions().len()), (1, 2));
+}
+
+/// Where ψ varies by a ten-millionth of itself, it is known badly as a part of the window, but
+/// boundaries that run across are not: regions between them are narrow in κ, and are there.
+#[test]
+fn narrow_regions_across_a_flat_window_are_found() {
+    let verified = traced(frame((600.0, 1100.0), (0.0066122, 0.00661220165)));
+    assert_eq!(verified.report.objection(), None);
+    let regions = &verified.atlas.regions;
+    assert_eq!((regions.curves().len(), regions.regions().len()), (15, 16));
 }
