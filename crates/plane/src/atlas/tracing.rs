@@ -162,6 +162,7 @@ pub fn divide<'w>(
     let options = trace_options(plane, tolerance);
     let failed = |error| AtlasError::of(plane, error);
     let mut tracer = Tracer::new(&family, &plane.window(), &options).map_err(failed)?;
+    tracer.require_few(&surveyor.executor, &surveyor.watch).map_err(failed)?;
     let survey = surveyor.survey(&mut tracer, ROUNDS, Survey::BEGINNING, |network, round| {
         let found = assess(plane, tolerance, network, &any)?;
         verification::verify(plane, found, round as u64, &surveyor.watch)

@@ -1,9 +1,11 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use stickslip_model::regularized::SAME_SIDE;
 use stickslip_model::{Collider, Contact, exact};
 use stickslip_plane::Range;
 use stickslip_plane::atlas::{AtlasError, BoundaryKind, Frame, Unlocated, switch_count, trace};
 use stickslip_plane::progress::{Progress, SILENT, Watch};
+use stickslip_solver::{Exit, Hint, Margin, Place};
 use stickslip_tracer::{Location, VertexKind};
 
 use crate::windows::{crossing, empty, frame, traced};
@@ -156,16 +158,21 @@ fn damped_grazes_end_in_one_cusp() {
         let curves = regions.curves().iter().filter(move |curve| curve.margin == kind);
         curves.filter_map(|curve| curve.ends).flatten().collect::<Vec<_>>()
     };
-    // The slip graze crosses a stick graze at its other end.
+    // At its other end, where κ is smaller, the slip graze meets another stick graze.
     let slip = ends_of(BoundaryKind::SlipGraze);
-    let is_cusp = |end: &&usize| regions.vertices()[**end].kind == VertexKind::Degenerate;
-    let cusp = *slip.iter().find(is_cusp).unwrap();
-    assert_eq!((slip.len(), ends_of(BoundaryKind::StickGraze).contains(&cusp)), (2, true));
+    let [one, other] = slip[..] else { panic!("{slip:?}") };
+    let x = |end: usize| regions.vertices()[end].point.x;
+    let cusp = if x(one) > x(other) { one } else { other };
+    assert!(ends_of(BoundaryKind::StickGraze).contains(&cusp));
     let [kappa, psi] = chart.parameters(&regions.vertices()[cusp].point);
     let place = Contact::new(kappa, psi, damping).unwrap();
-    let near = exact::margins(&Contact::new(1.5, 0.76, damping).unwrap()).unwrap();
-    let graze = near.near_misses.iter().find_map(|(margin, _)| exact::cusp(&place, margin));
-    for margin in graze.unwrap() {
+    // The graze of the slip phase after the stick with which the contact begins.
+    let graze = Margin {
+        exits: vec![Exit::falling(SAME_SIDE, 2.0)],
+        guard: SAME_SIDE,
+        place: Place::Minimum { near: Hint(0.0), number: 0 },
+    };
+    for margin in exact::cusp(&place, &graze).unwrap() {
         let value = exact::margin(&place, &margin).unwrap().unwrap();
         assert!(value.abs() < 1e-14, "{margin:?} {value:e}");
     }
