@@ -17,10 +17,10 @@ impl<F: Family> Tracer<'_, F> {
     /// regions as regions but one, and about twice as many where curves cross.
     ///
     /// # Errors
-    /// [`TraceError::TooManyCurves`] has the number of regions; or a run fails.
+    /// [`TraceError::TooManyCurves`] has the number of regions.
     pub fn require_few<E: Executor<F>>(&self, executor: &E, watch: &Watch<'_>) -> Traced<(), F> {
         let most = self.runs.options.max_curves;
-        let regions = self.count_regions(executor, watch, most.saturating_add(2))?;
+        let regions = self.count_regions(executor, watch, most.saturating_add(2));
         if regions > most.saturating_add(1) {
             return Err(TraceError::TooManyCurves { regions, most });
         }
@@ -34,16 +34,15 @@ impl<F: Family> Tracer<'_, F> {
     /// neighbouring places, so that narrow ones are left out; two regions with one label count as
     /// one if places of both are neighbours. Regions that are connected only by a neck between two
     /// places count more than once. If more than an eighth of all places are in no such square, the
-    /// grid is made twice as fine, up to 512 by 512. If the watch cancels, the result is 0.
-    ///
-    /// # Errors
-    /// A run fails.
+    /// grid is made twice as fine, up to 512 by 512. A place where the run fails is in none. If the
+    /// watch cancels, the result is 0.
+    #[must_use]
     pub fn count_regions<E: Executor<F>>(
         &self,
         executor: &E,
         watch: &Watch<'_>,
         enough: usize,
-    ) -> Traced<usize, F> {
+    ) -> usize {
         const COARSEST: usize = 32;
         const FINEST: usize = 512;
         let silent = watch.silently();
@@ -51,14 +50,12 @@ impl<F: Family> Tracer<'_, F> {
         loop {
             let points = self.centres(side);
             let labels = |portion: &[Point]| executor.labels(self.runs.family(), portion);
-            let Some(labels) = silent.in_portions(&points, labels) else { return Ok(0) };
-            let labels = labels.into_iter().zip(&points);
-            let labels = labels
-                .map(|(label, &point)| label.map_err(|source| TraceError::Run { point, source }));
-            let (regions, outside) = squares(&labels.collect::<Traced<Vec<_>, F>>()?, side);
+            let Some(labels) = silent.in_portions(&points, labels) else { return 0 };
+            let labels: Vec<_> = labels.into_iter().map(Result::ok).collect();
+            let (regions, outside) = squares(&labels, side);
             most = most.max(regions);
             if most >= enough || 8 * outside <= side * side || side >= FINEST {
-                return Ok(most);
+                return most;
             }
             side *= 2;
         }
@@ -77,13 +74,13 @@ impl<F: Family> Tracer<'_, F> {
 
 /// The number of connected parts of one label that contain a square of four places, and the number
 /// of places in no such square.
-fn squares<L: Eq>(labels: &[L], side: usize) -> (usize, usize) {
+fn squares<L: Eq>(labels: &[Option<L>], side: usize) -> (usize, usize) {
     let mut sets = DisjointSets::new(labels.len());
     let mut inside = vec![false; labels.len()];
     for index in 0..labels.len() {
         let (column, row) = (index / side, index % side);
         let (right, up) = (column + 1 < side, row + 1 < side);
-        let alike = |other: usize| labels[index] == labels[other];
+        let alike = |other: usize| labels[index].is_some() && labels[index] == labels[other];
         let neighbours = [
             (right, index + side),
             (up, index + 1),
