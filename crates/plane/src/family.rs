@@ -362,6 +362,13 @@ impl Family for CollisionFamily {
         }
     }
 
+    fn cusp(&self, margin: &Margin) -> Option<[Margin; 2]> {
+        match self {
+            Self::Exact(plane) => exact::cusp(&plane.first, margin),
+            Self::Integrated(_) | Self::General(_) => None,
+        }
+    }
+
     fn free_run(&self, point: &Point) -> Result<FreeRun<Vec<usize>, Margin>, CollisionFamilyError> {
         Ok(match self {
             Self::Exact(plane) => {

@@ -1,6 +1,6 @@
 //! A window in its traced coordinates, and the accuracy that boundaries can have in it.
 
-use stickslip_tracer::{Point, Window};
+use stickslip_tracer::{Node, Point, Window};
 
 use crate::chart::Chart;
 use crate::range::Range;
@@ -75,6 +75,21 @@ impl Sheet {
     #[must_use]
     pub fn resolution(&self, tolerance: f64) -> f64 {
         (10.0 * self.interpolation(tolerance)).max(1e3 * self.noise()).max(1e-9)
+    }
+
+    /// As [`Self::resolution`], for curves with these nodes.
+    ///
+    /// Margins leave the logarithms of both parameters open to 1e-13. In a window that is narrow in
+    /// one of them, this is much as a part of that side. It moves a boundary that runs along the
+    /// side, but not one that runs across it.
+    #[must_use]
+    pub fn resolution_of<'n>(&self, nodes: impl Iterator<Item = &'n Node>, tolerance: f64) -> f64 {
+        let [along, across] =
+            [self.chart.width, self.chart.height].map(|side| NOISE / side.min(1.0));
+        let moved =
+            |Node { tangent, .. }: &Node| along * tangent.y.abs() + across * tangent.x.abs();
+        let most = nodes.map(moved).fold(0.0, f64::max);
+        (10.0 * self.interpolation(tolerance)).max(1e3 * most).max(1e-9)
     }
 
     /// The accuracies that boundaries can have.

@@ -56,6 +56,16 @@ pub trait Family {
         true
     }
 
+    /// Two margins that vanish together where the extremum of `margin` merges with another one on
+    /// its zero: at a cusp, where its boundary ends with that of the other extremum.
+    ///
+    /// Near such a place neither of the two extrema tells where it is to more than a part of its
+    /// digits. The margins returned here must be smooth around it, and their boundaries must cross
+    /// there. They need not be margins of any free run. The default is that none are known.
+    fn cusp(&self, _margin: &Self::Margin) -> Option<[Self::Margin; 2]> {
+        None
+    }
+
     /// The free run at `point` with all its margins.
     ///
     /// On a boundary close to `point`, one of these margins vanishes, or one of the margins of the

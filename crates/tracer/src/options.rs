@@ -27,7 +27,8 @@ pub struct TraceOptions {
     pub cells: usize,
     /// The greatest number of nodes of a branch, which stops there; at least 2.
     pub max_nodes: usize,
-    /// The greatest number of curves, at least 1. Further ones are reported as unresolved.
+    /// The greatest number of curves, at least 1. A window that shows more of them before it is
+    /// traced is refused; further ones that are found later are reported as unresolved.
     pub max_curves: usize,
 }
 
@@ -110,6 +111,18 @@ pub enum TraceError<E: std::error::Error + 'static> {
         point: Point,
         /// The error of the run.
         source: E,
+    },
+    /// The window has more curves than the options allow. Nothing was traced.
+    #[error(
+        "the window has at least about {regions} regions, and so more than {most} boundaries; choose a \
+         smaller one"
+    )]
+    TooManyCurves {
+        /// The number of regions that were counted, see
+        /// [`Tracer::count_regions`](crate::Tracer::count_regions).
+        regions: usize,
+        /// The greatest number of curves, [`TraceOptions::max_curves`].
+        most: usize,
     },
     /// A margin is not a number.
     #[error("a margin at ({}, {}) is not a number", point.x, point.y)]

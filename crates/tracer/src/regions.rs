@@ -14,7 +14,7 @@
 //! - `verify`: runs against the subdivision
 
 mod abscissae;
-mod arrangement;
+pub(crate) mod arrangement;
 pub mod finding;
 mod frame;
 mod interior;

@@ -101,7 +101,8 @@ impl<E> Surveyor<'_, E> {
     /// [`Atlas::is_finished`] is `false`.
     ///
     /// # Errors
-    /// The options or the window are not possible, or a run of the tracer fails.
+    /// The options or the window are not possible, the window has more curves than the options
+    /// allow, or a run of the tracer fails.
     pub fn atlas<F: Family>(
         &self,
         family: &F,
@@ -111,6 +112,7 @@ impl<E> Surveyor<'_, E> {
         E: Executor<F>,
     {
         let mut tracer = Tracer::new(family, window, &self.options.trace)?;
+        tracer.require_few(&self.executor, &self.watch)?;
         self.finish(family, &mut tracer, Survey::BEGINNING)
     }
 

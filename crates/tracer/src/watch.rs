@@ -46,6 +46,11 @@ impl<'a> Watch<'a> {
         Self { cancelled, ..self }
     }
 
+    /// The same watch without reports.
+    pub(crate) fn silently(&self) -> Self {
+        Self { report: &|_| {}, ..*self }
+    }
+
     /// Whether the computation should end.
     #[must_use]
     pub fn is_cancelled(&self) -> bool {

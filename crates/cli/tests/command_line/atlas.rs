@@ -212,9 +212,9 @@ fn special_points_have_names() {
     assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
     let atlas: Value = serde_json::from_str(&workspace.read("a.json")).unwrap();
     let [cusp] = of_kind(&atlas, "degenerate")[..] else { panic!("{}", atlas["vertices"]) };
-    // A cusp is known to 1e-7 of the window.
-    assert!((cusp["kappa"].as_f64().unwrap() - 1.568459328886909846).abs() < 1e-6, "{cusp}");
-    assert!((cusp["psi"].as_f64().unwrap() - 1.0).abs() < 1e-6, "{cusp}");
+    assert!((cusp["kappa"].as_f64().unwrap() - 1.568459328886909846).abs() < 2e-15, "{cusp}");
+    assert!((cusp["psi"].as_f64().unwrap() - 1.0).abs() < 2e-15, "{cusp}");
+    assert_eq!(list(cusp, "boundaries").len(), 2);
     assert_eq!(list(&atlas, "extrema").len(), 0);
 
     // On one boundary the spring is at zero at the end of contact. It ends where a graze takes its

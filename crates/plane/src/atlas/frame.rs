@@ -59,13 +59,6 @@ impl Frame {
         self.sheet(chart).window()
     }
 
-    /// The distance from a curve within which the side of a point is left open, see
-    /// [`Sheet::resolution`].
-    #[must_use]
-    pub fn resolution(&self, chart: &Chart, tolerance: f64) -> f64 {
-        self.sheet(chart).resolution(tolerance)
-    }
-
     /// The accuracies in ψ that boundaries can have.
     #[must_use]
     pub fn tolerances(&self) -> ToleranceRange {

@@ -97,7 +97,7 @@ impl Atlas {
 
     /// Whether a point is closer to the edge of the window than boundaries are known.
     fn is_at_edge(&self, point: &Point) -> bool {
-        let resolution = self.frame.resolution(&self.chart, self.tolerance);
+        let resolution = self.regions.tolerance();
         let Window { low, high } = *self.regions.window();
         (point - low).min() <= resolution || (high - point).min() <= resolution
     }

@@ -162,9 +162,10 @@ pub fn divide<'w>(
     let options = trace_options(plane, tolerance);
     let failed = |error| AtlasError::of(plane, error);
     let mut tracer = Tracer::new(&family, &plane.window(), &options).map_err(failed)?;
+    tracer.require_few(&surveyor.executor, &surveyor.watch).map_err(failed)?;
     let survey = surveyor.survey(&mut tracer, ROUNDS, Survey::BEGINNING, |network, round| {
         let found = assess(plane, tolerance, network, &any)?;
-        verification::verify(plane, tolerance, found, round as u64, &surveyor.watch)
+        verification::verify(plane, found, round as u64, &surveyor.watch)
     });
     let survey = survey.map_err(|error| match error {
         AtlasError::Trace(error) => failed(error),
@@ -174,7 +175,7 @@ pub fn divide<'w>(
         found
     } else {
         let (regions, unresolved) = assess(plane, tolerance, tracer.network(), &any)?;
-        let report = VerificationReport::untried(plane, tolerance, &regions, unresolved);
+        let report = VerificationReport::untried(plane, &regions, unresolved);
         (regions, report)
     };
     if !survey.finished {
@@ -301,5 +302,7 @@ fn regions(
         margins: Vec::new(),
     });
     let vertices: Vec<_> = vertices.collect();
-    Ok(Subdivision::new(sheet.window(), curves, vertices, sheet.resolution(tolerance))?)
+    let nodes = curves.iter().flat_map(|curve| &curve.nodes);
+    let resolution = sheet.resolution_of(nodes, tolerance);
+    Ok(Subdivision::new(sheet.window(), curves, vertices, resolution)?)
 }

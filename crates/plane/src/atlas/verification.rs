@@ -89,12 +89,11 @@ pub struct MismatchFields {
 /// module.
 pub(super) fn verify(
     plane: &CollisionPlane,
-    tolerance: f64,
     (regions, unresolved): (Regions, Vec<String>),
     round: u64,
     watch: &Watch<'_>,
 ) -> Result<Option<Found<(Regions, VerificationReport)>>, AtlasError> {
-    let options = options(plane, tolerance, &regions, round);
+    let options = options(&regions, round);
     let labels = |portion: &[Point]| -> Vec<_> {
         portion.par_iter().map(|point| itinerary(plane, point)).collect()
     };
@@ -108,8 +107,8 @@ pub(super) fn verify(
 }
 
 /// The points of a round.
-fn options(plane: &CollisionPlane, tolerance: f64, regions: &Regions, round: u64) -> VerifyOptions {
-    let nearest = 10.0 * plane.sheet().resolution(tolerance);
+fn options(regions: &Regions, round: u64) -> VerifyOptions {
+    let nearest = 10.0 * regions.tolerance();
     let farthest = nearest.max(1e-3 * regions.window().extent().min());
     VerifyOptions { random_points: 20_000, near_points: 20, nearest, farthest, seed: round }
 }
@@ -118,11 +117,10 @@ impl VerificationReport {
     /// The report of regions of which none has been compared with collisions.
     pub(super) fn untried(
         plane: &CollisionPlane,
-        tolerance: f64,
         regions: &Regions,
         unresolved: Vec<String>,
     ) -> Self {
-        let options = options(plane, tolerance, regions, 1);
+        let options = options(regions, 1);
         Self::new(plane, &options, regions, unresolved, Verification::untried(regions))
     }
 

@@ -1,9 +1,11 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use stickslip_model::regularized::SAME_SIDE;
 use stickslip_model::{Collider, Contact, exact};
 use stickslip_plane::Range;
 use stickslip_plane::atlas::{AtlasError, BoundaryKind, Frame, Unlocated, switch_count, trace};
 use stickslip_plane::progress::{Progress, SILENT, Watch};
+use stickslip_solver::{Exit, Hint, Margin, Place};
 use stickslip_tracer::{Location, VertexKind};
 
 use crate::windows::{crossing, empty, frame, traced};
@@ -142,6 +144,38 @@ fn damped_boundaries_have_the_integrators_switches_beside_them() {
         atlas.itinerary(region)
     });
     assert_eq!(beside, ["o+", "o-"]);
+}
+
+/// Grazes while sliding and while sticking end at one vertex, in which the two turns of the limit
+/// meet and the slip phase grazes.
+#[test]
+fn damped_grazes_end_in_one_cusp() {
+    let damping = 0.41;
+    let verified = traced(Frame { damping, ..frame((1.3, 1.9), (0.6, 1.0)) });
+    assert_eq!(verified.report.objection(), None, "{:?}", verified.report);
+    let (regions, chart) = (&verified.atlas.regions, &verified.atlas.chart);
+    let ends_of = |kind: BoundaryKind| {
+        let curves = regions.curves().iter().filter(move |curve| curve.margin == kind);
+        curves.filter_map(|curve| curve.ends).flatten().collect::<Vec<_>>()
+    };
+    // At its other end, where κ is smaller, the slip graze meets another stick graze.
+    let slip = ends_of(BoundaryKind::SlipGraze);
+    let [one, other] = slip[..] else { panic!("{slip:?}") };
+    let x = |end: usize| regions.vertices()[end].point.x;
+    let cusp = if x(one) > x(other) { one } else { other };
+    assert!(ends_of(BoundaryKind::StickGraze).contains(&cusp));
+    let [kappa, psi] = chart.parameters(&regions.vertices()[cusp].point);
+    let place = Contact::new(kappa, psi, damping).unwrap();
+    // The graze of the slip phase after the stick with which the contact begins.
+    let graze = Margin {
+        exits: vec![Exit::falling(SAME_SIDE, 2.0)],
+        guard: SAME_SIDE,
+        place: Place::Minimum { near: Hint(0.0), number: 0 },
+    };
+    for margin in exact::cusp(&place, &graze).unwrap() {
+        let value = exact::margin(&place, &margin).unwrap().unwrap();
+        assert!(value.abs() < 1e-14, "{margin:?} {value:e}");
+    }
 }
 
 #[test]
@@ -287,4 +321,24 @@ fn threads_do_not_change_an_atlas_and_cancelling_shows() {
         let objection = report.objection().unwrap();
         assert!(!report.agrees && objection.contains("cancelled before the end"), "{objection}");
     }
+}
+
+/// With a small ψ the last graze is so close to the end of contact that its top leaves through the
+/// end within 1e-11 of the boundary.
+#[test]
+fn grazes_at_the_very_end_of_contact_are_traced() {
+    let verified = traced(frame((0.9, 1.0), (1e-6, 2e-6)));
+    assert_eq!(verified.report.objection(), None);
+    let regions = &verified.atlas.regions;
+    assert_eq!((regions.curves().len(), regions.regions().len()), (1, 2));
+}
+
+/// Where ψ varies by a ten-millionth of itself, it is known badly as a part of the window, but
+/// boundaries that run across are not: regions between them are narrow in κ, and are there.
+#[test]
+fn narrow_regions_across_a_flat_window_are_found() {
+    let verified = traced(frame((600.0, 1100.0), (0.0066122, 0.00661220165)));
+    assert_eq!(verified.report.objection(), None);
+    let regions = &verified.atlas.regions;
+    assert_eq!((regions.curves().len(), regions.regions().len()), (15, 16));
 }

@@ -1,10 +1,11 @@
 //! One boundary, followed step by step.
 //!
 //! In reading order: `track` (the state from which a step starts), `step` (one step), `ahead` (what
-//! lies ahead of a branch), `special` and `touch` (the vertices at which it ends), `end` (why it
-//! ends).
+//! lies ahead of a branch), `special`, `cusp` and `touch` (the vertices at which it ends), `end`
+//! (why it ends).
 
 mod ahead;
+mod cusp;
 pub mod end;
 mod special;
 mod step;
@@ -168,10 +169,17 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
             if let Some(index) = self.track.aim(&from, h)? {
                 return self.finish(End::Known(index), None);
             }
+            let cusp = cusp::ahead(&self.track, &from, h)?;
+            if let Some(place) = cusp
+                && let Some(special) = cusp::reached(&self.track, &from, place)?
+            {
+                return self.finish_at(special);
+            }
             let stuck = h < 1e-2 * first_step || beyond.is_some() || turned;
             if stuck
                 && matches!(failures, 1 | 4 | 8 | 16 | 24 | 32)
-                && let Some(special) = special::locate(&self.track, &from, beyond.as_ref(), h)?
+                && let Some(special) =
+                    special::locate(&self.track, &from, beyond.as_ref(), h, cusp.is_none())?
             {
                 return self.finish_at(special);
             }

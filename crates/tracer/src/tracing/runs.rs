@@ -102,6 +102,10 @@ impl<'a, F: Family> Runs<'a, F> {
         self.family.is_sure(margin)
     }
 
+    pub(crate) fn cusp(&self, margin: &F::Margin) -> Option<[F::Margin; 2]> {
+        self.family.cusp(margin)
+    }
+
     pub(crate) fn moved(&self, point: &Point, margin: &F::Margin) -> Traced<F::Margin, F> {
         self.family.moved(point, margin).map_err(|source| TraceError::Run { point: *point, source })
     }

@@ -1,6 +1,7 @@
 //! Traces and subdivisions with known answers.
 
 #[cfg(feature = "serde")]
+mod counting;
 mod documents;
 mod every_change;
 mod extrema;

@@ -20,8 +20,10 @@ use std::f64::consts::PI;
 
 use stickslip_solver::{Exit, Hint, Margin, Place};
 
+use super::cusp;
 use super::error::{ExactError, checked, too_many};
-use super::flank::{Flanks, along_root, root_between};
+use super::flank::Flanks;
+use super::late::{LateHalfSwing, beyond_end};
 use super::normal::{At, Moment, Motion, Trajectory};
 use super::phases::{Phase, Task, with_trajectory};
 use super::release::Release;
@@ -85,7 +87,7 @@ impl Task for All {
             let onset = slide.stick_onset(&sliding);
             let at_turn = slide.turn_margin(&sliding).filter(|&value| value >= 0.0);
             let lasts = onset.is_none().then(|| slide.end_margin(&sliding));
-            for (place, value) in [(TURN, at_turn), (Place::End, lasts)] {
+            for (place, value) in [(AT_TURN, at_turn), (Place::End, lasts)] {
                 let margin = || Margin { exits: exits.clone(), guard: SAME_SIDE, place };
                 found.near_misses.extend(value.map(|value| (margin(), value)));
             }
@@ -197,7 +199,7 @@ impl<E: FnMut(Exit)> Task for Prescribed<'_, E> {
             let Some(exit) = exits.next() else {
                 return match which.place {
                     Place::End => Some(slide.end_margin(&sliding)),
-                    Place::Minimum { .. } => slide.turn_margin(&sliding),
+                    Place::Minimum { number, .. } => cusp::of_slip(slide, &sliding, number),
                     _ => None,
                 };
             };
@@ -208,8 +210,11 @@ impl<E: FnMut(Exit)> Task for Prescribed<'_, E> {
     }
 }
 
+/// The number in the name of the margin of a slip phase at its first turn.
+pub const TURN: usize = 0;
+
 /// The place of the first turn of a slip phase.
-const TURN: Place = Place::Minimum { near: Hint(0.0), number: 0 };
+const AT_TURN: Place = Place::Minimum { near: Hint(0.0), number: TURN };
 
 /// 1/R² − 1 at the tops of R on half swing `k`, or what a [`LateHalfSwing`] has instead of
 /// the last.
@@ -229,64 +234,12 @@ fn top_margins<T: Trajectory>(swing: &Swing<T>, k: u32) -> [Option<f64>; 2] {
     let late = LateHalfSwing::of(swing, k);
     let last = |top: Option<Moment>| match &late {
         Some(late) => late.margin(swing),
-        None => at_top(top),
+        None => at_top(top).or_else(|| beyond_end(swing, k)),
     };
     if flanks.rises_again() {
         [at_top(flanks.top(swing)), last(flanks.second_top(swing))]
     } else {
         [last(flanks.top(swing)), None]
-    }
-}
-
-/// A half swing, with damping, on which R has its last top after the peak of the spring and after
-/// the turns.
-struct LateHalfSwing {
-    k: u32,
-    /// The peak or the last turn, where R rises and the gap D falls.
-    first: Moment,
-    /// A moment at which D rises again: the end of the half swing or of the contact, or just beyond.
-    /// There may be none as far as the motion is continued.
-    high: Option<Moment>,
-}
-
-impl LateHalfSwing {
-    fn of<T: Trajectory>(swing: &Swing<T>, k: u32) -> Option<Self> {
-        if T::STARTS_IN_SLIP || k == 0 {
-            return None;
-        }
-        let peak = swing.moment_at_angle((f64::from(k) - 0.5) * PI);
-        let first = swing.turns.map_or(peak, |[_, turn]| peak.or_later(turn));
-        let zero = swing.moment_at_angle(f64::from(k) * PI);
-        if peak == Moment::END || !first.is_before(zero) {
-            return None;
-        }
-        let gap = swing.gap(k, &swing.path.at(first));
-        if !(gap.turning() > 0.0 && gap.rate < 0.0) {
-            return None;
-        }
-        let rises = |&moment: &Moment| swing.gap(k, &swing.path.at(moment)).rate > 0.0;
-        // Where the limit falls faster than the spring up to the next peak, which is on the other
-        // side, D has no minimum: it is least on a later half swing of the same side.
-        let is_last = swing.moment_at_angle((f64::from(k) + 0.5) * PI) == Moment::END;
-        let beyond = Moment { root: -swing.path.beyond_end(), ..Moment::END };
-        let ends = [zero, Moment::END, beyond];
-        let high = ends[..if is_last { 3 } else { 1 }].iter().copied().find(rises);
-        (is_last || high.is_some()).then_some(Self { k, first, high })
-    }
-
-    /// (1 + D/A)² − 1 where the gap D is least.
-    ///
-    /// If the top of R is at the peak, this is 1/R² − 1. But where the top is close to the end of
-    /// contact, R is no smooth function of the parameters. D is, since L falls to 0 at an even rate.
-    fn margin<T: Trajectory>(&self, swing: &Swing<T>) -> Option<f64> {
-        let &Self { k, first, high } = self;
-        let path = swing.path;
-        let least = root_between(path, first, high?, None, |at| {
-            let Gap { rate, acceleration, .. } = swing.gap(k, at);
-            along_root(path, at, -rate, -acceleration, 0.0)
-        });
-        let part = swing.gap(k, &path.at(least)).value / swing.amplitude;
-        Some(part * (part + 2.0))
     }
 }
 
@@ -333,7 +286,7 @@ pub fn end_margin<T: Trajectory>(swing: &Swing<T>, k: u32) -> Option<f64> {
 }
 
 /// y and w at the end of contact, if the phase lasted until then.
-fn at_end<T: Trajectory>(swing: &Swing<T>) -> (f64, f64) {
+pub fn at_end<T: Trajectory>(swing: &Swing<T>) -> (f64, f64) {
     swing.motion(swing.path.time_left(&swing.start))
 }
 

@@ -44,7 +44,8 @@ impl TryFrom<Document> for Atlas {
         let vertices = document.vertices.iter().enumerate();
         let vertices = vertices.map(|(index, fields)| vertex(&chart, index, fields));
         let vertices = vertices.collect::<Result<Vec<_>, _>>()?;
-        let resolution = frame.resolution(&chart, tolerance);
+        let nodes = curves.iter().flat_map(|curve| &curve.nodes);
+        let resolution = frame.sheet(&chart).resolution_of(nodes, tolerance);
         let regions = Subdivision::new(frame.window(&chart), curves, vertices, resolution)?;
         if let Some(finding) = regions.findings().first() {
             return Err(DocumentError::Finding(finding.clone()));

@@ -20,12 +20,14 @@ const VAGUE: f64 = 1e-5;
 
 /// The special point of a branch after `from`, within a failed step of length `h`; `None` if the
 /// step is too long to find it. `beyond` is the place that the step reached, if only its labels
-/// were wrong.
+/// were wrong. `alone` says whether the gradient of the branch's margin may be what vanishes; near a
+/// cusp that is known it nearly does.
 pub(crate) fn locate<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,
     beyond: Option<&FootholdOf<F>>,
     h: f64,
+    alone: bool,
 ) -> Traced<Option<Special<F::Margin>>, F> {
     for sure in [true, false] {
         let mut margins = track.rivals(from, beyond, sure);
@@ -37,7 +39,8 @@ pub(crate) fn locate<F: Family>(
         }
     }
     let guess = from.node.point + from.node.tangent * (0.5 * h);
-    if let Some(point) = stationary(track.runs, &track.margin, &guess, 0.5 * h, 3.0 * h)?
+    if alone
+        && let Some(point) = stationary(track.runs, &track.margin, &guess, 0.5 * h, 3.0 * h)?
         && track.runs.margin(&point, &track.margin)?.is_some_and(|value| {
             value.abs() <= (1e-3 * h * from.gradient.norm()).max(track.runs.options.noise)
         })
