@@ -209,6 +209,19 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         })
     }
 
+    /// Drops the changes for which no margin was found where they were seen, but on which a curve with
+    /// their labels lies that was found elsewhere.
+    pub fn drop_explained(&mut self) {
+        let mut unresolved = std::mem::take(&mut self.network.unresolved);
+        unresolved.retain(|open| match open {
+            Unresolved::Change { between: [one, other], labels } => {
+                !self.covers(&one.lerp(other, 0.5), labels)
+            }
+            _ => true,
+        });
+        self.network.unresolved = unresolved;
+    }
+
     /// The places where the segment from `a` to `b` crosses curves, in order.
     pub fn passages(&self, a: &Point, b: &Point) -> Vec<Passage<Label>> {
         let mut found = Vec::new();

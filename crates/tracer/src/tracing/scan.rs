@@ -86,7 +86,7 @@ impl<F: Family> Tracer<'_, F> {
     }
 
     /// Traces the curve through a seed in both directions, unless it is known.
-    pub(super) fn seed(&mut self, seed: &SeedOf<F>) -> Traced<(), F> {
+    fn seed(&mut self, seed: &SeedOf<F>) -> Traced<(), F> {
         if self.builder.covers(&seed.point, &seed.labels) || !self.runs.window.contains(&seed.point)
         {
             return Ok(());

@@ -4,7 +4,6 @@ use crate::executor::Executor;
 use crate::family::Family;
 use crate::tracing::island;
 use crate::tracing::runs::{Sampled, Traced, checked};
-use crate::tracing::seed::Seed;
 use crate::tracing::sliver;
 use crate::tracing::trace::Tracer;
 use crate::watch::{Progress, Watch};
@@ -201,6 +200,7 @@ impl<F: Family> Tracer<'_, F> {
             Stage::Polish => {
                 self.polish()?;
                 self.move_to_tangencies()?;
+                self.builder.drop_explained();
                 Stage::Done
             }
             Stage::Done => Stage::Done,
@@ -223,12 +223,8 @@ impl<F: Family> Tracer<'_, F> {
             let passages = self.builder.passages(&here.0, &there.0);
             let known: Vec<f64> = passages.iter().map(|passage| passage.place).collect();
             for place in sliver::between(&self.runs, &known, behind, here, there)? {
-                // A change that no margin explains is left to the other searches.
-                for places in [[ends[0], place], [place, ends[1]]] {
-                    if let Some(seed) = Seed::between(&self.runs, &places)? {
-                        self.seed(&seed)?;
-                    }
-                }
+                self.search([ends[0], place])?;
+                self.search([place, ends[1]])?;
             }
         }
         Ok(())

@@ -13,9 +13,10 @@ use crate::tracing::runs::{Runs, Traced};
 use crate::tracing::trace::Tracer;
 use crate::window::Point;
 
-/// The farthest along the curve that the true vertex is looked for, as such a part.
+/// The farthest along the curve that the true vertex is looked for, as a part of the window's shorter
+/// extent.
 const REACH: f64 = 1e-3;
-/// The least distance from the curve at which the margin is taken, as such a part.
+/// The least distance from the curve at which the margin is taken, as a part of the same.
 const NEAR: f64 = 1e-6;
 
 impl<F: Family> Tracer<'_, F> {
