@@ -73,6 +73,7 @@ impl Arrays {
 
     /// Sets keys and hints as [`Self::set_hints`] does, but with keys as long as they are unless these
     /// are too many: tables had half as many keys of y once.
+    #[cfg(feature = "serde")]
     pub(super) fn restore_hints(&mut self, [x, y]: [Range; 2]) -> Result<(), TableError> {
         let shift = self.strip_keys.shift;
         self.set_keys([x, y]);
