@@ -1,7 +1,7 @@
 //! Where in a window a contact law gives back more tangential energy than it took: the regions in
 //! which |ε_t| is above 1, with their boundary.
 
-use stickslip_model::Contact;
+use stickslip_model::{Collider, Contact};
 use stickslip_solver::Margin;
 use stickslip_tracer::{Atlas, AtlasOptions, Curve, Location, Surveyor};
 
@@ -22,12 +22,21 @@ pub struct Gaining {
     pub atlas: Atlas<Vec<usize>, Margin>,
 }
 
+/// What the regions tell about a contact.
+enum Traced {
+    Outside,
+    /// Whether |ε_t| is above 1.
+    Region(bool),
+    /// On a boundary, in a region in doubt, or in one that no boundary touches.
+    Open,
+}
+
 /// Traces where |ε_t| is 1, accurate to `tolerance` in ψ, with the boundaries of the switches, and
 /// compares the regions with runs.
 ///
 /// Where the boundary begins, at κψ = 1 with κ = 1, 4.5, 10.5, … for Mindlin's stiffness and history
 /// by displacement, it touches one of the switches. Within some 1e-6 of such a point changes stay
-/// unresolved, and the regions beside it are in doubt.
+/// unresolved, and the regions beside it are in doubt: [`Gaining::gains`] computes the collision there.
 ///
 /// ```
 /// use stickslip_model::{Contact, presets};
@@ -81,16 +90,38 @@ impl Gaining {
         self.plane.chart()
     }
 
-    /// Whether |ε_t| of a contact in the window is above 1; `None` outside, on a boundary, and where
-    /// the regions are in doubt.
+    /// Whether |ε_t| of a contact in the window is above 1. On a boundary, and in a region in doubt,
+    /// the collision itself decides; damping and law are those of the window. `None` outside of it,
+    /// and where the collision cannot be computed.
     #[must_use]
     pub fn gains(&self, contact: &Contact) -> Option<bool> {
-        let point = self.chart().point(contact.kappa(), contact.psi());
-        let Location::Region(region) = self.atlas.plane.locate(&point) else { return None };
-        if self.atlas.is_doubtful(region) {
-            return None;
+        match self.traced(contact) {
+            Traced::Outside => None,
+            Traced::Region(gains) => Some(gains),
+            Traced::Open => {
+                let contact = self.plane.contact_at([contact.kappa(), contact.psi()]).ok()?;
+                let collision = Collider::default().collide(contact).ok()?;
+                Some(collision.eps_t().abs() > 1.0)
+            }
         }
-        self.atlas.plane.regions()[region].label.as_ref().map(|label| gains(label))
+    }
+
+    /// Whether the regions alone tell if |ε_t| of a contact is above 1.
+    #[must_use]
+    pub fn is_told(&self, contact: &Contact) -> bool {
+        matches!(self.traced(contact), Traced::Region(_))
+    }
+
+    fn traced(&self, contact: &Contact) -> Traced {
+        let point = self.chart().point(contact.kappa(), contact.psi());
+        match self.atlas.plane.locate(&point) {
+            Location::Outside => Traced::Outside,
+            Location::Region(region) if !self.atlas.is_doubtful(region) => {
+                let label = self.atlas.plane.regions()[region].label.as_ref();
+                label.map_or(Traced::Open, |label| Traced::Region(gains(label)))
+            }
+            _ => Traced::Open,
+        }
     }
 
     /// The least and the largest κ and ψ along the boundaries; `None` if there are none.
