@@ -14,6 +14,7 @@ use rayon::prelude::*;
 use stickslip::model::{Collider, presets};
 use stickslip::plane::atlas::Frame;
 use stickslip::plane::gaining::{self, Gaining};
+use stickslip::plane::progress::SILENT;
 use stickslip::plane::{CollisionPlane, Range};
 
 const KAPPA: Range = Range { low: 0.5, high: 30.0 };
@@ -33,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         seen.push(law);
         let frame = Frame { law, ..Frame::new(KAPPA, PSI, 0.0) };
         let start = Instant::now();
-        let gaining = gaining::trace(frame, frame.tolerances().usual)?;
+        let gaining = gaining::trace(frame, frame.tolerances().usual, SILENT)?;
         let seconds = start.elapsed().as_secs_f64();
         let plane = frame.plane()?;
         let counts = (0..points)
@@ -45,9 +46,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             .reduce(|| [0; 3], |one, two| [0, 1, 2].map(|place| one[place] + two[place]));
         all_wrong += counts[0];
         println!(
-            "{}: {} boundaries, {:?}, {seconds:.0} s; {} wrong, {} told by the collision, {} with |ε_t| above 1; {}",
+            "{}: {} lines, {:?}, {seconds:.0} s; {} wrong, {} told by the collision, {} with |ε_t| above 1; {}",
             preset.name,
-            gaining.boundaries().len(),
+            gaining.lines().len(),
             gaining.extent(),
             counts[0],
             counts[1],
@@ -65,6 +66,8 @@ fn checked(gaining: &Gaining, plane: &CollisionPlane, seed: u64) -> ([Option<boo
     let contact = plane.contact(&plane.point(value(KAPPA), value(PSI))).ok();
     let collided = contact.and_then(|contact| Collider::default().collide(contact).ok());
     let truth = collided.map(|collision| collision.eps_t().abs() > 1.0);
-    let told = contact.is_some_and(|contact| gaining.is_told(&contact));
+    let told = contact.is_some_and(|contact| {
+        gaining.atlas.label(&plane.point(contact.kappa(), contact.psi())).is_some()
+    });
     ([truth, contact.and_then(|contact| gaining.gains(&contact))], told)
 }

@@ -195,7 +195,7 @@ fn assess(
     any: &Contact,
 ) -> Result<(Regions, Vec<String>), AtlasError> {
     network.name_vertices();
-    let unresolved = verification::unresolved(plane, &network);
+    let unresolved = verification::unresolved(plane, &network.vertices, &network.unresolved);
     Ok((regions(plane, tolerance, network, any)?, unresolved))
 }
 
