@@ -5,6 +5,7 @@ use crate::executor::Serial;
 use crate::family::{Family, FreeRun};
 use crate::options::{TraceError, TraceOptions};
 use crate::tracing::branch::end::{SHORTEST, Special};
+use crate::tracing::branch::special::TANGENTIAL;
 use crate::tracing::builder::Builder;
 use crate::tracing::corrector::crossing;
 use crate::tracing::cut::cut;
@@ -215,7 +216,8 @@ impl<'f, F: Family> Tracer<'f, F> {
     }
 
     /// Solves again for inaccurate vertices, with the margins of all curves that end there. Two of
-    /// these may meet at a large angle, which makes their crossing accurate.
+    /// these may meet at a large angle, which makes their crossing accurate. Where two of them touch,
+    /// the place that is found may be farther away than its error says, and is left out.
     pub(super) fn polish(&mut self) -> Traced<(), F> {
         for index in 0..self.builder.stops.len() {
             let stop = self.builder.stops[index];
@@ -241,6 +243,7 @@ impl<'f, F: Family> Tracer<'f, F> {
                         reach,
                     )?;
                     if let Some((point, off)) = found
+                        && off <= TANGENTIAL * self.runs.scale
                         && (point - stop.point).norm() <= 10.0 * stop.uncertainty
                         && off < best.as_ref().map_or(0.2 * stop.uncertainty, |best| best.1)
                     {
