@@ -1,9 +1,10 @@
 """Collisions of frictional spheres and other piecewise-smooth ODEs, with every switch found.
 
 Start with `collide` (one collision), `eps_t` and `collide_many` (arrays), `impact` (SI units),
-`trace` (every boundary in a window), `gaining_lines` (where a law creates energy), `stack` (regions over the damping), `map` and `sweep`
-(xarray), `timestep` (errors of the steps of particle codes), `fit` (contact laws to measured
-impacts), `table` (restitution to be looked up), `solve` (systems of your own).
+`trace` (every boundary in a window), `gaining_lines` (where a law creates energy), `stack`
+(regions over the damping), `map` and `sweep` (xarray), `timestep` (errors of the steps of particle
+codes), `fit` (contact laws to measured impacts), `table` (restitution to be looked up), `solve`
+(systems of your own).
 """
 
 from stickslip import _native
