@@ -1,9 +1,10 @@
 """Collisions of frictional spheres and other piecewise-smooth ODEs, with every switch found.
 
 Start with `collide` (one collision), `eps_t` and `collide_many` (arrays), `impact` (SI units),
-`trace` (every boundary in a window), `stack` (regions over the damping), `map` and `sweep`
-(xarray), `timestep` (errors of the steps of particle codes), `fit` (contact laws to measured
-impacts), `table` (restitution to be looked up), `solve` (systems of your own).
+`trace` (every boundary in a window), `gaining_lines` (where a law creates energy), `stack`
+(regions over the damping), `map` and `sweep` (xarray), `timestep` (errors of the steps of particle
+codes), `fit` (contact laws to measured impacts), `table` (restitution to be looked up), `solve`
+(systems of your own).
 """
 
 from stickslip import _native
@@ -25,6 +26,7 @@ from stickslip.collisions import (
     psi_of_ratio,
 )
 from stickslip.fits import Fit, fit
+from stickslip.gaining import GainingLine, GainingLines, gaining_lines
 from stickslip.hybrid import solve
 from stickslip.impacts import (
     Bodies,
@@ -73,6 +75,8 @@ __all__ = [
     "DenseOutput",
     "Estimate",
     "Fit",
+    "GainingLine",
+    "GainingLines",
     "Guard",
     "HybridSystem",
     "Impacts",
@@ -105,6 +109,7 @@ __all__ = [
     "eps_t",
     "eps_t_and_switch_count",
     "fit",
+    "gaining_lines",
     "impact",
     "laws",
     "load_table",

@@ -83,6 +83,13 @@ class Atlas:
     def picture(self) -> str: ...
     def locate(self, kappa: _Floats, psi: _Floats) -> tuple[NDArray[np.int64], _Floats]: ...
 
+def gaining_lines(
+    kappa: tuple[float, float],
+    psi: tuple[float, float],
+    collisions: tuple[float, _Law],
+    tolerance: float | None,
+    threads: int,
+) -> tuple[str, str | None]: ...
 def stack(
     kappa: tuple[float, float],
     psi: tuple[float, float],

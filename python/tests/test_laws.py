@@ -126,3 +126,18 @@ def test_impacts_have_the_constants_of_their_law() -> None:
     surface = stickslip.Surface(0.3, normal_stiffness_kg_per_s2=5e4, damping_ratio=0.1)
     with pytest.raises(ValueError, match="tangential_stiffness_kg_per_s2 is missing"):
         stickslip.Bodies(sphere, sphere, surface, law)
+
+
+def test_lines_on_which_a_law_begins_to_gain() -> None:
+    name = "gran/hertz/history"
+    found = stickslip.gaining_lines((1.2, 1.3), (0.85, 1.0), law=name)
+    assert found.objection is None and found.document["agrees"]
+    (line,) = found.lines
+    eps_t = stickslip.eps_t(line.points[:, 0], line.points[:, 1], law=name)
+    assert np.abs(eps_t - line.eps_t).max() < 1e-8
+    middle = len(line.points) // 2
+    (from_, low), (to, high) = line.points[middle - 1 : middle + 1]
+    length = np.hypot(to - from_, high - low)
+    left = from_ - 1e-4 * (high - low) / length, low + 1e-4 * (to - from_) / length
+    assert (abs(stickslip.eps_t(*left, law=name)) > 1) == line.gains_left
+    assert stickslip.gaining_lines((2, 3), (0.5, 0.6)).lines == ()

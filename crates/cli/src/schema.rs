@@ -2,7 +2,7 @@
 //! field disappears or changes its meaning.
 
 use stickslip_model::document;
-use stickslip_plane::{atlas, stack};
+use stickslip_plane::{atlas, gaining, stack};
 use stickslip_practice::{fit, tables, time_steps};
 use stickslip_reproduction::statements;
 use stickslip_studies::{contact_laws, convergence, stiff_springs};
@@ -11,11 +11,12 @@ use stickslip_studies::{contact_laws, convergence, stiff_springs};
 pub const REPORT: &str = "stickslip.report/1";
 
 /// All layouts, those of the libraries included.
-pub const ALL: [&str; 12] = [
+pub const ALL: [&str; 13] = [
     document::COLLISION,
     document::IMPACT,
     atlas::SCHEMA,
     stack::SCHEMA,
+    gaining::SCHEMA,
     contact_laws::SCHEMA,
     convergence::SCHEMA,
     stiff_springs::SCHEMA,

@@ -41,4 +41,5 @@ pub(crate) use polyline::polyline;
 pub use regions::{Atlas, Regions, switch_count};
 pub use tracing::{AtlasError, Division, VerifiedAtlas, divide, trace};
 pub(crate) use tracing::{require_traceable, trace_options};
+pub(crate) use verification::unresolved;
 pub use verification::{EulerFields, LabelError, MismatchFields, VerificationReport};

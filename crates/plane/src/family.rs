@@ -265,6 +265,11 @@ impl CollisionPlane {
         GeneralFamily::new(self, precise())
     }
 
+    /// Whether the collisions obey the paper's law.
+    pub(crate) fn obeys_paper(&self) -> bool {
+        self.first.obeys_paper()
+    }
+
     /// Contacts with the first and the last of all normal motions of the plane, one of which has the
     /// largest κ.
     pub(crate) fn normal_motions(&self) -> [Contact; 2] {

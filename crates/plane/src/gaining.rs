@@ -3,23 +3,44 @@
 
 use stickslip_model::Contact;
 use stickslip_solver::Margin;
-use stickslip_tracer::{Atlas, AtlasOptions, Curve, Location, Surveyor};
+use stickslip_tracer::{Atlas, AtlasOptions, Curve, Mismatch, Surveyor};
 
-use crate::atlas::{AtlasError, Frame, polyline, require_traceable, trace_options};
-use crate::chart::Chart;
+use crate::atlas::{AtlasError, Frame, polyline, require_traceable, trace_options, unresolved};
 use crate::family::CollisionPlane;
-use crate::family::gaining::{GainingFamily, gains, is_level};
+use crate::family::gaining::{GainingFamily, gains, level};
 use crate::progress::{InParallel, Watch};
+
+#[cfg(feature = "serde")]
+mod document;
+#[cfg(feature = "serde")]
+pub use document::{Document, SCHEMA};
 
 /// The regions of a window in which |ε_t| is above 1.
 #[derive(Clone, Debug)]
 pub struct Gaining {
     /// The window.
     pub frame: Frame,
+    /// The accuracy of the lines in ψ.
+    pub tolerance: f64,
     plane: CollisionPlane,
+    family: GainingFamily,
     /// All regions in traced coordinates, also those of the switches, which divide those that are
     /// asked for; with what speaks against them.
     pub atlas: Atlas<Vec<usize>, Margin>,
+}
+
+/// A line in the window on which |ε_t| is 1.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Line {
+    /// ε_t along the line: 1 or −1.
+    pub eps_t: f64,
+    /// Whether |ε_t| is above 1 on the left of the line, in the order of its points, with κ to the
+    /// right and ψ upwards. On the other side it is not.
+    pub gains_left: bool,
+    /// Points (κ, ψ), so close that straight lines between them look smooth in a picture of the
+    /// window.
+    pub points: Vec<[f64; 2]>,
 }
 
 /// Traces where |ε_t| is 1, accurate to `tolerance` in ψ, with the boundaries of the switches, and
@@ -27,20 +48,22 @@ pub struct Gaining {
 ///
 /// Where the boundary begins, at κψ = 1 with κ = 1, 4.5, 10.5, … for Mindlin's stiffness and history
 /// by displacement, it touches one of the switches. Within some 1e-6 of such a point changes stay
-/// unresolved, and the regions beside it are in doubt.
+/// unresolved, and the regions beside it are in doubt: [`Gaining::gains`] computes the collision there.
 ///
 /// ```
 /// use stickslip_model::{Contact, presets};
 /// use stickslip_plane::Range;
 /// use stickslip_plane::atlas::Frame;
 /// use stickslip_plane::gaining;
+/// use stickslip_plane::progress::SILENT;
 ///
 /// let law = presets::find("gran/hertz/history").ok_or("no such law")?.law;
 /// let range = |low, high| Range { low, high };
 /// let frame = Frame { law, ..Frame::new(range(1.2, 1.3), range(0.85, 1.0), 0.0) };
-/// let gaining = gaining::trace(frame, frame.tolerances().usual)?;
+/// let gaining = gaining::trace(frame, frame.tolerances().usual, SILENT)?;
 /// assert!(gaining.agrees());
-/// assert_eq!(gaining.boundaries().len(), 1);
+/// let [line] = &gaining.lines()[..] else { panic!("one line") };
+/// assert_eq!(line.eps_t, -1.0);
 /// let gains = |psi| Contact::new(1.25, psi, 0.0)?.with_law(law, 0.0).map(|at| gaining.gains(&at));
 /// assert_eq!([gains(0.875)?, gains(0.99)?], [Some(true), Some(false)]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -49,7 +72,11 @@ pub struct Gaining {
 /// # Errors
 /// [`AtlasError`]: the window or the tolerance is not possible, a run fails, or the curves do not
 /// make regions. What cannot be resolved is no error: [`Gaining::agrees`] tells.
-pub fn trace(frame: Frame, tolerance: f64) -> Result<Gaining, AtlasError> {
+pub fn trace<'w>(
+    frame: Frame,
+    tolerance: f64,
+    watch: impl Into<Watch<'w>>,
+) -> Result<Gaining, AtlasError> {
     let plane = frame.plane()?;
     require_traceable(&plane, tolerance)?;
     let options = AtlasOptions {
@@ -57,47 +84,43 @@ pub fn trace(frame: Frame, tolerance: f64) -> Result<Gaining, AtlasError> {
         tolerance: plane.sheet().resolution(tolerance),
         ..AtlasOptions::default()
     };
-    let surveyor = Surveyor { options, executor: InParallel, watch: Watch::SILENT };
+    let surveyor = Surveyor { options, executor: InParallel, watch: watch.into() };
+    let family = GainingFamily::new(plane);
     let atlas = surveyor
-        .atlas(&GainingFamily::new(plane), &plane.window())
+        .atlas(&family, &plane.window())
         .map_err(|error| AtlasError::of_atlas(&plane, error))?;
-    Ok(Gaining { frame, plane, atlas })
+    Ok(Gaining { frame, tolerance, plane, family, atlas })
 }
 
 impl Gaining {
-    /// The points (κ, ψ) along each boundary on which |ε_t| is 1. A boundary ends where the switches
-    /// change, and another goes on there.
+    /// The lines on which |ε_t| is 1. A line ends where the switches change, and another goes on
+    /// there.
     #[must_use]
-    pub fn boundaries(&self) -> Vec<Vec<[f64; 2]>> {
+    pub fn lines(&self) -> Vec<Line> {
         let extent = self.atlas.plane.window().extent();
-        self.curves().map(|curve| polyline(self.chart(), &extent, curve)).collect()
+        let line = |curve: &Curve<Vec<usize>, Margin>| {
+            let eps_t = level(&curve.margin)?;
+            let points = polyline(self.plane.chart(), &extent, curve);
+            Some(Line { eps_t, gains_left: gains(&curve.sides[0]), points })
+        };
+        self.atlas.plane.curves().iter().filter_map(line).collect()
     }
 
-    fn curves(&self) -> impl Iterator<Item = &Curve<Vec<usize>, Margin>> {
-        self.atlas.plane.curves().iter().filter(|curve| is_level(&curve.margin))
-    }
-
-    fn chart(&self) -> &Chart {
-        self.plane.chart()
-    }
-
-    /// Whether |ε_t| of a contact in the window is above 1; `None` outside, on a boundary, and where
-    /// the regions are in doubt.
+    /// Whether |ε_t| of the collision with κ and ψ of a contact is above 1; damping and law are
+    /// those of the window. On a line, and where regions are in doubt, the collision itself decides.
+    /// `None` outside of the window, and where the collision cannot be computed.
     #[must_use]
     pub fn gains(&self, contact: &Contact) -> Option<bool> {
-        let point = self.chart().point(contact.kappa(), contact.psi());
-        let Location::Region(region) = self.atlas.plane.locate(&point) else { return None };
-        if self.atlas.is_doubtful(region) {
-            return None;
-        }
-        self.atlas.plane.regions()[region].label.as_ref().map(|label| gains(label))
+        let point = self.plane.point(contact.kappa(), contact.psi());
+        let label = self.atlas.decide(&self.family, &point).ok()??;
+        Some(gains(&label))
     }
 
-    /// The least and the largest κ and ψ along the boundaries; `None` if there are none.
+    /// The least and the largest κ and ψ along the lines; `None` if there are none.
     #[must_use]
     pub fn extent(&self) -> Option<[[f64; 2]; 2]> {
-        let boundaries = self.boundaries();
-        let mut points = boundaries.iter().flatten();
+        let lines = self.lines();
+        let mut points = lines.iter().flat_map(|line| &line.points);
         let &[kappa, psi] = points.next()?;
         let first = [[kappa, kappa], [psi, psi]];
         Some(points.fold(first, |[k, p], &[kappa, psi]| {
@@ -109,5 +132,37 @@ impl Gaining {
     #[must_use]
     pub fn agrees(&self) -> bool {
         self.atlas.agrees()
+    }
+
+    /// What speaks against the lines, in sentences; none if nothing does.
+    #[must_use]
+    pub fn objections(&self) -> Vec<String> {
+        let Atlas { plane, unresolved: open, verification, .. } = &self.atlas;
+        let mut found = unresolved(&self.plane, plane.vertices(), open);
+        let mismatch = |mismatch: &Mismatch<Vec<usize>>| {
+            let [kappa, psi] = self.plane.parameters(&mismatch.checkpoint.point);
+            format!("kappa = {kappa:?}, psi = {psi:?} does not belong to its region")
+        };
+        found.extend(verification.mismatches.iter().map(mismatch));
+        found.extend(plane.findings().iter().map(ToString::to_string));
+        found.extend(verification.failed().map(|failed| {
+            let [kappa, psi] = self.plane.parameters(&failed.checkpoint.point);
+            format!("the collision at kappa = {kappa:?}, psi = {psi:?} failed")
+        }));
+        if !self.atlas.is_finished() {
+            found.push("cancelled before the end".to_owned());
+        }
+        if found.is_empty() && !self.agrees() {
+            found.push("Euler's formula does not hold".to_owned());
+        }
+        found
+    }
+
+    /// The number of objections and the first one; `None` if nothing speaks against the lines.
+    #[must_use]
+    pub fn objection(&self) -> Option<String> {
+        let objections = self.objections();
+        let first = objections.first()?;
+        Some(format!("{} objections; the first: {first}", objections.len()))
     }
 }

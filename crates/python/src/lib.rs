@@ -40,7 +40,7 @@ mod _native {
     #[pymodule_export]
     use super::impacts::{Pair, homogeneous_mass};
     #[pymodule_export]
-    use super::planes::Atlas;
+    use super::planes::{Atlas, gaining_lines};
     #[pymodule_export]
     use super::stacks::stack;
     #[pymodule_export]

@@ -6,6 +6,7 @@ use pyo3::types::PyTuple;
 use stickslip_model::{Contact, InvalidParameter, Reduction};
 use stickslip_plane::Range;
 use stickslip_plane::atlas::{self, Document, Frame, RatioRange, SCHEMA, Unlocated};
+use stickslip_plane::gaining;
 use stickslip_plane::progress::SILENT;
 
 use crate::arrays::{expect_equal, numbers};
@@ -126,4 +127,28 @@ impl Atlas {
         };
         Ok((region, located.distance.unwrap_or(f64::NAN)))
     }
+}
+
+/// The lines of a window on which |ε_t| is 1, as JSON, and what speaks against them.
+#[pyfunction]
+pub fn gaining_lines(
+    py: Python<'_>,
+    kappa: (f64, f64),
+    psi: (f64, f64),
+    collisions: (f64, LawChoice),
+    tolerance: Option<f64>,
+    threads: usize,
+) -> PyResult<(String, Option<String>)> {
+    let range = |(low, high): (f64, f64)| Range { low, high };
+    let (damping, law) = collisions;
+    let (law, tangential_damping) = law.law()?;
+    let usual = Frame::new(range(kappa), range(psi), damping);
+    let frame = Frame { law, tangential_damping, ..usual };
+    let tolerance = tolerance.unwrap_or_else(|| frame.tolerances().usual);
+    let pool = Threads::pool(threads)?;
+    let found = py
+        .detach(|| pool.install(|| gaining::trace(frame, tolerance, SILENT)))
+        .map_err(|error| of_atlas(&error))?;
+    let document = gaining::Document::from(&found);
+    Ok((serde_json::to_string(&document).map_err(failed)?, found.objection()))
 }

@@ -215,9 +215,10 @@ fn require_state<Label, Margin>(
     options: &AtlasOptions,
 ) -> Result<(), DocumentError> {
     let State { network, uncertainties, suspects, probed, stage, .. } = state;
-    SubdivisionError::check(window, &network.curves, &network.vertices, options.tolerance)?;
+    let traced = window.with_room(options.trace.beyond);
+    SubdivisionError::check(&traced, &network.curves, &network.vertices, options.tolerance)?;
     let [curves, vertices] = [network.curves.len(), network.vertices.len()];
-    let (corners, theirs) = (window.corners(), network.window.corners());
+    let (corners, theirs) = (traced.corners(), network.window.corners());
     within("unfinished.network.window", usize::from(corners != theirs), 1)?;
     require_vertices(&network.unresolved, vertices)?;
     if uncertainties.len() != vertices {
@@ -235,7 +236,7 @@ fn require_state<Label, Margin>(
         Stage::Islands { next, .. } => (*next, cells * cells + 1),
         Stage::Pairs { next, pairs } => (*next, pairs.len() + 1),
         Stage::CloseVertices { next } => (*next, vertices + 1),
-        Stage::Polish | Stage::Done => (0, 1),
+        Stage::Settle | Stage::Polish | Stage::Done => (0, 1),
     };
     within("unfinished.stage.next", next, count)
 }

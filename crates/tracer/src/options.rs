@@ -22,6 +22,12 @@ pub struct TraceOptions {
     pub max_step: f64,
     /// The largest angle between the tangents of consecutive nodes, in radians, up to 0.5.
     pub max_angle: f64,
+    /// How far beyond the window boundaries are followed, as a fraction of its shorter extent, from 0
+    /// to 1e-2. They are cut at the window's edges. With 0, what meets or touches a hair beyond an edge
+    /// is not found, and boundaries beside it cannot be told apart; 1e-3 is as far as the search around
+    /// vertices reaches. The family must be defined there.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub beyond: f64,
     /// The number of cells of the grid along each axis, from 2 to 4096. The runs of all cells are
     /// held in memory. Along each side of the window, twice as many segments are searched.
     pub cells: usize,
@@ -41,6 +47,7 @@ impl Default for TraceOptions {
             noise: 1e-13,
             max_step: 0.05,
             max_angle: 0.2,
+            beyond: 0.0,
             cells: 32,
             max_nodes: 20_000,
             max_curves: 10_000,
@@ -74,6 +81,7 @@ impl TraceOptions {
         check("noise", self.noise, "0 to 1e-6", (0.0..=1e-6).contains(&self.noise))?;
         check("max_step", self.max_step, "above 0 to 0.25", within(self.max_step, 0.0, 0.25))?;
         check("max_angle", self.max_angle, "above 0 to 0.5", within(self.max_angle, 0.0, 0.5))?;
+        check("beyond", self.beyond, "0 to 1e-2", (0.0..=1e-2).contains(&self.beyond))?;
         check("cells", self.cells as f64, "2 to 4096", (2..=4096).contains(&self.cells))?;
         check("max_nodes", self.max_nodes as f64, "at least 2", self.max_nodes >= 2)?;
         check("max_curves", self.max_curves as f64, "at least 1", self.max_curves >= 1)

@@ -131,9 +131,9 @@ impl<E> Surveyor<'_, E> {
         E: Executor<F>,
     {
         let Some(unfinished) = atlas.unfinished.take() else { return Ok(atlas) };
-        let round = atlas.rounds;
+        let (round, window) = (atlas.rounds, *atlas.plane.window());
         let result = unfinished.brackets.is_some().then_some(atlas);
-        let mut tracer = Tracer::resume(family, &self.options.trace, *unfinished)?;
+        let mut tracer = Tracer::resume(family, &window, &self.options.trace, *unfinished)?;
         self.finish(family, &mut tracer, Survey { result, round, finished: false })
     }
 

@@ -16,6 +16,7 @@
 //! - `runs`: the runs of a family, counted
 //! - `builder`: the network that grows
 //! - `network`: what a trace finds
+//! - `cut`: the part of it that lies in the window
 //! - `naming`: the kinds of vertices
 //! - `special_points`: the names of points at which two conditions hold together
 //! - `extrema`: where boundaries are extremal in a coordinate
@@ -25,6 +26,7 @@ pub mod branch;
 mod builder;
 mod corrector;
 mod count;
+mod cut;
 pub mod extrema;
 pub mod follow;
 mod island;

@@ -38,6 +38,17 @@ impl Window {
         [low, Point::new(high.x, low.y), high, Point::new(low.x, high.y)]
     }
 
+    /// The window with its edges moved outwards, by a fraction of its shorter extent.
+    pub(crate) fn with_room(&self, part: f64) -> Self {
+        let by = Point::repeat(part * self.extent().min());
+        Self { low: self.low - by, high: self.high + by }
+    }
+
+    /// How far inside the window a point lies: its distance from the nearest edge, below 0 outside.
+    pub(crate) fn depth(&self, point: &Point) -> f64 {
+        (point - self.low).min().min((self.high - point).min())
+    }
+
     /// Whether a point lies inside or on the edge.
     #[must_use]
     pub fn contains(&self, point: &Point) -> bool {

@@ -14,6 +14,7 @@ use rayon::prelude::*;
 use stickslip::model::{Collider, presets};
 use stickslip::plane::atlas::Frame;
 use stickslip::plane::gaining::{self, Gaining};
+use stickslip::plane::progress::SILENT;
 use stickslip::plane::{CollisionPlane, Range};
 
 const KAPPA: Range = Range { low: 0.5, high: 30.0 };
@@ -33,22 +34,21 @@ fn main() -> Result<(), Box<dyn Error>> {
         seen.push(law);
         let frame = Frame { law, ..Frame::new(KAPPA, PSI, 0.0) };
         let start = Instant::now();
-        let gaining = gaining::trace(frame, frame.tolerances().usual)?;
+        let gaining = gaining::trace(frame, frame.tolerances().usual, SILENT)?;
         let seconds = start.elapsed().as_secs_f64();
         let plane = frame.plane()?;
         let counts = (0..points)
             .into_par_iter()
             .map(|point| checked(&gaining, &plane, point))
-            .map(|[truth, found]| match found {
-                Some(found) => [u64::from(Some(found) != truth), 0, u64::from(truth == Some(true))],
-                None => [0, 1, u64::from(truth == Some(true))],
+            .map(|([truth, found], told)| {
+                [truth != found, !told, truth == Some(true)].map(u64::from)
             })
             .reduce(|| [0; 3], |one, two| [0, 1, 2].map(|place| one[place] + two[place]));
         all_wrong += counts[0];
         println!(
-            "{}: {} boundaries, {:?}, {seconds:.0} s; {} wrong, {} open, {} with |ε_t| above 1; {}",
+            "{}: {} lines, {:?}, {seconds:.0} s; {} wrong, {} told by the collision, {} with |ε_t| above 1; {}",
             preset.name,
-            gaining.boundaries().len(),
+            gaining.lines().len(),
             gaining.extent(),
             counts[0],
             counts[1],
@@ -59,12 +59,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     if all_wrong > 0 { Err(format!("{all_wrong} points are wrong").into()) } else { Ok(()) }
 }
 
-/// Whether |ε_t| is above 1 at a random point, and what the regions say.
-fn checked(gaining: &Gaining, plane: &CollisionPlane, seed: u64) -> [Option<bool>; 2] {
+/// Whether |ε_t| is above 1 at a random point, and what is answered; and whether the regions told.
+fn checked(gaining: &Gaining, plane: &CollisionPlane, seed: u64) -> ([Option<bool>; 2], bool) {
     let mut random = fastrand::Rng::with_seed(seed);
     let mut value = |Range { low, high }: Range| low * (high / low).powf(random.f64());
     let contact = plane.contact(&plane.point(value(KAPPA), value(PSI))).ok();
     let collided = contact.and_then(|contact| Collider::default().collide(contact).ok());
     let truth = collided.map(|collision| collision.eps_t().abs() > 1.0);
-    [truth, contact.and_then(|contact| gaining.gains(&contact))]
+    let told = contact.is_some_and(|contact| {
+        gaining.atlas.label(&plane.point(contact.kappa(), contact.psi())).is_some()
+    });
+    ([truth, contact.and_then(|contact| gaining.gains(&contact))], told)
 }

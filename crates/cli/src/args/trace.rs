@@ -55,6 +55,11 @@ pub struct TraceArguments {
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub geojson: Option<PathBuf>,
 
+    /// JSON file for the lines on which ε_t is 1 or −1, beyond which the law gives back more
+    /// tangential energy than it took
+    #[arg(long, value_name = "FILE.json", help_heading = "Output")]
+    pub gaining: Option<PathBuf>,
+
     /// Threads for the verification; 1 to 1024 [default: one for each core]; results do not depend
     /// on it
     #[arg(long, value_name = "N", help_heading = "Output", allow_hyphen_values = true)]
@@ -79,5 +84,7 @@ Examples:
   stickslip trace --kappa 5:20 --ratio 0.3:3.5 --mu 0.4 --alpha 2/7 --out atlas.json
   stickslip trace --kappa 5:20 --psi 0.2:2.5 --damping 0.05 --out damped.json
   stickslip trace --kappa 5:20 --psi 0.2:2.5 --out atlas.json --geojson atlas.geojson
+  stickslip trace --kappa 1.2:1.3 --psi 0.85:1 --law gran/hertz/history --out atlas.json \
+    --gaining gaining.json
 
 Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

@@ -3,6 +3,7 @@
 use serde::Serialize;
 use stickslip_figure::pictures;
 use stickslip_plane::atlas::{self, Document, geojson};
+use stickslip_plane::gaining;
 
 use crate::error::Failure;
 use crate::output::file::{OutputFile, StoredFile, publish};
@@ -15,30 +16,41 @@ use crate::threads;
 /// Traces the boundaries of the window and writes its atlas.
 ///
 /// # Errors
-/// A run fails, files cannot be written, or something speaks against the atlas. In the last case
-/// the atlas is complete and says so.
+/// A run fails, files cannot be written, or something speaks against the atlas or the lines on which
+/// |ε_t| is 1. In the last case the files are complete and say so.
 pub fn run(plan: &TracePlan) -> Result<(), Failure> {
     plan.plot.as_ref().map(PictureFile::probe).transpose()?;
     let pool = threads::pool(plan.threads)?;
     let file = OutputFile::create(&plan.out)?;
     let geography = plan.geojson.as_deref().map(OutputFile::create).transpose()?;
+    let lines = plan.gaining.as_deref().map(OutputFile::create).transpose()?;
 
     let bar = Bar::steps();
     let report = |progress| bar.report(progress);
     let verified = pool.install(|| atlas::trace(plan.frame, plan.tolerance, &report));
+    let gained = lines.as_ref().map(|_| {
+        let traced = || gaining::trace(plan.frame, plan.tolerance, &report);
+        pool.install(traced)
+    });
     drop(bar);
-    let verified = verified?;
+    let (verified, gained) = (verified?, gained.transpose()?);
     let mut stored = vec![write_json(file, &Document::new(&verified))?];
     if let Some(file) = geography {
         stored.push(write_json(file, &geojson(&verified))?);
+    }
+    if let (Some(file), Some(gained)) = (lines, &gained) {
+        stored.push(write_json(file, &gaining::Document::from(gained))?);
     }
     if let Some(plot) = &plan.plot {
         stored.push(plot.write(Ok(pictures::atlas::draw(&verified.atlas)))?);
     }
     publish(stored)?;
-    match verified.report.objection() {
-        Some(reason) => Err(Failure::Doubtful { path: plan.out.clone(), reason }),
-        None => Ok(()),
+    if let Some(reason) = verified.report.objection() {
+        return Err(Failure::Doubtful { path: plan.out.clone(), reason });
+    }
+    match (&plan.gaining, gained.and_then(|gained| gained.objection())) {
+        (Some(path), Some(reason)) => Err(Failure::Doubtful { path: path.clone(), reason }),
+        _ => Ok(()),
     }
 }
 

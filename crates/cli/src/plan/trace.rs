@@ -26,6 +26,8 @@ pub struct TracePlan {
     pub plot: Option<PictureFile>,
     /// The file for GeoJSON, if that is wanted.
     pub geojson: Option<PathBuf>,
+    /// The file for the lines on which |ε_t| is 1, if they are wanted.
+    pub gaining: Option<PathBuf>,
     /// The number of threads; `None` is one for each core.
     pub threads: Option<u16>,
 }
@@ -36,12 +38,16 @@ impl TracePlan {
     /// # Errors
     /// [`Failure::Usage`] says which options contradict each other.
     pub fn new(arguments: &TraceArguments) -> Result<Self, Failure> {
-        let TraceArguments { out, plot, geojson, .. } = arguments;
+        let TraceArguments { out, plot, geojson, gaining, .. } = arguments;
         let frame = frame(arguments)?;
         let tolerance = arguments.tolerance.unwrap_or_else(|| frame.tolerances().usual);
         let picture = plot.as_ref().map(PictureFile::path);
-        let outputs =
-            [("--out", Some(&**out)), ("--geojson", geojson.as_deref()), ("--plot", picture)];
+        let outputs = [
+            ("--out", Some(&**out)),
+            ("--geojson", geojson.as_deref()),
+            ("--plot", picture),
+            ("--gaining", gaining.as_deref()),
+        ];
         require_different(&outputs, &[])?;
         Ok(Self {
             frame,
@@ -49,6 +55,7 @@ impl TracePlan {
             out: out.clone(),
             plot: plot.clone(),
             geojson: geojson.clone(),
+            gaining: gaining.clone(),
             threads: arguments.threads,
         })
     }

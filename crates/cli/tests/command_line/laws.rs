@@ -188,6 +188,34 @@ fn maps_and_atlases_know_their_law() {
 }
 
 #[test]
+fn lines_on_which_a_law_begins_to_gain_are_written() {
+    let directory = Workspace::new();
+    let window = "trace --kappa 1.2:1.3 --psi 0.85:1 --out atlas.json --gaining gaining.json";
+    let ran = directory.run(&format!("{window} --law gran/hertz/history"));
+    assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
+    let gaining: Value = serde_json::from_str(&directory.read("gaining.json")).unwrap();
+    assert_eq!(gaining["schema"], "stickslip.gaining/1");
+    assert_eq!((&gaining["agrees"], &gaining["objections"]), (&true.into(), &json!([])));
+    let [line] = &gaining["lines"].as_array().unwrap()[..] else { panic!("{gaining}") };
+    let points = line["points"].as_array().unwrap();
+    // Below the line |ε_t| is above 1.
+    let rightwards = points[points.len() - 1][0].as_f64() > points[0][0].as_f64();
+    assert_eq!(line["gains_left"], !rightwards);
+    let middle = &points[points.len() / 2];
+    let collide = format!("collide --kappa {} --psi {}", middle[0], middle[1]);
+    let ran = directory.run(&format!("{collide} --law gran/hertz/history --format json"));
+    let collision: Value = serde_json::from_str(&ran.stdout).unwrap();
+    let off = collision["eps_t"].as_f64().unwrap() - line["eps_t"].as_f64().unwrap();
+    assert!(off.abs() < 1e-8, "{collision}");
+    // The paper's law creates none.
+    assert_eq!(directory.run(window).code, 0);
+    let gaining: Value = serde_json::from_str(&directory.read("gaining.json")).unwrap();
+    assert_eq!((&gaining["agrees"], &gaining["lines"]), (&true.into(), &json!([])));
+    let same = "trace --kappa 1:2 --psi 1:2 --out a.json --gaining a.json";
+    assert_eq!(directory.run(same).code, 2);
+}
+
+#[test]
 fn impacts_have_the_constants_of_their_law() {
     let directory = Workspace::new();
     let file = std::fs::read_to_string("../../examples/hooke_spheres.json").unwrap();

@@ -390,34 +390,44 @@ fn contacts_on_the_verge_of_slip_are_resolved() {
 /// with it. Such a contact starts in stick, and has the ε_t of its neighbours.
 #[test]
 fn contacts_on_the_border_of_slip_stick() {
-    let mut checked = 0;
+    let mut checked = Vec::new();
     for preset in presets::ALL {
         let border = if preset.law.history == HistoryOf::Force { 1.5 } else { 1.0 };
         for (kappa, psi) in [(2.0, 0.5), (4.0, 0.25), (10.0, 0.1), (1.25, 0.8), (0.6, 1.0 / 0.6)] {
             for (a, b) in [(0.0, 0.0), (0.2, 1.0 / psi)] {
                 let psi = if a > 0.0 { psi } else { psi * border };
                 let b = if a > 0.0 && preset.law.damping == Damping::None { continue } else { b };
+                // Without damping, laws that differ in damping alone have the same equations.
+                let law = if a > 0.0 {
+                    preset.law
+                } else {
+                    let law = Law { damping: Damping::None, end: End::Overlap, ..preset.law };
+                    Law { limit_damping: false, ..law }
+                };
+                if checked.contains(&(law, kappa, a)) {
+                    continue;
+                }
                 let at = |part: f64| {
                     let [kappa, b] = if a > 0.0 { [kappa, b * part] } else { [kappa * part, b] };
-                    Contact::new(kappa, psi, a).unwrap().with_law(preset.law, b).unwrap()
+                    Contact::new(kappa, psi, a).unwrap().with_law(law, b).unwrap()
                 };
                 let general = GeneralContact::new(at(1.0));
                 let [Some(room), _] = general.beginning_margins() else { continue };
                 if room.abs() > 1e-15 {
                     continue;
                 }
+                checked.push((law, kappa, a));
                 let beside = collide(at(1.0 - 1e-13));
                 for part in [1.0, 1.0 - 2e-16, 1.0 + 3e-16] {
                     let on = collide(at(part));
                     assert_eq!(on.itinerary(), beside.itinerary(), "{} {kappa} {a}", preset.name);
                     assert!((on.eps_t() - beside.eps_t()).abs() < 1e-10, "{}", preset.name);
                     assert!(on.itinerary().starts_with('o'));
-                    checked += 1;
                 }
             }
         }
     }
-    assert!(checked > 200, "{checked}");
+    assert!(checked.len() > 40, "{}", checked.len());
 }
 
 /// With ψ = 1 and no damping the first slip ends at greatest compression, from where a rescaled history

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use stickslip_model::{Collider, CollisionError, InvalidParameter};
 use stickslip_tracer::{
-    Found, Location, Network, Origin, Point, Reason, Unresolved, Verification, VerifyOptions,
+    Found, Location, Origin, Point, Reason, Unresolved, Verification, VerifyOptions, Vertex,
     verify_unless_cancelled,
 };
 
@@ -232,9 +232,10 @@ fn scaled(plane: &CollisionPlane, point: &Point) -> [f64; 2] {
 }
 
 /// What the tracer saw and could not explain, in sentences.
-pub(super) fn unresolved<Label, Margin>(
+pub(crate) fn unresolved<Label, Margin>(
     plane: &CollisionPlane,
-    network: &Network<Label, Margin>,
+    vertices: &[Vertex<Margin>],
+    unresolved: &[Unresolved<Label>],
 ) -> Vec<String> {
     let at = |point: &Point| {
         let [kappa, psi] = scaled(plane, point);
@@ -245,7 +246,8 @@ pub(super) fn unresolved<Label, Margin>(
             format!("the switches change between {} and {} without a boundary", at(one), at(two))
         }
         Unresolved::Stalled { vertex } => {
-            format!("a boundary ends without a known cause at vertex {vertex}")
+            let place = at(&vertices[*vertex].point);
+            format!("a boundary ends without a known cause at vertex {vertex}, {place}")
         }
         Unresolved::TooManyNodes { point } => {
             format!("a boundary has too many points and was left at {}", at(point))
@@ -257,5 +259,5 @@ pub(super) fn unresolved<Label, Margin>(
             format!("too many boundaries; the next one starts at {}", at(point))
         }
     };
-    network.unresolved.iter().map(describe).collect()
+    unresolved.iter().map(describe).collect()
 }

@@ -15,12 +15,12 @@ const FORWARD: usize = BEYOND_GUARDS;
 /// What stands for a guard in the margin 1 + ε_t, and in the label where ε_t is below −1.
 const BACKWARD: usize = BEYOND_GUARDS + 1;
 
-/// Collisions with another law than the paper's, with labels that tell whether |ε_t| is above 1.
+/// Collisions with any law, with labels that tell whether |ε_t| is above 1.
 #[derive(Clone, Copy, Debug)]
 pub struct GainingFamily(GeneralFamily);
 
 impl GainingFamily {
-    /// The collisions of a plane, whose law is another than the paper's.
+    /// The collisions of a plane, integrated as those of any law.
     pub fn new(plane: CollisionPlane) -> Self {
         Self(plane.general())
     }
@@ -37,9 +37,17 @@ pub fn gains(label: &[usize]) -> bool {
     matches!(label.last(), Some(&(FORWARD | BACKWARD)))
 }
 
-/// Whether |ε_t| is 1 where this margin vanishes.
-pub fn is_level(margin: &Margin) -> bool {
-    matches!(margin.guard, FORWARD | BACKWARD)
+/// ε_t where this margin vanishes, if that makes it 1 in size.
+pub fn level(margin: &Margin) -> Option<f64> {
+    match margin.guard {
+        FORWARD => Some(1.0),
+        BACKWARD => Some(-1.0),
+        _ => None,
+    }
+}
+
+fn is_level(margin: &Margin) -> bool {
+    level(margin).is_some()
 }
 
 fn with_level(mut label: Vec<usize>, eps_t: f64) -> Vec<usize> {

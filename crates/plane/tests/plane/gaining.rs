@@ -2,6 +2,7 @@
 
 use stickslip_model::{Collider, Law, presets};
 use stickslip_plane::atlas::{AtlasError, Frame};
+use stickslip_plane::progress::SILENT;
 use stickslip_plane::{Range, gaining};
 
 use crate::laws::with_law;
@@ -19,18 +20,26 @@ fn the_boundary_is_where_the_restitution_is_one() {
         ("granular/hertz/tsuji/mindlin/force", (1.2, 1.4), (0.2, 0.5)),
     ] {
         let frame = frame(name, kappa, psi);
-        let gaining = gaining::trace(frame, frame.tolerances().usual).unwrap();
+        let gaining = gaining::trace(frame, frame.tolerances().usual, SILENT).unwrap();
         assert!(gaining.agrees(), "{name}: {:?}", gaining.atlas.unresolved);
         let plane = frame.plane().unwrap();
         let eps_t = |kappa, psi| {
             let contact = plane.contact(&plane.point(kappa, psi)).unwrap();
             (contact, Collider::default().collide(contact).unwrap().eps_t())
         };
-        let boundaries = gaining.boundaries();
-        assert!(!boundaries.is_empty(), "{name}");
-        for [kappa, psi] in boundaries.into_iter().flatten() {
-            let error = eps_t(kappa, psi).1.abs() - 1.0;
-            assert!(error.abs() < 1e-8, "{name} {kappa} {psi}: {error:e}");
+        let lines = gaining.lines();
+        assert!(!lines.is_empty() && gaining.objection().is_none(), "{name}");
+        for line in lines {
+            for [kappa, psi] in &line.points {
+                let error = eps_t(*kappa, *psi).1 - line.eps_t;
+                assert!(error.abs() < 1e-8, "{name} {kappa} {psi}: {error:e}");
+            }
+            let middle = line.points.len() / 2;
+            let [[from, low], [to, high]] = [line.points[middle - 1], line.points[middle]];
+            // 1e-4 to the left of the line.
+            let (rise, length) = ([to - from, high - low], (to - from).hypot(high - low));
+            let left = [from - 1e-4 * rise[1] / length, low + 1e-4 * rise[0] / length];
+            assert_eq!(eps_t(left[0], left[1]).1.abs() > 1.0, line.gains_left, "{name}");
         }
         let mut both = [false; 2];
         let mut random = fastrand::Rng::with_seed(1);
@@ -50,8 +59,8 @@ fn the_paper_s_law_gains_nothing() {
     let range = |low, high| Range { low, high };
     let frame = Frame::new(range(2.0, 4.0), range(0.3, 0.6), 0.1);
     assert_eq!(frame.law, Law::PAPER);
-    let gaining = gaining::trace(frame, frame.tolerances().usual).unwrap();
-    assert!(gaining.agrees() && gaining.boundaries().is_empty() && gaining.extent().is_none());
+    let gaining = gaining::trace(frame, frame.tolerances().usual, SILENT).unwrap();
+    assert!(gaining.agrees() && gaining.lines().is_empty() && gaining.extent().is_none());
 }
 
 #[test]
@@ -59,13 +68,13 @@ fn what_cannot_be_traced_is_refused() {
     let good = frame("gran/hertz/history", (1.0, 2.0), (0.5, 1.0));
     let usual = good.tolerances().usual;
     for tolerance in [0.0, f64::NAN, 1.0] {
-        let refused = gaining::trace(good, tolerance);
+        let refused = gaining::trace(good, tolerance, SILENT);
         assert!(matches!(refused, Err(AtlasError::Tolerance { .. })), "{tolerance}");
     }
     let narrow = Range { low: 1.0, high: 1.0 + 1e-9 };
-    let refused = gaining::trace(Frame { kappa: narrow, ..good }, usual);
+    let refused = gaining::trace(Frame { kappa: narrow, ..good }, usual, SILENT);
     assert!(matches!(refused, Err(AtlasError::Narrow(_))));
     let endless =
         Frame { damping: 5.0, law: presets::find("gran/hooke/history").unwrap().law, ..good };
-    assert!(matches!(gaining::trace(endless, usual), Err(AtlasError::Parameter(_))));
+    assert!(matches!(gaining::trace(endless, usual, SILENT), Err(AtlasError::Parameter(_))));
 }

@@ -118,3 +118,30 @@ fn boundaries_close_together_in_an_attracting_tail_are_told_apart() {
     let close = found.windows(2).filter(|pair| (1e-5..5e-5).contains(&(pair[1] - pair[0])));
     assert_eq!(close.count(), 1, "{found:?}");
 }
+
+/// Boundaries meet 3.7e-8 beyond the edge κ = 1, where they are hardly apart.
+#[test]
+fn boundaries_that_meet_just_beyond_the_edge_are_told_apart() {
+    let window = Frame { tangential_damping: 0.5, ..frame((1.0, 5.0), (1.9, 2.8)) };
+    let verified = traced(with_law("gran/hertz/history", 0.2, window));
+    assert!(verified.report.agrees, "{:?}", verified.report);
+    let found = verified.atlas.boundaries_at(1.0 + 1e-4);
+    assert!(found.windows(2).all(|pair| pair[0] < pair[1]) && found.len() >= 4, "{found:?}");
+}
+
+/// A graze touches an upright boundary where two others end. Its margin and that of the upright one
+/// tell the place of the vertex only to half the digits.
+#[test]
+fn a_vertex_with_a_touch_stays_where_the_other_boundaries_meet() {
+    let window = Frame { tangential_damping: 0.5, ..frame((1.0, 10.0), (0.1, 3.0)) };
+    let verified = traced(with_law("gran/hooke/history", 0.2, window));
+    assert!(verified.report.agrees, "{:?}", verified.report);
+    let atlas = &verified.atlas;
+    let vertices = atlas.regions.vertices().iter();
+    let parameters = vertices.map(|vertex| atlas.chart.parameters(&vertex.point));
+    // As found in the window of κ 4.4 to 4.5 and ψ 0.19 to 0.2.
+    let there = parameters.filter(|[kappa, psi]| {
+        (kappa - 4.452_416_452_242).abs() < 1e-10 && (psi - 0.193_737_575_742).abs() < 1e-10
+    });
+    assert_eq!(there.count(), 1);
+}

@@ -42,7 +42,7 @@ pub fn frame<Label, Margin>(
 impl Window {
     /// `point`, moved onto the sides of the window that are closer than `tolerance`; `None` if
     /// there are none.
-    fn onto_boundary(&self, point: &Point, tolerance: f64) -> Option<Point> {
+    pub(crate) fn onto_boundary(&self, point: &Point, tolerance: f64) -> Option<Point> {
         let snap = |value: f64, low: f64, high: f64| {
             [low, high].into_iter().find(|side| (value - side).abs() <= tolerance)
         };

@@ -7,7 +7,7 @@
 mod ahead;
 mod cusp;
 pub mod end;
-mod special;
+pub(crate) mod special;
 mod step;
 mod touch;
 mod track;

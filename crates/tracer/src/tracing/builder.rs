@@ -30,7 +30,8 @@ pub(crate) struct Builder<Label, Margin> {
 const CELLS: usize = 64;
 
 impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
-    pub fn new(window: Window) -> Self {
+    /// A network without curves; lengths are relative to `scale`.
+    pub fn new(window: Window, scale: f64) -> Self {
         let network = Network {
             window,
             curves: Vec::new(),
@@ -38,14 +39,18 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
             statistics: TraceStatistics::default(),
             unresolved: Vec::new(),
         };
-        let scale = window.extent().min();
         let cells = vec![Vec::new(); CELLS * CELLS];
         Self { network, stops: Vec::new(), suspects: Vec::new(), scale, cells }
     }
 
     /// A network that was begun before.
-    pub fn of(stops: Vec<Stop>, network: Network<Label, Margin>, suspects: Vec<usize>) -> Self {
-        let mut builder = Self { stops, suspects, ..Self::new(network.window) };
+    pub fn of(
+        stops: Vec<Stop>,
+        network: Network<Label, Margin>,
+        suspects: Vec<usize>,
+        scale: f64,
+    ) -> Self {
+        let mut builder = Self { stops, suspects, ..Self::new(network.window, scale) };
         builder.network = network;
         builder.enter_all();
         builder

@@ -61,6 +61,28 @@ pub(crate) fn correct<F: Family>(
     Ok(None)
 }
 
+/// The zero of a margin on the edge of a window through `guess`, along which `axis` is constant; at
+/// most `reach` away. Where the boundary all but runs along the edge, it is the place of the edge
+/// next to a zero beside `guess`.
+pub(crate) fn correct_on_edge<F: Family>(
+    runs: &Runs<'_, F>,
+    margin: &F::Margin,
+    guess: &Point,
+    gradient: &Point,
+    axis: usize,
+    reach: f64,
+) -> Traced<Option<Point>, F> {
+    let mut along = *gradient;
+    along[axis] = 0.0;
+    let crosses = along.norm() > 1e-3 * gradient.norm();
+    let direction = if crosses { &along } else { gradient };
+    let found = correct(runs, margin, guess, direction, reach)?;
+    Ok(found.map(|Corrected { mut point, .. }| {
+        point[axis] = guess[axis];
+        point
+    }))
+}
+
 /// The place near `guess` where two margins vanish together, by Newton's method, and its largest
 /// error. The error is large if the boundaries almost touch. Gradients are differences along
 /// `direction` and across it.

@@ -50,6 +50,11 @@ impl<'a, F: Family> Runs<'a, F> {
         Ok(Self { family, window, options, scale, free: Cell::new(0), prescribed: Cell::new(0) })
     }
 
+    /// The same runs in a larger window, with lengths relative to this one.
+    pub(crate) fn within(self, window: Window) -> Self {
+        Self { window, ..self }
+    }
+
     /// The numbers of free runs and of prescribed runs so far.
     #[must_use]
     pub fn counts(&self) -> [usize; 2] {

@@ -14,7 +14,7 @@ use crate::window::Point;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub(crate) enum Stage {
-    /// Along the segments of the window's edges.
+    /// Along the segments of the edges up to which boundaries are followed.
     Edges { next: usize },
     /// Along the edges of the grid.
     Grid { next: usize },
@@ -24,6 +24,8 @@ pub(crate) enum Stage {
     Pairs { next: usize, pairs: Vec<[Point; 2]> },
     /// Between vertices that are close together.
     CloseVertices { next: usize },
+    /// Where changes of the label were left open.
+    Settle,
     /// For better places of inaccurate vertices.
     Polish,
     /// Nothing.
@@ -79,7 +81,7 @@ impl<F: Family> Tracer<'_, F> {
             Stage::Islands { next, pending } => cells * cells - next + pending.len(),
             Stage::Pairs { next, pairs } => pairs.len() - next,
             Stage::CloseVertices { next } => self.builder.stops.len() - next,
-            Stage::Polish => 1,
+            Stage::Settle | Stage::Polish => 1,
             Stage::Done => 0,
         }
     }
@@ -111,18 +113,18 @@ impl<F: Family> Tracer<'_, F> {
         let place = |index: usize| {
             let (column, row) = (index / cells, index % cells);
             let part = Point::new(column as f64 + 0.5, row as f64 + 0.5);
-            self.runs.window.low + cell.component_mul(&part)
+            self.window.low + cell.component_mul(&part)
         };
         (0..cells * cells).map(place).collect()
     }
 
     /// The extent of a cell of the grid.
     fn cell(&self) -> Point {
-        self.runs.window.extent() / self.runs.options.cells as f64
+        self.window.extent() / self.runs.options.cells as f64
     }
 
     /// The places at the ends of all segments, a ten-millionth of the window's shorter extent inside
-    /// its edges.
+    /// the edges up to which boundaries are followed.
     fn edge_places(&self) -> Vec<Point> {
         let inset = Point::repeat(1e-7 * self.runs.scale);
         let (low, high) = (self.runs.window.low + inset, self.runs.window.high - inset);
@@ -196,7 +198,11 @@ impl<F: Family> Tracer<'_, F> {
                 self.search_beside(next)?;
                 Stage::CloseVertices { next: next + 1 }
             }
-            Stage::CloseVertices { .. } => Stage::Polish,
+            Stage::CloseVertices { .. } => Stage::Settle,
+            Stage::Settle => {
+                self.settle()?;
+                Stage::Polish
+            }
             Stage::Polish => {
                 self.polish()?;
                 self.move_to_tangencies()?;

@@ -5,15 +5,16 @@ use crate::options::TraceOptions;
 use crate::tracing::branch::end::Stop;
 use crate::tracing::builder::Builder;
 use crate::tracing::network::Network;
-use crate::tracing::runs::{Runs, Traced};
+use crate::tracing::runs::Traced;
 use crate::tracing::stages::Stage;
 use crate::tracing::trace::Tracer;
-use crate::window::Point;
+use crate::window::{Point, Window};
 
 /// A search that was interrupted between two tasks.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct State<Label, Margin> {
+    /// The network, up to some way beyond the window.
     pub network: Network<Label, Margin>,
     /// The largest error of each vertex.
     pub uncertainties: Vec<f64>,
@@ -34,7 +35,7 @@ impl<'f, F: Family> Tracer<'f, F> {
     /// before.
     pub(crate) fn state(&self) -> StateOf<F> {
         self.before_look.as_deref().cloned().unwrap_or_else(|| State {
-            network: self.network(),
+            network: self.uncut(),
             uncertainties: self.builder.stops.iter().map(|stop| stop.uncertainty).collect(),
             suspects: self.builder.suspects.clone(),
             probed: self.probed,
@@ -43,22 +44,23 @@ impl<'f, F: Family> Tracer<'f, F> {
         })
     }
 
-    /// A tracer that goes on from a state.
+    /// A tracer that goes on from a state of a search in `window`.
     ///
     /// # Errors
     /// An option is out of its range, or the window is not a rectangle.
     pub(crate) fn resume(
         family: &'f F,
+        window: &Window,
         options: &TraceOptions,
         state: StateOf<F>,
     ) -> Traced<Self, F> {
-        let mut tracer = Self::new(family, &state.network.window, options)?;
+        let mut tracer = Self::new(family, window, options)?;
         let statistics = state.network.statistics;
-        tracer.runs = Runs::new(family, state.network.window, *options)?
-            .counted([statistics.free_runs, statistics.prescribed_runs]);
+        tracer.runs = tracer.runs.counted([statistics.free_runs, statistics.prescribed_runs]);
         let stops = state.network.vertices.iter().zip(state.uncertainties);
         let stops = stops.map(|(vertex, uncertainty)| Stop { point: vertex.point, uncertainty });
-        tracer.builder = Builder::of(stops.collect(), state.network, state.suspects);
+        tracer.builder =
+            Builder::of(stops.collect(), state.network, state.suspects, tracer.runs.scale);
         tracer.probed = state.probed;
         tracer.stage = state.stage;
         if let Some(brackets) = state.brackets {

@@ -5,10 +5,12 @@ use crate::executor::Serial;
 use crate::family::{Family, FreeRun};
 use crate::options::{TraceError, TraceOptions};
 use crate::tracing::branch::end::{SHORTEST, Special};
+use crate::tracing::branch::special::TANGENTIAL;
 use crate::tracing::builder::Builder;
 use crate::tracing::corrector::crossing;
+use crate::tracing::cut::cut;
 use crate::tracing::extrema::{Extremum, extrema};
-use crate::tracing::network::NetworkOf;
+use crate::tracing::network::{NetworkOf, Unresolved};
 use crate::tracing::runs::{Runs, Sampled, Traced};
 use crate::tracing::stages::Stage;
 use crate::tracing::state::StateOf;
@@ -39,12 +41,16 @@ pub fn trace<F: Family>(
 /// a small island. A verification may find a point of such a region, and [`Self::look_between`] then
 /// finds the curve.
 ///
-/// The family is evaluated up to a hundredth of the window's extent outside the window. The
+/// Boundaries are followed a little [beyond](TraceOptions::beyond) the window and cut at its edges, so
+/// that places where they meet just outside are vertices like others. The family is evaluated up to a
+/// hundredth of the window's extent, and as far as boundaries are followed, outside the window. The
 /// distance of nodes from their boundary is at most `options.tolerance`, or what the noise of
 /// margins allows; that of the cubics between them is at most `options.interpolation`.
 pub struct Tracer<'f, F: Family> {
     pub(crate) runs: Runs<'f, F>,
     pub(crate) builder: Builder<F::Label, F::Margin>,
+    /// The window that was asked for. That of the runs and of the builder is larger.
+    pub(super) window: Window,
     /// The number of vertices around which boundaries were searched for.
     pub(super) probed: usize,
     pub(super) stage: Stage,
@@ -64,8 +70,17 @@ impl<'f, F: Family> Tracer<'f, F> {
     /// An option is out of its range, or the window is not a rectangle.
     pub fn new(family: &'f F, window: &Window, options: &TraceOptions) -> Traced<Self, F> {
         let runs = Runs::new(family, *window, *options)?;
-        let (builder, stage) = (Builder::new(*window), Stage::Edges { next: 0 });
-        Ok(Self { runs, builder, probed: 0, stage, sampled: Vec::new(), before_look: None })
+        let outer = window.with_room(options.beyond);
+        let builder = Builder::new(outer, runs.scale);
+        Ok(Self {
+            runs: runs.within(outer),
+            builder,
+            window: *window,
+            probed: 0,
+            stage: Stage::Edges { next: 0 },
+            sampled: Vec::new(),
+            before_look: None,
+        })
     }
 
     /// Searches the whole window.
@@ -97,9 +112,20 @@ impl<'f, F: Family> Tracer<'f, F> {
     /// The network that has been found so far.
     #[must_use]
     pub fn network(&self) -> NetworkOf<F> {
-        let mut network = self.builder.network.clone();
-        [network.statistics.free_runs, network.statistics.prescribed_runs] = self.runs.counts();
+        let mut network = cut(&self.runs, &self.builder.network, &self.window);
+        self.count_runs(&mut network);
         network
+    }
+
+    /// The network as it is traced, up to some way beyond the window.
+    pub(super) fn uncut(&self) -> NetworkOf<F> {
+        let mut network = self.builder.network.clone();
+        self.count_runs(&mut network);
+        network
+    }
+
+    fn count_runs(&self, network: &mut NetworkOf<F>) {
+        [network.statistics.free_runs, network.statistics.prescribed_runs] = self.runs.counts();
     }
 
     /// The places where the curves found so far are extremal in a coordinate. They are solved for
@@ -112,7 +138,7 @@ impl<'f, F: Family> Tracer<'f, F> {
     /// # Errors
     /// A run fails, or a margin is not a number.
     pub fn extrema(&self) -> Traced<Vec<Extremum>, F> {
-        extrema(&self.runs, &self.builder.network.curves)
+        extrema(&self.runs, &self.network().curves)
     }
 
     /// Scans a segment. It is first halved if the run in its middle is not what the runs at its
@@ -152,6 +178,31 @@ impl<'f, F: Family> Tracer<'f, F> {
         Ok(true)
     }
 
+    /// Scans once more where a change of the label was left open: curves that were found later may
+    /// explain it.
+    pub(super) fn settle(&mut self) -> Traced<(), F> {
+        let unresolved = &mut self.builder.network.unresolved;
+        let is_change = |what: &Unresolved<F::Label>| matches!(what, Unresolved::Change { .. });
+        let (changes, others): (Vec<_>, Vec<_>) =
+            std::mem::take(unresolved).into_iter().partition(is_change);
+        *unresolved = others;
+        for change in changes {
+            let Unresolved::Change { between: [a, b], labels } = &change else { continue };
+            if a == b && self.builder.covers(a, labels) {
+                continue;
+            }
+            let beside = (b - a).try_normalize(0.0).unwrap_or_default() * (1e-8 * self.runs.scale);
+            let ends = [a - beside, b + beside];
+            let labels = [self.runs.label(&ends[0])?, self.runs.label(&ends[1])?];
+            if labels[0] == labels[1] && self.builder.passages(&ends[0], &ends[1]).is_empty() {
+                self.builder.network.unresolved.push(change);
+            } else {
+                self.scan(ends, labels)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Searches on a circle around a vertex with another one inside its circles. The circle passes
     /// between the two, where it crosses curves from one to the other.
     pub(super) fn search_beside(&mut self, vertex: usize) -> Traced<(), F> {
@@ -165,7 +216,8 @@ impl<'f, F: Family> Tracer<'f, F> {
     }
 
     /// Solves again for inaccurate vertices, with the margins of all curves that end there. Two of
-    /// these may meet at a large angle, which makes their crossing accurate.
+    /// these may meet at a large angle, which makes their crossing accurate. Where two of them touch,
+    /// the place that is found may be farther away than its error says, and is left out.
     pub(super) fn polish(&mut self) -> Traced<(), F> {
         for index in 0..self.builder.stops.len() {
             let stop = self.builder.stops[index];
@@ -191,6 +243,7 @@ impl<'f, F: Family> Tracer<'f, F> {
                         reach,
                     )?;
                     if let Some((point, off)) = found
+                        && off <= TANGENTIAL * self.runs.scale
                         && (point - stop.point).norm() <= 10.0 * stop.uncertainty
                         && off < best.as_ref().map_or(0.2 * stop.uncertainty, |best| best.1)
                     {

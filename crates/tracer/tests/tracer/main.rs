@@ -17,3 +17,4 @@ mod stack;
 mod subdivision;
 mod surveys;
 mod vertex_kinds;
+mod window_edges;

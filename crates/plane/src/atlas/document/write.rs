@@ -37,7 +37,7 @@ impl Document {
 }
 
 impl WindowFields {
-    fn new(frame: &Frame) -> Self {
+    pub(crate) fn new(frame: &Frame) -> Self {
         Self {
             kappa: [frame.kappa.low, frame.kappa.high],
             psi: [frame.psi.low, frame.psi.high],

@@ -13,7 +13,7 @@ use crate::window::Point;
 
 /// Crossings with a larger uncertainty, as a fraction of the window's shorter extent, are also
 /// tried as touches. The values of margins tell the place of a touch only to half the digits.
-const TANGENTIAL: f64 = 1e-9;
+pub(crate) const TANGENTIAL: f64 = 1e-9;
 /// Crossings with a larger uncertainty, as a fraction of the window's shorter extent, are none: the
 /// two margins are almost multiples of each other.
 const VAGUE: f64 = 1e-5;

@@ -4,7 +4,7 @@ use crate::cubic::Cubic;
 use crate::curve::Node;
 use crate::family::Family;
 use crate::tracing::branch::track::{Foothold, FootholdOf, Track};
-use crate::tracing::corrector::correct;
+use crate::tracing::corrector::{correct, correct_on_edge};
 use crate::tracing::runs::Traced;
 use crate::window::Point;
 
@@ -128,16 +128,9 @@ impl<F: Family> Track<'_, '_, F> {
             if exit[axis] > window.high[axis] { window.high[axis] } else { window.low[axis] };
         let mut guess = arc.at(inside);
         guess[axis] = edge;
-        let mut along = *gradient;
-        along[axis] = 0.0;
         let reach = 0.3 * arc.chord();
-        let solved = if along.norm() > 1e-3 * gradient.norm() {
-            correct(self.runs, &self.margin, &guess, &along, reach)?
-        } else {
-            correct(self.runs, &self.margin, &guess, gradient, reach)?
-        };
-        let mut point = solved.map_or(guess, |found| found.point);
-        point[axis] = edge;
+        let solved = correct_on_edge(self.runs, &self.margin, &guess, gradient, axis, reach)?;
+        let point = solved.unwrap_or(guess);
         Ok(Some(point.sup(&window.low).inf(&window.high)))
     }
 }
