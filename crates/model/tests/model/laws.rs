@@ -430,6 +430,21 @@ fn contacts_on_the_border_of_slip_stick() {
     assert!(checked.len() > 40, "{}", checked.len());
 }
 
+/// At b = ψ = 1 a contact is on the border of slip, and its dashpots leave no term in the guard of
+/// slip.
+#[test]
+fn contacts_on_the_border_of_slip_with_even_dashpots() {
+    for law in laws().into_iter().filter(|law| law.damping != Damping::None) {
+        let at = |psi: f64| {
+            let contact = Contact::new(2.0, psi, 0.2).unwrap().with_law(law, 1.0).unwrap();
+            collide(contact)
+        };
+        let [on, beside] = [at(1.0), at(1.0 - 1e-12)];
+        assert_eq!(on.itinerary(), beside.itinerary(), "{law:?}");
+        assert!((on.eps_t() - beside.eps_t()).abs() < 1e-9, "{law:?}");
+    }
+}
+
 /// With ψ = 1 and no damping the first slip ends at greatest compression, from where a rescaled history
 /// obeys other equations.
 #[test]

@@ -353,9 +353,9 @@ impl Equations {
         if e.bend > 0 {
             sum = sum - power(e.p) * v * (sign * f64::from(e.bend));
         }
-        let excess = 1.0 - self.tangential_damping;
-        if e.damped && excess != 0.0 {
-            let steep = sign * self.damping * n * excess;
+        // On the border of slip, b = 1 is moved by rounding. The term is none then.
+        if e.uneven {
+            let steep = sign * self.damping * n * (1.0 - self.tangential_damping);
             sum = sum + power(2 * e.d + e.last + 1) * push * steep;
         }
         sum

@@ -31,6 +31,8 @@ pub struct Exponents {
     pub r: u8,
     /// Whether there is damping.
     pub damped: bool,
+    /// Whether there is damping with b ≠ 1, so that the dashpots leave a term in the guard of slip.
+    pub uneven: bool,
     /// Whether the history is rescaled while the overlap falls.
     pub rescaled: bool,
     loading: OfStage,
@@ -68,25 +70,22 @@ impl Exponents {
         };
         let r = if law.tangential == Tangential::Mindlin { half } else { 0 };
         let last = n - 1;
-        let b = contact.tangential_damping();
+        let uneven = damped && contact.tangential_damping() != 1.0;
         let stage = |down: u8| {
             let (rho, beta) = match law.history {
                 HistoryOf::Displacement => (r + down, last - down),
                 HistoryOf::Force => (down, last + r - down),
             };
             // The powers of the terms of the guard of slip, plus 1.
-            let terms = [
-                (true, last + r + 1),
-                (rho != d, d),
-                (p != d, p),
-                (damped && b != 1.0, 2 * d + last + 1),
-            ];
+            let terms =
+                [(true, last + r + 1), (rho != d, d), (p != d, p), (uneven, 2 * d + last + 1)];
             let leading = terms.into_iter().filter(|(there, _)| *there).map(|(_, power)| power);
             OfStage { rho, beta, shared: d.min(rho), leading: leading.min().unwrap_or(0) }
         };
         let unloading = stage(if law.rescaled { half } else { 0 });
         let rescaled = law.rescaled;
-        Self { n, last, p, d, bend: p - d, r, damped, rescaled, loading: stage(0), unloading }
+        let (loading, bend) = (stage(0), p - d);
+        Self { n, last, p, d, bend, r, damped, uneven, rescaled, loading, unloading }
     }
 
     /// The powers of a stage.
