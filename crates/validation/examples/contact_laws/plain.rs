@@ -8,8 +8,8 @@ use stickslip::model::{Contact, Damping, End, HistoryOf, Normal, Tangential};
 
 /// Longest step in units of 1/(1 + √κ).
 const STEP: f64 = 5e-3;
-/// First step.
-const FIRST: f64 = 1e-11;
+/// First step: so small that what it does to the start of a contact is over before anything lasts.
+const FIRST: f64 = 1e-100;
 
 /// Overlap, its rate, tangential velocity and history.
 type State = [f64; 4];
@@ -19,7 +19,8 @@ pub struct Found {
     pub eps_t: f64,
     /// A character for each phase, and the time at which it begins.
     pub phases: Vec<(char, f64)>,
-    pub contact_time: f64,
+    /// The end of contact, or of its force where a free flight follows.
+    pub end: f64,
 }
 
 /// The regime: stick, or slip with the sign of the force.
@@ -74,7 +75,7 @@ pub fn collide(contact: Contact) -> Option<Found> {
         (y, time) = (next, time + dt);
         if ended(&y) || (plain.force(&y) <= 0.0 && plain.0.law().limit_damping) {
             let eps_t = y[2] / contact.psi();
-            return Some(Found { eps_t, phases, contact_time: time });
+            return Some(Found { eps_t, phases, end: time });
         }
         regime = plain.correct(&mut y, regime);
         if phases.last().is_none_or(|(last, _)| *last != regime.name()) {
@@ -175,9 +176,11 @@ impl Plain {
                 // What a short stick phase would do, by central differences.
                 let mut start = *y;
                 self.set(&mut start, side * self.force(y).abs());
-                let speed = self.force(&self.step(regime, y, 1e-9)) - self.force(y);
-                let until_zero = 1e-9 * (self.force(y) / speed).abs();
-                let h = (1e-4 * y[0] / y[1].abs()).min(1e-6).min(1e-2 * until_zero);
+                let growth = y[0] / y[1].abs();
+                let short = (1e-3 * growth).min(1e-9);
+                let speed = self.force(&self.step(regime, y, short)) - self.force(y);
+                let until_zero = short * (self.force(y) / speed).abs();
+                let h = (1e-4 * growth).min(1e-6).min(1e-2 * until_zero);
                 let gap = |h: f64| {
                     let at = self.step(Regime::Stick, &start, h);
                     self.force(&at).abs() - side * self.trial(&at)
