@@ -58,6 +58,23 @@ fn a_window_of_late_grazes_is_right() {
     assert!(verified.atlas.regions.regions().len() > 1);
 }
 
+/// Vertical boundaries end at κ = 0.5701, ψ = 2, a place that the boundary across them gives more
+/// accurately.
+#[test]
+fn a_vertex_that_is_found_twice_is_one() {
+    let verified = traced(frame((0.1, 3.0), (1e-5, 3.0)));
+    assert!(verified.report.agrees, "{:?}", verified.report.objection());
+    assert_eq!(verified.atlas.regions.regions().len(), 5);
+}
+
+/// Three boundaries cross 2.5e-7 above the lower edge, and a region below is smaller than that.
+#[test]
+fn a_region_between_a_vertex_and_the_edge_beside_it_is_there() {
+    let verified = traced(Frame { damping: 5.6806e-4, ..frame((0.5, 30.0), (0.05, 2.0)) });
+    assert!(verified.report.agrees, "{:?}", verified.report.objection());
+    assert_eq!(verified.atlas.regions.regions().len(), 16);
+}
+
 #[test]
 fn a_tolerance_out_of_range_is_refused_with_the_range() {
     let frame = frame((18.0, 21.0), (0.55, 0.65));

@@ -184,7 +184,7 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
                 return self.finish_at(special);
             }
             if h < 1e-12 * runs.scale {
-                let special = special::give_up(&self.track, &from, h)?;
+                let special = special::give_up(&self.track, &from, beyond.as_ref(), h)?;
                 return self.finish_at(special);
             }
             h *= factor;
@@ -248,8 +248,13 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         }
     }
 
-    /// Ends the branch at a special point, or at the known vertex that is the same place.
+    /// Ends the branch at a special point, or at the known vertex that is the same place. If the
+    /// special point lies beyond the window's edge, the branch ends at the edge.
     fn finish_at(&mut self, special: Special<F::Margin>) -> Traced<(), F> {
+        let special = match self.track.exit_before(&special.point)? {
+            Some(exit) => special::edge(self.track.runs, &exit, &self.track.margin),
+            None => special,
+        };
         let near = special.uncertainty + SHORTEST * self.track.runs.scale;
         let known = self
             .track

@@ -124,16 +124,31 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         }
     }
 
+    /// Another vertex that is known as well as places can be told apart, and that is at a place at
+    /// which a vertex was solved for.
+    pub fn same_place(&self, index: usize, special: &Special<Margin>) -> Option<usize> {
+        let shortest = SHORTEST * self.scale;
+        let is_there = |stop: &Stop| {
+            let distance = (stop.point - special.point).norm();
+            stop.uncertainty <= shortest && distance <= special.uncertainty + 2.0 * shortest
+        };
+        (0..self.stops.len()).find(|&other| other != index && is_there(&self.stops[other]))
+    }
+
     /// Leads the curves that end at a vertex to a better place, which may be another known vertex.
-    /// Then the first vertex is removed, with the short curve from there to this place.
     pub fn lead_to(&mut self, index: usize, special: &Special<Margin>) {
-        let from = self.stops[index].point;
         let target = self.add_vertex(special);
-        if target == index {
-            return;
+        if target != index {
+            // A curve that it divides loses the part with the wrong labels.
+            self.suspects.clear();
+            self.join(index, target);
         }
-        // A curve that it divides loses the part with the wrong labels below.
-        self.suspects.clear();
+    }
+
+    /// Leads the curves that end at a vertex to another one, and removes the first vertex with the
+    /// short curves between the two.
+    pub fn join(&mut self, index: usize, target: usize) {
+        let from = self.stops[index].point;
         let point = self.stops[target].point;
         let farthest = 2.0 * (point - from).norm();
         let mut removed = Vec::new();

@@ -4,7 +4,7 @@ use crate::curve::{Node, VertexKind};
 use crate::executor::Serial;
 use crate::family::{Family, FreeRun};
 use crate::options::{TraceError, TraceOptions};
-use crate::tracing::branch::end::{SHORTEST, Special};
+use crate::tracing::branch::end::{SHORTEST, Special, Stop};
 use crate::tracing::branch::special::TANGENTIAL;
 use crate::tracing::builder::Builder;
 use crate::tracing::corrector::crossing;
@@ -162,8 +162,8 @@ impl<'f, F: Family> Tracer<'f, F> {
         self.divide_up_to(&middle, b, depth - 1)
     }
 
-    /// Searches on two circles around the next new vertex, unless it lies on the window's edge.
-    /// Returns whether there was a new vertex.
+    /// Searches on two circles around the next new vertex, unless it lies on the window's edge, and
+    /// on a smaller one if the edge is closer. Returns whether there was a new vertex.
     pub(super) fn examine_vertex(&mut self) -> Traced<bool, F> {
         let Some(vertex) = self.builder.network.vertices.get(self.probed) else {
             return Ok(false);
@@ -173,6 +173,12 @@ impl<'f, F: Family> Tracer<'f, F> {
         if !matches!(kind, VertexKind::WindowEdge | VertexKind::WindowCorner) {
             for radius in CIRCLES {
                 self.circle(&point, radius * self.runs.scale)?;
+            }
+            // Curves that leave the window between the vertex and these circles.
+            let Window { low, high } = self.runs.window;
+            let to_edge = (point - low).inf(&(high - point)).min() / self.runs.scale;
+            if (10.0 * SHORTEST..CIRCLES[1]).contains(&to_edge) {
+                self.circle(&point, 0.5 * to_edge * self.runs.scale)?;
             }
         }
         Ok(true)
@@ -216,49 +222,63 @@ impl<'f, F: Family> Tracer<'f, F> {
     }
 
     /// Solves again for inaccurate vertices, with the margins of all curves that end there. Two of
-    /// these may meet at a large angle, which makes their crossing accurate. Where two of them touch,
-    /// the place that is found may be farther away than its error says, and is left out.
+    /// these may meet at a large angle, which makes their crossing accurate. A vertex that turns out
+    /// to be another one is joined with it.
     pub(super) fn polish(&mut self) -> Traced<(), F> {
-        for index in 0..self.builder.stops.len() {
-            let stop = self.builder.stops[index];
-            if stop.uncertainty <= SHORTEST * self.runs.scale {
-                continue;
-            }
-            let mut arrivals: Vec<(Node, F::Margin)> = Vec::new();
-            for (node, margin) in self.builder.arrivals(index) {
-                let margin = self.runs.moved(&node.point, &margin)?;
-                arrivals.push((node, margin));
-            }
-            let mut best: Option<(Point, f64, [F::Margin; 2])> = None;
-            for (node, own) in &arrivals {
-                for (_, other) in arrivals.iter().filter(|(_, other)| other != own) {
-                    let reach = 2.0 * (node.point - stop.point).norm();
-                    let margins = [own, other];
-                    let found = crossing(
-                        &self.runs,
-                        margins,
-                        &node.point,
-                        &node.tangent,
-                        self.runs.scale,
-                        reach,
-                    )?;
-                    if let Some((point, off)) = found
-                        && off <= TANGENTIAL * self.runs.scale
-                        && (point - stop.point).norm() <= 10.0 * stop.uncertainty
-                        && off < best.as_ref().map_or(0.2 * stop.uncertainty, |best| best.1)
-                    {
-                        best = Some((point, off, margins.map(Clone::clone)));
+        let mut index = 0;
+        while let Some(&stop) = self.builder.stops.get(index) {
+            match self.better_place(index, &stop)? {
+                Some(special) => match self.builder.same_place(index, &special) {
+                    Some(other) => self.builder.join(index, other),
+                    None => {
+                        self.builder.move_vertex(index, &special);
+                        index += 1;
                     }
-                }
-            }
-            if let Some((point, uncertainty, margins)) = best {
-                let kind = VertexKind::Crossing;
-                let margins = margins.to_vec();
-                let special = Special { point, kind, margins, uncertainty, solved: true };
-                self.builder.move_vertex(index, &special);
+                },
+                None => index += 1,
             }
         }
         Ok(())
+    }
+
+    /// The place of an inaccurate vertex, solved for with the margins of all curves that end there. Where
+    /// two of them touch, the place that is found may be farther away than its error says, and is left
+    /// out.
+    fn better_place(&self, index: usize, stop: &Stop) -> Traced<Option<Special<F::Margin>>, F> {
+        if stop.uncertainty <= SHORTEST * self.runs.scale {
+            return Ok(None);
+        }
+        let mut arrivals: Vec<(Node, F::Margin)> = Vec::new();
+        for (node, margin) in self.builder.arrivals(index) {
+            let margin = self.runs.moved(&node.point, &margin)?;
+            arrivals.push((node, margin));
+        }
+        let mut best: Option<(Point, f64, [F::Margin; 2])> = None;
+        for (node, own) in &arrivals {
+            for (_, other) in arrivals.iter().filter(|(_, other)| other != own) {
+                let reach = 2.0 * (node.point - stop.point).norm();
+                let margins = [own, other];
+                let found = crossing(
+                    &self.runs,
+                    margins,
+                    &node.point,
+                    &node.tangent,
+                    self.runs.scale,
+                    reach,
+                )?;
+                if let Some((point, off)) = found
+                    && off <= TANGENTIAL * self.runs.scale
+                    && (point - stop.point).norm() <= 10.0 * stop.uncertainty
+                    && off < best.as_ref().map_or(0.2 * stop.uncertainty, |best| best.1)
+                {
+                    best = Some((point, off, margins.map(Clone::clone)));
+                }
+            }
+        }
+        Ok(best.map(|(point, uncertainty, margins)| {
+            let (kind, margins) = (VertexKind::Crossing, margins.to_vec());
+            Special { point, kind, margins, uncertainty, solved: true }
+        }))
     }
 
     /// Searches on a circle.

@@ -1,9 +1,12 @@
 //! Names of points at which two conditions hold together, all at the origin. Runs have a clock and
 //! two guards; each fires once.
 
-use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
+use std::fmt::Debug;
+
+use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Margin, Options, Start, State};
 use stickslip_tracer::{
-    HybridFamily, Point, SpecialPoint, TraceOptions, VertexKind, Window, trace,
+    Family, HybridFamily, Itinerary, Point, SpecialPoint, Surveyor, TraceOptions, VertexKind,
+    Window, trace,
 };
 
 const END: f64 = 2.0;
@@ -43,14 +46,19 @@ impl HybridSystem<1, 2> for Run {
     }
 }
 
-/// The name of the vertex at the origin, how far it is from there, and the number of curves.
-fn named(values: Values) -> (SpecialPoint, f64, usize) {
+/// All runs with these values of the guards.
+fn family(values: Values) -> impl Family<Label = Itinerary, Margin = Margin, Error: Debug> {
     let problem = move |point: &Point| {
         let start = Start { mode: [false; 2], s: 0.0, state: State::from([0.0]) };
         (Run { values, point: *point }, start)
     };
     let options = Options { rtol: 1e-13, atol: 1e-13, max_step: 0.25, ..Options::default() };
-    let family = HybridFamily { problem, method: Dop853, options, end: END };
+    HybridFamily { problem, method: Dop853, options, end: END }
+}
+
+/// The name of the vertex at the origin, how far it is from there, and the number of curves.
+fn named(values: Values) -> (SpecialPoint, f64, usize) {
+    let family = family(values);
     let window = Window { low: Point::new(-0.1, -0.11), high: Point::new(0.12, 0.1) };
     let network = trace(&family, &window, &TraceOptions::default()).unwrap();
     assert_eq!(network.unresolved, []);
@@ -80,12 +88,37 @@ fn two_events_at_the_end_of_the_run() {
 
 /// Behind the graze of the first guard, where it fires at 1/2 − √−y, the least value of the second
 /// one has a square root: it is x + √−y for y < 0 and x otherwise.
+fn graze_behind_a_graze(s: f64, p: &Point, first: f64) -> [f64; 2] {
+    let earlier = if first > 0.0 { 0.5 - first } else { 0.0 };
+    [(s - 0.5).powi(2) + p.y, (s - 1.5).powi(2) + p.x + earlier]
+}
+
 #[test]
 fn a_graze_behind_a_graze_touches_it() {
-    let (name, off, curves) = named(|s, p, first| {
-        let earlier = if first > 0.0 { 0.5 - first } else { 0.0 };
-        [(s - 0.5).powi(2) + p.y, (s - 1.5).powi(2) + p.x + earlier]
-    });
+    let (name, off, curves) = named(graze_behind_a_graze);
     assert_eq!((name, curves), (SpecialPoint::Tangency, 4));
     assert!(off < 1e-12, "{off:e}");
+}
+
+/// The boundaries y = 0 and y = −x² touch beyond the window's edge x = −r. Between them both guards
+/// fire, in a strip that is r² wide at the edge. Where that is too thin for an outline the regions are
+/// in doubt, but both boundaries are there.
+#[test]
+fn boundaries_that_touch_beyond_the_edge_are_both_there() {
+    let family = family(graze_behind_a_graze);
+    for beyond in [1e-2, 1e-3, 1e-4, 3e-5, 1e-5, 1e-6, 1e-8, 0.0] {
+        let window = Window { low: Point::new(-0.1, -0.03), high: Point::new(-beyond, 0.03) };
+        let atlas = Surveyor::default().atlas(&family, &window).unwrap();
+        if beyond >= 1e-4 {
+            assert_eq!(atlas.unresolved, [], "{beyond:e}");
+            assert_eq!(atlas.plane.findings(), [], "{beyond:e}");
+            assert_eq!(atlas.plane.regions().len(), 3, "{beyond:e}");
+        }
+        for x in [-0.09_f64, -0.03, -0.011] {
+            for (y, fired) in [(0.01, vec![1]), (-0.5 * x * x, vec![0, 1]), (-0.02, vec![0])] {
+                let label = atlas.label(&Point::new(x, y)).cloned();
+                assert_eq!(label, Some(Itinerary::Fires(fired)), "{beyond:e}: ({x}, {y})");
+            }
+        }
+    }
 }

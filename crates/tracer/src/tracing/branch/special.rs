@@ -115,17 +115,29 @@ fn first<F: Family>(
     Ok(None)
 }
 
-/// The end of a branch on which even the shortest step fails: the place within a thousandth of the
-/// window where its margin ceases to exist. If there is none, the result is `from`, unsolved.
+/// The end of a branch on which even the shortest step fails: the place where a thin region begins
+/// beside it, or that within a thousandth of the window where its margin ceases to exist. If there
+/// is none, the result is `from`, unsolved.
+///
+/// Two boundaries that come closer than the offset of the runs are one as far as these can tell. A
+/// branch with the labels beyond both ends where they part, and each goes on from there.
 pub(crate) fn give_up<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,
+    beyond: Option<&FootholdOf<F>>,
     h: f64,
 ) -> Traced<Special<F::Margin>, F> {
     /// The error of the place, as a fraction of the window's shorter extent: beside a cusp a margin
     /// exists in a wedge that is too narrow to follow to its tip.
     const TIP: f64 = 1.5e-7;
     let scale = track.runs.scale;
+    if let Some(beyond) = beyond
+        && let [other, ..] = &wedge(track, beyond)?[..]
+    {
+        let margins = vec![track.margin.clone(), other.clone()];
+        let (kind, uncertainty) = (VertexKind::Crossing, 4.0 * track.runs.options.offset);
+        return Ok(Special { point: from.node.point, kind, margins, uncertainty, solved: true });
+    }
     let place = |length: f64| -> Traced<Option<Point>, F> {
         let guess = track.predict(&from.node, length);
         let reach = 0.3 * length + 100.0 * track.runs.options.tolerance;

@@ -3,10 +3,11 @@
 use crate::cubic::Cubic;
 use crate::curve::Node;
 use crate::family::Family;
+use crate::tracing::branch::end::SHORTEST;
 use crate::tracing::branch::track::{Foothold, FootholdOf, Track};
 use crate::tracing::corrector::{correct, correct_on_edge};
 use crate::tracing::runs::Traced;
-use crate::window::Point;
+use crate::window::{Point, Window};
 
 /// The outcome of a step that was tried.
 pub(crate) enum Attempt<Label, Margin> {
@@ -109,6 +110,19 @@ impl<F: Family> Track<'_, '_, F> {
             }
             Err(beyond) => Attempt::Labels(beyond),
         })
+    }
+
+    /// The place where the branch leaves the window on its way from the last foothold to `point`;
+    /// `None` if `point` lies in the window or on its edge.
+    pub(crate) fn exit_before(&self, point: &Point) -> Traced<Option<Point>, F> {
+        let Some(from) = self.footholds.back() else { return Ok(None) };
+        let Window { low, high } = self.runs.window;
+        let slack = Point::repeat(SHORTEST * self.runs.scale);
+        if (Window { low: low - slack, high: high + slack }).contains(point) {
+            return Ok(None);
+        }
+        let arc = Cubic::between(&from.node, &self.end_node(&from.node, point)?);
+        self.leave_window(&arc, &from.gradient)
     }
 
     /// The place where `arc` leaves the window, solved for on the edge; `None` if it does not.
