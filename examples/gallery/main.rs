@@ -29,8 +29,8 @@ use std::time::Instant;
 use stickslip::plane::progress::InParallel;
 use stickslip::solver::{Dop853, Margin, Options, Place};
 use stickslip::tracer::{
-    AtlasOptions, Family, HybridFamily, Itinerary, Point, Problem, Surveyor, VerifyOptions, Watch,
-    Window,
+    AtlasOptions, Family, HybridFamily, Itinerary, Point, Problem, Surveyor, TraceOptions,
+    VerifyOptions, Watch, Window,
 };
 use stickslip_figure::pictures::family::{Captions, draw};
 
@@ -117,7 +117,8 @@ where
     let options = Options { max_step: 0.3, max_switches: MOST, ..accurate };
     let family = HybridFamily { problem, method: Dop853, options, end: *end };
     let verify = VerifyOptions { random_points: points, ..VerifyOptions::default() };
-    let options = AtlasOptions { verify, ..AtlasOptions::default() };
+    let trace = TraceOptions { beyond: 1e-3, ..TraceOptions::default() };
+    let options = AtlasOptions { trace, verify, ..AtlasOptions::default() };
     let surveyor = Surveyor { options, executor: InParallel, watch: Watch::SILENT };
     let atlas = surveyor.atlas(&family, window)?;
     let mut random = fastrand::Rng::with_seed(2);
