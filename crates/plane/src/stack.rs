@@ -288,6 +288,11 @@ impl DampingStack {
             if layer.as_stacked == Some(false) {
                 return Some(format!("{at}: the regions are not those that the changes leave"));
             }
+            let beside = |[low, high]: [f64; 2]| (low..=high).contains(&layer.damping);
+            let in_change = self.changes.iter().any(|change| beside(change.between));
+            if layer.damping > 0.0 && layer.as_stacked.is_none() && !in_change {
+                return Some(format!("{at}: changes on both sides are not known"));
+            }
         }
         let doubtful = self.changes.iter().find(|change| change.doubtful)?;
         let [low, high] = doubtful.between;

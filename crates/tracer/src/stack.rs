@@ -24,7 +24,7 @@ use crate::window::Window;
 /// The options of a [`Stack`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StackOptions {
-    /// The options of every atlas.
+    /// The options of every atlas. Boundaries are followed up to the window's edges only.
     pub atlas: AtlasOptions,
     /// The width of the bracket in which a change is isolated, relative to the greater one of the
     /// two values, from 1e-9 to 0.1. Around a change that is solved for, the bracket is wider if
@@ -149,7 +149,10 @@ impl<Label: Clone + Ord, Margin: Clone + PartialEq> Stack<Label, Margin> {
         if !(1e-9..=0.1).contains(&options.width) {
             return Err(StackError::Width(options.width));
         }
-        let mut search = Search::new(&family, *window, *options);
+        // Places beyond the window's edges say nothing about changes inside.
+        let mut options = *options;
+        options.atlas.trace.beyond = 0.0;
+        let mut search = Search::new(&family, *window, options);
         let mut samples = Vec::with_capacity(values.len());
         for &value in values {
             samples.push(search.sample(value)?);

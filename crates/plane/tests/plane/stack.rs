@@ -90,6 +90,16 @@ fn the_itinerary_of_a_region_appears_where_it_is_born() -> Result<(), InvalidPar
     Ok(())
 }
 
+/// A layer that was not compared with the changes, and is not inside one, speaks against the stack.
+#[test]
+fn a_layer_that_was_not_compared_is_an_objection() {
+    let mut stack = made(&[0.05, 0.2]).unwrap();
+    assert_eq!(stack.objection(), None);
+    stack.layers[1].as_stacked = None;
+    let reason = stack.objection().unwrap();
+    assert_eq!(reason, "damping = 0.2: changes on both sides are not known");
+}
+
 #[test]
 fn dampings_ascend_from_above_zero() {
     for dampings in [&[][..], &[0.0, 0.1], &[0.2, 0.1], &[0.1, 0.0, 0.2], &[-0.1, 0.1], &[0.1]] {
