@@ -227,23 +227,23 @@ impl<'f, F: Family> Tracer<'f, F> {
     pub(super) fn polish(&mut self) -> Traced<(), F> {
         let mut index = 0;
         while let Some(&stop) = self.builder.stops.get(index) {
-            match self.better_place(index, &stop)? {
-                Some(special) => match self.builder.same_place(index, &special) {
-                    Some(other) => self.builder.join(index, other),
-                    None => {
-                        self.builder.move_vertex(index, &special);
-                        index += 1;
-                    }
-                },
-                None => index += 1,
+            let special = self.better_place(index, &stop)?;
+            let same = special.as_ref().and_then(|it| self.builder.same_place(index, it));
+            if let Some(other) = same {
+                self.builder.join(index, other);
+                continue;
             }
+            if let Some(special) = special {
+                self.builder.move_vertex(index, &special);
+            }
+            index += 1;
         }
         Ok(())
     }
 
-    /// The place of an inaccurate vertex, solved for with the margins of all curves that end there. Where
-    /// two of them touch, the place that is found may be farther away than its error says, and is left
-    /// out.
+    /// The place of an inaccurate vertex, solved for with the margins of all curves that end there.
+    /// Where two of them touch, the place that is found may be farther away than its error says, and is
+    /// left out.
     fn better_place(&self, index: usize, stop: &Stop) -> Traced<Option<Special<F::Margin>>, F> {
         if stop.uncertainty <= SHORTEST * self.runs.scale {
             return Ok(None);
