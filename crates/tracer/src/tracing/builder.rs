@@ -173,14 +173,17 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
             self.enter(curve);
         }
         self.remove_curves(&removed);
-        self.remove_vertex(index);
+        self.replace_vertex(index, target);
     }
 
-    /// Removes a vertex at which no curve ends. All later ones have other indices then.
-    fn remove_vertex(&mut self, index: usize) {
+    /// Removes a vertex for which another one stands. All later ones have other indices then.
+    fn replace_vertex(&mut self, index: usize, target: usize) {
         self.stops.remove(index);
         self.network.vertices.remove(index);
-        let moved = |vertex: usize| vertex - usize::from(vertex > index);
+        let moved = |vertex: usize| {
+            let kept = if vertex == index { target } else { vertex };
+            kept - usize::from(kept > index)
+        };
         for curve in &mut self.network.curves {
             curve.ends = curve.ends.map(|ends| ends.map(moved));
         }
@@ -375,5 +378,30 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         for curve in 0..self.network.curves.len() {
             self.enter(curve);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::curve::VertexKind;
+
+    /// A boundary that stalled at a vertex has stalled at the one that stands for it.
+    #[test]
+    fn a_stalled_vertex_may_be_joined_with_another_one() {
+        let window = Window { low: Point::new(0.0, 0.0), high: Point::new(1.0, 1.0) };
+        let special = |x: f64, solved: bool| Special {
+            point: Point::new(x, 0.5),
+            kind: VertexKind::Crossing,
+            margins: Vec::new(),
+            uncertainty: 1e-12,
+            solved,
+        };
+        let mut builder = Builder::<usize, usize>::new(window, 1.0);
+        let [first, last] =
+            [special(0.2, true), special(0.4, false)].map(|special| builder.add_vertex(&special));
+        builder.join(last, first);
+        assert_eq!(builder.network.vertices.len(), 1);
+        assert_eq!(builder.network.unresolved, [Unresolved::Stalled { vertex: first }]);
     }
 }
