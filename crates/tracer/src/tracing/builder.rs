@@ -173,20 +173,20 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
             self.enter(curve);
         }
         self.remove_curves(&removed);
-        self.replace_vertex(index, target);
+        self.remove_vertex(index);
     }
 
-    /// Removes a vertex for which another one stands. All later ones have other indices then.
-    fn replace_vertex(&mut self, index: usize, target: usize) {
+    /// Removes a vertex at which no curve ends. All later ones have other indices then.
+    fn remove_vertex(&mut self, index: usize) {
         self.stops.remove(index);
         self.network.vertices.remove(index);
-        let moved = |vertex: usize| {
-            let kept = if vertex == index { target } else { vertex };
-            kept - usize::from(kept > index)
-        };
+        let moved = |vertex: usize| vertex - usize::from(vertex > index);
         for curve in &mut self.network.curves {
             curve.ends = curve.ends.map(|ends| ends.map(moved));
         }
+        // A boundary that had no known cause to end there ends at a known vertex now.
+        let stalled = Unresolved::Stalled { vertex: index };
+        self.network.unresolved.retain(|open| *open != stalled);
         for open in &mut self.network.unresolved {
             if let Unresolved::Stalled { vertex } = open {
                 *vertex = moved(*vertex);
@@ -386,7 +386,7 @@ mod tests {
     use super::*;
     use crate::curve::VertexKind;
 
-    /// A boundary that stalled at a vertex has stalled at the one that stands for it.
+    /// A boundary that stalled at a vertex ends at the one with which that is joined.
     #[test]
     fn a_stalled_vertex_may_be_joined_with_another_one() {
         let window = Window { low: Point::new(0.0, 0.0), high: Point::new(1.0, 1.0) };
@@ -402,6 +402,6 @@ mod tests {
             [special(0.2, true), special(0.4, false)].map(|special| builder.add_vertex(&special));
         builder.join(last, first);
         assert_eq!(builder.network.vertices.len(), 1);
-        assert_eq!(builder.network.unresolved, [Unresolved::Stalled { vertex: first }]);
+        assert_eq!(builder.network.unresolved, []);
     }
 }
