@@ -70,6 +70,12 @@ impl<'a, F: Family> Runs<'a, F> {
         Self { free: Cell::new(free), prescribed: Cell::new(prescribed), ..self }
     }
 
+    /// The same runs, counted for themselves.
+    pub(crate) fn aside(&self) -> Self {
+        let &Self { family, window, options, scale, .. } = self;
+        Self { family, window, options, scale, free: Cell::new(0), prescribed: Cell::new(0) }
+    }
+
     /// Counts free runs that were computed elsewhere.
     pub(crate) fn count_free(&self, count: usize) {
         self.free.set(self.free.get() + count);

@@ -112,7 +112,8 @@ impl<'f, F: Family> Tracer<'f, F> {
     /// The network that has been found so far.
     #[must_use]
     pub fn network(&self) -> NetworkOf<F> {
-        let mut network = cut(&self.runs, &self.builder.network, &self.window);
+        // A trace that was cancelled is cut once more.
+        let mut network = cut(&self.runs.aside(), &self.builder.network, &self.window);
         self.count_runs(&mut network);
         network
     }

@@ -121,16 +121,28 @@ fn threads_do_not_change_a_bit() {
 /// A survey is cancelled at each place at which it asks, and resumed.
 #[test]
 fn a_survey_cancelled_anywhere_goes_on_to_the_same_bits() {
+    cancelled_anywhere(options(), 3);
+}
+
+#[test]
+fn a_survey_beyond_the_window_cancelled_anywhere_goes_on_to_the_same_bits() {
+    let mut options = options();
+    options.trace.beyond = 1e-3;
+    cancelled_anywhere(options, 9);
+}
+
+/// Cancels a survey at every so manieth time that it asks.
+fn cancelled_anywhere(options: AtlasOptions, every: usize) {
     let family = Shapes { hole: 0.0 };
     let asked = AtomicUsize::new(0);
     let count = || asked.fetch_add(1, Ordering::Relaxed) == usize::MAX;
-    let surveyor = Surveyor { options: options(), ..Surveyor::default() };
+    let surveyor = Surveyor { options, ..Surveyor::default() };
     let counting = Surveyor { watch: Watch::SILENT.cancelled_by(&count), ..surveyor };
     let whole = counting.atlas(&family, &WINDOW).unwrap();
     let all = asked.load(Ordering::Relaxed);
     assert!(all > 100, "{all}");
     let mut curves = vec![0; whole.plane.curves().len() + 1];
-    for last in (0..all).step_by(3) {
+    for last in (0..all).step_by(every) {
         let asked = AtomicUsize::new(0);
         let cancel = || asked.fetch_add(1, Ordering::Relaxed) >= last;
         let cancelled = Surveyor { watch: Watch::SILENT.cancelled_by(&cancel), ..surveyor };
