@@ -15,7 +15,7 @@
 //! Both the limit and the tangential force may vanish with a power of u at both ends of contact.
 //! The power they share is divided out of the guards.
 
-use stickslip_solver::{Direction, Guard, Number, ReadableSystem, State};
+use stickslip_solver::{Direction, Guard, Method, Number, ReadableSystem, State, Step, Trial};
 
 pub(crate) mod equations;
 mod exponents;
@@ -308,6 +308,25 @@ impl ReadableSystem<STATE, GUARDS> for GeneralContact {
     #[inline(always)]
     fn field<T: Number>(&self, mode: Mode, _s: T, y: &[T; STATE]) -> [T; STATE] {
         self.equations.field(mode, y)
+    }
+
+    /// Each right-hand side has a step that is compiled for it and knows which components are
+    /// constant.
+    fn step<M: Method>(&self, mode: Mode, trial: &Trial<'_, STATE>, step: &mut Step<STATE>) {
+        macro_rules! take {
+            ($part:ident; $($still:ident)*) => {{
+                let slope = &mut trial.slope.clone_owned();
+                $(slope[$still] = 0.0;)*
+                let trial = &Trial { slope, ..*trial };
+                let mut field = |_, y: &State<STATE>| self.equations.$part(mode, array(y)).into();
+                step.take::<M>(&mut field, trial);
+            }};
+        }
+        match (mode.regime, mode.progress) {
+            (Regime::Slip, _) => take!(slip; SPRING GAP RATE FAR_GAP FAR_RATE),
+            (Regime::Stick, Progress::Settled) => take!(stick; GAP RATE FAR_GAP FAR_RATE),
+            (Regime::Stick, _) => take!(first_stick;),
+        }
     }
 
     #[inline(always)]

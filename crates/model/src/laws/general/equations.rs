@@ -49,6 +49,8 @@ pub(crate) struct Equations {
     /// v = by_v·V + by_u·u^{p−d}.
     by_v: f64,
     by_u: f64,
+    /// 1/by_v.
+    per_v: f64,
     /// F/u^d = force_by_v·V + force_by_u·u^{p−d}.
     force_by_v: f64,
     force_by_u: f64,
@@ -82,6 +84,7 @@ impl Equations {
             damping: a,
             tangential_damping: contact.tangential_damping(),
             by_v,
+            per_v: if strong { a.powi(3) } else { 1.0 },
             by_u: if strong { -1.0 / a } else { 0.0 },
             force_by_v: a * by_v,
             force_by_u: if strong { 0.0 } else { 1.0 },
@@ -230,38 +233,61 @@ impl Equations {
     /// The right-hand side of a mode.
     #[inline(always)]
     pub fn field<T: Number>(&self, mode: Mode, y: &[T; STATE]) -> [T; STATE] {
+        match (mode.regime, mode.progress) {
+            (Regime::Slip, _) => self.slip(mode, y),
+            (Regime::Stick, Progress::Settled) => self.stick(mode, y),
+            (Regime::Stick, _) => self.first_stick(mode, y),
+        }
+    }
+
+    /// The right-hand side of a slip phase.
+    #[inline(always)]
+    pub fn slip<T: Number>(&self, mode: Mode, y: &[T; STATE]) -> [T; STATE] {
+        let (mut slope, dv) = self.normal(&powers(y[U]), y);
+        slope[W] = dv * (mode.side.sign() * mode.stage.sign() / self.velocity_unit);
+        slope
+    }
+
+    /// The right-hand side of a stick phase behind its first step.
+    #[inline(always)]
+    pub fn stick<T: Number>(&self, mode: Mode, y: &[T; STATE]) -> [T; STATE] {
         let e = self.exponents;
+        let of = e.of(mode.stage);
         let u = &powers(y[U]);
+        let (mut slope, _) = self.normal(u, y);
+        let pull = self.pull(mode.stage, u, y);
+        slope[W] = u[e.last + of.shared] * pull * (-f64::from(e.n) / self.velocity_unit);
+        slope[SPRING] = u[of.beta] * y[W] * self.spring_rate;
+        slope
+    }
+
+    /// The right-hand side of the first step of a stick phase.
+    #[inline(always)]
+    pub fn first_stick<T: Number>(&self, mode: Mode, y: &[T; STATE]) -> [T; STATE] {
+        let mut slope = self.stick(mode, y);
+        let [near, far] = self.gaps(mode, &powers(y[U]), y).map(|gap| gap.2);
+        slope[GAP] = y[RATE] * self.scale;
+        slope[FAR_GAP] = y[FAR_RATE] * self.scale;
+        slope[RATE] = near / (self.scale * self.scale);
+        slope[FAR_RATE] = far / (self.scale * self.scale);
+        slope
+    }
+
+    /// The right-hand side of the normal motion, and the rate of v.
+    #[inline(always)]
+    fn normal<T: Number>(&self, u: &Powers<T>, y: &[T; STATE]) -> ([T; STATE], T) {
+        let e = self.exponents;
         let n = f64::from(e.n);
         let v = self.rate(u, y);
-        let push = self.push(u, y);
-        let dv = u[e.last + e.d] * push * -n;
+        let dv = u[e.last + e.d] * self.push(u, y) * -n;
         let mut slope = [T::from(0.0); STATE];
         slope[U] = v;
-        slope[V] = (dv - lowered(u, e.bend) * v * self.by_u) / self.by_v;
+        slope[V] = (dv - lowered(u, e.bend) * v * self.by_u) * self.per_v;
         slope[TIME] = u[e.last] * n;
         if e.damped {
             slope[DAMPING] = u[e.last + e.d] * v * v * (n * self.damping);
         }
-        match mode.regime {
-            Regime::Slip => {
-                slope[W] = dv * (mode.side.sign() * mode.stage.sign() / self.velocity_unit);
-            }
-            Regime::Stick => {
-                let of = e.of(mode.stage);
-                let pull = self.pull(mode.stage, u, y);
-                slope[W] = u[e.last + of.shared] * pull * (-n / self.velocity_unit);
-                slope[SPRING] = u[of.beta] * y[W] * self.spring_rate;
-                if mode.progress != Progress::Settled {
-                    let [near, far] = self.gaps(mode, u, y).map(|gap| gap.2);
-                    slope[GAP] = y[RATE] * self.scale;
-                    slope[FAR_GAP] = y[FAR_RATE] * self.scale;
-                    slope[RATE] = near / (self.scale * self.scale);
-                    slope[FAR_RATE] = far / (self.scale * self.scale);
-                }
-            }
-        }
-        slope
+        (slope, dv)
     }
 
     /// The gaps between the force and its limit in a stick phase, on the side of the phase and on
@@ -436,8 +462,10 @@ impl Equations {
 #[inline(always)]
 fn powers<T: Number>(u: T) -> Powers<T> {
     let mut powers = [T::from(1.0); POWERS];
-    for k in 1..POWERS {
-        powers[k] = powers[k - 1] * u;
+    powers[1] = u;
+    for k in 2..POWERS {
+        // Not one after the other, so that none waits for all others.
+        powers[k] = powers[k / 2] * powers[k - k / 2];
     }
     Powers(powers)
 }
