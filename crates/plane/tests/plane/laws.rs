@@ -2,8 +2,11 @@
 
 use std::f64::consts::PI;
 
-use stickslip_model::presets;
+use stickslip_model::{Damping, End, Law, Normal, presets};
+use stickslip_plane::CollisionPlane;
 use stickslip_plane::atlas::{BoundaryKind, Frame, VerifiedAtlas};
+use stickslip_solver::Margin;
+use stickslip_tracer::Family;
 
 use crate::windows::{frame, traced};
 
@@ -144,4 +147,28 @@ fn a_vertex_with_a_touch_stays_where_the_other_boundaries_meet() {
         (kappa - 4.452_416_452_242).abs() < 1e-10 && (psi - 0.193_737_575_742).abs() < 1e-10
     });
     assert_eq!(there.count(), 1);
+}
+
+/// A graze just behind greatest compression, where the gap of a rescaled history falls through zero
+/// before it: the margin is smooth through its zero.
+#[test]
+fn a_graze_just_behind_greatest_compression_has_its_margin() {
+    let law = Law {
+        normal: Normal::Linear,
+        damping: Damping::Tsuji,
+        rescaled: true,
+        end: End::Overlap,
+        ..Law::PAPER
+    };
+    let plane = CollisionPlane::new((1.0, 1.1), (1.2, 1.3), 0.3).unwrap();
+    let plane = plane.with_law(law, 2.0).unwrap();
+    let family = plane.family();
+    let run = |psi| family.free_run(&plane.point(1.0422, psi)).unwrap();
+    let near = |(_, value): &(Margin, f64)| value.abs() < 1e-9;
+    let (which, above) = run(1.234_928).margins.into_iter().find(near).unwrap();
+    assert!(above > 0.0, "{above}");
+    let beyond = plane.point(1.0422, 1.234_928_35);
+    let below = family.margin(&beyond, &which).unwrap().unwrap();
+    assert!(-1e-9 < below && below < -1e-10, "{below}");
+    assert_ne!(family.label(&beyond).unwrap(), run(1.234_928).label);
 }

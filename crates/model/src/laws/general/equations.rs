@@ -433,11 +433,13 @@ impl Equations {
         }
     }
 
-    /// Whether the gap on the side of a stick phase, in its first step, is within rounding of 0.
+    /// Whether the gap on the side of a stick phase, in its first step, grows from within rounding of
+    /// 0. One that falls there is on its way to a graze.
     pub fn is_at_limit(&self, mode: Mode, y: &[f64; STATE]) -> bool {
         let u = &powers(y[U]);
         let limit = u[self.exponents.d - self.exponents.of(mode.stage).shared] * self.push(u, y);
-        mode.regime == Regime::Stick && y[GAP] * self.scale < AT_LIMIT * limit
+        let near = (y[GAP] * self.scale).abs() < AT_LIMIT * limit;
+        mode.regime == Regime::Stick && near && y[RATE] >= 0.0
     }
 
     /// The state `y` with the gaps with which a stick phase begins.
