@@ -268,6 +268,22 @@ impl GeneralContact {
         self.tangential_force(mode, y) / self.contact.kappa()
     }
 
+    /// Whether a slip is missing behind a contact that ends in `mode`. Where a damped contact ends at
+    /// F = 0, its limit falls below every spring before, but the slip that follows may be shorter
+    /// than rounding.
+    #[must_use]
+    pub fn lacks_slip(&self, mode: Mode) -> bool {
+        let vanishes = self.equations.exponents.damped && self.contact.law().end == End::Force;
+        vanishes && mode.regime == Regime::Stick
+    }
+
+    /// The guard of the slip that is missing behind a contact that ends in the state `y`, and how long
+    /// that slip lasts; `None` if none [is](Self::lacks_slip).
+    #[must_use]
+    pub fn last_slip(&self, mode: Mode, y: &State<STATE>) -> Option<(usize, f64)> {
+        self.lacks_slip(mode).then(|| self.equations.last_slip(mode, array(y)))
+    }
+
     /// Whether an attracting tail follows where the normal force vanishes.
     fn attracts(&self) -> bool {
         let Law { limit_damping, end, .. } = self.contact.law();

@@ -96,6 +96,7 @@ impl GeneralFamily {
             return Err(CollisionFamilyError::Unfinished(found.outcome));
         }
         fired.0.pop();
+        fired.0.extend(system.last_slip(found.mode, &found.state).map(|(guard, _)| guard));
         Ok((fired.0, restitution(&system, &found.state)))
     }
 
@@ -123,7 +124,7 @@ impl GeneralFamily {
         let Ok(found) = margins(Dop853, &system, start, self.span, &self.options) else {
             return Ok(FreeRun { label: self.label(point)?, margins: Vec::new() });
         };
-        let label = match known_label(&found, system.beginning()) {
+        let label = match known_label(&found, &system) {
             Some(label) => label,
             None => self.label(point)?,
         };
@@ -191,8 +192,8 @@ fn started(system: GeneralContact) -> System {
 }
 
 /// The label of a free run, as far as its margins tell it: whether slip goes on where attraction
-/// begins is told by the sign of a margin.
-fn known_label(found: &Margins, beginning: Beginning) -> Option<Vec<usize>> {
+/// begins is told by the sign of a margin. They do not tell a last slip that is shorter than rounding.
+fn known_label(found: &Margins, system: &GeneralContact) -> Option<Vec<usize>> {
     if found.outcome != (Outcome::EndedByGuard { guard: END }) {
         return None;
     }
@@ -200,11 +201,17 @@ fn known_label(found: &Margins, beginning: Beginning) -> Option<Vec<usize>> {
         Place::Branch(exit) if exit.guard == END => exit.branch,
         _ => None,
     });
-    let mut label = vec![code(beginning)];
-    for &guard in found.fired.iter().filter(|guard| **guard != CREST) {
-        label.push(if guard == END && slips_on? { SLIPS_ON } else { guard });
+    let mut label = vec![code(system.beginning())];
+    let mut mode = system.first();
+    for &guard in &found.fired {
+        mode = system.after(mode, guard, slips_on == Some(true));
+        match guard {
+            CREST => {}
+            END => label.push(if slips_on? { SLIPS_ON } else { END }),
+            _ => label.push(guard),
+        }
     }
-    Some(label)
+    (!system.lacks_slip(mode)).then_some(label)
 }
 
 fn code(beginning: Beginning) -> usize {

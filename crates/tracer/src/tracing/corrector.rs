@@ -115,7 +115,7 @@ pub(crate) fn crossing<F: Family>(
                 return Ok(None);
             }
             if last <= LAST * runs.scale {
-                return Ok(Some((point, LAST * runs.scale)));
+                return Ok(Some((point, last.max(10.0 * runs.options.tolerance))));
             }
             update *= 0.5;
             point += update;

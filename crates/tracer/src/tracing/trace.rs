@@ -244,16 +244,20 @@ impl<'f, F: Family> Tracer<'f, F> {
 
     /// The place of an inaccurate vertex, solved for with the margins of all curves that end there.
     /// Where two of them touch, the place that is found may be farther away than its error says, and is
-    /// left out.
+    /// left out, unless a curve misses the vertex by as much.
     fn better_place(&self, index: usize, stop: &Stop) -> Traced<Option<Special<F::Margin>>, F> {
-        if stop.uncertainty <= SHORTEST * self.runs.scale {
+        let arrivals = self.builder.arrivals(index);
+        let missed = arrivals.iter().map(|(node, _)| missed_by(node, &stop.point));
+        let missed = missed.fold(0.0, f64::max);
+        let uncertainty = stop.uncertainty.max(missed);
+        if uncertainty <= SHORTEST * self.runs.scale {
             return Ok(None);
         }
-        let mut arrivals: Vec<(Node, F::Margin)> = Vec::new();
-        for (node, margin) in self.builder.arrivals(index) {
-            let margin = self.runs.moved(&node.point, &margin)?;
-            arrivals.push((node, margin));
-        }
+        let moved = |(node, margin): (Node, F::Margin)| {
+            self.runs.moved(&node.point, &margin).map(|margin| (node, margin))
+        };
+        let arrivals: Vec<_> = arrivals.into_iter().map(moved).collect::<Traced<_, F>>()?;
+        let farthest = (10.0 * stop.uncertainty).max(2.0 * missed);
         let mut best: Option<(Point, f64, [F::Margin; 2])> = None;
         for (node, own) in &arrivals {
             for (_, other) in arrivals.iter().filter(|(_, other)| other != own) {
@@ -269,8 +273,8 @@ impl<'f, F: Family> Tracer<'f, F> {
                 )?;
                 if let Some((point, off)) = found
                     && off <= TANGENTIAL * self.runs.scale
-                    && (point - stop.point).norm() <= 10.0 * stop.uncertainty
-                    && off < best.as_ref().map_or(0.2 * stop.uncertainty, |best| best.1)
+                    && (point - stop.point).norm() <= farthest
+                    && off < best.as_ref().map_or(0.2 * uncertainty, |best| best.1)
                 {
                     best = Some((point, off, margins.map(Clone::clone)));
                 }
@@ -329,4 +333,12 @@ fn is_expected<L: Eq, M: PartialEq>(
             }
             _ => true,
         })
+}
+
+/// How far beside a curve, whose last node before its end is `node`, the vertex lies at which it ends,
+/// if the curve would have to turn by more than it does in a step.
+fn missed_by(node: &Node, vertex: &Point) -> f64 {
+    let chord = vertex - node.point;
+    let beside = node.tangent.perp(&chord).abs();
+    if beside > 0.5 * chord.norm() { beside } else { 0.0 }
 }

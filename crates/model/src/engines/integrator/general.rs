@@ -1,7 +1,8 @@
 //! The integration of a contact with any law.
 
 use stickslip_solver::{
-    Observer, Options, Outcome, Pair, Start, State, Statistics, SwitchEvent, run_with,
+    Observer, Options, Outcome, Pair, ReadableSystem, Start, State, Statistics, SwitchEvent,
+    run_with,
 };
 
 use super::CollisionError;
@@ -41,7 +42,7 @@ pub fn collide<O: Observer<Mode, STATE>>(
         let time = account.elapsed + run.state[T];
         return Err(CollisionError::Unfinished { outcome: run.outcome, time });
     }
-    account.finish(&run.state);
+    account.finish(run.mode, run.state);
     Ok(run.statistics)
 }
 
@@ -113,8 +114,14 @@ impl Account<'_> {
         });
     }
 
-    /// Closes the account in the state `y` at the end.
-    fn finish(mut self, y: &State<STATE>) {
+    /// Closes the account in the mode and the state at the end.
+    fn finish(mut self, mode: Mode, mut y: State<STATE>) {
+        if let Some((guard, length)) = self.system.last_slip(mode, &y) {
+            let (next, after) = self.system.transition(mode, guard, 0.0, &y);
+            self.switch(next, &y, &after);
+            (self.lasting, y) = (length, after);
+        }
+        let y = &y;
         self.leave(y);
         let Self { system, collision, sliding, lasting, .. } = self;
         let contact = collision.contact;

@@ -10,7 +10,7 @@ use super::{
     T as TIME, U, V, W,
 };
 use crate::contact::Contact;
-use crate::laws::phase::{Regime, Side};
+use crate::laws::phase::{OTHER_SIDE, Regime, SAME_SIDE, Side};
 
 /// The least damping for which the component V is a³(v + u^{p−d}/a); see
 /// [`regularized`](crate::regularized).
@@ -356,6 +356,17 @@ impl Equations {
             }
         };
         [end, same, other, v, y[W]]
+    }
+
+    /// The guard with which a stick phase is left whose limit has fallen to zero in the state `y`, and
+    /// the time from there to the zero.
+    pub fn last_slip(&self, mode: Mode, y: &[f64; STATE]) -> (usize, f64) {
+        let u = &powers(y[U]);
+        let [_, near, far, ..] = self.guards(mode, y);
+        let falls = self.gaps(mode, u, y).map(|gap| gap.1);
+        let length = (far - near).abs() / (falls[0] + falls[1]).abs();
+        let time = length * u[self.exponents.last] * f64::from(self.exponents.n);
+        (if near < far { SAME_SIDE } else { OTHER_SIDE }, time)
     }
 
     /// How fast the spring would leave its limit in stick, s dQ/ds − dL/ds, divided by a power of
