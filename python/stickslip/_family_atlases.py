@@ -58,8 +58,8 @@ class FamilyMargin:
     #: The guards that have fired before, one for each earlier phase.
     after: tuple[str, ...]
     guard: str
-    #: minimum or maximum (a graze), end (of the run), start (of the phase), exit (where another guard
-    #: ends the phase) or branch (of a transition).
+    #: minimum or maximum (a graze), end (of the run), start (of the phase), exit (where another
+    #: guard ends the phase) or branch (of a transition).
     place: str
 
 
@@ -98,7 +98,7 @@ class FamilyRegion:
     """A part of the window in which all runs have the same itinerary."""
 
     id: int
-    #: None if it is not known, because no curve bounds the region and its run failed.
+    #: None if no curve bounds the region, which is the whole window; `decide` tells it.
     itinerary: Itinerary | None
     area: float
     #: A point (x, y) inside, and its distance from the nearest curve or edge.

@@ -1,7 +1,7 @@
 """Families: systems of your own that depend on two parameters, and where their events change.
 
-`HybridFamily` is a `HybridSystem` whose functions also get two parameters; `trace_family` finds every
-curve in a window of the parameters on which the sequence of events of its runs changes.
+`HybridFamily` is a `HybridSystem` whose functions also get two parameters; `trace_family` finds
+every curve in a window of the parameters on which the sequence of events of its runs changes.
 """
 
 import graphlib
@@ -135,20 +135,20 @@ class HybridFamily:
 
     system: its functions get the parameters after time and state: f(t, y, p, q, *args). A compiled
     function gets them as its first two parameters, before those that `Compiled` was given. The
-    functions must be functions of their arguments alone, smooth a little beyond the guards' zeros and
-    a hundredth of the window beyond its edges.
+    functions must be functions of their arguments alone, smooth a little beyond the guards' zeros
+    and a hundredth of the window beyond its edges.
 
-    t_span, y0, mode: start and end of every run, and its state and mode at the start. start: if they
-    depend on the parameters, a function start(t, y, p, q, *args) of t_span[0] and y0 that returns the
-    state, the mode, or (mode, state).
+    t_span, y0, mode: start and end of every run, and its state and mode at the start. start: if
+    they depend on the parameters, a function start(t, y, p, q, *args) of t_span[0] and y0 that
+    returns the state, the mode, or (mode, state).
 
     name, axes: what was traced and the names of the two parameters, for files and pictures. rtol,
     atol, max_step, first_step, guard_scale: as in `solve`; margins are as accurate as the runs. The
     method is "dop853". max_switches: itineraries are told apart up to so many events. Where events
     accumulate, there are boundaries without end, unless this is a small number.
 
-    Up to 12 components and 12 guards. Guards that have one name in several modes count as one guard,
-    if the modes list them in one order.
+    Up to 12 components and 12 guards. Guards that have one name in several modes count as one
+    guard, if the modes list them in one order.
 
     >>> ball = HybridSystem()
     >>> fly = ball.mode("fly", lambda t, y, height, restitution: [y[1], -1.0])
@@ -240,7 +240,10 @@ class HybridFamily:
     def labels(
         self, x: ArrayLike, y: ArrayLike, *, threads: int | None = None
     ) -> NDArray[np.object_]:
-        """What runs do: an array of `Itinerary`. x and y broadcast. threads: as in `trace_family`."""
+        """What runs do: an array of `Itinerary`. x and y broadcast.
+
+        threads: as in `trace_family`.
+        """
         (x, y), shape = _pairs(x, y)
         found = self._native.labels(x, y, _threads(threads))
         return _objects([_label(one, self.guards) for one in found], shape)
@@ -248,8 +251,8 @@ class HybridFamily:
     def margins(self, x: float, y: float) -> tuple[tuple[FamilyMargin, float], ...]:
         """How far the run with the parameters x and y is from other itineraries.
 
-        Pairs of a margin and its value, in the order of the phases. Where the itinerary changes, one
-        of them vanishes.
+        Pairs of a margin and its value, in the order of the phases. Where the itinerary changes,
+        one of them vanishes.
         """
         _, found = self._native.margins(_number(x, "x"), _number(y, "y"))
         return tuple((_margin(one[:3], self.guards), one[3]) for one in found)
@@ -265,10 +268,10 @@ class HybridFamily:
         """Follows the boundary between two points in both directions, until it ends at a vertex,
         leaves the window, or closes.
 
-        x, y: the window. between: two points with different itineraries, shape (2, 2). None if their
-        itineraries are the same, or if no margin vanishes where the itinerary changes. monitors:
-        functions of the two parameters whose values are recorded and whose zeros along the boundary
-        are solved for; NaN says that there is no value.
+        x, y: the window. between: two points with different itineraries, shape (2, 2). None if
+        their itineraries are the same, or if no margin vanishes where the itinerary changes.
+        monitors: functions of the two parameters whose values are recorded and whose zeros along
+        the boundary are solved for; NaN says that there is no value.
         """
         window = (_interval(x, "x"), _interval(y, "y"))
         places = np.asarray(between, dtype=np.float64)
@@ -318,8 +321,8 @@ def trace_family(
     tolerance: the accuracy that is claimed for the curves, in the units of the parameters. rounds:
     where runs disagree with the regions, the trace looks again, in so many rounds at most.
 
-    What cannot be resolved is part of the atlas: `unresolved`, `findings`, and the regions in doubt.
-    If anything speaks against the atlas, it says so in an AtlasWarning and in `objection`.
+    What cannot be resolved is part of the atlas: `unresolved`, `findings`, and the regions in
+    doubt. If anything speaks against the atlas, it says so in an AtlasWarning and in `objection`.
 
     threads: for compiled functions, 1 to 1024, or None for one for each core; results have the same
     bits with any number. Functions of Python are called on this thread, one after the other. Their
@@ -343,6 +346,10 @@ def trace_family(
         }
     )
     window = (_interval(x, "x"), _interval(y, "y"))
+    if not 0.0 < tolerance < 1e-3 * min(high - low for low, high in window):
+        raise ValueError(
+            f"tolerance = {tolerance}; expected above 0 and below a thousandth of the window"
+        )
     for name, function in (("progress", progress), ("cancelled", cancelled)):
         if function is not None and not callable(function):
             raise TypeError(f"{name} is of type {type(function).__name__}; expected a callable")
@@ -411,8 +418,20 @@ def _interval(values: Any, what: str) -> tuple[float, float]:
         raise ValueError(f"{what} = {values!r}; expected (low, high)") from None
     low, high = _number(low, what), _number(high, what)
     if not (np.isfinite(low) and np.isfinite(high) and low < high):
-        raise ValueError(f"{what} = ({low}, {high}); expected two finite numbers, the smaller first")
+        raise ValueError(f"{what} = ({low}, {high}); expected finite numbers in ascending order")
     return low, high
+
+
+#: Options that are whole numbers.
+_COUNTS = {
+    "cells",
+    "max_nodes",
+    "max_curves",
+    "random_points",
+    "near_points",
+    "seed",
+    "rounds",
+}
 
 
 def _json(fields: dict[str, Any]) -> str:
@@ -423,7 +442,7 @@ def _json(fields: dict[str, Any]) -> str:
 def _plain(value: Any, name: str) -> Any:
     if isinstance(value, dict):
         return {key: _plain(one, key) for key, one in value.items()}
-    if name in ("cells", "max_nodes", "max_curves", "random_points", "near_points", "seed", "rounds"):
+    if name in _COUNTS:
         number = operator.index(value)
         if not 0 <= number < 2**63:
             raise ValueError(f"{name} = {value}; expected 0 or above")

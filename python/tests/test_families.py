@@ -170,7 +170,8 @@ def test_places(atlas: FamilyAtlas) -> None:
     assert decided[4] is None
     assert [len(one.guards) for one in decided[:4]] == bounces(x, y)[:4].tolist()
     (curve,) = atlas.curves
-    assert sorted(curve.vertices) == [0, 1] and [one.kind for one in atlas.vertices] == ["window-edge"] * 2
+    assert sorted(curve.vertices) == [0, 1]
+    assert [one.kind for one in atlas.vertices] == ["window-edge"] * 2
     assert all(one.curves == (0,) for one in [*atlas.vertices, *atlas.regions])
     assert sum(one.area for one in atlas.regions) == pytest.approx(0.45)
 
@@ -195,7 +196,7 @@ def test_files(atlas: FamilyAtlas, tmp_path: Path) -> None:
 
 
 def test_a_file_of_rust_is_read(atlas: FamilyAtlas) -> None:
-    """The one of the test `hybrid_systems_have_documents` in crates/tracer, without names of guards."""
+    """That of `hybrid_systems_have_documents` in crates/tracer, without names of guards."""
     of_rust = FamilyAtlas.load(DATA / "ball_atlas.json")
     assert of_rust.objection is None and of_rust.family == "ball"
     assert [one.sides for one in of_rust.curves] == [
@@ -358,7 +359,7 @@ def test_a_start_in_a_mode_that_depends_on_the_parameters() -> None:
 
 
 def test_many_components_and_guards() -> None:
-    """Five clocks at rates 1 to 5 and five guards at p; one of the state's components is padding."""
+    """Five clocks at rates 1 to 5 and five guards at p; one component is padding."""
 
     def clocks(t, y, out, p):
         for one in range(5):
@@ -463,7 +464,8 @@ def test_a_cancelled_trace_goes_on_to_the_same_bits(atlas, tmp_path, calls) -> N
     begun = trace_family(
         ball(), HEIGHTS, RESTITUTIONS, cancelled=lambda: next(left, None) is None
     )
-    assert not begun.finished and "not finished" in repr(begun) and "not finished" in begun.objection
+    assert not begun.finished
+    assert "not finished" in repr(begun) and "not finished" in begun.objection
     assert begun.locate(0.6, 0.55).doubtful and all(one.doubtful for one in begun.regions)
     begun.save(tmp_path / "begun.json")
     read = FamilyAtlas.load(tmp_path / "begun.json")
@@ -513,8 +515,22 @@ def test_an_interrupted_trace_can_go_on(make) -> None:
     begun = stopped.value.atlas
     assert not begun.finished
     if make is plain_ball:
-        whole = trace_family(ball(), HEIGHTS, RESTITUTIONS, options=TraceOptions(cells=16), verify=FEW)
+        options = {"options": TraceOptions(cells=16), "verify": FEW}
+        whole = trace_family(ball(), HEIGHTS, RESTITUTIONS, **options)
         assert begun.resume(ball()).document == whole.document
+
+
+def test_a_second_interruption_ends_the_run_that_is_under_way() -> None:
+    def floor(t, y, p, q):
+        while True:
+            time.sleep(0.01)
+
+    timers = [threading.Timer(seconds, _thread.interrupt_main) for seconds in (0.3, 0.8)]
+    for timer in timers:
+        timer.start()
+    with pytest.raises(KeyboardInterrupt) as stopped:
+        trace_family(plain_ball(floor), HEIGHTS, RESTITUTIONS)
+    assert type(stopped.value) is KeyboardInterrupt
 
 
 def test_an_exception_of_a_function_comes_out_with_its_place() -> None:
@@ -526,7 +542,8 @@ def test_an_exception_of_a_function_comes_out_with_its_place() -> None:
     with pytest.raises(ArithmeticError, match="too high") as raised:
         trace_family(plain_ball(floor), HEIGHTS, RESTITUTIONS)
     (note,) = raised.value.__notes__
-    assert note.startswith("with the parameters (") and float(note.split("(")[1].split(",")[0]) > 1.2
+    assert note.startswith("with the parameters (")
+    assert float(note.split("(")[1].split(",")[0]) > 1.2
     with pytest.raises(ArithmeticError):
         plain_ball(floor).label(1.5, 0.5)
     with pytest.raises(ArithmeticError):
@@ -580,9 +597,8 @@ def test_where_a_function_has_no_value_runs_fail_and_others_do_not() -> None:
     sure = ~located.doubtful
     count = np.where(p < 1, bounces(p, q), -1)
     assert np.array_equal(located.event_count[sure], count[sure])
-    assert np.array_equal(
-        [len(one.guards) if one.kind == "fires" else -1 for one in found.decide(family, p, q)], count
-    )
+    decided = found.decide(family, p, q)
+    assert [len(one.guards) if one.kind == "fires" else -1 for one in decided] == count.tolist()
 
 
 def test_windows_and_options_that_are_none() -> None:
@@ -593,7 +609,7 @@ def test_windows_and_options_that_are_none() -> None:
     for options in (
         {"tolerance": 0.0},
         {"tolerance": np.nan},
-        {"tolerance": 1.0},
+        {"tolerance": 1e-3},
         {"rounds": 0},
         {"threads": 0},
         {"options": TraceOptions(tolerance=1.0)},
@@ -610,6 +626,48 @@ def test_windows_and_options_that_are_none() -> None:
     with pytest.raises(stickslip.ComputationError, match="regions"):
         most = TraceOptions(max_curves=2)
         trace_family(ball(4.0, max_switches=8), (0.2, 1.0), (0.3, 0.9), options=most)
+
+
+def test_numbers_of_other_kinds() -> None:
+    """Arrays, integers, NumPy's numbers; parameters that are masked or not finite have no run."""
+    masked = np.ma.array([0.6, 0.6], mask=[False, True])
+    kinds = [one.kind for one in ball().labels(masked, 0.55)]
+    assert kinds == ["fires", "fails"]
+    assert [one.kind for one in ball().labels([np.nan, np.inf], 0.5)] == ["fails"] * 2
+    assert ball().labels([], []).shape == (0,)
+    with pytest.raises(TypeError, match="complex"):
+        ball().labels([1j], 0.5)
+    with pytest.raises(ValueError, match="broadcast"):
+        ball().labels([1, 2, 3], [1, 2])
+
+    def keeps(t, y, p, q, kept=[]):  # noqa: B006
+        kept.append(y)
+        y[:] = 5.0
+        return np.float64(p) - t
+
+    system = HybridSystem()
+    clock = system.mode("clock", lambda t, y, p, q: (1,))
+    clock.guard("passes", keeps, direction="falling")
+    family = HybridFamily(system, (0, 1), [0])
+    found = trace_family(family, (0, 2), (0, 1), options=COARSE, verify=FEW)
+    (curve,) = found.curves
+    assert found.objection is None and np.abs(curve.points[:, 0] - 1).max() < 1e-12
+
+
+def test_a_wide_window_and_edges_on_curves() -> None:
+    """The guard p − u passes zero for p from 0 to 1."""
+
+    def passes(t, y, out, p):
+        out[0] = p[0] - y[0]
+
+    family = parabolas(passes)
+    wide = trace_family(family, (-1e4, 2e4), (-1e4, 1e4), tolerance=1e-6, verify=FEW)
+    assert wide.objection is None and len(wide.regions) == 3
+    xs = sorted(curve.points[0, 0] for curve in wide.curves)
+    assert np.abs(np.array(xs) - [0, 1]).max() < 1e-9
+    exactly = trace_family(family, (0.0, 1.0), (0.0, 1.0), options=COARSE, verify=FEW)
+    assert exactly.objection is None and len(exactly.regions) == 1
+    assert [str(one) for one in exactly.decide(family, 0.5, [0.0, 0.5])] == ["a", "a"]
 
 
 def test_families_that_are_none() -> None:

@@ -39,8 +39,8 @@ impl Description {
         let Self(name, axes, guards) = self;
         let Self(other, others, theirs) = family;
         Err(bad_input(format!(
-            "the atlas is of the family {name:?} of {axes:?} with guards {guards:?}; expected one of \
-             {other:?} of {others:?} with guards {theirs:?}"
+            "the atlas is of the family {name:?} of {axes:?} with guards {guards:?}; expected one \
+             of {other:?} of {others:?} with guards {theirs:?}"
         )))
     }
 }
@@ -178,8 +178,8 @@ impl FamilyAtlas {
         (regions.into_pyarray(py), distances.into_pyarray(py)).into_pyobject(py)
     }
 
-    /// The labels of points of the window, by runs of the family where the regions do not tell them;
-    /// `None` outside.
+    /// The labels of points of the window, by runs of the family where the regions do not tell
+    /// them; `None` outside.
     fn decide(
         &self,
         py: Python<'_>,

@@ -23,16 +23,16 @@ pub fn check(blueprint: &Blueprint) -> PyResult<()> {
     let (dimension, guards) = (blueprint.dimension(), blueprint.guards);
     if dimension > MOST.0 || guards > MOST.1 {
         return Err(bad_input(format!(
-            "the systems have {dimension} components and {guards} guards; a family may have up to {} \
-             and {}",
+            "the systems have {dimension} components and {guards} guards; a family may have up to \
+             {} and {}",
             MOST.0, MOST.1
         )));
     }
     Ok(())
 }
 
-/// The runs of a family that was checked. Code for each dimension would take long to compile, so that
-/// some systems have components and guards that do nothing.
+/// The runs of a family that was checked. Code for each dimension would take long to compile, so
+/// that some systems have components and guards that do nothing.
 pub fn runs(blueprint: &Arc<Blueprint>, trouble: &Arc<Trouble>) -> Runs {
     fn sized<const N: usize, const G: usize>(
         blueprint: &Arc<Blueprint>,

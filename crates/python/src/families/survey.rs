@@ -1,7 +1,7 @@
 //! A trace that calls Python: on which threads, with progress, and with an end on request.
 //!
-//! The first Ctrl-C ends a trace between two of its tasks, so that it can go on later. The second one
-//! ends the run that is under way.
+//! The first Ctrl-C ends a trace between two of its tasks, so that it can go on later. The second
+//! one ends the run that is under way.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
