@@ -5,7 +5,7 @@
 The family, the window and the options are those of the bouncing ball in `examples/gallery`, which
 measures the same in Rust (`cargo run --release --example gallery -- POINTS "bouncing ball"`, with
 RAYON_NUM_THREADS=1): a trace that is verified at POINTS random points, and as many runs. All are on
-one thread.
+one thread; times are those of the processor.
 """
 
 import sys
@@ -83,11 +83,11 @@ def main() -> None:
     options = {"options": TraceOptions(beyond=1e-3), "verify": VerifyOptions(points)}
     random = np.random.default_rng(2)
     for name, family in families.items():
-        began = time.perf_counter()
+        began = time.process_time()
         atlas = trace_family(family, *WINDOW, **options, threads=1)
-        traced = time.perf_counter()
+        traced = time.process_time()
         family.labels(*(random.uniform(*side, points) for side in WINDOW), threads=1)
-        ended = time.perf_counter()
+        ended = time.process_time()
         runs = atlas.statistics["free_runs"] + atlas.statistics["prescribed_runs"]
         print(
             f"{name:10} trace {traced - began:7.2f} s ({runs} runs of the trace), "

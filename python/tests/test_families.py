@@ -253,6 +253,80 @@ def test_events_that_swap_their_order() -> None:
     assert inside.mean() > 0.999 and np.array_equal(located.itinerary[inside], text[inside])
 
 
+def test_boundaries_that_have_nothing_to_do_with_each_other_cross() -> None:
+    def grazes(t, y, out, p):
+        out[0] = (y[0] - 0.3) ** 2 + p[0]
+
+    def late(t, y, out, p):
+        out[0] = 1.0 + p[1] - y[0]
+
+    found = trace_family(parabolas(grazes, late), (-0.01, 0.012), (-0.011, 0.01), verify=FEW)
+    ((kind, x, y),) = kinds_inside(found)
+    assert kind == "crossing" and abs(x) + abs(y) < 1e-9 and len(found.curves) == 4
+    assert {one.margin.place for one in found.curves} == {"minimum", "end"}
+
+
+def belt_switches(velocity, friction, end):
+    """How often a mass on a belt breaks away and stops until the end."""
+    slip = 2 * np.pi - 2 * np.arctan((1 - friction) / velocity)
+    first, period = 1 / velocity, slip + (2 - 2 * friction) / velocity
+    return sum(
+        (first + k * period + after < end).astype(int) for k in range(9) for after in (0, slip)
+    )
+
+
+def test_a_mass_on_a_belt_in_two_modes() -> None:
+    """The belt of the docs with its velocity p and its friction q in slip."""
+
+    def stick(t, y, out, p):
+        out[0], out[1] = y[1], 0.0
+
+    def slip(t, y, out, p):
+        out[0], out[1] = y[1], p[1] - y[0]
+
+    def breaks(t, y, out, p):
+        out[0] = 1.0 - y[0]
+
+    def stops(t, y, out, p):
+        out[0] = p[0] - y[1]
+
+    def sticks(t, y, out, p):
+        out[0], out[1] = y[0], p[0]
+
+    def begins(t, y, out, p):
+        out[0], out[1] = 0.0, p[0]
+
+    system, end, window = HybridSystem(), 12.0, ((0.3, 1.0), (0.2, 0.8))
+    sticking, slipping = system.mode("stick", compiled(stick)), system.mode("slip", compiled(slip))
+    sticking.guard("breaks away", compiled(breaks), to=slipping)
+    slipping.guard("stops", compiled(stops), to=sticking, reset=compiled(sticks), from_zero=1)
+    family = HybridFamily(system, (0, end), [0.0, 0.0], "stick", start=compiled(begins))
+    found = trace_family(family, *window, verify=FEW)
+    assert found.objection is None and family.guards == ("breaks away", "stops")
+    p, q = random_points(20_000, *window)
+    located = found.locate(p, q)
+    inside = located.region >= 0
+    assert inside.mean() > 0.999
+    assert np.array_equal(located.event_count[inside], belt_switches(p, q, end)[inside])
+
+    # `solve` counts the same, with other code for guards.
+    plain = HybridSystem()
+    sticking = plain.mode("stick", lambda t, y, p, q: [y[1], 0.0])
+    slipping = plain.mode("slip", lambda t, y, p, q: [y[1], q - y[0]])
+    sticking.guard("breaks away", lambda t, y, p, q: 1.0 - y[0], to=slipping)
+    slipping.guard(
+        "stops",
+        lambda t, y, p, q: p - y[1],
+        to=sticking,
+        reset=lambda t, y, p, q: [y[0], p],
+        from_zero=1,
+    )
+    for one in range(20):
+        point = (p[one], q[one])
+        solved = stickslip.solve(plain, (0, end), [0.0, p[one]], "stick", args=point, t_eval=[])
+        assert tuple(solved.events["guard"]) == family.label(*point).guards
+
+
 def test_two_grazes_in_one_run() -> None:
     def first(t, y, out, p):
         out[0] = (y[0] - 0.3) ** 2 + p[0]
