@@ -243,7 +243,8 @@ class FamilyAtlas:
     @property
     def sure_area(self) -> float:
         """The part of the window's area in regions that are not in doubt."""
-        return self._native.sure[1]
+        # A sum of nothing is −0 in Rust.
+        return self._native.sure[1] + 0.0
 
     @cached_property
     def curves(self) -> tuple[FamilyCurve, ...]:
