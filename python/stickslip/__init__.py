@@ -4,7 +4,7 @@ Start with `collide` (one collision), `eps_t` and `collide_many` (arrays), `impa
 `trace` (every boundary in a window), `gaining_lines` (where a law creates energy), `stack`
 (regions over the damping), `map` and `sweep` (xarray), `timestep` (errors of the steps of particle
 codes), `fit` (contact laws to measured impacts), `table` (restitution to be looked up), `solve`
-(systems of your own).
+(systems of your own), `trace_family` (where their events change over two parameters).
 """
 
 from stickslip import _native
@@ -24,6 +24,23 @@ from stickslip.collisions import (
     eps_t,
     eps_t_and_switch_count,
     psi_of_ratio,
+)
+from stickslip.families import (
+    FamilyAtlas,
+    FamilyCurve,
+    FamilyLocated,
+    FamilyMargin,
+    FamilyRegion,
+    FamilyVertex,
+    Followed,
+    HybridFamily,
+    Itinerary,
+    MonitorZero,
+    TraceInterrupted,
+    TraceOptions,
+    Unresolved,
+    VerifyOptions,
+    trace_family,
 )
 from stickslip.fits import Fit, fit
 from stickslip.gaining import GainingLine, GainingLines, gaining_lines
@@ -74,16 +91,26 @@ __all__ = [
     "ComputationError",
     "DenseOutput",
     "Estimate",
+    "FamilyAtlas",
+    "FamilyCurve",
+    "FamilyLocated",
+    "FamilyMargin",
+    "FamilyRegion",
+    "FamilyVertex",
     "Fit",
+    "Followed",
     "GainingLine",
     "GainingLines",
     "Guard",
+    "HybridFamily",
     "HybridSystem",
     "Impacts",
+    "Itinerary",
     "Layer",
     "Located",
     "Material",
     "Mode",
+    "MonitorZero",
     "Motion",
     "NamedLaw",
     "Region",
@@ -97,7 +124,11 @@ __all__ = [
     "Surface",
     "Table",
     "TimeSteps",
+    "TraceInterrupted",
+    "TraceOptions",
+    "Unresolved",
     "VelocityTable",
+    "VerifyOptions",
     "Vertex",
     "Wall",
     "WallMotion",
@@ -124,5 +155,6 @@ __all__ = [
     "table_of_velocities",
     "timestep",
     "trace",
+    "trace_family",
     "write_sweep",
 ]

@@ -1,5 +1,6 @@
 """What crates/python exports; the modules that use it document shapes and units."""
 
+from collections.abc import Callable
 from typing import Any, TypeAlias, final
 
 import numpy as np
@@ -82,6 +83,60 @@ class Atlas:
     def objection(self) -> str | None: ...
     def picture(self) -> str: ...
     def locate(self, kappa: _Floats, psi: _Floats) -> tuple[NDArray[np.int64], _Floats]: ...
+
+_Label: TypeAlias = tuple[str, list[int]]
+_MarginFields: TypeAlias = tuple[list[int], int, str, float]
+_Window: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
+_Calls: TypeAlias = tuple[Callable[[int, int], object] | None, Callable[[], object] | None]
+
+@final
+class HybridFamily:
+    def __new__(
+        cls,
+        modes: tuple[list[Any], list[list[int]]],
+        args: tuple[Any, ...],
+        start: tuple[tuple[int, float, _Floats], Any],
+        end: float,
+        settings: dict[str, Any],
+        description: tuple[str, list[str], list[str]],
+    ) -> HybridFamily: ...
+    def trace(
+        self, window: _Window, options: str, threads: int, callbacks: _Calls
+    ) -> tuple[FamilyAtlas, BaseException | None]: ...
+    def resume(
+        self, atlas: FamilyAtlas, threads: int, callbacks: _Calls
+    ) -> tuple[FamilyAtlas, BaseException | None]: ...
+    def labels(self, x: _Floats, y: _Floats, threads: int) -> list[_Label]: ...
+    def margins(self, x: float, y: float) -> tuple[_Label, list[_MarginFields]]: ...
+    def follow(
+        self,
+        window: _Window,
+        options: str,
+        between: _Window,
+        monitors: list[Callable[[float, float], float]],
+    ) -> dict[str, Any] | None: ...
+
+@final
+class FamilyAtlas:
+    @staticmethod
+    def read(text: str) -> FamilyAtlas: ...
+    def json(self) -> str: ...
+    @property
+    def finished(self) -> bool: ...
+    @property
+    def objection(self) -> str | None: ...
+    @property
+    def doubts(self) -> tuple[list[str], list[str]]: ...
+    @property
+    def sure(self) -> tuple[list[bool], float]: ...
+    @property
+    def vertex_kinds(self) -> list[str]: ...
+    def polyline(self, curve: int) -> _Floats: ...
+    def picture(self) -> str: ...
+    def locate(self, x: _Floats, y: _Floats) -> tuple[NDArray[np.int64], _Floats]: ...
+    def decide(
+        self, family: HybridFamily, x: _Floats, y: _Floats, threads: int
+    ) -> list[_Label | None]: ...
 
 def gaining_lines(
     kappa: tuple[float, float],

@@ -27,6 +27,7 @@ class Guard:
     from_zero: int = 0
     smooth: bool = False
     yields: bool = False
+    condition: Function | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str):
@@ -45,7 +46,12 @@ class Guard:
             raise ValueError(f"{about}: a transition says it all; expected no to and no reset")
         if isinstance(self.transition, Compiled):
             raise TypeError(f"{about}: a transition is a callable; a reset may be compiled")
-        for name, function in (("reset", self.reset), ("transition", self.transition)):
+        functions = {
+            "reset": self.reset,
+            "transition": self.transition,
+            "condition": self.condition,
+        }
+        for name, function in functions.items():
             if function is not None:
                 _check_function(function, f"{name} of {about}")
         if self.direction == "below" and not self.changes and self.terminal != 1:
@@ -95,6 +101,7 @@ class Mode:
         from_zero: int = 0,
         smooth: bool = False,
         yields: bool = False,
+        condition: Function | None = None,
     ) -> "Mode":
         """Adds a guard, and returns the mode.
 
@@ -111,8 +118,12 @@ class Mode:
         needed if rounding may hide that it is 0 there, or if it is a double zero. smooth: the guard
         varies as slowly as the state, so that fewer values are enough. yields: of guards that fire
         together the first one decides what follows; this one gives way to the others.
+        condition(t, y): a number that is positive where the transition takes one branch, and
+        negative where it takes another one; only a `HybridFamily` uses it.
         """
-        guard = Guard(name, direction, to, reset, transition, terminal, from_zero, smooth, yields)
+        guard = Guard(
+            name, direction, to, reset, transition, terminal, from_zero, smooth, yields, condition
+        )
         return self._add(function, f"guard {name!r} of mode {self.name!r}", (guard,))
 
     def guards(self, function: Function, *guards: Guard) -> "Mode":

@@ -99,6 +99,8 @@ class _Table:
         self, system: HybridSystem | Function, events: list[Function], args: tuple[Any, ...]
     ) -> None:
         self.args = args
+        #: Whether conditions of transitions are wanted.
+        self.conditions = False
         self.events = [_event(event, name) for event, name in _named(events)]
         self.plain = not isinstance(system, HybridSystem)
         if isinstance(system, HybridSystem):
@@ -164,7 +166,8 @@ class _Table:
             names: list[str] = []
             for number, source in enumerate([*sources, *mode._sources]):
                 if number == len(self.events):
-                    guards += [("", "off", 0, 0, False, False, (None, None, False))] * skipped
+                    off = ("", "off", 0, 0, False, False, (None, None, False), None)
+                    guards += [off] * skipped
                     names += [""] * skipped
                 native = (source.label, _callee(source.function))
                 native_sources.append((native, len(guards), len(source.guards)))
@@ -194,6 +197,9 @@ class _Table:
         elif guard.transition is not None:
             what = f"the transition of {about}"
             change = (None, (what, self.transition(guard.transition, what)), True)
+        condition: Any = None
+        if self.conditions and guard.condition is not None:
+            condition = (f"the condition of {about}", _callee(guard.condition))
         return (
             label,
             guard.direction,
@@ -202,6 +208,7 @@ class _Table:
             guard.yields,
             guard.smooth,
             change,
+            condition,
         )
 
     def transition(self, transition: Callable[..., Any], what: str) -> Callable[..., Any]:

@@ -1,18 +1,21 @@
 //! Systems of one's own: modes, guards and transitions as functions of Python or of C.
 //!
-//! In reading order: `arguments` (what Python passes), `system` (what the solver sees), `function`
-//! (a call) and `numbers` (what comes back), `record` (what a run finds), `segments` (dense output
-//! that is kept), `ending` (how a run ended).
+//! In reading order: `arguments` (what Python passes), `modes` (what becomes of it), `system` (what
+//! the solver sees), `function` (a call), `numbers` (what comes back) and `trouble` (what goes wrong),
+//! `record` (what a run finds), `segments` (dense output that is kept), `ending` (how a run ended).
 
-mod arguments;
+pub mod arguments;
 mod ending;
-mod function;
+pub mod function;
+pub mod modes;
 mod numbers;
 mod record;
 mod segments;
-mod system;
+pub mod system;
+pub mod trouble;
 
 use std::cell::Cell;
+use std::sync::Arc;
 
 use pyo3::exceptions::PyRecursionError;
 use pyo3::prelude::*;
@@ -25,6 +28,8 @@ use stickslip_solver::{
 use crate::failure::bad_input;
 use arguments::{ModeArguments, Output, Settings, Start};
 use ending::Ending;
+use function::Caller;
+use modes::Mode;
 use record::Record;
 pub use segments::evaluate_dense;
 use system::System;
@@ -38,10 +43,10 @@ thread_local! {
 }
 
 /// Counts a run that is under way, as long as it lives.
-struct Level;
+pub struct Level;
 
 impl Level {
-    fn enter() -> PyResult<Self> {
+    pub fn enter() -> PyResult<Self> {
         let depth = DEPTH.get();
         if depth >= DEEPEST {
             return Err(PyRecursionError::new_err(format!("{DEEPEST} runs inside each other")));
@@ -72,7 +77,9 @@ pub fn run_hybrid<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let _level = Level::enter()?;
     let (pair, options) = settings.checked()?;
-    let system = System::new(modes, &args)?;
+    let modes = modes.into_iter().map(Mode::new).collect::<PyResult<Vec<_>>>()?;
+    let caller = Caller::new(args.iter().map(Bound::unbind).collect());
+    let system = System::new(Arc::new(modes), caller, Arc::default(), None);
     let (times, dense) = output.owned();
     let job = Job { system, pair, options, start: start.owned(), end };
     // Dense output costs three evaluations a step, so it is made only if anybody reads it.
@@ -157,7 +164,7 @@ fn finish<const SEGMENTS: bool>(
         (job, record, run)
     };
     let (job, mut record, run) = if compiled { py.detach(work) } else { work() };
-    if let Some(error) = job.system.take_failure() {
+    if let Some(error) = job.system.trouble().take_failure() {
         return Err(error);
     }
     let ending = Ending::new(&job.system, &run);

@@ -5,13 +5,15 @@
 //! functions that call these, in `python/stickslip`.
 //!
 //! Start reading in `arrays`; then `collision`, `impacts`, `planes`, `stacks`, `steps`, `fits`,
-//! `tables`, `studies` (results), `hybrid` (systems of one's own), `engines`, `parallel` and
+//! `tables`, `studies` (results), `hybrid` (systems of one's own), `families` (and what they depend
+//! on), `engines`, `parallel` and
 //! `failure` (what they share).
 
 mod arrays;
 mod collision;
 mod engines;
 mod failure;
+mod families;
 mod fits;
 mod hybrid;
 mod impacts;
@@ -33,6 +35,8 @@ mod _native {
     use super::engines::{has_fused_products, laws, processor_has_fused_products, version};
     #[pymodule_export]
     use super::failure::ComputationError;
+    #[pymodule_export]
+    use super::families::{FamilyAtlas, HybridFamily};
     #[pymodule_export]
     use super::fits::Fit;
     #[pymodule_export]

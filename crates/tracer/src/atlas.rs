@@ -1,11 +1,13 @@
 //! Regions that were traced, verified and looked at again, with all that speaks against them.
 
+use std::fmt::Debug;
+
 use crate::family::Family;
 use crate::options::{TraceError, TraceOptions};
 use crate::regions::finding::{Finding, SubdivisionError};
 use crate::regions::locate::Location;
 use crate::regions::subdivision::Subdivision;
-use crate::regions::verify::report::{Verification, VerifyError};
+use crate::regions::verify::report::{Mismatch, Verification, VerifyError};
 use crate::regions::verify::{VerifyOptions, verify_unless_cancelled};
 use crate::survey::Surveyor;
 use crate::tracing::network::{Network, TraceStatistics, Unresolved};
@@ -63,6 +65,7 @@ impl Default for AtlasOptions {
 /// let atlas = Atlas::of(&Disc, &window, &AtlasOptions::default())?;
 /// assert!(atlas.agrees() && atlas.plane.regions().len() == 2);
 /// assert_eq!(atlas.label(&Point::new(0.1, 0.2)), Some(&true));
+/// assert_eq!(atlas.objection(), None);
 /// # Ok::<(), stickslip_tracer::AtlasError<Infallible>>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -168,6 +171,43 @@ impl<Label, Margin> Atlas<Label, Margin> {
             && self.unresolved.is_empty()
             && self.verification.agrees()
             && self.verification.failed().next().is_none()
+    }
+
+    /// What speaks against the atlas, in one sentence; `None` if it [agrees](Self::agrees).
+    #[must_use]
+    pub fn objection(&self) -> Option<String>
+    where
+        Label: Debug,
+    {
+        if self.agrees() {
+            return None;
+        }
+        let Verification { mismatches, euler, .. } = &self.verification;
+        let (findings, unresolved) = (self.plane.findings(), &self.unresolved);
+        let failed: Vec<_> = self.verification.failed().collect();
+        let first = if let Some(mismatch) = mismatches.first() {
+            let Mismatch { checkpoint, region, expected, found, .. } = mismatch;
+            let [x, y] = [checkpoint.point.x, checkpoint.point.y];
+            format!("({x:?}, {y:?}) has {found:?}, its region {region} {expected:?}")
+        } else if let Some(what) = unresolved.first() {
+            what.to_string()
+        } else if let Some(finding) = findings.first() {
+            finding.to_string()
+        } else if let Some(open) = failed.first() {
+            let point = open.checkpoint.point;
+            format!("({:?}, {:?}) has no label: {:?}", point.x, point.y, open.reason)
+        } else if euler.holds() {
+            "it is not finished".to_owned()
+        } else {
+            "Euler's formula does not hold".to_owned()
+        };
+        let counts = [mismatches.len(), unresolved.len(), findings.len(), failed.len()];
+        let [mismatches, unresolved, findings, failed] = counts;
+        let open = if self.is_finished() { "" } else { "not finished; " };
+        Some(format!(
+            "{open}{mismatches} mismatches, {unresolved} unresolved, {findings} findings, {failed} \
+             points without a label; the first: {first}"
+        ))
     }
 
     /// Whether the survey came to its end. If it was cancelled, all regions are in doubt, and

@@ -75,6 +75,9 @@ pub struct Document<Label, Margin> {
     pub family: String,
     /// The names of the two coordinates, with their units.
     pub axes: [String; 2],
+    /// The names of the guards that the labels of a hybrid system count; empty if they have none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub guards: Vec<String>,
     /// The window.
     pub window: Window,
     /// The options of the survey.
@@ -141,6 +144,7 @@ impl<Label: Clone + Ord, Margin: Clone> Document<Label, Margin> {
             schema: SCHEMA.to_owned(),
             family: family.to_owned(),
             axes: axes.map(str::to_owned),
+            guards: Vec::new(),
             window: *atlas.plane.window(),
             options: AtlasOptions { tolerance: atlas.plane.tolerance(), ..*options },
             curves: atlas.plane.curves().to_vec(),

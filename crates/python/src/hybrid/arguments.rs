@@ -25,7 +25,7 @@ pub struct ChangeArguments(pub Option<usize>, pub Option<FunctionArguments>, pub
 
 /// A guard: what messages call it, direction, order of the zero from which it starts (`None` if that
 /// is to be found out), count after which it ends the run, whether it yields, whether it is smooth,
-/// and what follows.
+/// what follows, and the condition of a transition that branches.
 #[derive(FromPyObject)]
 pub struct GuardArguments(
     pub String,
@@ -35,6 +35,7 @@ pub struct GuardArguments(
     bool,
     bool,
     pub ChangeArguments,
+    pub Option<FunctionArguments>,
 );
 
 /// A function that returns the values of successive guards, the first of them, and their number.
@@ -48,7 +49,7 @@ pub struct ModeArguments(pub FunctionArguments, pub Vec<GuardArguments>, pub Vec
 impl GuardArguments {
     /// The guard that the solver knows.
     pub fn guard(&self) -> PyResult<Guard> {
-        let Self(_, direction, zero_order, terminal, yields, smooth, _) = self;
+        let Self(_, direction, zero_order, terminal, yields, smooth, ..) = self;
         let direction = match direction.as_str() {
             "below" => Direction::Below,
             "falling" => Direction::Falling,

@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use numpy::{PyArray1, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyTuple};
 
@@ -26,7 +26,7 @@ impl Function {
         let code = match callee {
             Callee::Compiled(0, ..) => return Err(bad_input(format!("{label}: its address is 0"))),
             Callee::Compiled(address, parameters, keeper) => {
-                Code::Compiled(Compiled { address, parameters, _keeper: keeper })
+                Code::Compiled(Compiled { address, parameters, first: 0, keeper })
             }
             Callee::Python(callable) => Code::Python(callable),
         };
@@ -44,26 +44,39 @@ pub struct Compiled {
     address: usize,
     /// Where its parameters are, or 0.
     parameters: usize,
+    /// Its first parameter among those of a family.
+    first: usize,
     /// What keeps both alive.
-    _keeper: Py<PyAny>,
+    keeper: Py<PyAny>,
 }
 
 type Signature = unsafe extern "C" fn(f64, *const f64, *mut f64, *const f64);
 
 impl Compiled {
-    /// Calls the function.
+    /// The parameters of its own, which are copied to those of a family behind the two of the point,
+    /// from `first` on.
+    pub fn place_in_family(&mut self, py: Python<'_>, first: usize) -> PyResult<Vec<f64>> {
+        self.first = first;
+        let own = self.keeper.bind(py).getattr("parameters")?;
+        let own: Option<PyReadonlyArray1<'_, f64>> = own.extract()?;
+        Ok(own.map_or_else(Vec::new, |own| own.as_array().to_vec()))
+    }
+
+    /// Calls the function, with its own parameters or with those of a family.
     #[expect(unsafe_code, reason = "code that Python names by its address can only be trusted")]
-    pub fn call(&self, t: f64, y: &[f64], out: &mut [f64]) {
+    pub fn call(&self, t: f64, y: &[f64], out: &mut [f64], family: Option<&[f64]>) {
+        let family = family.map(|parameters| parameters[self.first..].as_ptr());
         // SAFETY: whoever made a `stickslip.Compiled` asserts what cannot be checked: at this
         // address is a function with this signature, it reads only the state, of the system's
         // dimension, and the parameters that are passed with it, writes only as many values as are
         // documented, and may be called by any thread. The documentation of `Compiled` says so. The
         // address is not 0, an integer of a pointer's size may be taken for a pointer to a
-        // function, `_keeper` keeps code and parameters alive, and both slices live during the call
-        // and do not overlap.
+        // function, `keeper` keeps code and parameters alive, those of a family live during the call
+        // as both slices do, and the slices do not overlap.
         unsafe {
             let function = std::mem::transmute::<usize, Signature>(self.address);
-            let parameters = std::ptr::with_exposed_provenance(self.parameters);
+            let own = std::ptr::with_exposed_provenance(self.parameters);
+            let parameters = family.unwrap_or(own);
             function(t, y.as_ptr(), out.as_mut_ptr(), parameters);
         }
     }
@@ -78,8 +91,8 @@ pub struct Caller {
 }
 
 impl Caller {
-    pub fn new(args: &Bound<'_, PyTuple>) -> Self {
-        Self { args: args.iter().map(Bound::unbind).collect(), spare: RefCell::new(None) }
+    pub fn new(args: Vec<Py<PyAny>>) -> Self {
+        Self { args, spare: RefCell::new(None) }
     }
 
     /// Calls `callable`, and gives what it returns to `read`.

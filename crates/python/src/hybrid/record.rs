@@ -1,7 +1,6 @@
 //! What a run finds, as columns.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
@@ -10,6 +9,7 @@ use stickslip_solver::{DynamicDense, DynamicEvent, DynamicObserver, Grazing, Pol
 
 use crate::hybrid::Job;
 use crate::hybrid::segments::{Segments, fraction};
+use crate::hybrid::trouble::Trouble;
 
 /// Keeps what a run finds. With `SEGMENTS` it also receives dense output.
 pub struct Record<const SEGMENTS: bool> {
@@ -32,7 +32,7 @@ pub struct Record<const SEGMENTS: bool> {
     /// Whether a segment begins there or later.
     moved: bool,
     ended: bool,
-    failed: Arc<AtomicBool>,
+    trouble: Arc<Trouble>,
 }
 
 /// Modes and states at times.
@@ -72,7 +72,7 @@ impl<const SEGMENTS: bool> Record<SEGMENTS> {
             last: job.start.clone(),
             moved: false,
             ended: false,
-            failed: job.system.failed(),
+            trouble: job.system.trouble().clone(),
         }
     }
 
@@ -162,7 +162,7 @@ impl<const SEGMENTS: bool> DynamicObserver<usize> for Record<SEGMENTS> {
     }
 
     fn stops(&self) -> bool {
-        self.failed.load(Ordering::Relaxed)
+        self.trouble.has_failed()
     }
 
     fn on_segment(&mut self, mode: usize, dense: &DynamicDense<'_>) {

@@ -1,36 +1,33 @@
 //! What the solver sees: modes as numbers, and functions that cannot fail.
 
-use std::cell::{Cell, RefCell};
+use std::cell::Cell;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
-use stickslip_solver::{Direction, DynamicSystem, Guard};
+use stickslip_solver::{DynamicSystem, Guard};
 
-use crate::hybrid::arguments::{ChangeArguments, ModeArguments, SourceArguments};
 use crate::hybrid::function::{Caller, Code, Function};
+use crate::hybrid::modes::{Change, Mode, Source};
 use crate::hybrid::numbers::{Problem, read};
+use crate::hybrid::trouble::Trouble;
 
 /// Calls after which the clock is looked at.
 const CALLS: u64 = 64;
 /// The time after which Ctrl-C is looked for.
-const PAUSE: Duration = Duration::from_millis(50);
+pub const PAUSE: Duration = Duration::from_millis(50);
 
 /// The highest order of a zero that is looked for.
 const HIGHEST_ORDER: u32 = 6;
 
 /// A system of functions that may fail.
-///
-/// The solver knows no failures. The first one is kept; from then on every value is NaN and nothing
-/// is called any more, so that the run ends at once.
 pub struct System {
-    modes: Vec<Mode>,
+    modes: Arc<Vec<Mode>>,
     caller: Caller,
-    failure: RefCell<Option<PyErr>>,
-    failed: Arc<AtomicBool>,
+    trouble: Arc<Trouble>,
+    /// Where the system is one of a family.
+    at: Option<At>,
     /// The mode in which a function was called last.
     mode: Cell<usize>,
     /// Calls of right-hand sides, and of all functions.
@@ -39,57 +36,42 @@ pub struct System {
     looked: Cell<Instant>,
 }
 
-struct Mode {
-    field: Function,
-    guards: Vec<Guard>,
-    labels: Vec<String>,
-    sources: Vec<Source>,
-    changes: Vec<Change>,
-    /// The guards that may start from a zero whose order is to be found out.
-    undeclared: Vec<usize>,
-    /// Whether some of the guards are off.
-    gaps: bool,
-}
-
-/// A function that returns the values of `count` guards from `first` on.
-struct Source {
-    function: Function,
-    first: usize,
-    count: usize,
-}
-
-/// What follows when a guard fires.
-enum Change {
-    /// The state goes on, in this mode or in another one.
-    Mode(Option<usize>),
-    /// The function returns the state after.
-    Reset(Function, Option<usize>),
-    /// The function returns the mode, or `None`, and the state, or `None`.
-    Both(Function),
+/// A member of a family of systems.
+pub struct At {
+    /// The two parameters.
+    pub point: [f64; 2],
+    /// The parameters of compiled functions.
+    pub parameters: Vec<f64>,
 }
 
 impl System {
-    pub fn new(modes: Vec<ModeArguments>, args: &Bound<'_, PyTuple>) -> PyResult<Self> {
-        Ok(Self {
-            modes: modes.into_iter().map(Mode::new).collect::<PyResult<_>>()?,
-            caller: Caller::new(args),
-            failure: RefCell::new(None),
-            failed: Arc::new(AtomicBool::new(false)),
+    pub fn new(
+        modes: Arc<Vec<Mode>>,
+        caller: Caller,
+        trouble: Arc<Trouble>,
+        at: Option<At>,
+    ) -> Self {
+        Self {
+            modes,
+            caller,
+            trouble,
+            at,
             mode: Cell::new(0),
             calls: (Cell::new(0), Cell::new(0)),
             looked: Cell::new(Instant::now()),
-        })
+        }
     }
 
     /// Takes guards that are exactly 0 at the start, and whose zero is to be found out, for simple
-    /// zeros.
+    /// zeros. The modes must be those of this system alone.
     pub fn find_zeros(&mut self, mode: usize, t: f64, y: &[f64]) {
         if self.modes[mode].undeclared.is_empty() {
             return;
         }
         let mut values = vec![0.0; self.modes[mode].guards.len()];
         self.guard_values(mode, t, y, &mut values);
-        let Mode { guards, undeclared, .. } = &mut self.modes[mode];
+        let Some(modes) = Arc::get_mut(&mut self.modes) else { return };
+        let Mode { guards, undeclared, .. } = &mut modes[mode];
         undeclared.retain(|&guard| values[guard] == 0.0);
         for &guard in &*undeclared {
             guards[guard] = guards[guard].from_zero(1);
@@ -98,7 +80,8 @@ impl System {
 
     /// Takes the zero of a guard at the start for one of the next order. Returns whether it may be.
     pub fn raise_zero(&mut self, mode: usize, guard: usize) -> bool {
-        let Mode { guards, undeclared, .. } = &mut self.modes[mode];
+        let Some(modes) = Arc::get_mut(&mut self.modes) else { return false };
+        let Mode { guards, undeclared, .. } = &mut modes[mode];
         let order = guards[guard].zero_order() + 1;
         let may_be = undeclared.contains(&guard) && order <= HIGHEST_ORDER;
         if may_be {
@@ -132,48 +115,71 @@ impl System {
         self.modes[mode].labels.get(guard).map_or("a guard", |label| label)
     }
 
-    /// Becomes true as soon as a function has failed.
-    pub fn failed(&self) -> Arc<AtomicBool> {
-        self.failed.clone()
+    /// What has gone wrong so far, and what will.
+    pub fn trouble(&self) -> &Arc<Trouble> {
+        &self.trouble
     }
 
-    /// The first failure.
-    pub fn take_failure(&self) -> Option<PyErr> {
-        self.failure.borrow_mut().take()
-    }
-
-    fn has_failed(&self) -> bool {
-        self.failed.load(Ordering::Relaxed)
-    }
-
-    fn fail(&self, error: PyErr) {
-        if !self.failed.swap(true, Ordering::Relaxed) {
-            *self.failure.borrow_mut() = Some(error);
+    /// Keeps a failure, with the parameters.
+    fn fail(&self, error: PyErr, t: f64) {
+        if let Some(At { point: [x, y], .. }) = self.at {
+            Python::attach(|py| {
+                let note = format!("with the parameters ({x:?}, {y:?}), at t = {t:?}");
+                // Without the note it is the same exception.
+                let _ = error.value(py).call_method1("add_note", (note,));
+            });
         }
+        self.trouble.fail(error);
     }
 
     /// Writes what `function` returns to `out`; NaN if it fails.
     fn evaluate(&self, function: &Function, t: f64, y: &[f64], out: &mut [f64], signed: bool) {
-        self.look_for_signals();
-        if !self.has_failed() {
+        self.look_for_signals(t);
+        if !self.trouble.has_failed() {
             match &function.code {
-                Code::Compiled(compiled) => return compiled.call(t, y, out),
-                Code::Python(callable) => Python::attach(|py| {
-                    let read = |result: &Bound<'_, PyAny>| read(result, out, signed);
-                    if let Err(problem) = self.caller.call(callable.bind(py), t, y, read) {
-                        self.fail(problem.exception(&function.label, t));
-                    }
-                }),
+                Code::Compiled(compiled) => {
+                    let parameters = self.at.as_ref().map(|at| &at.parameters[..]);
+                    return compiled.call(t, y, out, parameters);
+                }
+                Code::Python(callable) => {
+                    self.call(function, callable, t, y, |result| read(result, out, signed));
+                }
             }
         }
-        if self.has_failed() {
+        if self.trouble.has_failed() {
             out.fill(f64::NAN);
         }
     }
 
+    /// Calls a callable and gives what it returns to `read`. `None` if it fails. An interruption
+    /// that only asks for an end does not spoil the call, which is repeated.
+    fn call<T>(
+        &self,
+        function: &Function,
+        callable: &Py<PyAny>,
+        t: f64,
+        y: &[f64],
+        mut read: impl FnMut(&Bound<'_, PyAny>) -> Result<T, Problem>,
+    ) -> Option<T> {
+        Python::attach(|py| {
+            loop {
+                let problem = match self.caller.call(callable.bind(py), t, y, &mut read) {
+                    Ok(found) => return Some(found),
+                    Err(Problem::Raised(error)) => {
+                        let Some(error) = self.trouble.postpone(error) else { continue };
+                        Problem::Raised(error)
+                    }
+                    Err(problem) => problem,
+                };
+                self.fail(problem.exception(&function.label, t), t);
+                return None;
+            }
+        })
+    }
+
     /// Fails if Ctrl-C was pressed, and lets other threads run. Callables that are not written in
     /// Python do neither. It is done only now and then.
-    fn look_for_signals(&self) {
+    fn look_for_signals(&self, t: f64) {
         let calls = self.calls.1.get() + 1;
         self.calls.1.set(calls);
         if calls.is_multiple_of(CALLS) && self.looked.get().elapsed() >= PAUSE {
@@ -181,15 +187,17 @@ impl System {
                 py.detach(std::thread::yield_now);
                 py.check_signals()
             });
-            if let Err(error) = looked {
-                self.fail(error);
+            if let Err(error) = looked
+                && let Some(error) = self.trouble.postpone(error)
+            {
+                self.fail(error, t);
             }
             self.looked.set(Instant::now());
         }
     }
 
-    /// The mode after a guard has fired, with the state written to `y`.
-    fn change(&self, mode: usize, change: &Change, t: f64, y: &mut [f64]) -> usize {
+    /// The mode after `change` in `mode`, with the state written to `y`.
+    pub fn change(&self, mode: usize, change: &Change, t: f64, y: &mut [f64]) -> usize {
         let (function, to) = match change {
             Change::Mode(to) => return to.unwrap_or(mode),
             Change::Reset(function, to) => {
@@ -199,16 +207,19 @@ impl System {
             }
             Change::Both(function) => (function, self.call_transition(function, mode, t, y)),
         };
-        if !self.has_failed()
+        // A run of a family fails there, and others go on.
+        if self.at.is_none()
+            && !self.trouble.has_failed()
             && let Some(component) = y.iter().position(|value| !value.is_finite())
         {
-            self.fail(PyValueError::new_err(format!(
+            let error = PyValueError::new_err(format!(
                 "{}, at t = {t:?}: component {component} of the state after is {:?}; expected a \
                  finite number",
                 function.label, y[component]
-            )));
+            ));
+            self.fail(error, t);
         }
-        if self.has_failed() {
+        if self.trouble.has_failed() {
             y.fill(f64::NAN);
             return mode;
         }
@@ -217,24 +228,25 @@ impl System {
 
     fn call_transition(&self, function: &Function, mode: usize, t: f64, y: &mut [f64]) -> usize {
         let Code::Python(callable) = &function.code else { return mode };
-        if self.has_failed() {
+        if self.trouble.has_failed() {
             return mode;
         }
-        let found = Python::attach(|py| {
-            let before = y.to_vec();
-            self.caller.call(callable.bind(py), t, &before, |result| {
-                let (to, after): (Option<usize>, Option<Bound<'_, PyAny>>) = result.extract()?;
-                after.map_or(Ok(()), |after| read(&after, y, false))?;
-                Ok::<_, Problem>(to)
-            })
+        let before = y.to_vec();
+        let found = self.call(function, callable, t, &before, |result| {
+            let (to, after): (Option<usize>, Option<Bound<'_, PyAny>>) = result.extract()?;
+            after.map_or(Ok(()), |after| read(&after, y, false))?;
+            Ok(to)
         });
-        match found {
-            Ok(to) => to.unwrap_or(mode),
-            Err(problem) => {
-                Python::attach(|_| self.fail(problem.exception(&function.label, t)));
-                mode
-            }
+        found.flatten().unwrap_or(mode)
+    }
+
+    /// The condition of the transition at a guard; NaN if it has none.
+    pub fn condition(&self, mode: usize, guard: usize, t: f64, y: &[f64]) -> f64 {
+        let mut value = [f64::NAN];
+        if let Some(function) = &self.modes[mode].conditions[guard] {
+            self.evaluate(function, t, y, &mut value, true);
         }
+        value[0]
     }
 }
 
@@ -264,53 +276,5 @@ impl DynamicSystem for System {
 
     fn transition(&self, mode: usize, guard: usize, t: f64, y: &mut [f64]) -> usize {
         self.change(mode, &self.modes[mode].changes[guard], t, y)
-    }
-}
-
-impl Mode {
-    fn new(ModeArguments(field, guards, sources): ModeArguments) -> PyResult<Self> {
-        let mut mode = Self {
-            field: Function::new(field)?,
-            guards: Vec::new(),
-            labels: Vec::new(),
-            sources: Vec::new(),
-            changes: Vec::new(),
-            undeclared: Vec::new(),
-            gaps: false,
-        };
-        for arguments in guards {
-            let guard = arguments.guard()?;
-            mode.gaps |= guard.direction() == Direction::Off;
-            if arguments.2.is_none() {
-                mode.undeclared.push(mode.guards.len());
-            }
-            mode.guards.push(guard);
-            mode.labels.push(arguments.0);
-            mode.changes.push(Change::new(arguments.6)?);
-        }
-        for SourceArguments(function, first, count) in sources {
-            mode.sources.push(Source { function: Function::new(function)?, first, count });
-        }
-        Ok(mode)
-    }
-
-    fn is_compiled(&self) -> bool {
-        let changes = self.changes.iter().all(|change| match change {
-            Change::Mode(_) => true,
-            Change::Reset(function, _) | Change::Both(function) => function.is_compiled(),
-        });
-        changes
-            && self.field.is_compiled()
-            && self.sources.iter().all(|source| source.function.is_compiled())
-    }
-}
-
-impl Change {
-    fn new(ChangeArguments(to, function, both): ChangeArguments) -> PyResult<Self> {
-        Ok(match function {
-            None => Self::Mode(to),
-            Some(function) if both => Self::Both(Function::new(function)?),
-            Some(function) => Self::Reset(Function::new(function)?, to),
-        })
     }
 }

@@ -38,6 +38,8 @@ fn an_atlas_reads_back_with_all_bits() {
         let read = read.atlas().unwrap();
         assert_same(&read, &atlas);
         assert_eq!(read.agrees(), hole == 0.0);
+        assert_eq!(read.objection().is_none(), read.agrees());
+        assert_eq!(read.objection(), atlas.objection());
         assert_eq!(read.sure_area(), atlas.sure_area());
         for i in 0..1000 {
             let part = Point::new(f64::from(i % 40) / 40.0, f64::from(i / 40) / 25.0);
@@ -60,7 +62,7 @@ fn a_survey_goes_on_from_its_file_to_the_same_bits() {
     let mut pauses = 0;
     while !atlas.is_finished() {
         let file = passed_on(&document(&atlas));
-        assert!(!file.is_finished());
+        assert!(!file.is_finished() && atlas.objection().unwrap().starts_with("not finished"));
         asked.store(0, Ordering::Relaxed);
         most.fetch_add(1, Ordering::Relaxed);
         atlas = cancelled.resume(&family, file.atlas().unwrap()).unwrap();
@@ -124,9 +126,12 @@ fn hybrid_systems_have_documents() {
     let surveyor = surveyor();
     let atlas = surveyor.atlas(&family, &window).unwrap();
     let axes = ["height in m", "restitution"];
-    let text =
-        serde_json::to_string(&Document::new(&atlas, &surveyor.options, "ball", axes)).unwrap();
+    let mut written = Document::new(&atlas, &surveyor.options, "ball", axes);
+    assert!(!serde_json::to_string(&written).unwrap().contains("guards"));
+    written.guards.push("floor".to_owned());
+    let text = serde_json::to_string(&written).unwrap();
     let document: Document<Itinerary, Margin> = serde_json::from_str(&text).unwrap();
+    assert_eq!(document, written);
     let read = document.atlas().unwrap();
     assert!(read.agrees());
     let bounces = |point: &Point| read.label(point).and_then(Itinerary::fired).map(<[usize]>::len);

@@ -1,0 +1,293 @@
+//! What the tracer sees of a family, and what Python calls.
+
+use std::ops::Range;
+use std::sync::{Arc, Mutex};
+use std::time::Instant;
+
+use numpy::PyReadonlyArray1;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+use stickslip_solver::{Margin, Place};
+use stickslip_tracer::{
+    AtlasOptions, Family, FreeRun, Itinerary, Monitor, Point, TraceOptions, Window, follow,
+};
+
+use crate::failure::{bad_input, failed};
+use crate::families::atlas::{Description, FamilyAtlas, Label, followed, label, points};
+use crate::families::blueprint::Blueprint;
+use crate::families::failure::{UserError, of_trace};
+use crate::families::sizes::{self, Runs};
+use crate::families::survey::{Callbacks, survey};
+use crate::hybrid::Level;
+use crate::hybrid::arguments::{ChangeArguments, ModeArguments, Settings, Start};
+use crate::hybrid::system::PAUSE;
+use crate::hybrid::trouble::{Trouble, lock};
+use crate::parallel::Threads;
+
+/// A margin: the guards that have fired before, the guard, the name of the place, and the value.
+type MarginFields = (Vec<usize>, usize, &'static str, f64);
+
+/// The runs of a family, for one call of Python.
+pub struct Runner {
+    runs: Runs,
+    trouble: Arc<Trouble>,
+    /// When Ctrl-C was looked for, if the runs are on the thread that has to do it.
+    looked: Option<Mutex<Instant>>,
+}
+
+impl Runner {
+    pub fn trouble(&self) -> &Arc<Trouble> {
+        &self.trouble
+    }
+
+    /// The result of a run, unless a function has failed.
+    fn checked<T>(
+        &self,
+        run: impl FnOnce(&Runs) -> Result<T, stickslip_tracer::FamilyError>,
+    ) -> Result<T, UserError> {
+        let result = run(&self.runs);
+        if let Some(looked) = &self.looked {
+            let mut looked = lock(looked);
+            if looked.elapsed() >= PAUSE {
+                *looked = Instant::now();
+                drop(looked);
+                let found = Python::attach(|py| {
+                    py.detach(std::thread::yield_now);
+                    py.check_signals()
+                });
+                if let Err(error) = found
+                    && let Some(error) = self.trouble.postpone(error)
+                {
+                    self.trouble.fail(error);
+                }
+            }
+        }
+        if self.trouble.has_failed() {
+            return Err(UserError::Function);
+        }
+        result.map_err(UserError::Family)
+    }
+}
+
+impl Family for Runner {
+    type Label = Itinerary;
+    type Margin = Margin;
+    type Error = UserError;
+
+    fn label(&self, point: &Point) -> Result<Itinerary, UserError> {
+        self.checked(|runs| runs.label(point))
+    }
+
+    fn margin(&self, point: &Point, margin: &Margin) -> Result<Option<f64>, UserError> {
+        self.checked(|runs| runs.margin(point, margin))
+    }
+
+    fn moved(&self, point: &Point, margin: &Margin) -> Result<Margin, UserError> {
+        self.checked(|runs| runs.moved(point, margin))
+    }
+
+    fn is_sure(&self, margin: &Margin) -> bool {
+        self.runs.is_sure(margin)
+    }
+
+    fn cusp(&self, margin: &Margin) -> Option<[Margin; 2]> {
+        self.runs.cusp(margin)
+    }
+
+    fn free_run(&self, point: &Point) -> Result<FreeRun<Itinerary, Margin>, UserError> {
+        self.checked(|runs| runs.free_run(point))
+    }
+}
+
+/// A family of systems of one's own.
+#[pyclass(frozen, module = "stickslip._native")]
+pub struct HybridFamily {
+    blueprint: Arc<Blueprint>,
+    description: Description,
+}
+
+#[pymethods]
+impl HybridFamily {
+    /// A family with the places of the guards of each mode, the start and what changes it, the end,
+    /// and what files say about it.
+    #[new]
+    fn new(
+        py: Python<'_>,
+        modes: (Vec<ModeArguments>, Vec<Vec<usize>>),
+        args: Bound<'_, PyTuple>,
+        start: (Start<'_>, ChangeArguments),
+        end: f64,
+        settings: Settings,
+        description: Description,
+    ) -> PyResult<Self> {
+        let blueprint = Blueprint::new(py, modes, &args, start, end, &settings)?;
+        sizes::check(&blueprint)?;
+        Ok(Self { blueprint: Arc::new(blueprint), description })
+    }
+
+    /// Traces the boundaries between two values of each parameter. Returns the atlas, and an
+    /// exception that has ended the trace early.
+    fn trace(
+        &self,
+        py: Python<'_>,
+        window: ((f64, f64), (f64, f64)),
+        options: &str,
+        threads: usize,
+        callbacks: Callbacks,
+    ) -> PyResult<(FamilyAtlas, Option<Py<PyAny>>)> {
+        let _level = Level::enter()?;
+        let options: AtlasOptions = serde_json::from_str(options).map_err(bad_input)?;
+        let (window, trouble) = (window_of(window), Trouble::patient());
+        let threads = self.threads(threads);
+        let runner = self.runner(trouble, threads.is_none());
+        let (atlas, wish) =
+            survey(py, &runner, options, threads, &callbacks, |surveyor, runner| {
+                surveyor.atlas(runner, &window)
+            })?;
+        let atlas = FamilyAtlas::new(atlas, options, self.description.clone());
+        Ok((atlas, wish.map(|error| error.into_value(py).into_any())))
+    }
+
+    /// Goes on with an atlas that was cancelled.
+    fn resume(
+        &self,
+        py: Python<'_>,
+        atlas: &FamilyAtlas,
+        threads: usize,
+        callbacks: Callbacks,
+    ) -> PyResult<(FamilyAtlas, Option<Py<PyAny>>)> {
+        let _level = Level::enter()?;
+        atlas.description.expect(&self.description)?;
+        let threads = self.threads(threads);
+        let runner = self.runner(Trouble::patient(), threads.is_none());
+        let (begun, options) = (&atlas.atlas, atlas.options);
+        let (atlas, wish) =
+            survey(py, &runner, options, threads, &callbacks, |surveyor, runner| {
+                surveyor.resume(runner, begun.clone())
+            })?;
+        let atlas = FamilyAtlas::new(atlas, options, self.description.clone());
+        Ok((atlas, wish.map(|error| error.into_value(py).into_any())))
+    }
+
+    /// The labels of the runs at points.
+    fn labels(
+        &self,
+        py: Python<'_>,
+        x: PyReadonlyArray1<'_, f64>,
+        y: PyReadonlyArray1<'_, f64>,
+        threads: usize,
+    ) -> PyResult<Vec<Label>> {
+        let _level = Level::enter()?;
+        self.labels_at(py, &points(&x, &y)?, threads)
+    }
+
+    /// The margins of the run at a point: the guards that have fired before, the guard, the name of
+    /// the place, and the value.
+    fn margins(&self, x: f64, y: f64) -> PyResult<(Label, Vec<MarginFields>)> {
+        let _level = Level::enter()?;
+        let runner = self.runner(Trouble::default(), true);
+        let found =
+            runner.free_run(&Point::new(x, y)).map_err(|error| Self::why(&runner, &error))?;
+        let margins = found.margins.into_iter().map(|(margin, value)| {
+            let exits = margin.exits.iter().map(|exit| exit.guard).collect();
+            (exits, margin.guard, place(&margin), value)
+        });
+        Ok((label(&found.label), margins.collect()))
+    }
+
+    /// The boundary between two points of a window, with monitors; `None` if there is none.
+    fn follow<'py>(
+        &self,
+        py: Python<'py>,
+        window: ((f64, f64), (f64, f64)),
+        options: &str,
+        between: ((f64, f64), (f64, f64)),
+        monitors: Vec<Py<PyAny>>,
+    ) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let _level = Level::enter()?;
+        let options: TraceOptions = serde_json::from_str(options).map_err(bad_input)?;
+        let between = [between.0, between.1].map(|(x, y)| Point::new(x, y));
+        let runner = self.runner(Trouble::default(), true);
+        let trouble = runner.trouble();
+        let monitor = |function: &Py<PyAny>, point: &Point| {
+            if trouble.has_failed() {
+                return f64::NAN;
+            }
+            let value = Python::attach(|py| function.call1(py, (point.x, point.y))?.extract(py));
+            value.unwrap_or_else(|error| {
+                trouble.fail(error);
+                f64::NAN
+            })
+        };
+        let monitors: Vec<_> =
+            monitors.iter().map(|function| move |point: &Point| monitor(function, point)).collect();
+        let monitors: Vec<Monitor<'_>> = monitors.iter().map(|one| one as Monitor<'_>).collect();
+        let found = follow(&runner, &window_of(window), &options, &between, &monitors);
+        if let Some(error) = trouble.take_failure() {
+            return Err(error);
+        }
+        let Some(found) = found.map_err(|error| of_trace(&error))? else { return Ok(None) };
+        Ok(Some(followed(py, &found)?))
+    }
+}
+
+impl HybridFamily {
+    /// The threads that the runs may have; `None` if they need this one.
+    fn threads(&self, threads: usize) -> Option<usize> {
+        self.blueprint.is_compiled().then_some(threads)
+    }
+
+    fn runner(&self, trouble: Trouble, looks: bool) -> Runner {
+        let trouble = Arc::new(trouble);
+        let runs = sizes::runs(&self.blueprint, &trouble);
+        Runner { runs, trouble, looked: looks.then(|| Mutex::new(Instant::now())) }
+    }
+
+    /// Why a run has no result.
+    fn why(runner: &Runner, error: &UserError) -> PyErr {
+        runner.trouble.take_failure().unwrap_or_else(|| bad_input(error))
+    }
+
+    /// What files say about the family.
+    pub fn description(&self) -> &Description {
+        &self.description
+    }
+
+    /// The labels of the runs at points.
+    pub fn labels_at(
+        &self,
+        py: Python<'_>,
+        points: &[Point],
+        threads: usize,
+    ) -> PyResult<Vec<Label>> {
+        let threads = self.threads(threads).unwrap_or(1);
+        let runner = self.runner(Trouble::default(), threads == 1);
+        let mut labels = Vec::with_capacity(points.len());
+        let work = |part: Range<usize>| {
+            let labels =
+                points[part].iter().map(|point| runner.label(point).map(|one| label(&one)));
+            labels.collect::<Result<Vec<_>, _>>()
+        };
+        Threads::new(threads, points.len())?.each(py, points.len(), work, |part| {
+            labels.extend(part.map_err(|error| Self::why(&runner, &error))?);
+            Ok(())
+        })?;
+        if labels.len() == points.len() { Ok(labels) } else { Err(failed("labels are missing")) }
+    }
+}
+
+/// The name of the place of a margin.
+pub fn place(margin: &Margin) -> &'static str {
+    match margin.place {
+        Place::Start { .. } => "start",
+        Place::Minimum { .. } => "minimum",
+        Place::Maximum { .. } => "maximum",
+        Place::Exit(_) => "exit",
+        Place::Branch(_) => "branch",
+        Place::End => "end",
+    }
+}
+
+fn window_of(((left, right), (bottom, top)): ((f64, f64), (f64, f64))) -> Window {
+    Window { low: Point::new(left, bottom), high: Point::new(right, top) }
+}

@@ -1,0 +1,182 @@
+//! A trace that calls Python: on which threads, with progress, and with an end on request.
+//!
+//! The first Ctrl-C ends a trace between two of its tasks, so that it can go on later. The second
+//! one ends the run that is under way.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex};
+use std::time::Instant;
+
+use pyo3::prelude::*;
+use stickslip_plane::progress::InParallel;
+use stickslip_tracer::{
+    AtlasError, AtlasOf, AtlasOptions, Executor, FreeRunOf, LabelOf, Point, Progress, Serial,
+    Surveyor, Watch,
+};
+
+use crate::failure::failed;
+use crate::families::failure::{UserError, of_atlas};
+use crate::families::family::Runner;
+use crate::hybrid::system::PAUSE;
+use crate::hybrid::trouble::{Trouble, lock};
+use crate::parallel::Threads;
+
+/// Python functions that see the progress of a trace and may cancel it.
+#[derive(FromPyObject)]
+pub struct Callbacks(Option<Py<PyAny>>, Option<Py<PyAny>>);
+
+/// The steps that are done, all that have begun, and when they were reported.
+struct Meter {
+    done: usize,
+    steps: usize,
+    told: Option<Instant>,
+}
+
+/// Computes the runs on the threads of the current pool, or one after the other.
+#[derive(Clone, Copy)]
+pub struct Runs {
+    pub parallel: bool,
+}
+
+impl Executor<Runner> for Runs {
+    fn free_runs(&self, family: &Runner, points: &[Point]) -> Vec<FreeRunOf<Runner>> {
+        if self.parallel {
+            InParallel.free_runs(family, points)
+        } else {
+            Serial.free_runs(family, points)
+        }
+    }
+
+    fn labels(&self, family: &Runner, points: &[Point]) -> Vec<LabelOf<Runner>> {
+        if self.parallel {
+            InParallel.labels(family, points)
+        } else {
+            Serial.labels(family, points)
+        }
+    }
+}
+
+/// The work of a trace: what a surveyor makes of a family.
+pub trait Work:
+    Fn(&Surveyor<'_, Runs>, &Runner) -> Result<AtlasOf<Runner>, AtlasError<UserError>> + Send + Sync
+{
+}
+
+impl<W> Work for W where
+    W: Fn(&Surveyor<'_, Runs>, &Runner) -> Result<AtlasOf<Runner>, AtlasError<UserError>>
+        + Send
+        + Sync
+{
+}
+
+/// The atlas that `work` makes, and an exception that has asked for an end.
+///
+/// With `threads` no run may need the interpreter. They run while this one waits for Ctrl-C.
+pub fn survey(
+    py: Python<'_>,
+    runner: &Runner,
+    options: AtlasOptions,
+    threads: Option<usize>,
+    callbacks: &Callbacks,
+    work: impl Work,
+) -> PyResult<(AtlasOf<Runner>, Option<PyErr>)> {
+    let trouble = runner.trouble();
+    let meter = Mutex::new(Meter { done: 0, steps: 0, told: None });
+    let report = |progress: Progress| callbacks.tell(&meter, progress, trouble);
+    let said = AtomicBool::new(false);
+    let cancelled = || callbacks.cancel(&said, trouble);
+    let watch = Watch::from(&report).cancelled_by(&cancelled);
+    let parallel = threads.is_some();
+    let surveyor = Surveyor { options, executor: Runs { parallel }, watch };
+    let made = match threads {
+        None => work(&surveyor, runner),
+        Some(threads) => {
+            let pool = Threads::pool(threads)?;
+            await_thread(py, trouble, || pool.install(|| work(&surveyor, runner)))?
+        }
+    };
+    if let Some(error) = trouble.take_failure() {
+        return Err(error);
+    }
+    let atlas = made.map_err(|error| of_atlas(&error))?;
+    callbacks.tell_last(&meter, trouble);
+    Ok((atlas, trouble.take_wish()))
+}
+
+/// Does `work` on another thread, and looks for Ctrl-C meanwhile.
+fn await_thread<T: Send>(
+    py: Python<'_>,
+    trouble: &Arc<Trouble>,
+    work: impl FnOnce() -> T + Send,
+) -> PyResult<T> {
+    let (sender, receiver) = channel();
+    let receiver = Mutex::new(receiver);
+    std::thread::scope(|scope| {
+        let thread = scope.spawn(move || {
+            let made = work();
+            // Nobody waits any more if this one has panicked.
+            let _ = sender.send(());
+            made
+        });
+        let waits = || lock(&receiver).recv_timeout(PAUSE) == Err(RecvTimeoutError::Timeout);
+        while py.detach(waits) {
+            if let Err(error) = py.check_signals()
+                && let Some(error) = trouble.postpone(error)
+            {
+                trouble.fail(error);
+            }
+        }
+        py.detach(|| thread.join()).map_err(|_| failed("a thread of the trace has panicked"))
+    })
+}
+
+impl Callbacks {
+    /// Reports progress, now and then.
+    fn tell(&self, meter: &Mutex<Meter>, progress: Progress, trouble: &Trouble) {
+        let Some(function) = &self.0 else { return };
+        let (done, steps) = {
+            let mut meter = lock(meter);
+            match progress {
+                Progress::Begin { steps } => meter.steps += steps,
+                Progress::Advance { steps } => meter.done += steps,
+            }
+            if meter.told.is_some_and(|told| told.elapsed() < PAUSE) {
+                return;
+            }
+            meter.told = Some(Instant::now());
+            (meter.done, meter.steps)
+        };
+        Self::call(function, (done, steps), trouble);
+    }
+
+    /// Reports the last progress.
+    fn tell_last(&self, meter: &Mutex<Meter>, trouble: &Trouble) {
+        let Some(function) = &self.0 else { return };
+        let (done, steps) = {
+            let meter = lock(meter);
+            (meter.done, meter.steps)
+        };
+        Self::call(function, (done, steps), trouble);
+    }
+
+    fn call(function: &Py<PyAny>, progress: (usize, usize), trouble: &Trouble) {
+        if let Err(error) = Python::attach(|py| function.call1(py, progress)) {
+            trouble.ask(error);
+        }
+    }
+
+    /// Whether the trace is to end. `said` keeps the answer of the function.
+    fn cancel(&self, said: &AtomicBool, trouble: &Trouble) -> bool {
+        if trouble.has_failed() || trouble.is_asked() || said.load(Ordering::Relaxed) {
+            return true;
+        }
+        let Some(function) = &self.1 else { return false };
+        let answer = Python::attach(|py| function.call0(py)?.is_truthy(py));
+        match answer {
+            Ok(answer) => said.store(answer, Ordering::Relaxed),
+            Err(error) => trouble.ask(error),
+        }
+        said.load(Ordering::Relaxed) || trouble.is_asked()
+    }
+}

@@ -1,0 +1,429 @@
+"""Atlases of families: what `trace_family` returns."""
+
+import json
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip import _native
+from stickslip._arrays import numbers
+from stickslip.collisions import Floats, _threads
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from stickslip.families import HybridFamily
+
+Progress: TypeAlias = Callable[[int, int], object]
+Cancelled: TypeAlias = Callable[[], object]
+
+#: Colours and dashes of boundaries by the place of their margin, as in the picture.
+STYLES = {
+    "end": ("#333333", "-"),
+    "minimum": ("#0072b2", "-"),
+    "maximum": ("#0072b2", "-"),
+    "exit": ("#d55e00", "--"),
+    "start": ("#009e73", "-."),
+    "branch": ("#009e73", "-."),
+}
+
+
+@dataclass(frozen=True)
+class Itinerary:
+    """What a run does: the label of a region."""
+
+    #: fires (the run comes to its end), begins (it goes on after max_switches events), accumulates
+    #: (its events do, before the end), unfinished (too many steps) or fails.
+    kind: Literal["fires", "begins", "accumulates", "unfinished", "fails"]
+    #: The guards that fire, in order, without one that ends the run.
+    guards: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        names = ", ".join(self.guards)
+        if self.kind == "fires":
+            return names or "no events"
+        return f"{names}, …" if self.kind == "begins" else self.kind
+
+
+@dataclass(frozen=True)
+class FamilyMargin:
+    """What vanishes on a boundary: the value of a guard at a place of a phase."""
+
+    #: The guards that have fired before, one for each earlier phase.
+    after: tuple[str, ...]
+    guard: str
+    #: minimum or maximum (a graze), end (of the run), start (of the phase), exit (where another
+    #: guard ends the phase) or branch (of a transition).
+    place: str
+
+
+@dataclass(frozen=True)
+class FamilyCurve:
+    """A curve on which the itinerary changes, between two vertices."""
+
+    id: int
+    margin: FamilyMargin
+    #: The itineraries on the left and on the right, seen in the direction of the curve.
+    sides: tuple[Itinerary, Itinerary]
+    #: Points (x, y), shape (n, 2).
+    points: Floats
+    #: Unit vectors along the curve there, shape (n, 2).
+    tangents: Floats
+    #: The vertices at which it starts and ends; None if it is closed.
+    vertices: tuple[int, int] | None
+
+
+@dataclass(frozen=True)
+class FamilyVertex:
+    """A point at which curves end or meet."""
+
+    id: int
+    #: crossing, double-graze, cusp, graze-at-end, simultaneous-events, tangency, other, window-edge
+    #: or window-corner.
+    kind: str
+    x: float
+    y: float
+    #: The curves that end here.
+    curves: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class FamilyRegion:
+    """A part of the window in which all runs have the same itinerary."""
+
+    id: int
+    #: None if no curve bounds the region, which is the whole window; `decide` tells it.
+    itinerary: Itinerary | None
+    area: float
+    #: A point (x, y) inside, and its distance from the nearest curve or edge.
+    sample: tuple[float, float]
+    clearance: float
+    #: The curves around it.
+    curves: tuple[int, ...]
+    #: Whether something unresolved, inconsistent or refuted by a run lies in it or on its boundary.
+    doubtful: bool
+
+
+@dataclass(frozen=True)
+class Unresolved:
+    """Something that the trace saw and could not explain."""
+
+    #: change (of the itinerary, without a margin), stalled (a curve ends there), no-length,
+    #: too-many-nodes or too-many-curves.
+    kind: str
+    #: Where, shape (n, 2): two points around a change, and else one.
+    points: Floats
+    #: The itineraries at both points of a change.
+    itineraries: tuple[Itinerary, ...]
+    text: str
+
+
+@dataclass(frozen=True)
+class FamilyLocated:
+    """Where points lie in an atlas of a family; arrays of the shape of the points."""
+
+    #: Index of the region; -1 on a curve within its error, -2 outside the window.
+    region: NDArray[np.int64]
+    #: Number of events before the end; -1 where there is no region, or it has no such number.
+    event_count: NDArray[np.int64]
+    #: The itinerary as text; empty where there is no region.
+    itinerary: NDArray[np.str_]
+    #: Whether the region is in doubt; also on curves, and outside.
+    doubtful: NDArray[np.bool_]
+    #: Distance in y from the nearest curve at the same x; NaN if there is none.
+    distance: Floats
+
+
+class TraceInterrupted(KeyboardInterrupt):
+    """Ctrl-C during a trace. `atlas` has what was found, and `atlas.resume` goes on."""
+
+    def __init__(self, atlas: "FamilyAtlas") -> None:
+        super().__init__("the trace was interrupted")
+        self.atlas = atlas
+
+
+class FamilyAtlas:
+    """The boundaries and regions of a family in a window, from `trace_family` or `load`."""
+
+    def __init__(self, native: _native.FamilyAtlas) -> None:
+        self._native = native
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (_read, (self._native.json(),))
+
+    @classmethod
+    def load(cls, file: str | os.PathLike[str]) -> "FamilyAtlas":
+        """The atlas in a file that `save` has written, or Rust's `tracer::Document`."""
+        return _read(Path(file).read_text(encoding="utf-8"))
+
+    def save(self, file: str | os.PathLike[str]) -> None:
+        """Writes the file, complete or not at all. It needs no family to be read and located in."""
+        path = Path(file)
+        beside = path.with_name(f".{path.name}.{os.getpid()}.part")
+        try:
+            beside.write_text(self._native.json() + "\n", encoding="utf-8")
+            beside.replace(path)
+        finally:
+            beside.unlink(missing_ok=True)
+
+    def resume(
+        self,
+        family: "HybridFamily",
+        *,
+        threads: int | None = None,
+        progress: Progress | None = None,
+        cancelled: Cancelled | None = None,
+    ) -> "FamilyAtlas":
+        """Goes on with an atlas that was cancelled, to the same bits as without interruption.
+
+        family: the same one. One that is finished is returned as it is. The other arguments are
+        those of `trace_family`.
+        """
+        from stickslip.families import _finish
+
+        calls = (progress, cancelled)
+        return _finish(family._native.resume(self._native, _threads(threads), calls))
+
+    @cached_property
+    def document(self) -> dict[str, Any]:
+        """The object in the file of the atlas."""
+        found: dict[str, Any] = json.loads(self._native.json())
+        return found
+
+    @property
+    def family(self) -> str:
+        """The name of the family."""
+        return str(self.document["family"])
+
+    @property
+    def axes(self) -> tuple[str, str]:
+        """The names of the two parameters."""
+        x, y = self.document["axes"]
+        return x, y
+
+    @property
+    def window(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """The intervals of the two parameters."""
+        (left, bottom), (right, top) = (self.document["window"][end] for end in ("low", "high"))
+        return (left, right), (bottom, top)
+
+    @property
+    def finished(self) -> bool:
+        """Whether the trace came to its end. If it was cancelled, everything is in doubt."""
+        return self._native.finished
+
+    @property
+    def objection(self) -> str | None:
+        """What speaks against the atlas; None if nothing does."""
+        return self._native.objection
+
+    @property
+    def findings(self) -> tuple[str, ...]:
+        """Inconsistencies between curves and vertices."""
+        return tuple(self._native.doubts[0])
+
+    @property
+    def verification(self) -> Mapping[str, Any]:
+        """What the comparison with runs found."""
+        report: Mapping[str, Any] = self.document["verification"]
+        return report
+
+    @property
+    def statistics(self) -> Mapping[str, int]:
+        """The work of the trace: free_runs, prescribed_runs, nodes, rejected, seeds."""
+        counts: Mapping[str, int] = self.document["statistics"]
+        return counts
+
+    @property
+    def sure_area(self) -> float:
+        """The part of the window's area in regions that are not in doubt."""
+        # A sum of nothing is −0 in Rust.
+        return self._native.sure[1] + 0.0
+
+    @cached_property
+    def curves(self) -> tuple[FamilyCurve, ...]:
+        """The curves."""
+        return tuple(
+            FamilyCurve(
+                id=index,
+                margin=self._margin(one["margin"]),
+                sides=(self._itinerary(one["sides"][0]), self._itinerary(one["sides"][1])),
+                points=_points(node["point"] for node in one["nodes"]),
+                tangents=_points(node["tangent"] for node in one["nodes"]),
+                vertices=None if one["ends"] is None else (one["ends"][0], one["ends"][1]),
+            )
+            for index, one in enumerate(self.document["curves"])
+        )
+
+    @cached_property
+    def vertices(self) -> tuple[FamilyVertex, ...]:
+        """The points at which curves end or meet."""
+        curves: list[list[int]] = [[] for _ in self.document["vertices"]]
+        for curve in self.curves:
+            for vertex in sorted(set(curve.vertices or ())):
+                curves[vertex].append(curve.id)
+        rows = zip(self.document["vertices"], self._native.vertex_kinds, curves, strict=True)
+        return tuple(
+            FamilyVertex(index, kind, one["point"][0], one["point"][1], tuple(ends))
+            for index, (one, kind, ends) in enumerate(rows)
+        )
+
+    @cached_property
+    def regions(self) -> tuple[FamilyRegion, ...]:
+        """The regions."""
+        rows = zip(self.document["regions"], self._native.sure[0], strict=True)
+        return tuple(
+            FamilyRegion(
+                id=index,
+                itinerary=None if one["label"] is None else self._itinerary(one["label"]),
+                area=one["area"],
+                sample=(one["sample"][0], one["sample"][1]),
+                clearance=one["clearance"],
+                curves=tuple(sorted({curve for curve, _ in one["boundary"]})),
+                doubtful=doubtful,
+            )
+            for index, (one, doubtful) in enumerate(rows)
+        )
+
+    @cached_property
+    def unresolved(self) -> tuple[Unresolved, ...]:
+        """What the trace could not explain."""
+        found = []
+        for one, text in zip(self.document["unresolved"], self._native.doubts[1], strict=True):
+            ((kind, fields),) = one.items()
+            if "vertex" in fields:
+                places = [self.document["vertices"][fields["vertex"]]["point"]]
+            else:
+                places = fields["between"] if "between" in fields else [fields["point"]]
+            labels = tuple(self._itinerary(label) for label in fields.get("labels", ()))
+            found.append(Unresolved(kind.replace("_", "-"), _points(places), labels, text))
+        return tuple(found)
+
+    def locate(self, x: ArrayLike, y: ArrayLike) -> FamilyLocated:
+        """The regions in which points lie. x and y broadcast."""
+        (x, y), shape = _pairs(x, y)
+        region, distance = self._native.locate(x, y)
+        labels = [one.itinerary for one in self.regions]
+        counts = np.array([_count_events(one) for one in labels] + [-1])
+        names = np.array(["" if one is None else str(one) for one in labels] + [""])
+        doubtful = np.array([one.doubtful for one in self.regions] + [True])
+        # -1 and -2 both stand for the last entry.
+        index = np.maximum(region, -1)
+        return FamilyLocated(
+            region.reshape(shape),
+            counts[index].reshape(shape),
+            names[index].reshape(shape),
+            doubtful[index].reshape(shape),
+            distance.reshape(shape),
+        )
+
+    def decide(
+        self, family: "HybridFamily", x: ArrayLike, y: ArrayLike, *, threads: int | None = None
+    ) -> NDArray[np.object_]:
+        """The itinerary at every point: by a run of the family within the error of a curve or of
+        the window's edge, and in regions in doubt. None outside the window. x and y broadcast.
+        """
+        (x, y), shape = _pairs(x, y)
+        found = self._native.decide(family._native, x, y, _threads(threads))
+        return _objects([one and _label(one, family.guards) for one in found], shape)
+
+    def plot(self, ax: "Axes | None" = None, *, labels: bool = True, **line: Any) -> "Axes":
+        """Draws the curves with matplotlib, and the number of events in large regions.
+
+        ax: axes to draw in, or None for new ones. labels: whether regions are labelled. line:
+        properties of all lines, e.g. `linewidth`.
+        """
+        if ax is None:
+            import matplotlib.pyplot as plt
+
+            ax = plt.figure(layout="constrained").add_subplot()
+        for curve in self.curves:
+            colour, dashes = STYLES[curve.margin.place]
+            style: dict[str, Any] = {"color": colour, "linestyle": dashes, "linewidth": 1.0}
+            points = self._native.polyline(curve.id).reshape(-1, 2)
+            ax.plot(points[:, 0], points[:, 1], **(style | line))
+        (left, right), (bottom, top) = self.window
+        if labels:
+            for region in self.regions:
+                if region.area > 0.005 * (right - left) * (top - bottom):
+                    count = _count_events(region.itinerary)
+                    text = "?" if region.doubtful or count < 0 else str(count)
+                    ax.annotate(text, region.sample, ha="center", va="center")
+        ax.set(xlim=(left, right), ylim=(bottom, top), xlabel=self.axes[0], ylabel=self.axes[1])
+        return ax
+
+    def picture(self) -> str:
+        """The curves with the number of events in each region, as an SVG document."""
+        return self._native.picture()
+
+    def _repr_html_(self) -> str:
+        return self.picture()
+
+    def __repr__(self) -> str:
+        counts = (len(self.curves), len(self.vertices), len(self.regions))
+        text = "FamilyAtlas: {} curves, {} vertices, {} regions".format(*counts)
+        return text if self.finished else f"{text}, not finished"
+
+    @property
+    def _guards(self) -> list[str]:
+        return list(self.document.get("guards", ()))
+
+    def _itinerary(self, label: Any) -> Itinerary:
+        if isinstance(label, str):
+            return _label((label, []), ())
+        ((kind, guards),) = label.items()
+        return _label((kind, guards), self._guards)
+
+    def _margin(self, margin: Mapping[str, Any]) -> FamilyMargin:
+        place = margin["place"]
+        exits = [one["guard"] for one in margin["exits"]]
+        name = place if isinstance(place, str) else str(next(iter(place)))
+        return _margin((exits, margin["guard"], name), self._guards)
+
+
+def _read(text: str) -> FamilyAtlas:
+    return FamilyAtlas(_native.FamilyAtlas.read(text))
+
+
+def _pairs(x: ArrayLike, y: ArrayLike) -> tuple[tuple[Floats, Floats], tuple[int, ...]]:
+    """Two flat arrays of one length, and their shape."""
+    given = np.broadcast_arrays(numbers("x", x), numbers("y", y))
+    flat_x, flat_y = (np.ascontiguousarray(one).reshape(-1) for one in given)
+    return (flat_x, flat_y), given[0].shape
+
+
+def _points(pairs: Any) -> Floats:
+    return np.array(list(pairs), dtype=np.float64).reshape(-1, 2)
+
+
+def _objects(values: list[Any], shape: tuple[int, ...]) -> NDArray[np.object_]:
+    found: NDArray[np.object_] = np.empty(len(values), dtype=object)
+    found[:] = values
+    return found.reshape(shape)
+
+
+def _name(guard: int, names: Sequence[str]) -> str:
+    """The name of a guard; its number in files without names."""
+    return names[guard] if guard < len(names) else str(guard)
+
+
+def _label(label: tuple[str, list[int]], names: Sequence[str]) -> Itinerary:
+    kind: Any = label[0]
+    return Itinerary(kind, tuple(_name(guard, names) for guard in label[1]))
+
+
+def _margin(margin: tuple[list[int], int, str], names: Sequence[str]) -> FamilyMargin:
+    exits, guard, place = margin
+    return FamilyMargin(tuple(_name(one, names) for one in exits), _name(guard, names), place)
+
+
+def _count_events(itinerary: Itinerary | None) -> int:
+    if itinerary is None or itinerary.kind not in ("fires", "begins"):
+        return -1
+    return len(itinerary.guards)

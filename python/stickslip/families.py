@@ -1,0 +1,453 @@
+"""Families: systems of your own that depend on two parameters, and where their events change.
+
+`HybridFamily` is a `HybridSystem` whose functions also get two parameters; `trace_family` finds
+every curve in a window of the parameters on which the sequence of events of its runs changes.
+"""
+
+import graphlib
+import json
+import operator
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, field
+from itertools import count, pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip import _native
+from stickslip._compiled import Compiled, Function, _count, _number
+from stickslip._family_atlases import (
+    Cancelled,
+    FamilyAtlas,
+    FamilyCurve,
+    FamilyLocated,
+    FamilyMargin,
+    FamilyRegion,
+    FamilyVertex,
+    Itinerary,
+    Progress,
+    TraceInterrupted,
+    Unresolved,
+    _label,
+    _margin,
+    _objects,
+    _pairs,
+    _points,
+)
+from stickslip._systems import HybridSystem, Mode, _check_function
+from stickslip.atlases import AtlasWarning
+from stickslip.collisions import Floats, _threads
+from stickslip.hybrid import _arguments, _callee, _span, _state, _Table
+
+__all__ = [
+    "FamilyAtlas",
+    "FamilyCurve",
+    "FamilyLocated",
+    "FamilyMargin",
+    "FamilyRegion",
+    "FamilyVertex",
+    "Followed",
+    "HybridFamily",
+    "Itinerary",
+    "MonitorZero",
+    "TraceInterrupted",
+    "TraceOptions",
+    "Unresolved",
+    "VerifyOptions",
+    "trace_family",
+]
+
+
+@dataclass(frozen=True)
+class TraceOptions:
+    """How boundaries are traced. Lengths are in the units of the parameters."""
+
+    #: The largest distance of a point from its boundary, up to 1e-6.
+    tolerance: float = 1e-12
+    #: That of the curves between the points, from ten times the tolerance to 1e-2.
+    interpolation: float = 1e-10
+    #: The distance from a boundary at which itineraries are compared, up to 1e-4.
+    offset: float = 1e-8
+    #: The error of a margin, up to 1e-6: smaller values carry no information.
+    noise: float = 1e-13
+    #: The longest step, as a part of the window's shorter side, up to 0.25.
+    max_step: float = 0.05
+    #: The largest angle between the tangents of points that follow each other, up to 0.5.
+    max_angle: float = 0.2
+    #: How far beyond the window boundaries are followed, as a part of its shorter side, up to 1e-2.
+    beyond: float = 0.0
+    #: The cells of the grid along each axis, from 2 to 4096.
+    cells: int = 32
+    #: The greatest number of points of a curve.
+    max_nodes: int = 20_000
+    #: A window that shows more curves before it is traced is refused.
+    max_curves: int = 10_000
+
+
+@dataclass(frozen=True)
+class VerifyOptions:
+    """Where the regions are compared with runs."""
+
+    #: Random points, spread evenly over the window.
+    random_points: int = 10_000
+    #: Random points on each side of every curve, at distances from `nearest` to `farthest`.
+    near_points: int = 20
+    nearest: float = 1e-8
+    farthest: float = 1e-3
+    seed: int = 1
+
+
+@dataclass(frozen=True)
+class MonitorZero:
+    """Where a monitor changes its sign on a boundary."""
+
+    #: The index of the monitor.
+    monitor: int
+    #: The point of the boundary at or behind which it does, before the next one.
+    node: int
+    #: The place; None if it could not be solved for.
+    point: tuple[float, float] | None
+
+
+@dataclass(frozen=True)
+class Followed:
+    """One boundary, from `HybridFamily.follow`."""
+
+    margin: FamilyMargin
+    #: The itineraries on the left and on the right, seen in the direction of the boundary.
+    sides: tuple[Itinerary, Itinerary]
+    #: Points (x, y), shape (n, 2); a closed boundary ends with its first point.
+    points: Floats
+    #: Unit vectors along the boundary there, shape (n, 2).
+    tangents: Floats
+    #: Why it starts and ends: window-edge, window-corner, vertex, stalled (it could not go on) or
+    #: limit (too many points); None if it is closed.
+    ends: tuple[str, str] | None
+    #: The value of each monitor at each point, shape (monitors, n).
+    values: Floats
+    zeros: tuple[MonitorZero, ...] = field(default=())
+
+
+class HybridFamily:
+    """A `HybridSystem` that depends on two parameters x and y.
+
+    system: its functions get the parameters after time and state: f(t, y, p, q, *args). A compiled
+    function gets them as its first two parameters, before those that `Compiled` was given. The
+    functions must be functions of their arguments alone, smooth a little beyond the guards' zeros
+    and a hundredth of the window beyond its edges.
+
+    t_span, y0, mode: start and end of every run, and its state and mode at the start. start: if
+    they depend on the parameters, a function start(t, y, p, q, *args) of t_span[0] and y0 that
+    returns the state, the mode, or (mode, state).
+
+    name, axes: what was traced and the names of the two parameters, for files and pictures. rtol,
+    atol, max_step, first_step, guard_scale: as in `solve`; margins are as accurate as the runs. The
+    method is "dop853". max_switches: itineraries are told apart up to so many events. Where events
+    accumulate, there are boundaries without end, unless this is a small number.
+
+    Up to 12 components and 12 guards. Guards that have one name in several modes count as one
+    guard, if the modes list them in one order.
+
+    >>> ball = HybridSystem()
+    >>> fly = ball.mode("fly", lambda t, y, height, restitution: [y[1], -1.0])
+    >>> bounce = lambda t, y, height, restitution: [0.0, -restitution * y[1]]
+    >>> fly.guard("floor", lambda t, y, height, restitution: y[0], reset=bounce)
+    Mode('fly', guards: 'floor')
+    >>> start = lambda t, y, height, restitution: [height, 0.0]
+    >>> family = HybridFamily(ball, (0.0, 2.4), [1.0, 0.0], start=start)
+    >>> str(family.label(1.0, 0.5)), str(family.label(0.6, 0.55))
+    ('floor', 'floor, floor')
+    """
+
+    def __init__(
+        self,
+        system: HybridSystem,
+        t_span: ArrayLike,
+        y0: ArrayLike,
+        mode: str | Mode | None = None,
+        *,
+        start: Function | None = None,
+        args: tuple[Any, ...] = (),
+        name: str = "hybrid systems",
+        axes: tuple[str, str] = ("x", "y"),
+        rtol: float = 1e-13,
+        atol: float = 1e-13,
+        max_step: float = np.inf,
+        first_step: float | None = None,
+        max_switches: int = 10_000_000,
+        guard_scale: float | None = None,
+    ) -> None:
+        if not isinstance(system, HybridSystem):
+            raise TypeError(f"{type(system).__name__} is no HybridSystem; a family needs guards")
+        begin, end = _span(t_span)
+        if not end > begin:
+            raise ValueError(f"t_span = ({begin}, {end}); expected an end after the start")
+        state = _state(y0)
+        table = _Table(system, [], _arguments(args))
+        table.apart, table.conditions = False, True
+        if np.isinf(end) and not table.may_end:
+            raise ValueError("t_span is infinite, and no guard is terminal")
+        first: tuple[None, Any, bool] = (None, None, False)
+        if start is not None:
+            _check_function(start, "start")
+            _check_parameters(start, "start")
+            callee = start if isinstance(start, Compiled) else table.transition(start, "start")
+            first = (None, ("start", _callee(callee)), not isinstance(start, Compiled))
+        for one in system.modes:
+            _check_parameters(one.right_hand_side, f"the right-hand side of mode {one.name!r}")
+            for source in one._sources:
+                _check_parameters(source.function, source.label)
+                for guard in source.guards:
+                    for what, function in (("reset", guard.reset), ("condition", guard.condition)):
+                        _check_parameters(function, f"the {what} of guard {guard.name!r}")
+        settings = {
+            "method": "dop853",
+            "rtol": _number(rtol, "rtol"),
+            "atol": _number(atol, "atol"),
+            "max_step": _number(max_step, "max_step"),
+            "first_step": None if first_step is None else _number(first_step, "first_step"),
+            "max_switches": _count(max_switches, "max_switches"),
+            "guard_scale": None if guard_scale is None else _number(guard_scale, "guard_scale"),
+        }
+        #: The name of the family.
+        self.name = _text(name, "name")
+        if isinstance(axes, str) or len(axes) != 2:
+            raise ValueError(f"axes = {axes!r}; expected the names of two parameters")
+        #: The names of the two parameters.
+        self.axes = (_text(axes[0], "axes[0]"), _text(axes[1], "axes[1]"))
+        places, names = _places(system)
+        #: The names of the guards, in the order in which files count them.
+        self.guards = tuple(names)
+        self._native = _native.HybridFamily(
+            (table.modes(), places),
+            table.args,
+            ((table.index_of(mode), begin, state), first),
+            end,
+            settings,
+            (self.name, list(self.axes), names),
+        )
+
+    def __reduce__(self) -> Any:
+        raise TypeError("a HybridFamily cannot be pickled; build it in each process")
+
+    def label(self, x: float, y: float) -> Itinerary:
+        """What the run with the parameters x and y does."""
+        found: Itinerary = self.labels([_number(x, "x")], [_number(y, "y")], threads=1)[0]
+        return found
+
+    def labels(
+        self, x: ArrayLike, y: ArrayLike, *, threads: int | None = None
+    ) -> NDArray[np.object_]:
+        """What runs do: an array of `Itinerary`. x and y broadcast.
+
+        threads: as in `trace_family`.
+        """
+        (x, y), shape = _pairs(x, y)
+        found = self._native.labels(x, y, _threads(threads))
+        return _objects([_label(one, self.guards) for one in found], shape)
+
+    def margins(self, x: float, y: float) -> tuple[tuple[FamilyMargin, float], ...]:
+        """How far the run with the parameters x and y is from other itineraries.
+
+        Pairs of a margin and its value, in the order of the phases. Where the itinerary changes,
+        one of them vanishes.
+        """
+        _, found = self._native.margins(_number(x, "x"), _number(y, "y"))
+        return tuple((_margin(one[:3], self.guards), one[3]) for one in found)
+
+    def follow(
+        self,
+        x: tuple[float, float],
+        y: tuple[float, float],
+        between: ArrayLike,
+        monitors: Sequence[Callable[[float, float], float]] = (),
+        options: TraceOptions | None = None,
+    ) -> Followed | None:
+        """Follows the boundary between two points in both directions, until it ends at a vertex,
+        leaves the window, or closes.
+
+        x, y: the window. between: two points with different itineraries, shape (2, 2). None if
+        their itineraries are the same, or if no margin vanishes where the itinerary changes.
+        monitors: functions of the two parameters whose values are recorded and whose zeros along
+        the boundary are solved for; NaN says that there is no value.
+        """
+        window = (_interval(x, "x"), _interval(y, "y"))
+        places = np.asarray(between, dtype=np.float64)
+        if places.shape != (2, 2) or not np.isfinite(places).all():
+            raise ValueError(f"between = {between!r}; expected two points (x, y)")
+        functions = list(monitors)
+        for index, monitor in enumerate(functions):
+            if not callable(monitor):
+                raise TypeError(f"monitor {index} is of type {type(monitor).__name__}")
+        text = _json(asdict(options or TraceOptions()))
+        (one, two), (three, four) = places.tolist()
+        found = self._native.follow(window, text, ((one, two), (three, four)), functions)
+        if found is None:
+            return None
+        sides = [_label(one, self.guards) for one in found["sides"]]
+        return Followed(
+            margin=_margin(found["margin"], self.guards),
+            sides=(sides[0], sides[1]),
+            points=found["points"].reshape(-1, 2),
+            tangents=found["tangents"].reshape(-1, 2),
+            ends=found["ends"],
+            values=np.array(found["values"], dtype=np.float64).reshape(len(functions), -1),
+            zeros=tuple(MonitorZero(*zero) for zero in found["zeros"]),
+        )
+
+    def __repr__(self) -> str:
+        return f"HybridFamily({self.name!r}, axes: {self.axes}, guards: {self.guards})"
+
+
+def trace_family(
+    family: HybridFamily,
+    x: tuple[float, float],
+    y: tuple[float, float],
+    *,
+    options: TraceOptions | None = None,
+    verify: VerifyOptions | None = None,
+    tolerance: float = 1e-9,
+    rounds: int = 8,
+    threads: int | None = None,
+    progress: Progress | None = None,
+    cancelled: Cancelled | None = None,
+) -> FamilyAtlas:
+    """Every curve in a window of the parameters on which the itinerary of the runs changes, and the
+    regions between them.
+
+    x, y: intervals of the two parameters. options, verify: how it is traced and compared with runs.
+    tolerance: the accuracy that is claimed for the curves, in the units of the parameters. rounds:
+    where runs disagree with the regions, the trace looks again, in so many rounds at most.
+
+    What cannot be resolved is part of the atlas: `unresolved`, `findings`, and the regions in
+    doubt. If anything speaks against the atlas, it says so in an AtlasWarning and in `objection`.
+
+    threads: for compiled functions, 1 to 1024, or None for one for each core; results have the same
+    bits with any number. Functions of Python are called on this thread, one after the other. Their
+    exceptions end the trace and come out as they are, with a note that has the parameters; NaN says
+    that a run has no value there, and fails.
+
+    progress(done, steps): called now and then with the steps that are done, and those of all stages
+    that have begun; more may come. cancelled(): asked
+    between tasks; if it is true, the trace ends with what was found so far, and
+    `FamilyAtlas.resume` goes on. Both are called on the thread that traces. Ctrl-C raises
+    TraceInterrupted, a KeyboardInterrupt whose `atlas` can be resumed too.
+    """
+    if not isinstance(family, HybridFamily):
+        raise TypeError(f"{type(family).__name__} is no HybridFamily")
+    text = _json(
+        {
+            "trace": asdict(options or TraceOptions()),
+            "tolerance": _number(tolerance, "tolerance"),
+            "verify": asdict(verify or VerifyOptions()),
+            "rounds": _count(rounds, "rounds"),
+        }
+    )
+    window = (_interval(x, "x"), _interval(y, "y"))
+    if not 0.0 < tolerance < 1e-3 * min(high - low for low, high in window):
+        raise ValueError(
+            f"tolerance = {tolerance}; expected above 0 and below a thousandth of the window"
+        )
+    for name, function in (("progress", progress), ("cancelled", cancelled)):
+        if function is not None and not callable(function):
+            raise TypeError(f"{name} is of type {type(function).__name__}; expected a callable")
+    calls = (progress, cancelled)
+    return _finish(family._native.trace(window, text, _threads(threads), calls))
+
+
+def _finish(found: tuple[_native.FamilyAtlas, BaseException | None]) -> FamilyAtlas:
+    """The atlas, unless an exception has ended the trace early."""
+    atlas, error = FamilyAtlas(found[0]), found[1]
+    if isinstance(error, KeyboardInterrupt):
+        raise TraceInterrupted(atlas) from error
+    if error is not None:
+        raise error
+    if atlas.finished and atlas.objection is not None:
+        warnings.warn(f"the atlas may be wrong: {atlas.objection}", AtlasWarning, stacklevel=3)
+    return atlas
+
+
+def _places(system: HybridSystem) -> tuple[list[list[int]], list[str]]:
+    """The place of each guard of each mode, and the names of the places.
+
+    Of guards that fire together the first one counts, so that places keep the order of every mode.
+    """
+    modes = [[guard.name for guard in mode.guard_list] for mode in system.modes]
+    guards = [guard for mode in system.modes for guard in mode.guard_list]
+    counted = len(modes) > 1 and any(int(guard.terminal) > 1 for guard in guards)
+    order: graphlib.TopologicalSorter[str] = graphlib.TopologicalSorter()
+    for names in modes:
+        for name in names:
+            order.add(name)
+        for before, after in pairwise(names):
+            order.add(after, before)
+    try:
+        shared = None if counted else list(order.static_order())
+    except graphlib.CycleError:
+        shared = None
+    if shared is not None:
+        return [[shared.index(name) for name in names] for names in modes], shared
+    numbers = count()
+    places = [[next(numbers) for _ in names] for names in modes]
+    every = [guard.name for guard in guards]
+    rows = zip(system.modes, modes, strict=True)
+    pairs = [(mode.name, name) for mode, names in rows for name in names]
+    return places, [name if every.count(name) == 1 else f"{mode}: {name}" for mode, name in pairs]
+
+
+def _check_parameters(function: Function | None, what: str) -> None:
+    if isinstance(function, Compiled) and function.parameters is None and function._pointer:
+        raise ValueError(
+            f"{what} has user data of unknown length; in a family the parameters of the point come "
+            "first, and its own are given as Compiled(function, parameters)"
+        )
+
+
+def _text(value: Any, what: str) -> str:
+    if not isinstance(value, str):
+        raise TypeError(f"{what} = {value!r}; expected a str")
+    return value
+
+
+def _interval(values: Any, what: str) -> tuple[float, float]:
+    try:
+        low, high = values
+    except (TypeError, ValueError):
+        raise ValueError(f"{what} = {values!r}; expected (low, high)") from None
+    low, high = _number(low, what), _number(high, what)
+    if not (np.isfinite(low) and np.isfinite(high) and low < high):
+        raise ValueError(f"{what} = ({low}, {high}); expected finite numbers in ascending order")
+    return low, high
+
+
+#: Options that are whole numbers.
+_COUNTS = {
+    "cells",
+    "max_nodes",
+    "max_curves",
+    "random_points",
+    "near_points",
+    "seed",
+    "rounds",
+}
+
+
+def _json(fields: dict[str, Any]) -> str:
+    """Options as JSON, which has no numbers that are not finite."""
+    return json.dumps(_plain(fields, ""))
+
+
+def _plain(value: Any, name: str) -> Any:
+    if isinstance(value, dict):
+        return {key: _plain(one, key) for key, one in value.items()}
+    if name in _COUNTS:
+        number = operator.index(value)
+        if not 0 <= number < 2**63:
+            raise ValueError(f"{name} = {value}; expected 0 or above")
+        return number
+    real = _number(value, name)
+    if not np.isfinite(real):
+        raise ValueError(f"{name} = {real}; expected a finite number")
+    return real
