@@ -307,9 +307,10 @@ fn the_page_shows_every_law() {
     let table = rows(&workspace.read("laws/contact_laws.csv"));
     assert_eq!(table.len(), 1 + LAWS);
     let column = |name: &str| table[0].iter().position(|column| column == name).unwrap();
-    for row in &table[1..] {
+    for (number, row) in table.iter().enumerate().skip(1) {
         let [kappa, psi] = ["at_kappa", "at_psi"].map(|name| &row[column(name)]);
         let law = row[column("names")].split(", ").next().unwrap();
+        assert!(workspace.read(&format!("laws/law_{number:02}_maps.svg")).contains(law), "{law}");
         let line = format!("collide --kappa {kappa} --psi {psi} --law {law} --format json");
         let found: Value = serde_json::from_str(&stickslip(&line).stdout).unwrap();
         let largest: f64 = row[column("largest")].parse().unwrap();

@@ -78,7 +78,7 @@ impl Laws<'_> {
             points: Vec::new(),
         };
         Ok(map::draw(
-            law.named.names[0],
+            &format!("`{}`", law.named.names[0]),
             &[
                 panel("tangential restitution ε_t", Values::Restitution(&law.eps_t)),
                 panel("number of switches", Values::Switches(&law.switches)),
