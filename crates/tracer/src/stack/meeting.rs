@@ -1,6 +1,6 @@
 //! Where codimension-2 points meet: the place, and the value of the third parameter.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
 use crate::family::Family;
 use crate::stack::conditions::{Condition, Conditions, MeetingKind};
@@ -161,12 +161,60 @@ fn newton<F: Family>(
             return None;
         }
         if size < SMALL && (size < SQUARE * last || size < ROUNDING) && independent(&slopes) {
-            return Some(Reached::Sure(at));
+            return is_passage(family, conditions, (&at, &slopes), within)
+                .then_some(Reached::Sure(at));
         }
         last = size;
         conditions.move_to(&family(within.value(&at)), &within.point(&at));
     }
     (last < NEAR).then_some(Reached::Vague(at))
+}
+
+/// Whether the third of three conditions passes through zero where the first two hold, as its slope
+/// says, when the third parameter passes.
+///
+/// A margin behind a graze may vanish wherever two others do, for every value of the parameter, and be
+/// singular there, so that its slope does not tell.
+fn is_passage<F: Family>(
+    family: &impl Fn(f64) -> F,
+    conditions: &Conditions<F::Margin>,
+    (at, slopes): (&Vector3<f64>, &Matrix3<f64>),
+    within: &Box3,
+) -> bool {
+    /// The change of the third unknown.
+    const PASSAGE: f64 = 1e-4;
+    let Conditions::Three(_) = conditions else { return true };
+    let mut told = [0, 0];
+    for third in 0..3 {
+        let pair = [(third + 1) % 3, (third + 2) % 3];
+        let [in_x, in_y, in_z] =
+            [0, 1, 2].map(|axis| Vector2::from(pair.map(|index| slopes[(index, axis)])));
+        let Some(inverse) = Matrix2::from_columns(&[in_x, in_y]).try_inverse() else { continue };
+        let along = (-inverse * in_z).push(1.0);
+        for change in [-PASSAGE, PASSAGE] {
+            let mut place = at + along * change;
+            let expected = (slopes.row(third) * along)[0] * change;
+            let mut found = None;
+            for _ in 0..8 {
+                let inside = (0.0..=1.0).contains(&place.z);
+                let values = inside.then(|| residuals(family, conditions, &place, within));
+                let Some(values) = values.flatten() else {
+                    found = None;
+                    break;
+                };
+                let update = inverse * Vector2::new(values[pair[0]], values[pair[1]]);
+                if update.norm() < 1e-3 * (along * change).norm() {
+                    found = Some(values[third]);
+                }
+                place -= update.push(0.0);
+            }
+            if let Some(value) = found {
+                let part = value / expected;
+                told[usize::from((0.1..10.0).contains(&part))] += 1;
+            }
+        }
+    }
+    told[0] <= told[1]
 }
 
 /// The conditions for the two of three margins whose boundaries are nearly parallel to touch.

@@ -8,7 +8,7 @@ use crate::tracing::branch::end::{End, Special};
 use crate::tracing::corrector::correct;
 use crate::tracing::network::Unresolved;
 use crate::tracing::runs::Traced;
-use crate::tracing::seed::{Change, Seed, SeedOf, bisect, holds, identify};
+use crate::tracing::seed::{Change, Seed, SeedOf, bisect, holds_closely, identify};
 use crate::tracing::trace::Tracer;
 use crate::window::Point;
 
@@ -139,7 +139,8 @@ impl<F: Family> Tracer<'_, F> {
                     let on_left = gradient.dot(&Point::new(-tangent.y, tangent.x)) > 0.0;
                     let labels = if on_left { [left, right] } else { [right, left] };
                     let seed = Seed { point, tangent, margin, labels };
-                    holds(&self.runs, &seed, &gradient)?
+                    // Another boundary beside the curve has its labels farther away.
+                    holds_closely(&self.runs, &seed, &gradient)?
                 }
                 None => false,
             };

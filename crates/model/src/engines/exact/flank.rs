@@ -41,14 +41,14 @@ pub struct Flanks {
 }
 
 /// The side of the turns on which the only top of R on a half swing is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum Side {
     /// Before the first turn, where W is negative.
     Before,
     /// After the second turn, as W is positive at the first one.
     After,
-    /// No turn that would tell is on the half swing.
-    Either,
+    /// No turn that would tell is on the half swing, which ends at this moment.
+    Either(Moment),
 }
 
 /// The place where R starts to rise on a half swing.
@@ -90,7 +90,7 @@ impl Flanks {
         let rises = || swing.gap(half_swing, &swing.path.at(peak)).turning() > 0.0;
         let turn = if peak == Moment::END || rises() { [peak, zero] } else { [start, peak] };
         let turn = (turn[1] != Moment::END).then_some(turn);
-        let (low, side) = (Low::Zero(start), Side::Either);
+        let (low, side) = (Low::Zero(start), Side::Either(zero));
         Some(Self { half_swing, low, turn, again: None, side })
     }
 
@@ -129,7 +129,7 @@ impl Flanks {
             // W is positive up to the second turn, or, if the half swing ends before that, has the
             // zero somewhere on it.
             let turn = last.map(|zero| [if within(fall) { fall } else { start }, zero]);
-            let side = if within(rise) { Side::After } else { Side::Either };
+            let side = if within(rise) { Side::After } else { Side::Either(zero) };
             return Some(Self { half_swing, low, turn, again: None, side });
         }
         let rises_again = !within(fall) || turning_at(swing, half_swing, fall) > 0.0;
@@ -162,10 +162,15 @@ impl Flanks {
     /// Whether the only top of R is called that after the turns. Where nothing else tells, it is if it is
     /// after the place where the turns meet.
     pub fn is_after<T: Trajectory>(&self, swing: &Swing<T>) -> bool {
-        match self.side {
-            Side::Before => false,
-            Side::After => true,
-            Side::Either => at_split(swing, self.half_swing).is_some_and(|gap| gap.turning() > 0.0),
+        let split = swing.path.split();
+        match (self.side, &self.low) {
+            (Side::After, _) => true,
+            (Side::Either(zero), Low::Zero(start)) => {
+                start.is_before(split)
+                    && split.is_before(zero)
+                    && turning_at(swing, self.half_swing, split) > 0.0
+            }
+            _ => false,
         }
     }
 
