@@ -31,7 +31,8 @@ class Change:
 
     #: Dampings of two atlases between which the change lies.
     between: tuple[float, float]
-    #: crossing, touch, flat, edge, edge-touch or corner; None if the change is only enclosed.
+    #: crossing, touch, flat, edge, edge-touch, corner or swallowtail; None if the change is only
+    #: enclosed.
     kind: str | None
     #: Where it happens; None if the change is only enclosed.
     damping: float | None

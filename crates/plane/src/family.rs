@@ -367,9 +367,16 @@ impl Family for CollisionFamily {
         }
     }
 
-    fn cusp(&self, margin: &Margin) -> Option<[Margin; 2]> {
+    fn cusps(&self, margin: &Margin) -> Vec<[Margin; 2]> {
         match self {
-            Self::Exact(plane) => exact::cusp(&plane.first, margin),
+            Self::Exact(plane) => exact::cusps(&plane.first, margin),
+            Self::Integrated(_) | Self::General(_) => Vec::new(),
+        }
+    }
+
+    fn swallowtail(&self, margin: &Margin) -> Option<[Margin; 3]> {
+        match self {
+            Self::Exact(plane) => exact::swallowtail(&plane.first, margin),
             Self::Integrated(_) | Self::General(_) => None,
         }
     }

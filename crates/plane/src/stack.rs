@@ -238,6 +238,7 @@ fn name(kind: MeetingKind) -> &'static str {
         MeetingKind::Edge => "edge",
         MeetingKind::EdgeTouch => "edge-touch",
         MeetingKind::Corner => "corner",
+        MeetingKind::Swallowtail => "swallowtail",
     }
 }
 

@@ -56,13 +56,20 @@ pub trait Family {
         true
     }
 
-    /// Two margins that vanish together where the extremum of `margin` merges with another one on
-    /// its zero: at a cusp, where its boundary ends with that of the other extremum.
+    /// Pairs of margins that vanish together where the extremum of `margin` may merge with another
+    /// one on its zero: at a cusp, where its boundary ends with that of the other extremum.
     ///
     /// Near such a place neither of the two extrema tells where it is to more than a part of its
     /// digits. The margins returned here must be smooth around it, and their boundaries must cross
     /// there. They need not be margins of any free run. The default is that none are known.
-    fn cusp(&self, _margin: &Self::Margin) -> Option<[Self::Margin; 2]> {
+    fn cusps(&self, _margin: &Self::Margin) -> Vec<[Self::Margin; 2]> {
+        Vec::new()
+    }
+
+    /// Three margins that vanish together where three extrema merge on their zero, that of `margin`
+    /// among them: at a swallowtail, which a plane has at single values of a third parameter. They
+    /// are only asked for by a [`Stack`](crate::Stack). The default is that none are known.
+    fn swallowtail(&self, _margin: &Self::Margin) -> Option<[Self::Margin; 3]> {
         None
     }
 

@@ -128,7 +128,8 @@ pub use regions::verify::report::{
 };
 pub use regions::verify::{VerifyOptions, verify, verify_unless_cancelled, verify_with};
 pub use stack::change::{Change, Effect};
-pub use stack::meeting::{Meeting, MeetingKind};
+pub use stack::conditions::MeetingKind;
+pub use stack::meeting::Meeting;
 pub use stack::{Layer, Stack, StackError, StackOf, StackOptions};
 pub use survey::{Found, Survey, Surveyor};
 pub use tracing::branch::Branch;

@@ -4,12 +4,14 @@
 //!
 //! - `structure`: atlases compared as planar graphs with labels
 //! - `candidates`: which codimension-2 points may have met between two atlases
-//! - `meeting`: where they meet, by Newton's method in all three parameters
+//! - `conditions`: what holds where they meet
+//! - `meeting`: where that is, by Newton's method in all three parameters
 //! - `change`: what a change does to the regions
 //! - `search`: how changes are isolated
 
 mod candidates;
 pub mod change;
+pub mod conditions;
 pub mod meeting;
 mod search;
 mod structure;

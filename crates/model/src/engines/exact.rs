@@ -10,7 +10,7 @@
 //! Source files in reading order: `normal` is the interface of normal motions, with the closed form
 //! without damping and the expansion with it; `slide` finds the end of a slip phase, `swing` and
 //! `release` the end of a stick phase, `phases` begins a collision, `margin` and `late` follow
-//! prescribed switches, `cusp` has what vanishes where two grazes end in one point.
+//! prescribed switches, `cusp` has what vanishes where grazes end in one point.
 //!
 //! Source of the law: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008). The statements
 //! on which the decisions rest are proved in docs/physics.md.
@@ -35,7 +35,7 @@ use crate::contact::Contact;
 use crate::laws::phase::{Regime, Side};
 use crate::result::{Collision, Switch};
 pub use boundaries::{small_impact_boundary, top_boundary};
-pub use cusp::cusp;
+pub use cusp::{cusps, swallowtail};
 pub use distance::distance;
 pub use error::ExactError;
 use error::{checked, too_many};

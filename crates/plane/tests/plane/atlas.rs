@@ -2,11 +2,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use stickslip_model::regularized::SAME_SIDE;
 use stickslip_model::{Collider, Contact, exact};
-use stickslip_plane::Range;
 use stickslip_plane::atlas::{AtlasError, BoundaryKind, Frame, Unlocated, switch_count, trace};
 use stickslip_plane::progress::{Progress, SILENT, Watch};
+use stickslip_plane::{CollisionPlane, Range};
 use stickslip_solver::{Exit, Hint, Margin, Place};
-use stickslip_tracer::{Location, VertexKind};
+use stickslip_tracer::{Family, Location, VertexKind};
 
 use crate::windows::{crossing, empty, frame, traced};
 
@@ -164,9 +164,10 @@ fn damped_boundaries_have_the_integrators_switches_beside_them() {
 }
 
 /// Grazes while sliding and while sticking end at one vertex, in which the two turns of the limit
-/// meet and the slip phase grazes.
+/// meet and the slip phase grazes. At its other end the slip graze meets the first of two tops, which
+/// merges with the bottom between the tops.
 #[test]
-fn damped_grazes_end_in_one_cusp() {
+fn damped_grazes_end_in_cusps() {
     let damping = 0.41;
     let verified = traced(Frame { damping, ..frame((1.3, 1.9), (0.6, 1.0)) });
     assert_eq!(verified.report.objection(), None, "{:?}", verified.report);
@@ -175,24 +176,36 @@ fn damped_grazes_end_in_one_cusp() {
         let curves = regions.curves().iter().filter(move |curve| curve.margin == kind);
         curves.filter_map(|curve| curve.ends).flatten().collect::<Vec<_>>()
     };
-    // At its other end, where κ is smaller, the slip graze meets another stick graze.
     let slip = ends_of(BoundaryKind::SlipGraze);
     let [one, other] = slip[..] else { panic!("{slip:?}") };
     let x = |end: usize| regions.vertices()[end].point.x;
-    let cusp = if x(one) > x(other) { one } else { other };
-    assert!(ends_of(BoundaryKind::StickGraze).contains(&cusp));
-    let [kappa, psi] = chart.parameters(&regions.vertices()[cusp].point);
-    let place = Contact::new(kappa, psi, damping).unwrap();
+    let ends = if x(one) > x(other) { [one, other] } else { [other, one] };
     // The graze of the slip phase after the stick with which the contact begins.
     let graze = Margin {
         exits: vec![Exit::falling(SAME_SIDE, 2.0)],
         guard: SAME_SIDE,
         place: Place::Minimum { near: Hint(0.0), number: 0 },
     };
-    for margin in exact::cusp(&place, &graze).unwrap() {
-        let value = exact::margin(&place, &margin).unwrap().unwrap();
-        assert!(value.abs() < 1e-14, "{margin:?} {value:e}");
+    let family = CollisionPlane::new((1.3, 1.9), (0.6, 1.0), damping).unwrap().family();
+    for (end, pair) in ends.into_iter().zip(family.cusps(&graze)) {
+        assert!(ends_of(BoundaryKind::StickGraze).contains(&end));
+        let [kappa, psi] = chart.parameters(&regions.vertices()[end].point);
+        let place = Contact::new(kappa, psi, damping).unwrap();
+        for margin in pair {
+            let value = exact::margin(&place, &margin).unwrap().unwrap();
+            assert!(value.abs() < 1e-13, "{margin:?} {value:e}");
+        }
     }
+}
+
+/// The boundaries of this window meet in a graze at the end which two curves determine to half the
+/// digits. The third one, which begins there, is also led to it.
+#[test]
+fn a_graze_at_the_end_is_known_by_all_its_boundaries() {
+    let verified = traced(Frame { damping: 1.05, ..frame((1.2, 1.5), (0.1, 0.4)) });
+    assert_eq!(verified.report.objection(), None, "{:?}", verified.report);
+    let verified = traced(Frame { damping: 1.05, ..frame((0.5, 30.0), (0.05, 2.0)) });
+    assert_eq!(verified.report.objection(), None, "{:?}", verified.report);
 }
 
 #[test]

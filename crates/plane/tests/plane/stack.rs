@@ -3,9 +3,12 @@
 use std::collections::BTreeMap;
 
 use stickslip_model::exact;
+use stickslip_model::regularized::SAME_SIDE;
 use stickslip_model::{Contact, InvalidParameter};
+use stickslip_plane::atlas::{Frame, trace};
 use stickslip_plane::progress::SILENT;
-use stickslip_plane::stack::{DampingStack, DampingStackError, stack};
+use stickslip_plane::stack::{DampingLayer, DampingStack, DampingStackError, stack};
+use stickslip_solver::{Hint, Margin, Place};
 
 use crate::windows::frame;
 
@@ -88,6 +91,65 @@ fn the_itinerary_of_a_region_appears_where_it_is_born() -> Result<(), InvalidPar
     }
     assert!(tried > 0, "{:?}", stack.changes);
     Ok(())
+}
+
+/// Two cusps and the crossing between them become one point: the region between them dies, of which
+/// atlases closer than about 1e-4 to the damping do not tell. P, D and W vanish where the turns meet.
+#[test]
+fn a_region_dies_in_a_swallowtail() -> Result<(), InvalidParameter> {
+    for [kappa, psi] in [[(0.5, 30.0), (0.05, 2.0)], [(1.0, 5.0), (0.5, 1.0)]] {
+        let window = frame(kappa, psi);
+        let tolerance = window.tolerances().usual;
+        let stack = stack(window, &[0.41, 0.4108, 0.412], tolerance, SILENT).unwrap();
+        assert_eq!(stack.objection(), None, "{:?}", stack.changes);
+        let [change] = &stack.changes[..] else { panic!("{:?}", stack.changes) };
+        let [effect] = &change.effects[..] else { panic!("{change:?}") };
+        assert_eq!((effect.effect, &effect.itinerary[..]), ("dies", "o+o+o-"));
+        let meeting = change.meeting.as_ref().unwrap();
+        assert_eq!(meeting.kind, "swallowtail");
+        let [low, high] = change.between;
+        assert!(low < meeting.damping && meeting.damping < high, "{change:?}");
+        let place = Contact::new(meeting.kappa, meeting.psi, meeting.damping)?;
+        let top = Margin {
+            exits: Vec::new(),
+            guard: SAME_SIDE,
+            place: Place::Minimum { near: Hint(2.0), number: 1 },
+        };
+        for margin in exact::swallowtail(&place, &top).unwrap() {
+            let value = exact::margin(&place, &margin).unwrap().unwrap();
+            assert!(value.abs() < 1e-11, "{margin:?} {value:e}");
+        }
+        for (damping, expected) in [(low, 1), (high, 0)] {
+            let counts = |layer: &DampingLayer| layer.region_counts().get("o+o+o-").copied();
+            let direct = trace(Frame { damping, ..window }, tolerance, SILENT).unwrap();
+            assert_eq!(direct.report.objection(), None);
+            let layer = DampingLayer { damping, atlas: direct, as_stacked: None };
+            let others = counts(&stack.layers[2]).unwrap_or(0);
+            assert_eq!(counts(&layer).unwrap_or(0), others + expected, "{damping}");
+        }
+    }
+    Ok(())
+}
+
+/// Another meeting of the same boundaries is a ten-thousandth of the damping beside this one, where
+/// a graze leaves through an end and through the edge of the window.
+#[test]
+fn a_meeting_beside_a_change_is_not_its_cause() {
+    let window = frame((0.5, 30.0), (0.05, 2.0));
+    let tolerance = window.tolerances().usual;
+    let stack = stack(window, &[4e-4, 0.002], tolerance, SILENT).unwrap();
+    assert_eq!(stack.objection(), None, "{:?}", stack.changes);
+    let [change] = &stack.changes[..] else { panic!("{:?}", stack.changes) };
+    let meeting = change.meeting.as_ref().unwrap();
+    let [low, high] = change.between;
+    assert!(high - low < 2e-4 * low && low < meeting.damping && meeting.damping < high);
+    let regions = [0.99995, 1.00005].map(|part| {
+        let damping = part * meeting.damping;
+        let direct = trace(Frame { damping, ..window }, tolerance, SILENT).unwrap();
+        assert_eq!(direct.report.objection(), None);
+        direct.atlas.regions.regions().len()
+    });
+    assert_eq!(regions, [15, 16], "{change:?}");
 }
 
 /// A layer that was not compared with the changes, and is not inside one, speaks against the stack.

@@ -3,7 +3,7 @@
 use crate::curve::{Curve, VertexKind};
 use crate::family::Family;
 use crate::regions::outline::Stretch;
-use crate::stack::meeting::{Condition, Conditions};
+use crate::stack::conditions::{Condition, Conditions};
 use crate::stack::search::Sample;
 use crate::stack::structure::side_of;
 use crate::window::Point;
@@ -20,6 +20,7 @@ pub(super) struct Candidate<Margin> {
 /// boundary around the given regions and their neighbours, each closed curve, and where two curves
 /// on which the same margin vanishes are closest.
 pub(super) fn candidates<F: Family>(
+    family: &F,
     sample: &Sample<F>,
     regions: &[usize],
 ) -> Vec<Candidate<F::Margin>> {
@@ -37,7 +38,7 @@ pub(super) fn candidates<F: Family>(
         match stretch {
             Stretch::Curve(curve, _) => {
                 if !std::mem::replace(&mut done[curve], true) {
-                    of_curve(sample, curve, &mut found);
+                    of_curve(family, sample, curve, &mut found);
                 }
             }
             Stretch::Window(ends) => {
@@ -59,7 +60,12 @@ pub(super) fn candidates<F: Family>(
     found
 }
 
-fn of_curve<F: Family>(sample: &Sample<F>, curve: usize, found: &mut Vec<Candidate<F::Margin>>) {
+fn of_curve<F: Family>(
+    family: &F,
+    sample: &Sample<F>,
+    curve: usize,
+    found: &mut Vec<Candidate<F::Margin>>,
+) {
     let plane = &sample.atlas.plane;
     let own = &plane.curves()[curve];
     let Some(ends) = own.ends else {
@@ -72,7 +78,35 @@ fn of_curve<F: Family>(sample: &Sample<F>, curve: usize, found: &mut Vec<Candida
     };
     let along = Condition::Margin(own.margin.clone());
     let at_ends = ends.map(|vertex| at_vertex(sample, vertex, &along));
-    push(&along, &at_ends, ends.map(|vertex| plane.vertices()[vertex].point), found);
+    let ends = ends.map(|vertex| plane.vertices()[vertex].point);
+    push(&along, &at_ends, ends, found);
+    of_merging(family, &own.margin, &at_ends, ends, found);
+}
+
+/// The candidates with the extremum of a curve's margin merging with other ones: a cusp at one end of
+/// the curve that meets what else vanishes at the other one, and a swallowtail.
+fn of_merging<F: Family>(
+    family: &F,
+    margin: &F::Margin,
+    at_ends: &[Vec<Condition<F::Margin>>; 2],
+    ends: [Point; 2],
+    found: &mut Vec<Candidate<F::Margin>>,
+) {
+    let distance = (ends[1] - ends[0]).norm();
+    let mut push = |conditions, guess| {
+        found.push(Candidate { conditions, guess, distance });
+    };
+    if let Some(margins) = family.swallowtail(margin) {
+        push(Conditions::Merged(margins), ends[0].lerp(&ends[1], 0.5));
+    }
+    for pair in family.cusps(margin) {
+        let [one, two] = pair.map(Condition::Margin);
+        for (others, guess) in at_ends.iter().zip([ends[1], ends[0]]) {
+            for other in others {
+                push(Conditions::Three([one.clone(), two.clone(), other.clone()]), guess);
+            }
+        }
+    }
 }
 
 /// The candidate for two curves of the same margin to reconnect.

@@ -1,46 +1,10 @@
 //! Where codimension-2 points meet: the place, and the value of the third parameter.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
 use crate::family::Family;
+use crate::stack::conditions::{Condition, Conditions, MeetingKind};
 use crate::window::{Point, Window};
-
-/// What vanishes at a codimension-2 point.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Condition<Margin> {
-    /// A margin.
-    Margin(Margin),
-    /// The distance from a side of the window, counterclockwise from the lower one.
-    Side(usize),
-}
-
-/// Three conditions for a place in the plane and a value of the third parameter.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Conditions<Margin> {
-    /// All three vanish.
-    Three([Condition<Margin>; 3]),
-    /// Both vanish, and their gradients in the plane are parallel.
-    Parallel([Condition<Margin>; 2]),
-    /// A margin vanishes together with its gradient in the plane.
-    Flat(Margin),
-}
-
-/// What happens at a value of the third parameter where the structure changes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MeetingKind {
-    /// Three boundaries pass through one point.
-    Crossing,
-    /// Two boundaries touch.
-    Touch,
-    /// A boundary shrinks to a point, or two parts of it reconnect.
-    Flat,
-    /// Two boundaries cross on the edge of the window.
-    Edge,
-    /// A boundary touches the edge of the window.
-    EdgeTouch,
-    /// A boundary passes through a corner of the window.
-    Corner,
-}
 
 /// A place in the plane and a value of the third parameter at which codimension-2 points meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,51 +15,6 @@ pub struct Meeting {
     pub value: f64,
     /// The place in the plane.
     pub point: Point,
-}
-
-impl<Margin: Clone + PartialEq> Conditions<Margin> {
-    /// The conditions for the ends of a stretch of the arrangement to meet: what vanishes along it,
-    /// and what else vanishes at its ends.
-    pub fn of(along: &Condition<Margin>, ends: [&Condition<Margin>; 2]) -> Self {
-        let [first, second] = ends;
-        if first == second {
-            Self::Parallel([along.clone(), first.clone()])
-        } else {
-            Self::Three([along, first, second].map(Clone::clone))
-        }
-    }
-
-    /// What happens where the conditions hold.
-    pub fn kind(&self) -> MeetingKind {
-        let sides = |conditions: &[Condition<Margin>]| {
-            conditions.iter().filter(|one| matches!(one, Condition::Side(_))).count()
-        };
-        match self {
-            Self::Three(conditions) => match sides(conditions) {
-                0 => MeetingKind::Crossing,
-                1 => MeetingKind::Edge,
-                _ => MeetingKind::Corner,
-            },
-            Self::Parallel(conditions) if sides(conditions) == 0 => MeetingKind::Touch,
-            Self::Parallel(_) => MeetingKind::EdgeTouch,
-            Self::Flat(_) => MeetingKind::Flat,
-        }
-    }
-
-    fn each_margin(&mut self, mut change: impl FnMut(&mut Margin)) {
-        let mut all = |conditions: &mut [Condition<Margin>]| {
-            for condition in conditions {
-                if let Condition::Margin(margin) = condition {
-                    change(margin);
-                }
-            }
-        };
-        match self {
-            Self::Three(conditions) => all(conditions),
-            Self::Parallel(conditions) => all(conditions),
-            Self::Flat(margin) => change(margin),
-        }
-    }
 }
 
 /// The window, and the values of the third parameter between which a meeting is searched. Unknowns
@@ -136,14 +55,87 @@ pub(super) fn solve<F: Family>(
     mut conditions: Conditions<F::Margin>,
     guess: (Point, f64),
     within: &Box3,
+) -> Option<Solved<F::Margin>> {
+    let start = within.unknowns(&guess.0, guess.1);
+    match newton(family, &mut conditions, start, within)? {
+        Reached::Sure(at) => meeting(&conditions, &at, within).map(Solved::Sure),
+        Reached::Vague(at) => Some(Solved::Vague(Vague { conditions, at })),
+    }
+}
+
+/// What a search for a meeting finds.
+pub(super) enum Solved<Margin> {
+    /// A meeting.
+    Sure(Meeting),
+    /// A place at which a meeting may be.
+    Vague(Vague<Margin>),
+}
+
+/// A place at which conditions nearly hold that nearly depend on each other there.
+pub(super) struct Vague<Margin> {
+    conditions: Conditions<Margin>,
+    at: Vector3<f64>,
+}
+
+/// The meeting close to a vague place at which two of its boundaries touch.
+///
+/// Some boundaries touch for every value of the third parameter, as a graze does with the end at which
+/// it leaves. There values of margins tell the place to half the digits. With the angle between the
+/// two boundaries it is known to about 1e-6.
+pub(super) fn touching<F: Family>(
+    family: &impl Fn(f64) -> F,
+    vague: &Vague<F::Margin>,
+    within: &Box3,
 ) -> Option<Meeting> {
-    /// Updates below this part of the box end the search: the next one would be its square.
-    const SMALL: f64 = 1e-7;
+    let mut conditions = tangent(family, &vague.conditions, &vague.at, within)?;
+    match newton(family, &mut conditions, vague.at, within)? {
+        Reached::Sure(at) => meeting(&conditions, &at, within),
+        Reached::Vague(_) => None,
+    }
+}
+
+/// The meeting at a place, if that is in the box.
+fn meeting<Margin: Clone + PartialEq>(
+    conditions: &Conditions<Margin>,
+    at: &Vector3<f64>,
+    within: &Box3,
+) -> Option<Meeting> {
     let kind = conditions.kind();
-    let mut at = within.unknowns(&guess.0, guess.1);
+    let inside =
+        at.xy().iter().all(|part| (-1e-6..=1.0 + 1e-6).contains(part)) && at.z > 0.0 && at.z < 1.0;
+    // On the edge of the window, the place is beside it by rounding.
+    let at = at.map(|part| part.clamp(0.0, 1.0));
+    inside.then(|| Meeting { kind, value: within.value(&at), point: within.point(&at) })
+}
+
+/// Where Newton's method ends.
+enum Reached {
+    /// At a simple zero.
+    Sure(Vector3<f64>),
+    /// Where the conditions nearly hold, but nearly depend on each other too.
+    Vague(Vector3<f64>),
+}
+
+fn newton<F: Family>(
+    family: &impl Fn(f64) -> F,
+    conditions: &mut Conditions<F::Margin>,
+    mut at: Vector3<f64>,
+    within: &Box3,
+) -> Option<Reached> {
+    /// Updates below this part of the box end the search, if they shrink as the square: the next one
+    /// would be beyond the digits.
+    const SMALL: f64 = 1e-7;
+    /// The greatest part of the update before that is taken for such a square.
+    const SQUARE: f64 = 0.1;
+    /// Updates below this part of the box are rounding.
+    const ROUNDING: f64 = 1e-12;
+    /// The last update from which a vague place is looked at once more.
+    const NEAR: f64 = 1e-3;
+    conditions.move_to(&family(within.value(&at)), &within.point(&at));
     let mut update = Vector3::zeros();
+    let mut last = f64::NAN;
     for _ in 0..30 {
-        let Some(values) = residuals(family, &conditions, &at, within) else {
+        let Some(values) = residuals(family, conditions, &at, within) else {
             // A margin does not exist here, as at the far side of the boundary where it ends.
             update *= 0.5;
             at += update;
@@ -153,7 +145,7 @@ pub(super) fn solve<F: Family>(
             }
             continue;
         };
-        let slopes = slopes(family, &conditions, &at, within)?;
+        let slopes = slopes(family, conditions, &at, within)?;
         update = slopes.try_inverse()? * values;
         let size = update.norm();
         let finite = size.is_finite();
@@ -168,25 +160,98 @@ pub(super) fn solve<F: Family>(
         if !inside {
             return None;
         }
-        if size < SMALL {
-            let inside = at.xy().iter().all(|part| (-1e-6..=1.0 + 1e-6).contains(part))
-                && at.z > 0.0
-                && at.z < 1.0;
-            // On the edge of the window, the place is beside it by rounding.
-            at = at.map(|part| part.clamp(0.0, 1.0));
-            let (value, point) = (within.value(&at), within.point(&at));
-            return inside.then_some(Meeting { kind, value, point });
+        if size < SMALL && (size < SQUARE * last || size < ROUNDING) && independent(&slopes) {
+            return is_passage(family, conditions, (&at, &slopes), within)
+                .then_some(Reached::Sure(at));
         }
-        let here = family(within.value(&at));
-        let point = within.point(&at);
-        // Names of margins may tell minima apart by their places, which move along.
-        conditions.each_margin(|margin| {
-            if let Ok(moved) = here.moved(&point, margin) {
-                *margin = moved;
-            }
-        });
+        last = size;
+        conditions.move_to(&family(within.value(&at)), &within.point(&at));
     }
-    None
+    (last < NEAR).then_some(Reached::Vague(at))
+}
+
+/// Whether the third of three conditions passes through zero where the first two hold, as its slope
+/// says, when the third parameter passes.
+///
+/// A margin behind a graze may vanish wherever two others do, for every value of the parameter, and be
+/// singular there, so that its slope does not tell.
+fn is_passage<F: Family>(
+    family: &impl Fn(f64) -> F,
+    conditions: &Conditions<F::Margin>,
+    (at, slopes): (&Vector3<f64>, &Matrix3<f64>),
+    within: &Box3,
+) -> bool {
+    /// The change of the third unknown.
+    const PASSAGE: f64 = 1e-4;
+    let Conditions::Three(_) = conditions else { return true };
+    let mut told = [0, 0];
+    for third in 0..3 {
+        let pair = [(third + 1) % 3, (third + 2) % 3];
+        let [in_x, in_y, in_z] =
+            [0, 1, 2].map(|axis| Vector2::from(pair.map(|index| slopes[(index, axis)])));
+        let Some(inverse) = Matrix2::from_columns(&[in_x, in_y]).try_inverse() else { continue };
+        let along = (-inverse * in_z).push(1.0);
+        for change in [-PASSAGE, PASSAGE] {
+            let mut place = at + along * change;
+            let expected = (slopes.row(third) * along)[0] * change;
+            let mut found = None;
+            for _ in 0..8 {
+                let inside = (0.0..=1.0).contains(&place.z);
+                let values = inside.then(|| residuals(family, conditions, &place, within));
+                let Some(values) = values.flatten() else {
+                    found = None;
+                    break;
+                };
+                let update = inverse * Vector2::new(values[pair[0]], values[pair[1]]);
+                if update.norm() < 1e-3 * (along * change).norm() {
+                    found = Some(values[third]);
+                }
+                place -= update.push(0.0);
+            }
+            if let Some(value) = found {
+                let part = value / expected;
+                told[usize::from((0.1..10.0).contains(&part))] += 1;
+            }
+        }
+    }
+    told[0] <= told[1]
+}
+
+/// The conditions for the two of three margins whose boundaries are nearly parallel to touch.
+fn tangent<F: Family>(
+    family: &impl Fn(f64) -> F,
+    conditions: &Conditions<F::Margin>,
+    at: &Vector3<f64>,
+    within: &Box3,
+) -> Option<Conditions<F::Margin>> {
+    /// The greatest sine between boundaries that may touch close by.
+    const PARALLEL: f64 = 0.1;
+    let Conditions::Three(three) = conditions else { return None };
+    let here = Here { family: &family(within.value(at)), within };
+    let gradients = three.each_ref().map(|one| here.gradient(one, at));
+    let pairs = [[0, 1], [1, 0], [0, 2], [2, 0], [1, 2], [2, 1]].into_iter().filter_map(|pair| {
+        let [one, other] = pair.map(|index| gradients[index]);
+        Some((one?.normalize().perp(&other?.normalize()).abs(), pair))
+    });
+    let (sine, [kept, touching]) = pairs.min_by(|one, other| one.0.total_cmp(&other.0))?;
+    let rest = 3 - kept - touching;
+    (sine < PARALLEL)
+        .then(|| Conditions::Tangent([rest, kept, touching].map(|index| three[index].clone())))
+}
+
+/// Whether conditions with these derivatives hold at one point only, and not along a curve.
+fn independent(slopes: &Matrix3<f64>) -> bool {
+    /// The least volume of three unit vectors that are told from ones in a plane: derivatives are good
+    /// to 1e-9, and those of slopes to 1e-6.
+    const LEAST: f64 = 1e-5;
+    let mut unit = *slopes;
+    for mut row in unit.row_iter_mut() {
+        row.normalize_mut();
+    }
+    for mut column in unit.column_iter_mut() {
+        column.normalize_mut();
+    }
+    unit.determinant().abs() > LEAST
 }
 
 /// The derivatives of the residuals, by differences.
@@ -196,7 +261,10 @@ fn slopes<F: Family>(
     at: &Vector3<f64>,
     within: &Box3,
 ) -> Option<Matrix3<f64>> {
-    let step = if matches!(conditions, Conditions::Three(_)) { STEP } else { LONG_STEP };
+    let step = match conditions {
+        Conditions::Three(_) | Conditions::Merged(_) => STEP,
+        Conditions::Parallel(_) | Conditions::Tangent(_) | Conditions::Flat(_) => LONG_STEP,
+    };
     let mut columns = [Vector3::zeros(); 3];
     for (axis, column) in columns.iter_mut().enumerate() {
         let along = Vector3::ith(axis, 1.0);
@@ -230,6 +298,41 @@ fn difference(
     }
 }
 
+/// The family at a value of the third parameter.
+struct Here<'a, F> {
+    family: &'a F,
+    within: &'a Box3,
+}
+
+impl<F: Family> Here<'_, F> {
+    /// The value of a condition.
+    fn value(&self, condition: &Condition<F::Margin>, at: &Vector3<f64>) -> Option<f64> {
+        match condition {
+            Condition::Margin(margin) => {
+                let value = self.family.margin(&self.within.point(at), margin).ok().flatten();
+                value.filter(|value| value.is_finite())
+            }
+            Condition::Side(0) => Some(at.y),
+            Condition::Side(1) => Some(1.0 - at.x),
+            Condition::Side(2) => Some(1.0 - at.y),
+            Condition::Side(_) => Some(at.x),
+        }
+    }
+
+    /// Its gradient in the plane, by differences.
+    fn gradient(&self, condition: &Condition<F::Margin>, at: &Vector3<f64>) -> Option<Point> {
+        let value = |at: &Vector3<f64>| Some(Vector3::new(self.value(condition, at)?, 0.0, 0.0));
+        let slope = |axis| Some(difference(at, &Vector3::ith(axis, 1.0), STEP, false, value)?.x);
+        Some(Point::new(slope(0)?, slope(1)?))
+    }
+
+    /// The sine of the angle between two boundaries.
+    fn sine(&self, pair: [&Condition<F::Margin>; 2], at: &Vector3<f64>) -> Option<f64> {
+        let [one, other] = pair.map(|condition| self.gradient(condition, at));
+        Some(one?.normalize().perp(&other?.normalize()))
+    }
+}
+
 /// What has to vanish.
 fn residuals<F: Family>(
     family: &impl Fn(f64) -> F,
@@ -237,34 +340,26 @@ fn residuals<F: Family>(
     at: &Vector3<f64>,
     within: &Box3,
 ) -> Option<Vector3<f64>> {
-    let here = family(within.value(at));
-    let value = |condition: &Condition<F::Margin>, at: &Vector3<f64>| match condition {
-        Condition::Margin(margin) => {
-            here.margin(&within.point(at), margin).ok().flatten().filter(|value| value.is_finite())
-        }
-        Condition::Side(0) => Some(at.y),
-        Condition::Side(1) => Some(1.0 - at.x),
-        Condition::Side(2) => Some(1.0 - at.y),
-        Condition::Side(_) => Some(at.x),
-    };
-    let gradient = |condition: &Condition<F::Margin>| {
-        let value =
-            |at: &Vector3<f64>| value(condition, at).map(|value| Vector3::new(value, 0.0, 0.0));
-        let slope = |axis| Some(difference(at, &Vector3::ith(axis, 1.0), STEP, false, value)?.x);
-        Some(Point::new(slope(0)?, slope(1)?))
-    };
+    let here = Here { family: &family(within.value(at)), within };
+    let value = |condition: &Condition<F::Margin>| here.value(condition, at);
     match conditions {
         Conditions::Three([one, two, three]) => {
-            Some(Vector3::new(value(one, at)?, value(two, at)?, value(three, at)?))
+            Some(Vector3::new(value(one)?, value(two)?, value(three)?))
+        }
+        Conditions::Merged(margins) => {
+            let [one, two, three] = margins.clone().map(Condition::Margin);
+            Some(Vector3::new(value(&one)?, value(&two)?, value(&three)?))
         }
         Conditions::Parallel([one, two]) => {
-            let sine = gradient(one)?.normalize().perp(&gradient(two)?.normalize());
-            Some(Vector3::new(value(one, at)?, value(two, at)?, sine))
+            Some(Vector3::new(value(one)?, value(two)?, here.sine([one, two], at)?))
+        }
+        Conditions::Tangent([one, two, three]) => {
+            Some(Vector3::new(value(one)?, value(two)?, here.sine([two, three], at)?))
         }
         Conditions::Flat(margin) => {
             let margin = Condition::Margin(margin.clone());
-            let gradient = gradient(&margin)?;
-            Some(Vector3::new(value(&margin, at)?, gradient.x, gradient.y))
+            let gradient = here.gradient(&margin, at)?;
+            Some(Vector3::new(value(&margin)?, gradient.x, gradient.y))
         }
     }
 }

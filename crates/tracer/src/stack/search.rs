@@ -4,7 +4,7 @@ use crate::atlas::AtlasOf;
 use crate::family::Family;
 use crate::stack::candidates::candidates;
 use crate::stack::change::Change;
-use crate::stack::meeting::{Box3, Meeting, solve};
+use crate::stack::meeting::{Box3, Meeting, Solved, solve, touching};
 use crate::stack::structure::Structure;
 use crate::stack::{StackError, StackOptions};
 use crate::window::Window;
@@ -50,13 +50,35 @@ pub(super) struct Search<'a, F: Family, At> {
     options: StackOptions,
     count: usize,
     found: Vec<Found<F>>,
-    /// Values that were solved for and at which the structure does not change.
+    /// Values that were solved for and close to which the structure does not change.
+    passed: Vec<f64>,
+    /// Those at which it does not change farther away either.
     refuted: Vec<f64>,
+}
+
+/// The distances from a meeting of atlases that are far from it, in widths.
+const FAR: [f64; 2] = [5.0, 50.0];
+
+/// How far from a meeting the atlases may be that differ.
+#[derive(Clone, Copy, PartialEq)]
+enum Reach {
+    /// As close as the width of a bracket.
+    Close,
+    /// Farther: closer atlases are in doubt, or regions are too small there to be seen.
+    Far,
 }
 
 impl<'a, F: Family, At: Fn(f64) -> F> Search<'a, F, At> {
     pub fn new(family: &'a At, window: Window, options: StackOptions) -> Self {
-        Self { family, window, options, count: 0, found: Vec::new(), refuted: Vec::new() }
+        Self {
+            family,
+            window,
+            options,
+            count: 0,
+            found: Vec::new(),
+            passed: Vec::new(),
+            refuted: Vec::new(),
+        }
     }
 
     /// The number of atlases so far.
@@ -90,44 +112,82 @@ impl<'a, F: Family, At: Fn(f64) -> F> Search<'a, F, At> {
             self.push([low, high], None, false);
             return Ok(());
         }
-        for meeting in self.meetings([low, high], &differing) {
-            if self.isolated(low, high, &meeting)? {
-                return Ok(());
-            }
-            self.refuted.push(meeting.value);
+        if self.solved(low, high, &differing, Reach::Close)? {
+            return Ok(());
         }
-        self.bisect(low, high)
+        self.bisect(low, high, &differing)
+    }
+
+    /// Whether a change between two atlases is solved for. Then all changes between them are added.
+    fn solved(
+        &mut self,
+        low: &Sample<F>,
+        high: &Sample<F>,
+        differing: &[Vec<usize>; 2],
+        reach: Reach,
+    ) -> Searched<bool, F> {
+        for meeting in self.meetings([low, high], differing, reach) {
+            if self.isolated(low, high, &meeting, reach)? {
+                return Ok(true);
+            }
+            match reach {
+                Reach::Close => self.passed.push(meeting.value),
+                Reach::Far => self.refuted.push(meeting.value),
+            }
+        }
+        Ok(false)
     }
 
     /// Where points may meet between two atlases, each value once.
-    fn meetings(&self, ends: [&Sample<F>; 2], differing: &[Vec<usize>; 2]) -> Vec<Meeting> {
+    fn meetings(
+        &self,
+        ends: [&Sample<F>; 2],
+        differing: &[Vec<usize>; 2],
+        reach: Reach,
+    ) -> Vec<Meeting> {
         /// The number of candidates of each atlas that are tried, and of solutions.
         const TRIED: usize = 60;
         const SOLVED: usize = 4;
         let values = ends.map(|sample| sample.value);
         let within = Box3 { window: self.window, values };
         let near = self.width(values[0], values[1]);
-        let mut tried = Vec::new();
+        let (mut tried, mut vague) = (Vec::new(), Vec::new());
         let mut meetings: Vec<Meeting> = Vec::new();
+        let passed = if reach == Reach::Close { &self.passed[..] } else { &[] };
+        let mut add = |found: Meeting| {
+            let is_near = |other: f64| (other - found.value).abs() < near;
+            let known = self.refuted.iter().chain(passed).any(|&other| is_near(other))
+                || meetings.iter().any(|other| is_near(other.value));
+            if !known {
+                meetings.push(found);
+            }
+            meetings.len() == SOLVED
+        };
         for (sample, regions) in ends.into_iter().zip(differing) {
-            for candidate in candidates(sample, regions).into_iter().take(TRIED) {
+            let here = (self.family)(sample.value);
+            for candidate in candidates(&here, sample, regions).into_iter().take(TRIED) {
                 if tried.contains(&(candidate.conditions.clone(), sample.value)) {
                     continue;
                 }
                 let guess = (candidate.guess, sample.value);
                 let found = solve(self.family, candidate.conditions.clone(), guess, &within);
                 tried.push((candidate.conditions, sample.value));
-                let known = |value: f64| {
-                    let is_near = |other: f64| (other - value).abs() < near;
-                    self.refuted.iter().any(|&other| is_near(other))
-                        || meetings.iter().any(|other| is_near(other.value))
+                let enough = match found {
+                    Some(Solved::Sure(meeting)) => add(meeting),
+                    Some(Solved::Vague(place)) => {
+                        vague.push(place);
+                        false
+                    }
+                    None => false,
                 };
-                if let Some(meeting) = found.filter(|meeting| !known(meeting.value)) {
-                    meetings.push(meeting);
-                }
-                if meetings.len() == SOLVED {
+                if enough {
                     return meetings;
                 }
+            }
+        }
+        for place in vague {
+            if touching(self.family, &place, &within).is_some_and(&mut add) {
+                break;
             }
         }
         meetings
@@ -140,11 +200,18 @@ impl<'a, F: Family, At: Fn(f64) -> F> Search<'a, F, At> {
         low: &Sample<F>,
         high: &Sample<F>,
         meeting: &Meeting,
+        reach: Reach,
     ) -> Searched<bool, F> {
-        let mut reach = 0.5 * self.width(low.value, high.value);
-        for _ in 0..3 {
-            let below = self.beside(meeting.value - reach, [low, high])?;
-            let above = self.beside(meeting.value + reach, [low, high])?;
+        let widths: &[f64] = match reach {
+            Reach::Close => &[0.5],
+            Reach::Far => &FAR,
+        };
+        // A value may be 0.
+        let least = 1e-2 * (high.value - low.value);
+        let width = self.options.width * meeting.value.abs().max(least);
+        for part in widths {
+            let below = self.beside(meeting.value - part * width, [low, high])?;
+            let above = self.beside(meeting.value + part * width, [low, high])?;
             if let (Some(below), Some(above)) = (below.or(low), above.or(high))
                 && below.structure.differing(&above.structure).is_some()
             {
@@ -153,7 +220,6 @@ impl<'a, F: Family, At: Fn(f64) -> F> Search<'a, F, At> {
                 self.refine(above, high)?;
                 return Ok(true);
             }
-            reach *= 10.0;
         }
         Ok(false)
     }
@@ -170,19 +236,46 @@ impl<'a, F: Family, At: Fn(f64) -> F> Search<'a, F, At> {
         Ok(if sample.atlas.agrees() { Beside::Between(Box::new(sample)) } else { Beside::Doubtful })
     }
 
-    /// Divides the search at an atlas between the two that agrees.
-    fn bisect(&mut self, low: &Sample<F>, high: &Sample<F>) -> Searched<(), F> {
+    /// Divides the search at an atlas between the two that agrees. Where that is about as close to both
+    /// as atlases may be to a meeting, or where there is none, meetings are looked for up to there.
+    fn bisect(
+        &mut self,
+        low: &Sample<F>,
+        high: &Sample<F>,
+        differing: &[Vec<usize>; 2],
+    ) -> Searched<(), F> {
         /// Where the atlas may be, as parts of the interval.
         const PLACES: [f64; 4] = [0.5, 0.4, 0.65, 0.25];
-        for part in PLACES {
+        /// The interval, in widths, in which an atlas far from a meeting may be.
+        const NARROW: f64 = 400.0;
+        let width = self.width(low.value, high.value);
+        let narrow = high.value - low.value <= NARROW * width;
+        if narrow && self.solved(low, high, differing, Reach::Far)? {
+            return Ok(());
+        }
+        let mut places = PLACES.map(|part| low.value + part * (high.value - low.value)).to_vec();
+        // Where regions may be too small to be seen, an atlas tells nothing.
+        let too_close = |place: f64| {
+            let near = |value: f64| (value - place).abs() <= FAR[1] * width;
+            let is_open =
+                |value: f64| !self.refuted.iter().any(|other| (other - value).abs() <= width);
+            self.passed.iter().any(|&value| near(value) && is_open(value))
+        };
+        if !narrow {
+            places.sort_by_key(|&place| too_close(place));
+        }
+        for place in places {
             if self.count >= self.options.atlases {
                 break;
             }
-            let middle = self.sample(low.value + part * (high.value - low.value))?;
+            let middle = self.sample(place)?;
             if middle.atlas.agrees() {
                 self.refine(low, &middle)?;
                 return self.refine(&middle, high);
             }
+        }
+        if !narrow && self.solved(low, high, differing, Reach::Far)? {
+            return Ok(());
         }
         self.push([low, high], None, true);
         Ok(())

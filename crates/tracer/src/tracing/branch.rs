@@ -169,17 +169,17 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
             if let Some(index) = self.track.aim(&from, h)? {
                 return self.finish(End::Known(index), None);
             }
-            let cusp = cusp::ahead(&self.track, &from, h)?;
-            if let Some(place) = cusp
-                && let Some(special) = cusp::reached(&self.track, &from, place)?
-            {
-                return self.finish_at(special);
+            let cusps = cusp::ahead(&self.track, &from, h)?;
+            for &place in &cusps {
+                if let Some(special) = cusp::reached(&self.track, &from, place)? {
+                    return self.finish_at(special);
+                }
             }
             let stuck = h < 1e-2 * first_step || beyond.is_some() || turned;
             if stuck
                 && matches!(failures, 1 | 4 | 8 | 16 | 24 | 32)
                 && let Some(special) =
-                    special::locate(&self.track, &from, beyond.as_ref(), h, cusp.is_none())?
+                    special::locate(&self.track, &from, beyond.as_ref(), h, cusps.is_empty())?
             {
                 return self.finish_at(special);
             }

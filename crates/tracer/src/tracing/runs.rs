@@ -113,8 +113,8 @@ impl<'a, F: Family> Runs<'a, F> {
         self.family.is_sure(margin)
     }
 
-    pub(crate) fn cusp(&self, margin: &F::Margin) -> Option<[F::Margin; 2]> {
-        self.family.cusp(margin)
+    pub(crate) fn cusps(&self, margin: &F::Margin) -> Vec<[F::Margin; 2]> {
+        self.family.cusps(margin)
     }
 
     pub(crate) fn moved(&self, point: &Point, margin: &F::Margin) -> Traced<F::Margin, F> {

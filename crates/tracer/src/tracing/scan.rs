@@ -8,7 +8,7 @@ use crate::tracing::branch::end::{End, Special};
 use crate::tracing::corrector::correct;
 use crate::tracing::network::Unresolved;
 use crate::tracing::runs::Traced;
-use crate::tracing::seed::{Change, Seed, SeedOf, bisect, holds, identify};
+use crate::tracing::seed::{Change, Seed, SeedOf, bisect, holds_closely, identify};
 use crate::tracing::trace::Tracer;
 use crate::window::Point;
 
@@ -127,19 +127,20 @@ impl<F: Family> Tracer<'_, F> {
             let piece = (curve.nodes.len() - 1) / 2;
             let guess = Cubic::between(&curve.nodes[piece], &curve.nodes[piece + 1]);
             let (guess, tangent, reach) = (guess.at(0.5), guess.tangent(0.5), guess.chord());
-            let found =
-                match self.runs.gradient(&guess, &curve.margin, &tangent, self.runs.scale)? {
-                    Some(gradient) => correct(&self.runs, &curve.margin, &guess, &gradient, reach)?
-                        .map(|found| (found.point, gradient)),
-                    None => None,
-                };
+            let margin = self.runs.moved(&guess, &curve.margin)?;
+            let found = match self.runs.gradient(&guess, &margin, &tangent, self.runs.scale)? {
+                Some(gradient) => correct(&self.runs, &margin, &guess, &gradient, reach)?
+                    .map(|found| (found.point, gradient)),
+                None => None,
+            };
             let holds = match found {
                 Some((point, gradient)) => {
                     let [left, right] = curve.sides.clone();
                     let on_left = gradient.dot(&Point::new(-tangent.y, tangent.x)) > 0.0;
                     let labels = if on_left { [left, right] } else { [right, left] };
-                    let seed = Seed { point, tangent, margin: curve.margin.clone(), labels };
-                    holds(&self.runs, &seed, &gradient)?
+                    let seed = Seed { point, tangent, margin, labels };
+                    // Another boundary beside the curve has its labels farther away.
+                    holds_closely(&self.runs, &seed, &gradient)?
                 }
                 None => false,
             };

@@ -147,9 +147,7 @@ pub(crate) fn holds<F: Family>(
     }
     let normal = gradient.normalize();
     loop {
-        if runs.label(&(seed.point + normal * offset))? == seed.labels[0]
-            && runs.label(&(seed.point - normal * offset))? == seed.labels[1]
-        {
+        if holds_at(runs, seed, &(normal * offset))? {
             return Ok(true);
         }
         offset *= 0.1;
@@ -157,4 +155,25 @@ pub(crate) fn holds<F: Family>(
             return Ok(false);
         }
     }
+}
+
+/// Whether the free runs on both sides of a seed have its labels at the least distance that margins
+/// resolve, so that no other boundary beside it has them.
+pub(crate) fn holds_closely<F: Family>(
+    runs: &Runs<'_, F>,
+    seed: &Seed<F::Label, F::Margin>,
+    gradient: &Point,
+) -> Traced<bool, F> {
+    let slope = gradient.norm();
+    holds_at(runs, seed, &(gradient * (10.0 * runs.resolution(slope) / slope)))
+}
+
+/// Whether the free runs have the labels of a seed at an offset from it and at its opposite.
+fn holds_at<F: Family>(
+    runs: &Runs<'_, F>,
+    seed: &Seed<F::Label, F::Margin>,
+    offset: &Point,
+) -> Traced<bool, F> {
+    Ok(runs.label(&(seed.point + offset))? == seed.labels[0]
+        && runs.label(&(seed.point - offset))? == seed.labels[1])
 }

@@ -19,7 +19,7 @@
 use std::f64::consts::PI;
 
 use super::normal::{At, Half, Moment, Motion, Trajectory};
-use super::swing::{Swing, half_swing_sign};
+use super::swing::{Gap, Swing, half_swing_sign};
 use crate::numerics::root::{Jet, bracketed};
 
 /// Ratio of dD/dt to dq/dt below which an exit is improved. At this ratio the rounding of the angle
@@ -36,6 +36,19 @@ pub struct Flanks {
     turn: Option<[Moment; 2]>,
     /// After the top R falls and rises once more.
     again: Option<Again>,
+    /// On which side of the turns the only top is.
+    side: Side,
+}
+
+/// The side of the turns on which the only top of R on a half swing is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Side {
+    /// Before the first turn, where W is negative.
+    Before,
+    /// After the second turn, as W is positive at the first one.
+    After,
+    /// No turn that would tell is on the half swing, which ends at this moment.
+    Either(Moment),
 }
 
 /// The place where R starts to rise on a half swing.
@@ -77,7 +90,8 @@ impl Flanks {
         let rises = || swing.gap(half_swing, &swing.path.at(peak)).turning() > 0.0;
         let turn = if peak == Moment::END || rises() { [peak, zero] } else { [start, peak] };
         let turn = (turn[1] != Moment::END).then_some(turn);
-        Some(Self { half_swing, low: Low::Zero(start), turn, again: None })
+        let (low, side) = (Low::Zero(start), Side::Either(zero));
+        Some(Self { half_swing, low, turn, again: None, side })
     }
 
     /// The first half swing after slip, with turns. W falls from 0 until the first turn, rises
@@ -90,7 +104,9 @@ impl Flanks {
             return None;
         }
         let turn = (zero != Moment::END).then_some([fall, zero]);
-        Some(Self { half_swing: 0, low: Low::Between(rise, fall), turn, again: None })
+        // There never is a top before the turns, so that its name is free.
+        let (low, side) = (Low::Between(rise, fall), Side::Before);
+        Some(Self { half_swing: 0, low, turn, again: None, side })
     }
 
     /// A later half swing, with turns. W is positive at its start, smallest at the first turn,
@@ -113,7 +129,8 @@ impl Flanks {
             // W is positive up to the second turn, or, if the half swing ends before that, has the
             // zero somewhere on it.
             let turn = last.map(|zero| [if within(fall) { fall } else { start }, zero]);
-            return Some(Self { half_swing, low, turn, again: None });
+            let side = if within(rise) { Side::After } else { Side::Either(zero) };
+            return Some(Self { half_swing, low, turn, again: None, side });
         }
         let rises_again = !within(fall) || turning_at(swing, half_swing, fall) > 0.0;
         let again = match last {
@@ -123,7 +140,7 @@ impl Flanks {
             }
             Some(_) => None,
         };
-        Some(Self { half_swing, low, turn: Some([start, rise]), again })
+        Some(Self { half_swing, low, turn: Some([start, rise]), again, side: Side::Before })
     }
 
     /// The first top of R.
@@ -134,6 +151,27 @@ impl Flanks {
     /// Whether R rises twice.
     pub fn rises_again(&self) -> bool {
         self.again.is_some()
+    }
+
+    /// Whether the only top of R can be called that before the turns, and that after them. Where
+    /// nothing tells, it can be called either.
+    pub fn called(&self) -> [bool; 2] {
+        [self.side != Side::After, self.side != Side::Before]
+    }
+
+    /// Whether the only top of R is called that after the turns. Where nothing else tells, it is if it is
+    /// after the place where the turns meet.
+    pub fn is_after<T: Trajectory>(&self, swing: &Swing<T>) -> bool {
+        let split = swing.path.split();
+        match (self.side, &self.low) {
+            (Side::After, _) => true,
+            (Side::Either(zero), Low::Zero(start)) => {
+                start.is_before(split)
+                    && split.is_before(zero)
+                    && turning_at(swing, self.half_swing, split) > 0.0
+            }
+            _ => false,
+        }
     }
 
     /// The second top of R.
@@ -167,6 +205,24 @@ impl Flanks {
         };
         if after_top { after().or_else(before) } else { before().or_else(after) }
     }
+}
+
+/// The spring and its limit on half swing `k` at the first turn, if it is there.
+pub fn at_first_turn<T: Trajectory>(swing: &Swing<T>, k: u32) -> Option<Gap> {
+    gap_within(swing, k, swing.turns?[0])
+}
+
+/// The spring and its limit on half swing `k` where the turns meet, if that is there.
+pub fn at_split<T: Trajectory>(swing: &Swing<T>, k: u32) -> Option<Gap> {
+    gap_within(swing, k, swing.path.split())
+}
+
+/// The spring and its limit at `moment`, if it is on half swing `k`, which begins with y = 0.
+fn gap_within<T: Trajectory>(swing: &Swing<T>, k: u32, moment: Moment) -> Option<Gap> {
+    let before = k.checked_sub(1)?;
+    let [start, zero] = [before, k].map(|k| swing.moment_at_angle(f64::from(k) * PI));
+    let within = start.is_before(moment) && moment.is_before(zero);
+    within.then(|| swing.gap(k, &swing.path.at(moment)))
 }
 
 /// W on half swing `k` at `moment`.

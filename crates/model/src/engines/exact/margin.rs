@@ -6,8 +6,8 @@
 //!
 //! - A slip phase passes the first turn of P = κL + L̈ if g = s·w − dL/dt > 0 there.
 //! - A slip phase lasts to the end of contact if g > 0 at the end.
-//! - A stick phase passes a half swing if (L/|y|)² − 1 > 0 where |y|/L is largest, and at its second
-//!   top if it has two. Near the end of contact this number is linear in the time at which y
+//! - A stick phase passes a half swing if (L/|y|)² − 1 > 0 where |y|/L is largest, and at both of its
+//!   tops if it has two. Tops are told apart by the side of the turns on which they are. Near the end of contact this number is linear in the time at which y
 //!   vanishes; the gap L − |y| is not. With damping it is the other way round.
 //! - With damping, a last stick phase ends on the side on which it does if |y| > 0 at the end of
 //!   contact.
@@ -111,12 +111,12 @@ fn passed<T: Trajectory>(
     let release = Release::of(swing);
     let mut after_top = false;
     for k in swing.first..=release.half_swing {
-        let [first, second] = top_margins(swing, k).map(|top| top.filter(|&value| value >= 0.0));
-        for (place, value) in [(top_place(k), first), (second_top_place(k), second)] {
+        let tops = Tops::of(swing, k).listed().map(|top| top.filter(|&value| value >= 0.0));
+        for (place, value) in [top_place(k), second_top_place(k)].into_iter().zip(tops) {
             let margin = || Margin { exits: exits.clone(), guard: guard(k), place };
             found.near_misses.extend(value.map(|value| (margin(), value)));
         }
-        after_top = first.is_some();
+        after_top = tops[0].is_some();
     }
     let missed = end_margin(swing, release.half_swing);
     found.near_misses.extend(missed.map(|value| {
@@ -147,26 +147,29 @@ fn passed<T: Trajectory>(
 /// # Errors
 /// [`ExactError::Domain`] as [`margins`].
 pub fn margin(contact: &Contact, which: &Margin) -> Result<Option<f64>, ExactError> {
-    follow(contact, which, |_| ())
+    Ok(follow(contact, which, |_| ())?.and_then(|(_, value)| value))
 }
 
 /// The margin `which` with hints that fit the collision of `contact`, as
-/// [`stickslip_solver::margin()`] returns it. A margin that does not exist is returned unchanged.
+/// [`stickslip_solver::margin()`] returns it. A margin that does not exist is returned unchanged,
+/// except that of a top which is the only one of its half swing: it gets the name that
+/// [`margins`] would give it.
 ///
 /// # Errors
 /// As [`margin`].
 pub fn moved(contact: &Contact, which: &Margin) -> Result<Margin, ExactError> {
     let mut exits = Vec::with_capacity(which.exits.len());
     let found = follow(contact, which, |exit| exits.push(exit))?;
-    Ok(found.map_or_else(|| which.clone(), |_| Margin { exits, ..*which }))
+    Ok(found.map_or_else(|| which.clone(), |(place, _)| Margin { exits, place, ..*which }))
 }
 
-/// Follows the switches that `which` prescribes, calls `on_exit` with each, and returns the margin.
+/// Follows the switches that `which` prescribes, calls `on_exit` with each, and returns the place in
+/// the name of the margin there, with its value if it exists.
 fn follow(
     contact: &Contact,
     which: &Margin,
     on_exit: impl FnMut(Exit),
-) -> Result<Option<f64>, ExactError> {
+) -> Result<Option<(Place, Option<f64>)>, ExactError> {
     checked(contact)?;
     Ok(with_trajectory(contact, Prescribed { which, on_exit }))
 }
@@ -178,9 +181,9 @@ struct Prescribed<'m, E> {
 }
 
 impl<E: FnMut(Exit)> Task for Prescribed<'_, E> {
-    type Output = Option<f64>;
+    type Output = Option<(Place, Option<f64>)>;
 
-    fn run<T: Trajectory>(mut self, slide: &Slide<T>, contact: &Contact) -> Option<f64> {
+    fn run<T: Trajectory>(mut self, slide: &Slide<T>, contact: &Contact) -> Self::Output {
         let which = self.which;
         let mut exits = which.exits.iter();
         let mut phase = Phase::first(slide, contact.psi());
@@ -197,11 +200,12 @@ impl<E: FnMut(Exit)> Task for Prescribed<'_, E> {
                 }
             };
             let Some(exit) = exits.next() else {
-                return match which.place {
+                let value = match which.place {
                     Place::End => Some(slide.end_margin(&sliding)),
                     Place::Minimum { number, .. } => cusp::of_slip(slide, &sliding, number),
                     _ => None,
                 };
+                return value.map(|value| (which.place, Some(value)));
             };
             let onset = prescribed_onset(slide, &sliding, exit)?;
             (self.on_exit)(slip_exit(slide, onset));
@@ -216,55 +220,106 @@ pub const TURN: usize = 0;
 /// The place of the first turn of a slip phase.
 const AT_TURN: Place = Place::Minimum { near: Hint(0.0), number: TURN };
 
-/// 1/R² − 1 at the tops of R on half swing `k`, or what a [`LateHalfSwing`] has instead of
-/// the last.
-///
-/// On the first half swing after slip this number has a double zero at the start of the phase. It
-/// is divided by the square of the angle since then, so that it is not flat where the length of the
-/// phase goes to 0.
-fn top_margins<T: Trajectory>(swing: &Swing<T>, k: u32) -> [Option<f64>; 2] {
-    let Some(flanks) = Flanks::of(swing, k) else { return [None; 2] };
-    let at_top = |top: Option<Moment>| {
-        let top = swing.path.at(top?);
-        let Gap { value, q, .. } = swing.gap(k, &top);
-        let excess = value / q * (value / q + 2.0);
-        let angle = swing.spring.omega * swing.elapsed(&top);
-        Some(if k == 0 { excess / (angle * angle) } else { excess })
-    };
-    let late = LateHalfSwing::of(swing, k);
-    let last = |top: Option<Moment>| match &late {
-        Some(late) => late.margin(swing),
-        None => at_top(top).or_else(|| beyond_end(swing, k)),
-    };
-    if flanks.rises_again() {
-        [at_top(flanks.top(swing)), last(flanks.second_top(swing))]
-    } else {
-        [last(flanks.top(swing)), None]
+/// The margins of the tops of R on one half swing, before the turns and after them.
+#[derive(Clone, Copy, Debug)]
+struct Tops {
+    /// Both margins. The only top of a half swing without a turn that would tell has both names.
+    values: [Option<f64>; 2],
+    /// Which name the only top is listed with.
+    only: Option<usize>,
+}
+
+impl Tops {
+    /// 1/R² − 1 at the tops of R on half swing `k`, or what a [`LateHalfSwing`] has instead of the
+    /// last.
+    ///
+    /// On the first half swing after slip this number has a double zero at the start of the phase.
+    /// It is divided by the square of the angle since then, so that it is not flat where the length
+    /// of the phase goes to 0.
+    fn of<T: Trajectory>(swing: &Swing<T>, k: u32) -> Self {
+        let none = Self { values: [None; 2], only: None };
+        let Some(flanks) = Flanks::of(swing, k) else { return none };
+        let at_top = |top: Option<Moment>| {
+            let top = swing.path.at(top?);
+            let Gap { value, q, .. } = swing.gap(k, &top);
+            let excess = value / q * (value / q + 2.0);
+            let angle = swing.spring.omega * swing.elapsed(&top);
+            Some(if k == 0 { excess / (angle * angle) } else { excess })
+        };
+        let late = LateHalfSwing::of(swing, k);
+        let last = |top: Option<Moment>| match &late {
+            Some(late) => late.margin(swing),
+            None => at_top(top).or_else(|| beyond_end(swing, k)),
+        };
+        if flanks.rises_again() {
+            let values = [at_top(flanks.top(swing)), last(flanks.second_top(swing))];
+            return Self { values, only: None };
+        }
+        let value = last(flanks.top(swing));
+        let values = flanks.called().map(|is| value.filter(|_| is));
+        Self { values, only: Some(usize::from(flanks.is_after(swing))) }
+    }
+
+    /// Both margins, each top with one name.
+    fn listed(&self) -> [Option<f64>; 2] {
+        let [before, after] = self.values;
+        match self.only {
+            None => self.values,
+            Some(0) => [before, None],
+            Some(_) => [None, after],
+        }
     }
 }
 
-/// The place of the first top of half swing `k` among the tops on its side.
+/// The place of the top before the turns on half swing `k` among these tops on its side.
 fn top_place(k: u32) -> Place {
-    Place::Minimum { near: Hint(f64::from(k)), number: (k / 2) as usize }
+    numbered(k, TOP)
 }
 
-/// The place of the second top of half swing `k`.
+/// The place of the top after the turns.
 fn second_top_place(k: u32) -> Place {
-    Place::Minimum { near: Hint(f64::from(k)), number: SECOND + (k / 2) as usize }
+    numbered(k, SECOND)
 }
 
-/// What the numbers of second tops are counted from: more than there are half swings with two tops.
-const SECOND: usize = 1 << 20;
+/// The place of what is called `what` on half swing `k`.
+pub fn numbered(k: u32, what: usize) -> Place {
+    Place::Minimum { near: Hint(f64::from(k)), number: what + (k / 2) as usize }
+}
 
-/// The margin `which`, of the phase `swing`.
-fn margin_of_stick<T: Trajectory>(swing: &Swing<T>, which: &Margin) -> Option<f64> {
+/// What the numbers of tops before the turns are counted from.
+const TOP: usize = 0;
+
+/// What the numbers of tops after the turns are counted from.
+const SECOND: usize = NAMES;
+
+/// The distance of what different numbers are counted from: more than there are half swings with two
+/// tops.
+pub const NAMES: usize = 1 << 20;
+
+/// The margin `which`, of the phase `swing`, after its place.
+fn margin_of_stick<T: Trajectory>(
+    swing: &Swing<T>,
+    which: &Margin,
+) -> Option<(Place, Option<f64>)> {
     let Place::Minimum { number, .. } = which.place else {
         let side = if which.guard == SAME_SIDE { -1.0 } else { 1.0 };
-        return Some(side * swing.spring.omega * at_end(swing).0);
+        return Some((which.place, Some(side * swing.spring.omega * at_end(swing).0)));
     };
-    let (number, second) = if number < SECOND { (number, 0) } else { (number - SECOND, 1) };
+    let (number, what) = (number % NAMES, number - number % NAMES);
     let k = u32::try_from(number).ok()?.checked_mul(2)? + u32::from(which.guard == OTHER_SIDE);
-    if k < swing.first { None } else { top_margins(swing, k)[second] }
+    if k < swing.first {
+        return None;
+    }
+    if !matches!(what, TOP | SECOND) {
+        return Some((which.place, Some(cusp::of_stick(swing, k, what)?)));
+    }
+    let tops = Tops::of(swing, k);
+    let value = tops.values[usize::from(what == SECOND)];
+    match tops.only {
+        None => value.map(|value| (which.place, Some(value))),
+        Some(0) => Some((top_place(k), value)),
+        Some(_) => Some((second_top_place(k), value)),
+    }
 }
 
 /// ω|y| at the end of contact, if the phase would last until then without its exit on half swing
@@ -291,7 +346,7 @@ pub fn at_end<T: Trajectory>(swing: &Swing<T>) -> (f64, f64) {
 }
 
 /// The guard that fires on half swing `k`.
-fn guard(k: u32) -> usize {
+pub fn guard(k: u32) -> usize {
     if k.is_multiple_of(2) { SAME_SIDE } else { OTHER_SIDE }
 }
 
@@ -325,7 +380,7 @@ fn stick_exit(k: u32, after_top: bool) -> Exit {
 }
 
 /// The half swing of the exit of a stick phase, and whether the exit is after the top of R.
-fn flank_of(exit: &Exit) -> (u32, bool) {
+pub fn flank_of(exit: &Exit) -> (u32, bool) {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number")]
     let k = exit.after.0 as u32;
     (k, exit.after.0 - f64::from(k) > 0.25)

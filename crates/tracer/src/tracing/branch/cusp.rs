@@ -13,19 +13,24 @@ use crate::window::Point;
 /// nothing else is looked for on it: the wedge of a cusp may be too thin for labels there.
 const TIP: f64 = 1e-5;
 
-/// The cusp ahead of `from`, within twice a failed step of length `h` or close by, if the family
-/// knows what vanishes there: its place and the largest error of the place.
+/// The cusps ahead of `from`, within twice a failed step of length `h` or close by, for which the
+/// family knows what vanishes there: each place and the largest error of the place, nearest first.
 pub(crate) fn ahead<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,
     h: f64,
-) -> Traced<Option<(Point, f64)>, F> {
+) -> Traced<Vec<(Point, f64)>, F> {
     let runs = track.runs;
-    let Some([one, two]) = runs.cusp(&track.margin) else { return Ok(None) };
     let (start, along) = (from.node.point, from.node.tangent);
     let reach = (2.0 * h).max(TIP * runs.scale);
-    let found = crossing(runs, [&one, &two], &start, &along, runs.scale, reach)?;
-    Ok(found.filter(|(point, _)| (point - start).dot(&along) > 0.0))
+    let mut places = Vec::new();
+    for [one, two] in runs.cusps(&track.margin) {
+        let found = crossing(runs, [&one, &two], &start, &along, runs.scale, reach)?;
+        places.extend(found.filter(|(point, _)| (point - start).dot(&along) > 0.0));
+    }
+    let progress = |point: &Point| (point - start).dot(&along);
+    places.sort_by(|(one, _), (two, _)| progress(one).total_cmp(&progress(two)));
+    Ok(places)
 }
 
 /// The end of a branch in a cusp ahead of `from`; `None` if the cusp is too far away.

@@ -14,6 +14,10 @@ use crate::window::Point;
 /// Crossings with a larger uncertainty, as a fraction of the window's shorter extent, are also
 /// tried as touches. The values of margins tell the place of a touch only to half the digits.
 pub(crate) const TANGENTIAL: f64 = 1e-9;
+/// The largest error of a place at which boundaries touch, as a fraction of the window's shorter
+/// extent: it is where their gradients are parallel, and a gradient beside a place where its margin
+/// ceases to exist is one-sided. A third curve that arrives there tells better.
+const TOUCH: f64 = 1e-8;
 /// Crossings with a larger uncertainty, as a fraction of the window's shorter extent, are none: the
 /// two margins are almost multiples of each other.
 const VAGUE: f64 = 1e-5;
@@ -68,48 +72,45 @@ fn among<F: Family>(
             None => others.push(margin),
         }
     }
-    if let Some(special) = first(track, from, beyond, crossings, h)? {
-        return Ok(Some(special));
+    let special = |point, uncertainty, margin| {
+        let margins = vec![track.margin.clone(), margin];
+        Special { point, kind: VertexKind::Crossing, margins, uncertainty, solved: true }
+    };
+    if let Some((mut point, mut off, margin)) = first(track, from, crossings)? {
+        if off > TANGENTIAL * track.runs.scale
+            && let Some(touch) = graze(track, from, beyond, &margin, h)?
+            && (touch - point).norm() <= 10.0 * off
+        {
+            (point, off) = (touch, 0.3 * off);
+        }
+        return Ok(Some(special(point, off, margin)));
     }
     let mut touches = Vec::new();
     for margin in others {
         if narrow::<F>(from, beyond, &margin, h)
             && let Some(point) = graze(track, from, beyond, &margin, h)?
         {
-            touches.push((point, 0.0, margin));
+            touches.push((point, TOUCH * track.runs.scale, margin));
         }
     }
-    first(track, from, beyond, touches, h)
+    Ok(first(track, from, touches)?.map(|(point, off, margin)| special(point, off, margin)))
 }
 
-/// The first of these places behind which the branch does not have its labels. Each has its largest
-/// error and the margin that vanishes there.
+/// A place, its largest error, and the margin that vanishes there besides that of the branch.
+type Met<Margin> = (Point, f64, Margin);
+
+/// The first of these places behind which the branch does not have its labels.
 fn first<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,
-    beyond: Option<&FootholdOf<F>>,
-    mut places: Vec<(Point, f64, F::Margin)>,
-    h: f64,
-) -> Traced<Option<Special<F::Margin>>, F> {
+    mut places: Vec<Met<F::Margin>>,
+) -> Traced<Option<Met<F::Margin>>, F> {
     let progress = |point: &Point| (point - from.node.point).dot(&from.node.tangent);
     places.retain(|(_, off, _)| *off <= VAGUE * track.runs.scale);
     places.sort_by(|(one, ..), (two, ..)| progress(one).total_cmp(&progress(two)));
-    for (point, off, margin) in places {
-        if is_last(track, from, &point)? {
-            let (mut point, mut off) = (point, off);
-            if off > TANGENTIAL * track.runs.scale
-                && let Some(touch) = graze(track, from, beyond, &margin, h)?
-                && (touch - point).norm() <= 10.0 * off
-            {
-                (point, off) = (touch, 0.3 * off);
-            }
-            return Ok(Some(Special {
-                point,
-                kind: VertexKind::Crossing,
-                margins: vec![track.margin.clone(), margin],
-                uncertainty: off,
-                solved: true,
-            }));
+    for place in places {
+        if is_last(track, from, &place.0)? {
+            return Ok(Some(place));
         }
     }
     Ok(None)
