@@ -90,8 +90,8 @@ impl Family for Runner {
         self.runs.is_sure(margin)
     }
 
-    fn cusp(&self, margin: &Margin) -> Option<[Margin; 2]> {
-        self.runs.cusp(margin)
+    fn cusps(&self, margin: &Margin) -> Vec<[Margin; 2]> {
+        self.runs.cusps(margin)
     }
 
     fn free_run(&self, point: &Point) -> Result<FreeRun<Itinerary, Margin>, UserError> {
