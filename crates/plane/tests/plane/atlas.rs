@@ -164,8 +164,8 @@ fn damped_boundaries_have_the_integrators_switches_beside_them() {
 }
 
 /// Grazes while sliding and while sticking end at one vertex, in which the two turns of the limit
-/// meet and the slip phase grazes. At its other end the slip graze meets the first of two tops, which
-/// merges with the bottom between the tops.
+/// meet and the slip phase grazes. At its other end the slip graze meets the first of two tops,
+/// which merges with the bottom between the tops.
 #[test]
 fn damped_grazes_end_in_cusps() {
     let damping = 0.41;

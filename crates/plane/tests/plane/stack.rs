@@ -94,7 +94,8 @@ fn the_itinerary_of_a_region_appears_where_it_is_born() -> Result<(), InvalidPar
 }
 
 /// Two cusps and the crossing between them become one point: the region between them dies, of which
-/// atlases closer than about 1e-4 to the damping do not tell. P, D and W vanish where the turns meet.
+/// atlases closer than about 1e-4 to the damping do not tell. P, D and W vanish where the turns
+/// meet.
 #[test]
 fn a_region_dies_in_a_swallowtail() -> Result<(), InvalidParameter> {
     for [kappa, psi] in [[(0.5, 30.0), (0.05, 2.0)], [(1.0, 5.0), (0.5, 1.0)]] {

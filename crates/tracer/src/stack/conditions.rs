@@ -19,8 +19,8 @@ pub(super) enum Conditions<Margin> {
     Three([Condition<Margin>; 3]),
     /// Both vanish, and their gradients in the plane are parallel.
     Parallel([Condition<Margin>; 2]),
-    /// The first two vanish, and the gradients of the second and the third are parallel: that one is
-    /// known to touch the second one there, which its value tells to half the digits only.
+    /// The first two vanish, and the gradients of the second and the third are parallel: that one
+    /// is known to touch the second one there, which its value tells to half the digits only.
     Tangent([Condition<Margin>; 3]),
     /// A margin vanishes together with its gradient in the plane.
     Flat(Margin),
@@ -43,8 +43,8 @@ pub enum MeetingKind {
     EdgeTouch,
     /// A boundary passes through a corner of the window.
     Corner,
-    /// Three extrema of a guard merge on its zero: two cusps of boundaries and a crossing between them
-    /// become one point.
+    /// Three extrema of a guard merge on its zero: two cusps of boundaries and a crossing between
+    /// them become one point.
     Swallowtail,
 }
 

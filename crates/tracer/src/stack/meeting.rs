@@ -79,9 +79,9 @@ pub(super) struct Vague<Margin> {
 
 /// The meeting close to a vague place at which two of its boundaries touch.
 ///
-/// Some boundaries touch for every value of the third parameter, as a graze does with the end at which
-/// it leaves. There values of margins tell the place to half the digits. With the angle between the
-/// two boundaries it is known to about 1e-6.
+/// Some boundaries touch for every value of the third parameter, as a graze does with the end at
+/// which it leaves. There values of margins tell the place to half the digits. With the angle
+/// between the two boundaries it is known to about 1e-6.
 pub(super) fn touching<F: Family>(
     family: &impl Fn(f64) -> F,
     vague: &Vague<F::Margin>,
@@ -122,8 +122,8 @@ fn newton<F: Family>(
     mut at: Vector3<f64>,
     within: &Box3,
 ) -> Option<Reached> {
-    /// Updates below this part of the box end the search, if they shrink as the square: the next one
-    /// would be beyond the digits.
+    /// Updates below this part of the box end the search, if they shrink as the square: the next
+    /// one would be beyond the digits.
     const SMALL: f64 = 1e-7;
     /// The greatest part of the update before that is taken for such a square.
     const SQUARE: f64 = 0.1;
@@ -173,8 +173,8 @@ fn newton<F: Family>(
 /// Whether the third of three conditions passes through zero where the first two hold, as its slope
 /// says, when the third parameter passes.
 ///
-/// A margin behind a graze may vanish wherever two others do, for every value of the parameter, and be
-/// singular there, so that its slope does not tell.
+/// A margin behind a graze may vanish wherever two others do, for every value of the parameter, and
+/// be singular there, so that its slope does not tell.
 fn is_passage<F: Family>(
     family: &impl Fn(f64) -> F,
     conditions: &Conditions<F::Margin>,
@@ -241,8 +241,8 @@ fn tangent<F: Family>(
 
 /// Whether conditions with these derivatives hold at one point only, and not along a curve.
 fn independent(slopes: &Matrix3<f64>) -> bool {
-    /// The least volume of three unit vectors that are told from ones in a plane: derivatives are good
-    /// to 1e-9, and those of slopes to 1e-6.
+    /// The least volume of three unit vectors that are told from ones in a plane: derivatives are
+    /// good to 1e-9, and those of slopes to 1e-6.
     const LEAST: f64 = 1e-5;
     let mut unit = *slopes;
     for mut row in unit.row_iter_mut() {

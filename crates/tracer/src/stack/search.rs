@@ -236,8 +236,9 @@ impl<'a, F: Family, At: Fn(f64) -> F> Search<'a, F, At> {
         Ok(if sample.atlas.agrees() { Beside::Between(Box::new(sample)) } else { Beside::Doubtful })
     }
 
-    /// Divides the search at an atlas between the two that agrees. Where that is about as close to both
-    /// as atlases may be to a meeting, or where there is none, meetings are looked for up to there.
+    /// Divides the search at an atlas between the two that agrees. Where that is about as close to
+    /// both as atlases may be to a meeting, or where there is none, meetings are looked for up to
+    /// there.
     fn bisect(
         &mut self,
         low: &Sample<F>,

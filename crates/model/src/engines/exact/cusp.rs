@@ -130,8 +130,8 @@ pub fn of_slip<T: Trajectory>(slide: &Slide<T>, sliding: &SlipPhase, number: usi
     }
 }
 
-/// The margin of half swing `k` of a stick phase that is called `what`: one of a [cusp](cusps) or of
-/// a [`swallowtail`].
+/// The margin of half swing `k` of a stick phase that is called `what`: one of a [cusp](cusps) or
+/// of a [`swallowtail`].
 pub fn of_stick<T: Trajectory>(swing: &Swing<T>, k: u32, what: usize) -> Option<f64> {
     // D/q and the rate of ln R.
     let excess = |gap: Gap| gap.value / gap.q;

@@ -159,8 +159,8 @@ impl Flanks {
         [self.side != Side::After, self.side != Side::Before]
     }
 
-    /// Whether the only top of R is called that after the turns. Where nothing else tells, it is if it is
-    /// after the place where the turns meet.
+    /// Whether the only top of R is called that after the turns. Where nothing else tells, it is if
+    /// it is after the place where the turns meet.
     pub fn is_after<T: Trajectory>(&self, swing: &Swing<T>) -> bool {
         let split = swing.path.split();
         match (self.side, &self.low) {

@@ -6,9 +6,10 @@
 //!
 //! - A slip phase passes the first turn of P = κL + L̈ if g = s·w − dL/dt > 0 there.
 //! - A slip phase lasts to the end of contact if g > 0 at the end.
-//! - A stick phase passes a half swing if (L/|y|)² − 1 > 0 where |y|/L is largest, and at both of its
-//!   tops if it has two. Tops are told apart by the side of the turns on which they are. Near the end of contact this number is linear in the time at which y
-//!   vanishes; the gap L − |y| is not. With damping it is the other way round.
+//! - A stick phase passes a half swing if (L/|y|)² − 1 > 0 where |y|/L is largest, and at both of
+//!   its tops if it has two. Tops are told apart by the side of the turns on which they are. Near
+//!   the end of contact this number is linear in the time at which y vanishes; the gap L − |y| is
+//!   not. With damping it is the other way round.
 //! - With damping, a last stick phase ends on the side on which it does if |y| > 0 at the end of
 //!   contact.
 //!
@@ -163,8 +164,8 @@ pub fn moved(contact: &Contact, which: &Margin) -> Result<Margin, ExactError> {
     Ok(found.map_or_else(|| which.clone(), |(place, _)| Margin { exits, place, ..*which }))
 }
 
-/// Follows the switches that `which` prescribes, calls `on_exit` with each, and returns the place in
-/// the name of the margin there, with its value if it exists.
+/// Follows the switches that `which` prescribes, calls `on_exit` with each, and returns the place
+/// in the name of the margin there, with its value if it exists.
 fn follow(
     contact: &Contact,
     which: &Margin,
@@ -292,8 +293,8 @@ const TOP: usize = 0;
 /// What the numbers of tops after the turns are counted from.
 const SECOND: usize = NAMES;
 
-/// The distance of what different numbers are counted from: more than there are half swings with two
-/// tops.
+/// The distance of what different numbers are counted from: more than there are half swings with
+/// two tops.
 pub const NAMES: usize = 1 << 20;
 
 /// The margin `which`, of the phase `swing`, after its place.
