@@ -5,8 +5,6 @@ every curve in a window of the parameters on which the sequence of events of its
 """
 
 import graphlib
-import json
-import operator
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field
@@ -34,8 +32,8 @@ from stickslip._family_atlases import (
     _margin,
     _objects,
     _pairs,
-    _points,
 )
+from stickslip._family_options import TraceOptions, VerifyOptions, _json
 from stickslip._systems import HybridSystem, Mode, _check_function
 from stickslip.atlases import AtlasWarning
 from stickslip.collisions import Floats, _threads
@@ -58,45 +56,6 @@ __all__ = [
     "VerifyOptions",
     "trace_family",
 ]
-
-
-@dataclass(frozen=True)
-class TraceOptions:
-    """How boundaries are traced. Lengths are in the units of the parameters."""
-
-    #: The largest distance of a point from its boundary, up to 1e-6.
-    tolerance: float = 1e-12
-    #: That of the curves between the points, from ten times the tolerance to 1e-2.
-    interpolation: float = 1e-10
-    #: The distance from a boundary at which itineraries are compared, up to 1e-4.
-    offset: float = 1e-8
-    #: The error of a margin, up to 1e-6: smaller values carry no information.
-    noise: float = 1e-13
-    #: The longest step, as a part of the window's shorter side, up to 0.25.
-    max_step: float = 0.05
-    #: The largest angle between the tangents of points that follow each other, up to 0.5.
-    max_angle: float = 0.2
-    #: How far beyond the window boundaries are followed, as a part of its shorter side, up to 1e-2.
-    beyond: float = 0.0
-    #: The cells of the grid along each axis, from 2 to 4096.
-    cells: int = 32
-    #: The greatest number of points of a curve.
-    max_nodes: int = 20_000
-    #: A window that shows more curves before it is traced is refused.
-    max_curves: int = 10_000
-
-
-@dataclass(frozen=True)
-class VerifyOptions:
-    """Where the regions are compared with runs."""
-
-    #: Random points, spread evenly over the window.
-    random_points: int = 10_000
-    #: Random points on each side of every curve, at distances from `nearest` to `farthest`.
-    near_points: int = 20
-    nearest: float = 1e-8
-    farthest: float = 1e-3
-    seed: int = 1
 
 
 @dataclass(frozen=True)
@@ -420,34 +379,3 @@ def _interval(values: Any, what: str) -> tuple[float, float]:
     if not (np.isfinite(low) and np.isfinite(high) and low < high):
         raise ValueError(f"{what} = ({low}, {high}); expected finite numbers in ascending order")
     return low, high
-
-
-#: Options that are whole numbers.
-_COUNTS = {
-    "cells",
-    "max_nodes",
-    "max_curves",
-    "random_points",
-    "near_points",
-    "seed",
-    "rounds",
-}
-
-
-def _json(fields: dict[str, Any]) -> str:
-    """Options as JSON, which has no numbers that are not finite."""
-    return json.dumps(_plain(fields, ""))
-
-
-def _plain(value: Any, name: str) -> Any:
-    if isinstance(value, dict):
-        return {key: _plain(one, key) for key, one in value.items()}
-    if name in _COUNTS:
-        number = operator.index(value)
-        if not 0 <= number < 2**63:
-            raise ValueError(f"{name} = {value}; expected 0 or above")
-        return number
-    real = _number(value, name)
-    if not np.isfinite(real):
-        raise ValueError(f"{name} = {real}; expected a finite number")
-    return real
