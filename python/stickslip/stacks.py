@@ -38,7 +38,7 @@ class Change:
     damping: float | None
     kappa: float | None
     psi: float | None
-    #: Whether several changes may lie between the two dampings.
+    #: Whether several changes may lie between the two dampings, or nothing could be solved for.
     doubtful: bool
     #: Pairs of what happens (born, splits, merge, dies) and the itinerary of the region.
     effects: tuple[tuple[str, str], ...]

@@ -47,8 +47,9 @@ pub struct DampingChange {
     pub between: [f64; 2],
     /// The point where special points meet; none if the change is only enclosed.
     pub meeting: Option<DampingMeeting>,
-    /// Whether several changes may lie there: atlases between the two dampings are in doubt, or
-    /// differ at dampings that are too close to each other.
+    /// Whether several changes may lie there, since atlases between the two dampings are in doubt, or
+    /// differ at dampings that are too close to each other; or whether nothing could be solved for. A
+    /// region can be too small to be seen on one side of a change, which then lies beside the two.
     pub doubtful: bool,
     /// What becomes of regions as the damping grows. If there is nothing, only neighbours change.
     pub effects: Vec<RegionEffect>,
@@ -217,7 +218,7 @@ fn follow(
             let [kappa, psi] = sample.sheet().snapped(&meeting.point);
             DampingMeeting { kind: name(meeting.kind), damping: meeting.value, kappa, psi }
         }),
-        doubtful: change.doubtful,
+        doubtful: change.doubtful || change.meeting.is_none(),
         effects: change.effects.iter().map(|effect| region_effect(effect, text)).collect(),
     });
     let labels = dampings.iter().map(|&damping| {
@@ -297,7 +298,11 @@ impl DampingStack {
         }
         let doubtful = self.changes.iter().find(|change| change.doubtful)?;
         let [low, high] = doubtful.between;
-        Some(format!("several changes may lie between the dampings {low:?} and {high:?}"))
+        Some(if doubtful.meeting.is_some() {
+            format!("several changes may lie between the dampings {low:?} and {high:?}")
+        } else {
+            format!("what changes between the dampings {low:?} and {high:?} is not known")
+        })
     }
 }
 
