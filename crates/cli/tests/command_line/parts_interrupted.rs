@@ -41,9 +41,13 @@ fn wait_for(workspace: &Workspace, out: &str, count: usize) {
     }
 }
 
+fn send(child: &Child, signal: &str) {
+    let sent = Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
+    assert!(sent.success());
+}
+
 fn signal(child: &mut Child, signal: &str) {
-    let killed = Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
-    assert!(killed.success());
+    send(child, signal);
     let number = signal.trim_start_matches('-').parse().unwrap();
     assert_eq!(child.wait().unwrap().signal(), Some(number), "the part was finished before");
 }
@@ -83,7 +87,10 @@ fn parts_are_made_at_the_same_time() {
     let line = |part: usize| format!("{LINE} --part {part}/3 --out {part}.part");
     let children: Vec<_> = [1, 2, 3].map(|part| start(&workspace, &line(part))).into();
     wait_for(&workspace, "3.part", 1);
+    // Stopped, it cannot be finished before the other process looks.
+    send(&children[2], "-STOP");
     let second = workspace.run(&line(3));
+    send(&children[2], "-CONT");
     let expected = format!("3.part.tiles: another process ({}) is making", children[2].id());
     assert_eq!(second.code, 1);
     assert!(second.stderr.starts_with(&format!("error: {expected}")), "{}", second.stderr);
