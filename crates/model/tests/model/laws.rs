@@ -480,3 +480,24 @@ fn names_are_unique_and_laws_are_what_they_say() {
     }
     assert_eq!(presets::find("hooke"), None);
 }
+
+/// A stick phase that begins within rounding of the end at F = 0: the slip that follows is there, and
+/// shorter than the phase.
+#[test]
+fn damped_contacts_that_end_without_force_end_in_slip() {
+    let law = Law { tangential: Tangential::Mindlin, history: HistoryOf::Force, ..Law::PAPER };
+    let law = Law { rescaled: true, ..law };
+    let contact = |kappa, psi| {
+        Contact::new(kappa, psi, 0.526_401_281_585_396_2)
+            .and_then(|contact| contact.with_law(law, 0.555_541_821_098_004_5))
+            .unwrap()
+    };
+    for step in -200..200 {
+        let psi = 0.080_471_668_589_775_4 * (1.0 + 1e-11 * f64::from(step));
+        let collision = collide(contact(13.815_822_154_146_71, psi));
+        let itinerary = collision.itinerary();
+        assert!(!itinerary.ends_with('o'), "{psi:?} {itinerary}");
+        let last = collision.switches.last().unwrap();
+        assert!(last.to == Regime::Slip && last.time_left >= 0.0, "{psi:?} {last:?}");
+    }
+}
