@@ -173,7 +173,8 @@ impl<E> Surveyor<'_, E> {
 
     /// The rounds themselves, for results of any kind: the tracer explores, `assess` makes a result
     /// of the network and verifies it, and the tracer looks again where it finds that something is
-    /// missing, in up to `rounds` rounds, as long as curves are found. `assess` returns `None` if it
+    /// missing, in up to `rounds` rounds, as long as curves are found and this comes closer: where no
+    /// margins tell what is missing, each look only leaves more places. `assess` returns `None` if it
     /// was cancelled.
     ///
     /// # Errors
@@ -189,7 +190,11 @@ impl<E> Surveyor<'_, E> {
         E: Executor<F>,
         X: From<TraceError<F::Error>>,
     {
+        /// A look again comes closer if it leaves at most so many places, or so many times those of the
+        /// round before.
+        const GROWTH: [usize; 2] = [200, 2];
         let Survey { mut result, mut round, .. } = begun;
+        let mut last = tracer.places_to_look().unwrap_or(usize::MAX / GROWTH[1]);
         loop {
             let (looks_again, before) = (tracer.looks_again(), tracer.curve_count());
             if !tracer.proceed(&self.executor, &self.watch)? {
@@ -208,6 +213,11 @@ impl<E> Surveyor<'_, E> {
             if round >= rounds {
                 return Ok(Survey { result, round, finished: true });
             }
+            let many = found.brackets.len();
+            if many > GROWTH[0].max(GROWTH[1] * last) {
+                return Ok(Survey { result, round, finished: true });
+            }
+            last = many;
             tracer.begin_again(found.brackets);
         }
     }

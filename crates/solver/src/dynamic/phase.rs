@@ -72,15 +72,15 @@ impl<Mode: Copy> Phase<Mode> {
     }
 
     /// Takes values that may be due to rounding of the state at `event`, which led here, for zeros.
-    /// `same` tells whether the guard that fired is the same as before the event, and `stands`
-    /// whether it goes on where it fired, whatever its rounding is. The sizes of the
+    /// `same` tells whether the guard that fired is the same as before the event, and `stands` which
+    /// guards go on where they fired at this instant, whatever their rounding is. The sizes of the
     /// time and of the components near the event are `s_scale` and `work.scale`.
     pub(crate) fn forgive<S: DynamicSystem<Mode = Mode>>(
         &mut self,
         system: &S,
         (s, y): (f64, &[f64]),
         event: &Event,
-        (same, stands): (bool, bool),
+        (same, stands): (bool, &[bool]),
         s_scale: f64,
         work: &mut Work,
     ) -> usize {
@@ -92,7 +92,7 @@ impl<Mode: Copy> Phase<Mode> {
                 // On the right side, a bound of the domain needs no pardon.
                 Direction::Below => value < 0.0,
                 // A guard that fired stands on its zero where it goes on, also exactly.
-                _ => guard == event.guard && same,
+                _ => stands[guard] || guard == event.guard && same,
             };
             if !may_be_zero || self.zero_orders[guard] > 0 {
                 continue;
@@ -103,7 +103,7 @@ impl<Mode: Copy> Phase<Mode> {
             let (hidden, evaluations) = rounding(&at, (s, y), (s_scale, scale), moved, values);
             count += evaluations;
             let residual = if guard == event.guard { event.residual } else { 0.0 };
-            let stands = stands && guard == event.guard && direction != Direction::Below;
+            let stands = stands[guard] && direction != Direction::Below;
             if stands || value.abs() <= hidden.max(residual) {
                 self.at_zero = true;
                 self.zero_orders[guard] = 1;

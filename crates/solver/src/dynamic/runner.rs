@@ -69,6 +69,7 @@ where
         notices: Notices::new(),
         step: Step::new(n),
         work: Work::new(n),
+        stand: Vec::new(),
         tables: Tables::default(),
         statistics: Statistics { guards: 1, ..Statistics::default() },
     };
@@ -110,6 +111,8 @@ struct Runner<'a, S: DynamicSystem, O> {
     notices: Notices<S::Mode>,
     step: Step,
     work: Work,
+    /// Which guards stand on their zero where a phase begins.
+    stand: Vec<bool>,
     tables: Tables,
     statistics: Statistics,
 }
@@ -371,6 +374,10 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
         if let Some(outcome) = self.zeno.after_switch(s, self.clock.phase, self.options) {
             return Ok(Some(outcome));
         }
+        self.stand.clear();
+        if self.clock.phase == 0.0 {
+            self.stand.extend_from_slice(&self.phase.forgiven);
+        }
         self.clock.phase = 0.0;
         for (scale, after) in self.work.scale.iter_mut().zip(&self.state) {
             *scale = scale.max(after.abs());
@@ -378,8 +385,8 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
         let (system, place) = (self.system, (s, &self.state[..]));
         self.phase.enter(system, to, place, &self.fired)?;
         self.statistics.guards += 1;
-        let stands = !event.jump && self.is_same_guard(from, s, event);
-        let same = (to == from || stands, stands);
+        self.keep_standing(from, s, event);
+        let same = (to == from || self.stand[guard], &self.stand[..]);
         self.statistics.guards +=
             self.phase.forgive(system, (s, &self.state), event, same, s_scale, &mut self.work);
         if self.options.step_size == StepSize::Adaptive {
@@ -391,17 +398,23 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
         Ok(None)
     }
 
-    /// Whether the guard that fired in the mode `from` seems to be one of the new mode too: where
-    /// the state goes on unchanged, it has the same value.
-    fn is_same_guard(&mut self, from: S::Mode, s: f64, event: &Event) -> bool {
-        if self.state != event.state {
-            return false;
+    /// Of the guards that stood on their zero at this instant, and of that which fired in the mode
+    /// `from`, keeps those that seem to be guards of the new mode too: where the state goes on
+    /// unchanged, they have the same values.
+    fn keep_standing(&mut self, from: S::Mode, s: f64, event: &Event) {
+        self.stand.resize(self.phase.values.len().max(event.guard + 1), false);
+        self.stand[event.guard] = !event.jump;
+        if self.state != event.state || !self.stand.contains(&true) {
+            self.stand.fill(false);
+            return;
         }
         self.statistics.guards += 1;
         let values = &mut self.work.values;
         values.resize(self.system.guards(from).len(), f64::NAN);
         self.system.guard_values(from, s, &event.state, values);
-        self.phase.values.get(event.guard) == Some(&values[event.guard])
+        for (guard, stands) in self.stand.iter_mut().enumerate() {
+            *stands &= values.get(guard) == self.phase.values.get(guard);
+        }
     }
 
     fn refresh_slope(&mut self) -> Result<(), RunError> {

@@ -56,7 +56,7 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
         })
     }
 
-    /// Whether the guard that fired in the mode `from` seems to be one of this mode too: where the
+    /// Whether a guard of the mode `from` before `event` seems to be one of this mode too: where the
     /// state `y` goes on unchanged, it has the same value.
     #[inline(never)]
     fn is_same_guard<S: HybridSystem<N, G, Mode = Mode>, const N: usize>(
@@ -64,21 +64,21 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
         system: &S,
         (s, y): (f64, &State<N>),
         event: &Event<N>,
-        from: Mode,
+        (from, guard): (Mode, usize),
     ) -> bool {
-        *y == event.state
-            && system.guard_values(from, s, y)[event.guard] == self.values[event.guard]
+        *y == event.state && system.guard_values(from, s, y)[guard] == self.values[guard]
     }
 
     /// Takes values that may be due to rounding of the state at `event`, which led here, for zeros.
     /// `from` is the mode before the event, and `largest` the largest value there of the guard that
-    /// fired.
+    /// fired. `stood` tells which guards have fired before at the same instant and stood on their zero.
     pub(crate) fn forgive<S: HybridSystem<N, G, Mode = Mode>, const N: usize>(
         &mut self,
         system: &S,
         (s, y): (f64, &State<N>),
         event: &Event<N>,
         (from, largest): (Mode, f64),
+        stood: &[bool; G],
     ) where
         Mode: PartialEq,
     {
@@ -86,10 +86,10 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
             let (value, direction) = (self.values[guard], self.guards[guard].direction());
             // A guard that fired stands on its zero where it goes on, also exactly, and whatever its
             // rounding is.
-            let stands = guard == event.guard
-                && !matches!(direction, Direction::Off | Direction::Below)
-                && value.abs() <= NEAR_ZERO * largest.max(event.slope * event.step.h)
-                && self.is_same_guard(system, (s, y), event, from);
+            let is_near = || value.abs() <= NEAR_ZERO * largest.max(event.slope * event.step.h);
+            let stands = !matches!(direction, Direction::Off | Direction::Below)
+                && (if guard == event.guard { is_near() } else { stood[guard] })
+                && self.is_same_guard(system, (s, y), event, (from, guard));
             let may_be_zero = match direction {
                 Direction::Off => false,
                 // On the right side, a bound of the domain needs no pardon.

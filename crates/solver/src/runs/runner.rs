@@ -373,9 +373,10 @@ where
         if let Some(outcome) = self.zeno.after_switch(s, self.clock.phase, self.options) {
             return Ok(Some(outcome));
         }
+        let stood = if self.clock.phase == 0.0 { self.phase.forgiven } else { [false; G] };
         self.clock.phase = 0.0;
         self.phase = Phase::enter(self.system, to, (s, &after), &self.fired)?;
-        self.phase.forgive(self.system, (s, &after), event, (from, largest));
+        self.phase.forgive(self.system, (s, &after), event, (from, largest), &stood);
         self.statistics.guards += 1;
         if self.options.step_size == StepSize::Adaptive {
             let h = self.other_h.replace(self.h).unwrap_or(self.h);

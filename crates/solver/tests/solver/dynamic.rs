@@ -6,10 +6,12 @@
 //! | `planted` | random guards whose zeros are known |
 //! | `large` | 20 000 components, small stacks, no allocation per step |
 //! | `answers` | the defined answers, limits, errors, runs backwards |
+//! | `chains` | several guards at one instant |
 //! | `broken` | inputs that nobody designed for |
 
 mod answers;
 mod broken;
+mod chains;
 mod large;
 mod planted;
 mod same;

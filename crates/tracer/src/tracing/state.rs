@@ -82,6 +82,11 @@ impl<'f, F: Family> Tracer<'f, F> {
         self.before_look.is_some()
     }
 
+    /// The number of pairs of places between which the tracer looks again, if it does.
+    pub(crate) fn places_to_look(&self) -> Option<usize> {
+        self.before_look.as_ref()?.brackets.as_ref().map(Vec::len)
+    }
+
     /// The number of curves found so far.
     pub(crate) fn curve_count(&self) -> usize {
         self.builder.network.curves.len()
