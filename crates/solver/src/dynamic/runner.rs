@@ -400,7 +400,7 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
 
     /// Of the guards that stood on their zero at this instant, and of that which fired in the mode
     /// `from`, keeps those that seem to be guards of the new mode too: where the state goes on
-    /// unchanged, they have the same values.
+    /// unchanged, they have the same values or their negatives.
     fn keep_standing(&mut self, from: S::Mode, s: f64, event: &Event) {
         self.stand.resize(self.phase.values.len().max(event.guard + 1), false);
         self.stand[event.guard] = !event.jump;
@@ -413,7 +413,8 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Runner<'_, S, O> {
         values.resize(self.system.guards(from).len(), f64::NAN);
         self.system.guard_values(from, s, &event.state, values);
         for (guard, stands) in self.stand.iter_mut().enumerate() {
-            *stands &= values.get(guard) == self.phase.values.get(guard);
+            *stands &=
+                values.get(guard).map(|v| v.abs()) == self.phase.values.get(guard).map(|v| v.abs());
         }
     }
 

@@ -57,7 +57,7 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
     }
 
     /// Whether a guard of the mode `from` before `event` seems to be one of this mode too: where the
-    /// state `y` goes on unchanged, it has the same value.
+    /// state `y` goes on unchanged, it has the same value or its negative.
     #[inline(never)]
     fn is_same_guard<S: HybridSystem<N, G, Mode = Mode>, const N: usize>(
         &self,
@@ -66,7 +66,8 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
         event: &Event<N>,
         (from, guard): (Mode, usize),
     ) -> bool {
-        *y == event.state && system.guard_values(from, s, y)[guard] == self.values[guard]
+        *y == event.state
+            && system.guard_values(from, s, y)[guard].abs() == self.values[guard].abs()
     }
 
     /// Takes values that may be due to rounding of the state at `event`, which led here, for zeros.
