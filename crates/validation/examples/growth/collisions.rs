@@ -22,16 +22,16 @@ const fn window(kappa: [f64; 2], psi: [f64; 2], damping: f64, about: usize) -> W
     Window { kappa, psi, damping, about }
 }
 
-/// The windows that are traced.
+/// The windows that are traced. The number of curves grows about as the greatest κ.
 pub const WINDOWS: [Window; 8] = [
     window([0.05, 100.0], [0.01, 3.0], 0.0, 50),
-    window([0.05, 100.0], [0.01, 3.0], 0.1, 100),
-    window([1.0, 1000.0], [0.1, 3.0], 0.0, 150),
-    window([1.0, 1000.0], [0.1, 3.0], 0.1, 400),
-    window([10.0, 4000.0], [0.1, 2.0], 0.1, 1000),
-    window([100.0, 10_000.0], [0.1, 2.0], 0.1, 2500),
-    window([1000.0, 20_000.0], [0.1, 2.0], 0.1, 4000),
-    window([1000.0, 30_000.0], [0.1, 2.0], 0.1, 5000),
+    window([0.05, 100.0], [0.01, 3.0], 0.1, 80),
+    window([100.0, 1000.0], [0.1, 2.0], 0.0, 350),
+    window([100.0, 1000.0], [0.1, 2.0], 0.1, 350),
+    window([100.0, 3000.0], [0.1, 2.0], 0.0, 1100),
+    window([100.0, 3000.0], [0.1, 2.0], 0.1, 1100),
+    window([100.0, 6000.0], [0.1, 2.0], 0.1, 2300),
+    window([100.0, 12_000.0], [0.1, 2.0], 0.1, 4800),
 ];
 
 /// The atlas of a window, compared with collisions.
