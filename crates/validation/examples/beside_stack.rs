@@ -2,9 +2,9 @@
 //! the stack leave.
 //!
 //! Run with `cargo run --release -p validation --example beside_stack -- STACK.json [DAMPING]…`, with
-//! the file that `stickslip stack` writes. Without dampings there are ten, each in the middle, in the
-//! logarithm, between two changes: those of the ten widest gaps that have no atlas of the stack in
-//! their middle half. A region counts by its itinerary. Prints a Markdown table, and fails if the
+//! the file that `stickslip stack` writes. Without dampings there are up to ten, each in the middle, in
+//! the logarithm, between two changes that have no atlas of the stack there: of the gaps in their order
+//! the widest in each tenth. A region counts by its itinerary. Prints a Markdown table, and fails if the
 //! regions are others or anything speaks against an atlas.
 
 use std::collections::BTreeMap;
@@ -118,9 +118,10 @@ impl Stack {
         Some(regions)
     }
 
-    /// The middles of the widest gaps between changes, in ascending order.
+    /// Dampings between changes: the gaps in their order are divided into `count` groups, and the
+    /// widest of each group has one in its middle.
     fn between_changes(&self, count: usize) -> Vec<f64> {
-        let mut gaps: Vec<[f64; 2]> = self
+        let gaps: Vec<[f64; 2]> = self
             .changes
             .windows(2)
             .map(|pair| [pair[0].between[1], pair[1].between[0]])
@@ -130,10 +131,10 @@ impl Stack {
                 high > low && !self.layers.iter().any(|(at, _)| in_middle(*at))
             })
             .collect();
-        gaps.sort_by(|one, two| (two[1] / two[0]).total_cmp(&(one[1] / one[0])));
-        let mut middles: Vec<f64> =
-            gaps.iter().take(count).map(|[low, high]| (low * high).sqrt()).collect();
-        middles.sort_by(f64::total_cmp);
-        middles
+        let width = |[low, high]: &&[f64; 2]| high / low;
+        gaps.chunks(gaps.len().div_ceil(count).max(1))
+            .filter_map(|group| group.iter().max_by(|one, two| width(one).total_cmp(&width(two))))
+            .map(|[low, high]| (low * high).sqrt())
+            .collect()
     }
 }

@@ -94,6 +94,8 @@ impl<F: Family> Tracer<'_, F> {
             }
             narrow_before = narrow.len();
             places = grid.divide(&narrow);
+            // Places far apart have more different labels, which may be enough.
+            fastrand::Rng::with_seed(1).shuffle(&mut places);
         }
     }
 
