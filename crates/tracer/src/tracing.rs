@@ -12,6 +12,7 @@
 //! - `sliver`: boundaries of regions between two places with the same label
 //! - `tangency`: ends of curves that touch another one with a square root
 //! - `branch`: one boundary, followed from its seed
+//! - `fit`: cubics as close to a boundary as the options ask
 //! - `corrector`: from a guess to the zero of a margin
 //! - `runs`: the runs of a family, counted
 //! - `builder`: the network that grows
@@ -28,6 +29,7 @@ mod corrector;
 pub mod count;
 mod cut;
 pub mod extrema;
+mod fit;
 pub mod follow;
 mod island;
 mod naming;

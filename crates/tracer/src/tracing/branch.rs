@@ -22,6 +22,7 @@ use crate::tracing::branch::end::{End, SHORTEST, Special, Stop};
 use crate::tracing::branch::step::Attempt;
 use crate::tracing::branch::touch::touch;
 use crate::tracing::branch::track::{FootholdOf, Track};
+use crate::tracing::fit::Target;
 use crate::tracing::runs::{Runs, Traced};
 use crate::tracing::seed::Seed;
 use crate::window::Point;
@@ -66,8 +67,8 @@ use crate::window::Point;
 /// ```
 pub struct Branch<'a, 'f, F: Family> {
     track: Track<'a, 'f, F>,
-    /// Whether the node of the last foothold has not been handed out yet.
-    held: bool,
+    /// The nodes up to the last foothold that have not been handed out yet.
+    held: Vec<Node>,
     /// The nodes that the iterator returns next.
     ready: VecDeque<Node>,
     end: Option<End<F::Margin>>,
@@ -112,7 +113,7 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         let Some(foothold) = track.foothold(&seed.point, &gradient)?.ok() else { return Ok(None) };
         track.origin = foothold.node;
         track.footholds.push_back(foothold);
-        Ok(Some(Self { track, held: false, ready: VecDeque::new(), end: None, rejected: 0 }))
+        Ok(Some(Self { track, held: Vec::new(), ready: VecDeque::new(), end: None, rejected: 0 }))
     }
 
     /// The start of the branch.
@@ -143,7 +144,7 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         let Some(from) = self.track.footholds.back().cloned() else { return Ok(()) };
         let runs = self.track.runs;
         if self.track.taken >= runs.options.max_nodes {
-            return self.finish(End::Limit, None);
+            return self.finish(End::Limit, Vec::new());
         }
         let mut h = self.track.limited_step(&from.node);
         let first_step = h;
@@ -167,7 +168,7 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
             self.rejected += 1;
             failures += 1;
             if let Some(index) = self.track.aim(&from, h)? {
-                return self.finish(End::Known(index), None);
+                return self.finish(End::Known(index), Vec::new());
             }
             let cusps = cusp::ahead(&self.track, &from, h)?;
             for &place in &cusps {
@@ -215,37 +216,41 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         if let Some((special, before_last)) = touch(&self.track, &foothold)? {
             if before_last {
                 self.track.footholds.pop_back();
-                self.held = false;
+                self.held.clear();
             }
             return self.finish_at(special);
         }
         if let Some(index) = self.track.passed_stop(&arc) {
-            return self.finish(End::Known(index), None);
+            return self.finish(End::Known(index), Vec::new());
         }
+        let fit = self.track.fit();
         if self.track.taken > 0 && self.track.passes_origin(&arc) {
-            return self.finish(End::Closed, Some(self.track.origin));
+            let nodes = fit.nodes(&from.node, &from.gradient, Target::Node(self.track.origin))?;
+            return self.finish(End::Closed, nodes);
         }
+        let nodes = if self.track.is_close(from, &arc)? {
+            vec![foothold.node]
+        } else {
+            fit.nodes(&from.node, &from.gradient, Target::Node(foothold.node))?
+        };
         self.hand_out();
         self.track.taken += 1;
         if edge {
             let special = special::edge(runs, &foothold.node.point, &self.track.margin);
-            return self.finish(End::Vertex(special), Some(foothold.node));
+            return self.finish(End::Vertex(special), nodes);
         }
         self.track.margin = runs.moved(&foothold.node.point, &self.track.margin)?;
         self.track.footholds.push_back(foothold);
-        self.held = true;
+        self.held = nodes;
         if self.track.footholds.len() > 2 {
             self.track.footholds.pop_front();
         }
         Ok(())
     }
 
-    /// Hands out the node that was held back.
+    /// Hands out the nodes that were held back.
     fn hand_out(&mut self) {
-        if self.held {
-            self.ready.extend(self.track.footholds.back().map(|foothold| foothold.node));
-            self.held = false;
-        }
+        self.ready.extend(self.held.drain(..));
     }
 
     /// Ends the branch at a special point, or at the known vertex that is the same place. If the
@@ -266,8 +271,8 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         self.finish_with(known.map_or(End::Vertex(special), End::Known), point)
     }
 
-    /// Ends the branch at `last`, or at the known vertex that `end` names.
-    fn finish(&mut self, end: End<F::Margin>, last: Option<Node>) -> Traced<(), F> {
+    /// Ends the branch after the nodes `last`, or at the known vertex that `end` names.
+    fn finish(&mut self, end: End<F::Margin>, last: Vec<Node>) -> Traced<(), F> {
         if let End::Known(index) = end {
             let point = self.track.stops[index].point;
             return self.finish_with(end, point);
@@ -279,21 +284,20 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
     }
 
     /// Ends the branch at `point`, or at a known vertex before it.
-    fn finish_with(&mut self, end: End<F::Margin>, point: Point) -> Traced<(), F> {
+    fn finish_with(&mut self, end: End<F::Margin>, mut point: Point) -> Traced<(), F> {
         self.hand_out();
-        let Some(last) = self.track.footholds.back().map(|foothold| foothold.node) else {
-            return Ok(());
-        };
-        let mut node = self.track.end_node(&last, &point)?;
+        let Some(last) = self.track.footholds.back().cloned() else { return Ok(()) };
+        let node = self.track.end_node(&last.node, &point)?;
         self.end = Some(end);
         let reaches = |stop: &Stop| (stop.point - point).norm() <= stop.uncertainty;
-        if let Some(index) = self.track.passed_stop(&Cubic::between(&last, &node))
+        if let Some(index) = self.track.passed_stop(&Cubic::between(&last.node, &node))
             && !reaches(&self.track.stops[index])
         {
-            node = self.track.end_node(&last, &self.track.stops[index].point)?;
+            point = self.track.stops[index].point;
             self.end = Some(End::Known(index));
         }
-        self.ready.push_back(node);
+        let fit = self.track.fit();
+        self.ready.extend(fit.nodes(&last.node, &last.gradient, Target::Vertex(point))?);
         Ok(())
     }
 }

@@ -124,6 +124,13 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         }
     }
 
+    /// Gives a curve other nodes.
+    pub fn replace_nodes(&mut self, curve: usize, nodes: Vec<Node>) {
+        self.leave(curve);
+        self.network.curves[curve].nodes = nodes;
+        self.enter(curve);
+    }
+
     /// Another vertex that is known as well as places can be told apart, and that is at a place at
     /// which a vertex was solved for.
     pub fn same_place(&self, index: usize, special: &Special<Margin>) -> Option<usize> {

@@ -206,6 +206,7 @@ impl<F: Family> Tracer<'_, F> {
             Stage::Polish => {
                 self.polish()?;
                 self.move_to_tangencies()?;
+                self.fit_ends()?;
                 self.builder.drop_explained();
                 Stage::Done
             }

@@ -1,4 +1,4 @@
-//! What lies ahead of a branch: known vertices, its own start, and the piece before its end.
+//! What lies ahead of a branch: known vertices and its own start.
 
 use crate::cubic::Cubic;
 use crate::curve::Node;
@@ -6,6 +6,7 @@ use crate::family::Family;
 use crate::tracing::branch::end::{SHORTEST, Stop};
 use crate::tracing::branch::track::{FootholdOf, Track};
 use crate::tracing::corrector::correct;
+use crate::tracing::fit::mirrored;
 use crate::tracing::runs::Traced;
 use crate::window::Point;
 
@@ -119,36 +120,4 @@ impl<F: Family> Track<'_, '_, F> {
             arc.tangent(theta).dot(&self.origin.tangent) > 0.5
         }
     }
-
-    /// The node at `point`, where the branch ends.
-    pub(crate) fn end_node(&self, last: &Node, point: &Point) -> Traced<Node, F> {
-        // A chord comparable to the tolerance has no meaningful direction.
-        let tangent = if (point - last.point).norm() < SHORTEST * self.runs.scale {
-            last.tangent
-        } else {
-            self.end_tangent(last, point)?
-        };
-        Ok(Node { point: *point, tangent })
-    }
-
-    /// The tangent at `point`, where the branch ends: normal to the gradient if there is one, else
-    /// that of the circle through the last node.
-    fn end_tangent(&self, last: &Node, point: &Point) -> Traced<Point, F> {
-        let chord = point - last.point;
-        let mirrored = mirrored(&last.tangent, &chord);
-        if let Some(gradient) = self.runs.gradient(point, &self.margin, &mirrored, self.radius)? {
-            let tangent = self.tangent(&gradient);
-            let turn = tangent.angle(&mirrored);
-            if turn < 0.1 * last.tangent.angle(&chord) + 1e-6 {
-                return Ok(tangent);
-            }
-        }
-        Ok(mirrored)
-    }
-}
-
-/// The tangent at the end of a circular arc that starts with `tangent`.
-fn mirrored(tangent: &Point, chord: &Point) -> Point {
-    let chord = chord.normalize();
-    chord * (2.0 * chord.dot(tangent)) - tangent
 }

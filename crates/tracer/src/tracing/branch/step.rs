@@ -6,6 +6,7 @@ use crate::family::Family;
 use crate::tracing::branch::end::SHORTEST;
 use crate::tracing::branch::track::{Foothold, FootholdOf, Track};
 use crate::tracing::corrector::{correct, correct_on_edge};
+use crate::tracing::fit::{SHOWING, SHOWN};
 use crate::tracing::runs::Traced;
 use crate::window::{Point, Window};
 
@@ -74,13 +75,11 @@ impl<F: Family> Track<'_, '_, F> {
         }
         let node = Node { point: corrected.point, tangent };
         let arc = Cubic::between(&from.node, &node);
-        // At 0.3 the errors of fourth and of fifth order both show, unlike in the middle. The error
-        // of fourth order has 0.7 of its maximum there.
-        let Some(value) = runs.margin(&arc.at(0.3), &self.margin)? else {
+        let Some(value) = runs.margin(&arc.at(SHOWING[0]), &self.margin)? else {
             return Ok(Attempt::Lost);
         };
         let slope = 0.5 * (gradient.norm() + from.gradient.norm());
-        let error = ((value.abs() - runs.options.noise) / slope / 0.7).max(0.0);
+        let error = ((value.abs() - runs.options.noise) / slope / SHOWN).max(0.0);
         let close = error <= runs.options.interpolation;
         if !close {
             return Ok(Attempt::Rough(error));
@@ -110,6 +109,15 @@ impl<F: Family> Track<'_, '_, F> {
             }
             Err(beyond) => Attempt::Labels(beyond),
         })
+    }
+
+    /// Whether an accepted step is close to the boundary at the other place too at which errors show.
+    /// Where the margin does not exist, nothing tells otherwise.
+    pub(crate) fn is_close(&self, from: &FootholdOf<F>, arc: &Cubic) -> Traced<bool, F> {
+        let options = &self.runs.options;
+        let most = SHOWN * options.interpolation * from.gradient.norm() + options.noise;
+        let value = self.runs.margin(&arc.at(SHOWING[1]), &self.margin)?;
+        Ok(value.is_none_or(|value| value.abs() <= most))
     }
 
     /// The place where the branch leaves the window on its way from the last foothold to `point`;

@@ -6,6 +6,7 @@ use crate::cubic::Cubic;
 use crate::curve::Node;
 use crate::family::{Family, FreeRun};
 use crate::tracing::branch::end::Stop;
+use crate::tracing::fit::Fit;
 use crate::tracing::runs::{Runs, Traced};
 use crate::window::Point;
 
@@ -83,6 +84,16 @@ impl<F: Family> Track<'_, '_, F> {
                 return Ok(Err(widest.clone()));
             }
         }
+    }
+
+    /// The boundary, to which cubics are fitted.
+    pub fn fit(&self) -> Fit<'_, '_, F> {
+        Fit { runs: self.runs, margin: &self.margin, radius: self.radius }
+    }
+
+    /// The node at `point`, where the branch ends, behind `last`.
+    pub fn end_node(&self, last: &Node, point: &Point) -> Traced<Node, F> {
+        self.fit().end(last, point)
     }
 
     /// The predicted place after a step of length `h` from the last node. It lies on the last
