@@ -40,15 +40,15 @@ impl Family for Board {
     }
 }
 
+/// Lines have inflections, where an error that is looked for at one place of a cubic can hide. A line
+/// was then found a second time beside itself.
 #[test]
 fn bent_chessboards_are_complete() {
     let window = Window { low: Point::new(0.0, 0.0), high: Point::new(1.0, 1.0) };
-    for side in [5.0, 8.0] {
+    // Curves and regions, counted by Euler's formula from the lines and their crossings.
+    for (side, [curves, regions]) in [(5.0, [60, 37]), (8.0, [144, 82])] {
         let atlas = Atlas::of(&Board { side }, &window, &AtlasOptions::default()).unwrap();
-        for f in atlas.plane.findings() { println!("{f:?}"); }
-        for f in &atlas.verification.mismatches { println!("{f:?}"); }
-        for (i, c) in atlas.plane.curves().iter().enumerate() { println!("{i} {:?} {:?} {:?} {} {:?} .. {:?}", c.margin, c.sides, c.ends, c.nodes.len(), c.nodes[0].point, c.nodes[c.nodes.len()-1].point); }
-        for (i, c) in atlas.plane.vertices().iter().enumerate() { println!("v{i} {:?} {:?} {:?}", c.kind, c.point, c.margins); }
         assert_eq!(atlas.objection(), None);
+        assert_eq!([atlas.plane.curves().len(), atlas.plane.regions().len()], [curves, regions]);
     }
 }
