@@ -132,7 +132,8 @@ impl Stack {
             })
             .collect();
         let width = |[low, high]: &&[f64; 2]| high / low;
-        gaps.chunks(gaps.len().div_ceil(count).max(1))
+        (0..count)
+            .map(|group| &gaps[group * gaps.len() / count..(group + 1) * gaps.len() / count])
             .filter_map(|group| group.iter().max_by(|one, two| width(one).total_cmp(&width(two))))
             .map(|[low, high]| (low * high).sqrt())
             .collect()
