@@ -32,7 +32,8 @@ class TraceOptions:
     cells: int = 32
     #: The greatest number of points of a curve.
     max_nodes: int = 20_000
-    #: A window that shows more curves before it is traced is refused.
+    #: A window that shows more curves before it is traced is refused; that count misses some, so
+    #: that up to twice as many are traced.
     max_curves: int = 10_000
 
 

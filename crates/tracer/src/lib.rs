@@ -134,6 +134,7 @@ pub use stack::{Layer, Stack, StackError, StackOf, StackOptions};
 pub use survey::{Found, Survey, Surveyor};
 pub use tracing::branch::Branch;
 pub use tracing::branch::end::{End, Special, Stop};
+pub use tracing::count::Count;
 pub use tracing::extrema::Extremum;
 pub use tracing::follow::{Followed, Monitor, MonitorZero, follow};
 pub use tracing::network::{Network, NetworkOf, TraceStatistics, Unresolved};

@@ -34,7 +34,8 @@ pub struct TraceOptions {
     /// The greatest number of nodes of a branch, which stops there; at least 2.
     pub max_nodes: usize,
     /// The greatest number of curves, at least 1. A window that shows more of them before it is
-    /// traced is refused; further ones that are found later are reported as unresolved.
+    /// traced is refused. Since that count misses some, up to twice as many are traced; further ones
+    /// are reported as unresolved.
     pub max_curves: usize,
 }
 
@@ -122,13 +123,14 @@ pub enum TraceError<E: std::error::Error + 'static> {
     },
     /// The window has more curves than the options allow. Nothing was traced.
     #[error(
-        "the window has at least about {regions} regions, and so more than {most} boundaries; choose a \
-         smaller one"
+        "the window has at least about {curves} boundaries and {regions} regions, and at most {most} \
+         boundaries are traced; choose a smaller one"
     )]
     TooManyCurves {
-        /// The number of regions that were counted, see
-        /// [`Tracer::count_regions`](crate::Tracer::count_regions).
+        /// The number of regions that were counted, see [`Tracer::count`](crate::Tracer::count).
         regions: usize,
+        /// The number of curves that were counted.
+        curves: usize,
         /// The greatest number of curves, [`TraceOptions::max_curves`].
         most: usize,
     },

@@ -3,7 +3,7 @@
 //! In reading order:
 //!
 //! - `trace`: all boundaries in a window
-//! - `count`: how many regions there are, roughly, before anything is traced
+//! - `count`: how many curves and regions there are, roughly, before anything is traced
 //! - `stages`: the order of the search, in steps
 //! - `state`: what a search must remember to go on later
 //! - `scan`: the boundaries that cross a segment
@@ -26,7 +26,7 @@
 pub mod branch;
 mod builder;
 mod corrector;
-mod count;
+pub mod count;
 mod cut;
 pub mod extrema;
 mod fit;

@@ -8,6 +8,7 @@ mod gaining;
 mod geojson;
 mod grid;
 mod laws;
+mod refusal;
 mod stack;
 mod sweep;
 mod windows;

@@ -369,16 +369,22 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         }
     }
 
-    /// Removes curves.
-    pub fn remove_curves(&mut self, removed: &[usize]) {
+    /// Removes curves. All later ones have other indices then.
+    pub fn remove_curves(&mut self, curves: &[usize]) {
+        let mut removed = curves.to_vec();
+        removed.sort_unstable();
+        removed.dedup();
+        for &curve in &removed {
+            self.leave(curve);
+        }
         let mut index = 0;
         self.network.curves.retain(|_| {
             index += 1;
-            !removed.contains(&(index - 1))
+            removed.binary_search(&(index - 1)).is_err()
         });
-        // All later curves have other indices now.
-        self.cells.iter_mut().for_each(Vec::clear);
-        self.enter_all();
+        for (curve, _) in self.cells.iter_mut().flatten() {
+            *curve -= removed.partition_point(|&other| other < *curve);
+        }
     }
 
     fn enter_all(&mut self) {

@@ -1,108 +1,108 @@
-//! How many regions a window has, roughly, before any boundary is traced.
+//! How many boundaries and regions a window has, roughly, before any is traced.
+
+mod grid;
+
+use std::collections::HashMap;
 
 use crate::executor::Executor;
 use crate::family::Family;
 use crate::options::TraceError;
-use crate::regions::arrangement::union::DisjointSets;
+use crate::tracing::count::grid::{Grid, Place};
 use crate::tracing::runs::Traced;
 use crate::tracing::trace::Tracer;
 use crate::watch::Watch;
 use crate::window::Point;
 
+/// What a [count](Tracer::count) of a window finds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Count {
+    /// The number of regions.
+    pub regions: usize,
+    /// The number of boundaries between them.
+    pub curves: usize,
+}
+
 impl<F: Family> Tracer<'_, F> {
-    /// Refuses a window that has more curves than the options allow, as far as a grid of labels
-    /// shows.
-    ///
-    /// Regions are counted by [`Self::count_regions`]. There are at least as many curves between
-    /// regions as regions but one, and about twice as many where curves cross.
+    /// Refuses a window that has more curves than the options allow, as far as [`Self::count`] shows.
     ///
     /// # Errors
-    /// [`TraceError::TooManyCurves`] has the number of regions.
+    /// [`TraceError::TooManyCurves`] has the numbers that were counted.
     pub fn require_few<E: Executor<F>>(&self, executor: &E, watch: &Watch<'_>) -> Traced<(), F> {
         let most = self.runs.options.max_curves;
-        let regions = self.count_regions(executor, watch, most.saturating_add(2));
-        if regions > most.saturating_add(1) {
-            return Err(TraceError::TooManyCurves { regions, most });
+        let Count { regions, curves } = self.count(executor, watch, most.saturating_add(1));
+        if curves > most {
+            return Err(TraceError::TooManyCurves { regions, curves, most });
         }
         Ok(())
     }
 
-    /// An estimate of the number of regions, without tracing. The count ends where it reaches
-    /// `enough`.
+    /// An estimate of the numbers of regions and curves, without tracing. It ends where there are
+    /// `enough` curves.
     ///
-    /// Labels are computed on a grid of 32 by 32 places. A region counts if it has a square of four
-    /// neighbouring places, so that narrow ones are left out; two regions with one label count as
-    /// one if places of both are neighbours. Regions that are connected only by a neck between two
-    /// places count more than once. If more than an eighth of all places are in no such square, the
-    /// grid is made twice as fine, up to 512 by 512. A place where the run fails is in none. If the
-    /// watch cancels, the result is 0.
+    /// Labels are computed at 32 by 32 places. A place that is in no square of four places with one
+    /// label is divided into four, and so on, so that regions are told apart where they are narrow,
+    /// and only there. This ends where no such place is left; after 4096 places, where their number
+    /// does not even double and those left would have to hide four curves each to make enough; and
+    /// at the latest after ten divisions, or before there are 2¹⁹ places.
+    ///
+    /// A region counts if it has a square of four places, and so does a label that has no such
+    /// region. Two regions that share more than one side of a place have a curve between them. The
+    /// number of curves may be wrong by a tenth: two that cross at a small angle can count as three.
+    /// Where places are too coarse both numbers are too small. Different labels alone are certain: a
+    /// window has at least as many curves as labels but one. A place where the run fails is in no
+    /// region. If the watch cancels, nothing is counted.
     #[must_use]
-    pub fn count_regions<E: Executor<F>>(
-        &self,
-        executor: &E,
-        watch: &Watch<'_>,
-        enough: usize,
-    ) -> usize {
-        const COARSEST: usize = 32;
-        const FINEST: usize = 512;
+    pub fn count<E: Executor<F>>(&self, executor: &E, watch: &Watch<'_>, enough: usize) -> Count {
+        /// The number of places that any window may take.
+        const FEW: usize = 4096;
+        /// The greatest number of places.
+        const MOST: usize = 1 << 19;
+        /// The greatest number of divisions.
+        const DEEPEST: u32 = 10;
         let silent = watch.silently();
-        let (mut side, mut most) = (COARSEST, 0);
+        let mut names = HashMap::new();
+        let mut grid = Grid::new();
+        let mut places = grid.coarsest();
+        let mut narrow_before = usize::MAX / 2;
         loop {
-            let points = self.centres(side);
-            let labels = |portion: &[Point]| executor.labels(self.runs.family(), portion);
-            let Some(labels) = silent.in_portions(&points, labels) else { return 0 };
-            let labels: Vec<_> = labels.into_iter().map(Result::ok).collect();
-            let (regions, outside) = squares(&labels, side);
-            most = most.max(regions);
-            if most >= enough || 8 * outside <= side * side || side >= FINEST {
-                return most;
+            for portion in places.chunks(FEW) {
+                let points: Vec<Point> = portion.iter().map(|place| self.middle(place)).collect();
+                let mut name = |label| {
+                    let next = names.len();
+                    *names.entry(label).or_insert(next)
+                };
+                let labels = silent.in_portions(&points, |points| {
+                    let labels = executor.labels(self.runs.family(), points).into_iter();
+                    labels.map(|label| label.ok().map(&mut name)).collect()
+                });
+                let Some(labels) = labels else { return Count::default() };
+                grid.label(portion, &labels);
+                if names.len() > enough {
+                    return Count { regions: names.len(), curves: names.len() - 1 };
+                }
             }
-            side *= 2;
+            let narrow = grid.narrow(&places);
+            let count = grid.count(names.len());
+            let grows = narrow.len() >= 2 * narrow_before;
+            let could_be_enough = count.curves + 4 * narrow.len() >= enough;
+            let goes_on = grid.places() < FEW || grows || could_be_enough;
+            let last = narrow.is_empty()
+                || grid.places() + 4 * narrow.len() > MOST
+                || narrow[0].level == DEEPEST;
+            if count.curves >= enough || last || !goes_on {
+                return count;
+            }
+            narrow_before = narrow.len();
+            places = grid.divide(&narrow);
+            // Places far apart have more different labels, which may be enough.
+            fastrand::Rng::with_seed(1).shuffle(&mut places);
         }
     }
 
-    /// The middles of the cells of a grid.
-    fn centres(&self, side: usize) -> Vec<Point> {
-        let cell = self.runs.window.extent() / side as f64;
-        let place = |index: usize| {
-            let part = Point::new((index / side) as f64 + 0.5, (index % side) as f64 + 0.5);
-            self.runs.window.low + cell.component_mul(&part)
-        };
-        (0..side * side).map(place).collect()
+    /// The middle of a place.
+    fn middle(&self, place: &Place) -> Point {
+        let part = Point::new(place.column as f64 + 0.5, place.row as f64 + 0.5);
+        let cell = self.runs.window.extent() / place.side() as f64;
+        self.runs.window.low + cell.component_mul(&part)
     }
-}
-
-/// The number of connected parts of one label that contain a square of four places, and the number
-/// of places in no such square.
-fn squares<L: Eq>(labels: &[Option<L>], side: usize) -> (usize, usize) {
-    let mut sets = DisjointSets::new(labels.len());
-    let mut inside = vec![false; labels.len()];
-    for index in 0..labels.len() {
-        let (column, row) = (index / side, index % side);
-        let (right, up) = (column + 1 < side, row + 1 < side);
-        let alike = |other: usize| labels[index].is_some() && labels[index] == labels[other];
-        let neighbours = [
-            (right, index + side),
-            (up, index + 1),
-            (right && up, index + side + 1),
-            (right && row > 0, (index + side).wrapping_sub(1)),
-        ];
-        for (exists, other) in neighbours {
-            if exists && alike(other) {
-                sets.unite(index, other);
-            }
-        }
-        let square = [index, index + 1, index + side, index + side + 1];
-        if right && up && square[1..].iter().all(|&other| alike(other)) {
-            for place in square {
-                inside[place] = true;
-            }
-        }
-    }
-    let mut counted = vec![false; labels.len()];
-    for place in (0..labels.len()).filter(|&place| inside[place]) {
-        counted[sets.least(place)] = true;
-    }
-    let regions = counted.iter().filter(|&&counted| counted).count();
-    (regions, inside.iter().filter(|&&inside| !inside).count())
 }

@@ -92,7 +92,7 @@ impl<F: Family> Tracer<'_, F> {
             return Ok(());
         }
         let network = &mut self.builder.network;
-        if network.curves.len() >= self.runs.options.max_curves {
+        if network.curves.len() >= self.runs.options.max_curves.saturating_mul(2) {
             network.unresolved.push(Unresolved::TooManyCurves { point: seed.point });
             return Ok(());
         }

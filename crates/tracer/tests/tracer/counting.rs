@@ -4,19 +4,26 @@ use std::cell::Cell;
 use std::convert::Infallible;
 
 use stickslip_tracer::{
-    AtlasError, AtlasOptions, Family, FreeRun, Point, Serial, Surveyor, TraceError, TraceOptions,
-    Tracer, Watch, Window,
+    AtlasError, AtlasOptions, Count, Family, FreeRun, Point, Serial, Surveyor, TraceError,
+    TraceOptions, Tracer, Watch, Window,
 };
 
-/// A chessboard whose fields have numbers. It has no margins.
+/// A chessboard whose fields have numbers. It has no margins. The lines between its fields are even
+/// in a power of the coordinates, so that a high power makes fields small towards one corner.
 struct Chessboard {
     side: f64,
+    power: i32,
     free_runs: Cell<usize>,
 }
 
 impl Chessboard {
     fn new(side: f64) -> Self {
-        Self { side, free_runs: Cell::new(0) }
+        Self { side, power: 1, free_runs: Cell::new(0) }
+    }
+
+    fn count(&self, enough: usize) -> Count {
+        let tracer = Tracer::new(self, &WINDOW, &TraceOptions::default()).unwrap();
+        tracer.count(&Serial, &Watch::SILENT, enough)
     }
 }
 
@@ -27,7 +34,7 @@ impl Family for Chessboard {
 
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     fn label(&self, point: &Point) -> Result<[u32; 2], Infallible> {
-        Ok([point.x, point.y].map(|place| (place * self.side) as u32))
+        Ok([point.x, point.y].map(|place| (place.powi(self.power) * self.side) as u32))
     }
 
     fn margin(&self, _: &Point, (): &()) -> Result<Option<f64>, Infallible> {
@@ -45,11 +52,25 @@ const WINDOW: Window = Window { low: Point::new(0.0, 0.0), high: Point::new(1.0,
 #[test]
 fn fields_are_counted() {
     for side in [1_usize, 3, 7, 20, 50] {
-        let board = Chessboard::new(side as f64);
-        let tracer = Tracer::new(&board, &WINDOW, &TraceOptions::default()).unwrap();
-        let count = tracer.count_regions(&Serial, &Watch::SILENT, 10_000);
-        assert_eq!(count, side * side);
+        let Count { regions, curves } = Chessboard::new(side as f64).count(10_000);
+        assert_eq!(regions, side * side);
+        let all = 2 * side * (side - 1);
+        assert!(curves.abs_diff(all) <= all / 8, "{curves}, and not {all}");
     }
+}
+
+/// 120 lines of each kind, of which all but one cross the last tenth of a side and more than a half
+/// the last twentieth: the fields there are far smaller than the places of the coarsest grid.
+#[test]
+fn fields_in_a_corner_are_counted() {
+    let board = |side: f64| Chessboard { power: 12, ..Chessboard::new(side) };
+    for enough in [5_000, 10_000] {
+        let Count { curves, .. } = board(120.0).count(enough);
+        assert!(curves >= enough && curves <= 2 * 120 * 119, "{curves} of {enough}");
+    }
+    let Count { regions, curves } = board(30.0).count(5_000);
+    assert_eq!(regions, 900);
+    assert!(curves.abs_diff(1740) <= 1740 / 8, "{curves}");
 }
 
 #[test]
@@ -59,11 +80,12 @@ fn a_window_with_too_many_curves_is_refused_before_it_is_traced() {
     let surveyor = Surveyor { options, ..Surveyor::default() };
     let board = Chessboard::new(40.0);
     let refused = surveyor.atlas(&board, &WINDOW).unwrap_err();
-    let AtlasError::Trace(TraceError::TooManyCurves { regions, most: 500 }) = refused else {
+    let AtlasError::Trace(TraceError::TooManyCurves { regions, curves, most: 500 }) = refused
+    else {
         panic!("{refused:?}")
     };
-    assert!((502..=1600).contains(&regions), "{regions}");
+    assert!(regions <= 1600 && (501..=3120).contains(&curves), "{regions}, {curves}");
     assert_eq!(board.free_runs.get(), 0);
     let text = refused.to_string();
-    assert!(text.contains("500 boundaries") && text.contains(&regions.to_string()), "{text}");
+    assert!(text.contains("at most 500") && text.contains(&curves.to_string()), "{text}");
 }

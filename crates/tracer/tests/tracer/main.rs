@@ -1,6 +1,7 @@
 //! Traces and subdivisions with known answers.
 
 #[cfg(feature = "serde")]
+mod bent_chessboard;
 mod counting;
 mod documents;
 mod every_change;
