@@ -1,0 +1,188 @@
+//! The families of the gallery's example, and some that are written less carefully, at other ends of
+//! their runs: traced, verified, and compared with runs at random points.
+//!
+//! `cargo run --release -p validation --example users_families -- [POINTS] [NAME]`
+
+#[path = "../../../../examples/gallery/ball.rs"]
+#[expect(dead_code, reason = "the gallery uses more")]
+mod ball;
+#[path = "../../../../examples/gallery/dry_friction.rs"]
+#[expect(dead_code, reason = "the gallery uses more")]
+mod dry_friction;
+mod duffing;
+#[path = "../../../../examples/gallery/impact_oscillator.rs"]
+#[expect(dead_code, reason = "the gallery uses more")]
+mod impact_oscillator;
+mod naive_stick;
+#[path = "../../../../examples/gallery/relay.rs"]
+#[expect(dead_code, reason = "the gallery uses more")]
+mod relay;
+#[path = "../../../../examples/gallery/two_masses.rs"]
+#[expect(dead_code, reason = "the gallery uses more")]
+mod two_masses;
+
+use std::error::Error;
+use std::time::Instant;
+
+use stickslip::plane::progress::InParallel;
+use stickslip::solver::{Dop853, Options, Start, State};
+use stickslip::tracer::{
+    AtlasOptions, Family, HybridFamily, Point, Problem, Surveyor, TraceOptions, VerifyOptions,
+    Watch, Window,
+};
+
+use impact_oscillator::Oscillator;
+
+/// A family, the end of its runs, and the greatest number of events of a sequence.
+struct Case {
+    name: &'static str,
+    window: Window,
+    end: f64,
+    most: usize,
+}
+
+/// Traces a family, and prints its row and what speaks against it.
+type Trial = (Case, fn(&Case, usize) -> Result<(), Box<dyn Error>>);
+
+/// No sequence is as long as that.
+const ALL: usize = 1000;
+
+/// Frequency and place of the wall.
+const GAPS: Window = Window { low: Point::new(2.0, 0.05), high: Point::new(3.5, 0.6) };
+
+fn before_a_gap(point: &Point) -> (Oscillator, Start<(), 2>) {
+    let oscillator = Oscillator { frequency: point.x, restitution: 0.7, gap: point.y };
+    (oscillator, Start { mode: (), s: 0.0, state: State::zeros() })
+}
+
+#[rustfmt::skip]
+const TRIALS: [Trial; 14] = [
+    (Case { name: "impacts (frequency, restitution)", window: impact_oscillator::WINDOW, end: 10.0, most: 8 },
+     |case, points| show(impact_oscillator::start, case, points)),
+    (Case { name: "impacts (frequency, restitution)", window: impact_oscillator::WINDOW, end: 20.0, most: 8 },
+     |case, points| show(impact_oscillator::start, case, points)),
+    (Case { name: "impacts (frequency, gap)", window: GAPS, end: 10.0, most: 8 },
+     |case, points| show(before_a_gap, case, points)),
+    (Case { name: "impacts (frequency, gap)", window: GAPS, end: 20.0, most: 8 },
+     |case, points| show(before_a_gap, case, points)),
+    (Case { name: "ball on a table", window: ball::WINDOW, end: 7.0, most: 8 },
+     |case, points| show(ball::throw, case, points)),
+    (Case { name: "ball on a table", window: ball::WINDOW, end: 8.0, most: 8 },
+     |case, points| show(ball::throw, case, points)),
+    (Case { name: "two masses", window: two_masses::WINDOW, end: 11.0, most: ALL },
+     |case, points| show(two_masses::belt, case, points)),
+    (Case { name: "two masses", window: two_masses::WINDOW, end: 15.0, most: ALL },
+     |case, points| show(two_masses::belt, case, points)),
+    (Case { name: "relay", window: relay::WINDOW, end: 20.0, most: ALL },
+     |case, points| show(relay::start, case, points)),
+    (Case { name: "naive stick", window: dry_friction::WINDOW, end: 12.0, most: ALL },
+     |case, points| show(naive_stick::shake, case, points)),
+    (Case { name: "naive stick", window: dry_friction::WINDOW, end: 20.0, most: ALL },
+     |case, points| show(naive_stick::shake, case, points)),
+    (Case { name: "Duffing", window: duffing::WINDOW, end: 11.0, most: ALL },
+     |case, points| show(duffing::shake, case, points)),
+    (Case { name: "Duffing", window: duffing::WINDOW, end: 14.0, most: ALL },
+     |case, points| show(duffing::shake, case, points)),
+    (Case { name: "Duffing", window: duffing::WINDOW, end: 20.0, most: ALL },
+     |case, points| show(duffing::shake, case, points)),
+];
+
+fn show<P, const N: usize, const G: usize>(
+    problem: P,
+    case: &Case,
+    points: usize,
+) -> Result<(), Box<dyn Error>>
+where
+    P: Problem<N, G> + Sync,
+{
+    let began = Instant::now();
+    let Case { name, window, end, most } = case;
+    let accurate = Options::with_tolerance(1e-13);
+    let options = Options { max_step: 0.3, max_switches: *most, ..accurate };
+    let family = HybridFamily { problem, method: Dop853, options, end: *end };
+    let verify = VerifyOptions { random_points: points, ..VerifyOptions::default() };
+    let trace = TraceOptions { beyond: 1e-3, ..TraceOptions::default() };
+    let options = AtlasOptions { trace, verify, ..AtlasOptions::default() };
+    let patience = || began.elapsed().as_secs() > PATIENCE;
+    let watch = Watch::SILENT.cancelled_by(&patience);
+    let surveyor = Surveyor { options, executor: InParallel, watch };
+    let atlas = surveyor.atlas(&family, window)?;
+    let seconds = began.elapsed().as_secs_f64();
+    let mut random = fastrand::Rng::with_seed(2);
+    let mut wrong = 0;
+    for _ in 0..points {
+        let part = Point::new(random.f64(), random.f64());
+        let point = window.low + window.extent().component_mul(&part);
+        let Some(label) = atlas.label(&point) else { continue };
+        if *label != family.label(&point)? {
+            wrong += 1;
+            eprintln!("  wrong at {point:?}");
+        }
+    }
+    let (curves, regions) = (atlas.plane.curves().len(), atlas.plane.regions().len());
+    let (unresolved, findings) = (atlas.unresolved.len(), atlas.plane.findings().len());
+    println!(
+        "| {name} | {end} | {most} | {curves} | {regions} | {unresolved} | {findings} | {:.6} \
+         | {wrong} of {points} | {seconds:.1} s |",
+        atlas.sure_area(),
+    );
+    eprintln!("  {} rounds, {:?}", atlas.rounds, atlas.statistics);
+    if let Some(objection) = atlas.objection() {
+        eprintln!("  {objection}");
+    }
+    for what in &atlas.unresolved {
+        eprintln!("  {what:?}");
+    }
+    for what in atlas.plane.findings() {
+        eprintln!("  {what}");
+    }
+    for what in &atlas.verification.mismatches {
+        eprintln!("  {what:?}");
+    }
+    if std::env::var("DUMP").is_ok() {
+        for (index, vertex) in atlas.plane.vertices().iter().enumerate() {
+            eprintln!(
+                "V {index} {:?} {:?} {:?}",
+                vertex.point.as_slice(),
+                vertex.kind,
+                vertex.margins
+            );
+        }
+        for (index, curve) in atlas.plane.curves().iter().enumerate() {
+            let [a, b] = [curve.nodes[0].point, curve.nodes[curve.nodes.len() - 1].point];
+            eprintln!(
+                "C {index} {:?} {} {:?} {:?} {:?} {:?}",
+                curve.ends,
+                curve.nodes.len(),
+                a.as_slice(),
+                b.as_slice(),
+                curve.margin,
+                curve.sides
+            );
+        }
+    }
+    Ok(())
+}
+
+/// After so many seconds a trace is cancelled.
+const PATIENCE: u64 = 150;
+
+/// Prints the table, and what speaks against its rows to the standard error.
+///
+/// # Errors
+/// A family cannot be traced.
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let points = arguments.next().map_or(Ok(20_000), |points| points.parse())?;
+    let name = arguments.next().unwrap_or_default();
+    println!(
+        "| family | T | events | curves | regions | unresolved | findings | sure area | wrong | time |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|---|");
+    for (case, trial) in &TRIALS {
+        if format!("{} {}", case.name, case.end).contains(&name) {
+            trial(case, points)?;
+        }
+    }
+    Ok(())
+}
