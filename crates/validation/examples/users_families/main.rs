@@ -101,6 +101,8 @@ const TRIALS: [Trial; 15] = [
      |case, effort| show(duffing::shake, case, effort)),
 ];
 
+/// Traces a family and compares it with runs at random points. What speaks against the atlas goes to
+/// the standard error.
 fn show<P, const N: usize, const G: usize>(
     problem: P,
     case: &Case,
@@ -135,14 +137,20 @@ where
     }
     let (curves, regions) = (atlas.plane.curves().len(), atlas.plane.regions().len());
     let (unresolved, findings) = (atlas.unresolved.len(), atlas.plane.findings().len());
+    let cancelled = if atlas.is_finished() { "" } else { ", cancelled" };
     println!(
         "| {name} | {end} | {most} | {curves} | {regions} | {unresolved} | {findings} | {:.6} \
-         | {wrong} of {points} | {seconds:.1} s |",
+         | {wrong} of {points} | {seconds:.1} s{cancelled} |",
         atlas.sure_area(),
     );
     eprintln!("  {} rounds, {:?}", atlas.rounds, atlas.statistics);
     if let Some(objection) = atlas.objection() {
         eprintln!("  {objection}");
+    }
+    if !atlas.is_finished() {
+        let changes =
+            changes(&family, [Point::new(window.low.x, window.high.y), window.high], points)?;
+        eprintln!("  {changes} changes between {points} runs along the upper edge");
     }
     for what in atlas.unresolved.iter().take(SHOWN) {
         eprintln!("  {what}");
@@ -153,29 +161,17 @@ where
     for what in atlas.verification.mismatches.iter().take(SHOWN) {
         eprintln!("  {what:?}");
     }
-    if std::env::var("DUMP").is_ok() {
-        for (index, vertex) in atlas.plane.vertices().iter().enumerate() {
-            eprintln!(
-                "V {index} {:?} {:?} {:?}",
-                vertex.point.as_slice(),
-                vertex.kind,
-                vertex.margins
-            );
-        }
-        for (index, curve) in atlas.plane.curves().iter().enumerate() {
-            let [a, b] = [curve.nodes[0].point, curve.nodes[curve.nodes.len() - 1].point];
-            eprintln!(
-                "C {index} {:?} {} {:?} {:?} {:?} {:?}",
-                curve.ends,
-                curve.nodes.len(),
-                a.as_slice(),
-                b.as_slice(),
-                curve.margin,
-                curve.sides
-            );
-        }
-    }
     Ok(())
+}
+
+/// How often the label changes between so many runs along a segment.
+fn changes<F: Family>(family: &F, ends: [Point; 2], runs: usize) -> Result<usize, F::Error> {
+    let label = |run: usize| {
+        let part = (run as f64 + 0.5) / runs as f64;
+        family.label(&ends[0].lerp(&ends[1], part))
+    };
+    let labels = (0..runs).map(label).collect::<Result<Vec<_>, _>>()?;
+    Ok(labels.windows(2).filter(|pair| pair[0] != pair[1]).count())
 }
 
 /// The number of doubts of each kind that are shown.
