@@ -37,8 +37,7 @@ impl<F: Family> Tracer<'_, F> {
     fn tangency(&self, vertex: usize) -> Traced<Option<Point>, F> {
         let stop = self.builder.stops[vertex];
         let kind = self.builder.network.vertices[vertex].kind;
-        let inside = matches!(kind, VertexKind::Degenerate | VertexKind::Crossing);
-        if !inside || stop.uncertainty <= SHORTEST * self.runs.scale {
+        if kind != VertexKind::Degenerate || stop.uncertainty <= SHORTEST * self.runs.scale {
             return Ok(None);
         }
         let arrivals = self.builder.arrivals(vertex);
@@ -58,10 +57,7 @@ impl<F: Family> Tracer<'_, F> {
         let along = Point::new(-gradient.y, gradient.x).normalize();
         for side in [1.0, -1.0] {
             let touch = Touch { runs: &self.runs, own, other, foot, along, gradient, side };
-            // Where boundaries cross or touch without a root, the vertex is as good as margins tell.
-            if let Some(place) = touch.place()?
-                && (kind == VertexKind::Degenerate || touch.has_root(place)?)
-            {
+            if let Some(place) = touch.place()? {
                 return touch.point(place);
             }
         }
@@ -114,29 +110,14 @@ impl<F: Family> Touch<'_, F> {
     /// m₀ at a place along the boundary, from the margin at three distances: the polynomial in √d
     /// through its values.
     fn limit(&self, place: f64) -> Traced<Option<f64>, F> {
-        let values = self.beside(place)?;
-        Ok(values.map(|[one, two, four]| 8.0 / 3.0 * one - 2.0 * two + 1.0 / 3.0 * four))
-    }
-
-    /// Whether α √d is more than β d at the nearest distance: a smooth margin has no α.
-    fn has_root(&self, place: f64) -> Traced<bool, F> {
-        Ok(self.beside(place)?.is_some_and(|[one, two, four]| {
-            let root = -2.0 * one + 2.5 * two - 0.5 * four;
-            let linear = (2.0 * one - 3.0 * two + four) / 6.0;
-            root.abs() > linear.abs()
-        }))
-    }
-
-    /// The margin beside a place along the boundary, at 1, 4 and 16 times the least distance.
-    fn beside(&self, place: f64) -> Traced<Option<[f64; 3]>, F> {
         let Some(point) = self.point(place)? else { return Ok(None) };
         let inwards = self.gradient.normalize() * self.side;
-        let mut values = [0.0; 3];
-        for (value, times) in values.iter_mut().zip([1.0, 4.0, 16.0]) {
+        let mut limit = 0.0;
+        for (times, weight) in [(1.0, 8.0 / 3.0), (4.0, -2.0), (16.0, 1.0 / 3.0)] {
             let beside = point + inwards * (times * NEAR * self.runs.scale);
-            let Some(found) = self.runs.margin(&beside, self.own)? else { return Ok(None) };
-            *value = found;
+            let Some(value) = self.runs.margin(&beside, self.own)? else { return Ok(None) };
+            limit += weight * value;
         }
-        Ok(Some(values))
+        Ok(Some(limit))
     }
 }

@@ -100,18 +100,6 @@ fn a_graze_behind_a_graze_touches_it() {
     assert!(off < 1e-12, "{off:e}");
 }
 
-/// The graze is at x = 0 and is come to first, beside the thin region in which the second guard fires
-/// too: 0 < x < y², below y = 0. Where the first guard does not fire, the second one does not either.
-#[test]
-fn a_graze_that_is_followed_beside_one_behind_it_ends_where_they_touch() {
-    let (name, off, curves) = named(|s, p, first| {
-        let second = if first > 0.0 { (s - 1.5).powi(2) + p.y + 0.5 - first } else { 1.0 };
-        [(s - 0.5).powi(2) - p.x, second]
-    });
-    assert_eq!((name, curves), (SpecialPoint::Tangency, 3));
-    assert!(off < 1e-10, "{off:e}");
-}
-
 /// The boundaries y = 0 and y = −x² touch beyond the window's edge x = −r. Between them both guards
 /// fire, in a strip that is r² wide at the edge. Where that is too thin for an outline, the tracer has
 /// to look beyond the edge.

@@ -68,18 +68,12 @@ fn before_a_gap(point: &Point) -> (Oscillator, Start<(), 2>) {
 }
 
 #[rustfmt::skip]
-const TRIALS: [Trial; 15] = [
-    (Case { name: "impacts (frequency, restitution)", window: impact_oscillator::WINDOW, end: 20.0, most: 6 },
-     |case, effort| show(impact_oscillator::start, case, effort)),
+const TRIALS: [Trial; 11] = [
     (Case { name: "impacts (frequency, restitution)", window: impact_oscillator::WINDOW, end: 20.0, most: 8 },
      |case, effort| show(impact_oscillator::start, case, effort)),
     (Case { name: "impacts (frequency, gap)", window: GAPS, end: 10.0, most: 8 },
      |case, effort| show(before_a_gap, case, effort)),
-    (Case { name: "impacts (frequency, gap)", window: GAPS, end: 20.0, most: 6 },
-     |case, effort| show(before_a_gap, case, effort)),
     (Case { name: "ball on a table", window: ball::WINDOW, end: 7.0, most: 8 },
-     |case, effort| show(ball::throw, case, effort)),
-    (Case { name: "ball on a table", window: ball::WINDOW, end: 8.0, most: 8 },
      |case, effort| show(ball::throw, case, effort)),
     (Case { name: "two masses", window: two_masses::WINDOW, end: 11.0, most: ALL },
      |case, effort| show(two_masses::belt, case, effort)),
@@ -96,8 +90,6 @@ const TRIALS: [Trial; 15] = [
     (Case { name: "Duffing", window: duffing::WINDOW, end: 11.0, most: ALL },
      |case, effort| show(duffing::shake, case, effort)),
     (Case { name: "Duffing", window: duffing::WINDOW, end: 14.0, most: ALL },
-     |case, effort| show(duffing::shake, case, effort)),
-    (Case { name: "Duffing", window: duffing::WINDOW, end: 20.0, most: ALL },
      |case, effort| show(duffing::shake, case, effort)),
 ];
 
