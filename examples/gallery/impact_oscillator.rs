@@ -1,4 +1,5 @@
-//! A forced oscillator that hits a wall at x = 0.2: x″ + x′/10 + x = cos Ωt below the wall, and x′ → −r x′ at it.
+//! A forced oscillator that hits a wall at x = 0.2: x″ + x′/10 + x = cos Ωt below the wall, and
+//! x′ → −r x′ at it.
 
 use stickslip::solver::{Direction, Guard, HybridSystem, Start, State};
 use stickslip::tracer::{Point, Window};
@@ -6,12 +7,13 @@ use stickslip::tracer::{Point, Window};
 /// Frequency and restitution.
 pub const WINDOW: Window = Window { low: Point::new(2.0, 0.2), high: Point::new(3.5, 0.95) };
 pub const AXES: [&str; 2] = ["frequency Ω in units of √(k/m)", "restitution"];
-pub struct Oscillator {
-    frequency: f64,
-    restitution: f64,
-}
 
-const GAP: f64 = 0.2;
+pub struct Oscillator {
+    pub frequency: f64,
+    pub restitution: f64,
+    /// The place of the wall.
+    pub gap: f64,
+}
 
 impl HybridSystem<2, 1> for Oscillator {
     type Mode = ();
@@ -23,14 +25,14 @@ impl HybridSystem<2, 1> for Oscillator {
         [Guard::new(Direction::Below)]
     }
     fn guard_values(&self, (): (), _: f64, y: &State<2>) -> [f64; 1] {
-        [GAP - y[0]]
+        [self.gap - y[0]]
     }
     fn transition(&self, (): (), _: usize, _: f64, y: &State<2>) -> ((), State<2>) {
-        ((), State::from([GAP, -self.restitution * y[1]]))
+        ((), State::from([self.gap, -self.restitution * y[1]]))
     }
 }
 
 pub fn start(point: &Point) -> (Oscillator, Start<(), 2>) {
-    let oscillator = Oscillator { frequency: point.x, restitution: point.y };
+    let oscillator = Oscillator { frequency: point.x, restitution: point.y, gap: 0.2 };
     (oscillator, Start { mode: (), s: 0.0, state: State::zeros() })
 }

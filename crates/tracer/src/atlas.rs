@@ -262,8 +262,9 @@ impl<Label, Margin> Atlas<Label, Margin> {
     pub fn sure_area(&self) -> f64 {
         let regions = self.plane.regions().iter().enumerate();
         let sure = regions.filter(|(index, _)| !self.is_doubtful(*index));
-        let sure = sure.map(|(_, region)| region.area);
-        sure.sum::<f64>() / self.plane.window().extent().product()
+        // The sum of no numbers would be −0.
+        let sure = sure.fold(0.0, |sum, (_, region)| sum + region.area);
+        sure / self.plane.window().extent().product()
     }
 }
 
