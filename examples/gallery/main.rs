@@ -8,6 +8,7 @@
 //! Run with `cargo run --release --example gallery -- [POINTS] [NAME] [FOLDER]`. Pictures are written
 //! into the folder, if there is one.
 
+mod any;
 mod ball;
 #[path = "../belt_atlas/belt.rs"]
 mod belt;
@@ -34,6 +35,7 @@ use stickslip::tracer::{
 };
 use stickslip_figure::pictures::family::{Captions, draw};
 
+use any::Any;
 use belt::{BELT, Belt, OBSERVED, POSITION};
 
 /// What a family shows.
@@ -101,8 +103,7 @@ const GALLERY: [Exhibit; 8] = [
      }),
 ];
 
-/// Traces a family and compares it with runs at twice so many random points: the tracer looks again
-/// where the first half disagrees. `fits` compares a label with the closed form.
+/// Traces the family of a problem.
 fn show<P, const N: usize, const G: usize>(
     problem: P,
     room: &Room,
@@ -112,15 +113,25 @@ fn show<P, const N: usize, const G: usize>(
 where
     P: Problem<N, G> + Sync,
 {
-    let Room { name, axes, window, end } = room;
     let accurate = Options::with_tolerance(1e-13);
     let options = Options { max_step: 0.3, max_switches: MOST, ..accurate };
-    let family = HybridFamily { problem, method: Dop853, options, end: *end };
+    let family = HybridFamily { problem, method: Dop853, options, end: room.end };
+    compare(&Any(&family), room, &fits, points)
+}
+
+/// Traces a family and compares it with runs at twice so many random points: the tracer looks again
+/// where the first half disagrees. `fits` compares a label with the closed form.
+fn compare(
+    family: &Any<'_>,
+    Room { name, axes, window, .. }: &Room,
+    fits: &dyn Fn(&Point, &Itinerary) -> bool,
+    points: usize,
+) -> Result<Row, Box<dyn Error>> {
     let verify = VerifyOptions { random_points: points, ..VerifyOptions::default() };
     let trace = TraceOptions { beyond: 1e-3, ..TraceOptions::default() };
     let options = AtlasOptions { trace, verify, ..AtlasOptions::default() };
     let surveyor = Surveyor { options, executor: InParallel, watch: Watch::SILENT };
-    let atlas = surveyor.atlas(&family, window)?;
+    let atlas = surveyor.atlas(family, window)?;
     let mut random = fastrand::Rng::with_seed(2);
     let mut wrong = 0;
     for _ in 0..points {

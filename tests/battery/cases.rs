@@ -4,7 +4,7 @@
 //! and the tests of the facade share this file.
 
 mod expression;
-mod running;
+pub mod running;
 mod verdict;
 
 use serde_json::Value;

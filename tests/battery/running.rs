@@ -58,38 +58,52 @@ impl fmt::Display for Report {
     }
 }
 
+/// Calls a function for the size of a case. Every size is compiled for itself, so there are few.
+macro_rules! sized {
+    ($run:ident($method:expr, $case:expr $(, $more:expr)?)) => {
+        match $case.size() {
+            (1, 1) => $run::<M, 1, 1>($method, $case $(, $more)?),
+            (1, ..=4) => $run::<M, 1, 4>($method, $case $(, $more)?),
+            (1, ..=32) => $run::<M, 1, 32>($method, $case $(, $more)?),
+            (2, ..=2) => $run::<M, 2, 2>($method, $case $(, $more)?),
+            (4, ..=2) => $run::<M, 4, 2>($method, $case $(, $more)?),
+            size => panic!("{} has a size that is not compiled: {size:?}", $case.name),
+        }
+    };
+}
+
 /// Runs a case.
 ///
 /// # Panics
-/// The case has more components or guards than any other so far. Another line here then helps.
+/// The case has more components or guards than any other so far. Another line in `sized` helps.
 pub fn run_case<M: Method>(method: M, case: &Case, reading: Reading) -> Report {
     match reading {
-        Reading::Dynamic => return run_free(method, case, None),
-        Reading::ScaledDynamic => return run_free(method, case, case.guard_scale),
-        Reading::Readable | Reading::BlackBox | Reading::ScaledBlackBox => {}
-    }
-    // Every pair is compiled for itself, so that there are few.
-    match case.size() {
-        (1, 1) => run_as::<M, 1, 1>(method, case, reading),
-        (1, ..=4) => run_as::<M, 1, 4>(method, case, reading),
-        (1, ..=32) => run_as::<M, 1, 32>(method, case, reading),
-        (2, ..=2) => run_as::<M, 2, 2>(method, case, reading),
-        (4, ..=2) => run_as::<M, 4, 2>(method, case, reading),
-        size => panic!("{} has a size that is not compiled: {size:?}", case.name),
+        Reading::Readable => run_readable(method, case),
+        Reading::BlackBox => sized!(run_black_box(method, case, None)),
+        Reading::ScaledBlackBox => sized!(run_black_box(method, case, case.guard_scale)),
+        Reading::Dynamic => run_free(method, case, None),
+        Reading::ScaledDynamic => run_free(method, case, case.guard_scale),
     }
 }
 
-fn run_as<M: Method, const N: usize, const G: usize>(
+/// Runs a case whose formulas the solver reads. Who only does that need not compile the rest.
+///
+/// # Panics
+/// As [`run_case`].
+pub fn run_readable<M: Method>(method: M, case: &Case) -> Report {
+    sized!(run_read(method, case))
+}
+
+fn run_read<M: Method, const N: usize, const G: usize>(method: M, case: &Case) -> Report {
+    run_system(method, &Readable::<N, G> { case }, case, None)
+}
+
+fn run_black_box<M: Method, const N: usize, const G: usize>(
     method: M,
     case: &Case,
-    reading: Reading,
+    guard_scale: Option<f64>,
 ) -> Report {
-    let readable = Readable::<N, G> { case };
-    match reading {
-        Reading::Readable => run_system(method, &readable, case, None),
-        Reading::BlackBox => run_system(method, &BlackBox(readable), case, None),
-        _ => run_system(method, &BlackBox(readable), case, case.guard_scale),
-    }
+    run_system(method, &BlackBox(Readable::<N, G> { case }), case, guard_scale)
 }
 
 fn run_system<M, S, const N: usize, const G: usize>(

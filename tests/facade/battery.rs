@@ -2,6 +2,7 @@
 
 use stickslip::solver::{Dop853, Dopri5, Method};
 
+use crate::cases::running::run_readable;
 use crate::cases::{Reading, cases, run_case};
 
 /// Cases that take the 5(4) pair more steps than a run may have by default.
@@ -14,7 +15,7 @@ fn check<M: Method>(method: M, left_out: &[&str]) {
         if left_out.contains(&case.name.as_str()) {
             continue;
         }
-        let report = run_case(method, &case, Reading::Readable);
+        let report = run_readable(method, &case);
         if !report.is_right() {
             wrong.push(format!("{}: {report}", case.name));
         }

@@ -5,6 +5,7 @@ mod allocations;
 mod atlas;
 mod battery;
 #[path = "../battery/cases.rs"]
+#[allow(dead_code, reason = "the example uses the rest")]
 mod cases;
 #[path = "../common/mod.rs"]
 mod common;

@@ -10,6 +10,11 @@
 #[path = "../../solver/tests/solver/planted_kinds.rs"]
 mod planted_kinds;
 
+/// What the tests of the solver compile once for all systems is compiled for each one here.
+mod erased {
+    pub use stickslip::solver::run;
+}
+
 use planted_kinds::{Found, Reading, Shape, random_case};
 use rayon::prelude::*;
 

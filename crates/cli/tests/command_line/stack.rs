@@ -8,28 +8,28 @@ use crate::{Workspace, stickslip};
 fn a_stack_has_the_fields_of_its_schema() {
     let workspace = Workspace::new();
     let line =
-        "stack --kappa 5:20 --psi 0.2:2.5 --damping 0,0.05,0.2,0.4 --out s.json --plot s.svg";
+        "stack --kappa 1:5 --psi 0.5:1 --damping 0,0.41,0.4108,0.412 --out s.json --plot s.svg";
     let ran = workspace.run(line);
     assert_eq!((ran.code, ran.stdout.as_str(), ran.stderr.as_str()), (0, "", ""));
     assert_eq!(workspace.names(), ["s.json", "s.svg"]);
     let stack: Value = serde_json::from_str(&workspace.read("s.json")).expect("JSON");
     assert_eq!(stack["schema"], "stickslip.stack/1");
-    assert_eq!((&stack["kappa"][1], &stack["agrees"]), (&20.0.into(), &true.into()));
+    assert_eq!((&stack["kappa"][1], &stack["agrees"]), (&5.0.into(), &true.into()));
     let layers = stack["layers"].as_array().expect("a list");
     let dampings: Vec<_> = layers.iter().map(|layer| layer["damping"].as_f64().unwrap()).collect();
-    assert_eq!(dampings, [0.0, 0.05, 0.2, 0.4]);
+    assert_eq!(dampings, [0.0, 0.41, 0.4108, 0.412]);
     assert_eq!(layers[0]["as_stacked"], Value::Null);
     assert!(layers[1..].iter().all(|layer| layer["as_stacked"] == true));
     let changes = stack["changes"].as_array().expect("a list");
     assert!(!changes.is_empty());
-    let mut last = 0.05;
+    let mut last = 0.41;
     for change in changes {
         let [low, high] = [0, 1].map(|end| change["between"][end].as_f64().unwrap());
-        assert!(last <= low && low < high && high <= 0.4);
+        assert!(last <= low && low < high && high <= 0.412);
         last = high;
         if let Some(meeting) = change["meeting"].as_object() {
             assert!((low..=high).contains(&meeting["damping"].as_f64().unwrap()));
-            assert!((5.0..=20.0).contains(&meeting["kappa"].as_f64().unwrap()));
+            assert!((1.0..=5.0).contains(&meeting["kappa"].as_f64().unwrap()));
         }
     }
     let picture = workspace.read("s.svg");

@@ -1,6 +1,7 @@
 //! Atlases over the damping.
 
 use std::collections::BTreeMap;
+use std::sync::LazyLock;
 
 use stickslip_model::exact;
 use stickslip_model::regularized::SAME_SIDE;
@@ -17,11 +18,14 @@ fn made(dampings: &[f64]) -> Result<DampingStack, DampingStackError> {
     stack(frame, dampings, frame.tolerances().usual, SILENT)
 }
 
+/// A stack that several tests share.
+static STACK: LazyLock<DampingStack> = LazyLock::new(|| made(&[0.0, 0.05, 0.2, 0.4]).unwrap());
+
 /// Between two atlases that were traced directly, the number of regions with each itinerary changes
 /// as the changes between them say.
 #[test]
 fn changes_lead_from_one_atlas_to_the_next() {
-    let stack = made(&[0.0, 0.05, 0.2, 0.4]).unwrap();
+    let stack = &*STACK;
     assert_eq!(stack.objection(), None);
     assert!(!stack.changes.is_empty());
     assert_eq!(stack.layers[0].as_stacked, None);
@@ -63,9 +67,8 @@ fn changes_lead_from_one_atlas_to_the_next() {
 /// has them before.
 #[test]
 fn the_itinerary_of_a_region_appears_where_it_is_born() -> Result<(), InvalidParameter> {
-    let stack = made(&[0.05, 0.2, 0.4]).unwrap();
     let mut tried = 0;
-    for change in &stack.changes {
+    for change in &STACK.changes {
         let Some(meeting) = &change.meeting else { continue };
         let [low, high] = change.between;
         assert!(low < meeting.damping && meeting.damping < high);
@@ -89,7 +92,7 @@ fn the_itinerary_of_a_region_appears_where_it_is_born() -> Result<(), InvalidPar
             assert!(!seen(meeting.damping * 0.99)?, "{change:?}");
         }
     }
-    assert!(tried > 0, "{:?}", stack.changes);
+    assert!(tried > 0, "{:?}", STACK.changes);
     Ok(())
 }
 
@@ -156,9 +159,10 @@ fn a_meeting_beside_a_change_is_not_its_cause() {
 /// A layer that was not compared with the changes, and is not inside one, speaks against the stack.
 #[test]
 fn a_layer_that_was_not_compared_is_an_objection() {
-    let mut stack = made(&[0.05, 0.2]).unwrap();
+    let mut stack = STACK.clone();
     assert_eq!(stack.objection(), None);
-    stack.layers[1].as_stacked = None;
+    assert_eq!(stack.layers[2].damping, 0.2);
+    stack.layers[2].as_stacked = None;
     let reason = stack.objection().unwrap();
     assert_eq!(reason, "damping = 0.2: changes on both sides are not known");
 }

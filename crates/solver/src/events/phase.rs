@@ -83,13 +83,13 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
     ) where
         Mode: PartialEq,
     {
-        for guard in 0..G {
+        for (guard, &stood) in stood.iter().enumerate() {
             let (value, direction) = (self.values[guard], self.guards[guard].direction());
             // A guard that fired stands on its zero where it goes on, also exactly, and whatever its
             // rounding is.
             let is_near = || value.abs() <= NEAR_ZERO * largest.max(event.slope * event.step.h);
             let stands = !matches!(direction, Direction::Off | Direction::Below)
-                && (if guard == event.guard { is_near() } else { stood[guard] })
+                && (if guard == event.guard { is_near() } else { stood })
                 && self.is_same_guard(system, (s, y), event, (from, guard));
             let may_be_zero = match direction {
                 Direction::Off => false,

@@ -18,8 +18,10 @@ mod same;
 
 use stickslip_solver::{
     DynamicObserver, DynamicRun, DynamicStart, DynamicSwitch, DynamicSystem, Guard, HybridSystem,
-    Method, Options, RunError, State, run_dynamic,
+    Method, Options, RunError, State,
 };
+
+use crate::erased::run_dynamic;
 
 /// A system of fixed dimension as one of any dimension. Its modes are listed with their guards.
 struct Of<'a, S: HybridSystem<N, G>, const N: usize, const G: usize> {

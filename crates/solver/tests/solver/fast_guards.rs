@@ -6,12 +6,12 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use fastrand::Rng;
 use stickslip_solver::{
     Closures, Direction, DynamicEvent, DynamicObserver, DynamicStart, Guard, Observer, Options,
-    Outcome, Pair, Pole, RunError, State, SwitchEvent, run_dynamic_with, run_with,
+    Outcome, Pair, Pole, RunError, State, SwitchEvent, run_dynamic_with,
 };
 
-use super::any::any;
 use super::dynamic::Plain;
 use super::runs::{at, close, fixed};
+use crate::erased::run_with;
 
 /// The places of switches and poles.
 #[derive(Default)]
@@ -51,8 +51,8 @@ fn each(
     mut check: impl FnMut(&str, &Found),
 ) {
     let either = Guard::new(Direction::Either);
-    let system = any(Closures::new(|_s, _y: &State<1>| State::from([1.0]))
-        .guards([either], move |s, y| [guard(s, y[0])]));
+    let system = Closures::new(|_s, _y: &State<1>| State::from([1.0]))
+        .guards([either], move |s, y| [guard(s, y[0])]);
     let dynamic = Plain {
         field: |_s, _y: &[f64], slope: &mut [f64]| slope[0] = 1.0,
         guards: vec![either],

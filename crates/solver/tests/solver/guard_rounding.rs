@@ -4,10 +4,11 @@ use std::f64::consts::PI;
 
 use stickslip_solver::{
     Direction, Dop853, Dopri5, Guard, HybridSystem, Margins, Method, Options, Outcome, Place,
-    Recorder, RunError, Start, State, margins, run,
+    Recorder, RunError, Start, State,
 };
 
-use crate::any::{BlackBox, any};
+use crate::black_box::BlackBox;
+use crate::erased::{margins, run};
 
 /// A load on a belt of velocity v that is shaken: w′ = v + fΩ sin Ωt − u. Its time scale is
 /// `scale`.
@@ -166,8 +167,8 @@ impl HybridSystem<1, 1> for Dip {
 fn crossings<M: Method>(method: M, dip: &Dip, y: f64, options: &Options) -> Vec<f64> {
     let mut recorder = Recorder::default();
     let start = Start { mode: (), s: 0.0, state: State::from([y]) };
-    let end = run(method, &any(BlackBox(dip)), start, 0.02, options, &mut recorder)
-        .expect("a smooth guard");
+    let end =
+        run(method, &BlackBox(dip), start, 0.02, options, &mut recorder).expect("a smooth guard");
     assert_eq!(end.outcome, Outcome::ReachedEnd);
     recorder.switches.iter().map(|switch| switch.before[0] - PI).collect()
 }
@@ -227,7 +228,7 @@ fn a_guard_that_is_zero_throughout_is_an_error_with_any_step() {
     for max_step in [f64::INFINITY, 1e-3, 1e-9] {
         let options = Options { max_step, ..Options::default() };
         let start = Start { mode: (), s: 0.0, state: State::from([1.0]) };
-        let end = run(Dop853, &any(Zero), start, 1.0, &options, &mut ());
+        let end = run(Dop853, &Zero, start, 1.0, &options, &mut ());
         assert_eq!(end.err(), Some(RunError::GuardIdenticallyZero { guard: 0, s: 0.0 }));
     }
 }

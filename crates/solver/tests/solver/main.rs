@@ -15,13 +15,15 @@
 //! | `singular` | guards without bounds or without a value somewhere |
 //! | `strangers` | systems that nobody here designed for |
 //! | `dynamic` | systems whose dimension is known at run time |
-//! | `any` | black boxes as one type, so that runs along them are compiled once |
+//! | `erased` | runs along any system as runs along one type, so that they are compiled once |
+//! | `black_box` | systems that can be read as black boxes |
 //! | `runs` | what surrounds a run: closures, runs backwards, samples, ends, defined answers |
 //! | `serialization` | the JSON of results |
 
-mod any;
+mod black_box;
 mod checks;
 mod dynamic;
+mod erased;
 mod event_battery;
 mod fast_guards;
 mod guard_rounding;

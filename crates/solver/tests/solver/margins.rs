@@ -1,8 +1,8 @@
 //! Margins with a closed form.
 
-use stickslip_solver::{
-    Direction, Dop853, Guard, HybridSystem, Options, Place, Start, State, margin, margins,
-};
+use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Place, Start, State};
+
+use crate::erased::{margin, margins};
 
 /// A body that is dropped, with g = 1.
 struct Drop;

@@ -9,8 +9,10 @@ use std::cell::Cell;
 
 use stickslip_solver::method::{INTERIOR_NODES, MAX_STAGES};
 use stickslip_solver::{
-    Dense, Dop853, Dopri5, Method, Observer, Options, State, Step, StepSize, Trial, integrate,
+    Dense, Dop853, Dopri5, Method, Observer, Options, State, Step, StepSize, Trial,
 };
+
+use crate::erased::integrate;
 
 /// A rooted tree: its number of vertices, its density γ, and the indices of the trees that hang on
 /// its root.

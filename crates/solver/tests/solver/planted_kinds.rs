@@ -4,8 +4,10 @@
 
 use stickslip_solver::{
     Direction, Dop853, Dopri5, Guard, HybridSystem, Method, Number, Observer, Options, Outcome,
-    ReadableSystem, RunError, Start, State, StepSize, SwitchEvent, run,
+    ReadableSystem, RunError, Start, State, StepSize, SwitchEvent,
 };
+
+use crate::erased::run;
 
 /// A guard as a function of x.
 #[derive(Clone, Debug)]

@@ -8,10 +8,11 @@
 use proptest::prelude::*;
 use stickslip_solver::{
     Direction, Dop853, Dopri5, Guard, HybridSystem, Method, Observer, Options, Outcome, Start,
-    State, StepSize, SwitchEvent, run,
+    State, StepSize, SwitchEvent,
 };
 
-use crate::any::{BlackBox, any};
+use crate::black_box::BlackBox;
+use crate::erased::run;
 
 /// y' = 1 with the guard Π (y − rᵢ) · (1 + c y²) · sign.
 struct Planted<'a> {
@@ -80,8 +81,8 @@ impl Planted<'_> {
         let options = Options { step_size, max_switches: 100, ..Options::default() };
         let start = Start { mode: (), s: 0.0, state: State::from([0.0]) };
         let mut times = Times(Vec::new());
-        let end = run(method, &any(BlackBox(self)), start, 1.0, &options, &mut times)
-            .expect("a polynomial");
+        let end =
+            run(method, &BlackBox(self), start, 1.0, &options, &mut times).expect("a polynomial");
         assert_eq!(end.outcome, Outcome::ReachedEnd, "{:?}", times.0);
         times.0
     }

@@ -3,11 +3,11 @@
 
 use stickslip_solver::{
     Closures, Direction, Guard, HybridSystem, Number, Options, Outcome, Pair, ReadableSystem,
-    RunError, State, run_with,
+    RunError, State,
 };
 
 use super::runs::{Log, at, close, fixed};
-use crate::any::{Any, any};
+use crate::erased::run_with;
 
 /// What the guard is of y.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,9 +53,12 @@ impl ReadableSystem<1, 1> for Readable {
     }
 }
 
-fn black_box<'a>(direction: Direction, value: impl Fn(f64) -> f64 + 'a) -> Any<'a, 1, 1> {
-    any(Closures::new(|_s, _y: &State<1>| State::from([1.0]))
-        .guards([Guard::new(direction)], move |_s, y| [value(y[0])]))
+fn black_box(
+    direction: Direction,
+    value: impl Fn(f64) -> f64,
+) -> impl HybridSystem<1, 1, Mode = ()> {
+    Closures::new(|_s, _y: &State<1>| State::from([1.0]))
+        .guards([Guard::new(direction)], move |_s, y| [value(y[0])])
 }
 
 /// The places where the guard fires up to s = `end`.

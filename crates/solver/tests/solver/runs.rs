@@ -14,11 +14,9 @@ mod weighted;
 use std::f64::consts::PI;
 
 use stickslip_solver::{
-    Closures, Direction, Grazing, Guard, Number, Observer, Options, Outcome, Pole, ReadableSystem,
-    Run, RunError, Start, State, StepSize, SwitchEvent,
+    Closures, Direction, Grazing, Guard, HybridSystem, Number, Observer, Options, Outcome, Pole,
+    ReadableSystem, Run, RunError, Start, State, StepSize, SwitchEvent,
 };
-
-use crate::any::{Any, any};
 
 /// A start in the only mode.
 pub fn at<const N: usize>(s: f64, state: [f64; N]) -> Start<(), N> {
@@ -69,17 +67,17 @@ impl<const N: usize> Observer<(), N> for Log<N> {
 }
 
 /// A ball that keeps nine tenths of its speed.
-pub fn ball() -> Any<'static, 2, 1> {
-    any(Closures::new(|_s, y: &State<2>| State::from([y[1], -9.81]))
+pub fn ball() -> impl HybridSystem<2, 1, Mode = ()> {
+    Closures::new(|_s, y: &State<2>| State::from([y[1], -9.81]))
         .guards([Guard::new(Direction::Below)], |_s, y| [y[0]])
-        .transition(|_guard, _s, y| State::from([0.0, -0.9 * y[1]])))
+        .transition(|_guard, _s, y| State::from([0.0, -0.9 * y[1]]))
 }
 
 /// The same ball, if it starts from the ground.
-pub fn thrown() -> Any<'static, 2, 1> {
-    any(Closures::new(|_s, y: &State<2>| State::from([y[1], -9.81]))
+pub fn thrown() -> impl HybridSystem<2, 1, Mode = ()> {
+    Closures::new(|_s, y: &State<2>| State::from([y[1], -9.81]))
         .guards([Guard::new(Direction::Below).from_zero(1)], |_s, y| [y[0]])
-        .transition(|_guard, _s, y| State::from([0.0, -0.9 * y[1]])))
+        .transition(|_guard, _s, y| State::from([0.0, -0.9 * y[1]]))
 }
 
 /// The place where the ball that falls from 1 bounces, counted from 0.
@@ -91,10 +89,9 @@ pub fn bounce(n: i32) -> f64 {
 /// y' = 1, so that s and y are the same, with guards that change nothing.
 pub fn line<const G: usize>(
     guards: [Guard; G],
-    values: impl Fn(f64) -> [f64; G] + 'static,
-) -> Any<'static, 1, G> {
-    any(Closures::new(|_s, _y: &State<1>| State::from([1.0]))
-        .guards(guards, move |s, _y| values(s)))
+    values: impl Fn(f64) -> [f64; G],
+) -> impl HybridSystem<1, G, Mode = ()> {
+    Closures::new(|_s, _y: &State<1>| State::from([1.0])).guards(guards, move |s, _y| values(s))
 }
 
 /// Checks that a run reaches the end of its span.

@@ -3,10 +3,11 @@
 
 use stickslip_solver::{
     Direction, Dop853, Dopri5, Guard, HybridSystem, Method, Number, Options, Outcome, Pair,
-    ReadableSystem, RunError, State, StepSize, run, run_with,
+    ReadableSystem, RunError, State, StepSize,
 };
 
 use super::runs::{Log, at, close, fixed, line, start_of_line};
+use crate::erased::{run, run_with};
 
 /// What the guard is of the distance d from its place.
 #[derive(Clone, Copy, Debug, PartialEq)]

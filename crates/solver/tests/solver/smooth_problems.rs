@@ -1,7 +1,9 @@
 //! Smooth problems: published results of other codes, the DETEST problems, and work counters.
 
 use serde_json::Value;
-use stickslip_solver::{Dop853, Dopri5, Method, Options, Outcome, Run, State, StepSize, integrate};
+use stickslip_solver::{Dop853, Dopri5, Method, Options, Outcome, Run, State, StepSize};
+
+use crate::erased::integrate;
 
 /// The restricted three-body problem on a closed orbit of Arenstorf (Hairer, Nørsett and Wanner,
 /// *Solving Ordinary Differential Equations I*, 2nd ed., section II.0).

@@ -4,10 +4,11 @@ use std::f64::consts::PI;
 
 use stickslip_solver::{
     Direction, Dop853, Dopri5, Enclosure, Guard, HybridSystem, Method, Number, Options, Outcome,
-    ReadableSystem, Recorder, Start, State, StepSize, SwitchEvent, run,
+    ReadableSystem, Recorder, Start, State, StepSize, SwitchEvent,
 };
 
-use crate::any::{BlackBox, any};
+use crate::black_box::BlackBox;
+use crate::erased::run;
 
 /// Relaxation oscillators with a guard that varies faster than they do.
 enum Oscillator {
@@ -65,7 +66,7 @@ fn sign_changes<M: Method>(method: M, system: &Observed, tolerance: f64) {
     let (mut read, mut sampled) = (Recorder::default(), Recorder::default());
     let ends = [
         run(method, system, start, 20.0, &options, &mut read),
-        run(method, &any(BlackBox(system)), start, 20.0, &options, &mut sampled),
+        run(method, &BlackBox(system), start, 20.0, &options, &mut sampled),
     ];
     assert!(ends.iter().all(|end| end.is_ok_and(|end| end.outcome == Outcome::ReachedEnd)));
     assert_eq!(check(read, "readable"), check(sampled, "black box"), "{tolerance:e}");
@@ -150,7 +151,7 @@ fn sixty_four_guards_fall_together() {
     let options = Options::default();
     let end = run(Dop853, &Together, start, 1.0, &options, &mut events).unwrap();
     assert_eq!(end.outcome, Outcome::ReachedEnd);
-    let end = run(Dop853, &any(BlackBox(&Together)), start, 1.0, &options, &mut sampled).unwrap();
+    let end = run(Dop853, &BlackBox(&Together), start, 1.0, &options, &mut sampled).unwrap();
     assert_eq!(end.outcome, Outcome::ReachedEnd);
     for events in [events, sampled] {
         assert!(events.iter().all(|event| (event.s - 0.7).abs() < 1e-14));
@@ -363,7 +364,7 @@ fn poles_of_tan_are_not_zeros() {
     for h in [0.01, 0.1, 0.3, 1.0] {
         let options = Options { step_size: StepSize::Fixed(h), ..Options::default() };
         let mut events: Vec<SwitchEvent<(), 1>> = Vec::new();
-        let end = run(Dop853, &any(Timed(f64::tan)), start, 20.0, &options, &mut events).unwrap();
+        let end = run(Dop853, &Timed(f64::tan), start, 20.0, &options, &mut events).unwrap();
         assert_eq!(end.outcome, Outcome::ReachedEnd);
         let zeros: Vec<f64> = (1..=6).map(|k| PI * f64::from(k)).collect();
         assert_eq!(events.len(), zeros.len(), "{h}: {events:?}");
@@ -378,7 +379,7 @@ fn a_jump_is_reported_as_one() {
     let start = Start { mode: (), s: 0.0, state: State::zeros() };
     let mut events: Vec<SwitchEvent<(), 1>> = Vec::new();
     let jump = |t: f64| if t < 0.3 { 1.0 } else { -2.0 };
-    let end = run(Dop853, &any(Timed(jump)), start, 1.0, &Options::default(), &mut events).unwrap();
+    let end = run(Dop853, &Timed(jump), start, 1.0, &Options::default(), &mut events).unwrap();
     assert_eq!((end.outcome, events.len()), (Outcome::ReachedEnd, 1));
     assert!((events[0].s - 0.3).abs() < 1e-14 && events[0].jump);
 }
@@ -417,7 +418,7 @@ fn a_terminal_zero_exactly_at_the_end_of_the_span_ends_the_run() {
                 run(Dop853, &Decay::<1> { rate: 1.0, ends: end }, start, end, &options, &mut ()),
                 run(
                     Dopri5,
-                    &any(BlackBox(&Decay::<1> { rate: 1.0, ends: end })),
+                    &BlackBox(&Decay::<1> { rate: 1.0, ends: end }),
                     start,
                     end,
                     &options,

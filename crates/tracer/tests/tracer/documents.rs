@@ -8,9 +8,11 @@ use stickslip_tracer::{
     Window,
 };
 
+use crate::any::any;
+use crate::guards;
 use crate::surveys::{Shapes, WINDOW, assert_same, options};
 
-type OfShapes = Document<Vec<bool>, usize>;
+type OfShapes = Document<guards::Label, guards::Margin>;
 
 const AXES: [&str; 2] = ["x", "y"];
 
@@ -31,7 +33,7 @@ fn passed_on(document: &OfShapes) -> OfShapes {
 fn an_atlas_reads_back_with_all_bits() {
     // In one of the two, runs fail, and a region is in doubt.
     for hole in [0.0, 0.05] {
-        let atlas = surveyor().atlas(&Shapes { hole }, &WINDOW).unwrap();
+        let atlas = surveyor().atlas(&any(Shapes { hole }), &WINDOW).unwrap();
         let written = document(&atlas);
         let read = passed_on(&written);
         assert_eq!((&read, read.is_finished()), (&written, true));
@@ -52,7 +54,7 @@ fn an_atlas_reads_back_with_all_bits() {
 /// A survey is cancelled again and again, and each time goes on from its file.
 #[test]
 fn a_survey_goes_on_from_its_file_to_the_same_bits() {
-    let family = Shapes { hole: 0.0 };
+    let family = any(Shapes { hole: 0.0 });
     let whole = surveyor().atlas(&family, &WINDOW).unwrap();
     // Each time it comes a little further: a verification or a second look begins again.
     let (asked, most) = (AtomicUsize::new(0), AtomicUsize::new(3));
@@ -74,7 +76,7 @@ fn a_survey_goes_on_from_its_file_to_the_same_bits() {
 
 #[test]
 fn documents_that_contradict_themselves_are_refused() {
-    let family = Shapes { hole: 0.0 };
+    let family = any(Shapes { hole: 0.0 });
     let good = document(&surveyor().atlas(&family, &WINDOW).unwrap());
     assert!(good.clone().atlas().is_ok());
     let refused = |change: fn(&mut OfShapes)| {
@@ -121,7 +123,7 @@ fn hybrid_systems_have_documents() {
         (Ball(point.y), Start { mode: (), s: 0.0, state: State::from([point.x, 0.0]) })
     };
     let run = Options::with_tolerance(1e-14);
-    let family = HybridFamily { problem, method: Dop853, options: run, end: 2.4 };
+    let family = any(HybridFamily { problem, method: Dop853, options: run, end: 2.4 });
     let window = Window { low: Point::new(0.5, 0.5), high: Point::new(2.0, 0.8) };
     let surveyor = surveyor();
     let atlas = surveyor.atlas(&family, &window).unwrap();

@@ -4,6 +4,8 @@
 use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Place, Start, State};
 use stickslip_tracer::{HybridFamily, Itinerary, Point, TraceOptions, Window, trace};
 
+use crate::any::any;
+
 const WINDOW: Window = Window { low: Point::new(-0.5, -0.15), high: Point::new(0.45, 0.4) };
 const OFF: Guard = Guard::OFF;
 const BELOW: Guard = Guard::new(Direction::Below);
@@ -51,7 +53,7 @@ fn changes(clock: Clock, [below, above]: [&[usize]; 2], is_place: fn(&Place) -> 
         (Clock { h, ..clock }, Start { mode: 0, s: 0.0, state: State::from([0.0]) })
     };
     let options = Options { rtol: 1e-13, atol: 1e-13, max_step: 0.25, ..Options::default() };
-    let family = HybridFamily { problem, method: Dop853, options, end: 2.0 };
+    let family = any(HybridFamily { problem, method: Dop853, options, end: 2.0 });
     let network = trace(&family, &WINDOW, &TraceOptions::default()).expect("a trace");
     assert_eq!(network.unresolved, []);
     let [curve] = &network.curves[..] else { panic!("{:?}", network.curves) };

@@ -2,11 +2,12 @@
 
 use stickslip_tracer::{Point, Tracer};
 
+use crate::any::any;
 use crate::guards::{Guards, SQUARE, exact};
 
 /// The places where the curves of `functions` are extremal in each coordinate, ordered by x + y.
 fn extrema(functions: Vec<fn(&Point) -> f64>) -> [Vec<Point>; 2] {
-    let family = Guards(functions);
+    let family = any(Guards(functions));
     let mut tracer = Tracer::new(&family, &SQUARE, &exact()).unwrap();
     tracer.explore().unwrap();
     let found = tracer.extrema().unwrap();

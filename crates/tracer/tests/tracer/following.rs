@@ -1,26 +1,29 @@
 //! One boundary, followed with monitors, against closed forms.
 
-use std::convert::Infallible;
 use std::f64::consts::PI;
 
 use stickslip_tracer::{End, Family, FreeRun, Point, TraceOptions, VertexKind, Window, follow};
+
+use crate::any::any;
+use crate::guards::{Failed, Label, Margin};
 
 /// A guard that fires inside the circle of radius ½ around the origin.
 struct Disc;
 
 impl Family for Disc {
-    type Label = bool;
-    type Margin = ();
-    type Error = Infallible;
+    type Label = Label;
+    type Margin = Margin;
+    type Error = Failed;
 
-    fn label(&self, point: &Point) -> Result<bool, Infallible> {
-        Ok(point.norm() < 0.5)
+    fn label(&self, point: &Point) -> Result<Label, Failed> {
+        Ok(vec![point.norm() < 0.5])
     }
-    fn margin(&self, point: &Point, (): &()) -> Result<Option<f64>, Infallible> {
+    fn margin(&self, point: &Point, _: &Margin) -> Result<Option<f64>, Failed> {
         Ok(Some(point.norm() - 0.5))
     }
-    fn free_run(&self, point: &Point) -> Result<FreeRun<bool, ()>, Infallible> {
-        Ok(FreeRun { label: self.label(point)?, margins: vec![((), point.norm() - 0.5)] })
+    fn free_run(&self, point: &Point) -> Result<FreeRun<Label, Margin>, Failed> {
+        let margins = vec![((0, Vec::new()), point.norm() - 0.5)];
+        Ok(FreeRun { label: self.label(point)?, margins })
     }
 }
 
@@ -39,10 +42,10 @@ fn monitors_of_a_closed_boundary_have_their_zeros() {
     let jump = |point: &Point| if point.x > 0.07 { 1.0 } else { -1.0 };
     let hole = |point: &Point| if point.x.abs() < 0.4 { f64::NAN } else { point.x };
     let options = TraceOptions::default();
-    let found = follow(&Disc, &window(1.0), &options, &PLACES, &[&wave, &jump, &hole]);
+    let found = follow(&any(Disc), &window(1.0), &options, &PLACES, &[&wave, &jump, &hole]);
     let found = found.unwrap().unwrap();
     assert!(found.ends.is_none());
-    assert_eq!(found.sides, [false, true], "the margin is positive on the left");
+    assert_eq!(found.sides, [[false], [true]], "the margin is positive on the left");
     assert_eq!(found.nodes[0].point, found.nodes[found.nodes.len() - 1].point);
     let recomputed: Vec<f64> = found.nodes.iter().map(|node| wave(&node.point)).collect();
     assert_eq!(found.values[0], recomputed);
@@ -69,7 +72,7 @@ fn monitors_of_a_closed_boundary_have_their_zeros() {
 fn a_boundary_that_leaves_the_window_has_both_ends() {
     let options = TraceOptions::default();
     let height = |point: &Point| point.y - 0.45;
-    let found = follow(&Disc, &window(0.3), &options, &PLACES, &[&height]).unwrap().unwrap();
+    let found = follow(&any(Disc), &window(0.3), &options, &PLACES, &[&height]).unwrap().unwrap();
     let ends = found.ends.unwrap();
     for (end, node) in ends.iter().zip([&found.nodes[0], &found.nodes[found.nodes.len() - 1]]) {
         let End::Vertex(special) = end else { panic!("{end:?}") };
@@ -90,6 +93,6 @@ fn a_boundary_that_leaves_the_window_has_both_ends() {
 #[test]
 fn there_is_nothing_to_follow_between_equal_labels() {
     let places = [Point::new(0.0, 0.1), Point::new(0.1, 0.0)];
-    let found = follow(&Disc, &window(1.0), &TraceOptions::default(), &places, &[]);
+    let found = follow(&any(Disc), &window(1.0), &TraceOptions::default(), &places, &[]);
     assert!(found.unwrap().is_none());
 }

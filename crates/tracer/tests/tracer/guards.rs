@@ -1,10 +1,10 @@
 //! Families whose guards are functions of the parameters, with assertions about their networks.
 
-use std::convert::Infallible;
-
 use stickslip_tracer::{
     Curve, Family, FreeRun, Network, Point, TraceOptions, VertexKind, Window, trace,
 };
+
+use crate::any::any;
 
 /// Guards in their order. Each fires where its function is negative. The itinerary of a margin says
 /// which of the guards before it fired. A free run has the margins of the guards that did not fire.
@@ -15,20 +15,25 @@ pub type Label = Vec<bool>;
 /// The index of the guard, and whether each guard before it fired.
 pub type Margin = (usize, Vec<bool>);
 
+/// A run failed.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("a run failed")]
+pub struct Failed;
+
 impl Family for Guards {
     type Label = Label;
     type Margin = Margin;
-    type Error = Infallible;
+    type Error = Failed;
 
-    fn label(&self, point: &Point) -> Result<Label, Infallible> {
+    fn label(&self, point: &Point) -> Result<Label, Failed> {
         Ok(self.0.iter().map(|function| function(point) < 0.0).collect())
     }
 
-    fn margin(&self, point: &Point, margin: &Margin) -> Result<Option<f64>, Infallible> {
+    fn margin(&self, point: &Point, margin: &Margin) -> Result<Option<f64>, Failed> {
         Ok(Some(self.0[margin.0](point)))
     }
 
-    fn free_run(&self, point: &Point) -> Result<FreeRun<Label, Margin>, Infallible> {
+    fn free_run(&self, point: &Point) -> Result<FreeRun<Label, Margin>, Failed> {
         let label = self.label(point)?;
         let margins = (0..self.0.len())
             .filter(|&i| !label[i])
@@ -47,7 +52,7 @@ pub fn exact() -> TraceOptions {
 
 /// The network of the functions, whose curves must end at their vertices.
 pub fn traced(functions: Vec<fn(&Point) -> f64>, window: &Window) -> Network<Label, Margin> {
-    let network = trace(&Guards(functions), window, &exact()).unwrap();
+    let network = trace(&any(Guards(functions)), window, &exact()).unwrap();
     assert_eq!(network.unresolved, []);
     for curve in &network.curves {
         let nodes = &curve.nodes;

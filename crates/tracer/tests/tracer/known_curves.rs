@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use stickslip_tracer::{Point, TraceError, TraceOptions, VertexKind, Window, trace};
 
+use crate::any::any;
 use crate::guards::{Guards, SQUARE, assert_on, circle, exact, has_vertex, length, traced};
 
 #[test]
@@ -176,14 +177,14 @@ fn wavy_boundaries_that_cross() {
 
 #[test]
 fn bad_input_is_named() {
-    let family = Guards(vec![|p| p.x]);
+    let family = any(Guards(vec![|p| p.x]));
     let options = TraceOptions { max_step: 0.5, ..exact() };
     let error = trace(&family, &SQUARE, &options).unwrap_err();
     assert_eq!(error.to_string(), "max_step is 0.5, expected above 0 to 0.25");
     let empty = Window { low: Point::new(0.0, 0.0), high: Point::new(1.0, 0.0) };
     let error = trace(&family, &empty, &exact()).unwrap_err();
     assert_eq!(error, TraceError::Window { window: empty });
-    let nothing = Guards(vec![|p| if p.x > 0.5 { f64::NAN } else { 1.0 }]);
+    let nothing = any(Guards(vec![|p| if p.x > 0.5 { f64::NAN } else { 1.0 }]));
     let error = trace(&nothing, &SQUARE, &exact()).unwrap_err();
     assert!(matches!(error, TraceError::NotANumber { point } if point.x > 0.5));
 }
@@ -194,7 +195,7 @@ fn bad_input_is_named() {
 fn runs_of_a_trace() {
     let plain = |cells| {
         let options = TraceOptions { cells, ..exact() };
-        let family = Guards(vec![|p| p.y - 0.2 * (4.0 * p.x).sin() - 0.1 * p.x * p.x]);
+        let family = any(Guards(vec![|p| p.y - 0.2 * (4.0 * p.x).sin() - 0.1 * p.x * p.x]));
         trace(&family, &SQUARE, &options).unwrap()
     };
     let network = plain(2);

@@ -1,5 +1,6 @@
 //! Traces and subdivisions with known answers.
 
+mod any;
 #[cfg(feature = "serde")]
 mod bent_chessboard;
 mod counting;

@@ -1,10 +1,9 @@
 //! Random circles: the curves and vertices that geometry tells.
 
-use std::convert::Infallible;
-
 use stickslip_tracer::{Family, FreeRun, Point, TraceOptions, trace};
 
-use crate::guards::{Label, Margin, SQUARE, assert_on, circle};
+use crate::any::any;
+use crate::guards::{Failed, Label, Margin, SQUARE, assert_on, circle};
 
 /// Circles (x, y, radius) of many sizes. A guard fires inside each, in their order.
 struct Circles(Vec<[f64; 3]>);
@@ -12,17 +11,17 @@ struct Circles(Vec<[f64; 3]>);
 impl Family for Circles {
     type Label = Label;
     type Margin = Margin;
-    type Error = Infallible;
+    type Error = Failed;
 
-    fn label(&self, point: &Point) -> Result<Label, Infallible> {
+    fn label(&self, point: &Point) -> Result<Label, Failed> {
         Ok((0..self.0.len()).map(|i| self.value(i, point) < 0.0).collect())
     }
 
-    fn margin(&self, point: &Point, margin: &Margin) -> Result<Option<f64>, Infallible> {
+    fn margin(&self, point: &Point, margin: &Margin) -> Result<Option<f64>, Failed> {
         Ok(Some(self.value(margin.0, point)))
     }
 
-    fn free_run(&self, point: &Point) -> Result<FreeRun<Label, Margin>, Infallible> {
+    fn free_run(&self, point: &Point) -> Result<FreeRun<Label, Margin>, Failed> {
         let label = self.label(point)?;
         let margins =
             (0..self.0.len()).map(|i| ((i, label[..i].to_vec()), self.value(i, point))).collect();
@@ -66,7 +65,8 @@ fn random_circles() {
             }
         }
         let curves: usize = crossings.iter().map(|&count| usize::max(count, 1)).sum();
-        let network = trace(&Circles(circles.clone()), &SQUARE, &TraceOptions::default()).unwrap();
+        let network =
+            trace(&any(Circles(circles.clone())), &SQUARE, &TraceOptions::default()).unwrap();
         assert_eq!(network.unresolved, [], "case {case}");
         let found = (network.curves.len(), network.vertices.len());
         assert_eq!(found, (curves, vertices), "case {case}: {circles:?}");

@@ -7,6 +7,8 @@ use stickslip_tracer::{
     Atlas, AtlasOptions, Family, HybridFamily, Point, TraceOptions, VerifyOptions, Window,
 };
 
+use crate::any::any;
+
 const GUARDS: usize = 3;
 const WINDOW: Window = Window { low: Point::new(-1.0, -1.0), high: Point::new(1.0, 1.0) };
 
@@ -81,7 +83,7 @@ fn wrong(seed: u64, points: usize) -> (usize, f64) {
     let start = Start { mode: None, s: 0.0, state: State::from([0.0]) };
     let problem = move |point: &Point| (At(waves, *point), start);
     let options = Options { max_step: 0.2, max_switches: 4, ..Options::with_tolerance(1e-13) };
-    let family = HybridFamily { problem, method: Dop853, options, end: 3.0 };
+    let family = any(HybridFamily { problem, method: Dop853, options, end: 3.0 });
     let verify = VerifyOptions { random_points: points, ..VerifyOptions::default() };
     let trace = TraceOptions { cells: 12, ..TraceOptions::default() };
     let atlas_options = AtlasOptions { trace, verify, ..AtlasOptions::default() };

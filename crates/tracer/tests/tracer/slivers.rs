@@ -1,10 +1,9 @@
 //! Regions much thinner than a cell of the grid, with the same label on both sides.
 
-use std::convert::Infallible;
-
 use stickslip_tracer::{Family, FreeRun, Point, TraceOptions, VertexKind, trace};
 
-use crate::guards::SQUARE;
+use crate::any::any;
+use crate::guards::{Failed, Label, Margin, SQUARE};
 
 /// A region between a line and a curve above it. Each of the two has a margin that runs on its own
 /// side of the region have, as far as the region reaches.
@@ -23,30 +22,32 @@ impl Sliver {
 }
 
 impl Family for Sliver {
-    type Label = bool;
-    type Margin = usize;
-    type Error = Infallible;
+    type Label = Label;
+    type Margin = Margin;
+    type Error = Failed;
 
-    fn label(&self, point: &Point) -> Result<bool, Infallible> {
-        Ok(self.margins(point).is_some_and(|margins| margins.iter().all(|margin| *margin < 0.0)))
+    fn label(&self, point: &Point) -> Result<Label, Failed> {
+        let within = |margins: [f64; 2]| margins.iter().all(|margin| *margin < 0.0);
+        Ok(vec![self.margins(point).is_some_and(within)])
     }
 
-    fn margin(&self, point: &Point, margin: &usize) -> Result<Option<f64>, Infallible> {
+    fn margin(&self, point: &Point, (margin, _): &Margin) -> Result<Option<f64>, Failed> {
         Ok(self.margins(point).map(|margins| margins[*margin]))
     }
 
-    fn free_run(&self, point: &Point) -> Result<FreeRun<bool, usize>, Infallible> {
+    fn free_run(&self, point: &Point) -> Result<FreeRun<Label, Margin>, Failed> {
         let margins = self
             .margins(point)
             .into_iter()
-            .flat_map(|margins| margins.into_iter().enumerate().filter(|(_, value)| *value >= 0.0));
+            .flat_map(|margins| margins.into_iter().enumerate().filter(|(_, value)| *value >= 0.0))
+            .map(|(index, value)| ((index, Vec::new()), value));
         Ok(FreeRun { label: self.label(point)?, margins: margins.collect() })
     }
 }
 
 /// The numbers of curves and of vertices inside the window.
 fn found(height: fn(f64) -> f64) -> [usize; 2] {
-    let network = trace(&Sliver { height }, &SQUARE, &TraceOptions::default()).unwrap();
+    let network = trace(&any(Sliver { height }), &SQUARE, &TraceOptions::default()).unwrap();
     assert_eq!(network.unresolved, []);
     let inside = |kind| !matches!(kind, VertexKind::WindowEdge | VertexKind::WindowCorner);
     let vertices = network.vertices.iter().filter(|vertex| inside(vertex.kind)).count();

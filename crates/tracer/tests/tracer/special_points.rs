@@ -9,6 +9,8 @@ use stickslip_tracer::{
     Window, trace,
 };
 
+use crate::any::any;
+
 const END: f64 = 2.0;
 
 /// The values of the guards at a time, a place of the plane, and the time at which the first one
@@ -53,7 +55,7 @@ fn family(values: Values) -> impl Family<Label = Itinerary, Margin = Margin, Err
         (Run { values, point: *point }, start)
     };
     let options = Options { rtol: 1e-13, atol: 1e-13, max_step: 0.25, ..Options::default() };
-    HybridFamily { problem, method: Dop853, options, end: END }
+    any(HybridFamily { problem, method: Dop853, options, end: END })
 }
 
 /// The name of the vertex at the origin, how far it is from there, and the number of curves.

@@ -1,13 +1,12 @@
 //! Stacks of families whose changes have closed forms.
 
-use std::convert::Infallible;
-
 use stickslip_tracer::{
     AtlasOptions, Change, Effect, Family, FreeRun, MeetingKind, Point, Stack, StackOptions,
     TraceOptions, VerifyOptions, Window,
 };
 
-use crate::guards::SQUARE;
+use crate::any::any;
+use crate::guards::{Failed, Label, Margin, SQUARE};
 
 /// Guards that depend on a third parameter. Each fires where its function is negative.
 struct Moving {
@@ -16,21 +15,22 @@ struct Moving {
 }
 
 impl Family for Moving {
-    type Label = Vec<bool>;
-    type Margin = usize;
-    type Error = Infallible;
+    type Label = Label;
+    type Margin = Margin;
+    type Error = Failed;
 
-    fn label(&self, point: &Point) -> Result<Vec<bool>, Infallible> {
+    fn label(&self, point: &Point) -> Result<Label, Failed> {
         Ok(self.guards.iter().map(|guard| guard(point, self.value) < 0.0).collect())
     }
 
-    fn margin(&self, point: &Point, margin: &usize) -> Result<Option<f64>, Infallible> {
+    fn margin(&self, point: &Point, (margin, _): &Margin) -> Result<Option<f64>, Failed> {
         Ok(Some(self.guards[*margin](point, self.value)))
     }
 
-    fn free_run(&self, point: &Point) -> Result<FreeRun<Vec<bool>, usize>, Infallible> {
+    fn free_run(&self, point: &Point) -> Result<FreeRun<Label, Margin>, Failed> {
         let margins = self.guards.iter().enumerate();
-        let margins = margins.map(|(index, guard)| (index, guard(point, self.value))).collect();
+        let value = |guard: &fn(&Point, f64) -> f64| guard(point, self.value);
+        let margins = margins.map(|(index, guard)| ((index, Vec::new()), value(guard))).collect();
         Ok(FreeRun { label: self.label(point)?, margins })
     }
 }
@@ -49,7 +49,7 @@ fn changes(
     values: &[f64],
     expected: &[(MeetingKind, f64, Point)],
 ) -> Vec<Change<Vec<bool>>> {
-    let family = |value| Moving { guards, value };
+    let family = |value| any(Moving { guards, value });
     let stack = Stack::of(family, &SQUARE, values, &options()).unwrap();
     assert_eq!(stack.changes.len(), expected.len(), "{:?}", stack.changes);
     for (change, (kind, value, point)) in stack.changes.iter().zip(expected) {
@@ -150,7 +150,7 @@ fn a_jump_is_a_bracket() {
     const JUMP: [fn(&Point, f64) -> f64; 1] =
         [|point, t| point.norm_squared() - if t < 0.3 { 0.2 } else { 1.5 }];
     let stack =
-        Stack::of(|value| Moving { guards: &JUMP, value }, &SQUARE, &[0.1, 0.6], &options())
+        Stack::of(|value| any(Moving { guards: &JUMP, value }), &SQUARE, &[0.1, 0.6], &options())
             .unwrap();
     let [change] = &stack.changes[..] else { panic!("{:?}", stack.changes) };
     let [low, high] = change.between;
@@ -167,12 +167,12 @@ fn values_are_checked() {
     const LINE: [fn(&Point, f64) -> f64; 1] = [|point, t| point.x - t];
     let stack = |values: &[f64]| {
         let window = Window { low: Point::zeros(), high: Point::new(1.0, 1.0) };
-        Stack::of(|value| Moving { guards: &LINE, value }, &window, values, &options())
+        Stack::of(|value| any(Moving { guards: &LINE, value }), &window, values, &options())
     };
     for values in [&[][..], &[0.5], &[0.5, 0.5], &[0.5, 0.2], &[0.1, f64::NAN]] {
         assert!(stack(values).is_err(), "{values:?}");
     }
     let wide = StackOptions { width: 0.5, ..options() };
-    let family = |value| Moving { guards: &LINE, value };
+    let family = |value| any(Moving { guards: &LINE, value });
     assert!(Stack::of(family, &SQUARE, &[0.1, 0.2], &wide).is_err());
 }

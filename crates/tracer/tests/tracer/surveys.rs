@@ -8,6 +8,9 @@ use stickslip_tracer::{
     Surveyor, TraceOptions, VerifyOptions, Watch, Window,
 };
 
+use crate::any::any;
+use crate::guards::{Failed, Label, Margin};
+
 /// A circle, a cubic, and a small disc, whose margin is only listed beside it: the grid does not
 /// show it, but a verification does.
 pub struct Shapes {
@@ -17,10 +20,6 @@ pub struct Shapes {
 
 pub const WINDOW: Window = Window { low: Point::new(-1.0, -1.0), high: Point::new(1.0, 1.0) };
 
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("a run in the hole")]
-pub struct InHole;
-
 impl Shapes {
     fn values(point: &Point) -> [f64; 3] {
         let disc = point - Point::new(0.5, -0.5);
@@ -29,24 +28,25 @@ impl Shapes {
 }
 
 impl Family for Shapes {
-    type Label = Vec<bool>;
-    type Margin = usize;
-    type Error = InHole;
+    type Label = Label;
+    type Margin = Margin;
+    type Error = Failed;
 
-    fn label(&self, point: &Point) -> Result<Vec<bool>, InHole> {
+    fn label(&self, point: &Point) -> Result<Label, Failed> {
         if (point - Point::new(-0.6, 0.6)).norm() < self.hole {
-            return Err(InHole);
+            return Err(Failed);
         }
         Ok(Self::values(point).map(|value| value < 0.0).to_vec())
     }
 
-    fn margin(&self, point: &Point, margin: &usize) -> Result<Option<f64>, InHole> {
+    fn margin(&self, point: &Point, (margin, _): &Margin) -> Result<Option<f64>, Failed> {
         Ok(Some(Self::values(point)[*margin]))
     }
 
-    fn free_run(&self, point: &Point) -> Result<FreeRun<Vec<bool>, usize>, InHole> {
+    fn free_run(&self, point: &Point) -> Result<FreeRun<Label, Margin>, Failed> {
         let values = Self::values(point).into_iter().enumerate();
-        let margins = values.filter(|&(index, value)| index < 2 || value < 0.002).collect();
+        let listed = values.filter(|&(index, value)| index < 2 || value < 0.002);
+        let margins = listed.map(|(index, value)| ((index, Vec::new()), value)).collect();
         Ok(FreeRun { label: self.label(point)?, margins })
     }
 }
@@ -104,11 +104,11 @@ where
 
 #[test]
 fn threads_do_not_change_a_bit() {
-    let family = Shapes { hole: 0.0 };
+    let family = any(Shapes { hole: 0.0 });
     let serial = Surveyor { options: options(), ..Surveyor::default() };
     let atlas = serial.atlas(&family, &WINDOW).unwrap();
     assert!(atlas.agrees(), "{:?}", atlas.verification);
-    let margins: Vec<usize> = atlas.plane.curves().iter().map(|curve| curve.margin).collect();
+    let margins: Vec<_> = atlas.plane.curves().iter().map(|curve| &curve.margin).collect();
     assert!(atlas.rounds > 1, "the disc is found by a second look: {margins:?}");
     assert_eq!(atlas.plane.regions().len(), 5);
     for threads in [1, 4] {
@@ -133,7 +133,7 @@ fn a_survey_beyond_the_window_cancelled_anywhere_goes_on_to_the_same_bits() {
 
 /// Cancels a survey at every so manieth time that it asks.
 fn cancelled_anywhere(options: AtlasOptions, every: usize) {
-    let family = Shapes { hole: 0.0 };
+    let family = any(Shapes { hole: 0.0 });
     let asked = AtomicUsize::new(0);
     let count = || asked.fetch_add(1, Ordering::Relaxed) == usize::MAX;
     let surveyor = Surveyor { options, ..Surveyor::default() };
@@ -171,7 +171,7 @@ fn progress_tells_of_as_many_steps_as_it_announced() {
     };
     let watch = Watch::from(&report);
     let surveyor = Surveyor { options: options(), watch, ..Surveyor::default() };
-    surveyor.atlas(&Shapes { hole: 0.0 }, &WINDOW).unwrap();
+    surveyor.atlas(&any(Shapes { hole: 0.0 }), &WINDOW).unwrap();
     assert!(done.load(Ordering::Relaxed) > 2000);
     assert_eq!(announced.into_inner(), done.into_inner());
 }
@@ -179,7 +179,7 @@ fn progress_tells_of_as_many_steps_as_it_announced() {
 /// The tracer does not come to the hole, but the verification does.
 #[test]
 fn runs_that_fail_speak_against_an_atlas() {
-    let family = Shapes { hole: 0.05 };
+    let family = any(Shapes { hole: 0.05 });
     let surveyor = Surveyor { options: options(), ..Surveyor::default() };
     let atlas = surveyor.atlas(&family, &WINDOW).unwrap();
     assert!(atlas.unresolved.is_empty() && atlas.verification.agrees());
@@ -193,7 +193,7 @@ fn runs_that_fail_speak_against_an_atlas() {
 /// Points on a curve, on the window's edge and outside.
 #[test]
 fn every_point_is_decided() {
-    let family = Shapes { hole: 0.0 };
+    let family = any(Shapes { hole: 0.0 });
     let surveyor = Surveyor { options: options(), ..Surveyor::default() };
     let atlas = surveyor.atlas(&family, &WINDOW).unwrap();
     let on_circle = Point::new(0.3, 0.4);

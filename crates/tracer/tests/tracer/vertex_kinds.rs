@@ -7,6 +7,8 @@ use stickslip_tracer::{
     Window, trace,
 };
 
+use crate::any::any;
+
 /// The coefficients of the cubic guard at every point.
 struct CubicGuards(fn(&Point) -> [f64; 4]);
 
@@ -56,7 +58,8 @@ impl Problem<1, 2> for CubicGuards {
 /// The network of a cubic guard, with its kinds of vertices.
 fn network(cubic: fn(&Point) -> [f64; 4]) -> Network<Itinerary, Margin> {
     let options = Options { rtol: 1e-14, atol: 1e-14, max_step: 0.1, ..Options::default() };
-    let family = HybridFamily { problem: CubicGuards(cubic), method: Dop853, options, end: 2.0 };
+    let problem = CubicGuards(cubic);
+    let family = any(HybridFamily { problem, method: Dop853, options, end: 2.0 });
     let window = Window { low: Point::new(-0.1, -0.11), high: Point::new(0.12, 0.1) };
     let mut network = trace(&family, &window, &TraceOptions::default()).unwrap();
     assert_eq!(network.unresolved, []);

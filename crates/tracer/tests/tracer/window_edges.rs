@@ -5,12 +5,13 @@ use stickslip_tracer::{
     Atlas, AtlasOf, AtlasOptions, Family, Point, TraceOptions, VerifyOptions, VertexKind, Window,
 };
 
+use crate::any::any;
 use crate::guards::{Guards, SQUARE, exact};
 
 /// The atlas of the functions, against which nothing may speak, and which is right at points of every
 /// distance from the edges.
 fn right(functions: Vec<fn(&Point) -> f64>) -> AtlasOf<Guards> {
-    let family = Guards(functions);
+    let family = any(Guards(functions));
     let verify = VerifyOptions { random_points: 2000, ..VerifyOptions::default() };
     let trace = TraceOptions { beyond: 1e-3, ..exact() };
     let options = AtlasOptions { trace, verify, ..AtlasOptions::default() };

@@ -3,10 +3,10 @@
 use stickslip_solver::{
     Direction, Dop853, Dopri5, DynamicDense, DynamicEvent, DynamicObserver, DynamicStart,
     DynamicSwitch, DynamicSystem, Guard, InvalidOption, Options, Outcome, RunError, StepSize,
-    run_dynamic, run_dynamic_backwards,
 };
 
 use super::{Boxed, Plain, go, places};
+use crate::erased::{run_dynamic, run_dynamic_backwards};
 
 type Switches = Vec<DynamicSwitch<()>>;
 

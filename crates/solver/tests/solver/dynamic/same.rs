@@ -2,12 +2,11 @@
 
 use stickslip_solver::{
     Closures, Direction, Dop853, Dopri5, DynamicStart, DynamicSwitch, Guard, HybridSystem, Method,
-    Options, Outcome, Pair, Run, Start, State, Statistics, StepSize, SwitchEvent, integrate, run,
-    run_dynamic,
+    Options, Outcome, Pair, Run, Start, State, Statistics, StepSize, SwitchEvent,
 };
 
 use super::{Of, Plain, go};
-use crate::any::any;
+use crate::erased::{integrate, run, run_dynamic};
 
 /// The satellite of Arenstorf's orbit.
 fn satellite(y: &[f64], slope: &mut [f64]) {
@@ -135,9 +134,9 @@ fn at<const N: usize>(state: [f64; N]) -> Start<(), N> {
 
 #[test]
 fn a_bouncing_ball_comes_to_rest() {
-    let ball = any(Closures::new(|_time, y: &State<2>| State::from([y[1], -9.81]))
+    let ball = Closures::new(|_time, y: &State<2>| State::from([y[1], -9.81]))
         .guards([Guard::new(Direction::Below)], |_time, y| [y[0]])
-        .transition(|_guard, _time, y| State::from([0.0, -0.7 * y[1]])));
+        .transition(|_guard, _time, y| State::from([0.0, -0.7 * y[1]]));
     assert!(compare_all(&ball, &[()], at([1.0, 0.0]), 30.0, &Options::default()) > 300);
 }
 
@@ -178,18 +177,18 @@ fn several_guards_that_are_noted_and_several_that_change_something() {
         Guard::OFF,
     ];
     // The second and the third guard vanish together; the fourth vanishes with the third.
-    let system = any(Closures::new(|_s, y: &State<2>| State::from([y[1], -y[0]]))
-        .guards(guards, |s: f64, y| [y[0] - 0.3, y[1], -y[1], -y[1] * (2.0 + s.sin()), f64::NAN]));
+    let system = Closures::new(|_s, y: &State<2>| State::from([y[1], -y[0]]))
+        .guards(guards, |s: f64, y| [y[0] - 0.3, y[1], -y[1], -y[1] * (2.0 + s.sin()), f64::NAN]);
     let count = compare_all(&system, &[()], at([0.0, 1.0]), 40.0, &Options::default());
     assert!(count > 100, "{count}");
     let guards = guards.map(|guard| guard.terminal_after(7));
-    let ends = any(Closures::new(|_s, y: &State<2>| State::from([y[1], -y[0]]))
-        .guards(guards, |s: f64, y| [y[0] - 0.3, y[1], -y[1], -y[1] * (2.0 + s.sin()), 1.0]));
+    let ends = Closures::new(|_s, y: &State<2>| State::from([y[1], -y[0]]))
+        .guards(guards, |s: f64, y| [y[0] - 0.3, y[1], -y[1], -y[1] * (2.0 + s.sin()), 1.0]);
     assert!(compare_all(&ends, &[()], at([0.0, 1.0]), 400.0, &Options::default()) > 20);
     // The fourth guard changes the state, and yields to the third, which does not.
-    let changes = any(Closures::new(|_s, y: &State<2>| State::from([y[1], -y[0]]))
+    let changes = Closures::new(|_s, y: &State<2>| State::from([y[1], -y[0]]))
         .guards(guards, |s: f64, y| [y[0] - 0.3, y[1], -y[1], -y[1] * (2.0 + s.sin()), 1.0])
-        .transition(|guard, _s, y| if guard == 3 { y * 1.01 } else { *y }));
+        .transition(|guard, _s, y| if guard == 3 { y * 1.01 } else { *y });
     assert!(compare_all(&changes, &[()], at([0.0, 1.0]), 400.0, &Options::default()) > 20);
 }
 
@@ -200,9 +199,9 @@ fn ties_are_decided_by_the_guard_that_does_not_yield_or_by_the_first() {
             let guard = Guard::new(Direction::Below);
             if yields { guard.yielding() } else { guard }
         };
-        let system = any(Closures::new(|_s, _y: &State<1>| State::from([1.0]))
+        let system = Closures::new(|_s, _y: &State<1>| State::from([1.0]))
             .guards([with(first), with(second)], |_s, y| [0.7 - y[0], 1.4 - 2.0 * y[0]])
-            .transition(|guard, _s, _y| State::from([-1.0 - guard as f64])));
+            .transition(|guard, _s, _y| State::from([-1.0 - guard as f64]));
         assert!(compare_all(&system, &[()], at([0.0]), 10.0, &Options::default()) > 10);
     }
 }
@@ -221,9 +220,9 @@ fn guards_that_start_from_zero() {
     ] {
         for order in [0, 1, 2] {
             let guards = [Guard::new(direction).from_zero(order)];
-            let system = any(Closures::new(|_s, y: &State<2>| State::from([y[1], -y[0]]))
+            let system = Closures::new(|_s, y: &State<2>| State::from([y[1], -y[0]]))
                 .guards(guards, |_s, y| [sign * if order == 2 { 1.0 - y[1] } else { y[0] }])
-                .transition(|_, _, y| if sign > 0.0 { *y } else { State::from([0.3, 0.9]) }));
+                .transition(|_, _, y| if sign > 0.0 { *y } else { State::from([0.3, 0.9]) });
             let options = Options { max_at_one_instant: 5, max_switches: 50, ..Options::default() };
             compare_all(&system, &[()], at([0.0, 1.0]), 12.0, &options);
         }
@@ -232,15 +231,15 @@ fn guards_that_start_from_zero() {
 
 #[test]
 fn relays_and_ends_of_the_span() {
-    let relay = any(Closures::new(|s: f64, y: &State<1>| State::from([s.cos() - y[0]]))
+    let relay = Closures::new(|s: f64, y: &State<1>| State::from([s.cos() - y[0]]))
         .guards([Guard::new(Direction::Either); 2], |_s, y| [y[0] - 0.2, y[0] + 0.2])
-        .transition(|guard, _s, y| if guard == 0 { y * 0.999 } else { *y }));
+        .transition(|guard, _s, y| if guard == 0 { y * 0.999 } else { *y });
     assert!(compare_all(&relay, &[()], at([0.0]), 100.0, &Options::default()) > 100);
     for terminal in [false, true] {
         let guard = Guard::new(Direction::Falling);
         let guard = if terminal { guard.terminal() } else { guard };
-        let falls = any(Closures::new(|_s, _: &State<1>| State::from([-1.0]))
-            .guards([guard, Guard::new(Direction::Rising)], |_s, y| [y[0], -3.0 * y[0]]));
+        let falls = Closures::new(|_s, _: &State<1>| State::from([-1.0]))
+            .guards([guard, Guard::new(Direction::Rising)], |_s, y| [y[0], -3.0 * y[0]]);
         assert!(compare_all(&falls, &[()], at([1.0]), 1.0, &Options::default()) >= 4);
     }
     assert_eq!(Pair::ALL.len(), 2);

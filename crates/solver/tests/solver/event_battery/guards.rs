@@ -3,11 +3,12 @@
 
 use stickslip_solver::{
     Direction, Dop853, Dopri5, Guard, HybridSystem, Method, Observer, Options, Outcome, RunError,
-    Start, State, SwitchEvent, run,
+    Start, State, SwitchEvent,
 };
 
 use super::planted::{Planted, Times, step_sizes, times};
-use crate::any::{BlackBox, any};
+use crate::black_box::BlackBox;
+use crate::erased::run;
 
 /// y' = 1 with two guards.
 struct Two {
@@ -54,8 +55,7 @@ fn first_of_two<M: Method>(
     let system = Two { values, guards };
     let mut fired = Fired::default();
     let start = Start { mode: (), s: 0.0, state: State::from([0.0]) };
-    let end =
-        run(method, &any(BlackBox(&system)), start, 1.0, options, &mut fired).expect("planted");
+    let end = run(method, &BlackBox(&system), start, 1.0, options, &mut fired).expect("planted");
     let first = fired.0[0];
     assert_eq!(end.outcome, Outcome::EndedByGuard { guard: first.1 });
     first
@@ -103,10 +103,10 @@ fn a_known_zero_at_the_start_does_not_fire_and_hides_nothing() {
             let guard = Guard::new(direction).from_zero(order).terminal();
             let system = Planted::new(&value, guard);
             let (mut a, mut b) = (Times::default(), Times::default());
-            let one = run(Dopri5, &any(BlackBox(&system)), start, 1.0, &options, &mut a)
-                .expect("planted");
-            let other = run(Dop853, &any(BlackBox(&system)), start, 1.0, &options, &mut b)
-                .expect("planted");
+            let one =
+                run(Dopri5, &BlackBox(&system), start, 1.0, &options, &mut a).expect("planted");
+            let other =
+                run(Dop853, &BlackBox(&system), start, 1.0, &options, &mut b).expect("planted");
             assert_eq!(one.outcome, other.outcome);
             assert_eq!(a.switches.len(), b.switches.len());
             a.switches.into_iter().chain(b.switches).fold(None, |_, s| Some(s))
@@ -140,7 +140,7 @@ fn a_guard_that_starts_negative_fires_by_its_direction() {
             let value = |s: f64| (s - 0.31) * (0.72 - s);
             let system = Planted::new(&value, Guard::new(direction).terminal());
             let start = Start { mode: (), s: 0.0, state: State::from([0.0]) };
-            run(Dop853, &any(BlackBox(&system)), start, 1.0, &options, &mut ()).expect("planted").s
+            run(Dop853, &BlackBox(&system), start, 1.0, &options, &mut ()).expect("planted").s
         };
         let expected = [
             (Direction::Below, 0.0),
@@ -176,8 +176,8 @@ fn guards_without_a_meaning_are_errors() {
             let system = Planted::new(&value, Guard::new(Direction::Below).terminal());
             let start = Start { mode: (), s: 0.0, state: State::from([0.0]) };
             let ends = [
-                run(Dopri5, &any(BlackBox(&system)), start, 1.0, &options, &mut ()),
-                run(Dop853, &any(BlackBox(&system)), start, 1.0, &options, &mut ()),
+                run(Dopri5, &BlackBox(&system), start, 1.0, &options, &mut ()),
+                run(Dop853, &BlackBox(&system), start, 1.0, &options, &mut ()),
             ];
             for end in ends {
                 let end = end.expect("a guard before the end of its domain");

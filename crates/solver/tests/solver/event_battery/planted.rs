@@ -2,10 +2,11 @@
 
 use stickslip_solver::{
     Direction, Dop853, Dopri5, Grazing, Guard, HybridSystem, Method, Observer, Options, Outcome,
-    RunError, Start, State, StepSize, SwitchEvent, run,
+    RunError, Start, State, StepSize, SwitchEvent,
 };
 
-use crate::any::{BlackBox, any};
+use crate::black_box::BlackBox;
+use crate::erased::run;
 
 /// y' = 1 with one guard, which is a function of y = s. A switch changes nothing.
 pub struct Planted<'a> {
@@ -71,7 +72,7 @@ pub fn times<M: Method>(
     let mut times = Times::default();
     let start = Start { mode: (), s: 0.0, state: State::from([0.0]) };
     let options = Options { max_switches: 100, max_steps: 20_000, ..*options };
-    let end = run(method, &any(BlackBox(&system)), start, 1.0, &options, &mut times)?;
+    let end = run(method, &BlackBox(&system), start, 1.0, &options, &mut times)?;
     assert_eq!(end.outcome, Outcome::ReachedEnd, "{direction:?} {options:?}");
     Ok(times)
 }

@@ -2,10 +2,10 @@
 
 use stickslip_solver::{
     Direction, Dop853, Dopri5, Guard, HybridSystem, Method, Options, Outcome, Run, Start, State,
-    run,
 };
 
 use super::planted::{Planted, Score, Times, step_sizes};
+use crate::erased::run;
 
 /// A ball on the floor y = 0 with acceleration −1. The first phase starts above the floor, and
 /// later phases start at zero.

@@ -3,11 +3,12 @@
 
 use stickslip_solver::{
     Direction, Dop853, Dopri5, Guard, HybridSystem, Method, Observer, Options, Outcome, Start,
-    State, StepSize, SwitchEvent, run,
+    State, StepSize, SwitchEvent,
 };
 
 use super::planted::{Score, step_sizes};
-use crate::any::{BlackBox, any};
+use crate::black_box::BlackBox;
+use crate::erased::run;
 
 /// y' = 1 with products of (y − root) as guards. A switch changes nothing.
 struct Products {
@@ -143,8 +144,8 @@ pub fn cases() -> Vec<Case> {
 fn fired<M: Method>(method: M, case: &Case, options: &Options) -> [Vec<f64>; 3] {
     let mut fired = Fired::default();
     let start = Start { mode: (), s: 0.0, state: State::from([0.0]) };
-    let end = run(method, &any(BlackBox(&case.system)), start, 1.0, options, &mut fired)
-        .expect(case.name);
+    let end =
+        run(method, &BlackBox(&case.system), start, 1.0, options, &mut fired).expect(case.name);
     assert_eq!(end.outcome, Outcome::ReachedEnd, "{} {options:?}", case.name);
     fired.0
 }
@@ -237,7 +238,7 @@ fn a_terminal_guard_that_crosses_with_another_ends_the_run() {
         for direction in [Direction::Below, Direction::Falling, Direction::Either] {
             let start = Start { mode: (), s: 0.0, state: State::from([0.0]) };
             let mut events: Vec<SwitchEvent<(), 1>> = Vec::new();
-            let end = run(Dop853, &any(Ends(direction)), start, 1.0, &options, &mut events);
+            let end = run(Dop853, &Ends(direction), start, 1.0, &options, &mut events);
             assert_eq!(end.expect("planted").outcome, Outcome::EndedByGuard { guard: 1 });
             let guards: Vec<_> = events.iter().map(|e| (e.guard, e.simultaneous)).collect();
             assert!((events[0].s - C).abs() < 4e-15, "{events:?}");

@@ -2,11 +2,11 @@
 //! long the first step may be.
 
 use stickslip_solver::{
-    Direction, Dop853, Guard, HybridSystem, Options, Outcome, Pair, Start, State, StepSize, run,
-    run_with,
+    Direction, Dop853, Guard, HybridSystem, Options, Outcome, Pair, Start, State, StepSize,
 };
 
 use super::at;
+use crate::erased::{run, run_with};
 
 /// A mode counts what a guard does that all modes share.
 #[derive(Clone, Copy, Debug)]

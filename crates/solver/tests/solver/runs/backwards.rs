@@ -2,11 +2,11 @@
 
 use stickslip_solver::{
     Closures, Direction, Dop853, Dopri5, Guard, Options, Outcome, Pair, Recorder, Run, RunError,
-    Start, State, SwitchEvent, run, run_backwards, run_with,
+    Start, State, SwitchEvent,
 };
 
 use super::{Log, Wave, at, ball, close, fixed, line, reaches_end, start_of_line, thrown};
-use crate::any::any;
+use crate::erased::{run, run_backwards, run_with};
 
 #[test]
 fn a_run_backwards_is_the_run_of_the_mirrored_system() {
@@ -16,10 +16,10 @@ fn a_run_backwards_is_the_run_of_the_mirrored_system() {
         if guard == 0 { State::from([y[0], -0.8 * y[1] + 0.01 * s]) } else { *y }
     };
     let guards = [Guard::new(Direction::Falling), Guard::new(Direction::Either)];
-    let system = any(Closures::new(field).guards(guards, values).transition(next));
-    let mirrored = any(Closures::new(|tau, y| -field(-tau, y))
+    let system = Closures::new(field).guards(guards, values).transition(next);
+    let mirrored = Closures::new(|tau, y| -field(-tau, y))
         .guards(guards, |tau, y| values(-tau, y))
-        .transition(|guard, tau, y| next(guard, -tau, y)));
+        .transition(|guard, tau, y| next(guard, -tau, y));
     for pair in Pair::ALL {
         let options = Options::default();
         let (mut expected, mut found) = (Recorder::default(), Recorder::default());
@@ -56,9 +56,9 @@ fn a_run_backwards_is_the_run_of_the_mirrored_system() {
 #[test]
 fn there_and_back() {
     // A forced pendulum.
-    let system = any(Closures::new(|s: f64, y: &State<2>| {
+    let system = Closures::new(|s: f64, y: &State<2>| {
         State::from([y[1], -y[0].sin() + 0.1 * (2.0 * s).cos()])
-    }));
+    });
     let options = Options::with_tolerance(1e-12);
     let there = run(Dop853, &system, at(1.0, [1.0, 0.0]), 6.0, &options, &mut ()).unwrap();
     let start = Start { mode: (), s: there.s, state: there.state };
@@ -145,7 +145,7 @@ fn ends_and_errors_of_runs_backwards_have_the_original_place() {
     // A right-hand side that is not finite below 2.
     let field = |s: f64, _y: &State<1>| State::from([if s < 2.0 { f64::NAN } else { 1.0 }]);
     let error =
-        run_backwards(Dop853, &any(Closures::new(field)), at(3.0, [0.0]), 0.0, &options, &mut ());
+        run_backwards(Dop853, &Closures::new(field), at(3.0, [0.0]), 0.0, &options, &mut ());
     let Err(RunError::Field { s, .. }) = error else { panic!("{error:?}") };
     assert!((s - 2.0).abs() < 1e-9);
 }

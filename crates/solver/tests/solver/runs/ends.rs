@@ -4,11 +4,10 @@ use std::f64::consts::PI;
 
 use stickslip_solver::{
     Closures, Dense, Direction, Dop853, Guard, Observer, Options, Outcome, Pair, State, Unfinished,
-    run, run_backwards, run_with,
 };
 
 use super::{Log, at, ball, bounce, fixed, line, start_of_line, thrown};
-use crate::any::any;
+use crate::erased::{run, run_backwards, run_with};
 
 #[test]
 fn a_terminal_guard_ends_the_run_when_it_fires_often_enough() {
@@ -33,9 +32,9 @@ fn a_terminal_guard_ends_the_run_when_it_fires_often_enough() {
         }
     }
     // Firings that change the state.
-    let system = any(Closures::new(|_s, y: &State<2>| State::from([y[1], -9.81]))
+    let system = Closures::new(|_s, y: &State<2>| State::from([y[1], -9.81]))
         .guards([Guard::new(Direction::Below).terminal_after(4)], |_s, y| [y[0]])
-        .transition(|_guard, _s, y| State::from([0.0, -0.9 * y[1]])));
+        .transition(|_guard, _s, y| State::from([0.0, -0.9 * y[1]]));
     let end = run(Dop853, &system, at(0.0, [1.0, 0.0]), 9.0, &Options::default(), &mut ()).unwrap();
     assert!((end.s - bounce(3)).abs() < 1e-12 && end.finished().is_ok());
     // Never.
@@ -105,9 +104,9 @@ fn an_observer_stops_the_run() {
 #[test]
 fn transitions_at_one_instant_end_the_run() {
     // At s = 0.5 the guard stays negative, whatever the transition does.
-    let system = any(Closures::new(|_s, _y: &State<1>| State::from([1.0]))
+    let system = Closures::new(|_s, _y: &State<1>| State::from([1.0]))
         .guards([Guard::new(Direction::Below)], |s, _y| [0.5 - s])
-        .transition(|_guard, _s, y| State::from([y[0] + 1.0])));
+        .transition(|_guard, _s, y| State::from([y[0] + 1.0]));
     let options = Options { max_at_one_instant: 7, ..Options::default() };
     let (mut log, mut back) = (Log::default(), Log::default());
     let end = run(Dop853, &system, start_of_line(), 1.0, &options, &mut log).unwrap();
@@ -117,9 +116,9 @@ fn transitions_at_one_instant_end_the_run() {
     assert!(last.iter().all(|event| event.s == s));
     assert_eq!(end.state, last[6].after);
     assert_eq!(end.finished(), Err(Unfinished { outcome: end.outcome, s }));
-    let mirrored = any(Closures::new(|_s, _y: &State<1>| State::from([1.0]))
+    let mirrored = Closures::new(|_s, _y: &State<1>| State::from([1.0]))
         .guards([Guard::new(Direction::Below)], |s, _y| [0.5 + s])
-        .transition(|_guard, _s, y| State::from([y[0] + 1.0])));
+        .transition(|_guard, _s, y| State::from([y[0] + 1.0]));
     let end = run_backwards(Dop853, &mirrored, start_of_line(), -1.0, &options, &mut back).unwrap();
     assert_eq!(end.outcome, Outcome::InstantLimit { s: -s });
 }
@@ -156,11 +155,8 @@ fn a_guard_fires_at_the_end_of_a_span_that_steps_divide() {
             let along = Options { max_step: h, first_step: Some(h), ..Options::default() };
             for options in [fixed(h), along] {
                 for pair in Pair::ALL {
-                    let system =
-                        any(Closures::new(|_s, _y: &State<1>| State::from([1.0]))
-                            .guards([Guard::new(Direction::Rising).terminal()], move |s, _y| {
-                                [s - end]
-                            }));
+                    let system = Closures::new(|_s, _y: &State<1>| State::from([1.0]))
+                        .guards([Guard::new(Direction::Rising).terminal()], move |s, _y| [s - end]);
                     let found = run_with(pair, &system, at(0.0, [0.0]), end, &options, &mut ());
                     let outcome = found.unwrap().outcome;
                     assert_eq!(outcome, Outcome::EndedByGuard { guard: 0 }, "{n} {options:?}");

@@ -1,6 +1,8 @@
 //! A guard that fires, changes the mode, and goes on from where it fired.
 
-use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State, run};
+use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};
+
+use crate::erased::run;
 
 /// The guard sin(ωs + φ), whose rounding is that of its angle. Each zero changes the mode.
 #[derive(Clone, Copy)]

@@ -2,11 +2,10 @@
 
 use std::f64::consts::PI;
 
-use stickslip_solver::{
-    Dense, Direction, Dop853, Guard, Observer, Options, Outcome, Recorder, run,
-};
+use stickslip_solver::{Dense, Direction, Dop853, Guard, Observer, Options, Outcome, Recorder};
 
 use super::{Log, fixed, line, reaches_end, start_of_line};
+use crate::erased::run;
 
 /// Counts segments that it did not ask for.
 struct Segments(usize);

@@ -1,8 +1,9 @@
 //! Pairs that are chosen at run time.
 
-use stickslip_solver::{Dop853, Dopri5, Method, Options, Pair, UnknownPair, run, run_with};
+use stickslip_solver::{Dop853, Dopri5, Method, Options, Pair, UnknownPair};
 
 use super::{at, ball};
+use crate::erased::{run, run_with};
 
 #[test]
 fn a_pair_at_run_time_is_the_method() {

@@ -5,7 +5,6 @@ use stickslip_solver::{
 };
 
 use super::{Wave, at, ball};
-use crate::any::any;
 
 #[test]
 fn equal_tolerances_of_components_change_nothing() {
@@ -24,7 +23,7 @@ fn equal_tolerances_of_components_change_nothing() {
 fn each_component_has_its_tolerance() {
     // Two oscillators of very different speed, each with its error at the end.
     let field = |_s: f64, y: &State<4>| State::from([y[1], -y[0], 30.0 * y[3], -30.0 * y[2]]);
-    let system = any(Closures::new(field));
+    let system = Closures::new(field);
     let go = |slow: f64, fast: f64| {
         let tolerances = [(slow, slow), (slow, slow), (fast, fast), (fast, fast)];
         let weighted = Weighted::new(&system, tolerances).unwrap();
@@ -57,7 +56,7 @@ fn tolerances_of_components_are_checked() {
 fn a_component_may_have_a_tolerance_that_is_relative_only() {
     // The first component stays near zero, and has an error there.
     let field = |s: f64, y: &State<2>| State::from([1e-20 * (50.0 * s).sin(), -y[1]]);
-    let system = any(Closures::new(field));
+    let system = Closures::new(field);
     let options = Options { rtol: 0.1, atol: 0.1, ..Options::default() };
     for pair in Pair::ALL {
         let tolerances = [(1e-6, f64::MIN_POSITIVE), (1e-12, 1e-12)];

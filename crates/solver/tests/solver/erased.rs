@@ -1,0 +1,161 @@
+//! Runs along systems and observers of any type as runs along one type.
+//!
+//! The solver is compiled anew for each type of system and of observer that it runs along, which
+//! takes a second. Here it is compiled once for each method, type of modes, dimension and number of
+//! guards, for systems that can be read and for black boxes. The functions have the names, the
+//! arguments and the results of those of the solver, and call them. They take no account of a step
+//! that a system has of its own ([`HybridSystem::step`]), as weighted ones have.
+
+mod dynamic;
+mod system;
+
+use stickslip_solver::{
+    Dop853, HybridSystem, Margin, Margins, Method, NearMiss, Observer, Options, Pair, Recorder,
+    Run, RunError, Start, State,
+};
+
+pub use dynamic::{run_dynamic, run_dynamic_backwards};
+use system::{Erased, Watching};
+
+use crate::runs::{Wave, at, ball};
+
+/// Calls a function with an erased system of the type `S`.
+macro_rules! with_system {
+    ($system:ident => $call:expr) => {
+        if S::READABLE {
+            let $system = &Erased::<S::Mode, N, G, true>($system);
+            $call
+        } else {
+            let $system = &Erased::<S::Mode, N, G, false>($system);
+            $call
+        }
+    };
+}
+
+/// Calls a function with an erased observer of the type `O`.
+macro_rules! with_observer {
+    ($observer:ident of $mode:ty => $call:expr) => {
+        if O::WANTS_SEGMENTS {
+            let $observer = &mut Watching::<$mode, N, true>($observer);
+            $call
+        } else {
+            let $observer = &mut Watching::<$mode, N, false>($observer);
+            $call
+        }
+    };
+}
+
+/// As [`stickslip_solver::run`].
+pub fn run<M: Method, S, O, const N: usize, const G: usize>(
+    method: M,
+    system: &S,
+    start: Start<S::Mode, N>,
+    end: f64,
+    options: &Options,
+    observer: &mut O,
+) -> Result<Run<S::Mode, N>, RunError>
+where
+    S: HybridSystem<N, G>,
+    O: Observer<S::Mode, N>,
+{
+    with_system!(system => with_observer!(observer of S::Mode => {
+        stickslip_solver::run(method, system, start, end, options, observer)
+    }))
+}
+
+/// As [`stickslip_solver::run_backwards`].
+pub fn run_backwards<M: Method, S, O, const N: usize, const G: usize>(
+    method: M,
+    system: &S,
+    start: Start<S::Mode, N>,
+    end: f64,
+    options: &Options,
+    observer: &mut O,
+) -> Result<Run<S::Mode, N>, RunError>
+where
+    S: HybridSystem<N, G>,
+    O: Observer<S::Mode, N>,
+{
+    with_system!(system => with_observer!(observer of S::Mode => {
+        stickslip_solver::run_backwards(method, system, start, end, options, observer)
+    }))
+}
+
+/// As [`stickslip_solver::run_with`].
+pub fn run_with<S, O, const N: usize, const G: usize>(
+    pair: Pair,
+    system: &S,
+    start: Start<S::Mode, N>,
+    end: f64,
+    options: &Options,
+    observer: &mut O,
+) -> Result<Run<S::Mode, N>, RunError>
+where
+    S: HybridSystem<N, G>,
+    O: Observer<S::Mode, N>,
+{
+    with_system!(system => with_observer!(observer of S::Mode => {
+        stickslip_solver::run_with(pair, system, start, end, options, observer)
+    }))
+}
+
+/// As [`stickslip_solver::integrate`].
+pub fn integrate<M: Method, O: Observer<(), N>, const N: usize>(
+    method: M,
+    field: impl Fn(f64, &State<N>) -> State<N>,
+    s: f64,
+    y: State<N>,
+    end: f64,
+    options: &Options,
+    observer: &mut O,
+) -> Result<Run<(), N>, RunError> {
+    let field: &dyn Fn(f64, &State<N>) -> State<N> = &field;
+    with_observer!(observer of () => {
+        stickslip_solver::integrate(method, field, s, y, end, options, observer)
+    })
+}
+
+/// As [`stickslip_solver::margins`].
+pub fn margins<M: Method, S: HybridSystem<N, G>, const N: usize, const G: usize>(
+    method: M,
+    system: &S,
+    start: Start<S::Mode, N>,
+    end: f64,
+    options: &Options,
+) -> Result<Margins, RunError> {
+    with_system!(system => stickslip_solver::margins(method, system, start, end, options))
+}
+
+/// As [`stickslip_solver::margin`].
+pub fn margin<M: Method, S: HybridSystem<N, G>, const N: usize, const G: usize>(
+    method: M,
+    system: &S,
+    start: Start<S::Mode, N>,
+    end: f64,
+    options: &Options,
+    margin: &Margin,
+) -> Result<Option<NearMiss>, RunError> {
+    with_system!(system => stickslip_solver::margin(method, system, start, end, options, margin))
+}
+
+/// What these functions return and report is what those of the solver do with the types themselves.
+#[test]
+fn erased_types_change_no_bit() {
+    let options = Options::default();
+    let (mut itself, mut erased) = (Recorder::default(), Recorder::default());
+    let start = at(0.0, [1.0, 0.0]);
+    let one = stickslip_solver::run(Dop853, &ball(), start, 3.0, &options, &mut itself);
+    assert_eq!(run(Dop853, &ball(), start, 3.0, &options, &mut erased), one);
+    assert!(!itself.switches.is_empty());
+    assert_eq!(erased.switches, itself.switches);
+    for s in [0.0, 0.3, 1.7, 3.0] {
+        assert_eq!(erased.trajectory.at(s), itself.trajectory.at(s));
+    }
+
+    let (mut itself, mut erased) = (Vec::new(), Vec::new());
+    let start = at(1.0, [1.0]);
+    let one = stickslip_solver::run_backwards(Dop853, &Wave, start, 0.0, &options, &mut itself);
+    assert_eq!(run_backwards(Dop853, &Wave, start, 0.0, &options, &mut erased), one);
+    assert!(!itself.is_empty());
+    assert_eq!(erased, itself);
+}
