@@ -113,8 +113,8 @@ impl<F: Family> Fit<'_, '_, F> {
         Ok(error / SHOWN)
     }
 
-    /// The node at a vertex behind `last`: normal to the gradient if there is one, else that of the
-    /// circle through `last`.
+    /// The node at a vertex behind `last`. Its tangent is normal to the gradient if there is one, else
+    /// that of the circle through `last`.
     pub fn end(&self, last: &Node, vertex: &Point) -> Traced<Node, F> {
         Ok(self.ends(last, vertex)?[0])
     }
@@ -182,8 +182,8 @@ impl<F: Family> Fit<'_, '_, F> {
         let slope = self.runs.gradient(&found.point, self.margin, &tangent, self.radius)?;
         let Some(slope) = slope else { return Ok(None) };
         let node = Node { point: found.point, tangent: normal(&slope, &tangent) };
-        // Where the vertex lies beside the boundary, or this turns there within a hair, so is every
-        // cubic up to it.
+        // Where the vertex lies beside the boundary, or the boundary turns just before it, every cubic
+        // up to it is as far off.
         let better = self.error(&Cubic::between(last, &node), gradient)? <= 0.5 * error
             && self.best(&node, &slope, target)?.1 <= 0.5 * error;
         Ok(better.then_some((node, slope)))
