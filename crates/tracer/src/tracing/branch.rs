@@ -1,14 +1,15 @@
 //! One boundary, followed step by step.
 //!
 //! In reading order: `track` (the state from which a step starts), `step` (one step), `ahead` (what
-//! lies ahead of a branch), `special`, `cusp` and `touch` (the vertices at which it ends), `end`
-//! (why it ends).
+//! lies ahead of a branch), `special`, `cusp`, `touch` and `tangency` (the vertices at which it ends),
+//! `end` (why it ends).
 
 mod ahead;
 mod cusp;
 pub mod end;
 pub(crate) mod special;
 mod step;
+pub(crate) mod tangency;
 mod touch;
 mod track;
 
@@ -73,6 +74,10 @@ pub struct Branch<'a, 'f, F: Family> {
     ready: VecDeque<Node>,
     end: Option<End<F::Margin>>,
     rejected: usize,
+    /// The shortest step within which touches were searched for in vain.
+    untouched: f64,
+    /// Whether the branch has gone past the vertex at which it ends.
+    past: bool,
 }
 
 impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
@@ -113,7 +118,15 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         let Some(foothold) = track.foothold(&seed.point, &gradient)?.ok() else { return Ok(None) };
         track.origin = foothold.node;
         track.footholds.push_back(foothold);
-        Ok(Some(Self { track, held: Vec::new(), ready: VecDeque::new(), end: None, rejected: 0 }))
+        Ok(Some(Self {
+            track,
+            held: Vec::new(),
+            ready: VecDeque::new(),
+            end: None,
+            rejected: 0,
+            untouched: f64::INFINITY,
+            past: false,
+        }))
     }
 
     /// The start of the branch.
@@ -131,6 +144,32 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         self.rejected
     }
 
+    /// The nodes after the start up to the end, or `None` if the end lies before the start: a branch can
+    /// go past a vertex before runs tell, and what lies behind it belongs to another boundary.
+    pub(crate) fn rest(&mut self) -> Traced<Option<Vec<Node>>, F> {
+        let mut nodes = Vec::new();
+        while let Some(node) = self.advance()? {
+            nodes.push(node);
+        }
+        let Some(End::Vertex(special)) = self.end.as_ref().filter(|_| self.past) else {
+            return Ok(Some(nodes));
+        };
+        let (runs, point) = (self.track.runs, special.point);
+        let lies_before =
+            |node: &Node| (point - node.point).dot(&node.tangent) > SHORTEST * runs.scale;
+        while nodes.pop_if(|node| !lies_before(node)).is_some() {}
+        let last = nodes.last().copied().unwrap_or(self.track.origin);
+        if !lies_before(&last) {
+            return Ok(None);
+        }
+        let Track { margin, radius, .. } = &self.track;
+        let Some(gradient) = runs.gradient(&last.point, margin, &last.tangent, *radius)? else {
+            return Ok(None);
+        };
+        nodes.extend(self.track.fit().nodes(&last, &gradient, Target::Vertex(point))?);
+        Ok(Some(nodes))
+    }
+
     /// The next node, or `None` at the end.
     fn advance(&mut self) -> Traced<Option<Node>, F> {
         while self.ready.is_empty() && self.end.is_none() {
@@ -141,6 +180,8 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
 
     /// Shortens the step until it is accepted, or until a vertex ends the branch.
     fn take_step(&mut self) -> Traced<(), F> {
+        /// Touches are searched for again within steps that are so many times as long.
+        const SHRUNK: f64 = 0.3;
         let Some(from) = self.track.footholds.back().cloned() else { return Ok(()) };
         let runs = self.track.runs;
         if self.track.taken >= runs.options.max_nodes {
@@ -177,18 +218,49 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
                 }
             }
             let stuck = h < 1e-2 * first_step || beyond.is_some() || turned;
-            if stuck
-                && matches!(failures, 1 | 4 | 8 | 16 | 24 | 32)
-                && let Some(special) =
-                    special::locate(&self.track, &from, beyond.as_ref(), h, cusps.is_empty())?
-            {
-                return self.finish_at(special);
+            if stuck && matches!(failures, 1 | 4 | 8 | 16 | 24 | 32) {
+                let touches = h <= SHRUNK * self.untouched;
+                if touches {
+                    self.untouched = h;
+                }
+                let search = special::Search { alone: cusps.is_empty(), touches };
+                let found = special::locate(&self.track, &from, beyond.as_ref(), h, search)?;
+                if let Some(special) = found {
+                    return self.finish_at(special);
+                }
             }
             if h < 1e-12 * runs.scale {
-                let special = special::give_up(&self.track, &from, beyond.as_ref(), h)?;
-                return self.finish_at(special);
+                return self.stall(&from, beyond.as_ref(), h);
             }
             h *= factor;
+        }
+    }
+
+    /// Ends the branch where even the shortest step `h` fails.
+    fn stall(
+        &mut self,
+        from: &FootholdOf<F>,
+        beyond: Option<&FootholdOf<F>>,
+        h: f64,
+    ) -> Traced<(), F> {
+        /// A tangency that is so close to another end, as a part of the window's shorter extent, is the
+        /// same place, and better known.
+        const BETTER: f64 = 1e-4;
+        let mut found = tangency::begins_on_branch(&self.track, from, beyond)?;
+        if found.is_none() {
+            let other = special::give_up(&self.track, from, beyond, h)?;
+            let near = BETTER * self.track.runs.scale;
+            found = tangency::branch_begins(&self.track, from)?
+                .filter(|(place, _)| !other.solved || (place.point - other.point).norm() <= near)
+                .or(Some((other, true)));
+        }
+        match found {
+            Some((special, false)) if self.track.runs.window.contains(&special.point) => {
+                self.past = true;
+                self.finish(End::Vertex(special), Vec::new())
+            }
+            Some((special, _)) => self.finish_at(special),
+            None => Ok(()),
         }
     }
 

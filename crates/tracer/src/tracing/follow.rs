@@ -166,10 +166,8 @@ fn walk<F: Family>(
     forward: bool,
 ) -> Traced<Option<WalkOf<F>>, F> {
     let Some(mut branch) = Branch::new(runs, seed, forward, &[])? else { return Ok(None) };
-    let mut nodes = vec![branch.origin()];
-    for node in &mut branch {
-        nodes.push(node?);
-    }
+    let Some(rest) = branch.rest()? else { return Ok(None) };
+    let nodes = std::iter::once(branch.origin()).chain(rest).collect();
     let end = branch.end().cloned().unwrap_or(End::Limit);
     Ok(Some((nodes, end)))
 }

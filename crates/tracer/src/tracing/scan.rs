@@ -169,10 +169,9 @@ impl<F: Family> Tracer<'_, F> {
             self.builder.network.unresolved.push(Unresolved::Change { between, labels });
             return Ok(None);
         };
-        let mut nodes = Vec::new();
-        for node in &mut branch {
-            nodes.push(node?);
-        }
+        let rest = branch.rest()?;
+        let is_past = rest.is_none();
+        let nodes = rest.unwrap_or_default();
         let last = nodes.last().map_or(seed.point, |node| node.point);
         let (origin, rejected) = (branch.origin(), branch.rejected());
         let end = match branch.end().cloned() {
@@ -198,6 +197,9 @@ impl<F: Family> Tracer<'_, F> {
         let statistics = &mut self.builder.network.statistics;
         statistics.nodes += nodes.len();
         statistics.rejected += rejected;
+        if is_past {
+            return Ok(None);
+        }
         Ok(Some((origin, nodes, end)))
     }
 }

@@ -13,6 +13,7 @@ mod known_curves;
 mod leaving_minimum;
 mod random_circles;
 mod random_guards;
+mod roots;
 mod slivers;
 mod special_points;
 mod stack;

@@ -22,23 +22,32 @@ const TOUCH: f64 = 1e-8;
 /// two margins are almost multiples of each other.
 const VAGUE: f64 = 1e-5;
 
+/// What a failed step may have run into.
+#[derive(Clone, Copy)]
+pub(crate) struct Search {
+    /// Whether the gradient of the branch's margin may be what vanishes. Near a cusp that is known it
+    /// nearly does.
+    pub alone: bool,
+    /// Whether boundaries may touch within the step. This takes many runs.
+    pub touches: bool,
+}
+
 /// The special point of a branch after `from`, within a failed step of length `h`; `None` if the
 /// step is too long to find it. `beyond` is the place that the step reached, if only its labels
-/// were wrong. `alone` says whether the gradient of the branch's margin may be what vanishes; near a
-/// cusp that is known it nearly does.
+/// were wrong.
 pub(crate) fn locate<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,
     beyond: Option<&FootholdOf<F>>,
     h: f64,
-    alone: bool,
+    Search { alone, touches }: Search,
 ) -> Traced<Option<Special<F::Margin>>, F> {
     for sure in [true, false] {
         let mut margins = track.rivals(from, beyond, sure);
         if sure && let Some(beyond) = beyond {
             margins.extend(wedge(track, beyond)?);
         }
-        if let Some(special) = among(track, from, beyond, margins, h)? {
+        if let Some(special) = among(track, from, beyond, margins, h, touches)? {
             return Ok(Some(special));
         }
     }
@@ -64,6 +73,7 @@ fn among<F: Family>(
     beyond: Option<&FootholdOf<F>>,
     margins: Vec<F::Margin>,
     h: f64,
+    touches: bool,
 ) -> Traced<Option<Special<F::Margin>>, F> {
     let (mut crossings, mut others) = (Vec::new(), Vec::new());
     for margin in margins {
@@ -84,6 +94,9 @@ fn among<F: Family>(
             (point, off) = (touch, 0.3 * off);
         }
         return Ok(Some(special(point, off, margin)));
+    }
+    if !touches {
+        return Ok(None);
     }
     let mut touches = Vec::new();
     for margin in others {

@@ -131,6 +131,9 @@ struct Probe {
     slope: f64,
 }
 
+/// A boundary farther away than so many lengths of a step does not touch the branch within the step.
+const FAR: f64 = 10.0;
+
 /// The place along a branch where the gradients of its own and of another margin are parallel, by
 /// the secant method: the length up to it, and the place.
 ///
@@ -165,6 +168,9 @@ fn parallel<F: Family>(
     };
     let mut length = start[0];
     let Some(mut last) = probe(length)? else { return Ok(None) };
+    if last.value.abs() > FAR * width * last.slope {
+        return Ok(None);
+    }
     let mut shift = start[1] - start[0];
     for _ in 0..40 {
         let Some(now) = probe(length + shift)? else {

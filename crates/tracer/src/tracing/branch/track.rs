@@ -64,11 +64,9 @@ impl<F: Family> Track<'_, '_, F> {
     ) -> Traced<Result<FootholdOf<F>, FootholdOf<F>>, F> {
         let tangent = self.tangent(gradient);
         let left = Point::new(-tangent.y, tangent.x);
-        let resolution = self.runs.resolution(gradient.norm());
-        let mut offset = self.runs.options.offset.max(10.0 * resolution);
         let node = Node { point: *point, tangent };
-        let mut first = None;
-        loop {
+        let mut widest = None;
+        for offset in self.offsets(gradient) {
             let sides = [
                 self.runs.free(&(point + left * offset))?,
                 self.runs.free(&(point - left * offset))?,
@@ -78,12 +76,18 @@ impl<F: Family> Track<'_, '_, F> {
             if holds {
                 return Ok(Ok(foothold));
             }
-            offset *= 0.1;
-            let widest = first.get_or_insert(foothold);
-            if offset < 5.0 * resolution {
-                return Ok(Err(widest.clone()));
-            }
+            widest.get_or_insert(foothold);
         }
+        // The longest offset is ten times the resolution, so that there is one.
+        Ok(Err(widest.unwrap()))
+    }
+
+    /// The distances beside a place with this gradient at which free runs are tried, longest first.
+    pub fn offsets(&self, gradient: &Point) -> impl Iterator<Item = f64> + use<F> {
+        let resolution = self.runs.resolution(gradient.norm());
+        let longest = self.runs.options.offset.max(10.0 * resolution);
+        std::iter::successors(Some(longest), |offset| Some(0.1 * offset))
+            .take_while(move |&offset| offset >= 5.0 * resolution)
     }
 
     /// The boundary, to which cubics are fitted.

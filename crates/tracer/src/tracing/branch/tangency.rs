@@ -1,0 +1,250 @@
+//! Boundaries that begin on another one with its tangent, with a square root.
+//!
+//! Behind the graze of a guard, everything that depends on when it fires has a square root in the
+//! margin r of the graze. Another margin there is m₀ + α √r + β r + …, and its boundary begins on that
+//! of the graze where m₀ = 0, as a parabola. Next to this place the strip between the two boundaries
+//! is narrower than runs can tell. A branch along the one stalls there, either before the place, or
+//! beyond it, where the strip becomes as wide as the offset of the runs. But m₀ can be followed along
+//! the boundary of the graze, and its zero is simple.
+
+use crate::curve::VertexKind;
+use crate::family::Family;
+use crate::tracing::branch::end::{SHORTEST, Special};
+use crate::tracing::branch::track::{FootholdOf, Track};
+use crate::tracing::corrector::correct;
+use crate::tracing::runs::{Runs, Traced};
+use crate::window::Point;
+
+/// The farthest along the boundary that the place is looked for, as a part of the window's shorter
+/// extent.
+const REACH: f64 = 0.1;
+/// The least distances from the boundary at which the margin is taken, as parts of the same. Of two
+/// of them the larger one has the larger error of the polynomial, the smaller one that of the runs.
+const NEAR: [f64; 5] = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
+/// The largest difference between the places by two such distances, as a part of the same.
+const AGREEMENT: f64 = 1e-7;
+/// The distance beside the branch, as a part of the same, at which runs show what lies there.
+const ASIDE: f64 = 1e-5;
+
+/// A place where a boundary begins on another one with its tangent, and whether it lies ahead.
+pub(crate) type Tangency<Margin> = (Special<Margin>, bool);
+
+/// The place near the end of a stalled branch where another boundary begins on it with its tangent.
+pub(crate) fn begins_on_branch<F: Family>(
+    track: &Track<'_, '_, F>,
+    from: &FootholdOf<F>,
+    beyond: Option<&FootholdOf<F>>,
+) -> Traced<Option<Tangency<F::Margin>>, F> {
+    nearest(|consider| behind_branch(track, from, beyond, consider))
+}
+
+/// The place near the end of a stalled branch where it begins on another boundary with its tangent.
+pub(crate) fn branch_begins<F: Family>(
+    track: &Track<'_, '_, F>,
+    from: &FootholdOf<F>,
+) -> Traced<Option<Tangency<F::Margin>>, F> {
+    nearest(|consider| behind_others(track, from, consider))
+}
+
+/// The nearest place of those that are considered.
+fn nearest<F: Family>(
+    of: impl FnOnce(&mut Consider<'_, F>) -> Traced<(), F>,
+) -> Traced<Option<Tangency<F::Margin>>, F> {
+    let mut nearest: Option<(Special<F::Margin>, f64)> = None;
+    let mut consider = |root: &Root<'_, F>| {
+        let Some((place, uncertainty)) = root.place()? else { return Ok(()) };
+        if nearest.as_ref().is_none_or(|(_, other)| place.abs() < other.abs())
+            && let Some(point) = root.point(place)?
+        {
+            let (kind, margins) =
+                (VertexKind::Crossing, vec![root.graze.clone(), root.own.clone()]);
+            nearest = Some((Special { point, kind, margins, uncertainty, solved: true }, place));
+        }
+        Ok(())
+    };
+    of(&mut consider)?;
+    Ok(nearest.map(|(special, place)| (special, place > 0.0)))
+}
+
+/// What is done with a margin that may have a root.
+type Consider<'c, F> = dyn FnMut(&Root<'_, F>) -> Traced<(), F> + 'c;
+
+/// Considers that the branch is the boundary of a graze. Margins behind that exist on one side of it,
+/// and the one that stalls the branch vanishes at one of the distances at which its runs are.
+fn behind_branch<F: Family>(
+    track: &Track<'_, '_, F>,
+    from: &FootholdOf<F>,
+    beyond: Option<&FootholdOf<F>>,
+    consider: &mut Consider<'_, F>,
+) -> Traced<(), F> {
+    let runs = track.runs;
+    let margins = |side: usize| {
+        let footholds = [Some(from), beyond].into_iter().flatten();
+        footholds.flat_map(move |foothold| &foothold.sides[side].margins).map(|(margin, _)| margin)
+    };
+    for (side, sign) in [(0, track.orientation), (1, -track.orientation)] {
+        let mut tried: Vec<&F::Margin> = Vec::new();
+        for own in margins(side) {
+            let on_both_sides = margins(1 - side).any(|margin| margin == own);
+            if on_both_sides || *own == track.margin || !runs.is_sure(own) || tried.contains(&own) {
+                continue;
+            }
+            tried.push(own);
+            let normal = from.gradient.normalize() * sign;
+            let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
+            for offset in track.offsets(&from.gradient) {
+                let value = runs.margin(&(from.node.point + normal * offset), own)?;
+                let value = value.map_or(f64::NAN, f64::abs);
+                (least, most) = (least.min(value), most.max(value));
+            }
+            let vanishes = least <= 0.1 * most;
+            if !vanishes {
+                continue;
+            }
+            consider(&Root {
+                runs,
+                own,
+                graze: &track.margin,
+                foot: from.node.point,
+                along: from.node.tangent,
+                gradient: from.gradient,
+                side: sign,
+            })?;
+        }
+    }
+    Ok(())
+}
+
+/// Considers that the branch has the root. The graze is a margin of the runs beyond its boundary.
+fn behind_others<F: Family>(
+    track: &Track<'_, '_, F>,
+    from: &FootholdOf<F>,
+    consider: &mut Consider<'_, F>,
+) -> Traced<(), F> {
+    let (runs, own, tangent) = (track.runs, &track.margin, &from.node.tangent);
+    let reach = ASIDE * runs.scale;
+    let aside = from.gradient.normalize() * reach;
+    let is_known = |margin: &F::Margin| {
+        let mut known = from.sides.iter().flat_map(|run| &run.margins);
+        margin == own || known.any(|(known, _)| known == margin)
+    };
+    for place in [from.node.point + aside, from.node.point - aside] {
+        let margins = runs.free(&place)?.margins.into_iter().map(|(margin, _)| margin);
+        for graze in margins.filter(|margin| runs.is_sure(margin) && !is_known(margin)) {
+            let gradient = |point| runs.gradient(point, &graze, tangent, track.radius);
+            let start = &from.node.point;
+            let Some(slope) = gradient(start)? else { continue };
+            let Some(foot) = correct(runs, &graze, start, &slope, reach)? else { continue };
+            let Some(gradient) = gradient(&foot.point)? else { continue };
+            let along = Point::new(-gradient.y, gradient.x).normalize();
+            let along = along * along.dot(tangent).signum();
+            for side in [1.0, -1.0] {
+                consider(&Root {
+                    runs,
+                    own,
+                    graze: &graze,
+                    foot: foot.point,
+                    along,
+                    gradient,
+                    side,
+                })?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A margin beside the boundary of a graze, in whose margin it has a square root.
+pub(crate) struct Root<'r, F: Family> {
+    pub runs: &'r Runs<'r, F>,
+    pub own: &'r F::Margin,
+    pub graze: &'r F::Margin,
+    /// A place on the boundary of the graze, with a unit vector along it and the gradient there.
+    pub foot: Point,
+    pub along: Point,
+    pub gradient: Point,
+    /// 1 or −1: the side on which the margin exists, as the sign of that of the graze.
+    pub side: f64,
+}
+
+impl<F: Family> Root<'_, F> {
+    /// The place along the boundary where m₀ vanishes, and its largest error.
+    pub fn place(&self) -> Traced<Option<(f64, f64)>, F> {
+        let mut before = None;
+        let mut best: Option<(f64, f64)> = None;
+        for near in NEAR {
+            let place = self.zero(near)?;
+            if let (Some(before), Some(place)) = (before, place) {
+                let difference: f64 = place - before;
+                let (difference, shortest) = (difference.abs(), SHORTEST * self.runs.scale);
+                if difference <= AGREEMENT * self.runs.scale
+                    && best.is_none_or(|(_, other)| difference < other)
+                {
+                    best = Some((place, difference.max(shortest)));
+                }
+            }
+            before = place;
+        }
+        Ok(best)
+    }
+
+    /// The zero of m₀ by the secant method.
+    fn zero(&self, near: f64) -> Traced<Option<f64>, F> {
+        /// The first steps that are tried: the margin may exist on one side only.
+        const STEPS: [f64; 4] = [1e-6, -1e-6, 1e-8, -1e-8];
+        let (reach, close) = (REACH * self.runs.scale, 0.01 * SHORTEST * self.runs.scale);
+        let mut last = 0.0;
+        let Some(mut before) = self.limit(last, near)? else { return Ok(None) };
+        let mut second = None;
+        for step in STEPS.map(|step| step * self.runs.scale) {
+            second = self.limit(step, near)?.map(|value| (step, value));
+            if second.is_some() {
+                break;
+            }
+        }
+        let Some((mut here, mut value)) = second else { return Ok(None) };
+        for _ in 0..20 {
+            let next = here - value * (here - last) / (value - before);
+            let within = next.abs() <= reach;
+            if !within {
+                return Ok(None);
+            }
+            if (next - here).abs() <= close {
+                return Ok(Some(next));
+            }
+            let Some(ahead) = self.limit(next, near)? else { return Ok(None) };
+            (last, before, here, value) = (here, value, next, ahead);
+        }
+        Ok(None)
+    }
+
+    /// The point of the boundary of the graze at a place along it.
+    pub fn point(&self, place: f64) -> Traced<Option<Point>, F> {
+        let guess = self.foot + self.along * place;
+        let reach = 0.3 * place.abs() + 1e-6 * self.runs.scale;
+        Ok(correct(self.runs, self.graze, &guess, &self.gradient, reach)?.map(|found| found.point))
+    }
+
+    /// m₀ at a place along the boundary: the polynomial in √r through the values of the margin at four
+    /// distances.
+    fn limit(&self, place: f64, near: f64) -> Traced<Option<f64>, F> {
+        let Some(point) = self.point(place)? else { return Ok(None) };
+        let inwards = self.gradient.normalize() * (self.side * near * self.runs.scale);
+        let mut values = [(0.0, 0.0); 4];
+        for (times, value) in [1.0, 4.0, 9.0, 16.0].into_iter().zip(&mut values) {
+            let beside = point + inwards * times;
+            let (Some(own), Some(graze)) =
+                (self.runs.margin(&beside, self.own)?, self.runs.margin(&beside, self.graze)?)
+            else {
+                return Ok(None);
+            };
+            *value = ((self.side * graze).sqrt(), own);
+        }
+        let weight = |root: f64| {
+            let others = values.iter().map(|(other, _)| *other).filter(|&other| other != root);
+            others.map(|other| other / (other - root)).product::<f64>()
+        };
+        let limit = values.iter().map(|&(root, own)| own * weight(root)).sum::<f64>();
+        Ok(Some(limit).filter(|limit| limit.is_finite()))
+    }
+}

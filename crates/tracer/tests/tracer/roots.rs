@@ -1,0 +1,87 @@
+//! A boundary that begins on that of a graze, with a square root of any steepness.
+
+use stickslip_tracer::{Family, FreeRun, Point, Surveyor, VertexKind, trace};
+
+use crate::any::any;
+use crate::guards::{Failed, Label, Margin, SQUARE, exact};
+
+/// A guard grazes at r = 0 and fires behind, and then a second one fires where its margin
+/// u + α √−r is positive. No run shows a margin that it cannot have: those before the graze do not
+/// know the second margin, and those behind do not list the graze.
+struct Root {
+    steepness: f64,
+}
+
+/// Where the second boundary begins on the first.
+const PLACE: Point = Point::new(0.03, -0.02);
+const GRAZE: usize = 0;
+const SECOND: usize = 1;
+
+impl Root {
+    /// The coordinates along and across the boundary of the graze, which is bent and slants.
+    fn coordinates(point: &Point) -> (f64, f64) {
+        let from = point - PLACE;
+        let (u, v) = (0.95 * from.x + 0.3 * from.y, 0.95 * from.y - 0.3 * from.x);
+        (u, v + 0.3 * u * u)
+    }
+
+    fn value(&self, point: &Point, margin: usize) -> Option<f64> {
+        let (u, r) = Self::coordinates(point);
+        match margin {
+            GRAZE => Some(r),
+            _ => (r < 0.0).then(|| u + self.steepness * (-r).sqrt()),
+        }
+    }
+}
+
+impl Family for &Root {
+    /// Whether the two guards fire.
+    type Label = Label;
+    type Margin = Margin;
+    type Error = Failed;
+
+    fn label(&self, point: &Point) -> Result<Label, Failed> {
+        let second = self.value(point, SECOND);
+        Ok(vec![second.is_some(), second.is_some_and(|value| value > 0.0)])
+    }
+
+    fn margin(&self, point: &Point, (margin, _): &Margin) -> Result<Option<f64>, Failed> {
+        Ok(self.value(point, *margin))
+    }
+
+    fn free_run(&self, point: &Point) -> Result<FreeRun<Label, Margin>, Failed> {
+        let label = self.label(point)?;
+        let shown = if label[0] { SECOND } else { GRAZE };
+        let value = self.value(point, shown);
+        let margins = value.map(|value| ((shown, Vec::new()), value)).into_iter().collect();
+        Ok(FreeRun { label, margins })
+    }
+}
+
+/// Traces the boundaries, of which there are three that meet at one place, and returns how far from
+/// there they do.
+fn distance_of_place(family: &Root) -> f64 {
+    let network = trace(&any(family), &SQUARE, &exact()).unwrap();
+    assert_eq!(network.unresolved, []);
+    assert_eq!(network.curves.len(), 3);
+    let inner = |kind| !matches!(kind, VertexKind::WindowEdge | VertexKind::WindowCorner);
+    let inside: Vec<_> = network.vertices.iter().filter(|vertex| inner(vertex.kind)).collect();
+    assert_eq!(inside.len(), 1);
+    (inside[0].point - PLACE).norm()
+}
+
+/// A branch along the first boundary keeps the labels at its offset of 1e-8 up to 1e-4 α behind the
+/// place, and one with the labels of the strip loses them 3e-6 α before it.
+#[test]
+fn the_place_is_found_whatever_the_steepness() {
+    for steepness in [0.03, 1.0, 7.0, 40.0] {
+        let family = Root { steepness };
+        let off = distance_of_place(&family);
+        assert!(off < 1e-12, "{steepness}: {off:e}");
+        let atlas = Surveyor::default().atlas(&any(&family), &SQUARE).unwrap();
+        assert!(atlas.agrees(), "{steepness}: {:?}", atlas.objection());
+    }
+    // The strip is thinner than 1e-5 up to the edge.
+    let off = distance_of_place(&Root { steepness: 300.0 });
+    assert!(off < 1e-12, "{off:e}");
+}
