@@ -81,11 +81,7 @@ pub fn trace<'w>(
 }
 
 /// [`trace`], compiled once, in this crate, as with atlases.
-fn trace_watched(
-    frame: Frame,
-    tolerance: f64,
-    watch: Watch<'_>,
-) -> Result<Gaining, AtlasError> {
+fn trace_watched(frame: Frame, tolerance: f64, watch: Watch<'_>) -> Result<Gaining, AtlasError> {
     let plane = frame.plane()?;
     require_traceable(&plane, tolerance)?;
     let options = AtlasOptions {
