@@ -103,8 +103,7 @@ fn a_collision_with_its_course_is_the_same_collision() {
                 assert_eq!(format!("{history:?}"), format!("{course:?}"));
             }
         }
-        let options = Collider::default().options_for(&contact).unwrap();
-        let plain = Collider::unrefined(Dop853, options).collide(contact).ok();
+        let plain = Collider::deciding().collide(contact).ok();
         let collision = Collider::default().collide(contact).ok();
         refined += usize::from(format!("{plain:?}") != format!("{collision:?}"));
     }
