@@ -77,6 +77,11 @@ pub fn trace<'w>(
     tolerance: f64,
     watch: impl Into<Watch<'w>>,
 ) -> Result<Gaining, AtlasError> {
+    trace_watched(frame, tolerance, watch.into())
+}
+
+/// [`trace`], compiled once, in this crate, as with atlases.
+fn trace_watched(frame: Frame, tolerance: f64, watch: Watch<'_>) -> Result<Gaining, AtlasError> {
     let plane = frame.plane()?;
     require_traceable(&plane, tolerance)?;
     let options = AtlasOptions {
@@ -84,7 +89,7 @@ pub fn trace<'w>(
         tolerance: plane.sheet().resolution(tolerance),
         ..AtlasOptions::default()
     };
-    let surveyor = Surveyor { options, executor: InParallel, watch: watch.into() };
+    let surveyor = Surveyor { options, executor: InParallel, watch };
     let family = GainingFamily::new(plane);
     let atlas = surveyor
         .atlas(&family, &plane.window())

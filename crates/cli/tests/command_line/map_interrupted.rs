@@ -18,8 +18,8 @@ const LINE: &str = "map --kappa 0:1e6 --psi 0:2.9 --size 100x200 --method exact 
 const TILES: usize = 79;
 const DIRECTORY: &str = "m.npz.tiles";
 
-/// The map without interruption.
-fn whole() -> &'static [u8] {
+/// The map without interruption, to which parts are joined too.
+pub fn whole() -> &'static [u8] {
     static MAP: OnceLock<Vec<u8>> = OnceLock::new();
     MAP.get_or_init(|| made_with("2"))
 }

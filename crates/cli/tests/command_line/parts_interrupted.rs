@@ -9,10 +9,12 @@ use std::time::{Duration, Instant};
 
 use assert_cmd::cargo::cargo_bin;
 
+use crate::map_interrupted::whole;
 use crate::parts::backwards;
 use crate::{Ran, Workspace, heeded};
 
-/// A map with 79 tiles of 256 points. The collisions are stiff, so that a tile takes about 20 ms.
+/// The map of `map_interrupted`, with 79 tiles of 256 points. The collisions are stiff, so that a tile
+/// takes about 20 ms.
 const LINE: &str = "map --kappa 0:1e6 --psi 0:2.9 --size 100x200 --method exact";
 
 fn command(workspace: &Workspace, line: &str) -> Command {
@@ -50,13 +52,6 @@ fn signal(child: &mut Child, signal: &str) {
     send(child, signal);
     let number = signal.trim_start_matches('-').parse().unwrap();
     assert_eq!(child.wait().unwrap().signal(), Some(number), "the part was finished before");
-}
-
-/// The whole map.
-fn whole() -> Vec<u8> {
-    let workspace = Workspace::new();
-    assert_eq!(workspace.run(&format!("{LINE} --out m.npz")).code, 0);
-    fs::read(workspace.path("m.npz")).unwrap()
 }
 
 #[test]

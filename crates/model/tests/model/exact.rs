@@ -1,9 +1,11 @@
 //! The exact engine against the reference data, with narrower bounds than `reference.rs` has for
 //! both engines.
 
+use std::f64::consts::PI;
+
 use crate::common::{Case, cases, file, number};
 use stickslip_model::exact::{self, CONTACT_TIME};
-use stickslip_model::{Collision, Contact};
+use stickslip_model::{Collider, Collision, Contact};
 
 fn exact(contact: Contact) -> Collision {
     exact::collide(contact).expect("a collision")
@@ -149,6 +151,29 @@ fn the_first_slip_under_the_weakest_damping() {
                 off.abs() < 1e-9 + 1e4 * damping.sqrt().min(1e-12),
                 "{damping:e} {psi}: {off:e}"
             );
+        }
+    }
+}
+
+/// The last half swing of the first stick phase ends with the contact, within rounding, and the exact
+/// solution has the result of the integration.
+#[test]
+fn contacts_whose_first_swing_ends_with_them() {
+    for damping in [1e-4, 0.019, 0.16, 0.37, 0.588, 0.613, 1.3, 7.0, 200.0] {
+        let contact_time = exact(Contact::new(1.0, 1.0, damping).unwrap()).contact_time;
+        for half_swings in 1..=12_u32 {
+            let kappa = (f64::from(half_swings) * PI / contact_time).powi(2);
+            for part in [0.03, 0.4, 0.98, 1.02] {
+                let psi = part * 2.0 * damping.sqrt() / kappa;
+                let at = |kappa| Contact::new(kappa, psi, damping).unwrap();
+                let integrated = Collider::default().collide(at(kappa)).unwrap();
+                for ulps in -3..=3_i64 {
+                    let kappa = f64::from_bits(kappa.to_bits().wrapping_add_signed(ulps));
+                    let found = exact(at(kappa));
+                    let off = (found.eps_t() - integrated.eps_t()).abs();
+                    assert!(off < 2e-11, "{kappa:?} {psi:?} {damping:?}: {off:e}");
+                }
+            }
         }
     }
 }

@@ -12,6 +12,7 @@ mod lammps;
 mod estimates;
 mod exact;
 mod forces;
+mod history;
 mod impacts;
 mod laws;
 mod linear;

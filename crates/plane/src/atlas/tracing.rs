@@ -154,9 +154,18 @@ pub fn divide<'w>(
     tolerance: f64,
     watch: impl Into<Watch<'w>>,
 ) -> Result<Division, AtlasError> {
+    divide_watched(plane, tolerance, watch.into())
+}
+
+/// [`divide`], compiled once, in this crate: what is generic is compiled in every crate that calls
+/// it, and here the whole tracer comes along.
+fn divide_watched(
+    plane: &CollisionPlane,
+    tolerance: f64,
+    watch: Watch<'_>,
+) -> Result<Division, AtlasError> {
     require_traceable(plane, tolerance)?;
-    let surveyor =
-        Surveyor { options: AtlasOptions::default(), executor: InParallel, watch: watch.into() };
+    let surveyor = Surveyor { options: AtlasOptions::default(), executor: InParallel, watch };
     let any = plane.contact(&plane.window().low)?;
     let family = plane.family();
     let options = trace_options(plane, tolerance);

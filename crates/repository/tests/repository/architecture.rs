@@ -1,6 +1,9 @@
-//! Crates depend on each other only along the arrows of docs/architecture.md.
+//! Crates depend on each other only along the arrows of docs/architecture.md, and assert the same in
+//! every build.
 
 use std::collections::BTreeSet;
+use std::fs;
+use std::path::PathBuf;
 
 use cargo_metadata::MetadataCommand;
 
@@ -39,5 +42,38 @@ fn crates_keep_to_the_arrows() {
                 assert!(!PROGRAM_ONLY.contains(&to), "{from} must not depend on {to}");
             }
         }
+    }
+}
+
+/// All sources of a folder.
+fn sources(folder: PathBuf) -> Vec<PathBuf> {
+    let (mut sources, mut folders) = (Vec::new(), vec![folder]);
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                sources.push(path);
+            }
+        }
+    }
+    sources
+}
+
+/// Tests are compiled without debug assertions (`[profile.dev]`), which would not be seen to fail.
+#[test]
+fn nothing_is_asserted_in_debug_builds_alone() {
+    let crates = fs::read_dir(root().join("crates")).expect("the crates");
+    let folders = crates.map(|entry| entry.expect("a crate").path().join("src"));
+    let sources: Vec<PathBuf> = folders
+        .chain([root().join("src")])
+        .filter(|folder| folder.is_dir())
+        .flat_map(sources)
+        .collect();
+    assert!(sources.len() > 100, "{sources:?}");
+    for path in sources {
+        let text = fs::read_to_string(&path).expect("a source");
+        assert!(!text.contains("debug_assert"), "{}", path.display());
     }
 }

@@ -389,25 +389,3 @@ fn a_half_swing_that_ends_with_the_contact() {
         }
     }
 }
-
-/// The same for the first stick phase of many contacts, against integration.
-#[test]
-fn contacts_whose_first_swing_ends_with_them() {
-    for damping in [1e-4, 0.019, 0.16, 0.37, 0.588, 0.613, 1.3, 7.0, 200.0] {
-        let contact_time = collide(Contact::new(1.0, 1.0, damping).unwrap()).unwrap().contact_time;
-        for half_swings in 1..=12_u32 {
-            let kappa = (f64::from(half_swings) * PI / contact_time).powi(2);
-            for part in [0.03, 0.4, 0.98, 1.02] {
-                let psi = part * 2.0 * damping.sqrt() / kappa;
-                let at = |kappa| Contact::new(kappa, psi, damping).unwrap();
-                let integrated = crate::Collider::default().collide(at(kappa)).unwrap();
-                for ulps in -3..=3_i64 {
-                    let kappa = f64::from_bits(kappa.to_bits().wrapping_add_signed(ulps));
-                    let found = collide(at(kappa)).unwrap();
-                    let off = (found.eps_t() - integrated.eps_t()).abs();
-                    assert!(off < 2e-11, "{kappa:?} {psi:?} {damping:?}: {off:e}");
-                }
-            }
-        }
-    }
-}

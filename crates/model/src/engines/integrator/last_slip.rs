@@ -68,7 +68,7 @@ pub(crate) fn stick(system: &Regularized, slip: Phase, end: &State<STATE>) -> Op
 /// The slip, on the side of the spring, that follows a stick phase at whose end the contact ends to
 /// rounding.
 pub(crate) fn after(phase: Phase, spring: f64) -> Phase {
-    debug_assert!(phase.regime == Regime::Stick, "slip lasts to the end of contact by itself");
+    assert!(phase.regime == Regime::Stick, "slip lasts to the end of contact by itself");
     let side = if spring == 0.0 {
         phase.side
     } else if spring > 0.0 {
