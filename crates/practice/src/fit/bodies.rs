@@ -38,8 +38,8 @@ impl Bodies {
         Self { pair, arm_per_inertia }
     }
 
-    /// Bodies of which only α is known, with `values` for what is not fitted. All their impacts have
-    /// the same speed, which is 1.
+    /// Bodies of which only α is known, with `values` for what is not fitted. All their impacts
+    /// have the same speed, which is 1.
     ///
     /// # Errors
     /// [`InvalidParameter`]: α is not above 0 and at most 1.

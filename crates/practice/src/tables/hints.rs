@@ -71,8 +71,8 @@ impl Arrays {
         self.strip_keys = Keys::new(y.low, y.high, MOST_KEYS[1]);
     }
 
-    /// Sets keys and hints as [`Self::set_hints`] does, but with keys as long as they are unless these
-    /// are too many: tables had half as many keys of y once.
+    /// Sets keys and hints as [`Self::set_hints`] does, but with keys as long as they are unless
+    /// these are too many: tables had half as many keys of y once.
     #[cfg(feature = "serde")]
     pub(super) fn restore_hints(&mut self, [x, y]: [Range; 2]) -> Result<(), TableError> {
         let shift = self.strip_keys.shift;

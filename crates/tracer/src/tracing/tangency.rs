@@ -2,8 +2,8 @@
 //!
 //! Behind the graze of a guard, everything that depends on when it fires has a square root in the
 //! distance from the boundary of the graze. A margin of it is m₀ + α √d + β d + …, and its boundary
-//! touches that of the graze where m₀ = 0, as a parabola. The last part of the parabola is closer to
-//! the other boundary than runs can tell apart, so that the branch ends beside the true vertex.
+//! touches that of the graze where m₀ = 0, as a parabola. The last part of the parabola is closer
+//! to the other boundary than runs can tell apart, so that the branch ends beside the true vertex.
 
 use crate::curve::VertexKind;
 use crate::family::Family;
@@ -13,8 +13,8 @@ use crate::tracing::runs::{Runs, Traced};
 use crate::tracing::trace::Tracer;
 use crate::window::Point;
 
-/// The farthest along the curve that the true vertex is looked for, as a part of the window's shorter
-/// extent.
+/// The farthest along the curve that the true vertex is looked for, as a part of the window's
+/// shorter extent.
 const REACH: f64 = 1e-3;
 /// The least distance from the curve at which the margin is taken, as a part of the same.
 const NEAR: f64 = 1e-6;

@@ -85,11 +85,12 @@ impl ImpactReading {
         self.file.spheres()
     }
 
-    /// The reading with the columns of `header`, where options give velocities and `results` are the
-    /// names of the columns of results.
+    /// The reading with the columns of `header`, where options give velocities and `results` are
+    /// the names of the columns of results.
     ///
     /// # Errors
-    /// What is wrong with the columns, or with the file if no column mends it, and what is expected.
+    /// What is wrong with the columns, or with the file if no column mends it, and what is
+    /// expected.
     pub fn with_columns(
         mut self,
         header: &ByteRecord,

@@ -24,8 +24,8 @@ const VAGUE: f64 = 1e-5;
 
 /// The special point of a branch after `from`, within a failed step of length `h`; `None` if the
 /// step is too long to find it. `beyond` is the place that the step reached, if only its labels
-/// were wrong. `alone` says whether the gradient of the branch's margin may be what vanishes; near a
-/// cusp that is known it nearly does.
+/// were wrong. `alone` says whether the gradient of the branch's margin may be what vanishes; near
+/// a cusp that is known it nearly does.
 pub(crate) fn locate<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,
