@@ -72,7 +72,7 @@ pub struct Line {
 ///
 /// # Errors
 /// [`AtlasError`]: the window or the tolerance is not possible, a run fails, or the curves do not
-/// make regions. What cannot be resolved is no error: [`Gaining::agrees`] tells.
+/// make regions. What cannot be resolved is not an error: [`Gaining::agrees`] tells.
 pub fn trace<'w>(
     frame: Frame,
     tolerance: f64,

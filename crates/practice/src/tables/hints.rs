@@ -90,7 +90,7 @@ impl Arrays {
         }
         let (graphs, _) = self.graphs.as_chunks();
         for slab in self.first_strips.windows(2) {
-            // The upper edge of the window is no strip.
+            // The upper edge of the window is not a strip.
             let sides = &graphs[slab[0] as usize + 1..slab[1] as usize - 1];
             let bounds: Vec<f64> = sides.iter().map(upper_bound).collect();
             let mut below = 0;

@@ -224,7 +224,7 @@ fn is_flat(quotient: &mut Quotient<'_>, rounding: f64) -> bool {
 }
 
 /// The place of a pole at which a curve changes its sign between two places, near `guess`. The
-/// result is `None` if it is no pole.
+/// result is `None` if it is not a pole.
 ///
 /// The places are first brought together as closely as time is resolved. What the values are there
 /// is compared with those at the places, or with those around them if these are close to the pole

@@ -227,7 +227,7 @@ fn require_foreign(name: &str, known: &[(String, Slot)]) -> Result<(), String> {
     let names = known.iter().map(|(name, _)| name.as_str());
     let names: Vec<_> = QUANTITIES.iter().map(|quantity| quantity.name).chain(names).collect();
     Err(format!(
-        "column {name} is no number of these bodies; expected another name, or one of {}",
+        "column {name} is not a number of these bodies; expected another name, or one of {}",
         names.join(", ")
     ))
 }
