@@ -3,8 +3,8 @@
 //!
 //! This is the restricted three-body problem in the rotating frame, with the initial values and the
 //! period of Hairer, Nørsett and Wanner, *Solving Ordinary Differential Equations I*, section II.0.
-//! The orbit closes after its period and is its own mirror image. It passes the moon so closely that
-//! errors grow by a factor of a million. Jacobi's integral is constant along it:
+//! The orbit closes after its period and is its own mirror image. It passes the moon so closely
+//! that errors grow by a factor of a million. Jacobi's integral is constant along it:
 //!
 //! ```text
 //! x² + y² + 2(1 − μ)/r₁ + 2μ/r₂ − x′² − y′²

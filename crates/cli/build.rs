@@ -1,5 +1,6 @@
-//! Tells the program what it is built from and for, which `--version` shows. The same sources, target
-//! and compiler give the same text. Also tells the tests whether the data that they read exist.
+//! Tells the program what it is built from and for, which `--version` shows. The same sources,
+//! target and compiler give the same text. Also tells the tests whether the data that they read
+//! exist.
 
 use std::env;
 use std::fs;
@@ -53,7 +54,8 @@ fn packaged_commit() -> Option<String> {
     Some(marked(commit, text.contains("\"dirty\": true")))
 }
 
-/// The commit of the repository, if this package is part of it and was not merely unpacked inside it.
+/// The commit of the repository, if this package is part of it and was not merely unpacked inside
+/// it.
 fn repository_commit() -> Option<String> {
     git(&["ls-files", "--error-unmatch", "Cargo.toml"])?;
     let commit = git(&["rev-parse", "HEAD"])?;

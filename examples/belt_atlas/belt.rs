@@ -1,4 +1,5 @@
-//! A mass on a spring, on a belt with dry friction, which is shaken harmonically: the system itself.
+//! A mass on a spring, on a belt with dry friction, which is shaken harmonically: the system
+//! itself.
 
 use stickslip::solver::{Direction, Guard, HybridSystem, Start, State};
 use stickslip::tracer::{Point, Problem, Window};

@@ -5,8 +5,8 @@
 //! compared with runs at random points and, where there are any, with closed forms. Sequences are
 //! told apart up to the eighth event, because events accumulate in some of the windows.
 //!
-//! Run with `cargo run --release --example gallery -- [POINTS] [NAME] [FOLDER]`. Pictures are written
-//! into the folder, if there is one.
+//! Run with `cargo run --release --example gallery -- [POINTS] [NAME] [FOLDER]`. Pictures are
+//! written into the folder, if there is one.
 
 mod any;
 mod ball;

@@ -139,7 +139,7 @@ class HybridFamily:
         guard_scale: float | None = None,
     ) -> None:
         if not isinstance(system, HybridSystem):
-            raise TypeError(f"{type(system).__name__} is no HybridSystem; a family needs guards")
+            raise TypeError(f"{type(system).__name__} is not a HybridSystem; a family needs guards")
         begin, end = _span(t_span)
         if not end > begin:
             raise ValueError(f"t_span = ({begin}, {end}); expected an end after the start")
@@ -295,7 +295,7 @@ def trace_family(
     TraceInterrupted, a KeyboardInterrupt whose `atlas` can be resumed too.
     """
     if not isinstance(family, HybridFamily):
-        raise TypeError(f"{type(family).__name__} is no HybridFamily")
+        raise TypeError(f"{type(family).__name__} is not a HybridFamily")
     text = _json(
         {
             "trace": asdict(options or TraceOptions()),

@@ -695,7 +695,7 @@ def test_windows_and_options_that_are_none() -> None:
     ):
         with pytest.raises(ValueError, match=r"expected|tolerance|distances"):
             trace_family(family, HEIGHTS, RESTITUTIONS, **options)
-    with pytest.raises(TypeError, match="no HybridFamily"):
+    with pytest.raises(TypeError, match="not a HybridFamily"):
         trace_family(HybridSystem(), HEIGHTS, RESTITUTIONS)
     with pytest.raises(stickslip.ComputationError, match="regions"):
         most = TraceOptions(max_curves=2)
@@ -748,7 +748,7 @@ def test_families_that_are_none() -> None:
     system = HybridSystem()
     with pytest.raises(ValueError, match="no modes"):
         HybridFamily(system, (0, 1), [0.0])
-    with pytest.raises(TypeError, match="no HybridSystem"):
+    with pytest.raises(TypeError, match="not a HybridSystem"):
         HybridFamily(lambda t, y: y, (0, 1), [0.0])
     system.mode("one", lambda t, y, p, q: [0.0])
     for arguments, error in (

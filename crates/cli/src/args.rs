@@ -1,7 +1,7 @@
 //! What may be typed: options with their syntax and ranges, and the help text.
 //!
-//! Start reading here; then, in this order: `shared`, `method`, `law`, `batch` and `course` (options
-//! that several commands have), and one file for each command.
+//! Start reading here; then, in this order: `shared`, `method`, `law`, `batch` and `course`
+//! (options that several commands have), and one file for each command.
 
 mod asymptote;
 mod batch;

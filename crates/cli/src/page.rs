@@ -102,7 +102,8 @@ fn escaped(text: &str) -> String {
     escape(text, Html).map(|escaped| escaped.to_string()).unwrap_or_default()
 }
 
-/// The tables of a section that stand on the page; an audit is shown statement by statement instead.
+/// The tables of a section that stand on the page; an audit is shown statement by statement
+/// instead.
 fn shown(section: &Section) -> Vec<&Table> {
     let tables = section.study.tables.iter().filter(|_| section.audit.is_none());
     tables.filter(|table| section.shown.contains(&table.name)).collect()

@@ -136,9 +136,9 @@ impl Contact {
     /// that no other start is near, and with the paper's law.
     ///
     /// κ, ψ or the tangential damping changes the start if it changes by about this part. With a
-    /// history of force and without damping, the ratio after i steps in contact is that of the limit
-    /// of small steps times 1 + 3/(4i). A particle code is far from the limit where it takes fewer
-    /// than some 1/|`start_margin`| steps in contact.
+    /// history of force and without damping, the ratio after i steps in contact is that of the
+    /// limit of small steps times 1 + 3/(4i). A particle code is far from the limit where it takes
+    /// fewer than some 1/|`start_margin`| steps in contact.
     ///
     /// ```
     /// use stickslip_model::{Contact, presets};

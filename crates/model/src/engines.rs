@@ -181,8 +181,8 @@ impl Engine {
     /// Computes the collision of `contact`, with the statistics of the run if it is integrated.
     ///
     /// # Errors
-    /// [`EngineError`]: the contact is out of the engine's range, the integration fails, or a result
-    /// is beyond the range of doubles. Energies are not checked; see
+    /// [`EngineError`]: the contact is out of the engine's range, the integration fails, or a
+    /// result is beyond the range of doubles. Energies are not checked; see
     /// [`EnergyLedger::require_finite`](crate::EnergyLedger::require_finite).
     pub fn collide(
         &self,

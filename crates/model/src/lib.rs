@@ -3,8 +3,9 @@
 //! During one contact the tangential force switches several times between Coulomb sliding and a
 //! spring (Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107, 2008). In scaled variables a
 //! collision has three parameters: the stiffness κ, the impact ratio ψ and the damping. Together
-//! they are a [`Contact`]. A [`Collider`] integrates its collision; [`exact::collide`] solves it without
-//! steps. Both return a [`Collision`] with every switch, and an [`Engine`] is a choice between them.
+//! they are a [`Contact`]. A [`Collider`] integrates its collision; [`exact::collide`] solves it
+//! without steps. Both return a [`Collision`] with every switch, and an [`Engine`] is a choice
+//! between them.
 //!
 //! Start reading in [`integrator`]. The source has one folder for each idea; in reading order:
 //!

@@ -8,8 +8,8 @@ use crate::range::Range;
 ///
 /// They are x = ln(κ/κ₀)/w and y = ln(1 + (ψ − ψ₀)/s)/h. Windows of an ordinary shape have the
 /// [plain](Self::PLAIN) chart, ln κ and ln(1 + ψ). One that is narrow, long, or reaches to small ψ
-/// has a chart of its own, in which its sides are ln κ and ln ψ from 0 to 1: then lengths relative to
-/// the window mean the same in both directions, and no digits are lost in a small window.
+/// has a chart of its own, in which its sides are ln κ and ln ψ from 0 to 1: then lengths relative
+/// to the window mean the same in both directions, and no digits are lost in a small window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Chart {

@@ -18,8 +18,8 @@ use crate::oblique::Oblique;
 use crate::range::Range;
 use crate::sheet::Sheet;
 
-/// Collisions over a window of two parameters: κ and ψ at one scaled damping, or the velocities of two
-/// bodies.
+/// Collisions over a window of two parameters: κ and ψ at one scaled damping, or the velocities of
+/// two bodies.
 ///
 /// They are traced in the coordinates of a [`Chart`]; [`Self::point`] and [`Self::parameters`]
 /// convert.
@@ -270,8 +270,8 @@ impl CollisionPlane {
         self.first.obeys_paper()
     }
 
-    /// Contacts with the first and the last of all normal motions of the plane, one of which has the
-    /// largest κ.
+    /// Contacts with the first and the last of all normal motions of the plane, one of which has
+    /// the largest κ.
     pub(crate) fn normal_motions(&self) -> [Contact; 2] {
         let Window { low, high } = self.window();
         [low, high].map(|corner| self.contact_or_any(&corner))

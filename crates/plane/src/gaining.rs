@@ -46,9 +46,10 @@ pub struct Line {
 /// Traces where |ε_t| is 1, accurate to `tolerance` in ψ, with the boundaries of the switches, and
 /// compares the regions with runs.
 ///
-/// Where the boundary begins, at κψ = 1 with κ = 1, 4.5, 10.5, … for Mindlin's stiffness and history
-/// by displacement, it touches one of the switches. Within some 1e-6 of such a point changes stay
-/// unresolved, and the regions beside it are in doubt: [`Gaining::gains`] computes the collision there.
+/// Where the boundary begins, at κψ = 1 with κ = 1, 4.5, 10.5, … for Mindlin's stiffness and
+/// history by displacement, it touches one of the switches. Within some 1e-6 of such a point
+/// changes stay unresolved, and the regions beside it are in doubt: [`Gaining::gains`] computes the
+/// collision there.
 ///
 /// ```
 /// use stickslip_model::{Contact, presets};
@@ -71,7 +72,7 @@ pub struct Line {
 ///
 /// # Errors
 /// [`AtlasError`]: the window or the tolerance is not possible, a run fails, or the curves do not
-/// make regions. What cannot be resolved is no error: [`Gaining::agrees`] tells.
+/// make regions. What cannot be resolved is not an error: [`Gaining::agrees`] tells.
 pub fn trace<'w>(
     frame: Frame,
     tolerance: f64,
@@ -112,8 +113,8 @@ impl Gaining {
     }
 
     /// Whether |ε_t| of the collision with κ and ψ of a contact is above 1; damping and law are
-    /// those of the window. On a line, and where regions are in doubt, the collision itself decides.
-    /// `None` outside of the window, and where the collision cannot be computed.
+    /// those of the window. On a line, and where regions are in doubt, the collision itself
+    /// decides. `None` outside of the window, and where the collision cannot be computed.
     #[must_use]
     pub fn gains(&self, contact: &Contact) -> Option<bool> {
         let point = self.plane.point(contact.kappa(), contact.psi());

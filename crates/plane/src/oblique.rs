@@ -7,8 +7,8 @@ use crate::atlas::{AtlasError, crossings};
 use crate::family::CollisionPlane;
 use crate::range::Range;
 
-/// Two bodies that collide at one speed. The angle θ from the normal decides the normal velocity and
-/// the impact ratio g_t/g_n = tan θ = ψ μ/α.
+/// Two bodies that collide at one speed. The angle θ from the normal decides the normal velocity
+/// and the impact ratio g_t/g_n = tan θ = ψ μ/α.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Oblique {
     /// The bodies.

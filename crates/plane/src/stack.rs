@@ -47,9 +47,10 @@ pub struct DampingChange {
     pub between: [f64; 2],
     /// The point where special points meet; none if the change is only enclosed.
     pub meeting: Option<DampingMeeting>,
-    /// Whether several changes may lie there, since atlases between the two dampings are in doubt, or
-    /// differ at dampings that are too close to each other; or whether nothing could be solved for. A
-    /// region can be too small to be seen on one side of a change, which then lies beside the two.
+    /// Whether several changes may lie there, since atlases between the two dampings are in doubt,
+    /// or differ at dampings that are too close to each other; or whether nothing could be solved
+    /// for. A region can be too small to be seen on one side of a change, which then lies beside
+    /// the two.
     pub doubtful: bool,
     /// What becomes of regions as the damping grows. If there is nothing, only neighbours change.
     pub effects: Vec<RegionEffect>,
@@ -101,9 +102,9 @@ pub enum DampingStackError {
     },
 }
 
-/// The atlases of `frame` at `dampings`, which ascend, with boundaries accurate to `tolerance` in ψ,
-/// and what changes between them. The first damping may be 0: at every damping above it a contact
-/// begins in stick, so that all regions are others, and nothing is followed from there.
+/// The atlases of `frame` at `dampings`, which ascend, with boundaries accurate to `tolerance` in
+/// ψ, and what changes between them. The first damping may be 0: at every damping above it a
+/// contact begins in stick, so that all regions are others, and nothing is followed from there.
 ///
 /// Each atlas is traced as [`atlas::trace`] does it. The changes come from atlases of their own,
 /// see [`stickslip_tracer::Stack`]; `as_stacked` tells whether both agree. The atlases are computed

@@ -9,17 +9,18 @@
 //! 1. The damping is fitted to ε_n alone, on which the tangential motion has no effect; or it
 //!    follows from a given ε_n.
 //! 2. The misfit of the tangential motion is computed on a grid. Its places are a twelfth of half a
-//!    period of the spring apart, in the phase √κ t_c of the stiffest impact, and 6 % in μ. Along every
-//!    line of the grid, in both directions, all minima are improved. A minimum that is narrower than
-//!    the grid can be missed.
+//!    period of the spring apart, in the phase √κ t_c of the stiffest impact, and 6 % in μ. Along
+//!    every line of the grid, in both directions, all minima are improved. A minimum that is
+//!    narrower than the grid can be missed.
 //! 3. From each minimum of the plane, a simplex descends, which no kink of ε_t hinders. With the
 //!    paper's law, Gauss–Newton steps follow with the sensitivities of the collisions.
 //! 4. A confidence interval holds all values of a number for which the least misfit over the other
-//!    ones is not above a threshold: it is computed over the whole range, and may have several pieces.
+//!    ones is not above a threshold: it is computed over the whole range, and may have several
+//!    pieces.
 //! 5. The angles at which the switches of the best fit change are traced.
 //!
-//! Start reading here; then, in this order: `data`, `columns`, `bodies`, `free`, `settings` (what is
-//! asked), `problem` (what the model says), `axis`, `scan`, `local`, `survey` (the search),
+//! Start reading here; then, in this order: `data`, `columns`, `bodies`, `free`, `settings` (what
+//! is asked), `problem` (what the model says), `axis`, `scan`, `local`, `survey` (the search),
 //! `quantile`, `intervals`, `normal` (damping), `course`, `picture`.
 
 mod axis;
@@ -112,7 +113,8 @@ pub struct Minimum {
     /// The tangential stiffness: k_t in kg/s² where it is constant, K in kg/(s² √m) where it is
     /// Mindlin's. `None` in scaled units.
     pub stiffness: Option<f64>,
-    /// Sum of the squares of the residuals over their errors; an error that is not known counts as 1.
+    /// Sum of the squares of the residuals over their errors; an error that is not known counts as
+    /// 1.
     pub misfit: f64,
     /// Root mean squares of the residuals.
     pub root_mean_squares: Vec<RootMeanSquare>,
@@ -151,8 +153,8 @@ pub struct Residual {
 pub struct Mindlin {
     /// The best fit.
     pub best: Minimum,
-    /// Whether its κ is outside the interval of κ. `None` if there is no interval, or if κ is outside
-    /// the range.
+    /// Whether its κ is outside the interval of κ. `None` if there is no interval, or if κ is
+    /// outside the range.
     pub excluded: Option<bool>,
 }
 

@@ -28,8 +28,8 @@
 //! ```
 //!
 //! Start reading here; then, in this order: `settings`, `boundaries` (graphs of boundaries over x),
-//! `turns` (where they turn back), `stretch` (coordinates in which roots are smooth), `slab`, `strip` (polynomials), `assembly`,
-//! `table` (the arrays and the look-up), `verification`.
+//! `turns` (where they turn back), `stretch` (coordinates in which roots are smooth), `slab`,
+//! `strip` (polynomials), `assembly`, `table` (the arrays and the look-up), `verification`.
 
 mod assembly;
 mod boundaries;

@@ -83,8 +83,8 @@ impl<'py> Pairs<'py> {
         let mut written = values.readwrite();
         let mut columns = [const { Vec::new() }; 2];
         for (index, found) in written.as_slice_mut()?.chunks_mut(PIECE).enumerate() {
-            // Other threads may write to the arrays, so that pieces are copied. The same memory again
-            // and again is quicker than much new one.
+            // Other threads may write to the arrays, so that pieces are copied. The same memory
+            // again and again is quicker than much new one.
             let piece = index * PIECE..index * PIECE + found.len();
             for (column, array) in columns.iter_mut().zip(&self.0) {
                 let view = array.as_array();
@@ -174,8 +174,8 @@ fn refuse(points: &Points, strict: bool, failures: &Failures) -> PyResult<()> {
     }
 }
 
-/// ε_t and the number of switches of each collision; NaN and −1 where there is none, and the numbers
-/// and reasons of those.
+/// ε_t and the number of switches of each collision; NaN and −1 where there is none, and the
+/// numbers and reasons of those.
 #[pyfunction]
 pub fn eps_t<'py>(
     py: Python<'py>,
@@ -341,8 +341,8 @@ impl Columns {
     }
 }
 
-/// All results of each collision as a dictionary of arrays; switches lie one after another, those of
-/// collision i from `offsets[i]` up to `offsets[i + 1]`.
+/// All results of each collision as a dictionary of arrays; switches lie one after another, those
+/// of collision i from `offsets[i]` up to `offsets[i + 1]`.
 #[pyfunction]
 pub fn collide_many<'py>(
     py: Python<'py>,

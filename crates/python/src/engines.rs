@@ -12,8 +12,8 @@ use crate::failure::{bad_input, failed};
 pub struct Choice(String, Option<f64>, Option<f64>);
 
 impl Choice {
-    /// The engine that is chosen for collisions with a law and a tangential damping, by the rules of
-    /// the program's options.
+    /// The engine that is chosen for collisions with a law and a tangential damping, by the rules
+    /// of the program's options.
     pub fn engine(&self, law: (Law, f64)) -> PyResult<Engine> {
         let Self(method, rtol, atol) = self;
         Engine::chosen_for(law, method, *rtol, *atol).map_err(|invalid| {

@@ -1,8 +1,8 @@
 //! What the Python package `stickslip` computes with.
 //!
 //! Nothing is decided here: arguments become settings of the libraries, and their results become
-//! arrays, or the JSON that the program prints. Names, shapes and units are documented in the Python
-//! functions that call these, in `python/stickslip`.
+//! arrays, or the JSON that the program prints. Names, shapes and units are documented in the
+//! Python functions that call these, in `python/stickslip`.
 //!
 //! Start reading in `arrays`; then `collision`, `impacts`, `planes`, `stacks`, `steps`, `fits`,
 //! `tables`, `studies` (results), `hybrid` (systems of one's own), `families` (and what they depend

@@ -23,8 +23,8 @@ pub struct Atlas {
 
 #[pymethods]
 impl Atlas {
-    /// Traces the boundaries between two κ and two ψ; `ratio` is an interval of g_t/g_n with μ and α
-    /// that `psi` was computed from. The collisions have this damping and this law.
+    /// Traces the boundaries between two κ and two ψ; `ratio` is an interval of g_t/g_n with μ and
+    /// α that `psi` was computed from. The collisions have this damping and this law.
     #[staticmethod]
     fn trace(
         py: Python<'_>,

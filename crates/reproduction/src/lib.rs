@@ -2,8 +2,8 @@
 //! for viscoelastic spheres*, Eur. Phys. J. E 27, 107 (2008), computed anew.
 //!
 //! The crate computes the figures and tests the statements of the paper; all of it together is a
-//! list of parts. No part writes files. Parallel loops run on the rayon pool of the caller. What the paper's symbols and
-//! axes mean is in [`stickslip_studies::paper`].
+//! list of parts. No part writes files. Parallel loops run on the rayon pool of the caller. What
+//! the paper's symbols and axes mean is in [`stickslip_studies::paper`].
 //!
 //! Start reading in [`figures`] (the figures, and all parts of the reproduction); then
 //! [`statements`] (the statements, each with a verdict).

@@ -14,8 +14,8 @@
 //! There are no others, as long as the starts of the run and all transitions are smooth. Up to the
 //! first change, two runs have the same exits, and their states depend smoothly on the parameters.
 //! In the phase where they differ, a guard fires in one of them and not at nearly the same place in
-//! the other one. So a zero of that guard is no simple one, or it lies at the start of the phase or
-//! at its end; and the phase ends with the run, at the zero of another guard, or both go through
+//! the other one. So a zero of that guard is not a simple one, or it lies at the start of the phase
+//! or at its end; and the phase ends with the run, at the zero of another guard, or both go through
 //! the same guard and are sent to different modes.
 //!
 //! To follow a margin to zero and beyond, the itinerary up to it is prescribed: in every phase,

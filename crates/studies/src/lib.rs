@@ -6,8 +6,8 @@
 //!
 //! Start reading in [`study`]; then, in this order: [`paper`] (what the symbols and axes of the
 //! paper mean), [`stiff_springs`] (the limit of stiff springs), [`convergence`] (how accurate the
-//! integrators are), [`contact_laws`] (the laws of particle codes), [`search`] (maxima and zeros). The
-//! figures and statements of the paper are studies of `stickslip-reproduction`.
+//! integrators are), [`contact_laws`] (the laws of particle codes), [`search`] (maxima and zeros).
+//! The figures and statements of the paper are studies of `stickslip-reproduction`.
 //!
 //! ```
 //! use stickslip_plane::{Range, progress};

@@ -99,8 +99,8 @@ impl Column {
 }
 
 impl Cell {
-    /// The value as it stands in a file. A number has the shortest form that reads back exactly. Text
-    /// has no marks of code.
+    /// The value as it stands in a file. A number has the shortest form that reads back exactly.
+    /// Text has no marks of code.
     #[must_use]
     pub fn text(&self) -> String {
         match self {

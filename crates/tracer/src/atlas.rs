@@ -217,8 +217,8 @@ impl<Label, Margin> Atlas<Label, Margin> {
         self.unfinished.is_none()
     }
 
-    /// Whether a region is in doubt: something unresolved, inconsistent, or refuted by a run lies in
-    /// it or on its boundary. An index without a region is in doubt.
+    /// Whether a region is in doubt: something unresolved, inconsistent, or refuted by a run lies
+    /// in it or on its boundary. An index without a region is in doubt.
     #[must_use]
     pub fn is_doubtful(&self, region: usize) -> bool {
         !self.is_finished() || self.doubtful.get(region).is_none_or(|doubtful| *doubtful)
@@ -235,8 +235,9 @@ impl<Label, Margin> Atlas<Label, Margin> {
         }
     }
 
-    /// The label at a point of the window, decided everywhere: within the error of a curve or of the
-    /// window's edge, and in regions in doubt, by the family's run there. `None` outside the window.
+    /// The label at a point of the window, decided everywhere: within the error of a curve or of
+    /// the window's edge, and in regions in doubt, by the family's run there. `None` outside the
+    /// window.
     ///
     /// # Errors
     /// The run failed.

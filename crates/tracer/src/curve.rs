@@ -17,8 +17,8 @@ pub struct Node {
 ///
 /// Between two nodes the curve is the cubic with their points and tangents,
 /// [`Cubic::between`](crate::Cubic::between). The trace keeps the distance of the cubic from the
-/// boundary below [`interpolation`](crate::TraceOptions::interpolation), except next to a vertex whose
-/// place is known less accurately.
+/// boundary below [`interpolation`](crate::TraceOptions::interpolation), except next to a vertex
+/// whose place is known less accurately.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Curve<Label, Margin> {

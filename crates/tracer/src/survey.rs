@@ -173,9 +173,9 @@ impl<E> Surveyor<'_, E> {
 
     /// The rounds themselves, for results of any kind: the tracer explores, `assess` makes a result
     /// of the network and verifies it, and the tracer looks again where it finds that something is
-    /// missing, in up to `rounds` rounds, as long as curves are found and this comes closer: where no
-    /// margins tell what is missing, each look only leaves more places. `assess` returns `None` if it
-    /// was cancelled.
+    /// missing, in up to `rounds` rounds, as long as curves are found and this comes closer: where
+    /// no margins tell what is missing, each look only leaves more places. `assess` returns `None`
+    /// if it was cancelled.
     ///
     /// # Errors
     /// A run of the tracer fails, or `assess` does.
@@ -190,8 +190,8 @@ impl<E> Surveyor<'_, E> {
         E: Executor<F>,
         X: From<TraceError<F::Error>>,
     {
-        /// A look again comes closer if it leaves at most so many places, or so many times those of the
-        /// round before.
+        /// A look again comes closer if it leaves at most so many places, or so many times those of
+        /// the round before.
         const GROWTH: [usize; 2] = [200, 2];
         let Survey { mut result, mut round, .. } = begun;
         let mut last = tracer.places_to_look().unwrap_or(usize::MAX / GROWTH[1]);

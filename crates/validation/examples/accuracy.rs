@@ -2,8 +2,8 @@
 //! 1e4, by every method at its default tolerances: failures, itineraries that differ, errors, and
 //! whether the estimates of the errors cover them.
 //!
-//! The exact solution is the reference of the integrators, and double-double numbers are that of the
-//! exact solution. The last rows are those of the contacts with 25 digits in tests/data.
+//! The exact solution is the reference of the integrators, and double-double numbers are that of
+//! the exact solution. The last rows are those of the contacts with 25 digits in tests/data.
 //!
 //! `cargo run --release -p validation --example accuracy -- 1000000` prints the figures of
 //! docs/validation.md. Four further arguments: the number of the first contact, so that a long list

@@ -1,8 +1,8 @@
 //! An atlas of every contact law that has a name: is it complete, and are all points right?
 //!
 //! Windows reach in κ from 0.5 to 30 and in ψ from 0.05 to 3, undamped and with damping 0.2. Points
-//! are uniform in the logarithms; each is located and compared with a collision. Fails if a point is
-//! wrong.
+//! are uniform in the logarithms; each is located and compared with a collision. Fails if a point
+//! is wrong.
 //!
 //! Run with `cargo run --release -p validation --example atlases_of_laws -- [POINTS] [PART]`;
 //! 100 000 points without arguments; with PART only laws whose names contain it.

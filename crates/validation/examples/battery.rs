@@ -6,8 +6,8 @@
 //! and as a black box that is told the scale of its guards, where the case has one. The results of
 //! SciPy and heyoka are those that `tests/battery/peers.py` wrote.
 //!
-//! Run with `cargo run --release -p validation --example battery`, or with `-- dopri5` for the other
-//! method.
+//! Run with `cargo run --release -p validation --example battery`, or with `-- dopri5` for the
+//! other method.
 
 #[path = "../../../tests/battery/cases.rs"]
 #[allow(dead_code, reason = "the tests of the facade use the rest")]

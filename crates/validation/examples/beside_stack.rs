@@ -1,11 +1,11 @@
-//! Atlases traced directly, beside a stack over the damping: each has the regions that the changes of
-//! the stack leave.
+//! Atlases traced directly, beside a stack over the damping: each has the regions that the changes
+//! of the stack leave.
 //!
-//! Run with `cargo run --release -p validation --example beside_stack -- STACK.json [DAMPING]…`, with
-//! the file that `stickslip stack` writes. Without dampings there are up to ten, each in the middle, in
-//! the logarithm, between two changes that have no atlas of the stack there: of the gaps in their order
-//! the widest in each tenth. A region counts by its itinerary. Prints a Markdown table, and fails if the
-//! regions are others or anything speaks against an atlas.
+//! Run with `cargo run --release -p validation --example beside_stack -- STACK.json [DAMPING]…`,
+//! with the file that `stickslip stack` writes. Without dampings there are up to ten, each in the
+//! middle, in the logarithm, between two changes that have no atlas of the stack there: of the gaps
+//! in their order the widest in each tenth. A region counts by its itinerary. Prints a Markdown
+//! table, and fails if the regions are others or anything speaks against an atlas.
 
 use std::collections::BTreeMap;
 use std::error::Error;

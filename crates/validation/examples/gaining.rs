@@ -4,8 +4,8 @@
 //! Windows reach in κ from 0.5 to 30 and in ψ from 0.05 to 3, undamped. Points are uniform in the
 //! logarithms. Fails if a point is wrong.
 //!
-//! Run with `cargo run --release -p validation --example gaining -- [POINTS] [PART]`; 100 000 points
-//! without arguments; with PART only laws whose names contain it.
+//! Run with `cargo run --release -p validation --example gaining -- [POINTS] [PART]`; 100 000
+//! points without arguments; with PART only laws whose names contain it.
 
 use std::error::Error;
 use std::time::Instant;

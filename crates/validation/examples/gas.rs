@@ -1,5 +1,5 @@
-//! The energies of two gases of examples/gas.c over time, as a picture: one with a table of ε_t, and
-//! one with a constant.
+//! The energies of two gases of examples/gas.c over time, as a picture: one with a table of ε_t,
+//! and one with a constant.
 //!
 //! Run what is at the head of examples/gas.c, and then
 //! `cargo run --release -p validation --example gas -- table.csv constant.csv gas.svg`.

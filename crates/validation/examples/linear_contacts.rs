@@ -1,7 +1,7 @@
 //! Linear contacts: the exact engine against the integrator.
 //!
-//! For each law, contacts are log-uniform in κ from 0.01 to 1000 and ψ from 0.001 to 5. The damping is
-//! uniform from 0 to 1.9 or, for every second contact whose normal force does not attract,
+//! For each law, contacts are log-uniform in κ from 0.01 to 1000 and ψ from 0.001 to 5. The damping
+//! is uniform from 0 to 1.9 or, for every second contact whose normal force does not attract,
 //! log-uniform from 0.01 to 20; every second contact has a tangential damping, uniform from 0 to 2.
 //! Every contact with other switches is printed, with the least relative change of ψ that makes the
 //! integrator's those of the exact engine.
@@ -107,8 +107,8 @@ fn compared(law: Law, seed: u64) -> Found {
     found
 }
 
-/// Nanoseconds for each of 1000 collisions by the exact engine and by the integrator, on one thread:
-/// the best of several passes.
+/// Nanoseconds for each of 1000 collisions by the exact engine and by the integrator, on one
+/// thread: the best of several passes.
 fn speed(law: Law) -> [f64; 2] {
     const CONTACTS: u64 = 1000;
     let contacts: Vec<_> = (0..CONTACTS).map(|seed| random(law, seed)).collect();

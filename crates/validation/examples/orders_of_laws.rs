@@ -1,10 +1,10 @@
 //! The order of convergence of both methods by contact law.
 //!
-//! For every contact law that has a name, without damping and with damping 0.2 and tangential damping
-//! 0.5, contacts with κ = 18 and 63 and ψ = 0.1, 0.2, … 1.9 are integrated in fixed steps of s, with
-//! switches located. Contacts whose itinerary is another at ψ (1 ± 0.003) are left out, since their
-//! errors are those of a graze. The truth is the exact solution where there is one, otherwise
-//! Dormand–Prince 8(5,3) at a tolerance of 1e-15.
+//! For every contact law that has a name, without damping and with damping 0.2 and tangential
+//! damping 0.5, contacts with κ = 18 and 63 and ψ = 0.1, 0.2, … 1.9 are integrated in fixed steps
+//! of s, with switches located. Contacts whose itinerary is another at ψ (1 ± 0.003) are left out,
+//! since their errors are those of a graze. The truth is the exact solution where there is one,
+//! otherwise Dormand–Prince 8(5,3) at a tolerance of 1e-15.
 //!
 //! Run with `cargo run --release -p validation --example orders_of_laws -- [PART]`; with PART only
 //! laws whose names contain it.

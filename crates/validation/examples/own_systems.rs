@@ -1,8 +1,8 @@
 //! Times and errors of two systems of one's own, for comparison with Python.
 //!
-//! A ball that bounces 15 times, and a mass on a belt with friction for 15 periods, 31 switches: the
-//! systems of `python/benches/own_systems.py`, with its tolerances and pair. A time is the least of
-//! 2000; an error is the largest one of the times of all switches.
+//! A ball that bounces 15 times, and a mass on a belt with friction for 15 periods, 31 switches:
+//! the systems of `python/benches/own_systems.py`, with its tolerances and pair. A time is the
+//! least of 2000; an error is the largest one of the times of all switches.
 //!
 //! `cargo run --release -p validation --example own_systems`
 

@@ -2,9 +2,9 @@
 //! black boxes, and black boxes whose guards name their time scale.
 //!
 //! `cargo run --release -p validation --example planted -- 1000000 10000` prints the table of
-//! docs/validation.md: a million readable systems and ten thousand black boxes of each kind. Further
-//! arguments: how many wrong cases to describe for each kind, the number of the only kind to run,
-//! and the number of the first case, so that a long list can be run in parts.
+//! docs/validation.md: a million readable systems and ten thousand black boxes of each kind.
+//! Further arguments: how many wrong cases to describe for each kind, the number of the only kind
+//! to run, and the number of the first case, so that a long list can be run in parts.
 
 #[allow(dead_code, reason = "the tests of the solver use the rest")]
 #[path = "../../solver/tests/solver/planted_kinds.rs"]

@@ -6,10 +6,10 @@
 //! with its collision; one whose region is not known counts as wrong. Fails if a point is wrong or
 //! anything speaks against an atlas.
 //!
-//! Run with `cargo run --release -p validation --example random_windows -- [WINDOWS] [POINTS] [FIRST]
-//! [LEAST] [laws]`; 200 windows with 20 000 points each without arguments. LEAST is the least length
-//! instead of 1e-6. With `laws` every window has another contact law, in κ from 0.05 to 400, ψ from
-//! 0.01 to 3, damping from 0.01 to 0.9 and tangential damping from 0.02 to 4 or 0.
+//! Run with `cargo run --release -p validation --example random_windows -- [WINDOWS] [POINTS]
+//! [FIRST] [LEAST] [laws]`; 200 windows with 20 000 points each without arguments. LEAST is the
+//! least length instead of 1e-6. With `laws` every window has another contact law, in κ from 0.05
+//! to 400, ψ from 0.01 to 3, damping from 0.01 to 0.9 and tangential damping from 0.02 to 4 or 0.
 
 use std::error::Error;
 use std::io::Write;

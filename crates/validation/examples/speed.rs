@@ -4,8 +4,8 @@
 //! readable system, as the same with its guards declared to be smooth, and as a black box. The time
 //! is that of the fastest of many runs in one thread.
 //!
-//! `cargo run --release -p validation --example speed -- kepler-10` runs only the problems whose name
-//! begins like this.
+//! `cargo run --release -p validation --example speed -- kepler-10` runs only the problems whose
+//! name begins like this.
 
 use std::f64::consts::TAU;
 use std::time::Instant;

@@ -18,8 +18,8 @@ pub struct FitArguments {
     #[arg(value_name = "DATA.csv")]
     pub data: PathBuf,
 
-    /// Names of what is fitted, separated by commas: k_t (or kappa), mu, tangential_damping, at most
-    /// two of them, and damping
+    /// Names of what is fitted, separated by commas: k_t (or kappa), mu, tangential_damping, at
+    /// most two of them, and damping
     #[arg(long, value_name = "NAME,…", help_heading = "Fit", value_delimiter = ',')]
     #[arg(value_parser = free, default_value = "k_t,mu")]
     pub free: Vec<Free>,
@@ -38,8 +38,8 @@ pub struct FitArguments {
     #[arg(long, help_heading = "Fit")]
     pub relative_errors: bool,
 
-    /// Coefficient of normal restitution at normal incidence, which decides the damping; above 0, at
-    /// most 1
+    /// Coefficient of normal restitution at normal incidence, which decides the damping; above 0,
+    /// at most 1
     #[arg(long, value_name = "E", help_heading = "Fit", allow_hyphen_values = true)]
     #[arg(value_parser = number::parse_option)]
     pub eps_n: Option<f64>,

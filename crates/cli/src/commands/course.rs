@@ -67,7 +67,8 @@ pub fn scaled(
     write(plan, &SCALED, history.moments(plan.points - 1), number)
 }
 
-/// Writes the course of `collision`, that of `encounter`, in SI units, all but the name of the file.
+/// Writes the course of `collision`, that of `encounter`, in SI units, all but the name of the
+/// file.
 ///
 /// # Errors
 /// [`Failure::Output`]: it cannot be written.

@@ -30,8 +30,8 @@ struct Entry<'a> {
 /// Prints all laws, or one; or computes what they do, and writes a page that shows it.
 ///
 /// # Errors
-/// No law has this name, options contradict each other, a collision cannot be computed, or an output
-/// cannot be written.
+/// No law has this name, options contradict each other, a collision cannot be computed, or an
+/// output cannot be written.
 pub fn run(arguments: &LawsArguments) -> Result<(), Failure> {
     if let Some(plan) = StudyPlan::contact_laws(arguments)? {
         prepare(&plan.out)?;
@@ -54,8 +54,8 @@ pub fn run(arguments: &LawsArguments) -> Result<(), Failure> {
     })
 }
 
-/// Computes what the laws do, and writes the page and its data into `directory`. The path of the page
-/// is returned.
+/// Computes what the laws do, and writes the page and its data into `directory`. The path of the
+/// page is returned.
 ///
 /// # Errors
 /// A collision cannot be computed, or a file cannot be written.

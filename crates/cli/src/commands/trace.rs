@@ -16,8 +16,8 @@ use crate::threads;
 /// Traces the boundaries of the window and writes its atlas.
 ///
 /// # Errors
-/// A run fails, files cannot be written, or something speaks against the atlas or the lines on which
-/// |ε_t| is 1. In the last case the files are complete and say so.
+/// A run fails, files cannot be written, or something speaks against the atlas or the lines on
+/// which |ε_t| is 1. In the last case the files are complete and say so.
 pub fn run(plan: &TracePlan) -> Result<(), Failure> {
     plan.plot.as_ref().map(PictureFile::probe).transpose()?;
     let pool = threads::pool(plan.threads)?;

@@ -43,8 +43,8 @@ pub fn read_sphere_and_pair(path: &Path, law: Law) -> Result<(Sphere, Pair), Fai
     })
 }
 
-/// The two bodies in the file at `path` at the moment when they touch, and their contact law; `-` is
-/// standard input. Their motions are those of the file, or those of velocities of the surfaces.
+/// The two bodies in the file at `path` at the moment when they touch, and their contact law; `-`
+/// is standard input. Their motions are those of the file, or those of velocities of the surfaces.
 ///
 /// # Errors
 /// [`Failure::Input`]: as [`read_pair`], or a motion is missing, or the bodies do not collide.
@@ -57,8 +57,8 @@ pub fn read_encounter(
 }
 
 impl Bodies {
-    /// The bodies at the moment when they touch, with the motions of the file, or with velocities of
-    /// the surfaces.
+    /// The bodies at the moment when they touch, with the motions of the file, or with velocities
+    /// of the surfaces.
     ///
     /// # Errors
     /// A motion is missing, or the bodies do not collide.

@@ -13,8 +13,8 @@ const MOST_BYTES: u64 = 1 << 22;
 /// The column that is not read.
 const COMMENT: &str = "comment";
 
-/// The data in the file at `path`, or in standard input if it is `-`. Rows have the numbers of their
-/// lines.
+/// The data in the file at `path`, or in standard input if it is `-`. Rows have the numbers of
+/// their lines.
 ///
 /// # Errors
 /// [`Failure::Input`]: the file cannot be read, or does not describe measured impacts.

@@ -65,10 +65,7 @@ impl Parameter {
                 let ok = value > 0.0 && value.is_finite();
                 return if ok { Ok(value) } else { Err("a finite number above 0") };
             }
-            Self::Alpha => {
-                let ok = value > 0.0 && value <= 1.0;
-                return if ok { Ok(value) } else { Err("a number above 0, at most 1") };
-            }
+            Self::Alpha => return quantity::INERTIA.check(value).map_err(|error| error.expected),
         };
         contact.map(|_| value).map_err(|invalid| invalid.expected)
     }

@@ -36,8 +36,8 @@ pub enum OneOrRange {
 }
 
 impl OneOrRange {
-    /// The value, or `count` values of the interval in equal ratios, of which the first and the last
-    /// are its ends.
+    /// The value, or `count` values of the interval in equal ratios, of which the first and the
+    /// last are its ends.
     pub fn values(self, count: usize) -> Vec<f64> {
         match self {
             Self::One(value) => vec![value],

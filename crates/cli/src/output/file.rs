@@ -51,7 +51,8 @@ impl OutputFile {
     /// Starts to write `path`, whose directory must exist.
     ///
     /// # Errors
-    /// [`Failure::Output`]: the directory is missing or cannot be written, or `path` is a directory.
+    /// [`Failure::Output`]: the directory is missing or cannot be written, or `path` is a
+    /// directory.
     pub fn create(path: &Path) -> Result<Self, Failure> {
         let target = target(path);
         let directory = match target.parent() {

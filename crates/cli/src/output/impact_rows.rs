@@ -1,5 +1,5 @@
-//! The rows of results and of switches of impacts in the CSV files of a batch. The names are those of
-//! the JSON of one impact.
+//! The rows of results and of switches of impacts in the CSV files of a batch. The names are those
+//! of the JSON of one impact.
 
 use stickslip_model::{ForceSwitch, ImpactReport, Side};
 

@@ -1,5 +1,5 @@
-//! Files and directories that are not complete. None of them stays, however the program ends, unless
-//! it is killed at once.
+//! Files and directories that are not complete. None of them stays, however the program ends,
+//! unless it is killed at once.
 
 use std::collections::BTreeSet;
 use std::ffi::{OsStr, OsString};

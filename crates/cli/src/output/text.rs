@@ -82,7 +82,8 @@ pub fn describe(engine: &Engine) -> String {
 /// # Errors
 /// `out` cannot be written.
 pub fn law(out: &mut dyn Write, contact: &Contact) -> io::Result<()> {
-    /// A start whose tangential force differs by less than this part from its limit is worth a line.
+    /// A start whose tangential force differs by less than this part from its limit is worth a
+    /// line.
     const NEAR: f64 = 0.01;
     if !contact.obeys_paper() {
         writeln!(out, "Law {}", contact.law().equations())?;

@@ -6,8 +6,8 @@ use stickslip_model::{Engine, InvalidChoice, Law};
 use crate::args::{Method, MethodArguments};
 use crate::error::Failure;
 
-/// The engine that the options choose for collisions with a law and a tangential damping; `usual` is
-/// the method if none is given.
+/// The engine that the options choose for collisions with a law and a tangential damping; `usual`
+/// is the method if none is given.
 ///
 /// # Errors
 /// [`Failure::Usage`]: a tolerance would have no effect.

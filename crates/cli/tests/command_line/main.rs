@@ -48,8 +48,8 @@ use std::process::Output;
 use assert_cmd::cargo::cargo_bin_cmd;
 use tempfile::TempDir;
 
-/// `signal`, or 15 where the tests themselves run with `signal` ignored: shells start background jobs
-/// without interrupts, and children inherit that.
+/// `signal`, or 15 where the tests themselves run with `signal` ignored: shells start background
+/// jobs without interrupts, and children inherit that.
 #[cfg(unix)]
 fn heeded(signal: u32) -> u32 {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();

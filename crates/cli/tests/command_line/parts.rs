@@ -75,7 +75,7 @@ fn a_map_of_two_bodies_in_parts() {
     }
 }
 
-/// Parts are tiles. A map with fewer tiles than parts has empty parts, and that is no failure.
+/// Parts are tiles. A map with fewer tiles than parts has empty parts, and that is not a failure.
 #[test]
 fn more_parts_than_tiles() {
     let workspace = Workspace::new();

@@ -43,8 +43,8 @@ pub const BOUNDARY_STICK: Stroke = Stroke { colour: "#0072B2", width: 1.6, dashe
 /// Boundaries on which the spring all but sticks while sliding.
 pub const BOUNDARY_SLIP: Stroke = Stroke { colour: "#D55E00", width: 1.6, dashes: "2 2.5" };
 
-/// Boundaries on which the force exceeds its limit where the limit is zero: at the start of contact,
-/// or where the normal force begins to attract.
+/// Boundaries on which the force exceeds its limit where the limit is zero: at the start of
+/// contact, or where the normal force begins to attract.
 pub const BOUNDARY_START: Stroke = Stroke { colour: "#009E73", width: 1.6, dashes: "10 3 2 3" };
 
 /// A closed form of a boundary, drawn beneath the traced one.

@@ -73,8 +73,8 @@ pub const MOST_SWITCHES: usize = 4_000_000;
 /// 1e-100.
 ///
 /// Cost: without damping 0.2 µs for each switch at every stiffness, with damping two to three times
-/// that, and twice as much again with a damping that is not that of the thread's last collision. The
-/// result is a pure function of `contact`.
+/// that, and twice as much again with a damping that is not that of the thread's last collision.
+/// The result is a pure function of `contact`.
 ///
 /// ```
 /// use stickslip_model::{Contact, exact};
@@ -93,8 +93,8 @@ pub const MOST_SWITCHES: usize = 4_000_000;
 ///
 /// # Errors
 /// [`ExactError::Domain`] unless κ is from 1e-100 to [`MOST_STIFFNESS`] and ψ from 1e-100 to 1e100,
-/// or with a damping from 1e-60 to 1e4 both from 1e-60; [`ExactError::TooManySwitches`] if there are
-/// more switches than [`MOST_SWITCHES`].
+/// or with a damping from 1e-60 to 1e4 both from 1e-60; [`ExactError::TooManySwitches`] if there
+/// are more switches than [`MOST_SWITCHES`].
 pub fn collide(contact: Contact) -> Result<Collision, ExactError> {
     let mut collision = Collision::before(contact);
     collide_into(contact, &mut collision)?;

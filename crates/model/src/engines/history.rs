@@ -130,8 +130,8 @@ impl History {
         (0.0..=self.duration()).contains(&time).then(|| self.course().at(time))
     }
 
-    /// `intervals` + 1 moments evenly spaced in time from the first to the last, at least these two,
-    /// and between them every switch. A moment of the time of a switch is the switch.
+    /// `intervals` + 1 moments evenly spaced in time from the first to the last, at least these
+    /// two, and between them every switch. A moment of the time of a switch is the switch.
     ///
     /// ```
     /// use stickslip_model::{Collider, Contact};
@@ -197,8 +197,8 @@ impl PhaseHistory<'_> {
     }
 
     /// `intervals` + 1 moments from the first to the last. There are only these two if `intervals`
-    /// is 0, or if the phase is too short for a step. Where the force ends before the overlap, there
-    /// is one more at the end of the force.
+    /// is 0, or if the phase is too short for a step. Where the force ends before the overlap,
+    /// there is one more at the end of the force.
     ///
     /// They are evenly spaced in s, with dt = 2√x ds or that of the law's own smooth coordinates.
     /// In time they are closer to each other near the ends of contact.

@@ -3,12 +3,12 @@
 //! Normal motion, limit and spring are damped oscillators, each with two constants, and everything
 //! between two switches has a closed form. Whether a phase ends, and where, is decided by the signs
 //! of a few numbers on intervals on which a function is monotone, or has one minimum: nothing is
-//! searched by sampling. The laws are those of [`solves`]: `gran/hooke/history` of LAMMPS and others
-//! of [`presets`](crate::presets).
+//! searched by sampling. The laws are those of [`solves`]: `gran/hooke/history` of LAMMPS and
+//! others of [`presets`](crate::presets).
 //!
-//! Nothing is shared with the integrator, nor with [`exact`](super::exact) but the search for a root
-//! in a bracket: this is a second opinion, which [`Engine::Auto`](crate::Engine::Auto) does not
-//! choose. [`Engine::Exact`](crate::Engine::Exact) is this engine where [`solves`] holds.
+//! Nothing is shared with the integrator, nor with [`exact`](super::exact) but the search for a
+//! root in a bracket: this is a second opinion, which [`Engine::Auto`](crate::Engine::Auto) does
+//! not choose. [`Engine::Exact`](crate::Engine::Exact) is this engine where [`solves`] holds.
 //!
 //! Source files in reading order: `oscillator`, `normal` the motion of the overlap, `slip` and
 //! `stick` the ends of phases, with their proofs, `places` roots along a phase, `run` a collision.
@@ -75,8 +75,8 @@ pub fn solves(contact: &Contact) -> bool {
 ///
 /// # Errors
 /// [`ExactError::Law`] unless [`solves`]; [`ExactError::Domain`] unless κ is from 1e-60 to 1e10, ψ
-/// from 1e-60 to 1e60 and the damping 0 or from 1e-60 to 1e4, or to 1.9999 where the normal force may
-/// attract; [`ExactError::TooManySwitches`] as [`exact::collide`](super::exact::collide).
+/// from 1e-60 to 1e60 and the damping 0 or from 1e-60 to 1e4, or to 1.9999 where the normal force
+/// may attract; [`ExactError::TooManySwitches`] as [`exact::collide`](super::exact::collide).
 pub fn collide(contact: Contact) -> Result<Collision, ExactError> {
     let mut collision = Collision::before(contact);
     collide_into(contact, &mut collision)?;

@@ -5,8 +5,8 @@
 //!
 //! - Where the history is rescaled, it grows as √x while the overlap falls. From greatest
 //!   compression on, history over √x is carried, whose equation is polynomial again.
-//! - Where the normal force begins to attract, its absolute value has a kink, and the limit is zero.
-//!   Slip goes on behind it if the spring would leave the limit faster than the limit grows;
+//! - Where the normal force begins to attract, its absolute value has a kink, and the limit is
+//!   zero. Slip goes on behind it if the spring would leave the limit faster than the limit grows;
 //!   otherwise the contact sticks.
 //! - For the same reason a contact may start in slip: [`Beginning`].
 //!
@@ -268,17 +268,17 @@ impl GeneralContact {
         self.tangential_force(mode, y) / self.contact.kappa()
     }
 
-    /// Whether a slip is missing behind a contact that ends in `mode`. Where a damped contact ends at
-    /// F = 0, its limit falls below every spring before, but the slip that follows may be shorter
-    /// than rounding.
+    /// Whether a slip is missing behind a contact that ends in `mode`. Where a damped contact ends
+    /// at F = 0, its limit falls below every spring before, but the slip that follows may be
+    /// shorter than rounding.
     #[must_use]
     pub fn lacks_slip(&self, mode: Mode) -> bool {
         let vanishes = self.equations.exponents.damped && self.contact.law().end == End::Force;
         vanishes && mode.regime == Regime::Stick
     }
 
-    /// The guard of the slip that is missing behind a contact that ends in the state `y`, and how long
-    /// that slip lasts; `None` if none [is](Self::lacks_slip).
+    /// The guard of the slip that is missing behind a contact that ends in the state `y`, and how
+    /// long that slip lasts; `None` if none [is](Self::lacks_slip).
     #[must_use]
     pub fn last_slip(&self, mode: Mode, y: &State<STATE>) -> Option<(usize, f64)> {
         self.lacks_slip(mode).then(|| self.equations.last_slip(mode, array(y)))

@@ -202,8 +202,8 @@ impl Law {
     ///
     /// With the stiffness k(x) a spring with the force Q holds Q²/(2k). Where the elongation y is
     /// kept, its change is Q w + y² k'v/2, and where the force is kept, Q w − Q² k'v/(2k²). A
-    /// history that is rescaled while the overlap falls adds Q² v/(2kx) to either, which is negative
-    /// and, where the force is kept, twice what the falling stiffness creates.
+    /// history that is rescaled while the overlap falls adds Q² v/(2kx) to either, which is
+    /// negative and, where the force is kept, twice what the falling stiffness creates.
     #[must_use]
     pub fn spring_energy(&self) -> SpringEnergy {
         match (self.tangential, self.history, self.rescaled) {
@@ -230,10 +230,11 @@ impl Law {
     /// The least damping with which a contact never ends, because an attracting tail holds it
     /// for ever; infinite where all contacts end.
     ///
-    /// With x = uⁿ the end is a line that every trajectory crosses, unless one arrives at u = 0 with
-    /// v = 0. For linear damping of a linear force that is known from its sines, for Tsuji's of
-    /// Hertz' force from v = −A x^{5/4}, 5A²/4 − aA + 1 = 0. For linear damping of Hertz' force the
-    /// last trajectory to escape arrives along v = −a x. No other law has a trajectory that arrives.
+    /// With x = uⁿ the end is a line that every trajectory crosses, unless one arrives at u = 0
+    /// with v = 0. For linear damping of a linear force that is known from its sines, for Tsuji's
+    /// of Hertz' force from v = −A x^{5/4}, 5A²/4 − aA + 1 = 0. For linear damping of Hertz' force
+    /// the last trajectory to escape arrives along v = −a x. No other law has a trajectory that
+    /// arrives.
     #[must_use]
     pub fn endless_from(&self) -> f64 {
         if self.limit_damping || self.end == End::Force {

@@ -119,8 +119,8 @@ impl HalfSwing {
     }
 }
 
-/// The phase of an onset at σ = `onset` > 0, otherwise NaN. It is about σ/π, the number of half swings to come if
-/// all of them lasted π.
+/// The phase of an onset at σ = `onset` > 0, otherwise NaN. It is about σ/π, the number of half
+/// swings to come if all of them lasted π.
 #[must_use]
 pub fn phase(onset: f64) -> f64 {
     if onset.is_nan() || onset <= 0.0 {

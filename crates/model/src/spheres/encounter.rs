@@ -130,8 +130,8 @@ impl Encounter {
     /// The encounter of a sphere, the first body, and a wall, the second body.
     ///
     /// # Errors
-    /// [`EncounterError`]: a quantity is out of its range, the sphere does not touch the wall on the
-    /// side to which the wall's normal points, or they do not approach.
+    /// [`EncounterError`]: a quantity is out of its range, the sphere does not touch the wall on
+    /// the side to which the wall's normal points, or they do not approach.
     pub fn with_wall(
         sphere: (&Sphere, &Motion),
         wall: (&Wall, &WallMotion),
@@ -159,8 +159,8 @@ impl Encounter {
 
     /// The encounter of bodies without spin whose surfaces have the velocities g_n and g_t in m/s.
     ///
-    /// The second body rests, a sphere with its centre at the origin, a wall in the plane z = 0. The
-    /// first one comes from above: n is along z and t along x. g_t = 0 is a central impact.
+    /// The second body rests, a sphere with its centre at the origin, a wall in the plane z = 0.
+    /// The first one comes from above: n is along z and t along x. g_t = 0 is a central impact.
     ///
     /// ```
     /// use stickslip_model::{Body, Encounter, Material, Pair, Sphere, Surface};
@@ -248,8 +248,8 @@ impl Encounter {
         Self::assembled(pair, partners, (normal, contact_point_m), (normal_m_per_s, sliding))
     }
 
-    /// The encounter of bodies whose surfaces approach with the first of the velocities, and slide in
-    /// a direction with a velocity.
+    /// The encounter of bodies whose surfaces approach with the first of the velocities, and slide
+    /// in a direction with a velocity.
     fn assembled(
         pair: Pair,
         partners: [Partner; 2],

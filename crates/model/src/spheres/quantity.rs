@@ -42,6 +42,9 @@ pub const POISSON_RATIO: Quantity = Quantity {
 pub const DENSITY: Quantity = positive("density_kg_per_m3", "a finite number above 0, in kg/m³");
 /// Coulomb's coefficient of friction μ.
 pub const FRICTION: Quantity = positive("friction", "a finite number above 0, without unit");
+/// Tangential inertia α of two bodies.
+pub const INERTIA: Quantity =
+    Quantity { name: "alpha", expected: "a number above 0, at most 1", range: Range::Share };
 /// Stiffness k_t of the tangential spring.
 pub const TANGENTIAL_STIFFNESS: Quantity =
     positive("tangential_stiffness_kg_per_s2", "a finite number above 0, in kg/s²");
@@ -85,6 +88,7 @@ enum Range {
     Positive,
     NotNegative,
     Poisson,
+    Share,
     Acute,
 }
 
@@ -98,6 +102,7 @@ impl Quantity {
             Range::Positive => value > 0.0,
             Range::NotNegative => value >= 0.0,
             Range::Poisson => value > -1.0 && value <= 0.5,
+            Range::Share => value > 0.0 && value <= 1.0,
             Range::Acute => (0.0..FRAC_PI_2).contains(&value),
         };
         if ok && value.is_finite() {

@@ -63,9 +63,9 @@ pub struct Pair {
     pub stiffness_ratio: f64,
     /// α = 1/(1 + m R_i²/J_i + m R_j²/J_j); 2/7 for homogeneous spheres.
     pub alpha: f64,
-    /// The properties of the surfaces. In other laws than the paper's, the stiffness is the constant
-    /// K in kg/(s² √m) where it is Mindlin's, and the damping time is the damping γ over the elastic
-    /// constant, in their units; see [`Constants`](super::forces::Constants).
+    /// The properties of the surfaces. In other laws than the paper's, the stiffness is the
+    /// constant K in kg/(s² √m) where it is Mindlin's, and the damping time is the damping γ over
+    /// the elastic constant, in their units; see [`Constants`](super::forces::Constants).
     pub surface: Surface,
     /// The contact law.
     #[cfg_attr(feature = "serde", serde(default))]
@@ -246,8 +246,8 @@ impl Impact {
         self.pair.effective_mass_kg * self.normal_m_per_s / self.time_unit_s
     }
 
-    /// Largest compression ξ in m without damping: (5/4)^{2/5} length units, and one where the force
-    /// is linear. With damping ξ stays below it.
+    /// Largest compression ξ in m without damping: (5/4)^{2/5} length units, and one where the
+    /// force is linear. With damping ξ stays below it.
     #[must_use]
     pub fn largest_compression_m(&self) -> f64 {
         match self.pair.law.normal {

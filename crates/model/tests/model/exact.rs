@@ -129,8 +129,8 @@ fn the_weakest_damping_is_none() {
     }
 }
 
-/// Under a weak damping the first slip begins at √t = 2a/(κψ + √(κ²ψ² − 4a)) if κψ > 2√a, and else the
-/// contact sticks on.
+/// Under a weak damping the first slip begins at √t = 2a/(κψ + √(κ²ψ² − 4a)) if κψ > 2√a, and else
+/// the contact sticks on.
 #[test]
 fn the_first_slip_under_the_weakest_damping() {
     for damping in [1e-60, 1e-40, 1e-20, 1e-18, 1e-16, 1e-12, 1e-10] {

@@ -9,8 +9,8 @@ use stickslip_model::{
 use crate::common::file;
 use crate::lammps::contact;
 
-/// The forces that a case of LAMMPS asks for. Prefactors without `material` multiply powers of √R or
-/// the effective mass, as its manual says of each damping.
+/// The forces that a case of LAMMPS asks for. Prefactors without `material` multiply powers of √R
+/// or the effective mass, as its manual says of each damping.
 fn forces(case: &Value, law: Law) -> Forces {
     let (si, scaled) = (&case["si"], &case["scaled"]);
     let number = |name: &str| si[name].as_f64().unwrap();

@@ -162,8 +162,8 @@ fn the_paper_s_law_is_one_of_them() {
     }
 }
 
-/// While the contact slips all the time, the change of the tangential velocity is that of the normal
-/// one.
+/// While the contact slips all the time, the change of the tangential velocity is that of the
+/// normal one.
 #[test]
 fn gross_sliding_has_a_closed_form() {
     for law in laws().into_iter().filter(|law| law.end == End::Force || law.limit_damping) {
@@ -386,8 +386,8 @@ fn contacts_on_the_verge_of_slip_are_resolved() {
     }
 }
 
-/// Force and limit start alike: κψ = 1 without damping (2/3 of it with a history of force), and bψ = 1
-/// with it. Such a contact starts in stick, and has the ε_t of its neighbours.
+/// Force and limit start alike: κψ = 1 without damping (2/3 of it with a history of force), and bψ
+/// = 1 with it. Such a contact starts in stick, and has the ε_t of its neighbours.
 #[test]
 fn contacts_on_the_border_of_slip_stick() {
     let mut checked = Vec::new();
@@ -445,8 +445,8 @@ fn contacts_on_the_border_of_slip_with_even_dashpots() {
     }
 }
 
-/// With ψ = 1 and no damping the first slip ends at greatest compression, from where a rescaled history
-/// obeys other equations.
+/// With ψ = 1 and no damping the first slip ends at greatest compression, from where a rescaled
+/// history obeys other equations.
 #[test]
 fn switches_at_greatest_compression_are_made_once() {
     let rescaled = laws().into_iter().filter(|law| law.rescaled && law.damping == Damping::None);
@@ -481,8 +481,8 @@ fn names_are_unique_and_laws_are_what_they_say() {
     assert_eq!(presets::find("hooke"), None);
 }
 
-/// A stick phase that begins within rounding of the end at F = 0: the slip that follows is there, and
-/// shorter than the phase.
+/// A stick phase that begins within rounding of the end at F = 0: the slip that follows is there,
+/// and shorter than the phase.
 #[test]
 fn damped_contacts_that_end_without_force_end_in_slip() {
     let law = Law { tangential: Tangential::Mindlin, history: HistoryOf::Force, ..Law::PAPER };

@@ -19,7 +19,8 @@ pub struct Located {
 /// A point has no known region.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Unlocated {
-    /// The point is within a boundary's error, and its collision has the switches of no region there.
+    /// The point is within a boundary's error, and its collision has the switches of no region
+    /// there.
     #[error(
         "kappa = {kappa:?}, psi = {psi:?} is on boundary {boundary} within its error, and its \
          collision has other switches than the regions there"

@@ -231,7 +231,8 @@ pub(crate) fn trace_options(plane: &CollisionPlane, tolerance: f64) -> TraceOpti
     let fineness = (plane.window().extent().min() / SIDE).max(1.0);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "32 to 1024")]
     let cells = (usual.cells as f64 * fineness.min(32.0)).ceil() as usize;
-    // Below half of the window's lower end the second parameter is kept, see `CollisionPlane::contact`.
+    // Below half of the window's lower end the second parameter is kept, see
+    // `CollisionPlane::contact`.
     let [x, y] = plane.corners()[0];
     let room = plane.window().low.y - plane.point(x, 0.5 * y).y;
     let most = 0.5 * room / plane.window().extent().min();

@@ -85,8 +85,8 @@ pub struct MismatchFields {
 /// between which a boundary is missing.
 ///
 /// # Errors
-/// [`AtlasError::Verify`]: the distances from boundaries are not in order. This would be a defect of this
-/// module.
+/// [`AtlasError::Verify`]: the distances from boundaries are not in order. This would be a defect
+/// of this module.
 pub(super) fn verify(
     plane: &CollisionPlane,
     (regions, unresolved): (Regions, Vec<String>),

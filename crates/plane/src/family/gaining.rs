@@ -1,7 +1,7 @@
 //! Collisions of a family with one more boundary: where |ε_t| is 1.
 //!
-//! ε_t is continuous, but has kinks where the itinerary changes. With the itinerary prescribed it is
-//! smooth, so that the boundary has another margin for each itinerary.
+//! ε_t is continuous, but has kinks where the itinerary changes. With the itinerary prescribed it
+//! is smooth, so that the boundary has another margin for each itinerary.
 
 use stickslip_model::general::CREST;
 use stickslip_solver::{Exit, Margin, Place};

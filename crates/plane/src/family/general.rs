@@ -1,8 +1,9 @@
 //! Collisions with any contact law, as a family that the tracer can follow.
 //!
-//! The label of a run says how the contact begins, which guards fire, and whether slip goes on where
-//! the normal force begins to attract. The first exit in the name of a margin is no exit of a guard
-//! but the beginning of the contact, so that a margin is followed beyond the contacts that begin so.
+//! The label of a run says how the contact begins, which guards fire, and whether slip goes on
+//! where the normal force begins to attract. The first exit in the name of a margin is not an exit
+//! of a guard but the beginning of the contact, so that a margin is followed beyond the contacts
+//! that begin so.
 
 use stickslip_model::general::{Beginning, CREST, GUARDS, GeneralContact, Mode, STATE};
 use stickslip_model::regularized::{END, OTHER_SIDE, SAME_SIDE};
@@ -192,7 +193,8 @@ fn started(system: GeneralContact) -> System {
 }
 
 /// The label of a free run, as far as its margins tell it: whether slip goes on where attraction
-/// begins is told by the sign of a margin. They do not tell a last slip that is shorter than rounding.
+/// begins is told by the sign of a margin. They do not tell a last slip that is shorter than
+/// rounding.
 fn known_label(found: &Margins, system: &GeneralContact) -> Option<Vec<usize>> {
     if found.outcome != (Outcome::EndedByGuard { guard: END }) {
         return None;

@@ -304,8 +304,8 @@ fn a_damped_window_is_traced_by_integration() {
     assert_eq!(switch_count(itinerary) % 2, 1, "a damped contact begins in stick: {itinerary}");
 }
 
-/// A slip phase within the second stick phase, in a region 2e-4 of ψ wide that ends at κ = 1.558. The
-/// places of the grid have the same switches on both sides of it.
+/// A slip phase within the second stick phase, in a region 2e-4 of ψ wide that ends at κ = 1.558.
+/// The places of the grid have the same switches on both sides of it.
 #[test]
 fn a_region_thinner_than_a_cell_is_found() {
     let kappa = Range { low: 1.553_434_774_302_522_5, high: 3.0 };
@@ -331,8 +331,8 @@ fn narrow_windows_have_their_usual_tolerance() {
     }
 }
 
-/// The runs of the grid and of the verification are computed in parallel, and a cancelled trace says
-/// that it is not finished.
+/// The runs of the grid and of the verification are computed in parallel, and a cancelled trace
+/// says that it is not finished.
 #[test]
 fn threads_do_not_change_an_atlas_and_cancelling_shows() {
     let frame = frame((18.0, 21.0), (0.55, 0.65));

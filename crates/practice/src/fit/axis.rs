@@ -29,8 +29,8 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// The axis of a number in a range. `phase` is the largest phase of the spring in a contact over
-    /// √κ, where κ is that of normal incidence.
+    /// The axis of a number in a range. `phase` is the largest phase of the spring in a contact
+    /// over √κ, where κ is that of normal incidence.
     pub fn new(free: Free, range: Range, phase: f64) -> Self {
         let Range { low, high } = range;
         let places = match free {

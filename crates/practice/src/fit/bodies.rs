@@ -1,6 +1,6 @@
 //! The bodies of a fit, and the numbers that may be fitted.
 
-use stickslip_model::{InvalidParameter, Law, Normal, Pair, Sphere, Surface, Tangential};
+use stickslip_model::{InvalidParameter, Law, Normal, Pair, Sphere, Surface, Tangential, quantity};
 
 /// Two bodies whose surfaces are fitted, of which the second one is at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,16 +38,13 @@ impl Bodies {
         Self { pair, arm_per_inertia }
     }
 
-    /// Bodies of which only α is known, with `values` for what is not fitted. All their impacts have
-    /// the same speed, which is 1.
+    /// Bodies of which only α is known, with `values` for what is not fitted. All their impacts
+    /// have the same speed, which is 1.
     ///
     /// # Errors
     /// [`InvalidParameter`]: α is not above 0 and at most 1.
     pub fn scaled(law: Law, alpha: f64, values: &Values) -> Result<Self, InvalidParameter> {
-        if !(alpha > 0.0 && alpha <= 1.0) {
-            let expected = "a number above 0, at most 1";
-            return Err(InvalidParameter { name: "alpha", value: alpha, expected });
-        }
+        let alpha = quantity::INERTIA.check(alpha)?;
         // With g_n = 1 the units of mass, length and time are 1.
         let surface = Surface {
             friction: values.mu,

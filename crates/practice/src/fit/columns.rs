@@ -65,8 +65,8 @@ impl Meaning {
 
 /// The data in `columns`; `rows` are the numbers of the rows, which errors and residuals tell.
 ///
-/// An impact is given by an angle and a speed, which may be the same `speed_m_per_s` for all rows, or
-/// by two velocities. Without bodies (`scaled`) all speeds are 1 and no column may tell them.
+/// An impact is given by an angle and a speed, which may be the same `speed_m_per_s` for all rows,
+/// or by two velocities. Without bodies (`scaled`) all speeds are 1 and no column may tell them.
 ///
 /// ```
 /// use stickslip_practice::fit::{Column, Measured, data};

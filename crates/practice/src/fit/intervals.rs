@@ -12,8 +12,8 @@ use super::search::root;
 pub struct Interval {
     /// The number.
     pub parameter: Free,
-    /// The pieces, in rising order. `None` if there are as many free numbers as data and the size of
-    /// the errors is not known.
+    /// The pieces, in rising order. `None` if there are as many free numbers as data and the size
+    /// of the errors is not known.
     pub pieces: Option<Vec<Piece>>,
 }
 
@@ -44,9 +44,9 @@ impl Interval {
 /// more data than free numbers, and the size of the errors is not known.
 ///
 /// With known errors the least misfit over the other numbers, less the very least, has the
-/// distribution χ² with one degree of freedom. Otherwise its ratio to the very least over the degrees
-/// of freedom has the distribution F, with one degree of freedom in the numerator. Both hold for many
-/// data or a linear model.
+/// distribution χ² with one degree of freedom. Otherwise its ratio to the very least over the
+/// degrees of freedom has the distribution F, with one degree of freedom in the numerator. Both
+/// hold for many data or a linear model.
 pub fn threshold(
     least: f64,
     level: f64,

@@ -60,8 +60,8 @@ pub fn damping(settings: &Settings, units: &Units) -> Result<(f64, Option<Dampin
 /// ε_n at normal incidence with some damping.
 pub fn eps_n(bodies: &Bodies, damping: f64) -> Result<f64, FitError> {
     // The normal motion does not depend on κ and ψ.
-    // The normal motion does not depend on κ and ψ. At κψ = 1 and the like, spring and limit of some
-    // laws begin alike, which cannot be integrated.
+    // The normal motion does not depend on κ and ψ. At κψ = 1 and the like, spring and limit of
+    // some laws begin alike, which cannot be integrated.
     let contact = Contact::new(1.1, 0.3, damping)?.with_law(bodies.pair.law, 0.0)?;
     let found = Engine::Auto.collide(contact);
     let (collision, _) = found.map_err(|source| ContactFailure { contact, source })?;

@@ -109,8 +109,8 @@ impl Lines<'_> {
         Ok(if misfit < place.misfit { LineMinimum { nodes, at, misfit } } else { place })
     }
 
-    /// The least misfit over the inner axis, at a coordinate of the outer one between two lines. It is
-    /// looked for around the minima of both.
+    /// The least misfit over the inner axis, at a coordinate of the outer one between two lines. It
+    /// is looked for around the minima of both.
     pub fn profile(&self, outer: f64, between: [&Line; 2]) -> Result<f64, FitError> {
         let Some(inner) = self.inner else { return self.misfit(outer, 0.0) };
         let mut near = vec![false; inner.places.len()];
@@ -143,8 +143,8 @@ impl Line {
     }
 }
 
-/// The lowest places of a list, as runs of equal values with higher ones, or the end, on both sides;
-/// and for each place the index of the run to which one descends from there.
+/// The lowest places of a list, as runs of equal values with higher ones, or the end, on both
+/// sides; and for each place the index of the run to which one descends from there.
 fn bottoms(values: &[f64]) -> (Vec<(usize, usize)>, Vec<usize>) {
     let ends =
         (0..values.len()).filter(|&i| i + 1 == values.len() || !equal(values[i], values[i + 1]));
@@ -187,8 +187,8 @@ fn bottoms(values: &[f64]) -> (Vec<(usize, usize)>, Vec<usize>) {
     (lowest, basins)
 }
 
-/// The minima of the plane among those of its lines, as coordinates of the outer and the inner axis.
-/// Of equal ones in successive lines, as on a plain, the last one counts.
+/// The minima of the plane among those of its lines, as coordinates of the outer and the inner
+/// axis. Of equal ones in successive lines, as on a plain, the last one counts.
 pub fn candidates(lines: &[Line]) -> Vec<[f64; 2]> {
     let mut found = Vec::new();
     // Whether each minimum of the line before is reached from above.

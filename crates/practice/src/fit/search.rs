@@ -9,8 +9,8 @@ use argmin::solver::neldermead::NelderMead;
 
 use super::FitError;
 
-/// The place of the one minimum of `cost` in an interval and the value there, by Brent's method, to a
-/// `tolerance` in parts of the interval.
+/// The place of the one minimum of `cost` in an interval and the value there, by Brent's method, to
+/// a `tolerance` in parts of the interval.
 pub fn least(
     (low, high): (f64, f64),
     tolerance: f64,
@@ -42,8 +42,8 @@ pub fn root(
     Ok(inside(solve(height, solver, |state| state.max_iters(100))?.0))
 }
 
-/// The minimum of `cost` near `start`, by the simplex method of Nelder and Mead from a triangle with
-/// sides `step`.
+/// The minimum of `cost` near `start`, by the simplex method of Nelder and Mead from a triangle
+/// with sides `step`.
 pub fn least_near(
     start: [f64; 2],
     step: [f64; 2],

@@ -50,8 +50,8 @@ impl Chain {
         self.ends[end] = x;
     }
 
-    /// The lesser of the differences in y from the chain at the `distance` in x on both sides, as far
-    /// as the chain reaches.
+    /// The lesser of the differences in y from the chain at the `distance` in x on both sides, as
+    /// far as the chain reaches.
     pub fn rise(&self, x: f64, distance: f64) -> f64 {
         let y = self.y_at(x);
         let sides = [x - distance, x + distance].into_iter().filter(|&x| self.covers(x));

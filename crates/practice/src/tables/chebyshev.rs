@@ -1,7 +1,7 @@
 //! Polynomials in one and two variables on [0, 1] that interpolate at Chebyshev's places.
 //!
-//! They are kept in powers of x from −1 to 1, which are quickest to sum. Sums have a fixed order and
-//! no product is fused with a sum, so that a table has the same bits in Rust and in C.
+//! They are kept in powers of x from −1 to 1, which are quickest to sum. Sums have a fixed order
+//! and no product is fused with a sum, so that a table has the same bits in Rust and in C.
 
 use std::f64::consts::PI;
 
@@ -22,8 +22,8 @@ pub fn value(c: &[f64; ALONG], place: f64) -> f64 {
     low + high * (x2 * x2)
 }
 
-/// The value of a polynomial in two variables. Each of its `rows` has the twelve coefficients across
-/// for one power along the first axis.
+/// The value of a polynomial in two variables. Each of its `rows` has the twelve coefficients
+/// across for one power along the first axis.
 #[inline(always)]
 pub fn double_value(rows: &[[f64; ACROSS]], along: f64, across: f64) -> f64 {
     let x = 2.0 * along - 1.0;
@@ -47,8 +47,8 @@ pub fn nodes<const N: usize>() -> [f64; N] {
     std::array::from_fn(|k| 0.5 - 0.5 * (PI * (k as f64 + 0.5) / N as f64).cos())
 }
 
-/// The extrema of the first term that an interpolation of `order` places leaves out, on [0, 1], both
-/// ends included: there its error is largest.
+/// The extrema of the first term that an interpolation of `order` places leaves out, on [0, 1],
+/// both ends included: there its error is largest.
 pub fn extrema(order: usize) -> impl Iterator<Item = f64> {
     (0..=order).map(move |k| 0.5 - 0.5 * (PI * k as f64 / order as f64).cos())
 }

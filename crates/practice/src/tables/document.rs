@@ -26,7 +26,7 @@ pub struct Document {
     pub arrays: Arrays,
 }
 
-/// A document is no table.
+/// A document is not a table.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DocumentError {
     /// The layout is another one.

@@ -71,8 +71,8 @@ impl Arrays {
         self.strip_keys = Keys::new(y.low, y.high, MOST_KEYS[1]);
     }
 
-    /// Sets keys and hints as [`Self::set_hints`] does, but with keys as long as they are unless these
-    /// are too many: tables had half as many keys of y once.
+    /// Sets keys and hints as [`Self::set_hints`] does, but with keys as long as they are unless
+    /// these are too many: tables had half as many keys of y once.
     #[cfg(feature = "serde")]
     pub(super) fn restore_hints(&mut self, [x, y]: [Range; 2]) -> Result<(), TableError> {
         let shift = self.strip_keys.shift;
@@ -90,7 +90,7 @@ impl Arrays {
         }
         let (graphs, _) = self.graphs.as_chunks();
         for slab in self.first_strips.windows(2) {
-            // The upper edge of the window is no strip.
+            // The upper edge of the window is not a strip.
             let sides = &graphs[slab[0] as usize + 1..slab[1] as usize - 1];
             let bounds: Vec<f64> = sides.iter().map(upper_bound).collect();
             let mut below = 0;

@@ -13,8 +13,8 @@ pub const NO_REGION: u32 = u32::MAX;
 
 /// ε_t and ε_n over a window.
 ///
-/// The first axis x is κ, or the normal velocity g_n in m/s; the second axis y is ψ, or the tangential
-/// velocity g_t in m/s.
+/// The first axis x is κ, or the normal velocity g_n in m/s; the second axis y is ψ, or the
+/// tangential velocity g_t in m/s.
 ///
 /// A look-up finds the slab of x, then the strip between two graphs, and evaluates the polynomial
 /// of the strip. It uses sums, products, quotients and square roots only. The C header
@@ -101,8 +101,8 @@ impl Table {
         }
     }
 
-    /// The number of the region at x and y, an index of [`Self::regions`]. `None` outside the table,
-    /// in a strip too thin to have one, or if regions were not asked for.
+    /// The number of the region at x and y, an index of [`Self::regions`]. `None` outside the
+    /// table, in a strip too thin to have one, or if regions were not asked for.
     #[must_use]
     pub fn region(&self, x: f64, y: f64) -> Option<usize> {
         let strip = self.place(x, y)?.strip;

@@ -1,7 +1,7 @@
 //! The places at which a boundary turns back in x, to the last digits.
 //!
-//! Beside a turn y is a root of the distance in x. An error of 1e-11 in the x at which the root begins
-//! would be one of 1e-6 in y.
+//! Beside a turn y is a root of the distance in x. An error of 1e-11 in the x at which the root
+//! begins would be one of 1e-6 in y.
 
 use stickslip_model::Collision;
 
@@ -12,9 +12,9 @@ const OPENING: f64 = 1e-8;
 
 /// x of the turn at which two chains meet with their lower (0) or upper (1) ends.
 ///
-/// Across the opening, x of the boundary over y is close to a parabola. Three crossings of it tell the
-/// y of the turn, and a fourth one its x. `None` where collisions do not have the switches of the two
-/// sides.
+/// Across the opening, x of the boundary over y is close to a parabola. Three crossings of it tell
+/// the y of the turn, and a fourth one its x. `None` where collisions do not have the switches of
+/// the two sides.
 pub fn turn(one: &Chain, other: &Chain, end: usize) -> Option<f64> {
     let traced = one.ends[end];
     let inwards = OPENING * if end == 0 { traced } else { -traced };

@@ -1,6 +1,6 @@
 //! What is asked of time steps.
 
-use stickslip_model::{Contact, Reduction};
+use stickslip_model::{Contact, Reduction, quantity};
 
 use super::scheme::Scheme;
 
@@ -69,10 +69,10 @@ impl Settings {
             return Err(InvalidTimeSteps::Many { impacts, phases });
         }
         let Reduction { mu, alpha } = self.reduction;
-        if !(mu > 0.0 && mu.is_finite()) {
+        if quantity::FRICTION.check(mu).is_err() {
             return Err(InvalidTimeSteps::Mu { value: mu });
         }
-        if !(alpha > 0.0 && alpha <= 1.0) {
+        if quantity::INERTIA.check(alpha).is_err() {
             return Err(InvalidTimeSteps::Alpha { value: alpha });
         }
         Ok(())

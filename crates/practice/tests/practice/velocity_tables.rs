@@ -126,8 +126,9 @@ fn without_damping_eps_n_is_1() {
 
 #[test]
 fn a_boundary_may_turn_back() {
-    // A weakly damped glass bead on steel. At g_n = 0.2169 the last stick phase is as short as none; the
-    // place was traced to 1e-11, which is not enough for the root of the distance beside it.
+    // A weakly damped glass bead on steel. At g_n = 0.2169 the last stick phase is as short as
+    // none; the place was traced to 1e-11, which is not enough for the root of the distance beside
+    // it.
     let material = |young_modulus_pa, poisson_ratio| Material {
         young_modulus_pa,
         poisson_ratio,

@@ -23,9 +23,9 @@ pub struct FunctionArguments(pub String, pub Callee);
 #[derive(FromPyObject)]
 pub struct ChangeArguments(pub Option<usize>, pub Option<FunctionArguments>, pub bool);
 
-/// A guard: what messages call it, direction, order of the zero from which it starts (`None` if that
-/// is to be found out), count after which it ends the run, whether it yields, whether it is smooth,
-/// what follows, and the condition of a transition that branches.
+/// A guard: what messages call it, direction, order of the zero from which it starts (`None` if
+/// that is to be found out), count after which it ends the run, whether it yields, whether it is
+/// smooth, what follows, and the condition of a transition that branches.
 #[derive(FromPyObject)]
 pub struct GuardArguments(
     pub String,

@@ -53,8 +53,8 @@ pub struct Compiled {
 type Signature = unsafe extern "C" fn(f64, *const f64, *mut f64, *const f64);
 
 impl Compiled {
-    /// The parameters of its own, which are copied to those of a family behind the two of the point,
-    /// from `first` on.
+    /// The parameters of its own, which are copied to those of a family behind the two of the
+    /// point, from `first` on.
     pub fn place_in_family(&mut self, py: Python<'_>, first: usize) -> PyResult<Vec<f64>> {
         self.first = first;
         let own = self.keeper.bind(py).getattr("parameters")?;
@@ -71,8 +71,8 @@ impl Compiled {
         // dimension, and the parameters that are passed with it, writes only as many values as are
         // documented, and may be called by any thread. The documentation of `Compiled` says so. The
         // address is not 0, an integer of a pointer's size may be taken for a pointer to a
-        // function, `keeper` keeps code and parameters alive, those of a family live during the call
-        // as both slices do, and the slices do not overlap.
+        // function, `keeper` keeps code and parameters alive, those of a family live during the
+        // call as both slices do, and the slices do not overlap.
         unsafe {
             let function = std::mem::transmute::<usize, Signature>(self.address);
             let own = std::ptr::with_exposed_provenance(self.parameters);
@@ -144,8 +144,8 @@ fn has_one_owner(array: &Bound<'_, PyArray1<f64>>) -> bool {
     unsafe { pyo3::ffi::Py_REFCNT(array.as_ptr()) == 1 }
 }
 
-/// Writes `y` to an array to which nobody else has a reference. Returns whether it fits: whoever had
-/// the array may have changed its shape.
+/// Writes `y` to an array to which nobody else has a reference. Returns whether it fits: whoever
+/// had the array may have changed its shape.
 #[expect(unsafe_code, reason = "the checks of a borrow would cost more than the copy")]
 fn fill(array: &Bound<'_, PyArray1<f64>>, y: &[f64]) -> bool {
     // A callable may have changed the type of the elements.

@@ -83,8 +83,8 @@ impl<'a> View<'a> {
     }
 }
 
-/// The states at `times`, one after another; NaN outside the run, which ends at `end.0` in the state
-/// `end.1`.
+/// The states at `times`, one after another; NaN outside the run, which ends at `end.0` in the
+/// state `end.1`.
 #[pyfunction]
 #[expect(clippy::float_cmp, reason = "only at the very end the state is known exactly")]
 pub fn evaluate_dense<'py>(

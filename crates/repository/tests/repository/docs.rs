@@ -1,4 +1,4 @@
-//! Docs: links lead somewhere, and prose wraps at 100 columns.
+//! Docs: links lead somewhere, and prose wraps at 100 columns, also in comments.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,6 +7,11 @@ use crate::root;
 
 /// All Markdown files that people write.
 fn pages() -> Vec<PathBuf> {
+    files("md")
+}
+
+/// All files whose names end in a dot and `extension`, but for what programs have written.
+fn files(extension: &str) -> Vec<PathBuf> {
     let mut pages = Vec::new();
     let mut folders = vec![root()];
     while let Some(folder) = folders.pop() {
@@ -16,7 +21,7 @@ fn pages() -> Vec<PathBuf> {
             let skipped = ["target", "out", "corpus", "artifacts"];
             if path.is_dir() && !name.starts_with('.') && !skipped.contains(&name) {
                 folders.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "md") {
+            } else if path.extension().is_some_and(|found| found == extension) {
                 pages.push(path);
             }
         }
@@ -74,6 +79,26 @@ fn prose_wraps_at_100_columns() {
             let fixed = code || start.starts_with(['|', '#', '!']) || !start.contains(' ');
             let long = line.chars().count() > 100;
             assert!(fixed || !long, "{}:{number}: {line}", page.display());
+        }
+    }
+}
+
+#[test]
+fn comments_wrap_at_100_columns() {
+    for source in files("rs") {
+        let text = fs::read_to_string(&source).expect("a source");
+        let mut code = false;
+        for (number, line) in (1..).zip(text.lines()) {
+            let Some(comment) = line.trim_start().strip_prefix("//") else {
+                code = false;
+                continue;
+            };
+            let comment = comment.trim_start_matches(['/', '!']).trim_start();
+            code ^= comment.starts_with("```");
+            // Examples and tables cannot be wrapped.
+            let fixed = code || comment.starts_with('|') || !comment.contains(' ');
+            let long = line.chars().count() > 100;
+            assert!(fixed || !long, "{}:{number}: {line}", source.display());
         }
     }
 }

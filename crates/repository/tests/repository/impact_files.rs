@@ -1,5 +1,5 @@
-//! Files that `impact` refuses, with a message that names the field and what is expected. The schema
-//! refuses the same files, except where positions and velocities matter.
+//! Files that `impact` refuses, with a message that names the field and what is expected. The
+//! schema refuses the same files, except where positions and velocities matter.
 
 use std::fs;
 

@@ -1,5 +1,5 @@
-//! What must hold of the repository as a whole: the arrows between crates, licences of dependencies,
-//! what packages carry, the schema of the files that `impact` reads, and the docs.
+//! What must hold of the repository as a whole: the arrows between crates, licences of
+//! dependencies, what packages carry, the schema of the files that `impact` reads, and the docs.
 
 mod architecture;
 mod dependencies;

@@ -1,5 +1,5 @@
-//! The place of a switch of a dynamic system, by steps of the method: what [`crate::events::locate`]
-//! does, on buffers.
+//! The place of a switch of a dynamic system, by steps of the method: what
+//! [`crate::events::locate`] does, on buffers.
 
 use crate::dynamic::curve::{Work, rounding};
 use crate::dynamic::event::{Event, Examination};

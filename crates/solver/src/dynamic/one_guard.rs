@@ -110,7 +110,7 @@ impl<S: DynamicSystem> Examination<'_, S> {
         let beginning = self.tables.beginnings[guard];
         let found = self.isolate_from::<M>(guard, step, beginning)?;
         if found.is_none() && self.phase.forgiven[guard] && beginning.zero_order > 0 {
-            // It is no zero that can be divided out, so its sign counts.
+            // It is not a zero that can be divided out, so its sign counts.
             let beginning = Beginning { zero_order: 0, ..beginning };
             return self.isolate_from::<M>(guard, step, beginning);
         }

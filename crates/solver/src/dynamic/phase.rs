@@ -72,9 +72,9 @@ impl<Mode: Copy> Phase<Mode> {
     }
 
     /// Takes values that may be due to rounding of the state at `event`, which led here, for zeros.
-    /// `same` tells whether the guard that fired is the same as before the event, and `stands` which
-    /// guards go on where they fired at this instant, whatever their rounding is. The sizes of the
-    /// time and of the components near the event are `s_scale` and `work.scale`.
+    /// `same` tells whether the guard that fired is the same as before the event, and `stands`
+    /// which guards go on where they fired at this instant, whatever their rounding is. The sizes
+    /// of the time and of the components near the event are `s_scale` and `work.scale`.
     pub(crate) fn forgive<S: DynamicSystem<Mode = Mode>>(
         &mut self,
         system: &S,

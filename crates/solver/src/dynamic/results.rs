@@ -130,8 +130,8 @@ impl<Mode> DynamicRun<Mode> {
     /// The run, if it came to a regular end: the end of its span or a terminal guard.
     ///
     /// # Errors
-    /// [`Unfinished`] if the run ended early: at a limit, at an accumulation of switches, or because
-    /// the observer stopped it.
+    /// [`Unfinished`] if the run ended early: at a limit, at an accumulation of switches, or
+    /// because the observer stopped it.
     pub fn finished(self) -> Result<Self, Unfinished> {
         match self.outcome {
             Outcome::ReachedEnd | Outcome::EndedByGuard { .. } => Ok(self),

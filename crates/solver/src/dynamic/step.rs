@@ -1,11 +1,11 @@
-//! One step on buffers, with the arithmetic of [`Step`](crate::Step) in the same order, so that both
-//! give the same bits.
+//! One step on buffers, with the arithmetic of [`Step`](crate::Step) in the same order, so that
+//! both give the same bits.
 
 use crate::dynamic::dense::DynamicDense;
 use crate::method::{INTERIOR_NODES, MAX_STAGES, Method, Tableau, add_product};
 
-/// A right-hand side: it writes the slope at a time and a state. Steps dispatch it at run time, which
-/// slices hardly notice, and so are compiled once for each method.
+/// A right-hand side: it writes the slope at a time and a state. Steps dispatch it at run time,
+/// which slices hardly notice, and so are compiled once for each method.
 pub(crate) trait Field: Fn(f64, &[f64], &mut [f64]) {}
 
 impl<F: Fn(f64, &[f64], &mut [f64])> Field for F {}

@@ -43,8 +43,8 @@ const AROUND: f64 = 64.0;
 const VANISHES: f64 = 1e-3;
 /// On a step of which this part cannot be told from a point, time is resolved poorly.
 const SHORT: f64 = 0.01;
-/// The least part of the step that may be a plateau. Differences of a guard are zero on shorter ones
-/// by their rounding.
+/// The least part of the step that may be a plateau. Differences of a guard are zero on shorter
+/// ones by their rounding.
 const PLATEAU: f64 = 1e-6;
 /// The part of the step on which a quotient is expanded to find its value at the start.
 const OPENING: f64 = 0.25;
@@ -224,7 +224,7 @@ fn is_flat(quotient: &mut Quotient<'_>, rounding: f64) -> bool {
 }
 
 /// The place of a pole at which a curve changes its sign between two places, near `guess`. The
-/// result is `None` if it is no pole.
+/// result is `None` if it is not a pole.
 ///
 /// The places are first brought together as closely as time is resolved. What the values are there
 /// is compared with those at the places, or with those around them if these are close to the pole

@@ -167,7 +167,7 @@ where
     ) -> Result<Option<Status>, RunError> {
         let found = self.isolate_from::<M>(guard, step, values, beginning)?;
         if found.is_none() && self.phase.forgiven[guard] && beginning.zero_order > 0 {
-            // It is no zero that can be divided out, so its sign counts.
+            // It is not a zero that can be divided out, so its sign counts.
             let beginning = Beginning { zero_order: 0, ..beginning };
             return self.isolate_from::<M>(guard, step, values, beginning);
         }

@@ -56,8 +56,8 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
         })
     }
 
-    /// Whether a guard of the mode `from` before `event` seems to be one of this mode too: where the
-    /// state `y` goes on unchanged, it has the same value or its negative.
+    /// Whether a guard of the mode `from` before `event` seems to be one of this mode too: where
+    /// the state `y` goes on unchanged, it has the same value or its negative.
     #[inline(never)]
     fn is_same_guard<S: HybridSystem<N, G, Mode = Mode>, const N: usize>(
         &self,
@@ -72,7 +72,8 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
 
     /// Takes values that may be due to rounding of the state at `event`, which led here, for zeros.
     /// `from` is the mode before the event, and `largest` the largest value there of the guard that
-    /// fired. `stood` tells which guards have fired before at the same instant and stood on their zero.
+    /// fired. `stood` tells which guards have fired before at the same instant and stood on their
+    /// zero.
     pub(crate) fn forgive<S: HybridSystem<N, G, Mode = Mode>, const N: usize>(
         &mut self,
         system: &S,
@@ -85,8 +86,8 @@ impl<Mode: Copy, const G: usize> Phase<Mode, G> {
     {
         for (guard, &stood) in stood.iter().enumerate() {
             let (value, direction) = (self.values[guard], self.guards[guard].direction());
-            // A guard that fired stands on its zero where it goes on, also exactly, and whatever its
-            // rounding is.
+            // A guard that fired stands on its zero where it goes on, also exactly, and whatever
+            // its rounding is.
             let is_near = || value.abs() <= NEAR_ZERO * largest.max(event.slope * event.step.h);
             let stands = !matches!(direction, Direction::Off | Direction::Below)
                 && (if guard == event.guard { is_near() } else { stood })

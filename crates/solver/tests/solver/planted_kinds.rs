@@ -1,6 +1,6 @@
-//! Guards of every kind with known zeros: steep, fast, kinked, with jumps and poles, nearly tangent,
-//! clustered. They are found by enclosures where the system is readable, and sampled where it is a
-//! black box.
+//! Guards of every kind with known zeros: steep, fast, kinked, with jumps and poles, nearly
+//! tangent, clustered. They are found by enclosures where the system is readable, and sampled where
+//! it is a black box.
 
 use stickslip_solver::{
     Direction, Dop853, Dopri5, Guard, HybridSystem, Method, Number, Observer, Options, Outcome,

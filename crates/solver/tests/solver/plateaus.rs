@@ -1,5 +1,5 @@
-//! Guards that are zero on a stretch, that touch zero with a kink, or that leave it without a slope,
-//! along y' = 1.
+//! Guards that are zero on a stretch, that touch zero with a kink, or that leave it without a
+//! slope, along y' = 1.
 
 use stickslip_solver::{
     Closures, Direction, Guard, HybridSystem, Number, Options, Outcome, Pair, ReadableSystem,

@@ -84,8 +84,8 @@ impl Default for Settings {
     }
 }
 
-/// The laws that have names, each with all of its names, in the order of the presets. A law is there
-/// twice if only one of its codes has tangential damping in this form.
+/// The laws that have names, each with all of its names, in the order of the presets. A law is
+/// there twice if only one of its codes has tangential damping in this form.
 #[must_use]
 pub fn distinct() -> Vec<Named> {
     let mut laws: Vec<Named> = Vec::new();

@@ -1,7 +1,8 @@
 //! The collision in plain time: the law as the paper writes it, for studies of convergence.
 //!
 //! ```text
-//! ẋ = v     v̇ = −F     stick: ẏ = w, ẇ = −κ y     slip: ẇ = −s F, y = s F/κ     F = x^{3/2} + a √x v
+//! ẋ = v     v̇ = −F     F = x^{3/2} + a √x v
+//! stick: ẏ = w, ẇ = −κ y     slip: ẇ = −s F, y = s F/κ
 //! ```
 //!
 //! F is not smooth where x = 0. Without damping this is so at both ends of contact: F ~ t^{3/2},

@@ -13,8 +13,8 @@ pub struct Abscissae {
 }
 
 impl Abscissae {
-    /// Groups the coordinates `values` of a window from `low` to `high`. Those that differ from `low`
-    /// or `high` by rounding become these.
+    /// Groups the coordinates `values` of a window from `low` to `high`. Those that differ from
+    /// `low` or `high` by rounding become these.
     pub fn new(low: f64, high: f64, values: impl Iterator<Item = f64>) -> Self {
         let rounding = 16.0 * f64::EPSILON * low.abs().max(high.abs()).max(high - low);
         let mut values: Vec<f64> = values.chain([low, high]).collect();

@@ -288,8 +288,8 @@ impl<'a, F: Family, At: Fn(f64) -> F> Search<'a, F, At> {
     }
 
     /// The changes found, in order, with the structure behind each. Brackets that almost touch each
-    /// other are one, in doubt, unless both are solved for: there the structure changes in steps that
-    /// are too small to tell one change from several.
+    /// other are one, in doubt, unless both are solved for: there the structure changes in steps
+    /// that are too small to tell one change from several.
     pub fn joined(self) -> Vec<Found<F>> {
         /// The greatest gap between brackets that are joined, in widths.
         const GAP: f64 = 10.0;

@@ -239,8 +239,8 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         })
     }
 
-    /// Drops the changes for which no margin was found where they were seen, but on which a curve with
-    /// their labels lies that was found elsewhere.
+    /// Drops the changes for which no margin was found where they were seen, but on which a curve
+    /// with their labels lies that was found elsewhere.
     pub fn drop_explained(&mut self) {
         let mut unresolved = std::mem::take(&mut self.network.unresolved);
         unresolved.retain(|open| match open {

@@ -23,7 +23,8 @@ pub struct Count {
 }
 
 impl<F: Family> Tracer<'_, F> {
-    /// Refuses a window that has more curves than the options allow, as far as [`Self::count`] shows.
+    /// Refuses a window that has more curves than the options allow, as far as [`Self::count`]
+    /// shows.
     ///
     /// # Errors
     /// [`TraceError::TooManyCurves`] has the numbers that were counted.
@@ -47,10 +48,10 @@ impl<F: Family> Tracer<'_, F> {
     ///
     /// A region counts if it has a square of four places, and so does a label that has no such
     /// region. Two regions that share more than one side of a place have a curve between them. The
-    /// number of curves may be wrong by a tenth: two that cross at a small angle can count as three.
-    /// Where places are too coarse both numbers are too small. Different labels alone are certain: a
-    /// window has at least as many curves as labels but one. A place where the run fails is in no
-    /// region. If the watch cancels, nothing is counted.
+    /// number of curves may be wrong by a tenth: two that cross at a small angle can count as
+    /// three. Where places are too coarse both numbers are too small. Different labels alone are
+    /// certain: a window has at least as many curves as labels but one. A place where the run fails
+    /// is in no region. If the watch cancels, nothing is counted.
     #[must_use]
     pub fn count<E: Executor<F>>(&self, executor: &E, watch: &Watch<'_>, enough: usize) -> Count {
         /// The number of places that any window may take.

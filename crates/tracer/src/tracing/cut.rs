@@ -1,7 +1,7 @@
 //! The part of a network that lies in a window.
 //!
-//! A trace follows boundaries a little beyond the window. What meets there a hair beyond an edge, or
-//! on it, is then found like anything else. Here its curves are cut at the edges.
+//! A trace follows boundaries a little beyond the window. What meets there a hair beyond an edge,
+//! or on it, is then found like anything else. Here its curves are cut at the edges.
 //!
 //! A curve is divided where it crosses an edge, and at its nodes on an edge. A part belongs to the
 //! window if it leads farther inside than places can be told apart, so that curves along an edge do

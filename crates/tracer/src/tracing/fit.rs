@@ -1,8 +1,8 @@
 //! Curves as close to their boundary as the options ask.
 //!
 //! The steps along a curve do not end at its vertices, and a margin may be singular at a vertex, or
-//! exist up to it only, so that its gradient does not tell the direction of the curve there. So cubics
-//! are compared with the boundary, and divided where they are too far from it.
+//! exist up to it only, so that its gradient does not tell the direction of the curve there. So
+//! cubics are compared with the boundary, and divided where they are too far from it.
 
 use crate::cubic::Cubic;
 use crate::curve::Node;
@@ -56,8 +56,8 @@ fn turn(nodes: &mut [Node]) {
     }
 }
 
-/// Where cubics are compared with the boundary. The errors of fourth and of fifth order together vanish
-/// at one of these places at most.
+/// Where cubics are compared with the boundary. The errors of fourth and of fifth order together
+/// vanish at one of these places at most.
 pub(crate) const SHOWING: [f64; 2] = [0.3, 0.7];
 /// The part of its maximum that the error of fourth order has there.
 pub(crate) const SHOWN: f64 = 0.7;
@@ -80,8 +80,8 @@ pub(crate) enum Target {
 }
 
 impl<F: Family> Fit<'_, '_, F> {
-    /// The nodes behind `last` up to `target`. Cubics between them are as close to the boundary as the
-    /// options ask, or as shorter ones can be. `gradient` is that of the margin at `last`.
+    /// The nodes behind `last` up to `target`. Cubics between them are as close to the boundary as
+    /// the options ask, or as shorter ones can be. `gradient` is that of the margin at `last`.
     pub fn nodes(&self, last: &Node, gradient: &Point, target: Target) -> Traced<Vec<Node>, F> {
         let (mut last, mut gradient) = (*last, *gradient);
         let mut nodes = Vec::new();
@@ -113,14 +113,14 @@ impl<F: Family> Fit<'_, '_, F> {
         Ok(error / SHOWN)
     }
 
-    /// The node at a vertex behind `last`. Its tangent is normal to the gradient if there is one, else
-    /// that of the circle through `last`.
+    /// The node at a vertex behind `last`. Its tangent is normal to the gradient if there is one,
+    /// else that of the circle through `last`.
     pub fn end(&self, last: &Node, vertex: &Point) -> Traced<Node, F> {
         Ok(self.ends(last, vertex)?[0])
     }
 
-    /// The node at a vertex behind `last`, and the same with the tangent of the circle through `last`
-    /// if the first one is normal to the gradient.
+    /// The node at a vertex behind `last`, and the same with the tangent of the circle through
+    /// `last` if the first one is normal to the gradient.
     fn ends(&self, last: &Node, vertex: &Point) -> Traced<Vec<Node>, F> {
         let chord = vertex - last.point;
         let end = |tangent| Node { point: *vertex, tangent };
@@ -140,8 +140,8 @@ impl<F: Family> Fit<'_, '_, F> {
         Ok(ends)
     }
 
-    /// The end of the piece from `last` to `target` with which its cubic is as close to the boundary as
-    /// the options ask, or closest, and the distance of this cubic.
+    /// The end of the piece from `last` to `target` with which its cubic is as close to the
+    /// boundary as the options ask, or closest, and the distance of this cubic.
     fn best(&self, last: &Node, gradient: &Point, target: Target) -> Traced<(Node, f64), F> {
         let ends = match target {
             Target::Node(node) => vec![node],
@@ -160,7 +160,8 @@ impl<F: Family> Fit<'_, '_, F> {
         Ok(best)
     }
 
-    /// A node in the middle of a piece, with its gradient, if it makes a cubic with this error better.
+    /// A node in the middle of a piece, with its gradient, if it makes a cubic with this error
+    /// better.
     fn middle(
         &self,
         last: &Node,
@@ -182,8 +183,8 @@ impl<F: Family> Fit<'_, '_, F> {
         let slope = self.runs.gradient(&found.point, self.margin, &tangent, self.radius)?;
         let Some(slope) = slope else { return Ok(None) };
         let node = Node { point: found.point, tangent: normal(&slope, &tangent) };
-        // Where the vertex lies beside the boundary, or the boundary turns just before it, every cubic
-        // up to it is as far off.
+        // Where the vertex lies beside the boundary, or the boundary turns just before it, every
+        // cubic up to it is as far off.
         let better = self.error(&Cubic::between(last, &node), gradient)? <= 0.5 * error
             && self.best(&node, &slope, target)?.1 <= 0.5 * error;
         Ok(better.then_some((node, slope)))

@@ -38,8 +38,8 @@ pub struct MonitorZero {
     pub monitor: usize,
     /// The node at or behind which the zero lies, before the next node.
     pub node: usize,
-    /// The zero, on the boundary to its tolerance. `None` if it could not be solved for: the boundary
-    /// has no margin between these nodes, or the monitor jumps or is not a number there.
+    /// The zero, on the boundary to its tolerance. `None` if it could not be solved for: the
+    /// boundary has no margin between these nodes, or the monitor jumps or is not a number there.
     pub point: Option<Point>,
 }
 
@@ -53,9 +53,10 @@ type WalkOf<F> = (Vec<Node>, End<<F as Family>::Margin>);
 /// at a vertex, leaves the window, or closes. `None` if the labels are the same, or if no margin
 /// vanishes where the label changes.
 ///
-/// Zeros of monitors are found where a monitor has different signs at successive nodes, which are at
-/// most [`TraceOptions::max_step`] apart. They are solved for on the boundary itself, along which
-/// their error is that of the monitor divided by its slope, or 1e-10 of the window's shorter extent.
+/// Zeros of monitors are found where a monitor has different signs at successive nodes, which are
+/// at most [`TraceOptions::max_step`] apart. They are solved for on the boundary itself, along
+/// which their error is that of the monitor divided by its slope, or 1e-10 of the window's shorter
+/// extent.
 ///
 /// ```
 /// use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Start, State};

@@ -9,8 +9,8 @@ use crate::window::Point;
 /// changes.
 ///
 /// `before` is the place on the other side of `here`, as far away as `there`. It tells whether a
-/// margin comes near zero on the way. Zeros on `known` curves, at these places from 0 to 1, are left
-/// out.
+/// margin comes near zero on the way. Zeros on `known` curves, at these places from 0 to 1, are
+/// left out.
 pub(crate) fn between<F: Family>(
     runs: &Runs<'_, F>,
     known: &[f64],
@@ -51,9 +51,9 @@ impl<F: Family> Way<'_, F> {
         self.runs.margin(&self.point(place), self.margin)
     }
 
-    /// The point behind the zero of the margin, which has `value` at 0 and `before` at −1, where the
-    /// label is another one than ahead of the zero. `None` if the margin does not come to zero, or
-    /// if nothing changes there.
+    /// The point behind the zero of the margin, which has `value` at 0 and `before` at −1, where
+    /// the label is another one than ahead of the zero. `None` if the margin does not come to zero,
+    /// or if nothing changes there.
     fn vanishes(&self, value: f64, before: Option<f64>) -> Traced<Option<Point>, F> {
         /// A margin of which so large a part is left behind the way, if it goes on straight, does
         /// not vanish on it.

@@ -61,7 +61,8 @@ fn special_points<Label>(
     window: &Window,
 ) -> Vec<(usize, SpecialPoint)> {
     /// The distance, as a part of the window's shorter extent, within which two ends are those of
-    /// one cusp: margins are cubic in the distance there, so that each branch has an end of its own.
+    /// one cusp: margins are cubic in the distance there, so that each branch has an end of its
+    /// own.
     const CUSP: f64 = 3e-6;
     let mut arrivals: Vec<Vec<Arrival>> = vertices.iter().map(|_| Vec::new()).collect();
     for curve in curves {

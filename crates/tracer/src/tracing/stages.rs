@@ -123,8 +123,8 @@ impl<F: Family> Tracer<'_, F> {
         self.window.extent() / self.runs.options.cells as f64
     }
 
-    /// The places at the ends of all segments, a ten-millionth of the window's shorter extent inside
-    /// the edges up to which boundaries are followed.
+    /// The places at the ends of all segments, a ten-millionth of the window's shorter extent
+    /// inside the edges up to which boundaries are followed.
     fn edge_places(&self) -> Vec<Point> {
         let inset = Point::repeat(1e-7 * self.runs.scale);
         let (low, high) = (self.runs.window.low + inset, self.runs.window.high - inset);

@@ -35,17 +35,17 @@ pub fn trace<F: Family>(
 /// A search for boundaries in a window. It keeps what it has found and can be continued.
 ///
 /// Boundaries are searched for along the window's edges, on circles around every vertex, along the
-/// edges of a grid, and near minima of margins between places of the grid. Along edges, margins that
-/// fall towards zero are followed, so that narrow strips are found. A curve can be missed if none of
-/// these searches crosses it and its margin has no minimum that the grid shows. It may be the edge of
-/// a small island. A verification may find a point of such a region, and [`Self::look_between`] then
-/// finds the curve.
+/// edges of a grid, and near minima of margins between places of the grid. Along edges, margins
+/// that fall towards zero are followed, so that narrow strips are found. A curve can be missed if
+/// none of these searches crosses it and its margin has no minimum that the grid shows. It may be
+/// the edge of a small island. A verification may find a point of such a region, and
+/// [`Self::look_between`] then finds the curve.
 ///
-/// Boundaries are followed a little [beyond](TraceOptions::beyond) the window and cut at its edges, so
-/// that places where they meet just outside are vertices like others. The family is evaluated up to a
-/// hundredth of the window's extent, and as far as boundaries are followed, outside the window. The
-/// distance of nodes from their boundary is at most `options.tolerance`, or what the noise of
-/// margins allows; that of the cubics between them is at most `options.interpolation`.
+/// Boundaries are followed a little [beyond](TraceOptions::beyond) the window and cut at its edges,
+/// so that places where they meet just outside are vertices like others. The family is evaluated up
+/// to a hundredth of the window's extent, and as far as boundaries are followed, outside the
+/// window. The distance of nodes from their boundary is at most `options.tolerance`, or what the
+/// noise of margins allows; that of the cubics between them is at most `options.interpolation`.
 pub struct Tracer<'f, F: Family> {
     pub(crate) runs: Runs<'f, F>,
     pub(crate) builder: Builder<F::Label, F::Margin>,
@@ -223,8 +223,8 @@ impl<'f, F: Family> Tracer<'f, F> {
     }
 
     /// Solves again for inaccurate vertices, with the margins of all curves that end there. Two of
-    /// these may meet at a large angle, which makes their crossing accurate. A vertex that turns out
-    /// to be another one is joined with it.
+    /// these may meet at a large angle, which makes their crossing accurate. A vertex that turns
+    /// out to be another one is joined with it.
     pub(super) fn polish(&mut self) -> Traced<(), F> {
         let mut index = 0;
         while let Some(&stop) = self.builder.stops.get(index) {
@@ -243,8 +243,8 @@ impl<'f, F: Family> Tracer<'f, F> {
     }
 
     /// The place of an inaccurate vertex, solved for with the margins of all curves that end there.
-    /// Where two of them touch, the place that is found may be farther away than its error says, and is
-    /// left out, unless a curve misses the vertex by as much.
+    /// Where two of them touch, the place that is found may be farther away than its error says,
+    /// and is left out, unless a curve misses the vertex by as much.
     fn better_place(&self, index: usize, stop: &Stop) -> Traced<Option<Special<F::Margin>>, F> {
         let arrivals = self.builder.arrivals(index);
         let missed = arrivals.iter().map(|(node, _)| missed_by(node, &stop.point));
@@ -335,8 +335,8 @@ fn is_expected<L: Eq, M: PartialEq>(
         })
 }
 
-/// How far beside a curve, whose last node before its end is `node`, the vertex lies at which it ends,
-/// if the curve would have to turn by more than it does in a step.
+/// How far beside a curve, whose last node before its end is `node`, the vertex lies at which it
+/// ends, if the curve would have to turn by more than it does in a step.
 fn missed_by(node: &Node, vertex: &Point) -> f64 {
     let chord = vertex - node.point;
     let beside = node.tangent.perp(&chord).abs();

@@ -40,8 +40,8 @@ impl Family for Board {
     }
 }
 
-/// Lines have inflections, where an error that is looked for at one place of a cubic can hide. A line
-/// was then found a second time beside itself.
+/// Lines have inflections, where an error that is looked for at one place of a cubic can hide. A
+/// line was then found a second time beside itself.
 #[test]
 fn bent_chessboards_are_complete() {
     let window = Window { low: Point::new(0.0, 0.0), high: Point::new(1.0, 1.0) };

@@ -11,8 +11,8 @@ use stickslip_tracer::{
 use crate::any::any;
 
 /// A chessboard whose fields have numbers, as if they were those of guards. It has no margins. The
-/// lines between its fields are even in a power of the coordinates, so that a high power makes fields
-/// small towards one corner.
+/// lines between its fields are even in a power of the coordinates, so that a high power makes
+/// fields small towards one corner.
 struct Chessboard<'a> {
     side: f64,
     power: i32,

@@ -189,8 +189,8 @@ fn bad_input_is_named() {
     assert!(matches!(error, TraceError::NotANumber { point } if point.x > 0.5));
 }
 
-/// The work of a trace, including the search for boundaries, is at most eleven runs for each node on a
-/// simple curve; 10.4 were measured.
+/// The work of a trace, including the search for boundaries, is at most eleven runs for each node
+/// on a simple curve; 10.4 were measured.
 #[test]
 fn runs_of_a_trace() {
     let plain = |cells| {

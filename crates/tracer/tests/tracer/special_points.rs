@@ -17,8 +17,8 @@ const END: f64 = 2.0;
 /// fired, or 0.
 type Values = fn(f64, &Point, f64) -> [f64; 2];
 
-/// A run at a place of the plane. Its mode says which guards have fired, and its state is the time at
-/// which the first one did.
+/// A run at a place of the plane. Its mode says which guards have fired, and its state is the time
+/// at which the first one did.
 struct Run {
     values: Values,
     point: Point,
@@ -103,8 +103,8 @@ fn a_graze_behind_a_graze_touches_it() {
 }
 
 /// The boundaries y = 0 and y = −x² touch beyond the window's edge x = −r. Between them both guards
-/// fire, in a strip that is r² wide at the edge. Where that is too thin for an outline, the tracer has
-/// to look beyond the edge.
+/// fire, in a strip that is r² wide at the edge. Where that is too thin for an outline, the tracer
+/// has to look beyond the edge.
 #[test]
 fn boundaries_that_touch_beyond_the_edge_are_both_there() {
     let family = family(graze_behind_a_graze);

@@ -118,8 +118,8 @@ fn three_lines_pass_through_one_point() {
     assert_eq!(found[0].effects, [born, Effect::Dies(vec![true, true, false])]);
 }
 
-/// The line x = 0.8 y + t passes through a corner at t = 0.2, and crosses the line x = 0.7 − y on the
-/// edge at t = 1 + 0.8 · 0.3.
+/// The line x = 0.8 y + t passes through a corner at t = 0.2, and crosses the line x = 0.7 − y on
+/// the edge at t = 1 + 0.8 · 0.3.
 #[test]
 fn a_line_passes_through_a_corner_and_a_crossing_leaves() {
     const LINES: [fn(&Point, f64) -> f64; 2] =

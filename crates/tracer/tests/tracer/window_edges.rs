@@ -8,8 +8,8 @@ use stickslip_tracer::{
 use crate::any::any;
 use crate::guards::{Guards, SQUARE, exact};
 
-/// The atlas of the functions, against which nothing may speak, and which is right at points of every
-/// distance from the edges.
+/// The atlas of the functions, against which nothing may speak, and which is right at points of
+/// every distance from the edges.
 fn right(functions: Vec<fn(&Point) -> f64>) -> AtlasOf<Guards> {
     let family = any(Guards(functions));
     let verify = VerifyOptions { random_points: 2000, ..VerifyOptions::default() };

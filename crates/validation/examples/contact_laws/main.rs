@@ -7,8 +7,8 @@
 //! damping is searched for with which the integrator has them too: the distance from the boundary.
 //! Contacts farther from it than 1e-6 are printed.
 //!
-//! Run with `cargo run --release -p validation --example contact_laws -- [CONTACTS]`, the number for
-//! each law and both opinions; 1000 without an argument.
+//! Run with `cargo run --release -p validation --example contact_laws -- [CONTACTS]`, the number
+//! for each law and both opinions; 1000 without an argument.
 
 use std::error::Error;
 
@@ -94,7 +94,8 @@ struct Tally {
     counts: [usize; 3],
     largest: [f64; 3],
     worst: [Option<Contact>; 3],
-    /// How many contacts with other switches in plain time are up to each of [`DISTANCES`] from them.
+    /// How many contacts with other switches in plain time are up to each of [`DISTANCES`] from
+    /// them.
     near: [usize; DISTANCES.len()],
     failure: Option<String>,
 }
@@ -201,8 +202,8 @@ fn longer(phases: impl Iterator<Item = (char, f64)>, end: f64) -> String {
 /// Relative changes of a parameter by which a contact may have other switches.
 const DISTANCES: [f64; 5] = [1e-10, 1e-8, 1e-6, 1e-4, 1e-2];
 
-/// The least relative change of κ, ψ or a damping with which the integrator finds these phases up to
-/// `end`; up to a factor of √10, and at most the last of [`DISTANCES`].
+/// The least relative change of κ, ψ or a damping with which the integrator finds these phases up
+/// to `end`; up to a factor of √10, and at most the last of [`DISTANCES`].
 fn distance(contact: &Contact, phases: &str, end: f64) -> Option<f64> {
     let changes = (0..=16).map(|half| 1e-10 * 10.0_f64.powf(0.5 * f64::from(half)));
     changes.into_iter().find(|change| {

@@ -1,8 +1,8 @@
 //! A second opinion on contact laws: the equations as particle codes write them, in plain time.
 //!
-//! Overlap, velocities and history are stepped by the classical Runge–Kutta method with small steps,
-//! graded at both ends of contact. Switches are found by signs at the ends of steps and bisection.
-//! Nothing is shared with the solver or the model but the parameters.
+//! Overlap, velocities and history are stepped by the classical Runge–Kutta method with small
+//! steps, graded at both ends of contact. Switches are found by signs at the ends of steps and
+//! bisection. Nothing is shared with the solver or the model but the parameters.
 
 use stickslip::model::{Contact, Damping, End, HistoryOf, Normal, Tangential};
 

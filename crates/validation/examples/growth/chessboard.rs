@@ -1,8 +1,8 @@
 //! A bent chessboard: the field of a point has the integer parts of two functions as its numbers.
 //!
 //! With n fields along a side, u = n (x + sin(3y + 1)/10) and v = n (y + cos(4x)/10) on the unit
-//! square. Boundaries are the lines on which u or v is an integer. Two lines of one kind never meet,
-//! and two of different kinds cross once at most.
+//! square. Boundaries are the lines on which u or v is an integer. Two lines of one kind never
+//! meet, and two of different kinds cross once at most.
 
 use std::convert::Infallible;
 use std::error::Error;

@@ -57,8 +57,8 @@ pub fn row(window: &Window, points: usize) -> Result<Row, Box<dyn Error>> {
     })
 }
 
-/// The number of random points, uniform in the logarithms of κ and ψ, whose region has other switches
-/// than their collisions.
+/// The number of random points, uniform in the logarithms of κ and ψ, whose region has other
+/// switches than their collisions.
 fn wrong(atlas: &Atlas, points: usize) -> Result<usize, Box<dyn Error>> {
     let Frame { kappa, psi, .. } = atlas.frame;
     let plane = atlas.frame.plane()?;

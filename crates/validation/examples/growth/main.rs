@@ -1,10 +1,10 @@
 //! How the time of an atlas grows with the number of its curves.
 //!
-//! Two families: a bent chessboard, whose fields are as many as one likes and have a closed form, and
-//! windows of collisions, from an ordinary one to stiff springs. Each atlas is compared with runs at
-//! random points: with the closed form, and with the collisions themselves; a point without a region
-//! counts as wrong. Curves and regions of a chessboard are also counted without a trace. Times are
-//! those of the processors.
+//! Two families: a bent chessboard, whose fields are as many as one likes and have a closed form,
+//! and windows of collisions, from an ordinary one to stiff springs. Each atlas is compared with
+//! runs at random points: with the closed form, and with the collisions themselves; a point without
+//! a region counts as wrong. Curves and regions of a chessboard are also counted without a trace.
+//! Times are those of the processors.
 //!
 //! Run with `cargo run --release -p validation --example growth -- [CURVES] [POINTS]`: chessboards
 //! and windows with up to CURVES curves, about, and POINTS points each; 5200 and 20 000 without
@@ -69,8 +69,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     if right { Ok(()) } else { Err("an atlas is not right".into()) }
 }
 
-/// The result of a computation, and its time in seconds: that of all processors where the system tells
-/// it, so that other work does not count.
+/// The result of a computation, and its time in seconds: that of all processors where the system
+/// tells it, so that other work does not count.
 fn timed<T>(compute: impl FnOnce() -> T) -> (T, f64) {
     let (start, processor) = (Instant::now(), processor_seconds());
     let result = compute();

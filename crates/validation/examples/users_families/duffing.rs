@@ -1,5 +1,5 @@
-//! A Duffing oscillator, x″ + x′/10 − x + x³ = A cos Ωt, that starts from rest in the well at x = 1.
-//! It is smooth; what counts are its passages through x = 1/2, in both directions.
+//! A Duffing oscillator, x″ + x′/10 − x + x³ = A cos Ωt, that starts from rest in the well at
+//! x = 1. It is smooth; what counts are its passages through x = 1/2, in both directions.
 
 use stickslip::solver::{Direction, Guard, HybridSystem, Start, State};
 use stickslip::tracer::{Point, Window};

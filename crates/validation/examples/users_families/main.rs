@@ -1,10 +1,10 @@
-//! The families of the gallery's example, and some that are written less carefully, at other ends of
-//! their runs: traced, verified, and compared with runs at random points.
+//! The families of the gallery's example, and some that are written less carefully, at other ends
+//! of their runs: traced, verified, and compared with runs at random points.
 //!
 //! `cargo run --release -p validation --example users_families -- [POINTS] [NAME] [SECONDS]`
 //!
-//! A family that takes longer than so many seconds, 120 if none are given, is cancelled. All regions
-//! are in doubt then.
+//! A family that takes longer than so many seconds, 120 if none are given, is cancelled. All
+//! regions are in doubt then.
 
 #[path = "../../../../examples/gallery/ball.rs"]
 #[expect(dead_code, reason = "the gallery uses more")]
@@ -93,8 +93,8 @@ const TRIALS: [Trial; 11] = [
      |case, effort| show(duffing::shake, case, effort)),
 ];
 
-/// Traces a family and compares it with runs at random points. What speaks against the atlas goes to
-/// the standard error.
+/// Traces a family and compares it with runs at random points. What speaks against the atlas goes
+/// to the standard error.
 fn show<P, const N: usize, const G: usize>(
     problem: P,
     case: &Case,

@@ -1,10 +1,10 @@
-//! A shaken mass with dry friction, written without a thought of sliding modes: x″ + x = A cos Ωt − F
-//! while it slips to the right. It slips until its velocity vanishes, then it sticks; and it sticks
-//! until |A cos Ωt − x| exceeds 1, which may be at once. Nothing is said of the zeros from which
-//! guards start.
+//! A shaken mass with dry friction, written without a thought of sliding modes: x″ + x = A cos Ωt −
+//! F while it slips to the right. It slips until its velocity vanishes, then it sticks; and it
+//! sticks until |A cos Ωt − x| exceeds 1, which may be at once. Nothing is said of the zeros from
+//! which guards start.
 //!
-//! If F is below 1 the velocity leaves its zero with a slope. If F is 1 too, it starts from a double
-//! zero, and rounding decides whether the mass sticks again at once:
+//! If F is below 1 the velocity leaves its zero with a slope. If F is 1 too, it starts from a
+//! double zero, and rounding decides whether the mass sticks again at once:
 //! [`Guard::from_zero`](stickslip::solver::Guard::from_zero) would have to say so.
 
 use stickslip::solver::{Direction, Guard, HybridSystem, Start, State};

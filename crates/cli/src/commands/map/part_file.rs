@@ -76,8 +76,8 @@ pub fn write(out: impl Write, part: MapPart, tiles: &Tiles) -> io::Result<()> {
 /// The file at `out`, if it holds this `part` of the map that `task` makes.
 ///
 /// # Errors
-/// [`Failure::Input`]: it holds another part of this map, since the parts need a file each. Anything
-/// else is replaced, as with every output.
+/// [`Failure::Input`]: it holds another part of this map, since the parts need a file each.
+/// Anything else is replaced, as with every output.
 pub fn find(out: &Path, part: MapPart, task: &Task) -> Result<Option<PartFile>, Failure> {
     let there = PartFile::open(out).ok();
     match there.filter(|there| there.is_of(task) && there.part.count == part.count) {

@@ -85,11 +85,12 @@ impl ImpactReading {
         self.file.spheres()
     }
 
-    /// The reading with the columns of `header`, where options give velocities and `results` are the
-    /// names of the columns of results.
+    /// The reading with the columns of `header`, where options give velocities and `results` are
+    /// the names of the columns of results.
     ///
     /// # Errors
-    /// What is wrong with the columns, or with the file if no column mends it, and what is expected.
+    /// What is wrong with the columns, or with the file if no column mends it, and what is
+    /// expected.
     pub fn with_columns(
         mut self,
         header: &ByteRecord,
@@ -226,7 +227,7 @@ fn require_foreign(name: &str, known: &[(String, Slot)]) -> Result<(), String> {
     let names = known.iter().map(|(name, _)| name.as_str());
     let names: Vec<_> = QUANTITIES.iter().map(|quantity| quantity.name).chain(names).collect();
     Err(format!(
-        "column {name} is no number of these bodies; expected another name, or one of {}",
+        "column {name} is not a number of these bodies; expected another name, or one of {}",
         names.join(", ")
     ))
 }

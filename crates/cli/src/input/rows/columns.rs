@@ -62,7 +62,8 @@ impl Columns {
     }
 }
 
-/// The names of the columns of `header`, without blanks around them. A header may be like `example`.
+/// The names of the columns of `header`, without blanks around them. A header may be like
+/// `example`.
 ///
 /// # Errors
 /// There is no header, two columns have the same name, or one has the name of one of `results`.

@@ -334,8 +334,8 @@ fn settled<T: Trajectory>(swing: &Swing<T>, k: u32, moment: Moment) -> Moment {
 /// D has a double zero at the start of the phase. Therefore the root of D/τ² is solved for. Its
 /// value and its derivatives are all multiplied by τ, which changes no step towards the root.
 fn first_exit<T: Trajectory>(swing: &Swing<T>, rise: Moment, fall: Moment) -> Moment {
-    // D̈ falls through 0 at `rise`. If D̈ were linear, the phase would be three times as long as the
-    // time until then.
+    // D̈ falls through 0 at `rise`. If D̈ were linear, the phase would be three times as long as
+    // the time until then.
     let path = swing.path;
     let guess = path.after(&swing.start, 3.0 * swing.elapsed(&path.at(rise)), f64::INFINITY);
     let moment = root_between(path, rise, fall, Some(guess), |at| {

@@ -13,8 +13,8 @@ pub struct LateHalfSwing {
     k: u32,
     /// The peak or the last turn, where R rises and the gap D falls.
     first: Moment,
-    /// A moment at which D rises again: the end of the half swing or of the contact, or just beyond.
-    /// There may be none as far as the motion is continued.
+    /// A moment at which D rises again: the end of the half swing or of the contact, or just
+    /// beyond. There may be none as far as the motion is continued.
     high: Option<Moment>,
 }
 
@@ -47,7 +47,8 @@ impl LateHalfSwing {
     /// (1 + D/A)² − 1 where the gap D is least.
     ///
     /// If the top of R is at the peak, this is 1/R² − 1. But where the top is close to the end of
-    /// contact, R is no smooth function of the parameters. D is, since L falls to 0 at an even rate.
+    /// contact, R is not a smooth function of the parameters. D is, since L falls to 0 at an
+    /// even rate.
     pub fn margin<T: Trajectory>(&self, swing: &Swing<T>) -> Option<f64> {
         let &Self { k, first, high } = self;
         let path = swing.path;

@@ -79,7 +79,7 @@ impl Account<'_> {
             let [w0, w1] = [&self.entered, y].map(|y| self.system.velocity(y));
             self.sliding += 0.5 * (w0 - w1) * (w0 + w1);
         }
-        // A reversal at the moment of a switch is no event of its own.
+        // A reversal at the moment of a switch is not an event of its own.
         let w = self.system.velocity(y);
         if self.counts(w) && (w > 0.0) != self.forward {
             self.reverse();

@@ -64,8 +64,8 @@ impl Stage {
 }
 
 impl Moment {
-    /// The moment after a part of a phase that began at this one. `left` is the time until the force
-    /// vanishes there.
+    /// The moment after a part of a phase that began at this one. `left` is the time until the
+    /// force vanishes there.
     pub fn after(&self, place: Place) -> Self {
         Self { time: self.time + place.since, left: place.left }
     }

@@ -97,8 +97,8 @@ impl Oscillator {
         sum
     }
 
-    /// The size of the terms of p S + q Ṡ − r S̈ after `time`, and of what rounding of the time makes
-    /// of them: the sum has an error of a few times ε of this.
+    /// The size of the terms of p S + q Ṡ − r S̈ after `time`, and of what rounding of the time
+    /// makes of them: the sum has an error of a few times ε of this.
     pub fn size(&self, factors: [f64; 3], time: f64) -> f64 {
         let Self { damping, stiffness, half, frequency, oscillates, slow, .. } = *self;
         let [p, q, r] = factors.map(f64::abs);
@@ -166,7 +166,8 @@ mod tests {
             let oscillator = Oscillator::new(damping, stiffness);
             for (one, two) in [(0.1, 0.7), (1e-5, 2.0), (3.0, 0.4)] {
                 let [first, second, both] = [one, two, one + two].map(|t| oscillator.after(t));
-                // The state after both times is that after the second from the state after the first.
+                // The state after both times is that after the second from the state after the
+                // first.
                 let s = first.s * second.c + first.ds * second.s;
                 assert!((s - both.s).abs() < 1e-14 * (1.0 + both.s.abs()), "{damping} {stiffness}");
                 let c = first.c * second.c - stiffness * first.s * second.s;

@@ -8,8 +8,8 @@
 //! ```
 //!
 //! P is an oscillation like L, and vanishes at most once in a stage. G is monotone on both sides of
-//! that: it falls through 0 at most once, and whether it does is seen at the end of the part on which
-//! it falls.
+//! that: it falls through 0 at most once, and whether it does is seen at the end of the part on
+//! which it falls.
 
 use super::Linear;
 use super::normal::{Moment, Motion, Place, Stage};
@@ -42,8 +42,8 @@ pub struct Drive {
 }
 
 impl<'a> Slip<'a> {
-    /// The phase that starts with the velocity `velocity`, where the spring would leave its limit at
-    /// the rate `excess` ≥ 0.
+    /// The phase that starts with the velocity `velocity`, where the spring would leave its limit
+    /// at the rate `excess` ≥ 0.
     pub fn new(
         linear: &'a Linear,
         (stage, start): (Stage, Moment),

@@ -1,7 +1,7 @@
 //! A stick phase: spring and dashpot are an oscillator, Q̈ + c Q̇ + κ Q = 0 with c = b a.
 //!
-//! It ends where one of the gaps H = L ∓ Q falls through 0. What decides is that both gaps are driven
-//! by the same oscillation P, which vanishes at most once in a stage:
+//! It ends where one of the gaps H = L ∓ Q falls through 0. What decides is that both gaps are
+//! driven by the same oscillation P, which vanishes at most once in a stage:
 //!
 //! ```text
 //! Ḧ + c Ḣ + κ H = P     P = (κ − 1) L + (c − a) L̇
@@ -11,8 +11,8 @@
 //! between −π/2 and π/2, or e^{−λt} where spring and dashpot do not oscillate. The rate of H/u is
 //! that of W = e^{ct} (u Ḣ − u̇ H) over (e^{ct/2} u)², and Ẇ = e^{ct} u P. Therefore:
 //!
-//! - Where P ≤ 0, W falls: H/u has no minimum inside. A gap that is open at the start of the interval
-//!   closes once if it is closed at the end, and otherwise not at all.
+//! - Where P ≤ 0, W falls: H/u has no minimum inside. A gap that is open at the start of the
+//!   interval closes once if it is closed at the end, and otherwise not at all.
 //! - Where P > 0, W rises: H/u has at most one minimum, where W vanishes. The gap closes if it is
 //!   closed there, or at the end.
 //!
@@ -164,8 +164,8 @@ impl<'a> Stick<'a> {
         (self.signs().map(|sign| jet(limit - sign * force, slope - sign * pull)), drive)
     }
 
-    /// A gap and its rate early in the phase, where the difference of limit and force would lose its
-    /// digits.
+    /// A gap and its rate early in the phase, where the difference of limit and force would lose
+    /// its digits.
     fn series(&self, (gap, rate): (f64, f64), time: f64) -> (f64, f64) {
         if time == 0.0 {
             return (gap, rate);
@@ -239,8 +239,8 @@ impl<'a> Stick<'a> {
         None
     }
 
-    /// Whether the swings of the spring are below the limit throughout an interval. The limit has no
-    /// minimum inside a stage.
+    /// Whether the swings of the spring are below the limit throughout an interval. The limit has
+    /// no minimum inside a stage.
     fn stays_below(&self, from: &Edge, to: &Edge) -> bool {
         let limit = |edge: &Edge| 0.5 * (edge.gaps[0].value + edge.gaps[1].value);
         let least = limit(from).min(limit(to));

@@ -16,8 +16,8 @@ use crate::laws::phase::{OTHER_SIDE, Regime, SAME_SIDE, Side};
 /// [`regularized`](crate::regularized).
 const STRONG: f64 = 1.0;
 
-/// How near to 1 the ratio of the tangential force to its limit may be at the start of contact. Nearer
-/// contacts are computed at this distance: rounding would decide over them time and again.
+/// How near to 1 the ratio of the tangential force to its limit may be at the start of contact.
+/// Nearer contacts are computed at this distance: rounding would decide over them time and again.
 const BORDER: f64 = 5e-14;
 
 /// The gap over the limit below which a stick phase has only begun.
@@ -96,8 +96,8 @@ impl Equations {
         }
     }
 
-    /// The equations of a contact whose tangential force does not start as its limit does, to within
-    /// rounding. A force that has just reached its limit sticks, in particle codes too.
+    /// The equations of a contact whose tangential force does not start as its limit does, to
+    /// within rounding. A force that has just reached its limit sticks, in particle codes too.
     pub fn off_the_border(self, psi: f64) -> Self {
         let [Some(room), _] = self.beginning_margins(psi) else { return self };
         if room.abs() >= BORDER {
@@ -358,8 +358,8 @@ impl Equations {
         [end, same, other, v, y[W]]
     }
 
-    /// The guard with which a stick phase is left whose limit has fallen to zero in the state `y`, and
-    /// the time from there to the zero.
+    /// The guard with which a stick phase is left whose limit has fallen to zero in the state `y`,
+    /// and the time from there to the zero.
     pub fn last_slip(&self, mode: Mode, y: &[f64; STATE]) -> (usize, f64) {
         let u = &powers(y[U]);
         let [_, near, far, ..] = self.guards(mode, y);
@@ -444,8 +444,8 @@ impl Equations {
         }
     }
 
-    /// Whether the gap on the side of a stick phase, in its first step, grows from within rounding of
-    /// 0. One that falls there is on its way to a graze.
+    /// Whether the gap on the side of a stick phase, in its first step, grows from within
+    /// rounding of 0. One that falls there is on its way to a graze.
     pub fn is_at_limit(&self, mode: Mode, y: &[f64; STATE]) -> bool {
         let u = &powers(y[U]);
         let limit = u[self.exponents.d - self.exponents.of(mode.stage).shared] * self.push(u, y);

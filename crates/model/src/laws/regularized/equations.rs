@@ -39,8 +39,8 @@ struct Rate<T> {
 
 /// The least damping for which V is a³(v + u²/a).
 ///
-/// Under strong damping the force falls to the part a⁻⁴ of what it was before it ends. The sum u² + a
-/// v would then be rounding and errors of steps alone. As a component, with its own unit, it is
+/// Under strong damping the force falls to the part a⁻⁴ of what it was before it ends. The sum u² +
+/// a v would then be rounding and errors of steps alone. As a component, with its own unit, it is
 /// accurate to the end.
 const STRONG: f64 = 1.0;
 

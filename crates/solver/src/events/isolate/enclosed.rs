@@ -320,8 +320,8 @@ impl Search<'_> {
         Ok(self.visit(high, sign))
     }
 
-    /// Looks at a place between two parts of opposite signs, whose bounds both exclude zero: a jump,
-    /// or a pole that rounding has put into neither part.
+    /// Looks at a place between two parts of opposite signs, whose bounds both exclude zero: a
+    /// jump, or a pole that rounding has put into neither part.
     fn look_between(&mut self, place: f64, sign: f64) {
         let width = self.task.resolution;
         let (last, before) = self.before;

@@ -36,8 +36,8 @@ pub(crate) fn ahead<F: Family>(
 /// The end of a branch in a cusp ahead of `from`; `None` if the cusp is too far away.
 ///
 /// Towards a cusp a boundary bends ever more, and its margin ceases to exist. So the cusp ends the
-/// branch only where the cubic that leads into it is as close to the boundary as the options ask, or
-/// shorter than [`TIP`] and no farther from it than places that count as one.
+/// branch only where the cubic that leads into it is as close to the boundary as the options ask,
+/// or shorter than [`TIP`] and no farther from it than places that count as one.
 pub(crate) fn reached<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,

@@ -83,8 +83,8 @@ const TIME_OVER_X: [f64; 11] = [
     0.00481755702258528943,
 ];
 
-/// The normal motion without damping. The root coordinate of a moment is the square root of the time
-/// to the nearer end of contact.
+/// The normal motion without damping. The root coordinate of a moment is the square root of the
+/// time to the nearer end of contact.
 #[derive(Clone, Copy, Debug)]
 pub struct Undamped;
 

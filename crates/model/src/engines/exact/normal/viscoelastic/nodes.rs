@@ -26,7 +26,8 @@ const ORDERS: usize = 28;
 /// Number of intervals: from 0 to 1/4, then four in each octave up to 128.
 const INTERVALS: usize = 37;
 
-/// The units in which a trajectory is computed: S = c·s, U = c·u, T = c²·t with c = max(1, a)^{1/3}.
+/// The units in which a trajectory is computed: S = c·s, U = c·u, T = c²·t with
+/// c = max(1, a)^{1/3}.
 ///
 /// In these units the motion has a limit for a → 0 and for a → ∞. As U′ = V and V′ = −2U²Q, only
 /// Q = αU² + βV depends on the damping: (α, β) is (1, a) up to a = 1 and (a^{−5/3}, 1) from there.
@@ -67,8 +68,8 @@ fn strengths(root: f64) -> Strengths<DoubleDouble> {
     Strengths { alpha: one.over(damping.times(factor.times(factor))), beta: one }
 }
 
-/// The place S at which the halves of a contact meet, a node of the first: somewhere between 3/4 and
-/// 1/4 of V are left there, so that w keeps its relative accuracy while V vanishes.
+/// The place S at which the halves of a contact meet, a node of the first: somewhere between 3/4
+/// and 1/4 of V are left there, so that w keeps its relative accuracy while V vanishes.
 pub fn middle(strong: bool) -> f64 {
     if strong { 1.0 } else { 1.2 }
 }

@@ -4,8 +4,8 @@ use super::series::State;
 use super::{At, Half, Moment, Motion, NormalMotion, Slide, SlipPhase, Trajectory, Viscoelastic};
 
 impl Viscoelastic {
-    /// The moment a time `duration` after `from`, or before if it is negative, with an error in time
-    /// below `slack`, or a third of the fourth power of a step.
+    /// The moment a time `duration` after `from`, or before if it is negative, with an error in
+    /// time below `slack`, or a third of the fourth power of a step.
     pub(super) fn shifted(&self, from: &At<NormalMotion>, duration: f64, slack: f64) -> Moment {
         /// The error of the first guess, and of what follows from the first evaluation.
         const ERRORS: [f64; 2] = [3e-5, 1e-9];
