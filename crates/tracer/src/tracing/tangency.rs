@@ -10,7 +10,7 @@ use crate::family::Family;
 use crate::tracing::branch::end::{SHORTEST, Special};
 use crate::tracing::corrector::correct;
 use crate::tracing::runs::{Runs, Traced};
-use crate::tracing::trace::Tracer;
+use crate::tracing::tracer::Tracer;
 use crate::window::Point;
 
 /// The farthest along the curve that the true vertex is looked for, as a part of the window's
