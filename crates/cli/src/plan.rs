@@ -1,8 +1,8 @@
 //! What the options mean together: arguments become a plan that a command can carry out.
 //!
 //! One file for each command. Rules that several of them need are in `collision` (one collision
-//! from options), `window` (intervals of κ and ψ), `engine` (what computes collisions), `batch` and
-//! `course` (their files) and `files` (outputs are files of their own).
+//! from options), `window` (intervals of κ and ψ), `engine` (what computes collisions), `law`,
+//! `batch` and `course` (their files) and `files` (outputs are files of their own).
 
 mod batch;
 mod collide;
@@ -13,6 +13,7 @@ mod files;
 mod fit;
 mod impact;
 mod join;
+mod law;
 mod locate;
 mod map;
 mod reproduce;

@@ -66,7 +66,8 @@ pub use spheres::observed::Observed;
 pub use spheres::outcome::{EnergyAccount, ForceSwitch, Outcome};
 pub use spheres::reduction::Reduction;
 pub use spheres::report::{Comparison, ImpactReport};
-pub use spheres::scaling::{Impact, Pair, Surface};
+pub use spheres::scaling::{Impact, Pair};
+pub use spheres::surface::Surface;
 pub use spheres::{bodies, encounter, quantity, scaling};
 
 #[doc = include_str!("../README.md")]

@@ -12,3 +12,4 @@ pub mod quantity;
 pub(crate) mod reduction;
 pub(crate) mod report;
 pub mod scaling;
+pub(crate) mod surface;

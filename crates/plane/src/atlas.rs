@@ -7,15 +7,18 @@
 //! - `frame`: the window of an atlas
 //! - `boundary`: what the tracer's guards and margins mean for a collision
 //! - `regions`: the atlas itself
-//! - `tracing`: how an atlas is made
+//! - `tracing`: how an atlas is made, and `error`: why there is none
 //! - `verification`: how it is compared with collisions
 //! - `locate` and `crossings`: how points and lines are looked up in it
+//! - `angles`: the lines of impacts of one speed
 //! - `polyline`, `geojson` and `document`: how it is drawn, exported, written and read back
 
+mod angles;
 mod boundary;
 pub(crate) mod crossings;
 #[cfg(feature = "serde")]
 mod document;
+mod error;
 mod frame;
 #[cfg(feature = "geojson")]
 mod geojson;
@@ -26,6 +29,7 @@ mod tracing;
 mod verification;
 
 pub use crate::sheet::{ToleranceRange, TooNarrow};
+pub use angles::ObliqueBoundaries;
 pub use boundary::BoundaryKind;
 pub(crate) use boundary::itinerary;
 #[cfg(feature = "serde")]
@@ -33,13 +37,14 @@ pub use document::{
     BoundaryEnd, BoundaryFields, Document, DocumentError, ExtremalParameter, ExtremumFields,
     Meeting, RegionFields, SCHEMA, Switching, VertexFields, WindowFields,
 };
+pub use error::{AtlasError, LabelError};
 pub use frame::{Frame, RatioRange};
 #[cfg(feature = "geojson")]
 pub use geojson::{document_geojson, geojson};
 pub use locate::{Located, Unlocated};
 pub(crate) use polyline::polyline;
 pub use regions::{Atlas, Regions, switch_count};
-pub use tracing::{AtlasError, Division, VerifiedAtlas, divide, trace};
+pub use tracing::{Division, VerifiedAtlas, divide, trace};
 pub(crate) use tracing::{require_traceable, trace_options};
 pub(crate) use verification::unresolved;
-pub use verification::{EulerFields, LabelError, MismatchFields, VerificationReport};
+pub use verification::{EulerFields, MismatchFields, VerificationReport};

@@ -27,17 +27,20 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Start reading here; then, in this order: `settings`, `boundaries` (graphs of boundaries over x),
-//! `turns` (where they turn back), `stretch` (coordinates in which roots are smooth), `slab`,
-//! `strip` (polynomials), `assembly`, `table` (the arrays and the look-up), `verification`.
+//! Start reading here; then, in this order: `settings`, `boundaries` and `chain` (boundaries as
+//! graphs over x), `turns` (where they turn back), `stretch` (coordinates in which roots are
+//! smooth), `slab`, `strip` (polynomials), `assembly`, `table` (the arrays and the look-up),
+//! `verification`.
 
 mod assembly;
 mod boundaries;
+mod chain;
 mod chebyshev;
 #[cfg(feature = "serde")]
 mod document;
 mod header;
 mod hints;
+mod keys;
 mod settings;
 mod slab;
 mod stretch;
@@ -57,11 +60,10 @@ pub use chebyshev::{ACROSS, ALONG};
 #[cfg(feature = "serde")]
 pub use document::{Document, DocumentError, SCHEMA};
 pub use header::{InvalidPrefix, require_prefix};
-pub use hints::Keys;
+pub use keys::Keys;
 pub use settings::{InvalidTable, Settings, Window};
 pub use stretch::Stretch;
-pub use table::{Arrays, NO_REGION, Table};
-pub use verification::Verification;
+pub use table::{Arrays, NO_REGION, Table, Verification};
 
 /// Makes a table of ε_t and ε_n and verifies it, on the threads of the current rayon pool.
 ///

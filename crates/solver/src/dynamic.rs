@@ -89,6 +89,7 @@ mod by_name;
 mod curve;
 mod dense;
 mod event;
+mod examination;
 mod first_guard;
 mod first_step;
 mod locate;

@@ -6,6 +6,7 @@
 
 mod findings;
 mod law;
+mod names;
 mod pictures;
 mod settings;
 mod tables;

@@ -9,7 +9,6 @@ use crate::regions::locate::Location;
 use crate::regions::subdivision::Subdivision;
 use crate::regions::verify::report::{Mismatch, Verification, VerifyError};
 use crate::regions::verify::{VerifyOptions, verify_unless_cancelled};
-use crate::survey::Surveyor;
 use crate::tracing::network::{Network, TraceStatistics, Unresolved};
 use crate::tracing::state::State;
 use crate::window::{Point, Window};
@@ -104,21 +103,6 @@ pub enum AtlasError<E: std::error::Error + 'static> {
 }
 
 impl<Label: Clone + Ord, Margin: Clone> Atlas<Label, Margin> {
-    /// The atlas that a [`Surveyor`] with these options makes on this thread.
-    ///
-    /// # Errors
-    /// The options or the window are not possible, or a run of the tracer fails.
-    pub fn of<F>(
-        family: &F,
-        window: &Window,
-        options: &AtlasOptions,
-    ) -> Result<Self, AtlasError<F::Error>>
-    where
-        F: Family<Label = Label, Margin = Margin>,
-    {
-        Surveyor { options: *options, ..Surveyor::default() }.atlas(family, window)
-    }
-
     /// The regions of a network, of which none is verified yet.
     pub(crate) fn unverified(
         network: Network<Label, Margin>,
@@ -211,7 +195,7 @@ impl<Label, Margin> Atlas<Label, Margin> {
     }
 
     /// Whether the survey came to its end. If it was cancelled, all regions are in doubt, and
-    /// [`Surveyor::resume`] goes on.
+    /// [`Surveyor::resume`](crate::Surveyor::resume) goes on.
     #[must_use]
     pub fn is_finished(&self) -> bool {
         self.unfinished.is_none()

@@ -1,6 +1,5 @@
 //! Curves as a trace returns them: nodes with tangents, between vertices.
 
-use crate::cubic::Cubic;
 use crate::window::Point;
 
 /// A point of a boundary, with the boundary's direction there.
@@ -30,28 +29,6 @@ pub struct Curve<Label, Margin> {
     pub nodes: Vec<Node>,
     /// The indices of the vertices at which the curve starts and ends; `None` if it is closed.
     pub ends: Option<[usize; 2]>,
-}
-
-impl<Label, Margin> Curve<Label, Margin> {
-    /// Points along the curve that are so close that straight lines between them look smooth in a
-    /// picture of a window of this extent.
-    #[must_use]
-    pub fn polyline(&self, extent: &Point) -> Vec<Point> {
-        /// The largest number of straight lines between two nodes.
-        const MOST_LINES: f64 = 16.0;
-        /// The number of straight lines for a piece of the curve as long as the window is high.
-        const LINES: f64 = 60.0;
-        let mut points = vec![self.nodes[0].point];
-        for nodes in self.nodes.windows(2) {
-            let cubic = Cubic::between(&nodes[0], &nodes[1]);
-            let length = (nodes[1].point - nodes[0].point).component_div(extent).norm();
-            let lines = (LINES * length).ceil().clamp(1.0, MOST_LINES);
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-            let count = lines as u32;
-            points.extend((1..=count).map(|line| cubic.at(f64::from(line) / lines)));
-        }
-        points
-    }
 }
 
 /// A place where boundaries end or meet.

@@ -10,7 +10,7 @@ use crate::regions::region::Region;
 use crate::regions::subdivision::Subdivision;
 use crate::regions::verify::report::Verification;
 use crate::tracing::network::{TraceStatistics, Unresolved};
-use crate::tracing::stages::Stage;
+use crate::tracing::stage::Stage;
 use crate::tracing::state::State;
 use crate::window::Window;
 

@@ -102,6 +102,7 @@ mod executor;
 mod family;
 mod hybrid;
 mod options;
+mod polyline;
 mod regions;
 mod stack;
 mod survey;
@@ -141,7 +142,8 @@ pub use tracing::network::{Network, NetworkOf, TraceStatistics, Unresolved};
 pub use tracing::runs::Runs;
 pub use tracing::seed::Seed;
 pub use tracing::special_points::SpecialPoint;
-pub use tracing::trace::{Tracer, trace};
+pub use tracing::trace::trace;
+pub use tracing::tracer::Tracer;
 pub use watch::{Progress, Report, Watch};
 pub use window::{Point, Window};
 

@@ -13,6 +13,7 @@ mod candidates;
 pub mod change;
 pub mod conditions;
 pub mod meeting;
+mod sample;
 mod search;
 mod structure;
 

@@ -5,7 +5,7 @@ use crate::executor::{Executor, Serial};
 use crate::family::Family;
 use crate::options::TraceError;
 use crate::tracing::network::NetworkOf;
-use crate::tracing::trace::Tracer;
+use crate::tracing::tracer::Tracer;
 use crate::watch::Watch;
 use crate::window::{Point, Window};
 
@@ -89,6 +89,23 @@ pub struct Survey<T> {
 impl<T> Survey<T> {
     /// A survey that begins.
     pub const BEGINNING: Self = Self { result: None, round: 1, finished: false };
+}
+
+impl<Label: Clone + Ord, Margin: Clone> Atlas<Label, Margin> {
+    /// The atlas that a [`Surveyor`] with these options makes on this thread.
+    ///
+    /// # Errors
+    /// The options or the window are not possible, or a run of the tracer fails.
+    pub fn of<F>(
+        family: &F,
+        window: &Window,
+        options: &AtlasOptions,
+    ) -> Result<Self, AtlasError<F::Error>>
+    where
+        F: Family<Label = Label, Margin = Margin>,
+    {
+        Surveyor { options: *options, ..Surveyor::default() }.atlas(family, window)
+    }
 }
 
 impl<E> Surveyor<'_, E> {

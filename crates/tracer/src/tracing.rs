@@ -4,13 +4,14 @@
 //!
 //! - `trace`: all boundaries in a window
 //! - `count`: how many curves and regions there are, roughly, before anything is traced
-//! - `stages`: the order of the search, in steps
-//! - `state`: what a search must remember to go on later
+//! - `tracer`: a search, and what it has found
+//! - `stage` and `stages`: the order of the search, in steps
+//! - `state` and `resume`: what a search must remember to go on later
 //! - `scan`: the boundaries that cross a segment
 //! - `seed`: from a change of the label to a place on a boundary
 //! - `island`: closed boundaries between the places of the grid
 //! - `sliver`: boundaries of regions between two places with the same label
-//! - `tangency`: ends of curves that touch another one with a square root
+//! - `tangency`: ends of curves that begin on another one with its tangent
 //! - `branch`: one boundary, followed from its seed
 //! - `fit`: cubics as close to a boundary as the options ask
 //! - `corrector`: from a guess to the zero of a margin
@@ -34,12 +35,15 @@ pub mod follow;
 mod island;
 mod naming;
 pub mod network;
+mod resume;
 pub mod runs;
 mod scan;
 pub mod seed;
 mod sliver;
 pub mod special_points;
-pub(crate) mod stages;
+pub(crate) mod stage;
+mod stages;
 pub(crate) mod state;
 mod tangency;
 pub mod trace;
+pub mod tracer;

@@ -6,22 +6,10 @@ use stickslip_model::Law;
 use stickslip_model::presets::{self, Preset};
 
 use super::{json, source};
-use crate::args::LawArguments;
 use crate::error::Failure;
 
 /// Largest number of bytes of a file.
 const MOST_BYTES: u64 = 1 << 16;
-
-/// The law that the options choose: a name, or otherwise a file.
-///
-/// # Errors
-/// [`Failure::Usage`]: the law has no tangential damping. [`Failure::Input`]: there is neither such
-/// a name nor such a file, or the file does not describe a law.
-pub fn chosen(arguments: &LawArguments) -> Result<Law, Failure> {
-    let LawArguments { law, tangential_damping } = arguments;
-    permits(law.as_deref(), "--tangential-damping", tangential_damping.unwrap_or(0.0))?;
-    by_name_or_file(law.as_deref())
-}
 
 /// Refuses a tangential damping, called `what`, in a law that is known to have none.
 ///

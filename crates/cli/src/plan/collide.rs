@@ -8,9 +8,9 @@ use super::batch::BatchFiles;
 use super::collision::contact;
 use super::course::CoursePlan;
 use super::engine::engine;
+use super::law::chosen_law;
 use crate::args::{CollideArguments, CollisionArguments, Format, Method};
 use crate::error::Failure;
-use crate::input::law;
 use crate::input::recipe::Given;
 use crate::output::picture::PictureFile;
 
@@ -60,7 +60,7 @@ impl CollidePlan {
     /// [`Failure::Usage`] says which options contradict each other.
     pub fn new(arguments: &CollideArguments) -> Result<Self, Failure> {
         let CollisionArguments { mu, alpha, damping } = arguments.collision;
-        let law = law::chosen(&arguments.law)?;
+        let law = chosen_law(&arguments.law)?;
         let tangential_damping = arguments.law.tangential_damping;
         let chosen = (law, tangential_damping.unwrap_or(0.0));
         let engine = engine(&arguments.method, Method::Dop853, chosen)?;

@@ -6,6 +6,7 @@ use stickslip_model::{Contact, Law, presets};
 use stickslip_practice::fit::{Bodies, Free, Settings, Values};
 
 use super::files::require_different;
+use super::law::chosen_law;
 use crate::args::{FitArguments, Format};
 use crate::error::Failure;
 use crate::input::{bodies, law, measured, source};
@@ -48,7 +49,7 @@ impl FitPlan {
         }
         let bodies = match file {
             Some(file) => in_file(file, name)?,
-            None => scaled(arguments, law::chosen(&arguments.law)?)?,
+            None => scaled(arguments, chosen_law(&arguments.law)?)?,
         };
         if let Some(speed) = arguments.speed.filter(|speed| *speed <= 0.0) {
             let expected = "expected a finite number above 0, in m/s";

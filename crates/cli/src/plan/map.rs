@@ -8,6 +8,7 @@ use stickslip_plane::{Coordinates, Grid, GridAxis, Range};
 
 use super::engine::engine;
 use super::files::require_different;
+use super::law::chosen_law;
 use super::window::{ImpactRange, KappaWindow};
 use crate::args::{MapArguments, Method};
 use crate::error::Failure;
@@ -65,7 +66,7 @@ impl MapPlan {
             &[("--bodies", bodies.as_deref())],
         )?;
         let output = MapOutput::new(arguments)?;
-        let law = law::chosen(&arguments.law)?;
+        let law = chosen_law(&arguments.law)?;
         let mut tangential_damping = arguments.law.tangential_damping.unwrap_or(0.0);
         let MapAxes { columns, rows, coordinates, engine } = match bodies {
             Some(file) => MapAxes::of_bodies(arguments, file, law)?,

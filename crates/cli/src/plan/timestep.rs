@@ -3,6 +3,7 @@
 use stickslip_model::{Contact, Reduction};
 use stickslip_practice::time_steps::{Seconds, Settings};
 
+use super::law::chosen_law;
 use crate::args::{Format, TimestepArguments};
 use crate::error::Failure;
 use crate::input::range::OneOrRange;
@@ -92,7 +93,7 @@ fn scaled(arguments: &TimestepArguments) -> Result<Impacts, Failure> {
         let expected = "expected with an interval LO:HI of --kappa or --psi only";
         return Err(Failure::Usage(format!("--grid has no effect; {expected}")));
     }
-    let law = law::chosen(&arguments.law)?;
+    let law = chosen_law(&arguments.law)?;
     let tangential_damping = arguments.law.tangential_damping.unwrap_or(0.0);
     let count = usize::from(arguments.grid.unwrap_or(GRID));
     let mut contacts = Vec::new();

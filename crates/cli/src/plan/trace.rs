@@ -6,10 +6,10 @@ use stickslip_plane::Range;
 use stickslip_plane::atlas::Frame;
 
 use super::files::require_different;
+use super::law::chosen_law;
 use super::window::{ImpactRange, KappaWindow};
 use crate::args::TraceArguments;
 use crate::error::Failure;
-use crate::input::law;
 use crate::input::recipe::reduced;
 use crate::output::picture::PictureFile;
 
@@ -74,7 +74,7 @@ fn frame(arguments: &TraceArguments) -> Result<Frame, Failure> {
             (Range { low: psi(low)?, high: psi(high)? }, Some(ratio))
         }
     };
-    let law = law::chosen(&arguments.law)?;
+    let law = chosen_law(&arguments.law)?;
     let tangential_damping = arguments.law.tangential_damping.unwrap_or(0.0);
     let damping = collisions.damping.unwrap_or(0.0);
     Ok(Frame { kappa, psi, ratio, damping, law, tangential_damping })

@@ -22,6 +22,7 @@ mod error;
 mod flank;
 mod late;
 mod margin;
+mod names;
 mod normal;
 mod onset;
 mod phases;

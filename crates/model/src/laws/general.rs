@@ -19,6 +19,7 @@ use stickslip_solver::{Direction, Guard, Method, Number, ReadableSystem, State, 
 
 pub(crate) mod equations;
 mod exponents;
+mod start;
 
 use super::phase::{END, OTHER_SIDE, Regime, SAME_SIDE, Side};
 use crate::contact::Contact;

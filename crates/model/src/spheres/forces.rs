@@ -1,7 +1,7 @@
 //! Contact laws in SI units: the constants that belong to a law, and what they mean.
 
 use super::quantity::{self, Quantity};
-use super::scaling::Surface;
+use super::surface::Surface;
 use crate::contact::InvalidParameter;
 use crate::laws::law::{Damping, Law, Normal, Tangential};
 

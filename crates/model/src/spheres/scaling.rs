@@ -6,35 +6,11 @@
 use super::bodies::{Body, Material, Sphere};
 use super::forces::Forces;
 use super::quantity;
+use super::surface::Surface;
 use crate::contact::{Contact, InvalidParameter};
 use crate::laws::law::{Damping, Law, Normal, Tangential};
 
 const POSITIVE: &str = "a finite number above 0";
-
-/// The properties of the two surfaces together.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Surface {
-    /// Coulomb's coefficient of friction μ.
-    pub friction: f64,
-    /// Stiffness k_t of the tangential spring in kg/s².
-    pub tangential_stiffness_kg_per_s2: f64,
-    /// Damping time A in s in F_n = ρ(ξ^{3/2} + A √ξ ξ̇). Many papers write (3/2) A for this A.
-    pub damping_time_s: f64,
-}
-
-impl Surface {
-    /// Checks all quantities.
-    ///
-    /// # Errors
-    /// [`InvalidParameter`] names the first that is out of its range.
-    pub fn validate(&self) -> Result<(), InvalidParameter> {
-        quantity::FRICTION.check(self.friction)?;
-        quantity::TANGENTIAL_STIFFNESS.check(self.tangential_stiffness_kg_per_s2)?;
-        quantity::DAMPING_TIME.check(self.damping_time_s)?;
-        Ok(())
-    }
-}
 
 /// Two colliding bodies, reduced to the numbers on which their contact depends.
 ///

@@ -1,5 +1,6 @@
 //! What the tracer's guards and margins mean for a collision.
 
+use stickslip_model::general::Mode;
 use stickslip_model::regularized::{OTHER_SIDE, Phase};
 use stickslip_model::{Contact, Regime, Side};
 use stickslip_solver::{Margin, Place};
@@ -28,13 +29,27 @@ impl BoundaryKind {
     #[must_use]
     pub fn of(contact: &Contact, margin: &Margin) -> Self {
         if !contact.obeys_paper() {
-            return general::kind(contact, margin);
+            return Self::of_general(contact, margin);
         }
         let guards = margin.exits.iter().map(|exit| exit.guard);
         match (margin.place, phases(contact, guards).last().map(|phase| phase.regime)) {
             (Place::End, _) => Self::EndOfContact,
             (Place::Minimum { .. }, Some(Regime::Slip)) => Self::SlipGraze,
             // The exact engine has no other places.
+            _ => Self::StickGraze,
+        }
+    }
+
+    /// The same of a contact with any law.
+    fn of_general(contact: &Contact, margin: &Margin) -> Self {
+        let begins = margin.exits.first().map(|exit| exit.guard);
+        let fired = margin.exits.iter().skip(1).map(|exit| (exit.guard, exit.branch == Some(true)));
+        let phases = general::phases(contact, begins, fired);
+        match (margin.place, phases.last()) {
+            (Place::End, _) => Self::EndOfContact,
+            (Place::Start { .. }, _) => Self::StartOfContact,
+            (Place::Branch(_) | Place::Exit(_), _) => Self::StartOfTail,
+            (_, Some(Mode { regime: Regime::Slip, .. })) => Self::SlipGraze,
             _ => Self::StickGraze,
         }
     }

@@ -2,20 +2,21 @@
 
 use std::collections::BTreeMap;
 
-use stickslip_model::{Collider, Contact, InvalidParameter, OutOfDomain};
+use stickslip_model::{Collider, Contact};
 use stickslip_solver::Margin;
 use stickslip_tracer::{
-    AtlasOptions, Curve, Extremum, Network, Node, Point, Subdivision, SubdivisionError, Survey,
-    Surveyor, TraceError, TraceOptions, Tracer, VerifyError, Vertex,
+    AtlasOptions, Curve, Extremum, Network, Node, Point, Subdivision, Survey, Surveyor,
+    TraceOptions, Tracer, Vertex,
 };
 
 use super::boundary::{BoundaryKind, itinerary};
+use super::error::{AtlasError, LabelError};
 use super::frame::Frame;
 use super::regions::{Atlas, Regions, itinerary_in};
-use super::verification::{self, LabelError, VerificationReport};
-use crate::family::{CollisionFamilyError, CollisionPlane};
+use super::verification::{self, VerificationReport};
+use crate::family::CollisionPlane;
 use crate::progress::{InParallel, Watch};
-use crate::sheet::{ToleranceRange, TooNarrow};
+use crate::sheet::ToleranceRange;
 
 /// An atlas with the result of its verification.
 #[derive(Clone, Debug)]
@@ -54,54 +55,6 @@ impl Division {
     pub fn itinerary(&self, region: usize) -> &str {
         itinerary_in(&self.regions, &self.unbounded, region)
     }
-}
-
-/// The reason why a window has no atlas.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum AtlasError {
-    /// No collision has the parameters of the window.
-    #[error(transparent)]
-    Parameter(#[from] InvalidParameter),
-    /// The window is too narrow.
-    #[error(transparent)]
-    Narrow(#[from] TooNarrow),
-    /// The window is out of the range of the integrator, which verifies an atlas.
-    #[error("an atlas is verified by integration: {0}")]
-    Unverifiable(#[from] OutOfDomain),
-    /// The boundaries cannot have this accuracy in the window.
-    #[error(
-        "the tolerance {tolerance:?} is out of range; expected {finest:e} to {coarsest:e} in this window"
-    )]
-    Tolerance {
-        /// The accuracy that was asked for.
-        tolerance: f64,
-        /// The finest possible.
-        finest: f64,
-        /// The coarsest possible.
-        coarsest: f64,
-    },
-    /// A run of the tracer failed.
-    #[error("kappa = {kappa:?}, psi = {psi:?}: {source}")]
-    Run {
-        /// κ of the run.
-        kappa: f64,
-        /// ψ of the run.
-        psi: f64,
-        /// The error of the run.
-        source: CollisionFamilyError,
-    },
-    /// The tracer failed for another reason than a run.
-    #[error(transparent)]
-    Trace(#[from] TraceError<CollisionFamilyError>),
-    /// The curves do not make regions.
-    #[error(transparent)]
-    Subdivision(#[from] SubdivisionError),
-    /// The verification failed.
-    #[error(transparent)]
-    Verify(#[from] VerifyError),
-    /// A collision cannot be computed.
-    #[error(transparent)]
-    Label(#[from] LabelError),
 }
 
 /// The largest number of rounds, each with a trace and a verification.
@@ -246,32 +199,6 @@ pub(crate) fn trace_options(plane: &CollisionPlane, tolerance: f64) -> TraceOpti
         max_step: usual.max_step / fineness,
         cells,
         ..usual
-    }
-}
-
-impl AtlasError {
-    /// The error of a trace of `plane`.
-    #[must_use]
-    pub fn of(plane: &CollisionPlane, error: TraceError<CollisionFamilyError>) -> Self {
-        match error {
-            TraceError::Run { point, source } => {
-                let contact = plane.contact_or_any(&point);
-                Self::Run { kappa: contact.kappa(), psi: contact.psi(), source }
-            }
-            error => Self::Trace(error),
-        }
-    }
-
-    /// The error of an atlas of `plane`.
-    pub(crate) fn of_atlas(
-        plane: &CollisionPlane,
-        error: stickslip_tracer::AtlasError<CollisionFamilyError>,
-    ) -> Self {
-        match error {
-            stickslip_tracer::AtlasError::Trace(error) => Self::of(plane, error),
-            stickslip_tracer::AtlasError::Subdivision(error) => Self::Subdivision(error),
-            stickslip_tracer::AtlasError::Verify(error) => Self::Verify(error),
-        }
     }
 }
 

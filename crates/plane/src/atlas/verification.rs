@@ -1,14 +1,14 @@
 //! The verification of an atlas: collisions are compared with its regions.
 
 use rayon::prelude::*;
-use stickslip_model::{Collider, CollisionError, InvalidParameter};
+use stickslip_model::Collider;
 use stickslip_tracer::{
     Found, Location, Origin, Point, Reason, Unresolved, Verification, VerifyOptions, Vertex,
     verify_unless_cancelled,
 };
 
+use super::error::{AtlasError, LabelError};
 use super::regions::Regions;
-use super::tracing::AtlasError;
 use crate::family::CollisionPlane;
 use crate::progress::Watch;
 
@@ -201,17 +201,6 @@ impl VerificationReport {
             first.map_or("Euler's formula does not hold", String::as_str)
         ))
     }
-}
-
-/// The collision at a place of the window cannot be computed.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum LabelError {
-    /// No collision has these parameters.
-    #[error(transparent)]
-    Parameter(#[from] InvalidParameter),
-    /// The integration failed.
-    #[error(transparent)]
-    Collision(#[from] CollisionError),
 }
 
 /// The itinerary of the collision at a traced point, by integration.

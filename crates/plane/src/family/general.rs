@@ -15,7 +15,6 @@ use stickslip_solver::{
 use stickslip_tracer::{FamilyError, FreeRun, Point};
 
 use super::{CollisionFamilyError, CollisionPlane};
-use crate::atlas::BoundaryKind;
 
 /// What a label has instead of [`END`] where slip goes on.
 const SLIPS_ON: usize = GUARDS;
@@ -265,7 +264,7 @@ impl Observer<Mode, STATE> for Fired {
 
 /// The phases of a collision that begins so, and whose guards fire in this order; `END` with
 /// whether slip goes on.
-fn phases(
+pub fn phases(
     contact: &Contact,
     begins: Option<usize>,
     fired: impl Iterator<Item = (usize, bool)>,
@@ -300,18 +299,4 @@ pub fn itinerary(contact: &Contact, label: &[usize]) -> String {
         }
     }
     itinerary
-}
-
-/// What happens where a margin vanishes.
-pub fn kind(contact: &Contact, margin: &Margin) -> BoundaryKind {
-    let begins = margin.exits.first().map(|exit| exit.guard);
-    let fired = margin.exits.iter().skip(1).map(|exit| (exit.guard, exit.branch == Some(true)));
-    let phases = phases(contact, begins, fired);
-    match (margin.place, phases.last()) {
-        (Place::End, _) => BoundaryKind::EndOfContact,
-        (Place::Start { .. }, _) => BoundaryKind::StartOfContact,
-        (Place::Branch(_) | Place::Exit(_), _) => BoundaryKind::StartOfTail,
-        (_, Some(Mode { regime: Regime::Slip, .. })) => BoundaryKind::SlipGraze,
-        _ => BoundaryKind::StickGraze,
-    }
 }

@@ -6,11 +6,11 @@ use stickslip_plane::atlas::Division;
 use stickslip_tracer::Location;
 
 use super::boundaries::Boundaries;
-use super::chebyshev::{ACROSS, ALONG, coefficients, extrema, nodes, powers, value};
+use super::chebyshev::{ACROSS, ALONG, coefficients, extrema, nodes, powers, rounded, value};
 use super::settings::{Settings, Window};
 use super::slab::{Graph, Slab, Stack};
 use super::stretch::Stretch;
-use super::strip::{Demand, Gap, Refusal, Strip, restitution, rounded, within};
+use super::strip::{Demand, Gap, Refusal, Strip, restitution, within};
 use super::table::{Arrays, NO_REGION};
 use super::{Place, TableError};
 

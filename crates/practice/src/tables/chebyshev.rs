@@ -12,6 +12,13 @@ pub const ALONG: usize = 8;
 /// The number of coefficients across it.
 pub const ACROSS: usize = 12;
 
+/// A number with so many places after the decimal point. Files are shorter with such numbers.
+pub fn rounded(value: f64, places: i32) -> f64 {
+    let scale = 10_f64.powi(places);
+    // 0.0 takes the sign from a zero. Large scales leave no place for another digit anyway.
+    if places > 15 { value } else { (value * scale).round() / scale + 0.0 }
+}
+
 /// The value of a polynomial at `place` in [0, 1].
 #[inline(always)]
 pub fn value(c: &[f64; ALONG], place: f64) -> f64 {

@@ -5,8 +5,7 @@ use stickslip_plane::Range;
 
 use super::chebyshev::{ACROSS, ALONG};
 use super::settings::Window;
-use super::table::{Arrays, NO_REGION, Table};
-use super::verification::Verification;
+use super::table::{Arrays, NO_REGION, Table, Verification};
 
 /// The name of the layout of the JSON, with its version.
 pub const SCHEMA: &str = "stickslip.table/1";

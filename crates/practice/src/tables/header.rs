@@ -8,8 +8,7 @@ use stickslip_plane::CollisionPlane;
 use super::chebyshev::{ACROSS, ALONG};
 use super::settings::Window;
 use super::stretch::Stretch;
-use super::table::{NO_REGION, Table};
-use super::verification::Verification;
+use super::table::{NO_REGION, Table, Verification};
 
 /// The header, with names between @ for what differs.
 const TEMPLATE: &str = include_str!("header.h");

@@ -4,10 +4,10 @@
 use stickslip_model::Collision;
 use stickslip_plane::{CollisionPlane, Range};
 
-use super::boundaries::{Boundaries, Chain};
-use super::chebyshev::{ALONG, coefficients, nodes, powers, value};
+use super::boundaries::Boundaries;
+use super::chain::Chain;
+use super::chebyshev::{ALONG, coefficients, nodes, powers, rounded, value};
 use super::stretch::Stretch;
-use super::strip::rounded;
 
 /// A boundary, or an edge of the window, over the stretched coordinate of a slab.
 pub type Graph = [f64; ALONG];

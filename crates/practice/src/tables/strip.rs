@@ -5,7 +5,7 @@ use stickslip_plane::CollisionPlane;
 
 use super::chebyshev::{
     ACROSS, ALONG, coefficients, double_coefficients, double_powers, double_value, extrema, nodes,
-    powers, value,
+    powers, rounded, value,
 };
 use super::slab::{Graph, Slab};
 use super::stretch::Stretch;
@@ -21,13 +21,6 @@ pub struct Demand {
     pub grid: i32,
     /// As many for graphs.
     pub graph_grid: i32,
-}
-
-/// A number with so many places after the decimal point. Files are shorter with such numbers.
-pub fn rounded(value: f64, places: i32) -> f64 {
-    let scale = 10_f64.powi(places);
-    // 0.0 takes the sign from a zero. Large scales leave no place for another digit anyway.
-    if places > 15 { value } else { (value * scale).round() / scale + 0.0 }
 }
 
 /// The strip between two graphs.

@@ -5,7 +5,7 @@
 
 use stickslip_model::Collision;
 
-use super::boundaries::Chain;
+use super::chain::Chain;
 
 /// The distance from a turn, as a part of x, at which its opening is measured.
 const OPENING: f64 = 1e-8;

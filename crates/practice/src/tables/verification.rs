@@ -7,33 +7,7 @@ use stickslip_plane::CollisionPlane;
 use super::TableError;
 use super::chebyshev::value;
 use super::strip::{restitution, within};
-use super::table::{Arrays, Table};
-
-/// What the comparison of a table with collisions found.
-///
-/// The points are none of those with which the table was made: points at random in each strip, and
-/// points on both sides of each boundary, at distances in y from 1e-15 to 0.1 of its strip.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
-pub struct Verification {
-    /// The number of points.
-    pub points: u64,
-    /// The largest error of ε_t.
-    pub largest_error: f64,
-    /// x at the largest error of ε_t: κ, or g_n in m/s.
-    pub x: f64,
-    /// y at the largest error of ε_t: ψ, or g_t in m/s.
-    pub y: f64,
-    /// The largest error of ε_n.
-    pub largest_error_of_eps_n: f64,
-}
-
-impl Verification {
-    /// No comparison.
-    pub(super) const NONE: Self =
-        Self { points: 0, largest_error: 0.0, x: 0.0, y: 0.0, largest_error_of_eps_n: 0.0 };
-}
+use super::table::{Arrays, Table, Verification};
 
 /// Points at random in each strip.
 const RANDOM: usize = 48;

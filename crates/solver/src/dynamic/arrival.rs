@@ -2,7 +2,8 @@
 //! [`crate::events::arrival`] does, on buffers.
 
 use crate::dynamic::curve::{Work, rounding};
-use crate::dynamic::event::{Event, Examination};
+use crate::dynamic::event::Event;
+use crate::dynamic::examination::Examination;
 use crate::dynamic::step::Step;
 use crate::dynamic::system::DynamicSystem;
 use crate::events::arrival::{REACH, SAME};

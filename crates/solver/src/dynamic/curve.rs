@@ -7,9 +7,8 @@ use crate::dynamic::step::{Origin, Step};
 use crate::dynamic::system::{DynamicSystem, SignedGuard};
 use crate::error::RunError;
 use crate::events::along_step::SLIGHT;
-use crate::events::aside::Aside;
+use crate::events::aside::{Aside, resolution};
 use crate::events::isolate::Curve;
-use crate::events::one_guard::resolution;
 use crate::hybrid::Statistics;
 use crate::method::Method;
 

@@ -5,7 +5,8 @@
 //! event that changes nothing is noted, and the search goes on behind it, as in
 //! [`crate::events::first_guard`].
 
-use crate::dynamic::event::{Event, Examination, Found};
+use crate::dynamic::event::{Event, Found};
+use crate::dynamic::examination::Examination;
 use crate::dynamic::step::Step;
 use crate::dynamic::system::DynamicSystem;
 use crate::error::RunError;

@@ -2,14 +2,15 @@
 //! [`crate::events::locate`] does, on buffers.
 
 use crate::dynamic::curve::{Work, rounding};
-use crate::dynamic::event::{Event, Examination};
+use crate::dynamic::event::Event;
+use crate::dynamic::examination::Examination;
 use crate::dynamic::step::Step;
 use crate::dynamic::system::{DynamicSystem, SignedGuard};
 use crate::error::RunError;
-use crate::events::aside::Aside;
+use crate::events::aside::{Aside, resolution};
 use crate::events::isolate::{Bracket, narrow};
 use crate::events::locate::{AT_HOLE, BRIDGE, INSIDE, LEAST_REACH, NOWHERE, REACH, STEEP, room};
-use crate::events::one_guard::{Crossing, resolution};
+use crate::events::one_guard::Crossing;
 use crate::method::Method;
 
 /// A guard's value at a place, and its derivatives along the solution.

@@ -6,13 +6,14 @@ use std::marker::PhantomData;
 use smallvec::SmallVec;
 
 use crate::dynamic::curve::{AlongStep, Work};
-use crate::dynamic::event::Examination;
+use crate::dynamic::examination::Examination;
 use crate::dynamic::step::Step;
 use crate::dynamic::system::DynamicSystem;
 use crate::error::RunError;
+use crate::events::aside::resolution;
 use crate::events::isolate::{Beginning, Notice, Task, Verdict, first_crossing, last_sign};
 use crate::events::notices::{FEW, Noticed};
-use crate::events::one_guard::{Crossing, LONGER, Status, resolution, side_before};
+use crate::events::one_guard::{Crossing, LONGER, Status, side_before};
 use crate::events::quick::{self, BETWEEN, NODES, between};
 use crate::hybrid::Direction;
 use crate::method::Method;

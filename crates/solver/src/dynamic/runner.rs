@@ -3,7 +3,8 @@
 use std::cmp::Ordering;
 
 use crate::dynamic::curve::Work;
-use crate::dynamic::event::{Event, Examination, Found, Tables};
+use crate::dynamic::event::{Event, Found};
+use crate::dynamic::examination::{Examination, Tables};
 use crate::dynamic::first_step::first_step;
 use crate::dynamic::phase::Phase;
 use crate::dynamic::results::{DynamicObserver, DynamicRun};

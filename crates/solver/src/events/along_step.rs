@@ -3,9 +3,8 @@
 use std::marker::PhantomData;
 
 use crate::error::RunError;
-use crate::events::aside::Aside;
+use crate::events::aside::{Aside, resolution};
 use crate::events::isolate::{Curve, Enclosed};
-use crate::events::one_guard::resolution;
 use crate::events::path::Path;
 use crate::hybrid::{HybridSystem, Statistics};
 use crate::method::{Dense, Method, State, Step, Trial};

@@ -2,8 +2,15 @@
 
 use crate::error::RunError;
 
+/// The narrowest part of a step that is worth dividing.
+const FINEST: f64 = 1.0 / (1_u64 << 48) as f64;
 /// The places that are tried before a guard counts as without value.
 const PLACES: i32 = 8;
+
+/// The narrowest part of a step from `s` of size `h` that can be told from a point.
+pub(crate) fn resolution(s: f64, h: f64) -> f64 {
+    (2.0 * f64::EPSILON * s.abs() / h).clamp(FINEST, 1.0)
+}
 
 /// Moves aside from places where a guard has no value: d/|d| has none where d is 0, and what it
 /// does there is known from the values beside it.

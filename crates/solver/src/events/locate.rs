@@ -5,11 +5,11 @@
 
 use crate::error::RunError;
 use crate::events::along_step::{repeated_step, rounding};
-use crate::events::aside::Aside;
+use crate::events::aside::{Aside, resolution};
 use crate::events::event::Event;
 use crate::events::examination::Examination;
 use crate::events::isolate::{Bracket, narrow};
-use crate::events::one_guard::{Crossing, resolution};
+use crate::events::one_guard::Crossing;
 use crate::hybrid::HybridSystem;
 use crate::method::{Method, State, Step};
 

@@ -6,6 +6,7 @@ use smallvec::SmallVec;
 
 use crate::error::RunError;
 use crate::events::along_step::{AlongStep, EnclosedAlongStep, dense_output, repeated_step};
+use crate::events::aside::resolution;
 use crate::events::examination::{Examination, column};
 use crate::events::isolate::{
     Beginning, Bracket, Notice, Task, Verdict, first_crossing, first_enclosed_crossing,
@@ -21,8 +22,6 @@ use crate::method::{Method, Step, Trial};
 /// the one before, at most this often. The shortest step that moves the time grows to ordinary
 /// length that way.
 pub(crate) const LONGER: i32 = 26;
-/// The narrowest part of a step that is worth dividing.
-const FINEST: f64 = 1.0 / (1_u64 << 48) as f64;
 
 /// What is known about a guard on the step at hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -300,11 +299,6 @@ where
             _ => side_before(values),
         }
     }
-}
-
-/// The narrowest part of a step from `s` of size `h` that can be told from a point.
-pub(crate) fn resolution(s: f64, h: f64) -> f64 {
-    (2.0 * f64::EPSILON * s.abs() / h).clamp(FINEST, 1.0)
 }
 
 /// The side on which a guard that is zero or has no value where a step ends has been, by its values

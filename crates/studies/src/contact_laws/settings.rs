@@ -7,7 +7,7 @@ use stickslip_plane::Range;
 /// The most cells along an axis of a map.
 pub const MOST_CELLS: usize = 1000;
 /// The most laws: as many pictures have names.
-pub const MOST_LAWS: usize = super::pictures::NAMES.len();
+pub const MOST_LAWS: usize = super::names::NAMES.len();
 
 /// The laws of a study, and the window over which they are computed.
 #[derive(Clone, Debug, PartialEq)]

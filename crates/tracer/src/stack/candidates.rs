@@ -4,7 +4,7 @@ use crate::curve::{Curve, VertexKind};
 use crate::family::Family;
 use crate::regions::outline::Stretch;
 use crate::stack::conditions::{Condition, Conditions};
-use crate::stack::search::Sample;
+use crate::stack::sample::Sample;
 use crate::stack::structure::side_of;
 use crate::window::Point;
 

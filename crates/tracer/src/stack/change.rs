@@ -3,7 +3,7 @@
 use crate::family::Family;
 use crate::regions::locate::Location;
 use crate::stack::meeting::Meeting;
-use crate::stack::search::Sample;
+use crate::stack::sample::Sample;
 
 /// A change of the structure of atlases with the third parameter.
 #[derive(Clone, Debug, PartialEq)]

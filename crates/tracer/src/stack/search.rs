@@ -1,21 +1,14 @@
 //! How changes of the structure are isolated between two values of the third parameter.
 
-use crate::atlas::AtlasOf;
 use crate::family::Family;
 use crate::stack::candidates::candidates;
 use crate::stack::change::Change;
 use crate::stack::meeting::{Box3, Meeting, Solved, solve, touching};
+use crate::stack::sample::Sample;
 use crate::stack::structure::Structure;
 use crate::stack::{StackError, StackOptions};
 use crate::window::Window;
 use crate::{Atlas, AtlasError, TraceError};
-
-/// An atlas at a value of the third parameter, with its structure.
-pub(super) struct Sample<F: Family> {
-    pub value: f64,
-    pub atlas: AtlasOf<F>,
-    pub structure: Structure<F::Label>,
-}
 
 /// A change, and the structure behind it.
 type Found<F> = (Change<<F as Family>::Label>, Structure<<F as Family>::Label>);

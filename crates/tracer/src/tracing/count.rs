@@ -9,7 +9,7 @@ use crate::family::Family;
 use crate::options::TraceError;
 use crate::tracing::count::grid::{Grid, Place};
 use crate::tracing::runs::Traced;
-use crate::tracing::trace::Tracer;
+use crate::tracing::tracer::Tracer;
 use crate::watch::Watch;
 use crate::window::Point;
 

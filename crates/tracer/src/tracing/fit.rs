@@ -10,7 +10,7 @@ use crate::family::Family;
 use crate::tracing::branch::end::SHORTEST;
 use crate::tracing::corrector::correct;
 use crate::tracing::runs::{Runs, Traced};
-use crate::tracing::trace::Tracer;
+use crate::tracing::tracer::Tracer;
 use crate::window::Point;
 
 impl<F: Family> Tracer<'_, F> {

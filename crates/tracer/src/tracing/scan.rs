@@ -9,7 +9,7 @@ use crate::tracing::corrector::correct;
 use crate::tracing::network::Unresolved;
 use crate::tracing::runs::Traced;
 use crate::tracing::seed::{Change, Seed, SeedOf, bisect, holds_closely, identify};
-use crate::tracing::trace::Tracer;
+use crate::tracing::tracer::Tracer;
 use crate::window::Point;
 
 impl<F: Family> Tracer<'_, F> {

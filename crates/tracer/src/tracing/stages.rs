@@ -5,32 +5,10 @@ use crate::family::Family;
 use crate::tracing::island;
 use crate::tracing::runs::{Sampled, Traced, checked};
 use crate::tracing::sliver;
-use crate::tracing::trace::Tracer;
+use crate::tracing::stage::Stage;
+use crate::tracing::tracer::Tracer;
 use crate::watch::{Progress, Watch};
 use crate::window::Point;
-
-/// What a search does next. New vertices are examined before every step but those along the edges.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
-pub(crate) enum Stage {
-    /// Along the segments of the edges up to which boundaries are followed.
-    Edges { next: usize },
-    /// Along the edges of the grid.
-    Grid { next: usize },
-    /// For islands beside the places of the grid; `pending` are segments that have to be searched.
-    Islands { next: usize, pending: Vec<[Point; 2]> },
-    /// Between pairs of places.
-    Pairs { next: usize, pairs: Vec<[Point; 2]> },
-    /// Between vertices that are close together.
-    CloseVertices { next: usize },
-    /// Where changes of the label were left open.
-    Settle,
-    /// For better places of inaccurate vertices.
-    Polish,
-    /// Nothing.
-    Done,
-}
 
 impl<F: Family> Tracer<'_, F> {
     /// Goes on with the search to its end, or until `watch` cancels. Returns whether the end is

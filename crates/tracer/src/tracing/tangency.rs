@@ -8,7 +8,7 @@ use crate::family::Family;
 use crate::tracing::branch::end::{SHORTEST, Special};
 use crate::tracing::branch::tangency::Root;
 use crate::tracing::runs::Traced;
-use crate::tracing::trace::Tracer;
+use crate::tracing::tracer::Tracer;
 use crate::window::Point;
 
 impl<F: Family> Tracer<'_, F> {

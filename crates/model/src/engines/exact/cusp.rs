@@ -18,7 +18,7 @@
 use stickslip_solver::{Exit, Margin, Place};
 
 use super::flank::{at_first_turn, at_split};
-use super::margin::{NAMES, TURN, flank_of, guard, numbered};
+use super::names::{NAMES, TURN, flank_of, guard, numbered};
 use super::normal::{Motion, Trajectory};
 use super::slide::{Slide, SlipPhase};
 use super::swing::{Gap, Swing};

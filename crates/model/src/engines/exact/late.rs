@@ -3,7 +3,6 @@
 use std::f64::consts::PI;
 
 use super::flank::{along_root, root_between};
-use super::margin::at_end;
 use super::normal::{Moment, Trajectory};
 use super::swing::{Gap, Swing, half_swing_sign};
 
@@ -78,4 +77,9 @@ pub fn beyond_end<T: Trajectory>(swing: &Swing<T>, k: u32) -> Option<f64> {
     let excess = -1.0 - 6.75 * q / (fall * pull * pull);
     let angle = swing.spring.omega * swing.path.time_left(&swing.start);
     Some(if k == 0 { excess / (angle * angle) } else { excess })
+}
+
+/// y and w at the end of contact, if the phase lasted until then.
+pub fn at_end<T: Trajectory>(swing: &Swing<T>) -> (f64, f64) {
+    swing.motion(swing.path.time_left(&swing.start))
 }

@@ -24,7 +24,8 @@ use stickslip_solver::{Exit, Hint, Margin, Place};
 use super::cusp;
 use super::error::{ExactError, checked, too_many};
 use super::flank::Flanks;
-use super::late::{LateHalfSwing, beyond_end};
+use super::late::{LateHalfSwing, at_end, beyond_end};
+use super::names::{NAMES, TURN, flank_of, guard, numbered, stick_exit};
 use super::normal::{At, Moment, Motion, Trajectory};
 use super::phases::{Phase, Task, with_trajectory};
 use super::release::Release;
@@ -215,9 +216,6 @@ impl<E: FnMut(Exit)> Task for Prescribed<'_, E> {
     }
 }
 
-/// The number in the name of the margin of a slip phase at its first turn.
-pub const TURN: usize = 0;
-
 /// The place of the first turn of a slip phase.
 const AT_TURN: Place = Place::Minimum { near: Hint(0.0), number: TURN };
 
@@ -282,20 +280,11 @@ fn second_top_place(k: u32) -> Place {
     numbered(k, SECOND)
 }
 
-/// The place of what is called `what` on half swing `k`.
-pub fn numbered(k: u32, what: usize) -> Place {
-    Place::Minimum { near: Hint(f64::from(k)), number: what + (k / 2) as usize }
-}
-
 /// What the numbers of tops before the turns are counted from.
 const TOP: usize = 0;
 
 /// What the numbers of tops after the turns are counted from.
 const SECOND: usize = NAMES;
-
-/// The distance of what different numbers are counted from: more than there are half swings with
-/// two tops.
-pub const NAMES: usize = 1 << 20;
 
 /// The margin `which`, of the phase `swing`, after its place.
 fn margin_of_stick<T: Trajectory>(
@@ -341,16 +330,6 @@ pub fn end_margin<T: Trajectory>(swing: &Swing<T>, k: u32) -> Option<f64> {
         .then_some(sign * swing.spring.omega * y)
 }
 
-/// y and w at the end of contact, if the phase lasted until then.
-pub fn at_end<T: Trajectory>(swing: &Swing<T>) -> (f64, f64) {
-    swing.motion(swing.path.time_left(&swing.start))
-}
-
-/// The guard that fires on half swing `k`.
-pub fn guard(k: u32) -> usize {
-    if k.is_multiple_of(2) { SAME_SIDE } else { OTHER_SIDE }
-}
-
 /// The exit at the end of a slip phase; its hint is 0 before the split of the turns and 1 after it.
 fn slip_exit<T: Trajectory>(slide: &Slide<T>, onset: Moment) -> Exit {
     let after = if onset.is_before(slide.path.split()) { 0.0 } else { 1.0 };
@@ -371,20 +350,6 @@ fn prescribed_onset<T: Trajectory>(
     let low = sliding.start.or_later(turn);
     let within = slide.guard(sliding, &slide.path.at(low)) >= 0.0;
     if within { slide.onset_after_turn(sliding) } else { None }
-}
-
-/// The exit at the end of a stick phase; its hint is the number of the half swing, and 1/2 more
-/// after the top of R.
-fn stick_exit(k: u32, after_top: bool) -> Exit {
-    let after = f64::from(k) + if after_top { 0.5 } else { 0.0 };
-    Exit::falling(guard(k), after)
-}
-
-/// The half swing of the exit of a stick phase, and whether the exit is after the top of R.
-pub fn flank_of(exit: &Exit) -> (u32, bool) {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number")]
-    let k = exit.after.0 as u32;
-    (k, exit.after.0 - f64::from(k) > 0.25)
 }
 
 /// The stick phase that starts at `onset`.

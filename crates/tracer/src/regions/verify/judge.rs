@@ -28,6 +28,14 @@ pub struct Judge<'a, Label, Margin, Error> {
     wrong_random: u64,
 }
 
+impl<Label: Clone + Ord, Error> Verification<Label, Error> {
+    /// A verification that has not compared anything yet.
+    #[must_use]
+    pub fn untried<Margin>(plane: &Subdivision<Label, Margin>) -> Self {
+        Judge::new(plane, Vec::new()).finish()
+    }
+}
+
 impl<'a, Label: Clone + Ord, Margin, Error> Judge<'a, Label, Margin, Error> {
     pub fn new(plane: &'a Subdivision<Label, Margin>, unverified: Vec<Unverified<Error>>) -> Self {
         let count = plane.regions().len();

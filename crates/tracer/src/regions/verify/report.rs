@@ -3,8 +3,6 @@
 use crate::regions::finding::Euler;
 use crate::regions::locate::Location;
 use crate::regions::region::Side;
-use crate::regions::subdivision::Subdivision;
-use crate::regions::verify::judge::Judge;
 use crate::window::Point;
 
 /// A point at which a label was computed.
@@ -101,14 +99,6 @@ pub struct Verification<Label, Error> {
     /// With 95 % confidence, the fraction of the window's area with another label is below this
     /// value. It is the upper limit of Clopper and Pearson (1934) for the random points.
     pub wrong_area_bound: f64,
-}
-
-impl<Label: Clone + Ord, Error> Verification<Label, Error> {
-    /// A verification that has not compared anything yet.
-    #[must_use]
-    pub fn untried<Margin>(plane: &Subdivision<Label, Margin>) -> Self {
-        Judge::new(plane, Vec::new()).finish()
-    }
 }
 
 impl<Label, Error> Verification<Label, Error> {

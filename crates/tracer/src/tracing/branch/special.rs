@@ -34,12 +34,7 @@ pub(crate) struct Search {
 
 /// The special point of a branch after `from`, within a failed step of length `h`; `None` if the
 /// step is too long to find it. `beyond` is the place that the step reached, if only its labels
-<<<<<<< HEAD
 /// were wrong.
-=======
-/// were wrong. `alone` says whether the gradient of the branch's margin may be what vanishes; near
-/// a cusp that is known it nearly does.
->>>>>>> 3da8e35a832c678a560240cb5192db75f3677ec0
 pub(crate) fn locate<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,

@@ -1,0 +1,63 @@
+//! The angles at which the switches of impacts of one speed change.
+
+use stickslip_tracer::{TraceOptions, trace};
+
+use super::crossings;
+use super::error::AtlasError;
+use crate::family::CollisionPlane;
+use crate::oblique::Oblique;
+use crate::range::Range;
+
+/// The places at which the switches change, as far as the tracer found them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ObliqueBoundaries {
+    /// The angles from the normal in rad, in rising order.
+    pub angles_rad: Vec<f64>,
+    /// Whether the tracer could explain everything that it saw.
+    pub resolved: bool,
+}
+
+/// The boundaries are traced in a window of κ that reaches so far in ln κ to both sides.
+const REACH: f64 = 0.05;
+
+impl Oblique {
+    /// All angles in a range at which the switches change. They are traced around κ, in two
+    /// dimensions, since the tracer decides where samples would guess. They are accurate to about
+    /// 1e-9.
+    ///
+    /// ```
+    /// use stickslip_model::{Material, Pair, Surface};
+    /// use stickslip_plane::{Oblique, Range};
+    ///
+    /// let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
+    /// let surface =
+    ///     Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e9, damping_time_s: 0.0 };
+    /// let oblique = Oblique::new(Pair::equal_spheres(0.02, &steel, &surface)?, 20.0)?;
+    /// let found = oblique.boundaries(Range { low: 0.1, high: 1.5 })?;
+    /// // The last one is the boundary of sliding throughout the contact.
+    /// let last = found.angles_rad.last().ok_or("no boundary")?;
+    /// let switches = |angle| {
+    ///     let contact = oblique.contact(angle).unwrap();
+    ///     stickslip_model::exact::collide(contact).unwrap().switches.len()
+    /// };
+    /// assert!(found.resolved && switches(last - 1e-6) == 2 && switches(last + 1e-6) == 0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`AtlasError`]: the range is not between 0 and π/2, or an impact cannot be computed.
+    pub fn boundaries(&self, angles_rad: Range) -> Result<ObliqueBoundaries, AtlasError> {
+        let psi = (self.psi(angles_rad.low), self.psi(angles_rad.high));
+        let kappa = (self.kappa() * (-REACH).exp(), self.kappa() * REACH.exp());
+        let plane = CollisionPlane::oblique(*self, kappa, psi)?;
+        let x = plane.point(self.kappa(), psi.0).x;
+        let network = trace(&plane.family(), &plane.window(), &TraceOptions::default())
+            .map_err(|error| AtlasError::of(&plane, error))?;
+        let nodes = network.curves.iter().flat_map(|curve| curve.nodes.windows(2));
+        let places = nodes.flat_map(|nodes| crossings::crossings(nodes, x));
+        let angle = |place| self.angle_rad(plane.parameters(&place)[1]);
+        let mut angles_rad: Vec<f64> = places.map(angle).collect();
+        angles_rad.sort_by(f64::total_cmp);
+        Ok(ObliqueBoundaries { angles_rad, resolved: network.unresolved.is_empty() })
+    }
+}

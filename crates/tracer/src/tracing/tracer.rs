@@ -1,0 +1,37 @@
+//! A search, and what it has found.
+
+use crate::family::Family;
+use crate::tracing::builder::Builder;
+use crate::tracing::runs::{Runs, Sampled};
+use crate::tracing::stage::Stage;
+use crate::tracing::state::StateOf;
+use crate::window::Window;
+
+/// A search for boundaries in a window. It keeps what it has found and can be continued.
+///
+/// Boundaries are searched for along the window's edges, on circles around every vertex, along the
+/// edges of a grid, and near minima of margins between places of the grid. Along edges, margins
+/// that fall towards zero are followed, so that narrow strips are found. A curve can be missed if
+/// none of these searches crosses it and its margin has no minimum that the grid shows. It may be
+/// the edge of a small island. A verification may find a point of such a region, and
+/// [`Self::look_between`] then finds the curve.
+///
+/// Boundaries are followed a little [beyond](crate::TraceOptions::beyond) the window and cut at its
+/// edges, so that places where they meet just outside are vertices like others. The family is
+/// evaluated up to a hundredth of the window's extent, and as far as boundaries are followed,
+/// outside the window. The distance of nodes from their boundary is at most `options.tolerance`, or
+/// what the noise of margins allows; that of the cubics between them is at most
+/// `options.interpolation`.
+pub struct Tracer<'f, F: Family> {
+    pub(crate) runs: Runs<'f, F>,
+    pub(crate) builder: Builder<F::Label, F::Margin>,
+    /// The window that was asked for. That of the runs and of the builder is larger.
+    pub(super) window: Window,
+    /// The number of vertices around which boundaries were searched for.
+    pub(super) probed: usize,
+    pub(super) stage: Stage,
+    /// The runs that the stage begins with.
+    pub(super) sampled: Vec<Sampled<F>>,
+    /// The state before a second look, while it lasts.
+    pub(super) before_look: Option<Box<StateOf<F>>>,
+}
