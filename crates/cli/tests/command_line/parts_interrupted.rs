@@ -13,8 +13,8 @@ use crate::map_interrupted::whole;
 use crate::parts::backwards;
 use crate::{Ran, Workspace, heeded};
 
-/// The map of `map_interrupted`, with 79 tiles of 256 points. The collisions are stiff, so that a tile
-/// takes about 20 ms.
+/// The map of `map_interrupted`, with 79 tiles of 256 points. The collisions are stiff, so that a
+/// tile takes about 20 ms.
 const LINE: &str = "map --kappa 0:1e6 --psi 0:2.9 --size 100x200 --method exact";
 
 fn command(workspace: &Workspace, line: &str) -> Command {

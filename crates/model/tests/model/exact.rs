@@ -155,8 +155,8 @@ fn the_first_slip_under_the_weakest_damping() {
     }
 }
 
-/// The last half swing of the first stick phase ends with the contact, within rounding, and the exact
-/// solution has the result of the integration.
+/// The last half swing of the first stick phase ends with the contact, within rounding, and the
+/// exact solution has the result of the integration.
 #[test]
 fn contacts_whose_first_swing_ends_with_them() {
     for damping in [1e-4, 0.019, 0.16, 0.37, 0.588, 0.613, 1.3, 7.0, 200.0] {

@@ -1,5 +1,5 @@
-//! Crates depend on each other only along the arrows of docs/architecture.md, and assert the same in
-//! every build.
+//! Crates depend on each other only along the arrows of docs/architecture.md, and assert the same
+//! in every build.
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -1,8 +1,8 @@
 //! One boundary, followed step by step.
 //!
 //! In reading order: `track` (the state from which a step starts), `step` (one step), `ahead` (what
-//! lies ahead of a branch), `special`, `cusp`, `touch` and `tangency` (the vertices at which it ends),
-//! `end` (why it ends).
+//! lies ahead of a branch), `special`, `cusp`, `touch` and `tangency` (the vertices at which it
+//! ends), `end` (why it ends).
 
 mod ahead;
 mod cusp;
@@ -144,8 +144,9 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         self.rejected
     }
 
-    /// The nodes after the start up to the end, or `None` if the end lies before the start: a branch can
-    /// go past a vertex before runs tell, and what lies behind it belongs to another boundary.
+    /// The nodes after the start up to the end, or `None` if the end lies before the start: a
+    /// branch can go past a vertex before runs tell, and what lies behind it belongs to another
+    /// boundary.
     pub(crate) fn rest(&mut self) -> Traced<Option<Vec<Node>>, F> {
         let mut nodes = Vec::new();
         while let Some(node) = self.advance()? {
@@ -243,8 +244,8 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         beyond: Option<&FootholdOf<F>>,
         h: f64,
     ) -> Traced<(), F> {
-        /// A tangency that is so close to another end, as a part of the window's shorter extent, is the
-        /// same place, and better known.
+        /// A tangency that is so close to another end, as a part of the window's shorter extent, is
+        /// the same place, and better known.
         const BETTER: f64 = 1e-4;
         let mut found = tangency::begins_on_branch(&self.track, from, beyond)?;
         if found.is_none() {

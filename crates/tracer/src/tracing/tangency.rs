@@ -1,7 +1,7 @@
 //! Ends of curves that begin on another one with its tangent.
 //!
-//! The last part of such a curve is closer to the other boundary than runs can tell apart, so that the
-//! branch ends beside the true vertex.
+//! The last part of such a curve is closer to the other boundary than runs can tell apart, so that
+//! the branch ends beside the true vertex.
 
 use crate::curve::VertexKind;
 use crate::family::Family;
@@ -24,8 +24,8 @@ impl<F: Family> Tracer<'_, F> {
         Ok(())
     }
 
-    /// The place where a curve that ends at a vertex touches the one on which it ends there, and the
-    /// largest error of this place.
+    /// The place where a curve that ends at a vertex touches the one on which it ends there, and
+    /// the largest error of this place.
     fn tangency(&self, vertex: usize) -> Traced<Option<(Point, f64)>, F> {
         let stop = self.builder.stops[vertex];
         let kind = self.builder.network.vertices[vertex].kind;

@@ -25,8 +25,8 @@ const VAGUE: f64 = 1e-5;
 /// What a failed step may have run into.
 #[derive(Clone, Copy)]
 pub(crate) struct Search {
-    /// Whether the gradient of the branch's margin may be what vanishes. Near a cusp that is known it
-    /// nearly does.
+    /// Whether the gradient of the branch's margin may be what vanishes. Near a cusp that is known
+    /// it nearly does.
     pub alone: bool,
     /// Whether boundaries may touch within the step. This takes many runs.
     pub touches: bool,

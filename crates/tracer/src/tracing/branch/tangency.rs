@@ -1,11 +1,11 @@
 //! Boundaries that begin on another one with its tangent, with a square root.
 //!
 //! Behind the graze of a guard, everything that depends on when it fires has a square root in the
-//! margin r of the graze. Another margin there is m₀ + α √r + β r + …, and its boundary begins on that
-//! of the graze where m₀ = 0, as a parabola. Next to this place the strip between the two boundaries
-//! is narrower than runs can tell. A branch along the one stalls there, either before the place, or
-//! beyond it, where the strip becomes as wide as the offset of the runs. But m₀ can be followed along
-//! the boundary of the graze, and its zero is simple.
+//! margin r of the graze. Another margin there is m₀ + α √r + β r + …, and its boundary begins on
+//! that of the graze where m₀ = 0, as a parabola. Next to this place the strip between the two
+//! boundaries is narrower than runs can tell. A branch along the one stalls there, either before
+//! the place, or beyond it, where the strip becomes as wide as the offset of the runs. But m₀ can
+//! be followed along the boundary of the graze, and its zero is simple.
 
 use crate::curve::VertexKind;
 use crate::family::Family;
@@ -69,8 +69,8 @@ fn nearest<F: Family>(
 /// What is done with a margin that may have a root.
 type Consider<'c, F> = dyn FnMut(&Root<'_, F>) -> Traced<(), F> + 'c;
 
-/// Considers that the branch is the boundary of a graze. Margins behind that exist on one side of it,
-/// and the one that stalls the branch vanishes at one of the distances at which its runs are.
+/// Considers that the branch is the boundary of a graze. Margins behind that exist on one side of
+/// it, and the one that stalls the branch vanishes at one of the distances at which its runs are.
 fn behind_branch<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,
@@ -225,8 +225,8 @@ impl<F: Family> Root<'_, F> {
         Ok(correct(self.runs, self.graze, &guess, &self.gradient, reach)?.map(|found| found.point))
     }
 
-    /// m₀ at a place along the boundary: the polynomial in √r through the values of the margin at four
-    /// distances.
+    /// m₀ at a place along the boundary: the polynomial in √r through the values of the margin at
+    /// four distances.
     fn limit(&self, place: f64, near: f64) -> Traced<Option<f64>, F> {
         let Some(point) = self.point(place)? else { return Ok(None) };
         let inwards = self.gradient.normalize() * (self.side * near * self.runs.scale);

@@ -131,7 +131,8 @@ struct Probe {
     slope: f64,
 }
 
-/// A boundary farther away than so many lengths of a step does not touch the branch within the step.
+/// A boundary farther away than so many lengths of a step does not touch the branch within the
+/// step.
 const FAR: f64 = 10.0;
 
 /// The place along a branch where the gradients of its own and of another margin are parallel, by
