@@ -16,7 +16,7 @@ mod track;
 use std::collections::VecDeque;
 
 use crate::cubic::Cubic;
-use crate::curve::Node;
+use crate::curve::{Node, VertexKind};
 use crate::family::Family;
 use crate::options::TraceError;
 use crate::tracing::branch::end::{End, SHORTEST, Special, Stop};
@@ -246,13 +246,15 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
     ) -> Traced<(), F> {
         /// A tangency that is so close to another end, as a part of the window's shorter extent, is
         /// the same place, and better known.
-        const BETTER: f64 = 1e-4;
+        const BETTER: f64 = 1e-2;
         let mut found = tangency::begins_on_branch(&self.track, from, beyond)?;
         if found.is_none() {
             let other = special::give_up(&self.track, from, beyond, h)?;
+            // Only where the margin ceases to exist, the end is known by itself.
+            let ceases = other.solved && other.kind == VertexKind::Degenerate;
             let near = BETTER * self.track.runs.scale;
             found = tangency::branch_begins(&self.track, from)?
-                .filter(|(place, _)| !other.solved || (place.point - other.point).norm() <= near)
+                .filter(|(place, _)| !ceases || (place.point - other.point).norm() <= near)
                 .or(Some((other, true)));
         }
         match found {
