@@ -91,14 +91,11 @@ fn behind_branch<F: Family>(
             }
             tried.push(own);
             let normal = from.gradient.normalize() * sign;
-            let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
-            for offset in track.offsets(&from.gradient) {
+            let values = track.offsets(&from.gradient).map(|offset| {
                 let value = runs.margin(&(from.node.point + normal * offset), own)?;
-                let value = value.map_or(f64::NAN, f64::abs);
-                (least, most) = (least.min(value), most.max(value));
-            }
-            let vanishes = least <= 0.1 * most;
-            if !vanishes {
+                Ok(value.unwrap_or(f64::NAN))
+            });
+            if !stalls_with_root(&values.collect::<Traced<Vec<_>, F>>()?) {
                 continue;
             }
             consider(&Root {
@@ -113,6 +110,16 @@ fn behind_branch<F: Family>(
         }
     }
     Ok(())
+}
+
+/// Whether a margin with these values, at distances of which each is a tenth of the one before, is
+/// all but zero at one of them, and changes with the root of the distance.
+fn stalls_with_root(values: &[f64]) -> bool {
+    let sizes = values.iter().map(|value| value.abs());
+    let (least, most) = (sizes.clone().fold(f64::NAN, f64::min), sizes.fold(f64::NAN, f64::max));
+    // Such differences become √10 times as small, those of a smooth margin 10 times.
+    let is_root = |three: &[f64]| (three[0] - three[1]).abs() < 5.0 * (three[1] - three[2]).abs();
+    least <= 0.1 * most && values.len() > 2 && values.windows(3).all(is_root)
 }
 
 /// Considers that the branch has the root. The graze is a margin of the runs beyond its boundary.
