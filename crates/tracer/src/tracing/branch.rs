@@ -33,7 +33,9 @@ use crate::window::Point;
 /// A step predicts along the last cubic and corrects along the normal. It is accepted if the
 /// tangent turns little, if the cubic is as close to the boundary as the options ask, and if free
 /// runs on both sides have the labels of the branch. The iterator returns each node one step late,
-/// because a special point between the last two steps may replace the last node.
+/// because a special point between the last two steps may replace the last node. Where the branch
+/// runs past a place at which another boundary begins on it, before runs can tell, the last nodes
+/// lie behind the vertex of [`Branch::end`].
 ///
 /// ```
 /// use stickslip_tracer::{Branch, End, Family, FreeRun, Point, Runs, Seed, TraceOptions, Window};
