@@ -256,8 +256,14 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
             let ceases = other.solved && other.kind == VertexKind::Degenerate;
             let near = BETTER * self.track.runs.scale;
             found = tangency::branch_begins(&self.track, from)?
-                .filter(|(place, _)| !ceases || (place.point - other.point).norm() <= near)
-                .or(Some((other, true)));
+                .filter(|(place, _)| !ceases || (place.point - other.point).norm() <= near);
+            if found.is_none()
+                && !other.solved
+                && let Some(index) = self.track.touched(from)?
+            {
+                return self.finish(End::Known(index), Vec::new());
+            }
+            found = found.or(Some((other, true)));
         }
         match found {
             Some((special, false)) if self.track.runs.window.contains(&special.point) => {

@@ -240,16 +240,19 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
     }
 
     /// Drops the changes for which no margin was found where they were seen, but on which a curve
-    /// with their labels lies that was found elsewhere.
+    /// with their labels lies that was found elsewhere, and what is listed twice.
     pub fn drop_explained(&mut self) {
-        let mut unresolved = std::mem::take(&mut self.network.unresolved);
-        unresolved.retain(|open| match open {
-            Unresolved::Change { between: [one, other], labels } => {
-                !self.covers(&one.lerp(other, 0.5), labels)
+        for open in std::mem::take(&mut self.network.unresolved) {
+            let explained = match &open {
+                Unresolved::Change { between: [one, other], labels } => {
+                    self.covers(&one.lerp(other, 0.5), labels)
+                }
+                _ => false,
+            };
+            if !explained && !self.network.unresolved.contains(&open) {
+                self.network.unresolved.push(open);
             }
-            _ => true,
-        });
-        self.network.unresolved = unresolved;
+        }
     }
 
     /// The places where the segment from `a` to `b` crosses curves, in order.

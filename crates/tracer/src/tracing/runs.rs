@@ -23,6 +23,9 @@ struct Slope {
 /// The greatest bend of a margin within the differences that give its gradient. Their error is
 /// about its square.
 const BENT: f64 = 0.05;
+/// The shortest steps of differences that follow a bend, as a fraction of the window's shorter
+/// extent.
+const SHORT: f64 = 1e-8;
 
 /// A family in a window, with the options of a trace. It makes and counts all runs.
 pub struct Runs<'a, F: Family> {
@@ -147,7 +150,7 @@ impl<'a, F: Family> Runs<'a, F> {
         let mut rise = self.slope(point, margin, &across, h)?;
         while let Some(Slope { bend, .. }) = rise
             && bend > BENT
-            && h > 1e-8 * self.scale
+            && h > SHORT * self.scale
         {
             h *= (0.1 * BENT / bend).max(1e-2);
             rise = self.slope(point, margin, &across, h)?;
@@ -159,6 +162,20 @@ impl<'a, F: Family> Runs<'a, F> {
         let gradient = direction * along + across * rise;
         // Where a margin is flat, its boundary has no direction.
         Ok(Some(gradient).filter(|gradient| gradient.norm() > 0.0))
+    }
+
+    /// Whether the slope of a margin across `direction` changes within the shortest differences, as
+    /// beside the boundary of a graze that comes before. Its value and slope tell nothing of where
+    /// it vanishes then.
+    pub(crate) fn is_singular(
+        &self,
+        point: &Point,
+        margin: &F::Margin,
+        direction: &Point,
+    ) -> Traced<bool, F> {
+        let across = Point::new(-direction.y, direction.x);
+        let slope = self.slope(point, margin, &across, SHORT * self.scale)?;
+        Ok(slope.is_some_and(|slope| slope.bend > 4.0 * BENT))
     }
 
     /// The slope of a margin along `direction`, by differences with step `h` at most.

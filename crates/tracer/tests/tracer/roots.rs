@@ -85,3 +85,80 @@ fn the_place_is_found_whatever_the_steepness() {
     let off = distance_of_place(&Root { steepness: 300.0 });
     assert!(off < 1e-12, "{off:e}");
 }
+
+/// As [`Root`], where labels are numbers of events: a graze at r = 0 and a second event, behind it
+/// where u − α √−r is positive and before it where u is. The strip between the two boundaries has
+/// the number of both its neighbours but for one. Where the second event fires, runs show another
+/// margin that vanishes on the same boundary, and exists on one side of it only.
+struct Counted(Root);
+
+/// Exists where the second event fires.
+const TWIN: usize = 2;
+
+impl Counted {
+    fn second(&self, point: &Point) -> f64 {
+        let (u, r) = Root::coordinates(point);
+        u - self.0.steepness * (-r).max(0.0).sqrt()
+    }
+}
+
+impl Family for &Counted {
+    /// As many entries as events.
+    type Label = Label;
+    type Margin = Margin;
+    type Error = Failed;
+
+    fn label(&self, point: &Point) -> Result<Label, Failed> {
+        let (_, r) = Root::coordinates(point);
+        Ok(vec![true; usize::from(r < 0.0) + usize::from(self.second(point) > 0.0)])
+    }
+
+    fn margin(&self, point: &Point, (margin, _): &Margin) -> Result<Option<f64>, Failed> {
+        let second = self.second(point);
+        Ok(match *margin {
+            GRAZE => Some(Root::coordinates(point).1),
+            SECOND => Some(second),
+            _ => (second > 0.0).then_some(0.7 * second),
+        })
+    }
+
+    fn free_run(&self, point: &Point) -> Result<FreeRun<Label, Margin>, Failed> {
+        let (_, r) = Root::coordinates(point);
+        let shown = if self.second(point) > 0.0 { TWIN } else { SECOND };
+        let margins = [(r > 0.0).then_some(GRAZE), Some(shown)].into_iter().flatten();
+        let value = |margin: usize| {
+            let margin = (margin, Vec::new());
+            self.margin(point, &margin).map(|value| value.map(|value| (margin, value)))
+        };
+        let margins = margins.map(value).collect::<Result<Option<Vec<_>>, _>>()?;
+        Ok(FreeRun { label: self.label(point)?, margins: margins.unwrap_or_default() })
+    }
+}
+
+/// Branches stalled where the strip is as wide as runs can tell, or ended where the two margins of
+/// one boundary seemed to touch.
+#[test]
+fn a_strip_between_regions_of_one_label_ends_where_the_boundaries_meet() {
+    for steepness in [0.03, 1.0, 7.0, 40.0, 100.0] {
+        let family = Counted(Root { steepness });
+        let atlas = Surveyor::default().atlas(&any(&family), &SQUARE).unwrap();
+        assert!(atlas.agrees(), "{steepness}: {:?}", atlas.objection());
+        for c in atlas.plane.curves() {
+            println!(
+                "{steepness} {:?} {:?} {:?} {:?} {:?}",
+                c.margin,
+                c.sides,
+                c.ends,
+                c.nodes[0].point.as_slice(),
+                c.nodes.last().unwrap().point.as_slice()
+            );
+        }
+        for r in atlas.plane.regions() {
+            println!("{:?} {}", r.label, r.area);
+        }
+        assert_eq!((atlas.plane.curves().len(), atlas.plane.regions().len()), (4, 4));
+        let vertices = atlas.plane.vertices().iter();
+        let off = vertices.map(|vertex| (vertex.point - PLACE).norm()).fold(f64::NAN, f64::min);
+        assert!(off < 1e-11, "{steepness}: {off:e}");
+    }
+}

@@ -29,35 +29,64 @@ impl<F: Family> Track<'_, '_, F> {
     /// The index of the known vertex that the branch reaches within a failed step of length `h`,
     /// without another special point before it.
     pub(crate) fn aim(&self, from: &FootholdOf<F>, h: f64) -> Traced<Option<usize>, F> {
-        let runs = self.runs;
         for (index, stop) in self.stops.iter().enumerate() {
-            let chord = stop.point - from.node.point;
-            let length = chord.norm();
-            let angle = chord.angle(&from.node.tangent);
-            let ahead = length > SHORTEST * runs.scale
-                && length <= 2.0 * h
-                && angle <= 0.5 * runs.options.max_angle;
-            if !ahead {
-                continue;
-            }
-            let end = Node { point: stop.point, tangent: mirrored(&from.node.tangent, &chord) };
-            let arc = Cubic::between(&from.node, &end);
-            let mut runs_in = true;
-            for theta in [0.3, 0.7] {
-                let value = runs.margin(&arc.at(theta), &self.margin)?;
-                runs_in &= value.is_some_and(|value| {
-                    value.abs() <= runs.options.interpolation * from.gradient.norm()
-                });
-            }
-            if !runs_in {
-                continue;
-            }
-            runs_in = runs_in && self.is_clear(from, &arc)?;
-            if runs_in {
+            if let Some(arc) = self.leads_to(from, stop, 2.0 * h)?
+                && self.is_clear(from, &arc)?
+            {
                 return Ok(Some(index));
             }
         }
         Ok(None)
+    }
+
+    /// The index of the nearest known vertex to which the branch leads beyond a place where even
+    /// the shortest step fails. Where boundaries touch, a strip between them is narrower than runs
+    /// can tell before it ends.
+    pub(crate) fn touched(&self, from: &FootholdOf<F>) -> Traced<Option<usize>, F> {
+        /// The farthest such vertex, as a fraction of the window's shorter extent.
+        const FARTHEST: f64 = 1e-3;
+        let distance = |index: usize| (self.stops[index].point - from.node.point).norm();
+        let mut nearest: Option<usize> = None;
+        for (index, stop) in self.stops.iter().enumerate() {
+            if nearest.is_none_or(|other| distance(index) < distance(other))
+                && self.leads_to(from, stop, FARTHEST * self.runs.scale)?.is_some()
+            {
+                nearest = Some(index);
+            }
+        }
+        Ok(nearest)
+    }
+
+    /// The way along the branch to a known vertex ahead, at most `farthest` away; `None` if it does
+    /// not pass through the vertex.
+    fn leads_to(
+        &self,
+        from: &FootholdOf<F>,
+        stop: &Stop,
+        farthest: f64,
+    ) -> Traced<Option<Cubic>, F> {
+        let runs = self.runs;
+        let chord = stop.point - from.node.point;
+        let length = chord.norm();
+        let angle = chord.angle(&from.node.tangent);
+        let ahead = length > SHORTEST * runs.scale
+            && length <= farthest
+            && angle <= 0.5 * runs.options.max_angle;
+        if !ahead {
+            return Ok(None);
+        }
+        let end = Node { point: stop.point, tangent: mirrored(&from.node.tangent, &chord) };
+        let arc = Cubic::between(&from.node, &end);
+        for theta in [0.3, 0.7] {
+            let value = runs.margin(&arc.at(theta), &self.margin)?;
+            let on_branch = value.is_some_and(|value| {
+                value.abs() <= runs.options.interpolation * from.gradient.norm()
+            });
+            if !on_branch {
+                return Ok(None);
+            }
+        }
+        Ok(Some(arc))
     }
 
     /// Whether the branch keeps its labels on `arc`, which ends at a vertex. They are computed at

@@ -58,10 +58,22 @@ pub(crate) fn locate<F: Family>(
             value.abs() <= (1e-3 * h * from.gradient.norm()).max(track.runs.options.noise)
         })
         && (point - from.node.point).dot(&from.node.tangent) > -1e-9 * track.runs.scale
+        && flattens(track, from, &point)?
     {
         return Ok(Some(degenerate(track, point, 0.0, true)));
     }
     Ok(None)
+}
+
+/// Whether the gradient of the branch's margin is all but zero at a place where differences over
+/// the length of a step say so. Over a short step, they may be differences of errors.
+fn flattens<F: Family>(
+    track: &Track<'_, '_, F>,
+    from: &FootholdOf<F>,
+    point: &Point,
+) -> Traced<bool, F> {
+    let gradient = track.runs.gradient(point, &track.margin, &from.node.tangent, track.radius)?;
+    Ok(gradient.is_none_or(|gradient| gradient.norm() <= 0.1 * from.gradient.norm()))
 }
 
 /// The first place within a failed step where one of these margins vanishes together with that of

@@ -85,8 +85,7 @@ fn behind_branch<F: Family>(
     for (side, sign) in [(0, track.orientation), (1, -track.orientation)] {
         let mut tried: Vec<&F::Margin> = Vec::new();
         for own in margins(side) {
-            let on_both_sides = margins(1 - side).any(|margin| margin == own);
-            if on_both_sides || *own == track.margin || !runs.is_sure(own) || tried.contains(&own) {
+            if *own == track.margin || !runs.is_sure(own) || tried.contains(&own) {
                 continue;
             }
             tried.push(own);
@@ -95,7 +94,8 @@ fn behind_branch<F: Family>(
                 let value = runs.margin(&(from.node.point + normal * offset), own)?;
                 Ok(value.unwrap_or(f64::NAN))
             });
-            if !stalls_with_root(&values.collect::<Traced<Vec<_>, F>>()?) {
+            let values = values.collect::<Traced<Vec<_>, F>>()?;
+            if !stalls_with_root(&values) {
                 continue;
             }
             consider(&Root {
@@ -199,7 +199,8 @@ impl<F: Family> Root<'_, F> {
     fn zero(&self, near: f64) -> Traced<Option<f64>, F> {
         /// The first steps that are tried: the margin may exist on one side only.
         const STEPS: [f64; 4] = [1e-6, -1e-6, 1e-8, -1e-8];
-        let (reach, close) = (REACH * self.runs.scale, 0.01 * SHORTEST * self.runs.scale);
+        let [reach, shortest] = [REACH, SHORTEST].map(|part| part * self.runs.scale);
+        let close = 0.01 * shortest;
         let mut last = 0.0;
         let Some(mut before) = self.limit(last, near)? else { return Ok(None) };
         let mut second = None;
@@ -216,7 +217,9 @@ impl<F: Family> Root<'_, F> {
             if !within {
                 return Ok(None);
             }
-            if (next - here).abs() <= close {
+            // Where the steps no longer shrink, they are errors of the runs.
+            let (shift, shift_before) = ((next - here).abs(), (here - last).abs());
+            if shift <= close || (shift <= shortest && shift >= 0.5 * shift_before) {
                 return Ok(Some(next));
             }
             let Some(ahead) = self.limit(next, near)? else { return Ok(None) };

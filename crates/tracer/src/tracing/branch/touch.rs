@@ -39,7 +39,7 @@ pub(crate) fn touch<F: Family>(
         let bend = (rises[1] - rises[0]) / (lengths[0] + lengths[1]);
         let slope = rises[0] + bend * lengths[0];
         let lowest = b - 0.25 * slope * slope / bend;
-        if b.signum() * lowest > 0.3 * a.abs().max(c.abs()) {
+        if b.signum() * lowest > 0.3 * a.abs().max(c.abs()) || is_twin(track, &margin)? {
             continue;
         }
         if let Some(found) = dip(track, [first, middle, next], &margin, -0.5 * slope / bend)? {
@@ -99,7 +99,7 @@ fn dip<F: Family>(
         solved: true,
     };
     let floor = runs.options.interpolation.max(10.0 * runs.resolution(last.slope));
-    if gap.abs() <= floor {
+    if gap.abs() <= floor && !runs.is_singular(&last.point, margin, &places[1].node.tangent)? {
         return Ok(Some((special(last.point, 1e-8 * runs.scale), length < 0.0)));
     }
     let beside = value_beside(places[1], margin).unwrap_or(last.value);
@@ -233,6 +233,7 @@ pub(crate) fn graze<F: Family>(
         let found = parallel(track, place, from, margin, start, [-slack, chord + slack])?;
         if let Some((_, probe)) = found
             && (probe.value / probe.slope).abs() <= track.runs.options.interpolation
+            && !track.runs.is_singular(&probe.point, margin, &from.node.tangent)?
         {
             return Ok(Some(probe.point));
         }
@@ -241,10 +242,24 @@ pub(crate) fn graze<F: Family>(
 }
 
 /// Whether another margin vanishes all along the branch. A boundary may have two such margins, one
-/// in the free runs on each side.
+/// in the free runs on each side, and each may exist on its own side only.
 fn is_twin<F: Family>(track: &Track<'_, '_, F>, margin: &F::Margin) -> Traced<bool, F> {
-    let Some(back) = track.footholds.front() else { return Ok(false) };
-    let value = track.runs.margin(&back.node.point, margin)?;
-    let floor = track.runs.options.interpolation * back.gradient.norm();
-    Ok(value.is_some_and(|value| value.abs() <= floor))
+    let Some(Foothold { node, gradient, .. }) = track.footholds.front() else { return Ok(false) };
+    let runs = track.runs;
+    let nearest = track.offsets(gradient).last().unwrap_or_default();
+    let (normal, floor) = (gradient.normalize(), runs.options.interpolation * gradient.norm());
+    for offset in [0.0, nearest, -nearest] {
+        let place = node.point + normal * offset;
+        let Some(value) = runs.margin(&place, margin)? else { continue };
+        if value.abs() > floor {
+            return Ok(false);
+        }
+        let other = runs.gradient(&place, margin, &node.tangent, track.radius)?;
+        // Boundaries that touch ahead are farther apart than the zeros of margins are uncertain.
+        return Ok(other.is_none_or(|other| {
+            let apart = (offset - value / other.dot(&normal)).abs();
+            apart <= 0.5 * nearest
+        }));
+    }
+    Ok(false)
 }
