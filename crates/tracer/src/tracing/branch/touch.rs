@@ -135,6 +135,9 @@ struct Probe {
 /// step.
 const FAR: f64 = 10.0;
 
+/// After so many updates the angle between boundaries that touch is at most half of what it was.
+const UPDATES: usize = 5;
+
 /// The place along a branch where the gradients of its own and of another margin are parallel, by
 /// the secant method: the length up to it, and the place.
 ///
@@ -172,8 +175,12 @@ fn parallel<F: Family>(
     if last.value.abs() > FAR * width * last.slope {
         return Ok(None);
     }
-    let mut shift = start[1] - start[0];
+    let (mut shift, first) = (start[1] - start[0], last.sine.abs());
+    let mut updates = 0;
     for _ in 0..40 {
+        if updates >= UPDATES && last.sine.abs() > 0.5 * first {
+            return Ok(None);
+        }
         let Some(now) = probe(length + shift)? else {
             shift *= 0.5;
             if shift.abs() <= 1e-10 * runs.scale {
@@ -182,6 +189,7 @@ fn parallel<F: Family>(
             continue;
         };
         length += shift;
+        updates += 1;
         let turn = (now.sine - last.sine) / shift;
         last = now;
         shift = (length - last.sine / turn).clamp(limits[0], limits[1]) - length;
