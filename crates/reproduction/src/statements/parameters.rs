@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 use stickslip_model::regularized::{END, OTHER_SIDE, Phase, Progress};
-use stickslip_model::{CollisionError, Material, Pair, Regime, Side, Surface, regularized};
+use stickslip_model::{BodyPair, CollisionError, Material, Regime, Side, Surface, regularized};
 use stickslip_solver::{
     Direction, Dop853, Guard, HybridSystem, Options, Outcome, Start, State, run,
 };
@@ -73,14 +73,14 @@ fn scaled_back(draw: &mut Rng, kappa: f64, psi: f64) -> Result<(f64, f64), Repro
     };
     let friction = between(0.05, 1.0);
     let surface = Surface { friction, tangential_stiffness_kg_per_s2: 1.0, damping_time_s: 0.0 };
-    let soft = Pair::equal_spheres(between(1e-4, 1.0), &material, &surface)?;
-    let soft = Pair { alpha: between(0.1, 1.0), ..soft };
+    let soft = BodyPair::equal_spheres(between(1e-4, 1.0), &material, &surface)?;
+    let soft = BodyPair { alpha: between(0.1, 1.0), ..soft };
     let normal_m_per_s = between(1e-3, 100.0);
     let tangential_m_per_s = psi * normal_m_per_s * friction / soft.alpha;
     // κ is proportional to the stiffness.
     let unit = soft.impact(normal_m_per_s, tangential_m_per_s)?.contact.kappa();
     let surface = Surface { tangential_stiffness_kg_per_s2: kappa / unit, ..surface };
-    let pair = Pair { surface, ..soft };
+    let pair = BodyPair { surface, ..soft };
     let impact = pair.impact(normal_m_per_s, tangential_m_per_s)?;
     Ok((impact.contact.kappa(), impact.contact.psi()))
 }
