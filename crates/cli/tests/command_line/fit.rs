@@ -126,7 +126,7 @@ fn another_law_in_scaled_units() {
 #[test]
 fn bad_data_and_options_are_refused() {
     let data = "centre_impact_angle_deg,centre_e_t\n10,0.7\n20,0.6\n";
-    let cases: [(&str, &str, &str); 25] = [
+    let cases: [(&str, &str, &str); 27] = [
         ("", "", "is empty; expected a header row"),
         ("centre_impact_angle_deg,centre_e_t\n", "", "has no rows"),
         ("centre_impact_angle_deg,centre_e_t\n10,\n", "", "0 data; expected 1 to"),
@@ -182,6 +182,16 @@ fn bad_data_and_options_are_refused() {
             "centre_impact_angle_deg,speed_m_per_s,centre_e_t\n10,7,1\n20,1,1\n",
             "",
             "has no meaning without bodies",
+        ),
+        (
+            "centre_impact_angle_deg,centre_rebound_angle_deg\n10,95\n20,1\n",
+            "",
+            "row 2: centre_rebound_angle_deg = 95.0 is out of range; expected an angle between -90",
+        ),
+        (
+            "centre_impact_angle_deg,centre_rebound_angle_rad\n10,-1.6\n20,1\n",
+            "",
+            "centre_rebound_angle_rad = -1.6 is out of range; expected an angle between -π/2",
         ),
         (data, "--law nonsense", "is neither a file nor a name"),
         (data, "--free kappa,k_t --mu 0.2", "kappa is free twice"),
