@@ -8,7 +8,8 @@
 //! them), [`Spring`] (two models of the spring; the second one is
 //! [`unreset`](stickslip_studies::unreset)), `subject` (what all tests share), `line` (all
 //! boundaries at one stiffness), `sampling` (which collisions are tried), the tests by topic:
-//! `sliding`, `parameters`, `regimes`, `counts`, `course`, `bounds`; and `report` (a study of them).
+//! `sliding`, `parameters`, `regimes`, `counts`, `course`, `bounds`; and `report` (a study of
+//! them).
 
 mod bounds;
 mod catalogue;

@@ -128,8 +128,8 @@ impl<Label: Clone + Ord, Margin: Clone> Atlas<Label, Margin> {
         Ok(Self { plane, unresolved, verification, statistics, rounds, doubtful, unfinished })
     }
 
-    /// Verifies the regions by the labels at many points, and keeps the errors of runs as sentences.
-    /// Returns `false` if this was cancelled, which `labels` tells by `None`.
+    /// Verifies the regions by the labels at many points, and keeps the errors of runs as
+    /// sentences. Returns `false` if this was cancelled, which `labels` tells by `None`.
     pub(crate) fn verify<E: ToString>(
         &mut self,
         options: &AtlasOptions,

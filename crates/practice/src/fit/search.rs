@@ -35,7 +35,7 @@ pub enum SearchError {
         high: f64,
     },
     /// The simplex method of Nelder and Mead failed.
-    #[error("the simplex method failed from ({}, {}) with the sides {} and {}", .start[0], .start[1], .sides[0], .sides[1])]
+    #[error("the simplex method failed from {start:?} with the sides {sides:?}")]
     Simplex {
         /// The place at which it began.
         start: [f64; 2],
