@@ -17,7 +17,7 @@ use std::process::Command;
 
 use stickslip::model::{Collider, Collision, Contact, exact};
 use stickslip::plane::{CollisionFamily, CollisionPlane};
-use stickslip::solver::Pair;
+use stickslip::solver::EmbeddedPair;
 use stickslip::tracer::{Family, TraceOptions, trace};
 
 /// What is counted: its row in the table, and a function that does it some times over and returns
@@ -25,14 +25,14 @@ use stickslip::tracer::{Family, TraceOptions, trace};
 type Workload = (&'static str, fn(usize) -> usize);
 
 const WORKLOADS: [Workload; 17] = [
-    ("collision, dop853 at 4e-13", |times| collisions(Pair::Dop853, 4e-13, times)),
-    ("collision, dop853 at 1e-12", |times| collisions(Pair::Dop853, 1e-12, times)),
-    ("collision, dop853 at 1e-9", |times| collisions(Pair::Dop853, 1e-9, times)),
-    ("collision, dopri5 at 1e-12", |times| collisions(Pair::Dopri5, 1e-12, times)),
-    ("collision, dopri5 at 1e-9", |times| collisions(Pair::Dopri5, 1e-9, times)),
+    ("collision, dop853 at 4e-13", |times| collisions(EmbeddedPair::Dop853, 4e-13, times)),
+    ("collision, dop853 at 1e-12", |times| collisions(EmbeddedPair::Dop853, 1e-12, times)),
+    ("collision, dop853 at 1e-9", |times| collisions(EmbeddedPair::Dop853, 1e-9, times)),
+    ("collision, dopri5 at 1e-12", |times| collisions(EmbeddedPair::Dopri5, 1e-12, times)),
+    ("collision, dopri5 at 1e-9", |times| collisions(EmbeddedPair::Dopri5, 1e-9, times)),
     ("collision, exact", |times| exact_collisions(&contacts::contacts(), times)),
     ("collision with the damping 0.1, dop853 at 4e-13", |times| {
-        integrated_collisions(&contacts::damped(), Pair::Dop853, 4e-13, times)
+        integrated_collisions(&contacts::damped(), EmbeddedPair::Dop853, 4e-13, times)
     }),
     ("the same, exact", |times| exact_collisions(&contacts::damped(), times)),
     ("the same, exact, each with another damping", |times| {
@@ -105,11 +105,16 @@ fn counted(index: usize, times: usize) -> Result<(u64, usize), Box<dyn Error>> {
     Ok((count, String::from_utf8(output.stdout)?.trim().parse()?))
 }
 
-fn collisions(pair: Pair, tolerance: f64, times: usize) -> usize {
+fn collisions(pair: EmbeddedPair, tolerance: f64, times: usize) -> usize {
     integrated_collisions(&contacts::contacts(), pair, tolerance, times)
 }
 
-fn integrated_collisions(contacts: &[Contact], pair: Pair, tolerance: f64, times: usize) -> usize {
+fn integrated_collisions(
+    contacts: &[Contact],
+    pair: EmbeddedPair,
+    tolerance: f64,
+    times: usize,
+) -> usize {
     let collider = Collider::with_tolerances(pair, tolerance, tolerance);
     let mut collision = Collision::before(contacts[0]);
     for _ in 0..times {

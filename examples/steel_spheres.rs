@@ -3,13 +3,13 @@
 //!
 //! Run with `cargo run --release --example steel_spheres`.
 
-use stickslip::model::{Collider, Material, Pair, Surface};
+use stickslip::model::{BodyPair, Collider, Material, Surface};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
     let surface =
         Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e12, damping_time_s: 0.0 };
-    let impact = Pair::equal_spheres(0.02, &steel, &surface)?.impact(20.0, 4.0)?;
+    let impact = BodyPair::equal_spheres(0.02, &steel, &surface)?.impact(20.0, 4.0)?;
     let collision = Collider::default().collide(impact.contact)?;
 
     println!("κ = {}, ψ = {}", impact.contact.kappa(), impact.contact.psi());

@@ -48,13 +48,13 @@ class Collision:
 def homogeneous_mass(radius_m: float, density_kg_per_m3: float) -> float: ...
 
 @final
-class Pair:
+class BodyPair:
     def __new__(
         cls,
         sphere: _Sphere,
         other: _Sphere | tuple[float, float] | None,
         forces: tuple[str, str],
-    ) -> Pair: ...
+    ) -> BodyPair: ...
     @property
     def reduction(self) -> tuple[float, float]: ...
     @property
@@ -172,7 +172,7 @@ class Fit:
     @staticmethod
     def make(
         columns: list[tuple[str, _Floats]],
-        bodies: Pair | None,
+        bodies: BodyPair | None,
         scaled: tuple[_Law, float, tuple[float, float, float]],
         speed: float | None,
         question: tuple[list[str], list[tuple[str, float, float]], float | None, float, bool],
@@ -194,7 +194,7 @@ class RestitutionTable:
     ) -> RestitutionTable: ...
     @staticmethod
     def make_of_velocities(
-        pair: Pair,
+        pair: BodyPair,
         normal: tuple[float, float],
         tangential: tuple[float, float],
         bound: float,

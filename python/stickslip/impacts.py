@@ -168,7 +168,7 @@ class Bodies:
             second = (other.material.young_modulus_pa, other.material.poisson_ratio)
         chosen, _ = _laws.arguments(law, 0.0)
         forces = (surface._constants(law), chosen)
-        self._pair = _native.Pair(sphere._arguments(), second, forces)
+        self._pair = _native.BodyPair(sphere._arguments(), second, forces)
         self._motions: tuple[Any, Any] | None = None
 
     @classmethod

@@ -73,8 +73,11 @@ pub enum EngineError {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum InvalidChoice {
     /// No method has this name.
-    #[error("method {0:?} is unknown; expected auto, exact, dop853 or dopri5")]
-    Method(String),
+    #[error("method {name:?} is unknown; expected auto, exact, dop853 or dopri5")]
+    Method {
+        /// The name.
+        name: String,
+    },
     /// The exact solution has no tolerances.
     #[error(
         "{name} {value:?} has no effect with the method exact, which has no tolerances; \
@@ -124,7 +127,7 @@ impl Engine {
             ("dopri5", _) => Self::Dopri5(tolerances(Tolerances::DOPRI5)),
             ("exact" | "auto", None) => Self::Exact,
             ("exact", Some((name, value))) => return Err(InvalidChoice::Unused { name, value }),
-            (other, _) => return Err(InvalidChoice::Method(other.to_owned())),
+            (other, _) => return Err(InvalidChoice::Method { name: other.to_owned() }),
         };
         if let Some(Tolerances { rtol, atol }) = engine.tolerances() {
             Options { rtol, atol, ..Options::default() }.validate()?;

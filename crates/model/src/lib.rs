@@ -66,7 +66,7 @@ pub use spheres::observed::Observed;
 pub use spheres::outcome::{EnergyAccount, ForceSwitch, Outcome};
 pub use spheres::reduction::Reduction;
 pub use spheres::report::{Comparison, ImpactReport};
-pub use spheres::scaling::{Impact, Pair};
+pub use spheres::scaling::{BodyPair, Impact};
 pub use spheres::surface::Surface;
 pub use spheres::{bodies, encounter, quantity, scaling};
 

@@ -2,7 +2,7 @@
 
 use stickslip_model::exact::{self, ExactError};
 use stickslip_model::regularized::{GUARDS, OTHER_SIDE, Phase, Regularized, SAME_SIDE, STATE};
-use stickslip_model::{Collision, Contact, Engine, InvalidParameter, Law, Pair, Side};
+use stickslip_model::{BodyPair, Collision, Contact, Engine, InvalidParameter, Law, Side};
 use stickslip_solver::{Dop853, Margin, Options, Outcome, Start};
 use stickslip_tracer::{
     Family, FamilyError, FreeRun, HybridFamily, Itinerary, Point, Problem, Window,
@@ -56,7 +56,7 @@ enum Parameters {
     /// κ at normal incidence and ψ, at one speed.
     Oblique(Oblique),
     /// The normal and the tangential velocity in m/s of two bodies.
-    Velocities(Pair),
+    Velocities(BodyPair),
 }
 
 /// Collisions as a family of runs. The label of a run is the list of the guards that fired.
@@ -113,7 +113,7 @@ impl CollisionPlane {
         kappa: (f64, f64),
         psi: (f64, f64),
     ) -> Result<Self, InvalidParameter> {
-        let Pair { law, .. } = oblique.pair;
+        let BodyPair { law, .. } = oblique.pair;
         let damping = oblique.pair.tangential_damping();
         let plane = Self::new(kappa, psi, oblique.at(1.0, psi.0)?.damping())?;
         let parameters = Parameters::Oblique(oblique);
@@ -124,13 +124,13 @@ impl CollisionPlane {
     /// values each. The normal velocity decides κ and the damping, and both together decide ψ.
     ///
     /// ```
-    /// use stickslip_model::{Material, Pair, Surface};
+    /// use stickslip_model::{BodyPair, Material, Surface};
     /// use stickslip_plane::{CollisionPlane, Range};
     ///
     /// let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
     /// let surface =
     ///     Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e9, damping_time_s: 1e-6 };
-    /// let pair = Pair::equal_spheres(0.02, &steel, &surface)?;
+    /// let pair = BodyPair::equal_spheres(0.02, &steel, &surface)?;
     /// let sides = [Range { low: 0.1, high: 10.0 }, Range { low: 0.01, high: 20.0 }];
     /// let plane = CollisionPlane::velocities(pair, sides)?;
     /// let impact = pair.impact(2.0, 0.5)?;
@@ -140,7 +140,7 @@ impl CollisionPlane {
     ///
     /// # Errors
     /// [`InvalidParameter`]: a velocity is not above 0, or a value that no collision can have.
-    pub fn velocities(pair: Pair, sides: [Range; 2]) -> Result<Self, InvalidParameter> {
+    pub fn velocities(pair: BodyPair, sides: [Range; 2]) -> Result<Self, InvalidParameter> {
         let [normal, tangential] = sides;
         let first = pair.impact(normal.low, tangential.low)?.contact;
         let sheet = Sheet { sides, chart: Chart::of_velocities(normal, tangential) };

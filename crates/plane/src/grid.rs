@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use stickslip_model::{Contact, InvalidParameter, Law, Pair, Reduction};
+use stickslip_model::{BodyPair, Contact, InvalidParameter, Law, Reduction};
 
 use crate::range::Range;
 
@@ -78,7 +78,7 @@ pub enum Coordinates {
     /// Normal and tangential velocity of the surfaces at the contact.
     Velocities {
         /// The two bodies that collide.
-        pair: Pair,
+        pair: BodyPair,
     },
 }
 

@@ -1,13 +1,13 @@
 //! Impacts of one speed at all angles.
 
-use stickslip_model::{Contact, InvalidParameter, Pair, Reduction};
+use stickslip_model::{BodyPair, Contact, InvalidParameter, Reduction};
 
 /// Two bodies that collide at one speed. The angle θ from the normal decides the normal velocity
 /// and the impact ratio g_t/g_n = tan θ = ψ μ/α.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Oblique {
     /// The bodies.
-    pub pair: Pair,
+    pub pair: BodyPair,
     /// The speed in m/s.
     pub speed_m_per_s: f64,
     /// κ at normal incidence.
@@ -19,7 +19,7 @@ impl Oblique {
     ///
     /// # Errors
     /// [`InvalidParameter`]: the speed, or a property of the pair, is out of its range.
-    pub fn new(pair: Pair, speed_m_per_s: f64) -> Result<Self, InvalidParameter> {
+    pub fn new(pair: BodyPair, speed_m_per_s: f64) -> Result<Self, InvalidParameter> {
         let kappa = pair.impact(speed_m_per_s, speed_m_per_s)?.contact.kappa();
         Ok(Self { pair, speed_m_per_s, kappa })
     }

@@ -52,6 +52,7 @@ pub use data::{Datum, Measured};
 pub use free::{Free, Ranges};
 pub use intervals::{Interval, Piece};
 pub use normal::DampingFit;
+pub use search::SearchError;
 pub use settings::{InvalidFit, Settings};
 pub use survey::Survey;
 
@@ -233,7 +234,7 @@ pub enum FitError {
         /// The least that was reached.
         least: f64,
     },
-    /// A solver failed.
-    #[error("a search failed: {0}")]
-    Search(String),
+    /// A search for a minimum or a zero failed.
+    #[error(transparent)]
+    Search(#[from] SearchError),
 }

@@ -8,7 +8,7 @@
 //! The two axes are x and y in the code: κ and ψ, or g_n and g_t in m/s.
 //!
 //! ```
-//! use stickslip_model::{Material, Pair, Surface};
+//! use stickslip_model::{BodyPair, Material, Surface};
 //! use stickslip_plane::{Range, progress};
 //! use stickslip_practice::tables::{self, Settings, Window};
 //!
@@ -16,7 +16,7 @@
 //! let surface =
 //!     Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e9, damping_time_s: 1e-6 };
 //! let window = Window::Velocities {
-//!     pair: Pair::equal_spheres(0.02, &steel, &surface)?,
+//!     pair: BodyPair::equal_spheres(0.02, &steel, &surface)?,
 //!     normal_m_per_s: Range { low: 1.0, high: 2.0 },
 //!     tangential_m_per_s: Range { low: 1.0, high: 3.0 },
 //! };

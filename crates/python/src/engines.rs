@@ -18,7 +18,7 @@ impl Choice {
         let Self(method, rtol, atol) = self;
         Engine::chosen_for(law, method, *rtol, *atol).map_err(|invalid| {
             bad_input(match invalid {
-                InvalidChoice::Method(name) => {
+                InvalidChoice::Method { name } => {
                     format!(
                         "method = {name:?}; expected \"auto\", \"exact\", \"dop853\" or \"dopri5\""
                     )

@@ -10,7 +10,7 @@ use stickslip_practice::fit::{self, Bodies, Column, FitError, Free, Settings, Va
 use crate::arrays::{expect_equal, numbers};
 use crate::engines::LawChoice;
 use crate::failure::{Failure, bad_input, failed};
-use crate::impacts::Pair;
+use crate::impacts::BodyPair;
 use crate::parallel::Threads;
 
 /// What is fitted, the ranges, ε_n, the level, and whether errors are relative.
@@ -32,7 +32,7 @@ impl Fit {
     fn make(
         py: Python<'_>,
         columns: Vec<(String, PyReadonlyArray1<'_, f64>)>,
-        bodies: Option<PyRef<'_, Pair>>,
+        bodies: Option<PyRef<'_, BodyPair>>,
         scaled: Scaled,
         speed: Option<f64>,
         question: Question,

@@ -22,8 +22,8 @@ use pyo3::exceptions::PyRecursionError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use stickslip_solver::{
-    Dop853, Dopri5, DynamicObserver, DynamicRun, DynamicStart, Options, Outcome, Pair, RunError,
-    Statistics, run_dynamic_backwards, run_dynamic_with,
+    Dop853, Dopri5, DynamicObserver, DynamicRun, DynamicStart, EmbeddedPair, Options, Outcome,
+    RunError, Statistics, run_dynamic_backwards, run_dynamic_with,
 };
 
 use crate::failure::bad_input;
@@ -96,7 +96,7 @@ pub fn run_hybrid<'py>(
 /// A run that is to be done.
 struct Job {
     system: System,
-    pair: Pair,
+    pair: EmbeddedPair,
     options: Options,
     /// The mode, the time and the state at the start.
     start: (usize, f64, Vec<f64>),
@@ -147,8 +147,12 @@ impl Job {
             return run_dynamic_with(self.pair, system, start, end, options, record);
         }
         match self.pair {
-            Pair::Dopri5 => run_dynamic_backwards(Dopri5, system, start, end, options, record),
-            Pair::Dop853 => run_dynamic_backwards(Dop853, system, start, end, options, record),
+            EmbeddedPair::Dopri5 => {
+                run_dynamic_backwards(Dopri5, system, start, end, options, record)
+            }
+            EmbeddedPair::Dop853 => {
+                run_dynamic_backwards(Dop853, system, start, end, options, record)
+            }
         }
     }
 }

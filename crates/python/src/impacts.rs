@@ -46,16 +46,16 @@ pub fn homogeneous_mass(radius_m: f64, density_kg_per_m3: f64) -> PyResult<f64> 
 
 /// Two bodies that collide.
 #[pyclass(frozen, module = "stickslip._native")]
-pub struct Pair {
+pub struct BodyPair {
     sphere: Sphere,
     other: Body,
     forces: Forces,
-    reduced: stickslip_model::Pair,
+    reduced: stickslip_model::BodyPair,
 }
 
-impl Pair {
+impl BodyPair {
     /// What the contact feels of the bodies.
-    pub fn reduced(&self) -> stickslip_model::Pair {
+    pub fn reduced(&self) -> stickslip_model::BodyPair {
         self.reduced
     }
 
@@ -66,7 +66,7 @@ impl Pair {
 }
 
 #[pymethods]
-impl Pair {
+impl BodyPair {
     #[new]
     fn new(
         sphere: SphereArguments,
@@ -88,7 +88,7 @@ impl Pair {
         let constants = serde_json::from_str(&constants).map_err(bad_input)?;
         let law = |damping| LawChoice(law.clone(), damping).law();
         let forces = Forces::new(law(0.0)?.0, &constants).map_err(bad_input)?;
-        let reduced = stickslip_model::Pair::new(&sphere, &other, forces).map_err(bad_input)?;
+        let reduced = stickslip_model::BodyPair::new(&sphere, &other, forces).map_err(bad_input)?;
         law(reduced.tangential_damping())?;
         Ok(Self { sphere, other, forces, reduced })
     }

@@ -42,7 +42,7 @@ mod _native {
     #[pymodule_export]
     use super::hybrid::{evaluate_dense, run_hybrid};
     #[pymodule_export]
-    use super::impacts::{Pair, homogeneous_mass};
+    use super::impacts::{BodyPair, homogeneous_mass};
     #[pymodule_export]
     use super::planes::{Atlas, gaining_lines};
     #[pymodule_export]

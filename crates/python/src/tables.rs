@@ -10,7 +10,7 @@ use stickslip_practice::tables::{
 
 use crate::arrays::{Pairs, numbers};
 use crate::failure::{bad_input, failed, of_atlas};
-use crate::impacts::Pair;
+use crate::impacts::BodyPair;
 use crate::parallel::Threads;
 
 /// ε_t and ε_n over a window, to be looked up.
@@ -38,7 +38,7 @@ impl RestitutionTable {
     #[staticmethod]
     fn make_of_velocities(
         py: Python<'_>,
-        pair: PyRef<'_, Pair>,
+        pair: PyRef<'_, BodyPair>,
         normal: (f64, f64),
         tangential: (f64, f64),
         bound: f64,

@@ -5,10 +5,11 @@
 //! not: it is the verdict "cannot be decided".
 //!
 //! Start reading here; then, in this order: `statement` (what is said of one), `catalogue` (all of
-//! them), [`Spring`] (two models of the spring; [`unreset`] is the second one), `subject` (what all
-//! tests share), `line` (all boundaries at one stiffness), `sampling` (which collisions are tried),
-//! the tests by topic: `sliding`, `parameters`, `regimes`, `counts`, `course`, `bounds`; and
-//! `report` (a study of them).
+//! them), [`Spring`] (two models of the spring; the second one is
+//! [`unreset`](stickslip_studies::unreset)), `subject` (what all tests share), `line` (all
+//! boundaries at one stiffness), `sampling` (which collisions are tried), the tests by topic:
+//! `sliding`, `parameters`, `regimes`, `counts`, `course`, `bounds`; and `report` (a study of
+//! them).
 
 mod bounds;
 mod catalogue;
@@ -23,7 +24,6 @@ mod sliding;
 mod spring;
 mod statement;
 mod subject;
-pub mod unreset;
 
 use rayon::prelude::*;
 use stickslip_plane::progress::{Progress, Report};

@@ -81,7 +81,7 @@
 //! | no guards at all | [`integrate`] with a closure |
 //! | a run back in time | [`run_backwards`] |
 //! | a tolerance for each component | [`Weighted`] |
-//! | a method that is named at run time | [`Pair`], [`run_with`] |
+//! | a method that is named at run time | [`EmbeddedPair`], [`run_with`] |
 //! | a dimension that is known at run time, many components, any number of guards | [`DynamicSystem`], [`run_dynamic`] |
 //! | how far a run is from another sequence of switches | [`fn@margins`], and the crate `stickslip-tracer` |
 //!
@@ -158,7 +158,8 @@ pub use margin::{
     Exit, Followed, Hint, Margin, Margins, NearMiss, Place, Way, follow, margin, margins,
 };
 pub use method::{
-    Dense, Dop853, Dopri5, Method, Order, Pair, State, Step, Tableau, Trial, UnknownPair, fit_order,
+    Dense, Dop853, Dopri5, EmbeddedPair, Method, Order, State, Step, Tableau, Trial,
+    UnknownEmbeddedPair, fit_order,
 };
 pub use number::{Enclosure, Interval, Number};
 pub use options::{InvalidOption, Options, StepSize};

@@ -19,7 +19,7 @@ pub use dense::Dense;
 pub use dop853::Dop853;
 pub use dopri5::Dopri5;
 pub use order::{Order, fit_order};
-pub use pair::{Pair, UnknownPair};
+pub use pair::{EmbeddedPair, UnknownEmbeddedPair};
 pub(crate) use state::add_product;
 pub use state::{FUSED_PRODUCTS, State};
 pub use step::{Step, Trial};

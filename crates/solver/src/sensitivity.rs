@@ -9,7 +9,7 @@
 
 use crate::error::RunError;
 use crate::hybrid::{Guard, HybridSystem, Observer, Outcome, Start, Statistics, SwitchEvent};
-use crate::method::{Dop853, Dopri5, Method, Pair, State};
+use crate::method::{Dop853, Dopri5, EmbeddedPair, Method, State};
 use crate::number::Enclosure;
 use crate::options::Options;
 use crate::runs::run;
@@ -184,7 +184,7 @@ where
 /// # Errors
 /// Those of [`sensitivities`].
 pub fn sensitivities_with<S, const N: usize, const G: usize, const P: usize, const A: usize>(
-    pair: Pair,
+    pair: EmbeddedPair,
     system: &S,
     start: Start<S::Mode, N>,
     start_derivatives: [State<N>; P],
@@ -196,8 +196,12 @@ where
 {
     let by = start_derivatives;
     match pair {
-        Pair::Dopri5 => sensitivities::<_, _, N, G, P, A>(Dopri5, system, start, by, end, options),
-        Pair::Dop853 => sensitivities::<_, _, N, G, P, A>(Dop853, system, start, by, end, options),
+        EmbeddedPair::Dopri5 => {
+            sensitivities::<_, _, N, G, P, A>(Dopri5, system, start, by, end, options)
+        }
+        EmbeddedPair::Dop853 => {
+            sensitivities::<_, _, N, G, P, A>(Dop853, system, start, by, end, options)
+        }
     }
 }
 

@@ -6,7 +6,9 @@
 //!
 //! Start reading in [`study`]; then, in this order: [`paper`] (what the symbols and axes of the
 //! paper mean), [`stiff_springs`] (the limit of stiff springs), [`convergence`] (how accurate the
-//! integrators are), [`contact_laws`] (the laws of particle codes), [`search`] (maxima and zeros).
+//! integrators are), [`contact_laws`] (the laws of particle codes), [`search`] (maxima and zeros),
+//! [`unreset`] and [`three_parameters`] (the collision with another spring, and in other
+//! parameters).
 //! The figures and statements of the paper are studies of `stickslip-reproduction`.
 //!
 //! ```
@@ -26,6 +28,8 @@ pub mod paper;
 pub mod search;
 pub mod stiff_springs;
 pub mod study;
+pub mod three_parameters;
+pub mod unreset;
 
 pub use error::{CollisionFailure, StudyError};
 pub use study::{Cell, Column, Picture, Study, Table};

@@ -1,6 +1,7 @@
 //! Searches for maxima, zeros and changes; the solvers are those of argmin.
 
 use std::cell::RefCell;
+use std::fmt;
 use std::marker::PhantomData;
 use std::ops::Neg;
 
@@ -16,9 +17,50 @@ pub enum SearchError {
     /// There is no place to start from.
     #[error("a search has no places to start from")]
     NoPlaces,
-    /// The solver failed.
-    #[error("a search failed: {0}")]
-    Solver(String),
+    /// A solver does not accept what it was given.
+    #[error("{method} failed from {} to {}; expected {}", .ends[0], .ends[1], .method.expected())]
+    Solver {
+        /// The solver.
+        method: Method,
+        /// The ends of the interval; of the simplex method, two corners of the triangle in the
+        /// first coordinate.
+        ends: [f64; 2],
+    },
+}
+
+/// A solver.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Golden section, for a maximum in an interval.
+    GoldenSection,
+    /// The simplex method of Nelder and Mead, for a maximum of two variables.
+    Simplex,
+    /// Brent's method for a maximum in an interval.
+    BrentMaximum,
+    /// Brent's method for a zero in an interval.
+    BrentZero,
+}
+
+impl Method {
+    /// What the solver expects, in words.
+    fn expected(self) -> &'static str {
+        match self {
+            Self::GoldenSection | Self::BrentMaximum => "an interval of finite length above 0",
+            Self::Simplex => "a triangle of finite size",
+            Self::BrentZero => "values of two signs at the ends",
+        }
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::GoldenSection => "the search by golden section",
+            Self::Simplex => "the simplex method",
+            Self::BrentMaximum => "Brent's method for a maximum",
+            Self::BrentZero => "Brent's method for a zero",
+        })
+    }
 }
 
 /// A place and the value there.
@@ -52,6 +94,7 @@ pub fn maximum<E: From<SearchError> + Send>(
     let solver = GoldenSectionSearch::new(low, high)
         .and_then(|solver| solver.with_tolerance(1e-9 * (high - low)));
     let start = 0.5 * (low + high);
+    let solver = (Method::GoldenSection, [low, high], solver);
     let found =
         least(|at| value(*at).map(f64::neg), solver, |state| state.param(start).max_iters(200))?;
     Ok(if -found.value > values[best] {
@@ -75,6 +118,7 @@ pub fn maximum_near<E: From<SearchError>>(
     let corners = vec![vec![x, y], vec![x + step[0], y], vec![x, y + step[1]]];
     let depth = |at: &Vec<f64>| value([at[0], at[1]]).map(f64::neg);
     let solver = NelderMead::new(corners).with_sd_tolerance(1e-14);
+    let solver = (Method::Simplex, [x, x + step[0]], solver);
     let found = least(depth, solver, |state| state.max_iters(400))?;
     Ok(Optimum { at: [found.at[0], found.at[1]], value: -found.value })
 }
@@ -91,7 +135,8 @@ pub fn highest<E: From<SearchError>>(
 ) -> Result<f64, E> {
     let solver = BrentOpt::new(0.0, 1.0).set_tolerance(tolerance, tolerance);
     let depth = |part: &f64| height(inside(interval, *part)).map(f64::neg);
-    Ok(inside(interval, least(depth, Ok(solver), |state| state.max_iters(200))?.at))
+    let solver = (Method::BrentMaximum, interval.into(), Ok(solver));
+    Ok(inside(interval, least(depth, solver, |state| state.max_iters(200))?.at))
 }
 
 /// The place of the one zero of `height` in `interval`, by Brent's method, to 1e-14 of the
@@ -105,7 +150,8 @@ pub fn root<E: From<SearchError>>(
 ) -> Result<f64, E> {
     let solver = BrentRoot::new(0.0, 1.0, 1e-14);
     let height = |part: &f64| height(inside(interval, *part));
-    Ok(inside(interval, least(height, Ok(solver), |state| state.max_iters(200))?.at))
+    let solver = (Method::BrentZero, interval.into(), Ok(solver));
+    Ok(inside(interval, least(height, solver, |state| state.max_iters(200))?.at))
 }
 
 /// The place between `from` and `to` where `holds`, true at `from` and false at `to`, changes; by
@@ -135,10 +181,11 @@ fn inside((low, high): (f64, f64), part: f64) -> f64 {
 /// The state of a solver over places `P`.
 type SolverState<P> = IterState<P, (), (), (), (), f64>;
 
-/// The place where `solver` finds `cost` least, or zero if it looks for a zero.
+/// The place where a solver finds `cost` least, or zero if it looks for a zero; with its name and
+/// the ends of what it searches.
 fn least<P, F, E, S>(
     cost: F,
-    solver: Result<S, Error>,
+    (method, ends, solver): (Method, [f64; 2], Result<S, Error>),
     start: impl FnOnce(SolverState<P>) -> SolverState<P>,
 ) -> Result<Optimum<P>, E>
 where
@@ -153,7 +200,7 @@ where
     if let Some(failure) = cost.failed.take() {
         return Err(failure);
     }
-    let solved = solved.map_err(|error| SearchError::Solver(error.to_string()))?;
+    let solved = solved.map_err(|_| SearchError::Solver { method, ends })?;
     let state = solved.state();
     let best = state.get_best_param().map(|at| (at.clone(), state.get_best_cost()));
     let (at, value) = best.ok_or(SearchError::NoPlaces)?;
@@ -229,6 +276,16 @@ mod tests {
         assert!((top - 1.7).abs() < 1e-7);
         let zero = root((1.0, 3.0), |x| Ok::<_, Failure>(x * x - 2.0)).unwrap();
         assert!((zero - 2.0_f64.sqrt()).abs() < 1e-13);
+    }
+
+    #[test]
+    fn a_zero_needs_values_of_two_signs() {
+        let ends = [1.0, 3.0];
+        let positive = |x: f64| Ok::<_, Failure>(x * x + 1.0);
+        let expected = SearchError::Solver { method: Method::BrentZero, ends };
+        assert_eq!(root(ends.into(), positive), Err(Failure::Search(expected.clone())));
+        let message = expected.to_string();
+        assert!(message.starts_with("Brent's method for a zero failed from 1 to 3; expected"));
     }
 
     #[test]

@@ -128,13 +128,18 @@ impl<Label: Clone + Ord, Margin: Clone> Atlas<Label, Margin> {
         Ok(Self { plane, unresolved, verification, statistics, rounds, doubtful, unfinished })
     }
 
-    /// Verifies the regions by the labels at many points. Returns `false` if this was cancelled,
-    /// which `labels` tells by `None`.
-    pub(crate) fn verify(
+    /// Verifies the regions by the labels at many points, and keeps the errors of runs as
+    /// sentences. Returns `false` if this was cancelled, which `labels` tells by `None`.
+    pub(crate) fn verify<E: ToString>(
         &mut self,
         options: &AtlasOptions,
-        labels: impl FnOnce(&[Point]) -> Option<Vec<Result<Label, String>>>,
+        labels: impl FnOnce(&[Point]) -> Option<Vec<Result<Label, E>>>,
     ) -> Result<bool, VerifyError> {
+        let sentence = |error: E| error.to_string();
+        let labels = |points: &[Point]| {
+            let labels = labels(points)?.into_iter();
+            Some(labels.map(|label| label.map_err(sentence)).collect())
+        };
         let seed = options.verify.seed.wrapping_add(self.rounds as u64 - 1);
         let points = VerifyOptions { seed, ..options.verify };
         let Some(found) = verify_unless_cancelled(&self.plane, &points, labels)? else {

@@ -167,10 +167,7 @@ impl<E> Surveyor<'_, E> {
         let rounds = self.options.rounds;
         let survey = self.survey(tracer, rounds, begun, |network, round| {
             let mut atlas = Atlas::unverified(network, &self.options, round)?;
-            let labels = |portion: &[Point]| {
-                let labels = self.executor.labels(family, portion).into_iter();
-                labels.map(|label| label.map_err(|error| error.to_string())).collect()
-            };
+            let labels = |portion: &[Point]| self.executor.labels(family, portion);
             let labels = |points: &[Point]| self.watch.in_portions(points, labels);
             if !atlas.verify(&self.options, labels)? {
                 return Ok(None);

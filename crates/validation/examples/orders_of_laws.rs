@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use stickslip::model::{
     Collider, Collision, Contact, Damping, Engine, EngineError, Law, linear, presets,
 };
-use stickslip::solver::{Options, Order, Pair, StepSize, fit_order};
+use stickslip::solver::{EmbeddedPair, Options, Order, StepSize, fit_order};
 
 /// Steps in an octave.
 const PER_OCTAVE: i32 = 4;
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             seen.push((law, damping));
             let truth = references(law, damping, tangential)?;
             let exact = truth.iter().all(|truth| has_exact(&truth.contact));
-            let [dopri5, dop853] = Pair::ALL.map(|pair| orders(pair, &truth));
+            let [dopri5, dop853] = EmbeddedPair::ALL.map(|pair| orders(pair, &truth));
             let kind = if exact { "exact" } else { "dop853" };
             println!("{}, {damping}: {} | {kind} | {dopri5} | {dop853}", preset.name, truth.len());
         }
@@ -71,13 +71,13 @@ fn truth(contact: Contact) -> Result<Collision, EngineError> {
     if has_exact(&contact) {
         Ok(Engine::Exact.collide(contact)?.0)
     } else {
-        Ok(Collider::with_tolerances(Pair::Dop853, 1e-15, 1e-15).collide(contact)?)
+        Ok(Collider::with_tolerances(EmbeddedPair::Dop853, 1e-15, 1e-15).collide(contact)?)
     }
 }
 
 /// The errors in steps of one size: root mean squares of w and of the times of switches; NaN where
 /// switches are others.
-fn errors(pair: Pair, step: f64, truth: &[Collision]) -> [f64; 2] {
+fn errors(pair: EmbeddedPair, step: f64, truth: &[Collision]) -> [f64; 2] {
     let options = Options { step_size: StepSize::Fixed(step), ..Options::default() };
     let collider = Collider::unrefined(pair, options);
     let (mut velocities, mut times) = (Vec::new(), Vec::new());
@@ -103,8 +103,8 @@ fn errors(pair: Pair, step: f64, truth: &[Collision]) -> [f64; 2] {
     })
 }
 
-fn orders(pair: Pair, truth: &[Collision]) -> String {
-    let octaves = if pair == Pair::Dop853 { 7 } else { 10 };
+fn orders(pair: EmbeddedPair, truth: &[Collision]) -> String {
+    let octaves = if pair == EmbeddedPair::Dop853 { 7 } else { 10 };
     let steps: Vec<_> = (0..=octaves * PER_OCTAVE)
         .map(|i| COARSEST * 0.5_f64.powf(f64::from(i) / f64::from(PER_OCTAVE)))
         .collect();

@@ -89,7 +89,8 @@ fn minima(out: &mut dyn Write, fit: &Fit) -> io::Result<()> {
     header.extend(dashpot.then(|| "tangential_damping".to_owned()));
     header.push("misfit".to_owned());
     let squares = |minimum: &Minimum| minimum.root_mean_squares.clone();
-    header.extend(squares(&fit.minima[0]).iter().map(|it| format!("rms {}", it.quantity.name())));
+    header
+        .extend(squares(&fit.minima[0]).iter().map(|it| format!("rms {}", it.quantity.heading())));
     header.push(String::new());
     let rows = fit.minima.iter().map(|minimum| {
         let values = &minimum.values;
@@ -98,7 +99,7 @@ fn minima(out: &mut dyn Write, fit: &Fit) -> io::Result<()> {
         row.push(format!("{:.6}", values.mu));
         row.extend(dashpot.then(|| format!("{:.6}", values.tangential_damping)));
         row.push(format!("{:.6}", minimum.misfit));
-        row.extend(squares(minimum).iter().map(|it| format!("{:.5}", it.value)));
+        row.extend(squares(minimum).iter().map(|it| format!("{:.5}", it.quantity.shown(it.value))));
         row.push(if minimum.at_end_of_range { "at an end" } else { "" }.to_owned());
         row
     });
@@ -155,7 +156,10 @@ fn of_mindlin(fit: &Fit, mindlin: &Mindlin) -> String {
     let rms = |minimum: &Minimum| {
         let squares = minimum.root_mean_squares.iter();
         let squares = squares.filter(|it| it.quantity != Measured::EpsN);
-        squares.map(|it| format!("{:.5}", it.value)).collect::<Vec<_>>().join(", ")
+        squares
+            .map(|it| format!("{:.5}", it.quantity.shown(it.value)))
+            .collect::<Vec<_>>()
+            .join(", ")
     };
     let text = format!(
         "Mindlin's stiffness of the materials, κ = {:.6}: best μ = {:.6}, misfit {:.6}, rms {} \
@@ -177,14 +181,15 @@ fn residuals(out: &mut dyn Write, fit: &Fit) -> io::Result<()> {
     let header = ["quantity", "line", "angle [°]", "measured", "error", "fit", "residual"];
     let rows = fit.residuals.iter().map(|residual| {
         let datum = &residual.datum;
+        let shown = |value: f64| format!("{:.5}", datum.quantity.shown(value));
         [
-            datum.quantity.name().to_owned(),
+            datum.quantity.heading().to_owned(),
             datum.row.to_string(),
             format!("{:.3}", datum.angle_rad().to_degrees()),
-            format!("{:.5}", datum.value),
-            datum.error.map_or_else(String::new, |error| format!("{error:.5}")),
-            format!("{:.5}", residual.predicted),
-            format!("{:.5}", residual.residual),
+            shown(datum.value),
+            datum.error.map_or_else(String::new, shown),
+            shown(residual.predicted),
+            shown(residual.residual),
         ]
     });
     let header = std::iter::once(header.map(str::to_owned));

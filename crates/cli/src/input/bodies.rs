@@ -11,7 +11,7 @@ mod velocities;
 
 use std::path::Path;
 
-use stickslip_model::{Body, Encounter, Law, Pair, Sphere};
+use stickslip_model::{Body, BodyPair, Encounter, Law, Sphere};
 
 use super::source;
 use crate::error::Failure;
@@ -27,7 +27,7 @@ pub use velocities::{Velocities, VelocitiesError};
 /// # Errors
 /// [`Failure::Input`]: the file cannot be read, is not JSON, or does not describe two bodies. The
 /// message names the line or the field, and what is expected there.
-pub fn read_pair(path: &Path, law: Law) -> Result<Pair, Failure> {
+pub fn read_pair(path: &Path, law: Law) -> Result<BodyPair, Failure> {
     read_sphere_and_pair(path, law).map(|(_, pair)| pair)
 }
 
@@ -35,10 +35,10 @@ pub fn read_pair(path: &Path, law: Law) -> Result<Pair, Failure> {
 ///
 /// # Errors
 /// As [`read_pair`].
-pub fn read_sphere_and_pair(path: &Path, law: Law) -> Result<(Sphere, Pair), Failure> {
+pub fn read_sphere_and_pair(path: &Path, law: Law) -> Result<(Sphere, BodyPair), Failure> {
     read(path, |file| {
         let Bodies { sphere: (sphere, _), other, forces } = file.resolve(law)?;
-        let pair = Pair::new(&sphere, &other.body(), forces);
+        let pair = BodyPair::new(&sphere, &other.body(), forces);
         pair.map(|pair| (sphere, pair)).map_err(|invalid| invalid.to_string())
     })
 }
@@ -128,7 +128,7 @@ mod tests {
             Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
         let surface =
             Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e12, damping_time_s: 0.0 };
-        let expected = Pair::equal_spheres(0.02, &steel, &surface).unwrap();
+        let expected = BodyPair::equal_spheres(0.02, &steel, &surface).unwrap();
         let mut spheres = [sphere(0.04, [4.0, 0.0, -20.0]), sphere(0.0, [0.0; 3])];
         for with_motion in [true, false] {
             if !with_motion {

@@ -61,6 +61,51 @@ fn the_example_as_tables() {
     }
 }
 
+/// Rebound angles are printed in degrees, like the angles of impact, whichever unit the data have.
+/// JSON says rad in the names, and its numbers are in rad.
+#[test]
+fn all_angles_of_the_tables_are_in_degrees() {
+    let angles = [(20.0_f64, 14.0_f64), (40.0, 31.0)];
+    let degrees = angles.map(|(impact, rebound)| format!("{impact:?},{rebound:?},0.5\n"));
+    let radians = angles.map(|(impact, rebound)| (impact.to_radians(), rebound.to_radians()));
+    let error = 0.5_f64.to_radians();
+    let radians = radians.map(|(impact, rebound)| format!("{impact:?},{rebound:?},{error:?}\n"));
+    let header =
+        "centre_impact_angle_deg,centre_rebound_angle_deg,centre_rebound_angle_deg_error\n";
+    let fit = |data: String, format: &str| {
+        let workspace = Workspace::with_input(&data);
+        let ran = stickslip(&format!(
+            "fit {} --free kappa --mu 0.2 --range kappa=1:3 --eps-n 1 --format {format}",
+            workspace.path("in.csv").display()
+        ));
+        assert_eq!((ran.code, ran.stderr.as_str()), (0, ""), "{}", ran.stdout);
+        ran.stdout
+    };
+    let in_degrees = format!("{header}{}", degrees.concat());
+    let table = fit(in_degrees.clone(), "table");
+    assert!(table.contains("rms centre_rebound_angle_deg"), "{table}");
+    assert!(!table.contains("_rad"), "{table}");
+    let rows = table.lines().filter(|line| line.starts_with("centre_rebound_angle_deg"));
+    let cells: Vec<Vec<&str>> = rows.map(|row| row.split_whitespace().collect()).collect();
+    assert_eq!(cells[0][2..5], ["20.000", "14.00000", "0.50000"], "{table}");
+    assert_eq!(cells[1][2..5], ["40.000", "31.00000", "0.50000"], "{table}");
+
+    let found: Value = serde_json::from_str(&fit(in_degrees, "json")).expect("JSON");
+    let number = |value: &Value| value.as_f64().expect("a number");
+    for (residual, cells) in found["residuals"].as_array().expect("residuals").iter().zip(&cells) {
+        assert_eq!(residual["quantity"], "centre_rebound_angle_rad");
+        for (name, cell) in [("value", 3), ("error", 4), ("predicted", 5), ("residual", 6)] {
+            let shown = format!("{:.5}", number(&residual[name]).to_degrees());
+            assert_eq!(shown, cells[cell], "{name}");
+        }
+    }
+    let root_mean_square = number(&found["minima"][0]["root_mean_squares"][0]["value"]);
+    assert!(table.contains(&format!("{:.5}", root_mean_square.to_degrees())), "{table}");
+
+    let in_radians = format!("{}{}", header.replace("_deg", "_rad"), radians.concat());
+    assert_eq!(fit(in_radians, "table"), table);
+}
+
 #[test]
 fn another_law_in_scaled_units() {
     let workspace = Workspace::with_input(SCALED);
@@ -81,7 +126,7 @@ fn another_law_in_scaled_units() {
 #[test]
 fn bad_data_and_options_are_refused() {
     let data = "centre_impact_angle_deg,centre_e_t\n10,0.7\n20,0.6\n";
-    let cases: [(&str, &str, &str); 25] = [
+    let cases: [(&str, &str, &str); 27] = [
         ("", "", "is empty; expected a header row"),
         ("centre_impact_angle_deg,centre_e_t\n", "", "has no rows"),
         ("centre_impact_angle_deg,centre_e_t\n10,\n", "", "0 data; expected 1 to"),
@@ -137,6 +182,16 @@ fn bad_data_and_options_are_refused() {
             "centre_impact_angle_deg,speed_m_per_s,centre_e_t\n10,7,1\n20,1,1\n",
             "",
             "has no meaning without bodies",
+        ),
+        (
+            "centre_impact_angle_deg,centre_rebound_angle_deg\n10,95\n20,1\n",
+            "",
+            "row 2: centre_rebound_angle_deg = 95.0 is out of range; expected an angle between -90",
+        ),
+        (
+            "centre_impact_angle_deg,centre_rebound_angle_rad\n10,-1.6\n20,1\n",
+            "",
+            "centre_rebound_angle_rad = -1.6 is out of range; expected an angle between -π/2",
         ),
         (data, "--law nonsense", "is neither a file nor a name"),
         (data, "--free kappa,k_t --mu 0.2", "kappa is free twice"),

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use stickslip_model::{Collider, Contact, Material, Pair, Surface, exact};
+use stickslip_model::{BodyPair, Collider, Contact, Material, Surface, exact};
 
 use crate::{Workspace, npz, rows, version_in_maps};
 
@@ -191,7 +191,7 @@ fn a_map_of_two_bodies_in_the_plane_of_their_velocities() {
     let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
     let surface =
         Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e12, damping_time_s: 1e-7 };
-    let pair = Pair::equal_spheres(0.02, &steel, &surface).unwrap();
+    let pair = BodyPair::equal_spheres(0.02, &steel, &surface).unwrap();
     let facts =
         [0.4, pair.alpha, pair.effective_mass_kg, pair.elastic_constant, 1e12, 1e-7, 4e-13, 4e-13];
     let facts = facts.map(|value| format!("{value:?}")).into_iter();

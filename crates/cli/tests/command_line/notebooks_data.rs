@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use crate::{Array, Workspace, audit, converge, npz, reproduce, rows};
 
 /// Relative tolerance of numbers. On the machine that made the data all bits are the same, whatever
-/// the optimisation. Other machines have other mathematical libraries.
+/// the optimisation, but for the last one of a power (`powi`). Other machines have other
+/// mathematical libraries.
 const RELATIVE: f64 = 1e-9;
 
 /// Absolute tolerances of numbers that are differences of larger numbers, by the beginning of the

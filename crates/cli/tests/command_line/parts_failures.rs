@@ -129,7 +129,7 @@ fn parts_of_other_maps() {
         assert_eq!(workspace.run(&format!("{line} --part 1/1 --out {file}.part")).code, 0);
     }
     let ran = workspace.run("join a.part b.part --out m.npz");
-    refused(&ran, "b.part: is a part of another map than a.part, with 'bodies: Pair", &[]);
+    refused(&ran, "b.part: is a part of another map than a.part, with 'bodies: BodyPair", &[]);
     assert_eq!(workspace.run(&format!("{LINE} --part 2/3 --out third.part")).code, 0);
     let ran = workspace.run("join 1.part third.part --out m.npz");
     refused(

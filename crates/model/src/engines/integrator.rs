@@ -1,7 +1,7 @@
 //! A collision integrated from first touch to separation: start reading here.
 
 use stickslip_solver::{
-    HybridSystem, Observer, Options, Outcome, Pair, RunError, Start, Statistics, run_with,
+    EmbeddedPair, HybridSystem, Observer, Options, Outcome, RunError, Start, Statistics, run_with,
 };
 
 mod account;
@@ -64,7 +64,7 @@ const MOST_STEPS_PER_OSCILLATION: f64 = 400.0;
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Collider {
-    pair: Pair,
+    pair: EmbeddedPair,
     options: Options,
     /// Whether the options are made finer where a contact needs it.
     refined: bool,
@@ -74,7 +74,7 @@ pub struct Collider {
 
 impl Default for Collider {
     fn default() -> Self {
-        Self::new(Pair::Dop853)
+        Self::new(EmbeddedPair::Dop853)
     }
 }
 
@@ -85,15 +85,16 @@ impl Collider {
     pub const ATOL: f64 = 4e-13;
 
     /// A collider with the tolerances [`Self::RTOL`] and [`Self::ATOL`], whatever the pair:
-    /// [`Dop853`](stickslip_solver::Dop853), [`Dopri5`](stickslip_solver::Dopri5) or a [`Pair`].
+    /// [`Dop853`](stickslip_solver::Dop853), [`Dopri5`](stickslip_solver::Dopri5) or an
+    /// [`EmbeddedPair`].
     #[must_use]
-    pub fn new(pair: impl Into<Pair>) -> Self {
+    pub fn new(pair: impl Into<EmbeddedPair>) -> Self {
         Self::with_tolerances(pair, Self::RTOL, Self::ATOL)
     }
 
     /// A collider with these tolerances, which are checked when it is used.
     #[must_use]
-    pub fn with_tolerances(pair: impl Into<Pair>, rtol: f64, atol: f64) -> Self {
+    pub fn with_tolerances(pair: impl Into<EmbeddedPair>, rtol: f64, atol: f64) -> Self {
         let first_step = Some(LONGEST_STEP);
         let max_step = LONGEST_STEP;
         let options = Options { rtol, atol, first_step, max_step, ..Options::default() };
@@ -105,7 +106,7 @@ impl Collider {
     ///
     /// The other colliders compute collisions near a graze once more with twice the digits.
     #[must_use]
-    pub fn unrefined(pair: impl Into<Pair>, options: Options) -> Self {
+    pub fn unrefined(pair: impl Into<EmbeddedPair>, options: Options) -> Self {
         Self { pair: pair.into(), options, refined: false, digits: false }
     }
 
@@ -260,7 +261,7 @@ impl Collider {
         Ok(run.statistics)
     }
 
-    pub(crate) fn pair(&self) -> Pair {
+    pub(crate) fn pair(&self) -> EmbeddedPair {
         self.pair
     }
 

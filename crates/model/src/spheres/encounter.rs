@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use super::bodies::{Body, Sphere, Wall};
 use super::forces::Forces;
 use super::quantity;
-use super::scaling::{Impact, Pair};
+use super::scaling::{BodyPair, Impact};
 use crate::contact::{Contact, InvalidParameter};
 
 /// Largest relative difference between the distance of two bodies and their radii at which they
@@ -111,7 +111,7 @@ impl Encounter {
         second: (&Sphere, &Motion),
         forces: impl Into<Forces>,
     ) -> Result<Self, EncounterError> {
-        let pair = Pair::new(first.0, &Body::Sphere(*second.0), forces)?;
+        let pair = BodyPair::new(first.0, &Body::Sphere(*second.0), forces)?;
         let separation = first.1.position_m - second.1.position_m;
         let distance_m = separation.norm();
         let touching_m = first.0.radius_m + second.0.radius_m;
@@ -139,7 +139,7 @@ impl Encounter {
     ) -> Result<Self, EncounterError> {
         let (WallMotion { point_m, normal, velocity_m_per_s }, position_m) =
             (*wall.1, sphere.1.position_m);
-        let pair = Pair::new(sphere.0, &Body::Wall(*wall.0), forces)?;
+        let pair = BodyPair::new(sphere.0, &Body::Wall(*wall.0), forces)?;
         // Scaled first, so that the square of no length is too large or too small.
         let normal = normal / normal.amax();
         let normal = normal / normal.norm();
@@ -163,13 +163,13 @@ impl Encounter {
     /// The first one comes from above: n is along z and t along x. g_t = 0 is a central impact.
     ///
     /// ```
-    /// use stickslip_model::{Body, Encounter, Material, Pair, Sphere, Surface};
+    /// use stickslip_model::{Body, BodyPair, Encounter, Material, Sphere, Surface};
     ///
     /// let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
     /// let surface = Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e9, damping_time_s: 0.0 };
     /// let sphere = Sphere::homogeneous(0.02, &steel);
     /// let encounter = Encounter::of_velocities(&sphere, &Body::Sphere(sphere), (20.0, 4.0), &surface)?;
-    /// let pair = Pair::equal_spheres(0.02, &steel, &surface)?;
+    /// let pair = BodyPair::equal_spheres(0.02, &steel, &surface)?;
     /// assert_eq!(encounter.impact, pair.impact(20.0, 4.0)?);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -184,7 +184,7 @@ impl Encounter {
     ) -> Result<Self, EncounterError> {
         quantity::NORMAL_VELOCITY.check(normal_m_per_s)?;
         quantity::TANGENTIAL_VELOCITY.check(tangential_m_per_s)?;
-        let pair = Pair::new(sphere, other, forces)?;
+        let pair = BodyPair::new(sphere, other, forces)?;
         let (below, below_m) = match other {
             Body::Sphere(below) => (Some(*below), below.radius_m),
             Body::Wall(_) => (None, 0.0),
@@ -224,7 +224,7 @@ impl Encounter {
     }
 
     fn new(
-        pair: Pair,
+        pair: BodyPair,
         partners: [Partner; 2],
         normal: Vector3<f64>,
         contact_point_m: Vector3<f64>,
@@ -251,7 +251,7 @@ impl Encounter {
     /// The encounter of bodies whose surfaces approach with the first of the velocities, and slide
     /// in a direction with a velocity.
     fn assembled(
-        pair: Pair,
+        pair: BodyPair,
         partners: [Partner; 2],
         (normal, contact_point_m): (Vector3<f64>, Vector3<f64>),
         (normal_m_per_s, sliding): (f64, Option<(Vector3<f64>, f64)>),
@@ -262,7 +262,7 @@ impl Encounter {
                 .map(|sphere| partner.arm_m * partner.arm_m / sphere.moment_of_inertia_kg_m2)
         });
         let alpha = 1.0 / (1.0 + pair.effective_mass_kg * turning.sum::<f64>());
-        let pair = Pair { alpha, ..pair };
+        let pair = BodyPair { alpha, ..pair };
         let (tangent, tangential_m_per_s) =
             sliding.map_or((None, 0.0), |(tangent, speed)| (Some(tangent), speed));
         // The normal motion does not depend on the tangential one: a central impact may use any.

@@ -99,7 +99,7 @@ impl Forces {
     /// The law `law` with `constants`.
     ///
     /// ```
-    /// use stickslip_model::{Body, Constants, Elasticity, Forces, Pair, Sphere, presets};
+    /// use stickslip_model::{Body, BodyPair, Constants, Elasticity, Forces, Sphere, presets};
     ///
     /// let law = presets::find("gran/hooke/history").ok_or("no such law")?.law;
     /// let constants = Constants {
@@ -114,7 +114,7 @@ impl Forces {
     /// let moment_of_inertia_kg_m2 = Sphere::homogeneous_moment(radius_m, mass_kg);
     /// let sphere = Sphere { radius_m, mass_kg, moment_of_inertia_kg_m2, elasticity };
     /// let forces = Forces::new(law, &constants)?;
-    /// let impact = Pair::new(&sphere, &Body::Sphere(sphere), forces)?.impact(0.1, 0.2)?;
+    /// let impact = BodyPair::new(&sphere, &Body::Sphere(sphere), forces)?.impact(0.1, 0.2)?;
     /// // κ = k_t/(α k), whatever the size and the velocity.
     /// assert!((impact.contact.kappa() - 1.0).abs() < 1e-14);
     /// assert_eq!(impact.contact.damping(), 0.2);
@@ -168,9 +168,9 @@ impl Forces {
     }
 }
 
-/// The paper's law, whose elastic constant is that of the materials. [`Pair::new`] checks it.
+/// The paper's law, whose elastic constant is that of the materials. [`BodyPair::new`] checks it.
 ///
-/// [`Pair::new`]: super::scaling::Pair::new
+/// [`BodyPair::new`]: super::scaling::BodyPair::new
 impl From<&Surface> for Forces {
     fn from(surface: &Surface) -> Self {
         Self {

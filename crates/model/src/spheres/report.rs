@@ -62,8 +62,8 @@ pub struct Comparison {
     /// [`Impact::mindlin_stiffness_kg_per_s2`](crate::Impact::mindlin_stiffness_kg_per_s2); `None`
     /// where the normal force is linear.
     pub mindlin_stiffness_kg_per_s2: Option<f64>,
-    /// [`Pair::mindlin_kappa`](crate::Pair::mindlin_kappa); `None` where the normal force is
-    /// linear.
+    /// [`BodyPair::mindlin_kappa`](crate::BodyPair::mindlin_kappa); `None` where the normal force
+    /// is linear.
     pub mindlin_kappa: Option<f64>,
     /// Largest compression ξ in m without damping.
     pub undamped_compression_m: f64,

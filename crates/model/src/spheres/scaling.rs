@@ -15,18 +15,18 @@ const POSITIVE: &str = "a finite number above 0";
 /// Two colliding bodies, reduced to the numbers on which their contact depends.
 ///
 /// ```
-/// use stickslip_model::{Material, Pair, Surface};
+/// use stickslip_model::{BodyPair, Material, Surface};
 ///
 /// let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
 /// let surface = Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e12, damping_time_s: 0.0 };
-/// let pair = Pair::equal_spheres(0.02, &steel, &surface)?;
+/// let pair = BodyPair::equal_spheres(0.02, &steel, &surface)?;
 /// let impact = pair.impact(20.0, 4.0)?;
 /// assert!((impact.largest_normal_force_n() / 146.4e3 - 1.0).abs() < 1e-3);
 /// # Ok::<(), stickslip_model::InvalidParameter>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Pair {
+pub struct BodyPair {
     /// Effective mass m = m_i m_j/(m_i + m_j) in kg.
     pub effective_mass_kg: f64,
     /// Effective radius R = R_i R_j/(R_i + R_j) in m.
@@ -51,7 +51,7 @@ pub struct Pair {
     pub tangential_damping_ratio: f64,
 }
 
-impl Pair {
+impl BodyPair {
     /// The pair of a sphere and the body that it hits.
     ///
     /// As in Hertz' contact, 1/E* = (1 − ν_i²)/Y_i + (1 − ν_j²)/Y_j. A wall has infinite radius,
@@ -202,7 +202,7 @@ pub struct Impact {
     /// Parameters of the scaled collision.
     pub contact: Contact,
     /// The two bodies.
-    pub pair: Pair,
+    pub pair: BodyPair,
     /// Normal impact velocity g_n in m/s, the unit of velocity.
     pub normal_m_per_s: f64,
     /// β^{−2/5} g_n^{−1/5} in s, the unit of time.
@@ -243,11 +243,11 @@ impl Impact {
     }
 
     /// Mindlin's tangential stiffness k_t = 8G* √(Rξ) in kg/s² of a contact that does not slip, at
-    /// [`Self::largest_compression_m`], where it is largest. Its κ is [`Pair::mindlin_kappa`]. Both
-    /// are those of Hertz' normal force.
+    /// [`Self::largest_compression_m`], where it is largest. Its κ is [`BodyPair::mindlin_kappa`].
+    /// Both are those of Hertz' normal force.
     #[must_use]
     pub fn mindlin_stiffness_kg_per_s2(&self) -> f64 {
-        let Pair { elastic_constant, stiffness_ratio, .. } = self.pair;
+        let BodyPair { elastic_constant, stiffness_ratio, .. } = self.pair;
         stiffness_ratio * 1.5 * elastic_constant * self.largest_compression_m().sqrt()
     }
 

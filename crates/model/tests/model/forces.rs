@@ -2,8 +2,8 @@
 
 use serde_json::Value;
 use stickslip_model::{
-    Body, Constants, Contact, Damping, Elasticity, Forces, InvalidForces, Law, Material, Normal,
-    Pair, Sphere, Surface, Tangential,
+    Body, BodyPair, Constants, Contact, Damping, Elasticity, Forces, InvalidForces, Law, Material,
+    Normal, Sphere, Surface, Tangential,
 };
 
 use crate::common::file;
@@ -53,7 +53,8 @@ fn si_parameters_of_lammps_are_its_scaled_ones() {
                 poisson_ratio: si("nu").unwrap_or(0.0),
             },
         };
-        let pair = Pair::new(&sphere, &Body::Sphere(sphere), forces(case, expected.law())).unwrap();
+        let pair =
+            BodyPair::new(&sphere, &Body::Sphere(sphere), forces(case, expected.law())).unwrap();
         let impact = pair.impact(si("u0").unwrap(), si("g0").unwrap()).unwrap();
         let parameters = |c: &Contact| [c.kappa(), c.psi(), c.damping(), c.tangential_damping()];
         let found = impact.contact;
@@ -80,7 +81,7 @@ fn the_paper_s_law_has_a_surface_or_constants() {
         ..Constants::default()
     };
     let sphere = Sphere::homogeneous(0.02, &STEEL);
-    let pair = |forces: Forces| Pair::new(&sphere, &Body::Sphere(sphere), forces).unwrap();
+    let pair = |forces: Forces| BodyPair::new(&sphere, &Body::Sphere(sphere), forces).unwrap();
     let of_constants = Forces::new(Law::PAPER, &constants).unwrap();
     assert_eq!(pair(Forces::from(&surface)), pair(of_constants));
     // γ = A ρ, and ρ may be given.

@@ -3,8 +3,8 @@
 use std::f64::consts::FRAC_PI_4;
 
 use stickslip_model::{
-    Body, Collider, Contact, Elasticity, Encounter, EncounterError, Material, Motion, Outcome,
-    Pair, Sphere, Surface, Vector3, Wall, WallMotion, coulomb, normal,
+    Body, BodyPair, Collider, Contact, Elasticity, Encounter, EncounterError, Material, Motion,
+    Outcome, Sphere, Surface, Vector3, Wall, WallMotion, coulomb, normal,
 };
 
 const STEEL: Material =
@@ -51,7 +51,8 @@ fn on_floor((sphere, motion): (Sphere, Motion), surface: &Surface) -> Encounter 
 /// Expected values: mpmath, 30 digits.
 #[test]
 fn the_steel_spheres_of_figure_2() {
-    let impact = Pair::equal_spheres(0.02, &STEEL, &SURFACE).unwrap().impact(20.0, 4.0).unwrap();
+    let impact =
+        BodyPair::equal_spheres(0.02, &STEEL, &SURFACE).unwrap().impact(20.0, 4.0).unwrap();
     close(impact.contact.kappa(), 11224.915488627628618, 1e-14);
     close(impact.contact.psi(), 1.0 / 7.0, 1e-15);
     close(impact.time_unit_s, 2.0538401829028188491e-5, 1e-14);
@@ -71,7 +72,8 @@ fn the_steel_spheres_of_figure_2() {
 /// its number 250 should be 31.25: F_n⁵ = (31.25/243) π³ ρ³ R¹⁰ Y² g⁶/(1 − ν²)².
 #[test]
 fn footnote_2_and_its_correction() {
-    let impact = Pair::equal_spheres(0.02, &STEEL, &SURFACE).unwrap().impact(20.0, 4.0).unwrap();
+    let impact =
+        BodyPair::equal_spheres(0.02, &STEEL, &SURFACE).unwrap().impact(20.0, 4.0).unwrap();
     let force_n = impact.largest_normal_force_n();
     close(force_n, 1.464e5, 5e-4);
     close(0.5 * force_n / 1e12, 0.073e-6, 5e-3);
@@ -80,7 +82,7 @@ fn footnote_2_and_its_correction() {
 
 #[test]
 fn mindlin_s_stiffness() {
-    let pair = Pair::equal_spheres(0.02, &STEEL, &SURFACE).unwrap();
+    let pair = BodyPair::equal_spheres(0.02, &STEEL, &SURFACE).unwrap();
     close(pair.stiffness_ratio, 2.0 * (1.0 - 0.3) / (2.0 - 0.3), 1e-14);
     let impact = pair.impact(20.0, 4.0).unwrap();
     close(impact.mindlin_stiffness_kg_per_s2(), 4.0275166118739150e8, 1e-14);
@@ -88,7 +90,7 @@ fn mindlin_s_stiffness() {
     for normal_m_per_s in [1e-3, 1.0, 50.0] {
         let stiffness = pair.impact(normal_m_per_s, 1.0).unwrap().mindlin_stiffness_kg_per_s2();
         let surface = Surface { tangential_stiffness_kg_per_s2: stiffness, ..SURFACE };
-        let pair = Pair { surface, ..pair };
+        let pair = BodyPair { surface, ..pair };
         let kappa = pair.impact(normal_m_per_s, 1.0).unwrap().contact.kappa();
         close(kappa, pair.mindlin_kappa(), 1e-14);
     }
@@ -99,8 +101,8 @@ fn mindlin_s_stiffness() {
 fn unequal_spheres() {
     let glass = Material { young_modulus_pa: 63e9, poisson_ratio: 0.24, density_kg_per_m3: 2500.0 };
     let (one, two) = (Sphere::homogeneous(0.02, &STEEL), Sphere::homogeneous(0.005, &glass));
-    let pair = Pair::new(&one, &Body::Sphere(two), &SURFACE).unwrap();
-    let swapped = Pair::new(&two, &Body::Sphere(one), &SURFACE).unwrap();
+    let pair = BodyPair::new(&one, &Body::Sphere(two), &SURFACE).unwrap();
+    let swapped = BodyPair::new(&two, &Body::Sphere(one), &SURFACE).unwrap();
     assert_eq!(pair, swapped);
     close(pair.effective_mass_kg, one.mass_kg * two.mass_kg / (one.mass_kg + two.mass_kg), 1e-15);
     close(pair.effective_radius_m, 0.004, 1e-15);
@@ -113,7 +115,7 @@ fn unequal_spheres() {
 
     let hollow =
         Sphere { moment_of_inertia_kg_m2: 2.0 / 3.0 * two.mass_kg * 0.005_f64.powi(2), ..two };
-    let pair = Pair::new(&one, &Body::Sphere(hollow), &SURFACE).unwrap();
+    let pair = BodyPair::new(&one, &Body::Sphere(hollow), &SURFACE).unwrap();
     let share = pair.effective_mass_kg * (2.5 / one.mass_kg + 1.5 / two.mass_kg);
     close(pair.alpha, 1.0 / (1.0 + share), 1e-15);
 }

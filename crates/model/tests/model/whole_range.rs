@@ -2,13 +2,13 @@
 //! docs/validation.md states, on a part of what it was measured on.
 
 use stickslip_model::{Collider, Collision, CollisionError, Contact, exact};
-use stickslip_solver::Pair;
+use stickslip_solver::EmbeddedPair;
 
 use crate::common::{file, number};
 
 /// The pairs with the tolerances of the command line, and the largest error of ε_t.
 fn colliders() -> [(Collider, f64); 2] {
-    let dopri5 = Collider::with_tolerances(Pair::Dopri5, 1e-10, 1e-10);
+    let dopri5 = Collider::with_tolerances(EmbeddedPair::Dopri5, 1e-10, 1e-10);
     [(Collider::default(), 2e-11), (dopri5, 1e-7)]
 }
 
@@ -170,7 +170,7 @@ fn strong_damping_ends_a_contact() {
         [(20.176753929476245, 2.3609777910749106, 3511.353516158355), (2.79e-5, 1.66e-10, 3398.0)]
     {
         for tolerance in [1e-6, 1e-8, 1e-10, 1e-12] {
-            for pair in Pair::ALL {
+            for pair in EmbeddedPair::ALL {
                 let collider = Collider::with_tolerances(pair, tolerance, tolerance);
                 let found = collide(&collider, kappa, psi, damping);
                 let expected = collide(&Collider::default(), kappa, psi, damping);

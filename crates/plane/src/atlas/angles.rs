@@ -26,13 +26,13 @@ impl Oblique {
     /// 1e-9.
     ///
     /// ```
-    /// use stickslip_model::{Material, Pair, Surface};
+    /// use stickslip_model::{BodyPair, Material, Surface};
     /// use stickslip_plane::{Oblique, Range};
     ///
     /// let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
     /// let surface =
     ///     Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e9, damping_time_s: 0.0 };
-    /// let oblique = Oblique::new(Pair::equal_spheres(0.02, &steel, &surface)?, 20.0)?;
+    /// let oblique = Oblique::new(BodyPair::equal_spheres(0.02, &steel, &surface)?, 20.0)?;
     /// let found = oblique.boundaries(Range { low: 0.1, high: 1.5 })?;
     /// // The last one is the boundary of sliding throughout the contact.
     /// let last = found.angles_rad.last().ok_or("no boundary")?;

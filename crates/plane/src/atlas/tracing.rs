@@ -85,13 +85,13 @@ pub fn trace<'w>(
 /// was found so far, and its report says so.
 ///
 /// ```
-/// use stickslip_model::{Material, Pair, Surface};
+/// use stickslip_model::{BodyPair, Material, Surface};
 /// use stickslip_plane::{CollisionPlane, Range, atlas, progress};
 ///
 /// let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
 /// let surface =
 ///     Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e9, damping_time_s: 1e-6 };
-/// let pair = Pair::equal_spheres(0.02, &steel, &surface)?;
+/// let pair = BodyPair::equal_spheres(0.02, &steel, &surface)?;
 /// let sides = [Range { low: 15.0, high: 25.0 }, Range { low: 2.0, high: 6.0 }];
 /// let plane = CollisionPlane::velocities(pair, sides)?;
 /// let division = atlas::divide(&plane, plane.sheet().tolerances().usual, progress::SILENT)?;

@@ -1,4 +1,4 @@
-use stickslip_model::{Material, Pair, Reduction, Surface};
+use stickslip_model::{BodyPair, Material, Reduction, Surface};
 use stickslip_plane::{Coordinates, Extent, Grid, GridAxis, Quantity, Range};
 
 fn axis(low: f64, high: f64, cells: usize) -> GridAxis {
@@ -10,7 +10,7 @@ fn grids() -> [Grid; 3] {
     let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
     let surface =
         Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e8, damping_time_s: 1e-6 };
-    let pair = Pair::equal_spheres(0.02, &steel, &surface).unwrap();
+    let pair = BodyPair::equal_spheres(0.02, &steel, &surface).unwrap();
     let reduction = Reduction { mu: 0.4, alpha: 2.0 / 7.0 };
     [
         Coordinates::Psi { damping: 0.1 },

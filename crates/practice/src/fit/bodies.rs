@@ -1,12 +1,14 @@
 //! The bodies of a fit, and the numbers that may be fitted.
 
-use stickslip_model::{InvalidParameter, Law, Normal, Pair, Sphere, Surface, Tangential, quantity};
+use stickslip_model::{
+    BodyPair, InvalidParameter, Law, Normal, Sphere, Surface, Tangential, quantity,
+};
 
 /// Two bodies whose surfaces are fitted, of which the second one is at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bodies {
     /// What the contact feels. Those properties of the surfaces that are fitted do not count.
-    pub pair: Pair,
+    pub pair: BodyPair,
     /// Distance of the centre of the first sphere from the contact over its moment of inertia, in
     /// 1/(kg m), which makes a spin of an impulse. `None` in scaled units.
     pub arm_per_inertia: Option<f64>,
@@ -33,7 +35,7 @@ const SMALL_TIME: f64 = 1e-200;
 impl Bodies {
     /// A sphere that hits another body.
     #[must_use]
-    pub fn of_sphere(sphere: &Sphere, pair: Pair) -> Self {
+    pub fn of_sphere(sphere: &Sphere, pair: BodyPair) -> Self {
         let arm_per_inertia = Some(sphere.radius_m / sphere.moment_of_inertia_kg_m2);
         Self { pair, arm_per_inertia }
     }
@@ -51,7 +53,7 @@ impl Bodies {
             tangential_stiffness_kg_per_s2: values.kappa * alpha,
             damping_time_s: values.damping,
         };
-        let pair = Pair {
+        let pair = BodyPair {
             effective_mass_kg: 1.0,
             effective_radius_m: 1.0,
             elastic_constant: 1.0,
@@ -77,7 +79,7 @@ impl Bodies {
             tangential_stiffness_kg_per_s2: 1.0,
             damping_time_s: SMALL_TIME,
         };
-        let pair = Pair { surface, tangential_damping_ratio: 0.0, ..self.pair };
+        let pair = BodyPair { surface, tangential_damping_ratio: 0.0, ..self.pair };
         let contact = pair.impact(speed_m_per_s, speed_m_per_s)?.contact;
         Ok(Units {
             speed_m_per_s,
@@ -99,7 +101,7 @@ impl Bodies {
     }
 
     /// The pair with other values.
-    pub(super) fn with(&self, units: &Units, values: &Values) -> Pair {
+    pub(super) fn with(&self, units: &Units, values: &Values) -> BodyPair {
         let damped = units.damping_per_s > 0.0;
         let surface = Surface {
             friction: values.mu,
@@ -107,14 +109,14 @@ impl Bodies {
             damping_time_s: if damped { values.damping / units.damping_per_s } else { 0.0 },
         };
         let tangential_damping_ratio = values.tangential_damping * self.pair.alpha;
-        Pair { surface, tangential_damping_ratio, ..self.pair }
+        BodyPair { surface, tangential_damping_ratio, ..self.pair }
     }
 
     /// κ at normal incidence of the tangential stiffness that Mindlin's theory gives the materials:
     /// a constant one has it at the largest compression. `None` if they are not known, or if the
     /// normal force is linear.
     pub(super) fn mindlin_kappa(&self, units: &Units) -> Option<f64> {
-        let Pair { law, stiffness_ratio, elastic_constant, .. } = self.pair;
+        let BodyPair { law, stiffness_ratio, elastic_constant, .. } = self.pair;
         if self.are_scaled() || law.normal == Normal::Linear {
             return None;
         }

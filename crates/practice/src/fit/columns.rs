@@ -87,8 +87,8 @@ impl Meaning {
 /// ```
 ///
 /// # Errors
-/// [`InvalidColumns`]: columns are missing, unknown or contradict each other, or a row has no
-/// impact. Values of quantities are checked by the fit.
+/// [`InvalidColumns`]: columns are missing, unknown or contradict each other, a row has no impact,
+/// or an angle is out of range. Values of other quantities are checked by the fit.
 pub fn data(
     columns: &[Column],
     rows: &[usize],
@@ -119,6 +119,10 @@ pub fn data(
             let Meaning::Measured(quantity, unit) = *meaning else { continue };
             let at = |column: &Column| column.values.get(index).copied().flatten();
             let Some(value) = at(found) else { continue };
+            if quantity == Measured::ReboundAngle && !quantity.allows(value * unit) {
+                let (name, degrees) = (found.name.clone(), unit != 1.0);
+                return Err(InvalidColumns::ReboundAngle { row, name, value, degrees });
+            }
             let (normal_m_per_s, tangential_m_per_s) = impacts.at(index, row)?;
             let error = column(Meaning::Error(quantity, unit)).and_then(at);
             data.push(Datum {
@@ -260,6 +264,21 @@ pub enum InvalidColumns {
         if *degrees { "90 degrees" } else { "π/2" }
     )]
     Angle {
+        /// The row.
+        row: usize,
+        /// The name of the column.
+        name: String,
+        /// The angle.
+        value: f64,
+        /// Whether it is in degrees.
+        degrees: bool,
+    },
+    /// A rebound angle is out of range.
+    #[error(
+        "row {row}: {name} = {value:?} is out of range; expected an angle between {}",
+        if *degrees { "-90 and 90 degrees" } else { "-π/2 and π/2" }
+    )]
+    ReboundAngle {
         /// The row.
         row: usize,
         /// The name of the column.

@@ -109,16 +109,11 @@ fn curves(
                 let part = f64::from(index) / f64::from(POINTS - 1);
                 let angle = angles_rad.low + part * (angles_rad.high - angles_rad.low);
                 let value = predicted_at(bodies, units, values, quantity, angle)?;
-                Ok((angle.to_degrees(), shown(quantity, value)))
+                Ok((angle.to_degrees(), quantity.shown(value)))
             };
             let points: Result<Vec<_>, FitError> = (0..POINTS).map(point).collect();
             curves.push(Curve { quantity, minimum, points: points? });
         }
     }
     Ok(curves)
-}
-
-/// A value of a quantity as it is drawn: angles are in degrees.
-pub(super) fn shown(quantity: Measured, value: f64) -> f64 {
-    if quantity == Measured::ReboundAngle { value.to_degrees() } else { value }
 }

@@ -34,6 +34,22 @@ impl Measured {
         }
     }
 
+    /// The name of the column of a table for people, with the unit: as [`Self::name`], but angles
+    /// are in degrees.
+    #[must_use]
+    pub fn heading(self) -> &'static str {
+        match self {
+            Self::ReboundAngle => "centre_rebound_angle_deg",
+            other => other.name(),
+        }
+    }
+
+    /// A value as people read it, in the unit of [`Self::heading`].
+    #[must_use]
+    pub fn shown(self, value: f64) -> f64 {
+        if self == Self::ReboundAngle { value.to_degrees() } else { value }
+    }
+
     /// The quantity with this [`Self::name`].
     #[must_use]
     pub fn find(name: &str) -> Option<Self> {

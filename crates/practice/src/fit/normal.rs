@@ -9,6 +9,7 @@ use super::free::Free;
 use super::intervals::{Interval, interval, threshold};
 use super::problem::Problem;
 use super::scan::{Line, Lines, candidates};
+use super::search::SearchError;
 use super::settings::Settings;
 use crate::time_steps::ContactFailure;
 
@@ -49,7 +50,7 @@ pub fn damping(settings: &Settings, units: &Units) -> Result<(f64, Option<Dampin
         bottoms.push((bottom.values.damping, bottom.misfit));
     }
     let best = bottoms.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1));
-    let (damping, misfit) = best.ok_or_else(|| FitError::Search("no minimum".to_owned()))?;
+    let (damping, misfit) = best.ok_or(SearchError::NoPlaces)?;
     let estimated_errors = settings.estimates_errors(true);
     let threshold = threshold(misfit, settings.level, (data.len(), 1), estimated_errors);
     let interval = interval(&lines, &found, bottoms.into_iter(), threshold)?;
@@ -59,7 +60,6 @@ pub fn damping(settings: &Settings, units: &Units) -> Result<(f64, Option<Dampin
 
 /// ε_n at normal incidence with some damping.
 pub fn eps_n(bodies: &Bodies, damping: f64) -> Result<f64, FitError> {
-    // The normal motion does not depend on κ and ψ.
     // The normal motion does not depend on κ and ψ. At κψ = 1 and the like, spring and limit of
     // some laws begin alike, which cannot be integrated.
     let contact = Contact::new(1.1, 0.3, damping)?.with_law(bodies.pair.law, 0.0)?;

@@ -7,7 +7,7 @@ use stickslip_figure::canvas::style::{INK, RULE, SMALL, TITLE};
 use stickslip_figure::canvas::svg::{Anchor, Words};
 
 use super::Fit;
-use super::course::{Course, shown};
+use super::course::Course;
 use super::data::Measured;
 
 const WIDTH: f64 = 900.0;
@@ -76,8 +76,8 @@ impl Fit {
     fn panel(&self, svg: &mut Svg, course: &Course, quantity: Measured, frame: Rectangle) {
         let data = self.residuals.iter().map(|residual| residual.datum);
         let data = data.filter(|datum| datum.quantity == quantity).map(|datum| {
-            let (value, error) = (shown(quantity, datum.value), datum.error.unwrap_or(0.0));
-            (datum.angle_rad().to_degrees(), value, shown(quantity, error))
+            let (value, error) = (quantity.shown(datum.value), datum.error.unwrap_or(0.0));
+            (datum.angle_rad().to_degrees(), value, quantity.shown(error))
         });
         let data: Vec<(f64, f64, f64)> = data.collect();
         let curves = course.curves.iter().filter(|curve| curve.quantity == quantity);

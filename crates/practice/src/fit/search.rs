@@ -9,6 +9,41 @@ use argmin::solver::neldermead::NelderMead;
 
 use super::FitError;
 
+/// Why a search has no result.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum SearchError {
+    /// A search has no places to start from.
+    #[error("a search has no places to start from")]
+    NoPlaces,
+    /// Brent's method for a minimum failed.
+    #[error("Brent's method for a minimum failed from {low:?} to {high:?}")]
+    Minimum {
+        /// The beginning of the interval.
+        low: f64,
+        /// Its end.
+        high: f64,
+    },
+    /// Brent's method for a zero failed.
+    #[error(
+        "Brent's method for a zero failed from {low:?} to {high:?}; expected values of two signs \
+         at the ends"
+    )]
+    Zero {
+        /// The beginning of the interval.
+        low: f64,
+        /// Its end.
+        high: f64,
+    },
+    /// The simplex method of Nelder and Mead failed.
+    #[error("the simplex method failed from {start:?} with the sides {sides:?}")]
+    Simplex {
+        /// The place at which it began.
+        start: [f64; 2],
+        /// The sides of the triangle.
+        sides: [f64; 2],
+    },
+}
+
 /// The place of the one minimum of `cost` in an interval and the value there, by Brent's method, to
 /// a `tolerance` in parts of the interval.
 pub fn least(
@@ -19,7 +54,8 @@ pub fn least(
     let inside = |part: f64| low + part * (high - low);
     let solver = BrentOpt::new(0.0, 1.0).set_tolerance(tolerance, tolerance);
     let cost = |part: &f64| cost(inside(*part));
-    let (part, value) = solve(cost, solver, |state| state.max_iters(100))?;
+    let failure = SearchError::Minimum { low, high };
+    let (part, value) = solve(cost, Ok(solver), failure, |state| state.max_iters(100))?;
     Ok((inside(part), value))
 }
 
@@ -39,7 +75,8 @@ pub fn root(
         1.0 => Ok(at_high),
         part => height(inside(part)),
     };
-    Ok(inside(solve(height, solver, |state| state.max_iters(100))?.0))
+    let failure = SearchError::Zero { low, high };
+    Ok(inside(solve(height, Ok(solver), failure, |state| state.max_iters(100))?.0))
 }
 
 /// The minimum of `cost` near `start`, by the simplex method of Nelder and Mead from a triangle
@@ -55,18 +92,19 @@ pub fn least_near(
     let unit = if unit > 0.0 { unit } else { 1.0 };
     let corners = vec![vec![x, y], vec![x + step[0], y], vec![x, y + step[1]]];
     let solver = NelderMead::new(corners).with_sd_tolerance(1e-15);
-    let solver = solver.map_err(|error| FitError::Search(error.to_string()))?;
     let cost = |at: &Vec<f64>| cost([at[0], at[1]]).map(|value| value / unit);
-    let (at, value) = solve(cost, solver, |state| state.max_iters(300))?;
+    let failure = SearchError::Simplex { start, sides: step };
+    let (at, value) = solve(cost, solver, failure, |state| state.max_iters(300))?;
     Ok(([at[0], at[1]], value * unit))
 }
 
 type SolverState<P> = IterState<P, (), (), (), (), f64>;
 
-/// The best place that `solver` finds, and the cost there.
+/// The best place that `solver` finds, and the cost there; `failure` if the solver fails.
 fn solve<P, F, S>(
     cost: F,
-    solver: S,
+    solver: Result<S, Error>,
+    failure: SearchError,
     start: impl FnOnce(SolverState<P>) -> SolverState<P>,
 ) -> Result<(P, f64), FitError>
 where
@@ -75,14 +113,15 @@ where
     S: for<'a> Solver<&'a Cost<P, F>, SolverState<P>>,
 {
     let cost = Cost { value: cost, failed: RefCell::default(), place: PhantomData };
-    let solved = Executor::new(&cost, solver).timer(false).configure(start).run();
-    if let Some(failure) = cost.failed.take() {
-        return Err(failure);
+    let solved =
+        solver.and_then(|solver| Executor::new(&cost, solver).timer(false).configure(start).run());
+    if let Some(failed) = cost.failed.take() {
+        return Err(failed);
     }
-    let solved = solved.map_err(|error| FitError::Search(error.to_string()))?;
+    let solved = solved.map_err(|_| failure)?;
     let state = solved.state();
     let best = state.get_best_param().map(|at| (at.clone(), state.get_best_cost()));
-    best.ok_or_else(|| FitError::Search("no place was looked at".to_owned()))
+    best.ok_or(SearchError::NoPlaces.into())
 }
 
 /// A function whose minimum or zero is looked for, and its first failure. After a failure the
@@ -109,8 +148,10 @@ impl<P, F: Fn(&P) -> Result<f64, FitError>> CostFunction for &Cost<P, F> {
 mod tests {
     use super::*;
 
+    const BROKEN: FitError = FitError::Unreachable { eps_n: 0.5, least: 0.7 };
+
     fn broken<P>(_: P) -> Result<f64, FitError> {
-        Err(FitError::Search("broken".to_owned()))
+        Err(BROKEN)
     }
 
     #[test]
@@ -129,9 +170,14 @@ mod tests {
 
     #[test]
     fn failures_come_through() {
-        let expected = FitError::Search("broken".to_owned());
-        assert_eq!(least((0.0, 1.0), 1e-8, broken).unwrap_err(), expected);
-        assert_eq!(root([(0.0, -1.0), (1.0, 1.0)], broken).unwrap_err(), expected);
-        assert_eq!(least_near([0.0; 2], [0.1; 2], broken).unwrap_err(), expected);
+        assert_eq!(least((0.0, 1.0), 1e-8, broken).unwrap_err(), BROKEN);
+        assert_eq!(root([(0.0, -1.0), (1.0, 1.0)], broken).unwrap_err(), BROKEN);
+        assert_eq!(least_near([0.0; 2], [0.1; 2], broken).unwrap_err(), BROKEN);
+    }
+
+    #[test]
+    fn a_zero_needs_values_of_two_signs() {
+        let found = root([(1.0, 2.0), (3.0, 10.0)], |x| Ok(x * x + 1.0));
+        assert_eq!(found, Err(SearchError::Zero { low: 1.0, high: 3.0 }.into()));
     }
 }

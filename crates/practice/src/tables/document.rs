@@ -29,8 +29,11 @@ pub struct Document {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DocumentError {
     /// The layout is another one.
-    #[error("schema is {0:?}; expected {SCHEMA:?}")]
-    Schema(String),
+    #[error("schema is {found:?}; expected {SCHEMA:?}")]
+    Schema {
+        /// The layout of the document.
+        found: String,
+    },
     /// A number is out of its range.
     #[error("{name} = {value:?} is out of range; expected a finite number in an ascending range")]
     Number {
@@ -82,7 +85,7 @@ impl TryFrom<Document> for Table {
         let Document { schema, window, constant_eps_n, bound, verification, regions, arrays } =
             document;
         if schema != SCHEMA {
-            return Err(DocumentError::Schema(schema));
+            return Err(DocumentError::Schema { found: schema });
         }
         let damping = match window {
             Window::Scaled { damping, .. } => damping,

@@ -1,6 +1,6 @@
 //! What is asked of a table.
 
-use stickslip_model::{InvalidParameter, Law, Pair};
+use stickslip_model::{BodyPair, InvalidParameter, Law};
 use stickslip_plane::atlas::Frame;
 use stickslip_plane::{CollisionPlane, Range};
 
@@ -33,7 +33,7 @@ pub enum Window {
     /// The velocities of the surfaces of two bodies.
     Velocities {
         /// The bodies, which obey the paper's law.
-        pair: Pair,
+        pair: BodyPair,
         /// Normal velocity g_n in m/s.
         normal_m_per_s: Range,
         /// Tangential velocity g_t in m/s.

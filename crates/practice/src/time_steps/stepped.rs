@@ -68,7 +68,7 @@ pub fn step(
     }
     let longest = LONGEST * f64::max(duration, undamped_contact_time(contact.law()));
     let most = (longest / dt + 10.0).min(MOST_STEPS);
-    let mut pair = Pair::new(contact, dt, scheme);
+    let mut rule = ForceRule::new(contact, dt, scheme);
     let mut state = State { x: -phase * dt, v: 1.0, w: contact.psi(), history: 0.0, root: 0.0 };
     let mut steps = 0;
     let mut stiffness: f64 = 0.0;
@@ -79,7 +79,7 @@ pub fn step(
             if steps as f64 > most {
                 return None;
             }
-            let Some(number) = pair.advance(&mut state) else { break };
+            let Some(number) = rule.advance(&mut state) else { break };
             stiffness = stiffness.max(number);
         } else if steps > 0 || !state.v.is_finite() {
             break;
@@ -105,7 +105,7 @@ struct State {
 }
 
 /// What decides on forces.
-struct Pair {
+struct ForceRule {
     law: Law,
     limited: bool,
     kappa: f64,
@@ -117,7 +117,7 @@ struct Pair {
     first: bool,
 }
 
-impl Pair {
+impl ForceRule {
     fn new(contact: &Contact, dt: f64, scheme: Scheme) -> Self {
         let law = contact.law();
         Self {

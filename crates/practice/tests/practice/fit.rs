@@ -1,6 +1,6 @@
 //! Fits: of measured impacts, and of data whose parameters are known.
 
-use stickslip_model::{Law, Pair};
+use stickslip_model::{BodyPair, Law};
 use stickslip_plane::{Range, progress::SILENT};
 use stickslip_practice::fit::{
     self, Bodies, Datum, Fit, Free, Measured, Minimum, Settings, Survey, Values,
@@ -206,7 +206,7 @@ fn predictions_are_those_of_encounters() {
     let surface =
         Surface { friction: 0.15, tangential_stiffness_kg_per_s2: 4e6, damping_time_s: 4e-7 };
     let wall = Wall { elasticity: Some(glass.elasticity()) };
-    let pair = Pair::new(&sphere, &Body::Wall(wall), &surface).unwrap();
+    let pair = BodyPair::new(&sphere, &Body::Wall(wall), &surface).unwrap();
     let bodies = Bodies::of_sphere(&sphere, pair);
     let zero = Vector3::zeros();
     let still = WallMotion { point_m: zero, normal: Vector3::z(), velocity_m_per_s: zero };

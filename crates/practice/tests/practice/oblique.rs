@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 use stickslip_model::{
-    Body, Constants, Elasticity, Forces, Law, Material, Pair, Sphere, Wall, presets,
+    Body, BodyPair, Constants, Elasticity, Forces, Law, Material, Sphere, Wall, presets,
 };
 use stickslip_practice::fit::{Bodies, Datum, Measured, Values};
 
@@ -40,7 +40,7 @@ pub fn aluminium_oxide(law: Law) -> (Bodies, Vec<Datum>) {
     let sphere = Sphere::homogeneous(0.5 * number(&found["diameter_m"]), &material);
     let wall = Body::Wall(Wall { elasticity: Some(elasticity(&found["plate"])) });
     let forces = Forces::new(law, &constants(law)).unwrap();
-    let bodies = Bodies::of_sphere(&sphere, Pair::new(&sphere, &wall, forces).unwrap());
+    let bodies = Bodies::of_sphere(&sphere, BodyPair::new(&sphere, &wall, forces).unwrap());
     let speed = number(&found["speed_m_s"]);
     (bodies, data(&found, speed, Measured::CentreRestitution, "e_t_of_the_centre"))
 }

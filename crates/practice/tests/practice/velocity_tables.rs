@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use fastrand::Rng;
-use stickslip_model::{Body, Engine, Law, Material, Pair, Sphere, Surface, Wall, presets};
+use stickslip_model::{Body, BodyPair, Engine, Law, Material, Sphere, Surface, Wall, presets};
 use stickslip_plane::{Range, progress};
 #[cfg(feature = "serde")]
 use stickslip_practice::tables::Document;
@@ -14,17 +14,17 @@ use stickslip_practice::tables::{self, InvalidTable, Settings, Table, TableError
 use crate::c_program;
 
 /// Steel spheres of 2 cm. κ is 7.4 and the scaled damping 0.27 at 1 m/s.
-fn spheres() -> Pair {
+fn spheres() -> BodyPair {
     with_damping(1e-5, 2e8)
 }
 
-fn with_damping(damping_time_s: f64, tangential_stiffness_kg_per_s2: f64) -> Pair {
+fn with_damping(damping_time_s: f64, tangential_stiffness_kg_per_s2: f64) -> BodyPair {
     let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
     let surface = Surface { friction: 0.4, tangential_stiffness_kg_per_s2, damping_time_s };
-    Pair::equal_spheres(0.02, &steel, &surface).expect("a pair")
+    BodyPair::equal_spheres(0.02, &steel, &surface).expect("a pair")
 }
 
-fn settings(pair: Pair, normal: (f64, f64), tangential: (f64, f64), bound: f64) -> Settings {
+fn settings(pair: BodyPair, normal: (f64, f64), tangential: (f64, f64), bound: f64) -> Settings {
     let [normal_m_per_s, tangential_m_per_s] =
         [normal, tangential].map(|(low, high)| Range { low, high });
     let window = Window::Velocities { pair, normal_m_per_s, tangential_m_per_s };
@@ -138,7 +138,7 @@ fn a_boundary_may_turn_back() {
     let surface =
         Surface { friction: 0.3, tangential_stiffness_kg_per_s2: 5e6, damping_time_s: 5e-8 };
     let bead = Sphere::homogeneous(0.0015, &material(63e9, 0.24));
-    let pair = Pair::new(&bead, &Body::Wall(wall), &surface).expect("a pair");
+    let pair = BodyPair::new(&bead, &Body::Wall(wall), &surface).expect("a pair");
     let table = made(&settings(pair, (0.18, 0.24), (0.01, 0.02), 1e-8));
     let [eps_t, eps_n] = largest_errors(&table, 5_000);
     assert!(eps_t <= 1e-8 && eps_n <= 1e-8, "{eps_t:e} {eps_n:e}");
@@ -240,9 +240,9 @@ fn what_cannot_be_is_refused_with_numbers() {
     let weak = refused(with_damping(1e-18, 2e8), (1.0, 8.0), (0.3, 12.0));
     assert!(weak.to_string().contains("damping"), "{weak}");
     let history = presets::find("gran/hertz/history").unwrap().law;
-    let other: [fn(Pair, Law) -> Pair; 2] = [
-        |pair, law| Pair { law, ..pair },
-        |pair, _| Pair { tangential_damping_ratio: 0.5, ..pair },
+    let other: [fn(BodyPair, Law) -> BodyPair; 2] = [
+        |pair, law| BodyPair { law, ..pair },
+        |pair, _| BodyPair { tangential_damping_ratio: 0.5, ..pair },
     ];
     for change in other {
         let error = refused(change(spheres(), history), (1.0, 8.0), (0.3, 12.0));

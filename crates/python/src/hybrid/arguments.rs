@@ -2,7 +2,9 @@
 
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
-use stickslip_solver::{Direction, Guard, InvalidOption, Options, Pair, UnknownPair};
+use stickslip_solver::{
+    Direction, EmbeddedPair, Guard, InvalidOption, Options, UnknownEmbeddedPair,
+};
 
 use crate::failure::bad_input;
 
@@ -105,8 +107,8 @@ pub struct Settings {
 }
 
 impl Settings {
-    pub fn checked(&self) -> PyResult<(Pair, Options)> {
-        let pair = self.method.parse().map_err(|error: UnknownPair| bad_input(error))?;
+    pub fn checked(&self) -> PyResult<(EmbeddedPair, Options)> {
+        let pair = self.method.parse().map_err(|error: UnknownEmbeddedPair| bad_input(error))?;
         let options = Options {
             rtol: self.rtol,
             atol: self.atol,

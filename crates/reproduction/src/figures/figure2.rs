@@ -6,7 +6,7 @@ use serde_json::json;
 use stickslip_figure::canvas::style::FRAME;
 use stickslip_figure::number;
 use stickslip_figure::pictures::map::{self, MapPanel};
-use stickslip_model::{Pair, Surface};
+use stickslip_model::{BodyPair, Surface};
 use stickslip_plane::{Coordinates, Grid, GridAxis, Quantity, Range};
 use stickslip_studies::paper::{MU, STEEL, STEEL_RADIUS_M, STEEL_STIFFNESS_KG_PER_S2, ratio};
 use stickslip_studies::{Picture, Study};
@@ -33,7 +33,7 @@ const SURFACE: Surface = Surface {
 /// # Errors
 /// The picture cannot be drawn.
 pub fn run(reproduction: &Reproduction) -> Result<Section, ReproductionError> {
-    let pair = Pair::equal_spheres(STEEL_RADIUS_M, &STEEL, &SURFACE)?;
+    let pair = BodyPair::equal_spheres(STEEL_RADIUS_M, &STEEL, &SURFACE)?;
     let axis = GridAxis { range: VELOCITY, cells: reproduction.cells };
     let coordinates = Coordinates::Velocities { pair };
     let sweep = Arc::new(Sweep::new(Grid::new(axis, axis, coordinates)));

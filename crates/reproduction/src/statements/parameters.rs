@@ -1,12 +1,11 @@
 //! Statement 2, on the number of parameters.
 
 use fastrand::Rng;
-use stickslip_model::regularized::{END, OTHER_SIDE, Phase, Progress};
-use stickslip_model::{CollisionError, Material, Pair, Regime, Side, Surface, regularized};
-use stickslip_solver::{
-    Direction, Dop853, Guard, HybridSystem, Options, Outcome, Start, State, run,
-};
+use stickslip_model::regularized::END;
+use stickslip_model::{BodyPair, Material, Surface};
+use stickslip_solver::Outcome;
 use stickslip_studies::CollisionFailure;
+use stickslip_studies::three_parameters::ThreeParameters;
 
 use super::sampling::{each, random};
 use super::spring::Spring;
@@ -25,8 +24,9 @@ pub fn three(subject: &Subject) -> Result<Finding, Stop> {
         .collect();
     let differences = each(&cases, |&[kappa, psi, friction]| {
         let reference = subject.collide(kappa, psi, 0.0)?.eps_t();
-        let system = ThreeParameters { spring: subject.spring, kappa, friction };
-        Ok((system.eps_t(psi)? - reference).abs() * psi)
+        let reset = subject.spring == Spring::Reset;
+        let eps_t = ended(&ThreeParameters { reset, kappa, friction }, psi)?;
+        Ok((eps_t - reference).abs() * psi)
     })?;
     let largest = differences.into_iter().fold(0.0, f64::max);
 
@@ -73,101 +73,27 @@ fn scaled_back(draw: &mut Rng, kappa: f64, psi: f64) -> Result<(f64, f64), Repro
     };
     let friction = between(0.05, 1.0);
     let surface = Surface { friction, tangential_stiffness_kg_per_s2: 1.0, damping_time_s: 0.0 };
-    let soft = Pair::equal_spheres(between(1e-4, 1.0), &material, &surface)?;
-    let soft = Pair { alpha: between(0.1, 1.0), ..soft };
+    let soft = BodyPair::equal_spheres(between(1e-4, 1.0), &material, &surface)?;
+    let soft = BodyPair { alpha: between(0.1, 1.0), ..soft };
     let normal_m_per_s = between(1e-3, 100.0);
     let tangential_m_per_s = psi * normal_m_per_s * friction / soft.alpha;
     // κ is proportional to the stiffness.
     let unit = soft.impact(normal_m_per_s, tangential_m_per_s)?.contact.kappa();
     let surface = Surface { tangential_stiffness_kg_per_s2: kappa / unit, ..surface };
-    let pair = Pair { surface, ..soft };
+    let pair = BodyPair { surface, ..soft };
     let impact = pair.impact(normal_m_per_s, tangential_m_per_s)?;
     Ok((impact.contact.kappa(), impact.contact.psi()))
 }
 
-/// The undamped contact in the scaled units of (23, 24), with friction f = μ/α kept: |F_t| ≤ f
-/// x^{3/2}.
-struct ThreeParameters {
-    spring: Spring,
-    kappa: f64,
-    friction: f64,
-}
-
-/// The number of components: u, v, y, w in the coordinates of `regularized`.
-const STATE: usize = 4;
-
-impl ThreeParameters {
-    fn eps_t(&self, psi: f64) -> Result<f64, ReproductionError> {
-        let (kappa, ratio) = (self.kappa, psi * self.friction);
-        let size = ratio.min(1.0) * 1e-14;
-        let options = Options { rtol: 1e-14, atol: size, max_step: 0.1, ..Options::default() };
-        let (regime, side, progress) = (Regime::Slip, Side::Positive, Progress::Touched);
-        let mode = Phase { regime, side, progress };
-        let start = Start { mode, s: 0.0, state: State::from([0.0, 1.0, 0.0, ratio]) };
-        let end = run(Dop853, self, start, f64::INFINITY, &options, &mut ());
-        let end = end.map_err(|error| {
-            let source = CollisionError::from(error).into();
-            CollisionFailure { kappa, psi, damping: 0.0, source }
-        })?;
-        match end.outcome {
-            Outcome::EndedByGuard { guard: END } => Ok(end.state[3] / ratio),
-            outcome => Err(ReproductionError::Unended { kappa, psi, outcome }),
-        }
-    }
-}
-
-impl HybridSystem<STATE, { regularized::GUARDS }> for ThreeParameters {
-    type Mode = Phase;
-
-    fn field(&self, phase: Phase, _s: f64, state: &State<STATE>) -> State<STATE> {
-        let [u, v, y, w] = *state.as_ref();
-        let follows = phase.regime == Regime::Stick || self.spring == Spring::Unreset;
-        let pull = match phase.regime {
-            Regime::Slip => phase.side.sign() * self.friction * u * u * u,
-            Regime::Stick => self.kappa * y,
-        };
-        let stretch = if follows { 2.0 * u * w } else { 0.0 };
-        State::from([v, -2.0 * u.powi(4), stretch, -2.0 * u * pull])
-    }
-
-    fn guards(&self, phase: Phase) -> [Guard; 3] {
-        let end = Guard::new(Direction::Below).terminal();
-        let leave = Guard::new(Direction::Below);
-        let reset = self.spring == Spring::Reset;
-        match (phase.regime, phase.progress) {
-            (Regime::Slip, Progress::Touched) if reset => [end.from_zero(1), leave, Guard::OFF],
-            (Regime::Slip, Progress::Touched) => [end.from_zero(1), leave.from_zero(2), Guard::OFF],
-            (Regime::Slip, _) if reset => [end, leave, Guard::OFF],
-            (Regime::Slip, _) => [end, leave.from_zero(1), Guard::OFF],
-            (Regime::Stick, _) => [end, leave.from_zero(if reset { 2 } else { 1 }), leave],
-        }
-    }
-
-    fn guard_values(&self, phase: Phase, _s: f64, state: &State<STATE>) -> [f64; 3] {
-        let [u, v, y, w] = *state.as_ref();
-        let (sign, limit) = (phase.side.sign(), self.friction * u * u * u);
-        let pull = sign * self.kappa * y;
-        match (phase.regime, self.spring) {
-            (Regime::Slip, Spring::Reset) => {
-                [u, sign * self.kappa * w - 1.5 * self.friction * u * v, 1.0]
-            }
-            (Regime::Slip, Spring::Unreset) => [u, pull - limit, 1.0],
-            (Regime::Stick, _) => [u, limit - pull, limit + pull],
-        }
-    }
-
-    fn transition(
-        &self,
-        phase: Phase,
-        guard: usize,
-        _s: f64,
-        state: &State<STATE>,
-    ) -> (Phase, State<STATE>) {
-        let next = phase.after(guard == OTHER_SIDE);
-        let mut state = *state;
-        if next.regime == Regime::Stick && self.spring == Spring::Reset {
-            state[2] = next.side.sign() * self.friction * state[0].powi(3) / self.kappa;
-        }
-        (next, state)
+/// ε_t of a collision in three parameters, which must end with the contact.
+fn ended(system: &ThreeParameters, psi: f64) -> Result<f64, ReproductionError> {
+    let kappa = system.kappa;
+    let found = system.eps_t(psi).map_err(|source| {
+        let source = source.into();
+        CollisionFailure { kappa, psi, damping: 0.0, source }
+    })?;
+    match found {
+        (eps_t, Outcome::EndedByGuard { guard: END }) => Ok(eps_t),
+        (_, outcome) => Err(ReproductionError::Unended { kappa, psi, outcome }),
     }
 }

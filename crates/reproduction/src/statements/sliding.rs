@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use fastrand::Rng;
 use stickslip_model::coulomb::{self, NormalLaw};
-use stickslip_model::{Pair, Surface, exact};
+use stickslip_model::{BodyPair, Surface, exact};
 use stickslip_studies::paper::{
     self, Reading, STEEL, STEEL_RADIUS_M, STEEL_STIFFNESS_KG_PER_S2, STIFFNESS,
 };
@@ -195,7 +195,7 @@ pub fn footnote_2(_: &Subject) -> Result<Finding, Stop> {
         tangential_stiffness_kg_per_s2: STEEL_STIFFNESS_KG_PER_S2,
         damping_time_s: 0.0,
     };
-    let impact = Pair::equal_spheres(STEEL_RADIUS_M, &STEEL, &surface)
+    let impact = BodyPair::equal_spheres(STEEL_RADIUS_M, &STEEL, &surface)
         .and_then(|pair| pair.impact(SPEED_M_PER_S, 1.0))?;
     let force_n = impact.largest_normal_force_n();
     let as_printed = formula(210e6, 250.0);

@@ -1,9 +1,8 @@
 //! Models of the spring, and the collisions with each.
 
 use stickslip_model::{Collider, Collision, Contact, Engine, EngineError, largest};
-use stickslip_studies::CollisionFailure;
+use stickslip_studies::{CollisionFailure, unreset};
 
-use super::unreset;
 use crate::error::ReproductionError;
 
 /// A model of the spring.

@@ -4,13 +4,15 @@ use crate::dynamic::results::{DynamicObserver, DynamicRun};
 use crate::dynamic::runner::run_dynamic;
 use crate::dynamic::system::{DynamicStart, DynamicSystem};
 use crate::error::RunError;
-use crate::method::{Dop853, Dopri5, Pair};
+use crate::method::{Dop853, Dopri5, EmbeddedPair};
 use crate::options::Options;
 
 /// As [`run_dynamic`], with a pair that is chosen at run time. Results are the same, bit for bit.
 ///
 /// ```
-/// use stickslip_solver::{DynamicStart, DynamicSystem, Guard, Options, Pair, run_dynamic_with};
+/// use stickslip_solver::{
+///     DynamicStart, DynamicSystem, EmbeddedPair, Guard, Options, run_dynamic_with,
+/// };
 ///
 /// struct Decay;
 ///
@@ -28,7 +30,7 @@ use crate::options::Options;
 ///
 /// let start = DynamicStart { mode: (), s: 0.0, state: &[1.0; 1000] };
 /// for name in ["dopri5", "dop853"] {
-///     let pair: Pair = name.parse()?;
+///     let pair: EmbeddedPair = name.parse()?;
 ///     let end = run_dynamic_with(pair, &Decay, start, 1.0, &Options::default(), &mut ())?;
 ///     assert!((end.state[999] - (-1.0_f64).exp()).abs() < 1e-9);
 /// }
@@ -38,7 +40,7 @@ use crate::options::Options;
 /// # Errors
 /// Those of [`run_dynamic`].
 pub fn run_dynamic_with<S, O>(
-    pair: Pair,
+    pair: EmbeddedPair,
     system: &S,
     start: DynamicStart<'_, S::Mode>,
     end: f64,
@@ -50,7 +52,7 @@ where
     O: DynamicObserver<S::Mode>,
 {
     match pair {
-        Pair::Dopri5 => run_dynamic(Dopri5, system, start, end, options, observer),
-        Pair::Dop853 => run_dynamic(Dop853, system, start, end, options, observer),
+        EmbeddedPair::Dopri5 => run_dynamic(Dopri5, system, start, end, options, observer),
+        EmbeddedPair::Dop853 => run_dynamic(Dop853, system, start, end, options, observer),
     }
 }

@@ -11,16 +11,16 @@ use crate::method::tableau::Method;
 /// method ([`Method::NAME`]).
 ///
 /// ```
-/// use stickslip_solver::Pair;
+/// use stickslip_solver::EmbeddedPair;
 ///
-/// let pair: Pair = "dopri5".parse()?;
-/// assert_eq!((pair, pair.order()), (Pair::Dopri5, 5));
-/// assert!(Pair::ALL.iter().all(|pair| pair.to_string().parse() == Ok(*pair)));
-/// assert!("euler".parse::<Pair>().is_err());
-/// # Ok::<(), stickslip_solver::UnknownPair>(())
+/// let pair: EmbeddedPair = "dopri5".parse()?;
+/// assert_eq!((pair, pair.order()), (EmbeddedPair::Dopri5, 5));
+/// assert!(EmbeddedPair::ALL.iter().all(|pair| pair.to_string().parse() == Ok(*pair)));
+/// assert!("euler".parse::<EmbeddedPair>().is_err());
+/// # Ok::<(), stickslip_solver::UnknownEmbeddedPair>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Pair {
+pub enum EmbeddedPair {
     /// Dormand–Prince 5(4): [`Dopri5`].
     Dopri5,
     /// Dormand–Prince 8(5,3): [`Dop853`].
@@ -28,7 +28,7 @@ pub enum Pair {
     Dop853,
 }
 
-impl Pair {
+impl EmbeddedPair {
     /// All pairs.
     pub const ALL: [Self; 2] = [Self::Dopri5, Self::Dop853];
 
@@ -69,37 +69,37 @@ impl Pair {
     }
 }
 
-impl From<Dopri5> for Pair {
+impl From<Dopri5> for EmbeddedPair {
     fn from(Dopri5: Dopri5) -> Self {
         Self::Dopri5
     }
 }
 
-impl From<Dop853> for Pair {
+impl From<Dop853> for EmbeddedPair {
     fn from(Dop853: Dop853) -> Self {
         Self::Dop853
     }
 }
 
-impl fmt::Display for Pair {
+impl fmt::Display for EmbeddedPair {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.name())
     }
 }
 
-impl FromStr for Pair {
-    type Err = UnknownPair;
+impl FromStr for EmbeddedPair {
+    type Err = UnknownEmbeddedPair;
 
-    fn from_str(name: &str) -> Result<Self, UnknownPair> {
+    fn from_str(name: &str) -> Result<Self, UnknownEmbeddedPair> {
         let found = Self::ALL.into_iter().find(|pair| pair.name() == name);
-        found.ok_or_else(|| UnknownPair { name: name.to_owned() })
+        found.ok_or_else(|| UnknownEmbeddedPair { name: name.to_owned() })
     }
 }
 
 /// No pair has this name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no pair is called {name:?}; expected \"dopri5\" or \"dop853\"")]
-pub struct UnknownPair {
+pub struct UnknownEmbeddedPair {
     /// The name.
     pub name: String,
 }

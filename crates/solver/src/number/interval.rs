@@ -397,9 +397,9 @@ mod tests {
     /// Every function contains the values at random places of a random interval.
     #[test]
     fn values_are_enclosed() {
-        type Pair = (fn(Interval) -> Interval, fn(f64) -> f64);
+        type Functions = (fn(Interval) -> Interval, fn(f64) -> f64);
         let mut random = fastrand::Rng::with_seed(1);
-        let functions: [Pair; 15] = [
+        let functions: [Functions; 15] = [
             (Interval::sqrt, f64::sqrt),
             (Interval::exp, f64::exp),
             (Interval::ln, f64::ln),

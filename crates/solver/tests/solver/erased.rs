@@ -10,8 +10,8 @@ mod dynamic;
 mod system;
 
 use stickslip_solver::{
-    Dop853, HybridSystem, Margin, Margins, Method, NearMiss, Observer, Options, Pair, Recorder,
-    Run, RunError, Start, State,
+    Dop853, EmbeddedPair, HybridSystem, Margin, Margins, Method, NearMiss, Observer, Options,
+    Recorder, Run, RunError, Start, State,
 };
 
 pub use dynamic::{run_dynamic, run_dynamic_backwards};
@@ -83,7 +83,7 @@ where
 
 /// As [`stickslip_solver::run_with`].
 pub fn run_with<S, O, const N: usize, const G: usize>(
-    pair: Pair,
+    pair: EmbeddedPair,
     system: &S,
     start: Start<S::Mode, N>,
     end: f64,

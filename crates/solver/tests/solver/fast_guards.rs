@@ -5,8 +5,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use fastrand::Rng;
 use stickslip_solver::{
-    Closures, Direction, DynamicEvent, DynamicObserver, DynamicStart, Guard, Observer, Options,
-    Outcome, Pair, Pole, RunError, State, SwitchEvent, run_dynamic_with,
+    Closures, Direction, DynamicEvent, DynamicObserver, DynamicStart, EmbeddedPair, Guard,
+    Observer, Options, Outcome, Pole, RunError, State, SwitchEvent, run_dynamic_with,
 };
 
 use super::dynamic::Plain;
@@ -62,7 +62,7 @@ fn each(
     let reached = |outcome: Result<Outcome, RunError>| {
         assert_eq!(outcome, Ok(Outcome::ReachedEnd));
     };
-    for pair in Pair::ALL {
+    for pair in EmbeddedPair::ALL {
         let mut found = Found::default();
         let run = run_with(pair, &system, at(start, [start]), end, options, &mut found);
         reached(run.map(|run| run.outcome));

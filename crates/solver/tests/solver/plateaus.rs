@@ -2,8 +2,8 @@
 //! slope, along y' = 1.
 
 use stickslip_solver::{
-    Closures, Direction, Guard, HybridSystem, Number, Options, Outcome, Pair, ReadableSystem,
-    RunError, State,
+    Closures, Direction, EmbeddedPair, Guard, HybridSystem, Number, Options, Outcome,
+    ReadableSystem, RunError, State,
 };
 
 use super::runs::{Log, at, close, fixed};
@@ -63,7 +63,7 @@ fn black_box(
 
 /// The places where the guard fires up to s = `end`.
 fn places(
-    pair: Pair,
+    pair: EmbeddedPair,
     system: &impl HybridSystem<1, 1, Mode = ()>,
     (start, end): (f64, f64),
     options: &Options,
@@ -75,10 +75,10 @@ fn places(
 }
 
 /// Steps that end on the plateau, and everywhere else.
-fn each_step(mut check: impl FnMut(Pair, Options)) {
+fn each_step(mut check: impl FnMut(EmbeddedPair, Options)) {
     for k in 1..=60 {
         let h = 0.0166 * f64::from(k);
-        for pair in Pair::ALL {
+        for pair in EmbeddedPair::ALL {
             check(pair, Options { max_step: h, ..Options::default() });
             check(pair, fixed(h));
         }
@@ -108,7 +108,7 @@ fn a_guard_leaves_a_plateau_on_the_side_where_it_does() {
 #[test]
 fn a_black_box_that_starts_on_a_plateau_is_an_error_or_right() {
     for step in [0.03, 0.1, 0.25, 1.0, f64::INFINITY] {
-        for pair in Pair::ALL {
+        for pair in EmbeddedPair::ALL {
             let options = Options { max_step: step, ..Options::default() };
             for direction in [Direction::Falling, Direction::Rising, Direction::Either] {
                 let system = black_box(direction, |y| (y - 0.25).max(0.0));
@@ -134,7 +134,7 @@ fn a_touch_with_a_kink_does_not_fire() {
     for _ in 0..300 {
         let c = random.f64();
         for options in [Options::default(), fixed(0.3), fixed(0.07)] {
-            for pair in Pair::ALL {
+            for pair in EmbeddedPair::ALL {
                 for direction in [Direction::Falling, Direction::Rising, Direction::Below] {
                     let system = black_box(direction, |y| (y - c).abs());
                     let found = places(pair, &system, (0.0, 1.0), &options).unwrap();
@@ -153,7 +153,7 @@ fn a_guard_leaves_zero_without_a_slope() {
     let shapes = [0.1, 0.5, 1.5, 2.5, 3.5].map(Shape::Power);
     for shape in shapes.into_iter().chain([Shape::Kink]) {
         for options in [Options::default(), Options::with_tolerance(1e-5), fixed(0.1), fixed(1.0)] {
-            for pair in Pair::ALL {
+            for pair in EmbeddedPair::ALL {
                 for order in 0..=2 {
                     let guard = Guard::new(Direction::Below).from_zero(order).terminal();
                     let system = Readable(shape, guard);
@@ -169,7 +169,7 @@ fn a_guard_leaves_zero_without_a_slope() {
 #[test]
 fn a_black_box_that_leaves_an_undeclared_double_zero_does_not_fire_there() {
     for tolerance in [1e-4, 1e-8, 1e-12] {
-        for pair in Pair::ALL {
+        for pair in EmbeddedPair::ALL {
             for direction in [Direction::Below, Direction::Falling] {
                 let options = Options::with_tolerance(tolerance);
                 let system = black_box(direction, |y| 1.0 - y.cos());

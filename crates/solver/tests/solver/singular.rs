@@ -2,7 +2,7 @@
 //! negative numbers.
 
 use stickslip_solver::{
-    Direction, Dop853, Dopri5, Guard, HybridSystem, Method, Number, Options, Outcome, Pair,
+    Direction, Dop853, Dopri5, EmbeddedPair, Guard, HybridSystem, Method, Number, Options, Outcome,
     ReadableSystem, RunError, State, StepSize,
 };
 
@@ -57,8 +57,8 @@ impl ReadableSystem<1, 1> for Shaped {
 
 const PLACES: [f64; 4] = [0.3, 0.5, 0.613, 0.999];
 
-fn each(mut check: impl FnMut(Pair, f64, Options)) {
-    for pair in Pair::ALL {
+fn each(mut check: impl FnMut(EmbeddedPair, f64, Options)) {
+    for pair in EmbeddedPair::ALL {
         for place in PLACES {
             for options in [Options::default(), fixed(1.0), fixed(0.1)] {
                 check(pair, place, options);

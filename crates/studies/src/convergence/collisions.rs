@@ -3,7 +3,7 @@
 use serde::Serialize;
 use serde_json::{Value, json};
 use stickslip_model::{Collision, Engine, EngineError, Tolerances};
-use stickslip_solver::Pair;
+use stickslip_solver::EmbeddedPair;
 
 use super::measure::Approximation;
 use crate::error::CollisionFailure;
@@ -13,7 +13,7 @@ use crate::error::CollisionFailure;
 pub struct Accuracy {
     /// The collision as it should be.
     pub reference: Collision,
-    /// The errors of the pairs, in the order of [`Pair::ALL`].
+    /// The errors of the pairs, in the order of [`EmbeddedPair::ALL`].
     pub pairs: [PairAccuracy; 2],
 }
 
@@ -41,7 +41,7 @@ impl Accuracy {
             PairAccuracy::new(pair, reference)
                 .map_err(|source| CollisionFailure::new(&reference.contact, source))
         };
-        let [dopri5, dop853] = Pair::ALL.map(accuracy);
+        let [dopri5, dop853] = EmbeddedPair::ALL.map(accuracy);
         Ok(Self { reference: reference.clone(), pairs: [dopri5?, dop853?] })
     }
 
@@ -55,22 +55,22 @@ impl Accuracy {
             "eps_t": reference.eps_t(),
             "switch_count": reference.switches.len(),
             "itinerary": reference.itinerary(),
-            (Pair::ALL[0].name()): pairs[0],
-            (Pair::ALL[1].name()): pairs[1],
+            (EmbeddedPair::ALL[0].name()): pairs[0],
+            (EmbeddedPair::ALL[1].name()): pairs[1],
         })
     }
 }
 
 /// The engine of a pair, at its usual tolerances.
-pub fn engine(pair: Pair) -> Engine {
+pub fn engine(pair: EmbeddedPair) -> Engine {
     match pair {
-        Pair::Dopri5 => Engine::Dopri5(Tolerances::DOPRI5),
-        Pair::Dop853 => Engine::Dop853(Tolerances::DOP853),
+        EmbeddedPair::Dopri5 => Engine::Dopri5(Tolerances::DOPRI5),
+        EmbeddedPair::Dop853 => Engine::Dop853(Tolerances::DOP853),
     }
 }
 
 impl PairAccuracy {
-    fn new(pair: Pair, reference: &Collision) -> Result<Self, EngineError> {
+    fn new(pair: EmbeddedPair, reference: &Collision) -> Result<Self, EngineError> {
         let (collision, statistics) = engine(pair).collide(reference.contact)?;
         let statistics = statistics.unwrap_or_default();
         let switches = collision.switches.iter().map(|s| (s.time, s.to, s.side)).collect();

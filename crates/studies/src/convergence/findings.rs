@@ -1,6 +1,6 @@
 //! What the measurements say, in sentences with their numbers.
 
-use stickslip_solver::{Order, Pair};
+use stickslip_solver::{EmbeddedPair, Order};
 
 use super::Measurement;
 use super::collisions::engine;
@@ -36,7 +36,7 @@ impl Measurement {
         let [Some(dopri5), Some(dop853)] = fitted else {
             return "There is no range of steps over which an order can be fitted.".to_owned();
         };
-        let orders = Pair::ALL.map(Pair::order);
+        let orders = EmbeddedPair::ALL.map(EmbeddedPair::order);
         let kept = [dopri5, dop853]
             .iter()
             .zip(orders)
@@ -230,12 +230,12 @@ impl Measurement {
         let velocity = errors().map(|errors| errors.velocity).fold(0.0, f64::max);
         let switch_time = errors().filter_map(|errors| errors.switch_time).fold(0.0, f64::max);
         let others = errors().filter(|errors| errors.switch_time.is_none()).count();
-        let tolerance = engine(Pair::ALL[pair]).tolerances().map_or(0.0, |t| t.rtol);
+        let tolerance = engine(EmbeddedPair::ALL[pair]).tolerances().map_or(0.0, |t| t.rtol);
         format!(
             "The largest errors of `collide --method {}`, tolerance {tolerance:e}, are {eps_t:.1e} in \
              ε_t, {velocity:.1e} in the final velocity and {switch_time:.1e} in a switch time; \
              {others} of {} collisions have other switches.",
-            Pair::ALL[pair].name(),
+            EmbeddedPair::ALL[pair].name(),
             self.accuracies.len()
         )
     }
@@ -247,7 +247,7 @@ impl Measurement {
         switches: SwitchHandling,
         coordinates: Coordinates,
     ) -> [&ErrorSeries; 2] {
-        Pair::ALL.map(|pair| {
+        EmbeddedPair::ALL.map(|pair| {
             let scheme = Scheme { pair, coordinates, switches, control };
             // All schemes are measured.
             self.series.iter().find(|series| series.scheme == scheme).unwrap()

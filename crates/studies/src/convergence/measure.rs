@@ -10,7 +10,7 @@ use stickslip_model::exact;
 use stickslip_model::regularized::{self, Phase, Regularized};
 use stickslip_model::{Collider, Collision, CollisionError, Contact, EngineError, Regime, Side};
 use stickslip_solver::{
-    Dop853, Dopri5, HybridSystem, Observer, Options, Outcome, Pair, Run, RunError, Start,
+    Dop853, Dopri5, EmbeddedPair, HybridSystem, Observer, Options, Outcome, Run, RunError, Start,
     Statistics, SwitchEvent, run_over_switches, run_with,
 };
 
@@ -85,7 +85,7 @@ impl Approximation {
 /// [`EngineError`]: the exact solution or the integrator fails.
 pub fn reference(contact: Contact) -> Result<Collision, EngineError> {
     if contact.damping() > 0.0 || !contact.obeys_paper() {
-        Ok(Collider::with_tolerances(Pair::Dop853, 1e-15, 1e-15).collide(contact)?)
+        Ok(Collider::with_tolerances(EmbeddedPair::Dop853, 1e-15, 1e-15).collide(contact)?)
     } else {
         Ok(exact::collide(contact)?)
     }
@@ -96,11 +96,11 @@ pub fn reference(contact: Contact) -> Result<Collision, EngineError> {
 /// ```
 /// use stickslip_model::Contact;
 /// use stickslip_studies::convergence::{Coordinates, Switching, integrate, reference};
-/// use stickslip_solver::Pair;
+/// use stickslip_solver::EmbeddedPair;
 ///
 /// let contact = Contact::new(63.0, 0.5, 0.0)?;
 /// let coarse = Switching::AtStepEnds { step_size: 1e-3, max_steps: 10_000 };
-/// let found = integrate(Pair::Dop853, contact, Coordinates::PlainTime, &coarse)?;
+/// let found = integrate(EmbeddedPair::Dop853, contact, Coordinates::PlainTime, &coarse)?;
 /// let error = found.deviation(&reference(contact)?);
 /// // A switch is late by up to a step, whatever the order of the method.
 /// assert!(error.switch_times.is_some_and(|times| times.iter().any(|time| *time > 3e-4)));
@@ -110,7 +110,7 @@ pub fn reference(contact: Contact) -> Result<Collision, EngineError> {
 /// # Errors
 /// [`CollisionError`]: invalid options, or a contact that does not end within the limits.
 pub fn integrate(
-    pair: Pair,
+    pair: EmbeddedPair,
     contact: Contact,
     coordinates: Coordinates,
     switching: &Switching,
@@ -176,14 +176,14 @@ impl Errors {
 /// ```
 /// use stickslip_model::Contact;
 /// use stickslip_studies::convergence::{Coordinates, Switching, measure, reference};
-/// use stickslip_solver::{Options, Pair, StepSize};
+/// use stickslip_solver::{EmbeddedPair, Options, StepSize};
 ///
 /// let contacts = [Contact::new(18.0, 0.4, 0.0)?, Contact::new(63.0, 0.5, 0.0)?];
 /// let references = contacts.map(reference).into_iter().collect::<Result<Vec<_>, _>>()?;
 /// let [coarse, fine] = [0.04, 0.02].map(|h| {
 ///     let options = Options { step_size: StepSize::Fixed(h), ..Options::default() };
 ///     let located = Switching::Located { options };
-///     measure(Pair::Dop853, &references, Coordinates::Regularized, &located)
+///     measure(EmbeddedPair::Dop853, &references, Coordinates::Regularized, &located)
 /// });
 /// assert!(coarse.comparable() && fine.comparable());
 /// let ratio = coarse.velocity.root_mean_square / fine.velocity.root_mean_square;
@@ -192,7 +192,7 @@ impl Errors {
 /// ```
 #[must_use]
 pub fn measure(
-    pair: Pair,
+    pair: EmbeddedPair,
     references: &[Collision],
     coordinates: Coordinates,
     switching: &Switching,
@@ -223,7 +223,7 @@ impl Spread {
 }
 
 fn follow<S, const N: usize, const G: usize>(
-    pair: Pair,
+    pair: EmbeddedPair,
     system: &S,
     start: Start<Phase, N>,
     switching: &Switching,
@@ -240,10 +240,10 @@ where
         Switching::AtStepEnds { step_size, max_steps } => {
             let (end, most) = (f64::INFINITY, max_steps);
             match pair {
-                Pair::Dopri5 => {
+                EmbeddedPair::Dopri5 => {
                     run_over_switches(Dopri5, system, start, end, step_size, most, switches)
                 }
-                Pair::Dop853 => {
+                EmbeddedPair::Dop853 => {
                     run_over_switches(Dop853, system, start, end, step_size, most, switches)
                 }
             }
@@ -303,7 +303,8 @@ mod tests {
         for contact in contacts() {
             let located = Switching::Located { options: FIXED };
             let found =
-                integrate(Pair::Dopri5, contact, Coordinates::Regularized, &located).unwrap();
+                integrate(EmbeddedPair::Dopri5, contact, Coordinates::Regularized, &located)
+                    .unwrap();
             let expected = Collider::unrefined(Dopri5, FIXED).collide(contact).unwrap();
             let error = found.deviation(&expected);
             assert_eq!((error.velocity, error.switch_times.unwrap().iter().sum()), (0.0, 0.0));
@@ -321,7 +322,8 @@ mod tests {
                 (Coordinates::PlainTime, &coarse, 2e-6, 5e-4),
                 (Coordinates::Regularized, &coarse, 5e-6, 1.1e-3),
             ] {
-                let found = integrate(Pair::Dop853, contact, coordinates, switching).unwrap();
+                let found =
+                    integrate(EmbeddedPair::Dop853, contact, coordinates, switching).unwrap();
                 let error = found.deviation(&truth);
                 assert!(error.velocity < velocity, "{contact:?} {coordinates:?} {error:?}");
                 let times = error.switch_times.unwrap();
@@ -336,7 +338,7 @@ mod tests {
         let contact = Contact::new(18.0, 0.4, 0.1).unwrap().with_law(law, 0.0).unwrap();
         let located = Switching::Located { options: FIXED };
         for coordinates in [Coordinates::Regularized, Coordinates::PlainTime] {
-            let found = integrate(Pair::Dopri5, contact, coordinates, &located);
+            let found = integrate(EmbeddedPair::Dopri5, contact, coordinates, &located);
             assert!(matches!(found, Err(CollisionError::Law(_))));
         }
         let settings = Settings { contacts: vec![contact] };
@@ -347,11 +349,11 @@ mod tests {
     fn other_switches_and_failures_are_counted() {
         let references: Vec<_> = contacts().map(|contact| reference(contact).unwrap()).collect();
         let coarse = Switching::AtStepEnds { step_size: 0.2, max_steps: 100 };
-        let errors = measure(Pair::Dopri5, &references, Coordinates::PlainTime, &coarse);
+        let errors = measure(EmbeddedPair::Dopri5, &references, Coordinates::PlainTime, &coarse);
         assert!(errors.failed == 0 && errors.other_switches > 0 && !errors.comparable());
         assert!(errors.velocity.largest >= errors.velocity.root_mean_square);
         let short = Switching::AtStepEnds { step_size: 0.2, max_steps: 3 };
-        let errors = measure(Pair::Dopri5, &references, Coordinates::PlainTime, &short);
+        let errors = measure(EmbeddedPair::Dopri5, &references, Coordinates::PlainTime, &short);
         assert!(errors.failed == 4 && errors.velocity.largest.is_nan() && !errors.comparable());
     }
 }

@@ -4,7 +4,7 @@ use stickslip_figure::Svg;
 use stickslip_figure::canvas::panel::Scale;
 use stickslip_figure::canvas::shape::Stroke;
 use stickslip_figure::pictures::chart::{self, Chart, ChartAxis, Mark, Shape};
-use stickslip_solver::{Order, Pair};
+use stickslip_solver::{EmbeddedPair, Order};
 
 use super::Measurement;
 use super::measure::{Coordinates, Errors, Spread};
@@ -148,8 +148,8 @@ fn marked_line(scheme: Scheme, remark: &str, points: Vec<(f64, f64)>) -> chart::
 /// The stroke of a pair. Its dashes let the line of the other pair show where both coincide.
 fn stroke(scheme: Scheme) -> Stroke {
     match scheme.pair {
-        Pair::Dopri5 => Stroke::full("#0072B2", 1.4),
-        Pair::Dop853 => Stroke { colour: "#D55E00", width: 1.4, dashes: "6 4" },
+        EmbeddedPair::Dopri5 => Stroke::full("#0072B2", 1.4),
+        EmbeddedPair::Dop853 => Stroke { colour: "#D55E00", width: 1.4, dashes: "6 4" },
     }
 }
 

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 use stickslip_model::Collision;
-use stickslip_solver::{Options, Order, Pair, StepSize, fit_order};
+use stickslip_solver::{EmbeddedPair, Options, Order, StepSize, fit_order};
 
 use super::measure::{Coordinates, Errors, Spread, Switching, measure};
 
@@ -42,7 +42,7 @@ pub enum Control {
 /// A way to integrate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scheme {
-    pub pair: Pair,
+    pub pair: EmbeddedPair,
     pub coordinates: Coordinates,
     pub switches: SwitchHandling,
     pub control: Control,
@@ -96,7 +96,7 @@ impl Scheme {
         let mut schemes = Vec::new();
         for (control, switches) in ways {
             for coordinates in [Coordinates::Regularized, Coordinates::PlainTime] {
-                let pairs = Pair::ALL;
+                let pairs = EmbeddedPair::ALL;
                 schemes.extend(pairs.map(|pair| Self { pair, coordinates, switches, control }));
             }
         }
@@ -123,7 +123,8 @@ impl Scheme {
             return powers.map(|i| 0.1_f64.powf(f64::from(i) / f64::from(PER_DECADE))).collect();
         }
         let coarsest = coarsest(references);
-        let at_rounding_early = (Pair::Dop853, Coordinates::Regularized, SwitchHandling::Located);
+        let at_rounding_early =
+            (EmbeddedPair::Dop853, Coordinates::Regularized, SwitchHandling::Located);
         let early = (self.pair, self.coordinates, self.switches) == at_rounding_early;
         let octaves = if early { 6 } else { 10 };
         (0..=octaves * PER_OCTAVE)

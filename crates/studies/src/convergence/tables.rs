@@ -1,6 +1,6 @@
 //! The study as tables.
 
-use stickslip_solver::Pair;
+use stickslip_solver::EmbeddedPair;
 
 use super::Measurement;
 use super::measure::Errors;
@@ -95,7 +95,7 @@ impl Measurement {
     fn collisions(&self) -> Table {
         let rows = self.accuracies.iter().flat_map(|accuracy| {
             let collision = &accuracy.reference;
-            Pair::ALL.iter().zip(&accuracy.pairs).map(move |(pair, errors)| {
+            EmbeddedPair::ALL.iter().zip(&accuracy.pairs).map(move |(pair, errors)| {
                 let contact = &collision.contact;
                 let numbers =
                     [contact.kappa(), contact.psi(), contact.damping(), collision.eps_t()];

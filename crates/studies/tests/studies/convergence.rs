@@ -6,7 +6,7 @@
 
 use stickslip_model::{Collision, Contact};
 use stickslip_plane::progress::SILENT;
-use stickslip_solver::{Options, Order, Pair, StepSize, fit_order};
+use stickslip_solver::{EmbeddedPair, Options, Order, StepSize, fit_order};
 use stickslip_studies::convergence::{self, Coordinates, Settings, Switching, measure, reference};
 
 /// Collisions with two to eight switches, three to seven with damping.
@@ -29,7 +29,7 @@ fn at_step_ends(step_size: f64) -> Switching {
 /// The orders of the final velocity and of the switch times over steps from 1/4 down by `octaves`
 /// octaves.
 fn orders(
-    pair: Pair,
+    pair: EmbeddedPair,
     damping: f64,
     coordinates: Coordinates,
     (switching, octaves): (fn(f64) -> Switching, i32),
@@ -62,18 +62,26 @@ fn regularised_coordinates_keep_the_order() {
     use Coordinates::Regularized;
     for damping in [0.0, 0.1] {
         // 5.033 ± 0.002, 5.016 ± 0.001; 5.039 ± 0.003, 5.031 ± 0.003
-        assert_orders(orders(Pair::Dopri5, damping, Regularized, (located, 10)), [5.0; 2], 0.1);
+        assert_orders(
+            orders(EmbeddedPair::Dopri5, damping, Regularized, (located, 10)),
+            [5.0; 2],
+            0.1,
+        );
         // 7.830 ± 0.019, 7.932 ± 0.007; 7.818 ± 0.024, 7.914 ± 0.012
-        assert_orders(orders(Pair::Dop853, damping, Regularized, (located, 6)), [8.0; 2], 0.2);
+        assert_orders(
+            orders(EmbeddedPair::Dop853, damping, Regularized, (located, 6)),
+            [8.0; 2],
+            0.2,
+        );
     }
 }
 
 #[test]
 fn plain_time_loses_it() {
     // 2.532 ± 0.018, 2.501 ± 0.000; 2.487 ± 0.007, 2.500 ± 0.000
-    let found = orders(Pair::Dopri5, 0.0, Coordinates::PlainTime, (located, 10));
+    let found = orders(EmbeddedPair::Dopri5, 0.0, Coordinates::PlainTime, (located, 10));
     assert_orders(found, [2.5; 2], 0.1);
-    let found = orders(Pair::Dop853, 0.0, Coordinates::PlainTime, (located, 9));
+    let found = orders(EmbeddedPair::Dop853, 0.0, Coordinates::PlainTime, (located, 9));
     assert_orders(found, [2.5; 2], 0.1);
 }
 
@@ -84,7 +92,7 @@ fn damping_in_plain_time_takes_away_another_order() {
     let reference = [reference(Contact::new(18.0, 0.1, 1.0).expect("valid")).expect("a reference")];
     let steps = (0..40).map(|i| 0.02 * 0.5_f64.powf(f64::from(i) / 4.0));
     let errors = steps.map(|h| {
-        let errors = measure(Pair::Dop853, &reference, Coordinates::PlainTime, &located(h));
+        let errors = measure(EmbeddedPair::Dop853, &reference, Coordinates::PlainTime, &located(h));
         assert!(errors.comparable(), "{h}");
         (h, errors.velocity.root_mean_square)
     });
@@ -97,9 +105,9 @@ fn damping_in_plain_time_takes_away_another_order() {
 fn steps_over_switches_leave_order_two_of_the_velocity_and_one_of_the_times() {
     for coordinates in [Coordinates::Regularized, Coordinates::PlainTime] {
         // 1.99 ± 0.03, 1.00 ± 0.01; 2.09 ± 0.04, 1.02 ± 0.01
-        let found = orders(Pair::Dopri5, 0.0, coordinates, (at_step_ends, 10));
+        let found = orders(EmbeddedPair::Dopri5, 0.0, coordinates, (at_step_ends, 10));
         assert_orders(found, [2.0, 1.0], 0.15);
-        let better = orders(Pair::Dop853, 0.0, coordinates, (at_step_ends, 10));
+        let better = orders(EmbeddedPair::Dop853, 0.0, coordinates, (at_step_ends, 10));
         for (found, better) in found.iter().zip(better) {
             assert!((found.order - better.order).abs() < 1e-3, "{found:?} {better:?}");
         }

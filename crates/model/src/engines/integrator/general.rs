@@ -1,8 +1,8 @@
 //! The integration of a contact with any law.
 
 use stickslip_solver::{
-    Observer, Options, Outcome, Pair, ReadableSystem, Start, State, Statistics, SwitchEvent,
-    run_with,
+    EmbeddedPair, Observer, Options, Outcome, ReadableSystem, Start, State, Statistics,
+    SwitchEvent, run_with,
 };
 
 use super::CollisionError;
@@ -15,7 +15,7 @@ use crate::result::{Collision, EnergyLedger, Switch};
 
 /// Integrates one collision into `collision`, while `course` observes the run too.
 pub fn collide<O: Observer<Mode, STATE>>(
-    pair: Pair,
+    pair: EmbeddedPair,
     contact: Contact,
     options: &Options,
     collision: &mut Collision,

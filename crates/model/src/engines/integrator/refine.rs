@@ -7,7 +7,7 @@
 //! near 1e-21, so that times are accurate to rounding.
 
 use smallvec::SmallVec;
-use stickslip_solver::{Observer, Options, Pair, Start, SwitchEvent, run_with};
+use stickslip_solver::{EmbeddedPair, Observer, Options, Start, SwitchEvent, run_with};
 
 use crate::contact::Contact;
 use crate::laws::phase::{Phase, Regime, Side};
@@ -30,7 +30,7 @@ type Phases = SmallVec<[(Phase, f64); PHASES]>;
 ///
 /// Returns false and changes nothing if Newton's method leaves the neighbourhood of a switch that
 /// the integrator found.
-pub(crate) fn refine(pair: Pair, options: &Options, collision: &mut Collision) -> bool {
+pub(crate) fn refine(pair: EmbeddedPair, options: &Options, collision: &mut Collision) -> bool {
     let contact = collision.contact;
     let Some(phases) = phases(pair, options, contact) else { return false };
     let mut state = FineState::start(contact);
@@ -80,7 +80,7 @@ pub(crate) fn refine(pair: Pair, options: &Options, collision: &mut Collision) -
 }
 
 /// The phases that the integrator finds, with their lengths in s.
-fn phases(pair: Pair, options: &Options, contact: Contact) -> Option<Phases> {
+fn phases(pair: EmbeddedPair, options: &Options, contact: Contact) -> Option<Phases> {
     /// Records phases with their lengths, and where the last one ended.
     #[derive(Default)]
     struct Itinerary(Phases, f64);

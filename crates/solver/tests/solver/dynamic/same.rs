@@ -1,8 +1,8 @@
 //! Runs of any dimension and of fixed dimension find the same.
 
 use stickslip_solver::{
-    Closures, Direction, Dop853, Dopri5, DynamicStart, DynamicSwitch, Guard, HybridSystem, Method,
-    Options, Outcome, Pair, Run, Start, State, Statistics, StepSize, SwitchEvent,
+    Closures, Direction, Dop853, Dopri5, DynamicStart, DynamicSwitch, EmbeddedPair, Guard,
+    HybridSystem, Method, Options, Outcome, Run, Start, State, Statistics, StepSize, SwitchEvent,
 };
 
 use super::{Of, Plain, go};
@@ -242,5 +242,5 @@ fn relays_and_ends_of_the_span() {
             .guards([guard, Guard::new(Direction::Rising)], |_s, y| [y[0], -3.0 * y[0]]);
         assert!(compare_all(&falls, &[()], at([1.0]), 1.0, &Options::default()) >= 4);
     }
-    assert_eq!(Pair::ALL.len(), 2);
+    assert_eq!(EmbeddedPair::ALL.len(), 2);
 }

@@ -2,7 +2,7 @@
 //! long the first step may be.
 
 use stickslip_solver::{
-    Direction, Dop853, Guard, HybridSystem, Options, Outcome, Pair, Start, State, StepSize,
+    Direction, Dop853, EmbeddedPair, Guard, HybridSystem, Options, Outcome, Start, State, StepSize,
 };
 
 use super::at;
@@ -34,7 +34,7 @@ impl HybridSystem<1, 1> for Counts {
 
 #[test]
 fn a_guard_that_all_modes_share_fires_once() {
-    for pair in Pair::ALL {
+    for pair in EmbeddedPair::ALL {
         for tolerance in [1e-4, 1e-6, 1e-8, 1e-10, 1e-12] {
             for step_size in [StepSize::Adaptive, StepSize::Fixed(0.37)] {
                 let options = Options { step_size, ..Options::with_tolerance(tolerance) };

@@ -1,7 +1,7 @@
 //! The defined answers of the documentation that have no module of their own.
 
 use stickslip_solver::{
-    Closures, Direction, Dop853, Guard, Options, Outcome, Pair, Recorder, Samples, State,
+    Closures, Direction, Dop853, EmbeddedPair, Guard, Options, Outcome, Recorder, Samples, State,
     SwitchEvent,
 };
 
@@ -46,7 +46,7 @@ fn a_guard_that_starts_on_zero_fires_if_it_leaves_in_its_direction() {
 fn a_touch_is_reported_and_does_not_fire() {
     let touch: fn(f64) -> f64 = |s| (s - 0.4) * (s - 0.4);
     assert!(fires(Guard::new, touch).iter().all(Vec::is_empty));
-    for pair in Pair::ALL {
+    for pair in EmbeddedPair::ALL {
         let mut log = Log::default();
         let system = line([Guard::new(Direction::Below)], shape_of(touch));
         reaches_end(run_with(pair, &system, start_of_line(), 1.0, &fixed(1.0), &mut log));
@@ -96,7 +96,7 @@ fn the_state_comes_up_to_the_place_where_a_note_ends_the_run() {
     let system = line([Guard::new(Direction::Either)], |s| [s - 0.7]);
     let limit = Options { max_switches: 1, ..fixed(1.0) };
     for (options, stop_after) in [(limit, 0), (fixed(1.0), 1)] {
-        for pair in Pair::ALL {
+        for pair in EmbeddedPair::ALL {
             let observed = (Samples::at(&[0.25, 0.5, 0.75]).unwrap(), Recorder::default());
             let mut observed = (observed, Log { stop_after, ..Log::default() });
             let end = run_with(pair, &system, start_of_line(), 1.0, &options, &mut observed);
@@ -119,7 +119,7 @@ fn the_state_comes_up_to_the_place_where_a_note_ends_the_run() {
 fn crossings_of_a_guard_at_the_same_place_all_count() {
     // The second guard crosses together with the first one, and once more a hair behind.
     let values = |s: f64| [s - 0.43, (s - 0.43) * (s - 0.43 - 1e-13)];
-    for pair in Pair::ALL {
+    for pair in EmbeddedPair::ALL {
         let mut log = Log::default();
         let system = line([Guard::new(Direction::Either); 2], values);
         reaches_end(run_with(pair, &system, start_of_line(), 1.0, &fixed(1.0), &mut log));
@@ -183,7 +183,7 @@ fn what_others_are_named_does_not_depend_on_the_observer() {
 fn touches_are_told_once_in_order_and_not_behind_the_end() {
     let touches = |s: f64| 1.0 - (40.0 * s).cos();
     let expected: Vec<f64> = (1..=6).map(|k| std::f64::consts::TAU / 40.0 * f64::from(k)).collect();
-    for pair in Pair::ALL {
+    for pair in EmbeddedPair::ALL {
         for options in [fixed(1.0), fixed(0.3), Options::default()] {
             // All of them, with more than a step may be expected to have.
             for direction in [Direction::Either, Direction::Falling, Direction::Below] {
@@ -224,7 +224,7 @@ fn a_recorded_run_ends_behind_its_last_switch() {
 #[test]
 fn tiny_tolerances_have_a_first_step() {
     let circle = Closures::new(|_s, y: &State<2>| State::from([y[1], -y[0]]));
-    for pair in Pair::ALL {
+    for pair in EmbeddedPair::ALL {
         for atol in [1e-300, f64::MIN_POSITIVE] {
             let options = Options { rtol: 1e-8, atol, max_steps: 5000, ..Options::default() };
             let end = run_with(pair, &circle, at(0.0, [1.0, 0.0]), 3.0, &options, &mut ()).unwrap();

@@ -1,8 +1,8 @@
 //! Runs backwards.
 
 use stickslip_solver::{
-    Closures, Direction, Dop853, Dopri5, Guard, Options, Outcome, Pair, Recorder, Run, RunError,
-    Start, State, SwitchEvent,
+    Closures, Direction, Dop853, Dopri5, EmbeddedPair, Guard, Options, Outcome, Recorder, Run,
+    RunError, Start, State, SwitchEvent,
 };
 
 use super::{Log, Wave, at, ball, close, fixed, line, reaches_end, start_of_line, thrown};
@@ -20,17 +20,17 @@ fn a_run_backwards_is_the_run_of_the_mirrored_system() {
     let mirrored = Closures::new(|tau, y| -field(-tau, y))
         .guards(guards, |tau, y| values(-tau, y))
         .transition(|guard, tau, y| next(guard, -tau, y));
-    for pair in Pair::ALL {
+    for pair in EmbeddedPair::ALL {
         let options = Options::default();
         let (mut expected, mut found) = (Recorder::default(), Recorder::default());
         let start = [0.3, 1.1];
         let forwards =
             run_with(pair, &mirrored, at(-7.0, start), 4.0, &options, &mut expected).unwrap();
         let run = match pair {
-            Pair::Dopri5 => {
+            EmbeddedPair::Dopri5 => {
                 run_backwards(Dopri5, &system, at(7.0, start), -4.0, &options, &mut found)
             }
-            Pair::Dop853 => {
+            EmbeddedPair::Dop853 => {
                 run_backwards(Dop853, &system, at(7.0, start), -4.0, &options, &mut found)
             }
         };

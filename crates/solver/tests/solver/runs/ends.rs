@@ -3,7 +3,8 @@
 use std::f64::consts::PI;
 
 use stickslip_solver::{
-    Closures, Dense, Direction, Dop853, Guard, Observer, Options, Outcome, Pair, State, Unfinished,
+    Closures, Dense, Direction, Dop853, EmbeddedPair, Guard, Observer, Options, Outcome, State,
+    Unfinished,
 };
 
 use super::{Log, at, ball, bounce, fixed, line, start_of_line, thrown};
@@ -154,7 +155,7 @@ fn a_guard_fires_at_the_end_of_a_span_that_steps_divide() {
         for (h, end) in [(0.1, 0.1 * steps), (1.0 / steps, 1.0)] {
             let along = Options { max_step: h, first_step: Some(h), ..Options::default() };
             for options in [fixed(h), along] {
-                for pair in Pair::ALL {
+                for pair in EmbeddedPair::ALL {
                     let system = Closures::new(|_s, _y: &State<1>| State::from([1.0]))
                         .guards([Guard::new(Direction::Rising).terminal()], move |s, _y| [s - end]);
                     let found = run_with(pair, &system, at(0.0, [0.0]), end, &options, &mut ());

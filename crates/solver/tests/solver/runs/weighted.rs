@@ -1,7 +1,8 @@
 //! Tolerances of components.
 
 use stickslip_solver::{
-    Closures, Dop853, HybridSystem, Options, Pair, State, Weighted, run, run_backwards, run_with,
+    Closures, Dop853, EmbeddedPair, HybridSystem, Options, State, Weighted, run, run_backwards,
+    run_with,
 };
 
 use super::{Wave, at, ball};
@@ -11,7 +12,7 @@ fn equal_tolerances_of_components_change_nothing() {
     let ball = ball();
     let options = Options { rtol: 1e-8, atol: 1e-9, ..Options::default() };
     let weighted = Weighted::new(&ball, [(1e-8, 1e-9); 2]).unwrap();
-    for pair in Pair::ALL {
+    for pair in EmbeddedPair::ALL {
         let one = run_with(pair, &ball, at(0.0, [1.0, 0.0]), 3.0, &options, &mut ());
         let other = run_with(pair, &weighted, at(0.0, [1.0, 0.0]), 3.0, &options, &mut ());
         assert_eq!(one, other);
@@ -58,7 +59,7 @@ fn a_component_may_have_a_tolerance_that_is_relative_only() {
     let field = |s: f64, y: &State<2>| State::from([1e-20 * (50.0 * s).sin(), -y[1]]);
     let system = Closures::new(field);
     let options = Options { rtol: 0.1, atol: 0.1, ..Options::default() };
-    for pair in Pair::ALL {
+    for pair in EmbeddedPair::ALL {
         let tolerances = [(1e-6, f64::MIN_POSITIVE), (1e-12, 1e-12)];
         let weighted = Weighted::new(&system, tolerances).unwrap();
         let end = run_with(pair, &weighted, at(0.0, [0.0, 1.0]), 1.0, &options, &mut ()).unwrap();

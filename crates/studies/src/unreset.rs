@@ -54,7 +54,7 @@ pub struct UnresetCollision {
 ///
 /// ```
 /// use stickslip_model::{Contact, exact};
-/// use stickslip_reproduction::statements::unreset;
+/// use stickslip_studies::unreset;
 ///
 /// let contact = Contact::new(18.0, 1.0, 0.0)?;
 /// assert!((unreset::collide(contact)?.collision.eps_t() + 1.0).abs() < 1e-3);
