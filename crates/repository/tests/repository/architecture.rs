@@ -10,9 +10,11 @@ use cargo_metadata::MetadataCommand;
 use crate::root;
 
 /// The layers of docs/architecture.md from below. A crate may use the crates of all lower layers.
-const LAYERS: [&[&str]; 8] = [
+const LAYERS: [&[&str]; 10] = [
     &["stickslip-solver"],
-    &["stickslip-model", "stickslip-tracer"],
+    &["stickslip-contact", "stickslip-tracer"],
+    &["stickslip-exact"],
+    &["stickslip-model"],
     &["stickslip-plane"],
     &["stickslip-figure"],
     &["stickslip-practice", "stickslip-studies"],
