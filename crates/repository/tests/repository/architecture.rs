@@ -48,7 +48,7 @@ fn crates_keep_to_the_arrows() {
 }
 
 /// All sources of a folder.
-fn sources(folder: PathBuf) -> Vec<PathBuf> {
+pub fn sources(folder: PathBuf) -> Vec<PathBuf> {
     let (mut sources, mut folders) = (Vec::new(), vec![folder]);
     while let Some(folder) = folders.pop() {
         for entry in fs::read_dir(folder).expect("a folder") {
