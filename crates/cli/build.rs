@@ -8,12 +8,15 @@ use std::path::Path;
 use std::process::Command;
 
 /// The sources of the program, relative to this package in the repository.
-const SOURCES: [&str; 12] = [
+const SOURCES: [&str; 15] = [
     "src",
     "build.rs",
     "templates",
+    "../contact/src",
+    "../exact/src",
     "../figure/assets",
     "../figure/src",
+    "../files/src",
     "../model/src",
     "../plane/src",
     "../reproduction/src",

@@ -5,7 +5,7 @@ motion (damped_enclosure.py). All other numbers here are sums of positive terms,
 changes by less than SLACK. So every line that is printed is proved, for the table that is read.
 The code writes this table:
 
-    cargo test -q -p stickslip-model --lib the_table_as_text -- --ignored --nocapture > table.txt
+    cargo test -q -p stickslip-exact --lib the_table_as_text -- --ignored --nocapture > table.txt
     python damped_trajectory_bound.py table.txt        (needs python-flint; some minutes)
 """
 

@@ -4,7 +4,7 @@ use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use stickslip_figure::FigureError;
+use stickslip_files::FileError;
 use stickslip_plane::atlas::AtlasError;
 use stickslip_plane::sweep::Failed;
 use stickslip_practice::fit::FitError;
@@ -20,14 +20,9 @@ pub enum Failure {
     /// An option is out of range, or the options contradict each other.
     #[error("{0}")]
     Usage(String),
-    /// An input file cannot be used.
-    #[error("{}: {reason}", path.display())]
-    Input {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it, and what is expected.
-        reason: String,
-    },
+    /// A file cannot be read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
     /// A collision cannot be computed.
     #[error(transparent)]
     Collision(#[from] CollisionFailure),
@@ -101,33 +96,6 @@ pub enum Failure {
         /// The first of them, and why it could not be located.
         first: String,
     },
-    /// Another process makes the same map.
-    #[error(
-        "{}: another process{} is making this map; expected another --out, or to wait",
-        directory.display(), holder.map(|id| format!(" ({id})")).unwrap_or_default()
-    )]
-    Busy {
-        /// The directory of its tiles.
-        directory: PathBuf,
-        /// The number of the process, if it is known.
-        holder: Option<u32>,
-    },
-    /// An output file cannot be written.
-    #[error("{}: cannot be written: {source}", path.display())]
-    Output {
-        /// The file.
-        path: PathBuf,
-        /// What the system reports.
-        source: io::Error,
-    },
-    /// A picture cannot be drawn.
-    #[error("{}: {source}", path.display())]
-    Picture {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        source: FigureError,
-    },
     /// Standard output cannot be written.
     #[error("standard output: cannot be written: {0}")]
     Stdout(io::Error),
@@ -139,33 +107,25 @@ pub enum Failure {
 impl Failure {
     /// An input file that cannot be used.
     pub fn input(path: &Path, reason: impl Display) -> Self {
-        const MOST_BYTES: usize = 2000;
-        // The reason may quote the file, and what it quotes must not break the line.
-        let mut shown = String::new();
-        for character in reason.to_string().chars() {
-            if shown.len() > MOST_BYTES {
-                shown.push('…');
-                break;
-            }
-            if character.is_control() {
-                shown.extend(character.escape_default());
-            } else {
-                shown.push(character);
-            }
-        }
-        Self::Input { path: path.to_owned(), reason: shown }
+        FileError::input(path, reason).into()
     }
 
     /// An output file that cannot be written.
     pub fn output(path: &Path, source: impl Into<io::Error>) -> Self {
-        Self::Output { path: path.to_owned(), source: source.into() }
+        FileError::output(path, source).into()
+    }
+
+    /// Whether the options are wrong.
+    #[must_use]
+    pub fn is_usage(&self) -> bool {
+        matches!(self, Self::Usage(_) | Self::File(FileError::Option(_)))
     }
 
     /// The exit code: 2 for bad usage or input, 1 for everything that fails later.
     #[must_use]
     pub fn code(&self) -> u8 {
         match self {
-            Self::Usage(_) | Self::Input { .. } => 2,
+            Self::Usage(_) | Self::File(FileError::Option(_) | FileError::Input { .. }) => 2,
             _ => 1,
         }
     }

@@ -5,15 +5,14 @@
 //! a process for each.
 //!
 //! Start reading here; then, in this order: `args` (what may be typed), `plan` (what the options
-//! mean together), `commands` (what each command does), `input` (what is read), `output` (what is
-//! written), `page` (the page of `reproduce`), `threads` (on how many threads the work runs),
-//! `version` and `schema` (the program about itself), `error` (what can go wrong, and the exit
-//! codes).
+//! mean together), `commands` (what each command does), `output` (what is shown), `page` (the page
+//! of `reproduce`), `threads` (on how many threads the work runs), `version` and `schema` (the
+//! program about itself), `error` (what can go wrong, and the exit codes). What is read from files
+//! and written to them is in the crate `stickslip-files`.
 
 mod args;
 mod commands;
 mod error;
-mod input;
 mod output;
 mod page;
 mod plan;
@@ -35,6 +34,7 @@ use plan::{
     CollidePlan, FitPlan, ImpactPlan, JoinPlan, LocatePlan, MapPlan, ReproducePlan, StackPlan,
     StudyPlan, TablePlan, TimestepPlan, TracePlan,
 };
+pub use stickslip_files::FileError;
 use version::NAME;
 
 /// Carries out the command line of this process and reports what went wrong.
@@ -45,14 +45,14 @@ pub fn main() -> ExitCode {
         Err(reply) => return answer(&reply),
     };
     #[cfg(unix)]
-    if let Err(error) = output::partial::remove_on_signals() {
+    if let Err(error) = stickslip_files::output::partial::remove_on_signals() {
         say(format_args!("warning: signals cannot be watched: {error}"));
     }
     match carry_out(&arguments) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             say(format_args!("error: {failure}"));
-            if let Failure::Usage(_) = failure {
+            if failure.is_usage() {
                 say("\nFor more information, try '--help'.");
             }
             ExitCode::from(failure.code())

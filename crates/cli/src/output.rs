@@ -1,20 +1,8 @@
-//! Results written. A file is complete or not there at all.
+//! What is shown while the program works, and to readers.
 //!
-//! Start reading in `file`; then, in this order: `partial` (what is not complete), `directory`,
-//! `csv`, `rows` and `impact_rows` (of batches), `json`, `npz`, `text` (tables for readers),
-//! `picture`, `study` (all files of a study), `console` (standard output and standard error),
-//! `progress`.
+//! Start reading in `console` (standard output and standard error); then `text` (tables for readers)
+//! and `progress`.
 
 pub mod console;
-pub mod csv;
-pub mod directory;
-pub mod file;
-pub mod impact_rows;
-pub mod json;
-pub mod npz;
-pub mod partial;
-pub mod picture;
 pub mod progress;
-pub mod rows;
-pub mod study;
 pub mod text;

@@ -1,22 +1,20 @@
 //! What computes a collision: an integrator with its tolerances, or the exact solution.
 //!
-//! A further engine is a module beside [`integrator`] and [`exact`] and a variant of [`Engine`].
+//! A further engine is a module beside [`integrator`], or a crate beside `stickslip-exact`, and a
+//! variant of [`Engine`].
 
+use stickslip_contact::{Collision, Contact, Law, NotFinite};
+use stickslip_exact::exact::{self, ExactError};
+use stickslip_exact::linear;
 use stickslip_solver::{Dop853, Dopri5, InvalidOption, Options, Statistics};
 
 pub(crate) mod domain;
 mod estimate;
-pub mod exact;
 pub mod history;
 pub mod integrator;
-pub mod linear;
 pub mod sensitivity;
 
-use crate::contact::Contact;
-use crate::laws::law::Law;
-use crate::result::{Collision, NotFinite};
 pub use estimate::Estimate;
-use exact::ExactError;
 use history::History;
 use integrator::{Collider, CollisionError};
 

@@ -7,16 +7,16 @@
 //! without steps. Both return a [`Collision`] with every switch, and an [`Engine`] is a choice
 //! between them.
 //!
-//! Start reading in [`integrator`]. The source has one folder for each idea; in reading order:
+//! Start reading in [`integrator`]. Two crates below have what engines share and the exact solution;
+//! what users need of them is here too. The source has one folder for each idea; in reading order:
 //!
-//! | folder | modules |
+//! | crate or folder | modules |
 //! |---|---|
-//! | `laws` | [`Law`]: a contact law as data; [`presets`]: those of particle codes; [`regularized`], [`general`]: the equations of the paper's law and of any law as hybrid systems |
-//! | `engines` | [`integrator`], [`exact`]: two ways to a collision; [`linear`]: an exact one for linear contacts; [`history`]: its course in time; [`sensitivity`]: its derivatives |
-//! | `result` | what every engine returns: [`Collision`], [`Switch`], [`EnergyLedger`] |
+//! | `stickslip-contact` | [`Law`]: a contact law as data; [`presets`]: those of particle codes; [`regularized`], [`general`]: the equations of the paper's law and of any law as hybrid systems; what every engine returns: [`Collision`], [`Switch`], [`EnergyLedger`] |
+//! | `stickslip-exact` | [`exact`]: the solution of the paper's law; [`linear`]: that of linear contacts |
+//! | `engines` | [`integrator`]: collisions by steps; [`history`]: their course in time; [`sensitivity`]: their derivatives |
 //! | `spheres` | SI units: [`quantity`], [`bodies`], [`scaling`] to a [`Contact`], [`encounter`] in three dimensions, its [`Outcome`] and [`ImpactReport`] |
 //! | `limits` | [`normal`], [`coulomb`], [`largest`], [`inner`]: closed forms and limits to compare with |
-//! | `numerics` | numbers with twice the digits, roots in a bracket |
 //!
 //! With the feature `serde`, results serialise themselves, and `document` says what computed them.
 //!
@@ -31,33 +31,23 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod contact;
 #[cfg(feature = "serde")]
 pub mod document;
 mod engines;
-mod laws;
 mod limits;
-mod numerics;
-mod result;
 #[cfg(feature = "serde")]
 mod serialize;
 mod spheres;
 
-pub use contact::{Contact, InvalidParameter, OtherLaw};
-pub use engines::domain::OutOfDomain;
 pub use engines::history::{History, Moment, PhaseHistory, Snapshot};
 #[doc(hidden)]
 pub use engines::integrator as collision;
 pub use engines::integrator::{Collider, CollisionError};
 pub use engines::sensitivity::{Derived, Sensitivity};
 pub use engines::{Engine, EngineError, Estimate, InvalidChoice, Tolerances};
-pub use engines::{exact, history, integrator, linear, sensitivity};
-pub use laws::law::{Damping, End, HistoryOf, Law, Normal, SpringEnergy, Tangential};
-pub use laws::phase::{Regime, Side};
-pub use laws::{general, presets, regularized};
+pub use engines::{history, integrator, sensitivity};
 pub use limits::{coulomb, inner, largest, normal};
 pub use nalgebra::Vector3;
-pub use result::{Collision, EnergyLedger, FEW_SWITCHES, NotFinite, Switch, Switches};
 pub use spheres::bodies::{Body, Elasticity, Material, Sphere, Wall};
 pub use spheres::encounter::{Encounter, EncounterError, Motion, WallMotion};
 pub use spheres::forces::{Constants, Forces, InvalidForces};
@@ -69,6 +59,16 @@ pub use spheres::report::{Comparison, ImpactReport};
 pub use spheres::scaling::{BodyPair, Impact};
 pub use spheres::surface::Surface;
 pub use spheres::{bodies, encounter, quantity, scaling};
+#[doc(inline)]
+pub use stickslip_contact::domain::OutOfDomain;
+#[doc(inline)]
+pub use stickslip_contact::{
+    Collision, Contact, Damping, End, EnergyLedger, FEW_SWITCHES, HistoryOf, InvalidParameter, Law,
+    Normal, NotFinite, OtherLaw, Regime, Side, SpringEnergy, Switch, Switches, Tangential, general,
+    presets, regularized,
+};
+#[doc(inline)]
+pub use stickslip_exact::{exact, linear};
 
 #[doc = include_str!("../README.md")]
 #[cfg(doctest)]

@@ -4,13 +4,10 @@
 
 use serde::de::{self, Deserialize, Deserializer};
 use serde::ser::{Serialize, SerializeStruct, Serializer};
+use stickslip_contact::{Contact, Law, Normal};
 
 use crate::Vector3;
-use crate::contact::Contact;
 use crate::engines::{Engine, Tolerances};
-use crate::laws::law::{Law, Normal};
-use crate::laws::phase::Side;
-use crate::result::Collision;
 use crate::spheres::encounter::{Encounter, Motion};
 use crate::spheres::outcome::EnergyAccount;
 use crate::spheres::report::ImpactReport;
@@ -51,42 +48,6 @@ impl<'de> Deserialize<'de> for Engine {
                 "not an engine; expected dop853 or dopri5 with rtol and atol, or exact or auto",
             )),
         }
-    }
-}
-
-/// 1 or −1.
-impl Serialize for Side {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_i8(match self {
-            Self::Positive => 1,
-            Self::Negative => -1,
-        })
-    }
-}
-
-/// The contact as `parameters`, and the results, computed ones included.
-impl Serialize for Collision {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut object = serializer.serialize_struct("Collision", 12)?;
-        object.serialize_field("parameters", &self.contact)?;
-        object.serialize_field("eps_n", &self.eps_n)?;
-        object.serialize_field("eps_t", &self.eps_t())?;
-        object.serialize_field("w_final", &self.final_velocity)?;
-        object.serialize_field("contact_time", &self.contact_time)?;
-        object.serialize_field("switch_count", &self.switches.len())?;
-        object.serialize_field("reversals", &self.reversals)?;
-        object.serialize_field("itinerary", &self.itinerary())?;
-        match self.contact.start_layer() {
-            Some(layer) => object.serialize_field("start_layer", &layer)?,
-            None => object.skip_field("start_layer")?,
-        }
-        match self.contact.start_margin() {
-            Some(margin) => object.serialize_field("start_margin", &margin)?,
-            None => object.skip_field("start_margin")?,
-        }
-        object.serialize_field("switches", &self.switches[..])?;
-        object.serialize_field("energy", &self.energy)?;
-        object.end()
     }
 }
 

@@ -1,14 +1,16 @@
 //! Families: systems of one's own that depend on two parameters.
 //!
 //! In reading order: `blueprint` (what Python passes), `member` (one system of the family), `sizes`
-//! (a family of any dimension as one type), `family` (what the tracer sees, and what Python calls),
-//! `survey` (threads, progress, Ctrl-C), `atlas` (what is found), `failure` (why nothing is).
+//! (a family of any dimension as one type), `runner` (what the tracer sees), `survey` (threads,
+//! progress, Ctrl-C), `atlas` (what is found), `family` (what Python calls), `failure` (why nothing
+//! is found).
 
 mod atlas;
 mod blueprint;
 mod failure;
 mod family;
 mod member;
+mod runner;
 mod sizes;
 mod survey;
 

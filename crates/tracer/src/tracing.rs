@@ -13,6 +13,7 @@
 //! - `sliver`: boundaries of regions between two places with the same label
 //! - `tangency`: ends of curves that begin on another one with its tangent
 //! - `branch`: one boundary, followed from its seed
+//! - `end`: why it ends, and where
 //! - `fit`: cubics as close to a boundary as the options ask
 //! - `corrector`: from a guess to the zero of a margin
 //! - `runs`: the runs of a family, counted
@@ -29,6 +30,7 @@ mod builder;
 mod corrector;
 pub mod count;
 mod cut;
+pub mod end;
 pub mod extrema;
 mod fit;
 pub mod follow;

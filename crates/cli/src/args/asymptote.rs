@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
+use stickslip_files::input::{number, range};
 use stickslip_plane::Range;
 
 use super::shared;
-use crate::input::{number, range};
 
 /// Options of `asymptote`.
 #[derive(Debug, clap::Args)]

@@ -1,12 +1,13 @@
 //! The options of `collide`.
 
+use stickslip_files::input::parameter::Parameter;
+use stickslip_files::output::picture::PictureFile;
+
 use super::batch::BatchArguments;
 use super::course::CourseArguments;
 use super::law::LawArguments;
 use super::method::MethodArguments;
 use super::shared::{self, CollisionArguments, Format};
-use crate::input::parameter::Parameter;
-use crate::output::picture::PictureFile;
 
 /// Options of `collide`.
 #[derive(Debug, clap::Args)]

@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
+use stickslip_files::input::parameter::Parameter;
+
 use super::shared::{self, CollisionArguments};
-use crate::input::parameter::Parameter;
 
 /// Options of `converge`.
 #[derive(Debug, clap::Args)]

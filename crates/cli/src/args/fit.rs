@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
+use stickslip_files::input::parameter::Parameter;
+use stickslip_files::input::{number, range};
+use stickslip_files::output::picture::PictureFile;
 use stickslip_plane::Range;
 use stickslip_practice::fit::Free;
 
 use super::law::LawArguments;
 use super::shared::{self, Format};
-use crate::input::parameter::Parameter;
-use crate::input::{number, range};
-use crate::output::picture::PictureFile;
 
 /// Options of `fit`.
 #[derive(Debug, clap::Args)]

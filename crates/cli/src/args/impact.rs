@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
+use stickslip_files::input::parameter;
 use stickslip_model::quantity::{self, Quantity};
 
 use super::batch::BatchArguments;
 use super::course::CourseArguments;
 use super::method::MethodArguments;
 use super::shared::Format;
-use crate::input::parameter;
 
 /// Options of `impact`.
 #[derive(Debug, clap::Args)]

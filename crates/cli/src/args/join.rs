@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
+use stickslip_files::output::picture::PictureFile;
+
 use super::shared;
-use crate::output::picture::PictureFile;
 
 /// Options of `join`.
 #[derive(Debug, clap::Args)]

@@ -1,6 +1,6 @@
 //! The options that choose a contact law.
 
-use crate::input::parameter::Parameter;
+use stickslip_files::input::parameter::Parameter;
 
 /// A contact law, and the parameter that only some laws have.
 #[derive(Clone, Debug, Default, clap::Args)]

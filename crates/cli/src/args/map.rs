@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
+use stickslip_files::input::part::MapPart;
+use stickslip_files::input::range::{self, Size};
+use stickslip_files::output::picture::PictureFile;
 use stickslip_plane::Range;
 
 use super::law::LawArguments;
 use super::method::MethodArguments;
 use super::shared::{self, CollisionArguments};
-use crate::input::part::MapPart;
-use crate::input::range::{self, Size};
-use crate::output::picture::PictureFile;
 
 /// Options of `map`.
 #[derive(Debug, clap::Args)]

@@ -1,10 +1,9 @@
 //! The options that choose what computes a collision. They are the same for every command.
 
 use clap::ValueEnum;
+use stickslip_files::input::number;
 use stickslip_model::Tolerances;
 use stickslip_solver::{InvalidOption, Options};
-
-use crate::input::number;
 
 /// What computes a collision, and with which tolerances.
 #[derive(Clone, Debug, clap::Args)]

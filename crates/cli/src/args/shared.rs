@@ -2,9 +2,8 @@
 
 use clap::ValueEnum;
 use clap::builder::{PathBufValueParser, RangedI64ValueParser, TypedValueParser};
-
-use crate::input::parameter::Parameter;
-use crate::output::picture::PictureFile;
+use stickslip_files::input::parameter::Parameter;
+use stickslip_files::output::picture::PictureFile;
 
 /// The parameters of collisions beside κ and ψ. Each command shows them under a heading of its own.
 #[derive(Clone, Copy, Debug, clap::Args)]

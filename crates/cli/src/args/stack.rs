@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
+use stickslip_files::input::parameter::Parameter;
+use stickslip_files::input::{number, range};
+use stickslip_files::output::picture::PictureFile;
 use stickslip_plane::Range;
 
 use super::shared;
-use crate::input::parameter::Parameter;
-use crate::input::{number, range};
-use crate::output::picture::PictureFile;
 
 /// Options of `stack`.
 #[derive(Debug, clap::Args)]

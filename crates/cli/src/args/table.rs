@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
+use stickslip_files::input::parameter::Parameter;
+use stickslip_files::input::{number, range};
 use stickslip_plane::Range;
 
 use super::shared;
-use crate::input::parameter::Parameter;
-use crate::input::{number, range};
 
 /// Options of `table`.
 #[derive(Debug, clap::Args)]

@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use stickslip_files::input::number;
+use stickslip_files::input::parameter::Parameter;
+use stickslip_files::input::range::{self, OneOrRange};
+use stickslip_files::output::picture::PictureFile;
 use stickslip_practice::time_steps::Scheme;
 
 use super::law::LawArguments;
 use super::shared::{self, Format};
-use crate::input::number;
-use crate::input::parameter::Parameter;
-use crate::input::range::{self, OneOrRange};
-use crate::output::picture::PictureFile;
 
 /// Options of `timestep`.
 #[derive(Debug, clap::Args)]

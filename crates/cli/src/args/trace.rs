@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
+use stickslip_files::input::parameter::Parameter;
+use stickslip_files::input::{number, range};
+use stickslip_files::output::picture::PictureFile;
 use stickslip_plane::Range;
 
 use super::law::LawArguments;
 use super::shared::{self, CollisionArguments};
-use crate::input::parameter::Parameter;
-use crate::input::{number, range};
-use crate::output::picture::PictureFile;
 
 /// Options of `trace`.
 #[derive(Debug, clap::Args)]

@@ -2,11 +2,11 @@
 //! the order of the input.
 
 use rayon::prelude::*;
+use stickslip_files::input::rows::{Input, Reading, Row};
+use stickslip_files::output::csv::{CsvFile, Rows};
+use stickslip_files::output::file::{StoredFile, publish};
 
 use crate::error::Failure;
-use crate::input::rows::{Input, Reading, Row};
-use crate::output::csv::{CsvFile, Rows};
-use crate::output::file::{StoredFile, publish};
 use crate::output::progress::Bar;
 use crate::plan::BatchFiles;
 use crate::threads;

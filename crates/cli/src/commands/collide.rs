@@ -3,6 +3,9 @@
 pub mod batch;
 
 use stickslip_figure::pictures;
+use stickslip_files::output::file::publish;
+use stickslip_files::output::json;
+use stickslip_files::output::picture::PictureFile;
 use stickslip_model::document;
 use stickslip_studies::CollisionFailure;
 
@@ -10,9 +13,7 @@ use super::course;
 use crate::args::Format;
 use crate::error::Failure;
 use crate::output::console::print;
-use crate::output::file::publish;
-use crate::output::picture::PictureFile;
-use crate::output::{json, text};
+use crate::output::text;
 use crate::plan::SinglePlan;
 
 /// Computes the collision, draws it and writes its course if that is wanted, and prints it.

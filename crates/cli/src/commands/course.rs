@@ -1,13 +1,13 @@
 //! The course of a collision as a CSV file.
 
+use stickslip_files::output::csv::{CsvFile, Rows};
+use stickslip_files::output::file::StoredFile;
 use stickslip_model::{
     Collision, Encounter, ForceSnapshot, History, Moment, Regime, Side, Snapshot,
 };
 
 use crate::error::Failure;
 use crate::output::console::say;
-use crate::output::csv::{CsvFile, Rows};
-use crate::output::file::StoredFile;
 use crate::plan::CoursePlan;
 
 /// The columns of a course in scaled variables.
@@ -43,15 +43,15 @@ const ROWS_AT_ONCE: usize = 10_000;
 /// Makes sure that the file can be written, before there is work to lose.
 ///
 /// # Errors
-/// [`Failure::Output`]: the file cannot be created.
+/// [`Failure::File`]: the file cannot be created.
 pub fn probe(plan: &CoursePlan) -> Result<(), Failure> {
-    CsvFile::probe(&plan.path)
+    Ok(CsvFile::probe(&plan.path)?)
 }
 
 /// Writes the course of `collision` in scaled variables, all but the name of the file.
 ///
 /// # Errors
-/// [`Failure::Output`]: it cannot be written.
+/// [`Failure::File`]: it cannot be written.
 pub fn scaled(
     plan: &CoursePlan,
     collision: &Collision,
@@ -71,7 +71,7 @@ pub fn scaled(
 /// file.
 ///
 /// # Errors
-/// [`Failure::Output`]: it cannot be written.
+/// [`Failure::File`]: it cannot be written.
 pub fn in_si(
     plan: &CoursePlan,
     encounter: &Encounter,
@@ -147,7 +147,7 @@ fn write(
         }
     }
     file.write(&rows)?;
-    file.store()
+    Ok(file.store()?)
 }
 
 fn side_name(side: Side) -> &'static str {

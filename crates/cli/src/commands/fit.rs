@@ -2,14 +2,14 @@
 
 use std::io::{self, Write};
 
+use stickslip_files::output::file::publish;
+use stickslip_files::output::json;
 use stickslip_model::Tangential;
 use stickslip_practice::fit::{self, Course, Fit, Interval, Measured, Mindlin, Minimum, Piece};
 
 use crate::args::Format;
 use crate::error::Failure;
 use crate::output::console::print;
-use crate::output::file::publish;
-use crate::output::json;
 use crate::output::progress::Bar;
 use crate::output::text::{aligned, number, pairs};
 use crate::plan::FitPlan;

@@ -3,6 +3,8 @@
 pub mod batch;
 mod table;
 
+use stickslip_files::output::file::publish;
+use stickslip_files::output::json;
 use stickslip_model::{ImpactReport, document};
 use stickslip_studies::CollisionFailure;
 
@@ -10,8 +12,6 @@ use super::course;
 use crate::args::Format;
 use crate::error::Failure;
 use crate::output::console::print;
-use crate::output::file::publish;
-use crate::output::json;
 use crate::plan::SingleImpact;
 
 /// Computes the impact, writes its course if that is wanted, and prints it.

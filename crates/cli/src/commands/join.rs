@@ -1,10 +1,14 @@
 //! A map made of its parts.
 
-use super::map::{Parts, finish, require_all};
+use stickslip_files::map::{Parts, Stored};
+use stickslip_files::output::file::{OutputFile, publish};
+use stickslip_files::output::picture::PictureFile;
+
+use super::map::{finish, require_all};
 use crate::error::Failure;
-use crate::output::file::{OutputFile, publish};
-use crate::output::picture::PictureFile;
+use crate::output::progress::Bar;
 use crate::plan::JoinPlan;
+use crate::version;
 
 /// Writes the map whose parts are in the files, with one tile in memory at a time.
 ///
@@ -13,9 +17,11 @@ use crate::plan::JoinPlan;
 /// no result. In the last case the map is complete.
 pub fn run(plan: &JoinPlan) -> Result<(), Failure> {
     plan.plot.as_ref().map(PictureFile::probe).transpose()?;
-    let parts = Parts::open(&plan.parts)?;
+    let parts = Parts::open(&plan.parts, &version::program())?;
     let file = OutputFile::create(&plan.out)?;
-    let failures = parts.check()?;
+    let bar = Bar::points(parts.task().points());
+    let failures = parts.check(|points| bar.advance(points))?;
+    drop(bar);
     publish(finish(&parts, file, plan.format, plan.plot.as_ref())?)?;
     require_all(&failures, &parts, &plan.out)
 }

@@ -4,18 +4,19 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
+use stickslip_files::input::law;
+use stickslip_files::output::directory::prepare;
+use stickslip_files::output::file::write;
+use stickslip_files::output::json;
+use stickslip_files::output::study::write_study;
 use stickslip_model::presets::{self, Preset};
 use stickslip_studies::contact_laws::{self, Settings};
 
 use crate::args::{Format, LawsArguments};
 use crate::error::Failure;
-use crate::input::law;
 use crate::output::console::{print, say};
-use crate::output::directory::prepare;
-use crate::output::file::write;
 use crate::output::progress::Bar;
-use crate::output::study::write_study;
-use crate::output::{json, text};
+use crate::output::text;
 use crate::plan::StudyPlan;
 use crate::{page, threads};
 

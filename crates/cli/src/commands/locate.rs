@@ -1,14 +1,14 @@
 //! Points, looked up in an atlas.
 
+use stickslip_files::input::atlas;
+use stickslip_files::input::recipe::Given;
+use stickslip_files::input::rows::{Columns, Input};
+use stickslip_files::output::csv::{CsvFile, Rows};
+use stickslip_files::output::file::publish;
+use stickslip_files::output::rows::LOCATED;
 use stickslip_plane::atlas::switch_count;
 
 use crate::error::Failure;
-use crate::input::atlas;
-use crate::input::recipe::Given;
-use crate::input::rows::{Columns, Input};
-use crate::output::csv::{CsvFile, Rows};
-use crate::output::file::publish;
-use crate::output::rows::LOCATED;
 use crate::plan::LocatePlan;
 use crate::threads;
 

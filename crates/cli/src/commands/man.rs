@@ -5,11 +5,11 @@ use std::io;
 use clap::{Command, CommandFactory};
 use clap_mangen::Man;
 use clap_mangen::roff::{Roff, roman};
+use stickslip_files::output::{directory, file};
 
 use crate::args::{Arguments, ManArguments};
 use crate::error::Failure;
 use crate::output::console::print;
-use crate::output::{directory, file};
 use crate::version::NAME;
 
 /// Prints one page with all commands, or writes a page for each of them.

@@ -1,41 +1,21 @@
 //! A map of collisions. It is computed and stored tile by tile, and put together at the end.
-//!
-//! Start reading here; then, in this order: `task` (what is computed, divided into tiles), `tiles`
-//! and `results` (what is stored, and where), `part_file` and `parts` (a map that is computed in
-//! parts), `provenance` (what a map says about itself), `npz` and `csv` (the finished map),
-//! `thumbnail` (what of it is drawn).
-
-mod csv;
-mod npz;
-mod part_file;
-mod parts;
-mod provenance;
-mod results;
-mod task;
-mod thumbnail;
-mod tiles;
 
 use std::path::Path;
 
 use rayon::ThreadPool;
 use stickslip_figure::pictures::grid;
+use stickslip_files::map::{
+    Found, Provenance, Results, Stored, Task, Tiles, csv, npz, part_file, thumbnail,
+};
+use stickslip_files::output::file::{OutputFile, StoredFile, publish};
+use stickslip_files::output::picture::PictureFile;
 use stickslip_plane::sweep::{self, FailureCount};
 
 use crate::error::Failure;
 use crate::output::console::say;
-use crate::output::file::{OutputFile, StoredFile, publish};
-use crate::output::picture::PictureFile;
 use crate::output::progress::Bar;
 use crate::plan::{MapFormat, MapOutput, MapPlan};
-use crate::threads;
-use provenance::Provenance;
-use results::Results;
-use task::Task;
-use tiles::{Found, Tiles};
-
-pub use npz::archive;
-pub use parts::Parts;
-pub use results::Stored;
+use crate::{threads, version};
 
 /// Largest number of columns, and of rows, in the picture.
 const MOST_PIXELS: usize = 1000;
@@ -48,7 +28,7 @@ const MOST_PIXELS: usize = 1000;
 pub fn run(plan: &MapPlan) -> Result<(), Failure> {
     plan.plot.as_ref().map(PictureFile::probe).transpose()?;
     let pool = threads::pool(plan.threads)?;
-    let task = Task::new(plan.grid, plan.engine);
+    let task = Task::new(plan.grid, plan.engine, &version::program());
     let part = match plan.output {
         MapOutput::Part(part) => Some(part),
         MapOutput::Whole(_) => None,
@@ -110,8 +90,8 @@ pub fn finish(
     format: MapFormat,
     plot: Option<&PictureFile>,
 ) -> Result<Vec<StoredFile>, Failure> {
-    let Task { grid, engine, .. } = stored.task();
-    let provenance = Provenance::new(grid, engine);
+    let Task { grid, engine, program, .. } = stored.task();
+    let provenance = Provenance::new(grid, engine, program);
     let written = match format {
         MapFormat::Npz => npz::write(&mut file, grid, &provenance, stored),
         MapFormat::Csv => csv::write(&mut file, grid, &provenance, stored),
@@ -144,7 +124,7 @@ pub fn require_all(
 fn draw(stored: &impl Stored, plot: &PictureFile) -> Result<StoredFile, Failure> {
     let thumbnail = thumbnail::read(stored, MOST_PIXELS);
     let (size, results) = thumbnail.map_err(|error| stored.unreadable(&error))?;
-    plot.write(grid::draw(&stored.task().grid, size, &results))
+    Ok(plot.write(grid::draw(&stored.task().grid, size, &results))?)
 }
 
 /// Says on standard error which tiles were found, if the map was begun before.

@@ -2,22 +2,22 @@
 
 use std::path::Path;
 
+use stickslip_files::map::npz;
+use stickslip_files::output::directory::prepare;
+use stickslip_files::output::file::write;
+use stickslip_files::output::json;
+use stickslip_files::output::study::write_study;
 use stickslip_model::Engine;
 use stickslip_plane::atlas::Document;
 use stickslip_reproduction::figures::{Content, DataFile, Reproduction, Section};
 use stickslip_studies::contact_laws;
 
 use super::laws::write_page;
-use super::map::archive;
 use crate::error::Failure;
 use crate::output::console::say;
-use crate::output::directory::prepare;
-use crate::output::file::write;
-use crate::output::json;
-use crate::output::study::write_study;
 use crate::page;
 use crate::plan::PagePlan;
-use crate::threads;
+use crate::{threads, version};
 
 /// Computes all parts, writes the files of each part as soon as it is done, and the page at the
 /// end.
@@ -55,10 +55,12 @@ fn write_section(section: &Section, directory: &Path) -> Result<(), Failure> {
     for DataFile { name, content, .. } in &section.files {
         let path = directory.join(name);
         let bytes = match content {
-            Content::Map(sweep) => archive(&sweep.grid, &Engine::Exact, &sweep.results),
+            Content::Map(sweep) => {
+                npz::archive(&sweep.grid, &Engine::Exact, &sweep.results, &version::program())
+            }
             Content::Atlas(atlas) => json::line(&Document::new(atlas)),
         };
         write(&path, &bytes.map_err(|error| Failure::output(&path, error))?)?;
     }
-    write_study(&section.study, directory)
+    Ok(write_study(&section.study, directory)?)
 }

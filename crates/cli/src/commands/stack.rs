@@ -1,12 +1,12 @@
 //! Atlases over the damping, and what changes between them.
 
 use stickslip_figure::pictures;
+use stickslip_files::output::file::{OutputFile, publish};
+use stickslip_files::output::json;
+use stickslip_files::output::picture::PictureFile;
 use stickslip_plane::stack::{DampingStackError, StackDocument, stack};
 
 use crate::error::Failure;
-use crate::output::file::{OutputFile, publish};
-use crate::output::json;
-use crate::output::picture::PictureFile;
 use crate::output::progress::Bar;
 use crate::plan::StackPlan;
 use crate::threads;

@@ -1,13 +1,13 @@
 //! A study, computed, written into a directory, and summarised on standard output.
 
+use stickslip_files::output::directory::prepare;
+use stickslip_files::output::study::write_study;
 use stickslip_plane::progress::Report;
 use stickslip_studies::{Study, StudyError};
 
 use crate::error::Failure;
 use crate::output::console::print;
-use crate::output::directory::prepare;
 use crate::output::progress::Bar;
-use crate::output::study::write_study;
 use crate::plan::StudyPlan;
 use crate::threads;
 

@@ -3,14 +3,14 @@
 use std::io::{self, Write};
 
 use serde::Serialize;
+use stickslip_files::output::file::publish;
+use stickslip_files::output::json;
 use stickslip_model::Contact;
 use stickslip_practice::time_steps::{self, Errors, Quantity, Row, Seconds, TimeSteps};
 
 use crate::args::Format;
 use crate::error::Failure;
 use crate::output::console::print;
-use crate::output::file::publish;
-use crate::output::json;
 use crate::output::progress::Bar;
 use crate::output::text::{aligned, pairs};
 use crate::plan::TimestepPlan;

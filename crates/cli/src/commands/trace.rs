@@ -2,13 +2,13 @@
 
 use serde::Serialize;
 use stickslip_figure::pictures;
+use stickslip_files::output::file::{OutputFile, StoredFile, publish};
+use stickslip_files::output::json;
+use stickslip_files::output::picture::PictureFile;
 use stickslip_plane::atlas::{self, Document, geojson};
 use stickslip_plane::gaining;
 
 use crate::error::Failure;
-use crate::output::file::{OutputFile, StoredFile, publish};
-use crate::output::json;
-use crate::output::picture::PictureFile;
 use crate::output::progress::Bar;
 use crate::plan::TracePlan;
 use crate::threads;
@@ -57,5 +57,5 @@ pub fn run(plan: &TracePlan) -> Result<(), Failure> {
 /// Writes `content` on one line, completely except for the name of the file.
 fn write_json(file: OutputFile, content: &impl Serialize) -> Result<StoredFile, Failure> {
     let line = json::line(content).map_err(|error| file.failure(error))?;
-    file.finish(&line)
+    Ok(file.finish(&line)?)
 }

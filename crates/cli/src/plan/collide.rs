@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use stickslip_files::input::recipe::Given;
+use stickslip_files::output::picture::PictureFile;
 use stickslip_model::{Contact, Engine};
 
 use super::batch::BatchFiles;
@@ -11,8 +13,6 @@ use super::engine::engine;
 use super::law::chosen_law;
 use crate::args::{CollideArguments, CollisionArguments, Format, Method};
 use crate::error::Failure;
-use crate::input::recipe::Given;
-use crate::output::picture::PictureFile;
 
 /// The plan of `collide`.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,9 +1,9 @@
 //! One collision from options, and what is wrong with options that do not make one.
 
+use stickslip_files::input::recipe::{Given, Recipe, RecipeError};
 use stickslip_model::Contact;
 
 use crate::error::Failure;
-use crate::input::recipe::{Given, Recipe, RecipeError};
 
 /// The parameters of the collision that options give.
 ///

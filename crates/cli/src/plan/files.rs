@@ -4,10 +4,10 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use same_file::Handle;
+use stickslip_files::input::source::is_standard_input;
+use stickslip_files::output::file::target;
 
 use crate::error::Failure;
-use crate::input::source::is_standard_input;
-use crate::output::file::target;
 
 /// An option that names a file, and the file, if it is given.
 pub type Named<'a> = (&'a str, Option<&'a Path>);

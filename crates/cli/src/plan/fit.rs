@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use stickslip_files::input::{bodies, law, measured, source};
+use stickslip_files::output::picture::PictureFile;
 use stickslip_model::{Contact, Law, presets};
 use stickslip_practice::fit::{Bodies, Free, Settings, Values};
 
@@ -9,8 +11,6 @@ use super::files::require_different;
 use super::law::chosen_law;
 use crate::args::{FitArguments, Format};
 use crate::error::Failure;
-use crate::input::{bodies, law, measured, source};
-use crate::output::picture::PictureFile;
 
 /// A fit to be made.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +29,7 @@ impl FitPlan {
     /// The plan that `arguments` make.
     ///
     /// # Errors
-    /// [`Failure::Usage`]: an option is missing or out of range. [`Failure::Input`]: a file cannot
+    /// [`Failure::Usage`]: an option is missing or out of range. [`Failure::File`]: a file cannot
     /// be used.
     pub fn new(arguments: &FitArguments) -> Result<Self, Failure> {
         let FitArguments { data, bodies: file, free, .. } = arguments;

@@ -2,6 +2,9 @@
 
 use std::path::Path;
 
+use stickslip_files::input::bodies::{self, ImpactReading, Velocities, VelocitiesError};
+use stickslip_files::input::law;
+use stickslip_files::input::source::is_standard_input;
 use stickslip_model::{Encounter, Engine, Law};
 
 use super::batch::BatchFiles;
@@ -9,9 +12,6 @@ use super::course::CoursePlan;
 use super::engine::engine;
 use crate::args::{Format, ImpactArguments, Method, MethodArguments, VelocityArguments};
 use crate::error::Failure;
-use crate::input::bodies::{self, ImpactReading, Velocities, VelocitiesError};
-use crate::input::law;
-use crate::input::source::is_standard_input;
 
 /// The plan of `impact`.
 #[derive(Clone)]
@@ -82,7 +82,7 @@ impl ImpactPlan {
     /// The plan that `arguments` make with the files that they name.
     ///
     /// # Errors
-    /// [`Failure::Input`]: a file cannot be used. [`Failure::Usage`]: options contradict each
+    /// [`Failure::File`]: a file cannot be used. [`Failure::Usage`]: options contradict each
     /// other.
     pub fn new(arguments: &ImpactArguments) -> Result<Self, Failure> {
         let ImpactArguments { file, bodies, .. } = arguments;

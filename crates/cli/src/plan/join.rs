@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
+use stickslip_files::input::source::is_standard_input;
+use stickslip_files::output::picture::PictureFile;
+
 use super::files::require_different;
 use super::map::MapFormat;
 use crate::args::JoinArguments;
 use crate::error::Failure;
-use crate::input::source::is_standard_input;
-use crate::output::picture::PictureFile;
 
 /// Parts of a map that are to be joined.
 #[derive(Clone, Debug, PartialEq, Eq)]

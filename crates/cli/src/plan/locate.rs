@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
+use stickslip_files::input::source::is_standard_input;
+
 use super::files::require_different;
 use crate::args::LocateArguments;
 use crate::error::Failure;
-use crate::input::source::is_standard_input;
 
 /// Points to be located in an atlas.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,6 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use stickslip_files::input::part::MapPart;
+use stickslip_files::input::source::is_standard_input;
+use stickslip_files::input::{bodies, law};
+use stickslip_files::output::picture::PictureFile;
 use stickslip_model::{Engine, Law};
 use stickslip_plane::atlas::RatioRange;
 use stickslip_plane::{Coordinates, Grid, GridAxis, Range};
@@ -12,10 +16,6 @@ use super::law::chosen_law;
 use super::window::{ImpactRange, KappaWindow};
 use crate::args::{MapArguments, Method};
 use crate::error::Failure;
-use crate::input::part::MapPart;
-use crate::input::source::is_standard_input;
-use crate::input::{bodies, law};
-use crate::output::picture::PictureFile;
 
 /// A map to be computed.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,7 +56,7 @@ impl MapPlan {
     /// The plan that `arguments` make.
     ///
     /// # Errors
-    /// [`Failure::Usage`] says which options contradict each other. [`Failure::Input`]: the file of
+    /// [`Failure::Usage`] says which options contradict each other. [`Failure::File`]: the file of
     /// the bodies cannot be used.
     pub fn new(arguments: &MapArguments) -> Result<Self, Failure> {
         let MapArguments { size, out, plot, bodies, .. } = arguments;

@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
+use stickslip_files::output::picture::PictureFile;
 use stickslip_plane::atlas::Frame;
 use stickslip_plane::stack::damped;
 
 use super::files::require_different;
 use crate::args::StackArguments;
 use crate::error::Failure;
-use crate::output::picture::PictureFile;
 
 /// A stack of atlases to be traced.
 #[derive(Clone, Debug, PartialEq)]

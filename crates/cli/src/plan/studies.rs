@@ -3,12 +3,12 @@
 use std::fmt::Display;
 use std::path::PathBuf;
 
+use stickslip_files::input::recipe::Given;
 use stickslip_studies::{contact_laws, convergence, stiff_springs};
 
 use super::collision::contact;
 use crate::args::{AsymptoteArguments, CollisionArguments, ConvergeArguments, LawsArguments};
 use crate::error::Failure;
-use crate::input::recipe::Given;
 
 /// A study to be made.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use stickslip_files::input::bodies::read_pair;
 use stickslip_model::Law;
 use stickslip_practice::tables::{Settings, Window};
 
 use super::files::require_different;
 use crate::args::TableArguments;
 use crate::error::Failure;
-use crate::input::bodies::read_pair;
 
 /// A table to be made.
 #[derive(Clone, Debug, PartialEq)]

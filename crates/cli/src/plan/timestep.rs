@@ -1,15 +1,15 @@
 //! What `timestep` is to do.
 
+use stickslip_files::input::range::OneOrRange;
+use stickslip_files::input::source::shown;
+use stickslip_files::input::{bodies, law};
+use stickslip_files::output::picture::PictureFile;
 use stickslip_model::{Contact, Reduction};
 use stickslip_practice::time_steps::{Seconds, Settings};
 
 use super::law::chosen_law;
 use crate::args::{Format, TimestepArguments};
 use crate::error::Failure;
-use crate::input::range::OneOrRange;
-use crate::input::source::shown;
-use crate::input::{bodies, law};
-use crate::output::picture::PictureFile;
 
 /// Errors of time steps to be measured.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,7 +35,7 @@ impl TimestepPlan {
     /// The plan that `arguments` make.
     ///
     /// # Errors
-    /// [`Failure::Usage`]: an option is missing or out of range. [`Failure::Input`]: a file cannot
+    /// [`Failure::Usage`]: an option is missing or out of range. [`Failure::File`]: a file cannot
     /// be used.
     pub fn new(arguments: &TimestepArguments) -> Result<Self, Failure> {
         let (contacts, reduction, seconds) = impacts(arguments)?;

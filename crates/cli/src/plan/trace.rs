@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use stickslip_files::input::recipe::reduced;
+use stickslip_files::output::picture::PictureFile;
 use stickslip_plane::Range;
 use stickslip_plane::atlas::Frame;
 
@@ -10,8 +12,6 @@ use super::law::chosen_law;
 use super::window::{ImpactRange, KappaWindow};
 use crate::args::TraceArguments;
 use crate::error::Failure;
-use crate::input::recipe::reduced;
-use crate::output::picture::PictureFile;
 
 /// An atlas to be traced.
 #[derive(Clone, Debug, PartialEq)]

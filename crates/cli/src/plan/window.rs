@@ -1,5 +1,6 @@
 //! Intervals of κ and of ψ or the impact ratio, as options give them.
 
+use stickslip_files::input::recipe::{ImpactParameter, RecipeError};
 use stickslip_model::Reduction;
 use stickslip_plane::Range;
 use stickslip_plane::atlas::RatioRange;
@@ -7,7 +8,6 @@ use stickslip_plane::atlas::RatioRange;
 use super::collision::refused;
 use crate::args::CollisionArguments;
 use crate::error::Failure;
-use crate::input::recipe::{ImpactParameter, RecipeError};
 
 /// Both intervals.
 pub struct KappaWindow {

@@ -1,9 +1,10 @@
 //! The error to expect of a collision, and how far its itinerary is from changing.
 
+use stickslip_contact::{Collision, Regime};
+use stickslip_exact::exact;
+
 use super::integrator::CollisionError;
-use super::{Engine, EngineError, Tolerances, exact};
-use crate::laws::phase::Regime;
-use crate::result::Collision;
+use super::{Engine, EngineError, Tolerances};
 
 /// How good a collision is.
 ///

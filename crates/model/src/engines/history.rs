@@ -3,9 +3,9 @@
 mod followed;
 mod record;
 
-use crate::laws::general::{self, GeneralContact};
-use crate::laws::phase::{Regime, Side};
-use crate::laws::regularized::{Regularized, components};
+use stickslip_contact::general::{self, GeneralContact};
+use stickslip_contact::regularized::{Regularized, components};
+use stickslip_contact::{Regime, Side};
 
 pub(crate) use followed::Followed;
 pub(crate) use record::{Course, Record};

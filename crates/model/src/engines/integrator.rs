@@ -1,5 +1,10 @@
 //! A collision integrated from first touch to separation: start reading here.
 
+use stickslip_contact::domain::OutOfDomain;
+use stickslip_contact::phase::{END, Phase};
+use stickslip_contact::regularized::Regularized;
+use stickslip_contact::regularized::components::{DAMPING, STATE, T, U};
+use stickslip_contact::{Collision, Contact, EnergyLedger, OtherLaw, Regime};
 use stickslip_solver::{
     EmbeddedPair, HybridSystem, Observer, Options, Outcome, RunError, Start, Statistics, run_with,
 };
@@ -10,13 +15,8 @@ mod last_slip;
 mod refine;
 mod reversals;
 
-use super::domain::{self, OutOfDomain};
+use super::domain;
 use super::history::{Course, Followed, History, Record};
-use crate::contact::{Contact, OtherLaw};
-use crate::laws::phase::{END, Phase, Regime};
-use crate::laws::regularized::Regularized;
-use crate::laws::regularized::components::{DAMPING, STATE, T, U};
-use crate::result::{Collision, EnergyLedger};
 use account::{Account, Observed};
 
 /// Flatness of a switch, in s, above which its time would be clearly less accurate than the state.

@@ -8,19 +8,15 @@
 //! which is earlier by a in time, to first order. This is added to the derivative of the contact
 //! time at a = 0, which is the derivative from above.
 
-use num_dual::Dual64;
-use stickslip_solver::{
-    Change, Differentiable, Outcome, Start, State, SwitchSensitivity, sensitivities_with,
-};
+use stickslip_contact::phase::{END, GUARDS, Phase};
+use stickslip_contact::regularized::Regularized;
+use stickslip_contact::regularized::components::{STATE, T, U, V, W};
+use stickslip_contact::regularized::derivatives::PARAMETERS;
+use stickslip_contact::regularized::equations::Parameter;
+use stickslip_contact::{Contact, Regime};
+use stickslip_solver::{Change, Outcome, Start, State, SwitchSensitivity, sensitivities_with};
 
 use super::integrator::{Collider, CollisionError};
-use crate::contact::Contact;
-use crate::laws::phase::{END, GUARDS, OTHER_SIDE, Phase, Regime, SAME_SIDE};
-use crate::laws::regularized::Regularized;
-use crate::laws::regularized::components::{STATE, T, U, V, W, array};
-use crate::laws::regularized::equations::{Equations, Parameter};
-
-const PARAMETERS: usize = Parameter::ALL.len();
 
 /// A result of a collision with its derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -168,57 +164,4 @@ fn compression_rate(
 
 fn add<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
     std::array::from_fn(|i| a[i] + b[i])
-}
-
-impl Regularized {
-    /// The equations and a state, with their derivatives along a change.
-    fn along(
-        &self,
-        y: &State<STATE>,
-        change: &Change<STATE>,
-    ) -> (Equations<Dual64>, [Dual64; STATE]) {
-        let equations = self.equations.by(change.parameter.map(|index| Parameter::ALL[index]));
-        (equations, std::array::from_fn(|i| Dual64::new(array(y)[i], change.y[i])))
-    }
-}
-
-/// The terms of damping are always computed, so that they have a derivative at a = 0.
-impl Differentiable<STATE, GUARDS, PARAMETERS> for Regularized {
-    fn field_change(
-        &self,
-        phase: Phase,
-        _s: f64,
-        y: &State<STATE>,
-        change: &Change<STATE>,
-    ) -> State<STATE> {
-        let (equations, y) = self.along(y, change);
-        equations.field::<true>(phase, &y).map(|part| part.eps).into()
-    }
-
-    fn guard_changes(
-        &self,
-        phase: Phase,
-        _s: f64,
-        y: &State<STATE>,
-        change: &Change<STATE>,
-    ) -> [f64; GUARDS] {
-        let (equations, y) = self.along(y, change);
-        let guards = equations.guards::<true>(phase, &y).map(|guard| guard.eps);
-        // u² + a v has a double zero at the end of contact without damping.
-        let damped = self.contact().damping() > 0.0;
-        [if damped { guards[END] } else { y[U].eps }, guards[SAME_SIDE], guards[OTHER_SIDE]]
-    }
-
-    fn transition_change(
-        &self,
-        phase: Phase,
-        guard: usize,
-        _s: f64,
-        y: &State<STATE>,
-        change: &Change<STATE>,
-    ) -> State<STATE> {
-        let next = self.next(phase, guard, y);
-        let (equations, y) = self.along(y, change);
-        equations.enter::<true>(next, &y).map(|part| part.eps).into()
-    }
 }

@@ -29,7 +29,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::numerics::root::{Jet, bracketed};
+use stickslip_contact::numerics::root::{Jet, bracketed};
 
 /// The σ from which on the phase of an onset is computed from its series; the error there is 1e-15.
 pub const FAR: f64 = 100.0;

@@ -1,7 +1,6 @@
 //! The largest force and the largest elongation during a contact without damping, in closed form.
 
-use crate::laws::phase::Regime;
-use crate::result::Collision;
+use stickslip_contact::{Collision, Regime};
 
 /// The largest normal force in scaled units, (5/4)^{3/5}. It is κ times the largest elongation of
 /// the spring.

@@ -1,7 +1,8 @@
 //! Spheres, walls and their materials.
 
+use stickslip_contact::InvalidParameter;
+
 use super::quantity;
-use crate::contact::InvalidParameter;
 
 /// A homogeneous elastic material.
 #[derive(Clone, Copy, Debug, PartialEq)]

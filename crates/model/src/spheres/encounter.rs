@@ -5,12 +5,12 @@
 //! (12).
 
 use nalgebra::Vector3;
+use stickslip_contact::{Contact, InvalidParameter};
 
 use super::bodies::{Body, Sphere, Wall};
 use super::forces::Forces;
 use super::quantity;
 use super::scaling::{BodyPair, Impact};
-use crate::contact::{Contact, InvalidParameter};
 
 /// Largest relative difference between the distance of two bodies and their radii at which they
 /// count as touching.

@@ -1,9 +1,9 @@
 //! Contact laws in SI units: the constants that belong to a law, and what they mean.
 
+use stickslip_contact::{Damping, InvalidParameter, Law, Normal, Tangential};
+
 use super::quantity::{self, Quantity};
 use super::surface::Surface;
-use crate::contact::InvalidParameter;
-use crate::laws::law::{Damping, Law, Normal, Tangential};
 
 /// The constants of a contact law in SI units. Which of them a law has is said at each.
 ///

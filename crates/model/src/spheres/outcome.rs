@@ -2,11 +2,10 @@
 
 use nalgebra::Vector3;
 use smallvec::SmallVec;
+use stickslip_contact::{Collision, FEW_SWITCHES, Regime, Side, Switch};
 
 use super::encounter::{Encounter, Motion, Partner};
 use super::observed::Observed;
-use crate::laws::phase::{Regime, Side};
-use crate::result::{Collision, FEW_SWITCHES, Switch};
 
 /// Two bodies after their collision.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use crate::contact::InvalidParameter;
+use stickslip_contact::InvalidParameter;
 
 /// A quantity in SI units: its name, which contains the unit, and its range.
 ///

@@ -1,10 +1,10 @@
 //! The report on one impact: everything that a program prints of it.
 
+use stickslip_contact::{Collision, Damping, End, Normal, NotFinite};
+
 use super::encounter::{Encounter, Motion};
 use super::outcome::Outcome;
-use crate::laws::law::{Damping, End, Normal};
 use crate::limits::{coulomb, normal};
-use crate::result::{Collision, NotFinite};
 
 /// One impact: the bodies, their collision in scaled variables, its outcome in SI units, and what
 /// simpler laws say of it.

@@ -3,12 +3,12 @@
 //! Source: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008), equations (1), (12),
 //! (21)–(24).
 
+use stickslip_contact::{Contact, Damping, InvalidParameter, Law, Normal, Tangential};
+
 use super::bodies::{Body, Material, Sphere};
 use super::forces::Forces;
 use super::quantity;
 use super::surface::Surface;
-use crate::contact::{Contact, InvalidParameter};
-use crate::laws::law::{Damping, Law, Normal, Tangential};
 
 const POSITIVE: &str = "a finite number above 0";
 

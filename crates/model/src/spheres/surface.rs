@@ -1,7 +1,8 @@
 //! The surfaces of two bodies.
 
+use stickslip_contact::InvalidParameter;
+
 use super::quantity;
-use crate::contact::InvalidParameter;
 
 /// The properties of the two surfaces together.
 #[derive(Clone, Copy, Debug, PartialEq)]

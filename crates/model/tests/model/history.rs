@@ -1,8 +1,10 @@
 //! The course of a collision in time.
 
+use std::f64::consts::PI;
+
 use stickslip_model::{
-    Collider, CollisionError, Contact, Engine, History, Regime, Snapshot, Tolerances, exact,
-    largest,
+    Collider, Collision, CollisionError, Contact, Engine, History, Regime, Snapshot, Tolerances,
+    exact, largest,
 };
 use stickslip_solver::{Dop853, Options, Outcome, Statistics};
 
@@ -159,4 +161,83 @@ fn the_largest_elongation_is_that_of_the_course_in_time() {
         // A sample misses a maximum by the square of its distance.
         assert!((largest / sampled - 1.0).abs() < 3e-6, "{kappa} {psi}: {largest} {sampled}");
     }
+}
+
+/// Time from the start of contact to the moment at which v = cos θ, without damping: u⁵ is
+/// (5/4) sin²θ, so that dt = (4/5) (5/4)^{2/5} sin^{−1/5} θ dθ, and with θ = τ⁵ the integrand is
+/// smooth. Gauss' rule with three nodes on two hundred pieces has an error below 1e-13.
+fn time_at(angle: f64) -> f64 {
+    const PIECES: u32 = 200;
+    let first = angle.min(PI - angle);
+    let width = first.powf(0.2) / f64::from(PIECES);
+    let rate = |tau: f64| {
+        let angle = tau.powi(5);
+        5.0 * tau.powi(3) * (angle / angle.sin()).powf(0.2)
+    };
+    let sum: f64 = (0..PIECES)
+        .map(|piece| {
+            let middle = (f64::from(piece) + 0.5) * width;
+            let off = 0.5 * width * 0.6_f64.sqrt();
+            5.0 * rate(middle - off) + 8.0 * rate(middle) + 5.0 * rate(middle + off)
+        })
+        .sum();
+    let time = 0.8 * 1.25_f64.powf(0.4) * width / 18.0 * sum;
+    if angle == first { time } else { exact::CONTACT_TIME - time }
+}
+
+/// v without damping at a time.
+fn rate_at(time: f64) -> f64 {
+    let (mut low, mut high) = (0.0, PI);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if time_at(middle) < time { low = middle } else { high = middle }
+    }
+    low.cos()
+}
+
+/// The closed form without damping where v = cos `angle`, at this `time`: compression, rate of the
+/// compression, spring and tangential velocity. `rates` are v at the switches.
+fn closed_form(collision: &Collision, rates: &[f64], (angle, time): (f64, f64)) -> [f64; 4] {
+    let (u, v) = ((1.25 * angle.sin().powi(2)).powf(0.2), angle.cos());
+    let kappa = collision.contact.kappa();
+    let passed = collision.switches.partition_point(|switch| switch.time <= time);
+    let Some(last) = passed.checked_sub(1) else {
+        return [u * u, v, u * u * u / kappa, collision.contact.psi() + (v - 1.0)];
+    };
+    let (switch, w) = (&collision.switches[last], collision.switches[last].velocity);
+    if switch.to == Regime::Slip {
+        let side = switch.side.sign();
+        return [u * u, v, side * u * u * u / kappa, w + side * (v - rates[last])];
+    }
+    let (omega, y) = (kappa.sqrt(), switch.spring);
+    let (sin, cos) = (omega * (time - switch.time)).sin_cos();
+    [u * u, v, y * cos + w / omega * sin, w * cos - y * omega * sin]
+}
+
+#[test]
+fn integrated_histories_follow_the_closed_form() {
+    assert!((time_at(0.5 * PI) - 0.5 * exact::CONTACT_TIME).abs() < 1e-13);
+    let places: Vec<_> = (1..1500).map(|i| PI * f64::from(i) / 1500.0).collect();
+    let places: Vec<_> = places.into_iter().map(|angle| (angle, time_at(angle))).collect();
+    let mut largest = [0.0_f64; 4];
+    for kappa in [0.02, 0.3, 18.0, 63.0, 1e4] {
+        for psi in [0.01, 0.4, 1.3, 3.0] {
+            let contact = Contact::new(kappa, psi, 0.0).unwrap();
+            let collision = exact::collide(contact).unwrap();
+            let rates: Vec<_> = collision.switches.iter().map(|it| rate_at(it.time)).collect();
+            let history = Collider::default().history(contact).unwrap();
+            let scales = [1.0, 1.0, kappa.min(kappa.sqrt()), 1.0];
+            for &place in &places {
+                let at = history.at(place.1).unwrap();
+                let integrated = [at.compression, at.normal_velocity, at.spring, at.velocity];
+                let closed = closed_form(&collision, &rates, place);
+                for j in 0..4 {
+                    largest[j] = largest[j].max((integrated[j] - closed[j]).abs() * scales[j]);
+                }
+            }
+        }
+    }
+    // Measured: 5.6e-12, 2.4e-12, 2.6e-12, 1.8e-12.
+    let limits = [1e-11, 4e-12, 4e-12, 4e-12];
+    assert!(largest.iter().zip(limits).all(|(&error, limit)| error < limit), "{largest:?}");
 }

@@ -13,7 +13,6 @@ use stickslip_tracer::{
 
 use crate::arrays::{expect_equal, numbers};
 use crate::failure::{bad_input, failed};
-use crate::families::family::{HybridFamily, place};
 
 /// A label: fires, begins, accumulates, unfinished or fails, and the guards that fire.
 pub type Label = (&'static str, Vec<usize>);
@@ -177,44 +176,6 @@ impl FamilyAtlas {
         });
         (regions.into_pyarray(py), distances.into_pyarray(py)).into_pyobject(py)
     }
-
-    /// The labels of points of the window, by runs of the family where the regions do not tell
-    /// them; `None` outside.
-    fn decide(
-        &self,
-        py: Python<'_>,
-        family: &HybridFamily,
-        x: PyReadonlyArray1<'_, f64>,
-        y: PyReadonlyArray1<'_, f64>,
-        threads: usize,
-    ) -> PyResult<Vec<Option<Label>>> {
-        self.description.expect(family.description())?;
-        let points = points(&x, &y)?;
-        let plane = &self.atlas.plane;
-        let mut open = Vec::new();
-        let mut labels: Vec<Option<Label>> = points
-            .iter()
-            .enumerate()
-            .map(|(index, point)| {
-                if !plane.window().contains(point) {
-                    return None;
-                }
-                // A curve may lie on the edge of the window.
-                let (low, high) = (point - plane.window().low, plane.window().high - point);
-                let inside = low.inf(&high).min() > plane.tolerance();
-                let found = self.atlas.label(point).filter(|_| inside).map(label);
-                if found.is_none() {
-                    open.push(index);
-                }
-                found
-            })
-            .collect();
-        let places: Vec<Point> = open.iter().map(|&index| points[index]).collect();
-        for (index, found) in open.into_iter().zip(family.labels_at(py, &places, threads)?) {
-            labels[index] = Some(found);
-        }
-        Ok(labels)
-    }
 }
 
 impl FamilyAtlas {
@@ -224,6 +185,39 @@ impl FamilyAtlas {
         description: Description,
     ) -> Self {
         Self { atlas, options, description }
+    }
+
+    /// The labels of points of the window that the regions tell, and the indices of those that they
+    /// do not.
+    pub fn told(&self, points: &[Point]) -> (Vec<Option<Label>>, Vec<usize>) {
+        let plane = &self.atlas.plane;
+        let mut open = Vec::new();
+        let labels = points.iter().enumerate().map(|(index, point)| {
+            if !plane.window().contains(point) {
+                return None;
+            }
+            // A curve may lie on the edge of the window.
+            let (low, high) = (point - plane.window().low, plane.window().high - point);
+            let inside = low.inf(&high).min() > plane.tolerance();
+            let found = self.atlas.label(point).filter(|_| inside).map(label);
+            if found.is_none() {
+                open.push(index);
+            }
+            found
+        });
+        (labels.collect(), open)
+    }
+}
+
+/// The name of the place of a margin.
+pub fn place(margin: &Margin) -> &'static str {
+    match margin.place {
+        Place::Start { .. } => "start",
+        Place::Minimum { .. } => "minimum",
+        Place::Maximum { .. } => "maximum",
+        Place::Exit(_) => "exit",
+        Place::Branch(_) => "branch",
+        Place::End => "end",
     }
 }
 

@@ -1,103 +1,27 @@
-//! What the tracer sees of a family, and what Python calls.
+//! What Python calls of a family.
 
 use std::ops::Range;
-use std::sync::{Arc, Mutex};
-use std::time::Instant;
+use std::sync::Arc;
 
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
-use stickslip_solver::{Margin, Place};
-use stickslip_tracer::{
-    AtlasOptions, Family, FreeRun, Itinerary, Monitor, Point, TraceOptions, Window, follow,
-};
+use stickslip_tracer::{AtlasOptions, Family, Monitor, Point, TraceOptions, Window, follow};
 
 use crate::failure::{bad_input, failed};
-use crate::families::atlas::{Description, FamilyAtlas, Label, followed, label, points};
+use crate::families::atlas::{Description, FamilyAtlas, Label, followed, label, place, points};
 use crate::families::blueprint::Blueprint;
-use crate::families::failure::{UserError, of_trace};
-use crate::families::sizes::{self, Runs};
+use crate::families::failure::of_trace;
+use crate::families::runner::Runner;
+use crate::families::sizes;
 use crate::families::survey::{Callbacks, survey};
 use crate::hybrid::Level;
 use crate::hybrid::arguments::{ChangeArguments, ModeArguments, Settings, Start};
-use crate::hybrid::system::PAUSE;
-use crate::hybrid::trouble::{Trouble, lock};
+use crate::hybrid::trouble::Trouble;
 use crate::parallel::Threads;
 
 /// A margin: the guards that have fired before, the guard, the name of the place, and the value.
 type MarginFields = (Vec<usize>, usize, &'static str, f64);
-
-/// The runs of a family, for one call of Python.
-pub struct Runner {
-    runs: Runs,
-    trouble: Arc<Trouble>,
-    /// When Ctrl-C was looked for, if the runs are on the thread that has to do it.
-    looked: Option<Mutex<Instant>>,
-}
-
-impl Runner {
-    pub fn trouble(&self) -> &Arc<Trouble> {
-        &self.trouble
-    }
-
-    /// The result of a run, unless a function has failed.
-    fn checked<T>(
-        &self,
-        run: impl FnOnce(&Runs) -> Result<T, stickslip_tracer::FamilyError>,
-    ) -> Result<T, UserError> {
-        let result = run(&self.runs);
-        if let Some(looked) = &self.looked {
-            let mut looked = lock(looked);
-            if looked.elapsed() >= PAUSE {
-                *looked = Instant::now();
-                drop(looked);
-                let found = Python::attach(|py| {
-                    py.detach(std::thread::yield_now);
-                    py.check_signals()
-                });
-                if let Err(error) = found
-                    && let Some(error) = self.trouble.postpone(error)
-                {
-                    self.trouble.fail(error);
-                }
-            }
-        }
-        if self.trouble.has_failed() {
-            return Err(UserError::Function);
-        }
-        result.map_err(UserError::Family)
-    }
-}
-
-impl Family for Runner {
-    type Label = Itinerary;
-    type Margin = Margin;
-    type Error = UserError;
-
-    fn label(&self, point: &Point) -> Result<Itinerary, UserError> {
-        self.checked(|runs| runs.label(point))
-    }
-
-    fn margin(&self, point: &Point, margin: &Margin) -> Result<Option<f64>, UserError> {
-        self.checked(|runs| runs.margin(point, margin))
-    }
-
-    fn moved(&self, point: &Point, margin: &Margin) -> Result<Margin, UserError> {
-        self.checked(|runs| runs.moved(point, margin))
-    }
-
-    fn is_sure(&self, margin: &Margin) -> bool {
-        self.runs.is_sure(margin)
-    }
-
-    fn cusps(&self, margin: &Margin) -> Vec<[Margin; 2]> {
-        self.runs.cusps(margin)
-    }
-
-    fn free_run(&self, point: &Point) -> Result<FreeRun<Itinerary, Margin>, UserError> {
-        self.checked(|runs| runs.free_run(point))
-    }
-}
 
 /// A family of systems of one's own.
 #[pyclass(frozen, module = "stickslip._native")]
@@ -181,13 +105,32 @@ impl HybridFamily {
         self.labels_at(py, &points(&x, &y)?, threads)
     }
 
+    /// The labels of points of an atlas, by runs where its regions do not tell them; `None` outside
+    /// its window.
+    fn decide(
+        &self,
+        py: Python<'_>,
+        atlas: &FamilyAtlas,
+        x: PyReadonlyArray1<'_, f64>,
+        y: PyReadonlyArray1<'_, f64>,
+        threads: usize,
+    ) -> PyResult<Vec<Option<Label>>> {
+        atlas.description.expect(&self.description)?;
+        let points = points(&x, &y)?;
+        let (mut labels, open) = atlas.told(&points);
+        let places: Vec<Point> = open.iter().map(|&index| points[index]).collect();
+        for (index, found) in open.into_iter().zip(self.labels_at(py, &places, threads)?) {
+            labels[index] = Some(found);
+        }
+        Ok(labels)
+    }
+
     /// The margins of the run at a point: the guards that have fired before, the guard, the name of
     /// the place, and the value.
     fn margins(&self, x: f64, y: f64) -> PyResult<(Label, Vec<MarginFields>)> {
         let _level = Level::enter()?;
         let runner = self.runner(Trouble::default(), true);
-        let found =
-            runner.free_run(&Point::new(x, y)).map_err(|error| Self::why(&runner, &error))?;
+        let found = runner.free_run(&Point::new(x, y)).map_err(|error| runner.why(&error))?;
         let margins = found.margins.into_iter().map(|(margin, value)| {
             let exits = margin.exits.iter().map(|exit| exit.guard).collect();
             (exits, margin.guard, place(&margin), value)
@@ -238,28 +181,11 @@ impl HybridFamily {
     }
 
     fn runner(&self, trouble: Trouble, looks: bool) -> Runner {
-        let trouble = Arc::new(trouble);
-        let runs = sizes::runs(&self.blueprint, &trouble);
-        Runner { runs, trouble, looked: looks.then(|| Mutex::new(Instant::now())) }
-    }
-
-    /// Why a run has no result.
-    fn why(runner: &Runner, error: &UserError) -> PyErr {
-        runner.trouble.take_failure().unwrap_or_else(|| bad_input(error))
-    }
-
-    /// What files say about the family.
-    pub fn description(&self) -> &Description {
-        &self.description
+        Runner::new(&self.blueprint, trouble, looks)
     }
 
     /// The labels of the runs at points.
-    pub fn labels_at(
-        &self,
-        py: Python<'_>,
-        points: &[Point],
-        threads: usize,
-    ) -> PyResult<Vec<Label>> {
+    fn labels_at(&self, py: Python<'_>, points: &[Point], threads: usize) -> PyResult<Vec<Label>> {
         let threads = self.threads(threads).unwrap_or(1);
         let runner = self.runner(Trouble::default(), threads == 1);
         let mut labels = Vec::with_capacity(points.len());
@@ -269,22 +195,10 @@ impl HybridFamily {
             labels.collect::<Result<Vec<_>, _>>()
         };
         Threads::new(threads, points.len())?.each(py, points.len(), work, |part| {
-            labels.extend(part.map_err(|error| Self::why(&runner, &error))?);
+            labels.extend(part.map_err(|error| runner.why(&error))?);
             Ok(())
         })?;
         if labels.len() == points.len() { Ok(labels) } else { Err(failed("labels are missing")) }
-    }
-}
-
-/// The name of the place of a margin.
-pub fn place(margin: &Margin) -> &'static str {
-    match margin.place {
-        Place::Start { .. } => "start",
-        Place::Minimum { .. } => "minimum",
-        Place::Maximum { .. } => "maximum",
-        Place::Exit(_) => "exit",
-        Place::Branch(_) => "branch",
-        Place::End => "end",
     }
 }
 

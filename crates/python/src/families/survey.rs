@@ -17,7 +17,7 @@ use stickslip_tracer::{
 
 use crate::failure::failed;
 use crate::families::failure::{UserError, of_atlas};
-use crate::families::family::Runner;
+use crate::families::runner::Runner;
 use crate::hybrid::system::PAUSE;
 use crate::hybrid::trouble::{Trouble, lock};
 use crate::parallel::Threads;

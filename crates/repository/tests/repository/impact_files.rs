@@ -5,7 +5,7 @@ use std::fs;
 
 use jsonschema::Validator;
 use serde_json::{Value, json};
-use stickslip_cli::Failure;
+use stickslip_cli::{Failure, FileError};
 
 use crate::root;
 
@@ -33,7 +33,9 @@ fn run(text: impl AsRef<[u8]>) -> Result<(), Failure> {
 /// `text` must be refused as bad input, with a message that contains all of `parts`.
 fn refused(text: impl AsRef<[u8]>, parts: &[&str]) {
     let refusal = run(text);
-    let Err(failure @ Failure::Input { .. }) = refusal else { panic!("{parts:?}: {refusal:?}") };
+    let Err(failure @ Failure::File(FileError::Input { .. })) = refusal else {
+        panic!("{parts:?}: {refusal:?}")
+    };
     let message = failure.to_string();
     for part in ["bodies.json: "].iter().chain(parts) {
         assert!(message.contains(part), "no {part:?} in {message}");

@@ -1,11 +1,14 @@
-//! What must hold of the repository as a whole: the arrows between crates, licences of
-//! dependencies, what packages carry, the schema of the files that `impact` reads, and the docs.
+//! What must hold of the repository as a whole: the arrows between crates and between files,
+//! licences of dependencies, what packages carry, the schema of the files that `impact` reads, and
+//! the docs.
 
 mod architecture;
+mod circles;
 mod dependencies;
 mod docs;
 mod impact_files;
 mod packages;
+mod rust;
 
 use std::path::{Path, PathBuf};
 

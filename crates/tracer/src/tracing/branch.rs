@@ -2,11 +2,10 @@
 //!
 //! In reading order: `track` (the state from which a step starts), `step` (one step), `ahead` (what
 //! lies ahead of a branch), `special`, `cusp`, `touch` and `tangency` (the vertices at which it
-//! ends), `end` (why it ends).
+//! ends).
 
 mod ahead;
 mod cusp;
-pub mod end;
 pub(crate) mod special;
 mod step;
 pub(crate) mod tangency;
@@ -19,10 +18,10 @@ use crate::cubic::Cubic;
 use crate::curve::{Node, VertexKind};
 use crate::family::Family;
 use crate::options::TraceError;
-use crate::tracing::branch::end::{End, SHORTEST, Special, Stop};
 use crate::tracing::branch::step::Attempt;
 use crate::tracing::branch::touch::touch;
 use crate::tracing::branch::track::{FootholdOf, Track};
+use crate::tracing::end::{End, SHORTEST, Special, Stop};
 use crate::tracing::fit::Target;
 use crate::tracing::runs::{Runs, Traced};
 use crate::tracing::seed::Seed;

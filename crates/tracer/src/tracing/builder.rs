@@ -2,7 +2,7 @@
 
 use crate::cubic::Cubic;
 use crate::curve::{Curve, Node, Vertex};
-use crate::tracing::branch::end::{SHORTEST, Special, Stop};
+use crate::tracing::end::{SHORTEST, Special, Stop};
 use crate::tracing::network::{Network, TraceStatistics, Unresolved};
 use crate::window::{Point, Window};
 

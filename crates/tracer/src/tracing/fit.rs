@@ -7,8 +7,8 @@
 use crate::cubic::Cubic;
 use crate::curve::Node;
 use crate::family::Family;
-use crate::tracing::branch::end::SHORTEST;
 use crate::tracing::corrector::correct;
+use crate::tracing::end::SHORTEST;
 use crate::tracing::runs::{Runs, Traced};
 use crate::tracing::tracer::Tracer;
 use crate::window::Point;

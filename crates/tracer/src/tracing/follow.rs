@@ -4,7 +4,7 @@ use crate::curve::{Curve, Node};
 use crate::family::Family;
 use crate::options::TraceOptions;
 use crate::tracing::branch::Branch;
-use crate::tracing::branch::end::End;
+use crate::tracing::end::End;
 use crate::tracing::extrema::{Bracket, solve};
 use crate::tracing::runs::{Runs, Traced};
 use crate::tracing::seed::{Seed, SeedOf};

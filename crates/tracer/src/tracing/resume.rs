@@ -2,8 +2,8 @@
 
 use crate::family::Family;
 use crate::options::TraceOptions;
-use crate::tracing::branch::end::Stop;
 use crate::tracing::builder::Builder;
+use crate::tracing::end::Stop;
 use crate::tracing::runs::Traced;
 use crate::tracing::state::{State, StateOf};
 use crate::tracing::tracer::Tracer;

@@ -5,8 +5,8 @@
 
 use crate::curve::VertexKind;
 use crate::family::Family;
-use crate::tracing::branch::end::{SHORTEST, Special};
 use crate::tracing::branch::tangency::Root;
+use crate::tracing::end::{SHORTEST, Special};
 use crate::tracing::runs::Traced;
 use crate::tracing::tracer::Tracer;
 use crate::window::Point;

@@ -1,12 +1,12 @@
 //! A file of collisions.
 
+use stickslip_files::input::rows::{Columns, Input};
+use stickslip_files::output::csv::Rows;
+use stickslip_files::output::rows::{self, ESTIMATES, EVENTS, RESULTS};
 use stickslip_model::{Contact, Engine};
 
 use crate::commands::batch::{self, Work};
 use crate::error::Failure;
-use crate::input::rows::{Columns, Input};
-use crate::output::csv::Rows;
-use crate::output::rows::{self, ESTIMATES, EVENTS, RESULTS};
 use crate::plan::BatchPlan;
 
 /// Computes every row of the input.

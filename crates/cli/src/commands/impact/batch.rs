@@ -1,12 +1,12 @@
 //! A file of impacts.
 
+use stickslip_files::input::rows::Input;
+use stickslip_files::output::csv::Rows;
+use stickslip_files::output::impact_rows::{self, EVENTS};
 use stickslip_model::{Encounter, ImpactReport};
 
 use crate::commands::batch::{self, Work};
 use crate::error::Failure;
-use crate::input::rows::Input;
-use crate::output::csv::Rows;
-use crate::output::impact_rows::{self, EVENTS};
 use crate::plan::{Engines, ImpactBatch};
 
 /// Computes every row of the input.

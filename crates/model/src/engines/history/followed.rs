@@ -1,12 +1,12 @@
 //! The two systems whose runs make courses: the paper's contact and that of any law.
 
+use stickslip_contact::general::{self, CREST, GeneralContact, Mode, REVERSAL};
+use stickslip_contact::phase::{END, Phase};
+use stickslip_contact::regularized::{Regularized, components};
+use stickslip_contact::{Regime, Side};
 use stickslip_solver::{Start, State, SwitchEvent};
 
 use super::Snapshot;
-use crate::laws::general::{self, CREST, GeneralContact, Mode, REVERSAL};
-use crate::laws::phase::{END, Phase, Regime, Side};
-use crate::laws::regularized::Regularized;
-use crate::laws::regularized::components;
 
 /// A contact whose run can be kept.
 pub trait Followed<const N: usize>: Copy {

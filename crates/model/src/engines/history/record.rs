@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
+use stickslip_contact::{Regime, Side};
 use stickslip_solver::{Dense, Observer, State, SwitchEvent};
 
 use super::Snapshot;
 use super::followed::{Begins, Followed};
-use crate::laws::phase::{Regime, Side};
 
 /// The run of one contact.
 #[derive(Clone, Debug)]

@@ -1,13 +1,13 @@
 //! The account of a run while it goes on: switches, reversals and the work of sliding.
 
+use stickslip_contact::phase::{END, Phase};
+use stickslip_contact::regularized::Regularized;
+use stickslip_contact::regularized::components::{STATE, T};
+use stickslip_contact::{Collision, Regime, Switch};
 use stickslip_solver::{Dense, Observer, State, SwitchEvent};
 
 use super::last_slip::{self, LastStick};
 use super::reversals;
-use crate::laws::phase::{END, Phase, Regime};
-use crate::laws::regularized::Regularized;
-use crate::laws::regularized::components::{STATE, T};
-use crate::result::{Collision, Switch};
 
 /// The running account of a collision.
 pub struct Account<'a> {

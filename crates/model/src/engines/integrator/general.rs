@@ -1,5 +1,8 @@
 //! The integration of a contact with any law.
 
+use stickslip_contact::general::{CREST, DAMPING, GeneralContact, Mode, REVERSAL, STATE, T};
+use stickslip_contact::phase::END;
+use stickslip_contact::{Collision, Contact, End, EnergyLedger, Law, Normal, Regime, Switch};
 use stickslip_solver::{
     EmbeddedPair, Observer, Options, Outcome, ReadableSystem, Start, State, Statistics,
     SwitchEvent, run_with,
@@ -7,11 +10,6 @@ use stickslip_solver::{
 
 use super::CollisionError;
 use super::account::Observed;
-use crate::contact::Contact;
-use crate::laws::general::{CREST, DAMPING, GeneralContact, Mode, REVERSAL, STATE, T};
-use crate::laws::law::{End, Law, Normal};
-use crate::laws::phase::{END, Regime};
-use crate::result::{Collision, EnergyLedger, Switch};
 
 /// Integrates one collision into `collision`, while `course` observes the run too.
 pub fn collide<O: Observer<Mode, STATE>>(

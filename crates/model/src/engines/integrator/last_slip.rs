@@ -7,11 +7,11 @@
 //! τ that is left follows from the spring: the force near the end is F = τ^{3/2} without damping
 //! and F = u|v|τ with it.
 
+use stickslip_contact::phase::Phase;
+use stickslip_contact::regularized::Regularized;
+use stickslip_contact::regularized::components::{STATE, U};
+use stickslip_contact::{Regime, Side};
 use stickslip_solver::State;
-
-use crate::laws::phase::{Phase, Regime, Side};
-use crate::laws::regularized::Regularized;
-use crate::laws::regularized::components::{STATE, U};
 
 /// Part of the time scale at the end of contact below which τ is computed from the spring. There
 /// the terms after the leading one are below 1e-8 of τ, and so is an integrated τ's error by

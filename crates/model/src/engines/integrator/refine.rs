@@ -7,13 +7,11 @@
 //! near 1e-21, so that times are accurate to rounding.
 
 use smallvec::SmallVec;
+use stickslip_contact::numerics::double_double::DoubleDouble;
+use stickslip_contact::phase::Phase;
+use stickslip_contact::regularized::{Regularized, STATE};
+use stickslip_contact::{Collision, Contact, EnergyLedger, FEW_SWITCHES, Regime, Side};
 use stickslip_solver::{EmbeddedPair, Observer, Options, Start, SwitchEvent, run_with};
-
-use crate::contact::Contact;
-use crate::laws::phase::{Phase, Regime, Side};
-use crate::laws::regularized::{Regularized, STATE};
-use crate::numerics::double_double::DoubleDouble;
-use crate::result::{Collision, EnergyLedger, FEW_SWITCHES};
 
 /// Degree of the Taylor series.
 const DEGREE: usize = 24;

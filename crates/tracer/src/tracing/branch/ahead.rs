@@ -3,9 +3,9 @@
 use crate::cubic::Cubic;
 use crate::curve::Node;
 use crate::family::Family;
-use crate::tracing::branch::end::{SHORTEST, Stop};
 use crate::tracing::branch::track::{FootholdOf, Track};
 use crate::tracing::corrector::correct;
+use crate::tracing::end::{SHORTEST, Stop};
 use crate::tracing::fit::mirrored;
 use crate::tracing::runs::Traced;
 use crate::window::Point;

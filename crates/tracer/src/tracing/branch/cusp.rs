@@ -3,9 +3,9 @@
 use crate::cubic::Cubic;
 use crate::curve::VertexKind;
 use crate::family::Family;
-use crate::tracing::branch::end::{SHORTEST, Special};
 use crate::tracing::branch::track::{FootholdOf, Track};
 use crate::tracing::corrector::crossing;
+use crate::tracing::end::{SHORTEST, Special};
 use crate::tracing::runs::Traced;
 use crate::window::Point;
 

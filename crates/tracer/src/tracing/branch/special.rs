@@ -3,10 +3,10 @@
 use crate::cubic::Cubic;
 use crate::curve::{Node, VertexKind};
 use crate::family::Family;
-use crate::tracing::branch::end::Special;
 use crate::tracing::branch::touch::{graze, narrow};
 use crate::tracing::branch::track::{FootholdOf, Track};
 use crate::tracing::corrector::{correct, crossing, stationary};
+use crate::tracing::end::Special;
 use crate::tracing::runs::{Runs, Traced};
 use crate::tracing::seed::{bisect, identify};
 use crate::window::Point;

@@ -3,9 +3,9 @@
 use crate::cubic::Cubic;
 use crate::curve::Node;
 use crate::family::Family;
-use crate::tracing::branch::end::SHORTEST;
 use crate::tracing::branch::track::{Foothold, FootholdOf, Track};
 use crate::tracing::corrector::{correct, correct_on_edge};
+use crate::tracing::end::SHORTEST;
 use crate::tracing::fit::{SHOWING, SHOWN};
 use crate::tracing::runs::Traced;
 use crate::window::{Point, Window};

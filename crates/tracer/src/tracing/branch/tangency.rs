@@ -9,9 +9,9 @@
 
 use crate::curve::VertexKind;
 use crate::family::Family;
-use crate::tracing::branch::end::{SHORTEST, Special};
 use crate::tracing::branch::track::{FootholdOf, Track};
 use crate::tracing::corrector::correct;
+use crate::tracing::end::{SHORTEST, Special};
 use crate::tracing::runs::{Runs, Traced};
 use crate::window::Point;
 

@@ -3,9 +3,9 @@
 use crate::cubic::Cubic;
 use crate::curve::{Node, VertexKind};
 use crate::family::Family;
-use crate::tracing::branch::end::Special;
 use crate::tracing::branch::track::{Foothold, FootholdOf, Track};
 use crate::tracing::corrector::{correct, crossing};
+use crate::tracing::end::Special;
 use crate::tracing::runs::Traced;
 use crate::window::Point;
 

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use crate::cubic::Cubic;
 use crate::curve::Node;
 use crate::family::{Family, FreeRun};
-use crate::tracing::branch::end::Stop;
+use crate::tracing::end::Stop;
 use crate::tracing::fit::Fit;
 use crate::tracing::runs::{Runs, Traced};
 use crate::window::Point;

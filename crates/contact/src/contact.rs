@@ -1,0 +1,154 @@
+//! The parameters of a collision.
+
+use crate::law::{Damping, Law};
+
+/// The parameters of one collision in scaled variables: stiffness, impact ratio and damping.
+///
+/// Scaled units: time β^{−2/5} g_n^{−1/5}, length g_n^{4/5} β^{−2/5}, with β = ρ/m.
+///
+/// ```
+/// use stickslip_contact::Contact;
+///
+/// let contact = Contact::new(63.0, 0.5, 0.0)?;
+/// assert_eq!(contact.kappa(), 63.0);
+/// assert!(Contact::new(-1.0, 0.5, 0.0).is_err());
+/// # Ok::<(), stickslip_contact::InvalidParameter>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Contact {
+    kappa: f64,
+    psi: f64,
+    damping: f64,
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "is_zero"))]
+    tangential_damping: f64,
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "is_paper"))]
+    law: Law,
+}
+
+#[cfg(feature = "serde")]
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
+#[cfg(feature = "serde")]
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+fn is_paper(law: &Law) -> bool {
+    *law == Law::PAPER
+}
+
+impl Contact {
+    /// A collision with the scaled stiffness `kappa` = k_t/(α m β^{4/5} g_n^{2/5}) > 0, the impact
+    /// ratio `psi` = (g_t/g_n) α/μ > 0 and the scaled damping `damping` = A β^{2/5} g_n^{1/5} ≥ 0.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`] names the first parameter that is out of its range.
+    pub fn new(kappa: f64, psi: f64, damping: f64) -> Result<Self, InvalidParameter> {
+        in_range("kappa", kappa, "a finite number above 0", kappa > 0.0)?;
+        in_range("psi", psi, "a finite number above 0", psi > 0.0)?;
+        in_range("damping", damping, "a finite number, 0 or above", damping >= 0.0)?;
+        Ok(Self { kappa, psi, damping, tangential_damping: 0.0, law: Law::PAPER })
+    }
+
+    /// The same collision with another law, and with the tangential damping b =
+    /// (γ_t/γ_n)/α ≥ 0, which is a ratio of the two damping constants.
+    ///
+    /// # Errors
+    /// [`InvalidParameter`]: the tangential damping is out of its range, the damping has no effect
+    /// in this law, or a contact with this damping never ends.
+    pub fn with_law(self, law: Law, tangential_damping: f64) -> Result<Self, InvalidParameter> {
+        let Self { damping, .. } = self;
+        let ok = tangential_damping >= 0.0;
+        in_range("tangential_damping", tangential_damping, "a finite number, 0 or above", ok)?;
+        let ok = damping == 0.0 || law.damping != Damping::None;
+        in_range("damping", damping, "0, since this law has no damping", ok)?;
+        let expected = match law.endless_from() {
+            2.0 => "less than 2: from there on contacts of this law never end",
+            least if least > 2.0 => {
+                "less than 2.2360679774997896: from there on contacts of this law never end"
+            }
+            _ => "less than 1.1279881355201692: from there on contacts of this law never end",
+        };
+        in_range("damping", damping, expected, damping < law.endless_from())?;
+        Ok(Self { tangential_damping, law, ..self })
+    }
+
+    /// The same κ, ψ and damping with the paper's law.
+    pub(crate) fn with_paper_law(self) -> Self {
+        Self { tangential_damping: 0.0, law: Law::PAPER, ..self }
+    }
+
+    /// Scaled stiffness κ of the tangential spring.
+    #[must_use]
+    pub fn kappa(&self) -> f64 {
+        self.kappa
+    }
+
+    /// Reduced impact ratio ψ = (g_t/g_n) α/μ.
+    #[must_use]
+    pub fn psi(&self) -> f64 {
+        self.psi
+    }
+
+    /// Scaled damping a of the normal force.
+    #[must_use]
+    pub fn damping(&self) -> f64 {
+        self.damping
+    }
+
+    /// Tangential damping b = (γ_t/γ_n)/α; 0 in the paper's law.
+    #[must_use]
+    pub fn tangential_damping(&self) -> f64 {
+        self.tangential_damping
+    }
+
+    /// The contact law.
+    #[must_use]
+    pub fn law(&self) -> Law {
+        self.law
+    }
+
+    /// Whether the paper's law holds: that is the law, or it differs in terms without effect.
+    #[must_use]
+    pub fn obeys_paper(&self) -> bool {
+        self.law.acts_as_paper(self.damping, self.tangential_damping)
+    }
+
+    /// Checks that the paper's law holds, for `what` is computed for no other.
+    ///
+    /// # Errors
+    /// [`OtherLaw`] unless [`Self::obeys_paper`].
+    pub fn require_paper(&self, what: &'static str) -> Result<(), OtherLaw> {
+        if self.obeys_paper() { Ok(()) } else { Err(OtherLaw { what }) }
+    }
+}
+
+fn in_range(
+    name: &'static str,
+    value: f64,
+    expected: &'static str,
+    ok: bool,
+) -> Result<(), InvalidParameter> {
+    if ok && value.is_finite() { Ok(()) } else { Err(InvalidParameter { name, value, expected }) }
+}
+
+/// What was asked for is computed for the paper's contact law only.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("{what} of a collision is computed for the paper's contact law only")]
+pub struct OtherLaw {
+    /// What was asked for.
+    pub what: &'static str,
+}
+
+/// A parameter of a collision is out of its range.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("{name} = {value} is out of range; expected {expected}")]
+pub struct InvalidParameter {
+    /// The parameter's name.
+    pub name: &'static str,
+    /// The value that was given.
+    pub value: f64,
+    /// The range in words.
+    pub expected: &'static str,
+}

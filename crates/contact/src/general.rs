@@ -1,0 +1,430 @@
+//! A contact with any law, in coordinates in which everything is smooth.
+//!
+//! With x = uⁿ and dt = n u^{n−1} ds, where n is 1, 2 or 4, the equations of every [`Law`] are
+//! polynomial: du/ds = v, and no root is left. Three things need a mode of their own:
+//!
+//! - Where the history is rescaled, it grows as √x while the overlap falls. From greatest
+//!   compression on, history over √x is carried, whose equation is polynomial again.
+//! - Where the normal force begins to attract, its absolute value has a kink, and the limit is
+//!   zero. Slip goes on behind it if the spring would leave the limit faster than the limit grows;
+//!   otherwise the contact sticks.
+//! - For the same reason a contact may start in slip: [`Beginning`].
+//!
+//! Neither greatest compression nor the beginning of attraction is a switch.
+//!
+//! Both the limit and the tangential force may vanish with a power of u at both ends of contact.
+//! The power they share is divided out of the guards.
+
+use stickslip_solver::{Direction, Guard, Method, Number, ReadableSystem, State, Step, Trial};
+
+pub(crate) mod equations;
+mod exponents;
+mod start;
+
+use crate::contact::Contact;
+use crate::law::{End, Law};
+use crate::phase::{END, OTHER_SIDE, Regime, SAME_SIDE, Side, longest_first_step};
+use equations::Equations;
+
+/// Number of components.
+pub const STATE: usize = 10;
+/// u, the n-th root of the overlap.
+pub const U: usize = 0;
+/// v = dx/dt where the damping a is below 1, otherwise a³(v + u^{p−d}/a).
+pub const V: usize = 1;
+/// The history, scaled as in [`regularized`](super::regularized::SPRING).
+pub const SPRING: usize = 2;
+/// w/σ with σ = min(1, ψ).
+pub const W: usize = 3;
+/// Time since the phase began.
+pub const T: usize = 4;
+/// Normal energy taken by damping.
+pub const DAMPING: usize = 5;
+/// In the first step of a stick phase, the gap between the force and its limit on the side of the
+/// phase, divided by c and a power of u.
+pub const GAP: usize = 6;
+/// The rate of that gap, divided by c once more.
+pub const RATE: usize = 7;
+/// The gap on the other side.
+pub const FAR_GAP: usize = 8;
+/// Its rate.
+pub const FAR_RATE: usize = 9;
+
+/// Number of guards.
+pub const GUARDS: usize = 5;
+/// Guard of greatest compression, where the history is rescaled.
+pub const CREST: usize = 3;
+/// Guard of a reversal of the tangential velocity, which changes nothing.
+pub const REVERSAL: usize = 4;
+
+/// A contact with any law, as a hybrid system.
+#[derive(Clone, Copy, Debug)]
+pub struct GeneralContact {
+    contact: Contact,
+    equations: Equations,
+    beginning: Beginning,
+    /// Whether reversals of the tangential velocity are events.
+    reversals: bool,
+}
+
+/// A phase, and the equations that hold in it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Mode {
+    /// Whether the tangential force has its limit.
+    pub regime: Regime,
+    /// The side of sliding; in stick, the side from which the spring comes.
+    pub side: Side,
+    /// The part of the contact.
+    pub stage: Stage,
+    /// How the phase began.
+    pub progress: Progress,
+}
+
+/// Parts of a contact in which the equations differ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// From the start of contact on.
+    Main,
+    /// Behind greatest compression, where the history is rescaled.
+    Unloading,
+    /// Where the normal force attracts.
+    Tail,
+}
+
+/// How a contact starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Beginning {
+    /// In stick.
+    Stick,
+    /// In slip on side +1, since spring or dashpot would exceed the limit.
+    Slip,
+    /// In stick, with a history that is reset to the limit less what the dashpot adds: the dashpot
+    /// would exceed the limit, but the spring falls behind it.
+    Reset,
+    /// In slip on side −1: the history is reset, and a spring that stiffens faster than the limit
+    /// is at its other limit at once.
+    Overturned,
+}
+
+/// How a phase began.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Progress {
+    /// Where the limit is zero: at the start of contact, or where attraction begins.
+    Touched,
+    /// At the start of contact with a reset history.
+    Reset,
+    /// At a switch.
+    Switched,
+    /// It has taken its first step.
+    Settled,
+}
+
+impl Stage {
+    /// The sign of the normal force.
+    fn sign(self) -> f64 {
+        if self == Self::Tail { -1.0 } else { 1.0 }
+    }
+}
+
+impl GeneralContact {
+    /// The system of one contact.
+    #[must_use]
+    pub fn new(contact: Contact) -> Self {
+        let equations = Equations::new(&contact).off_the_border(contact.psi());
+        let beginning = equations.beginning(contact.psi());
+        Self { contact, equations, beginning, reversals: false }
+    }
+
+    /// How the contact starts.
+    #[must_use]
+    pub fn beginning(&self) -> Beginning {
+        self.beginning
+    }
+
+    /// See [`Contact::start_layer`].
+    pub(crate) fn start_layer(&self) -> Option<f64> {
+        let e = self.equations.exponents;
+        if self.beginning != Beginning::Overturned {
+            return None;
+        }
+        // The dashpot's force grows as u^d, that of the reset spring as u^ρ.
+        let excess = self.contact.tangential_damping() * self.contact.psi();
+        let power = f64::from(e.n) / f64::from(e.of(Stage::Main).rho - e.d);
+        Some(((excess + 1.0) / (excess - 1.0)).powf(power))
+    }
+
+    /// The same system with another start, for margins that are followed beyond the contacts that
+    /// have them.
+    #[must_use]
+    pub fn beginning_with(self, beginning: Beginning) -> Self {
+        Self { beginning, ..self }
+    }
+
+    /// The numbers whose signs decide how the contact starts: one minus the ratio of tangential
+    /// force and limit, if both grow alike, and the rate at which the spring exceeds the limit, if
+    /// it may fall behind.
+    #[must_use]
+    pub fn beginning_margins(&self) -> [Option<f64>; 2] {
+        Equations::new(&self.contact).beginning_margins(self.contact.psi())
+    }
+
+    /// The same system, with an event at every reversal of the tangential velocity.
+    #[must_use]
+    pub fn with_reversals(self) -> Self {
+        Self { reversals: true, ..self }
+    }
+
+    /// The parameters of the contact.
+    #[must_use]
+    pub fn contact(&self) -> Contact {
+        self.contact
+    }
+
+    /// The mode in which the contact starts.
+    #[must_use]
+    pub fn first(&self) -> Mode {
+        let (regime, side, progress) = match self.beginning {
+            Beginning::Stick if self.equations.starts_flat() => {
+                (Regime::Stick, Side::Positive, Progress::Settled)
+            }
+            Beginning::Stick => (Regime::Stick, Side::Positive, Progress::Touched),
+            Beginning::Slip => (Regime::Slip, Side::Positive, Progress::Touched),
+            Beginning::Reset => (Regime::Stick, Side::Positive, Progress::Reset),
+            Beginning::Overturned => (Regime::Slip, Side::Negative, Progress::Touched),
+        };
+        Mode { regime, side, stage: Stage::Main, progress }
+    }
+
+    /// The state at the start of contact, or soon after it.
+    #[must_use]
+    pub fn start(&self) -> State<STATE> {
+        if self.beginning == Beginning::Stick && self.equations.starts_flat() {
+            return self.equations.early(self.contact.psi(), self.equations.first_moment()).into();
+        }
+        self.equations.enter(self.first(), &self.equations.start(self.contact.psi())).into()
+    }
+
+    /// The state at a time before that of [`Self::start`].
+    #[must_use]
+    pub fn state_before_start(&self, time: f64) -> State<STATE> {
+        if self.beginning == Beginning::Stick && self.equations.starts_flat() {
+            return self.equations.early(self.contact.psi(), time.sqrt()).into();
+        }
+        self.start()
+    }
+
+    /// Reduced tangential velocity w.
+    #[must_use]
+    pub fn velocity(&self, y: &State<STATE>) -> f64 {
+        self.equations.velocity(array(y))
+    }
+
+    /// Rate v of the overlap.
+    #[must_use]
+    pub fn compression_rate(&self, y: &State<STATE>) -> f64 {
+        self.equations.compression_rate(array(y))
+    }
+
+    /// Overlap x.
+    #[must_use]
+    pub fn overlap(&self, y: &State<STATE>) -> f64 {
+        // Where a contact ends, rounding may make u negative.
+        y[U].max(0.0).powi(i32::from(self.equations.exponents.n))
+    }
+
+    /// How long the overlap goes on after the force has ended in the state `y`: where the force is
+    /// limited, nothing pushes any more.
+    #[must_use]
+    pub fn flight(&self, y: &State<STATE>) -> f64 {
+        match self.contact.law().end {
+            End::Overlap => self.overlap(y) / -self.compression_rate(y),
+            End::Force => 0.0,
+        }
+    }
+
+    /// How fast time grows with s.
+    #[must_use]
+    pub fn clock_rate(&self, y: &State<STATE>) -> f64 {
+        let n = i32::from(self.equations.exponents.n);
+        f64::from(n) * y[U].powi(n - 1)
+    }
+
+    /// Scaled normal force F.
+    #[must_use]
+    pub fn normal_force(&self, y: &State<STATE>) -> f64 {
+        self.equations.normal_force(array(y))
+    }
+
+    /// The tangential force Q against the motion, in units of μ times the scaled normal force.
+    #[must_use]
+    pub fn tangential_force(&self, mode: Mode, y: &State<STATE>) -> f64 {
+        match mode.regime {
+            Regime::Slip => mode.side.sign() * mode.stage.sign() * self.normal_force(y),
+            Regime::Stick => self.equations.tangential_force(mode.stage, array(y)),
+        }
+    }
+
+    /// The tangential force over κ: the elongation of a spring of this stiffness.
+    #[must_use]
+    pub fn spring(&self, mode: Mode, y: &State<STATE>) -> f64 {
+        self.tangential_force(mode, y) / self.contact.kappa()
+    }
+
+    /// Whether a slip is missing behind a contact that ends in `mode`. Where a damped contact ends
+    /// at F = 0, its limit falls below every spring before, but the slip that follows may be
+    /// shorter than rounding.
+    #[must_use]
+    pub fn lacks_slip(&self, mode: Mode) -> bool {
+        let vanishes = self.equations.exponents.damped && self.contact.law().end == End::Force;
+        vanishes && mode.regime == Regime::Stick
+    }
+
+    /// The guard of the slip that is missing behind a contact that ends in the state `y`, and how
+    /// long that slip lasts; `None` if none [is](Self::lacks_slip).
+    #[must_use]
+    pub fn last_slip(&self, mode: Mode, y: &State<STATE>) -> Option<(usize, f64)> {
+        self.lacks_slip(mode).then(|| self.equations.last_slip(mode, array(y)))
+    }
+
+    /// Whether an attracting tail follows where the normal force vanishes.
+    fn attracts(&self) -> bool {
+        let Law { limit_damping, end, .. } = self.contact.law();
+        self.equations.exponents.damped && end == End::Overlap && !limit_damping
+    }
+
+    /// The mode that follows `mode` where `guard` fires. Where attraction begins, slip goes on if
+    /// it `slips`.
+    #[must_use]
+    pub fn after(&self, mode: Mode, guard: usize, slips: bool) -> Mode {
+        let (regime, side, progress) = match (guard, mode.regime) {
+            (CREST, _) => return Mode { stage: Stage::Unloading, ..self.settle(mode) },
+            (END, _) => {
+                let (regime, progress) = if slips {
+                    (Regime::Slip, Progress::Switched)
+                } else {
+                    (Regime::Stick, Progress::Touched)
+                };
+                return Mode { regime, progress, stage: Stage::Tail, ..mode };
+            }
+            (OTHER_SIDE, Regime::Stick) => (Regime::Slip, mode.side.opposite(), Progress::Switched),
+            (_, Regime::Stick) => (Regime::Slip, mode.side, Progress::Switched),
+            (_, Regime::Slip) => (Regime::Stick, mode.side, Progress::Switched),
+        };
+        Mode { regime, side, progress, ..mode }
+    }
+
+    /// How much faster than the limit the spring leaves it where attraction begins in a slip phase.
+    fn excess_in_tail(&self, mode: Mode, y: &State<STATE>) -> f64 {
+        let tail = self.after(mode, END, true);
+        self.equations.guards(tail, array(y))[SAME_SIDE]
+    }
+}
+
+impl ReadableSystem<STATE, GUARDS> for GeneralContact {
+    type Mode = Mode;
+
+    #[inline(always)]
+    fn field<T: Number>(&self, mode: Mode, _s: T, y: &[T; STATE]) -> [T; STATE] {
+        self.equations.field(mode, y)
+    }
+
+    /// Each right-hand side has a step that is compiled for it and knows which components are
+    /// constant.
+    fn step<M: Method>(&self, mode: Mode, trial: &Trial<'_, STATE>, step: &mut Step<STATE>) {
+        macro_rules! take {
+            ($part:ident; $($still:ident)*) => {{
+                let slope = &mut trial.slope.clone_owned();
+                $(slope[$still] = 0.0;)*
+                let trial = &Trial { slope, ..*trial };
+                let mut field = |_, y: &State<STATE>| self.equations.$part(mode, array(y)).into();
+                step.take::<M>(&mut field, trial);
+            }};
+        }
+        match (mode.regime, mode.progress) {
+            (Regime::Slip, _) => take!(slip; SPRING GAP RATE FAR_GAP FAR_RATE),
+            (Regime::Stick, Progress::Settled) => take!(stick; GAP RATE FAR_GAP FAR_RATE),
+            (Regime::Stick, _) => take!(first_stick;),
+        }
+    }
+
+    #[inline(always)]
+    fn guards(&self, mode: Mode) -> [Guard; GUARDS] {
+        let e = self.equations.exponents;
+        let of = e.of(mode.stage);
+        let below = Guard::new(Direction::Below).smooth();
+        let touched = matches!(mode.progress, Progress::Touched | Progress::Reset);
+        // A phase that starts from a zero may be much shorter than a step.
+        let leave = if touched { Guard::new(Direction::Below) } else { below };
+        let end =
+            if self.attracts() && mode.stage != Stage::Tail { below } else { below.terminal() };
+        // Where both limits are 0, a spring that is there slips first.
+        let end = if mode.regime == Regime::Stick { end.yielding() } else { end };
+        // Without damping the contact starts at u = 0.
+        let starts = touched && mode.stage != Stage::Tail && !e.damped;
+        let end = if starts { end.from_zero(1) } else { end };
+        let [same, other] = match (mode.regime, mode.progress) {
+            (Regime::Slip, _) => [leave, Guard::OFF],
+            (_, Progress::Touched) => {
+                let (limit, force) = self.equations.first_orders();
+                let order = if mode.stage == Stage::Tail { 1 } else { limit.min(force).into() };
+                [leave.from_zero(order); 2]
+            }
+            (_, Progress::Reset) => [
+                leave.from_zero(u32::from(of.leading - of.shared)),
+                leave.from_zero(u32::from(e.d - of.shared)),
+            ],
+            (_, Progress::Switched) => [below.from_zero(2), below],
+            (_, Progress::Settled) => [below, below],
+        };
+        let crest = if e.rescaled && mode.stage == Stage::Main { below } else { Guard::OFF };
+        let reversal = Guard::new(Direction::Either).smooth();
+        [end, same, other, crest, if self.reversals { reversal } else { Guard::OFF }]
+    }
+
+    #[inline(always)]
+    fn guard_values<T: Number>(&self, mode: Mode, _s: T, y: &[T; STATE]) -> [T; GUARDS] {
+        self.equations.guards(mode, y)
+    }
+
+    fn longest_first_step(&self, _mode: Mode, _s: f64, y: &State<STATE>) -> f64 {
+        longest_first_step(y[U], self.compression_rate(y))
+    }
+
+    #[inline(always)]
+    fn settle(&self, mode: Mode) -> Mode {
+        Mode { progress: Progress::Settled, ..mode }
+    }
+
+    fn transition(
+        &self,
+        mode: Mode,
+        guard: usize,
+        _s: f64,
+        y: &State<STATE>,
+    ) -> (Mode, State<STATE>) {
+        if guard == REVERSAL {
+            return (mode, *y);
+        }
+        let slips = mode.regime == Regime::Slip && self.excess_in_tail(mode, y) >= 0.0;
+        let next = self.after(mode, guard, slips);
+        if guard == CREST {
+            let turned = self.equations.turn(array(y));
+            // A contact that begins to stick here would lose the gap to its limit in rounding.
+            if mode.progress == Progress::Switched && self.equations.is_at_limit(mode, array(y)) {
+                let next = Mode { progress: Progress::Switched, ..next };
+                return (next, self.equations.at_limit(next, turned).into());
+            }
+            return (next, turned.into());
+        }
+        (next, self.equations.enter(next, array(y)).into())
+    }
+
+    fn transition_condition(&self, mode: Mode, guard: usize, _s: f64, y: &State<STATE>) -> f64 {
+        let branches = guard == END && mode.regime == Regime::Slip && self.attracts();
+        if branches { self.excess_in_tail(mode, y) } else { f64::NAN }
+    }
+}
+
+fn array(y: &State<STATE>) -> &[f64; STATE] {
+    &y.data.0[0]
+}

@@ -1,0 +1,254 @@
+//! A contact law as data.
+
+use std::fmt;
+
+/// The terms of a contact law. [`Law::PAPER`] is that of Schwager, Becker and Pöschel; particle
+/// codes compute others, which [`presets`](crate::presets) names.
+///
+/// In scaled units, with the overlap x, its rate v and the tangential velocity w:
+///
+/// ```text
+/// dv/dt = −F     F = x or x^{3/2}, plus η v     η = a, a√x or a x^{1/4}
+/// dw/dt = −Q     Q = k y + b η w     k = κ or κ√x     dy/dt = w
+/// ```
+///
+/// b is the tangential damping. Where |Q| would exceed |F|, dw/dt = −sgn(Q) |F|, and the history is
+/// set such that Q has this size. The source is the text of LAMMPS (29 Sep 2021):
+/// `pair_gran_hooke_history`, `pair_gran_hertz_history` and `pair_granular`.
+///
+/// ```
+/// use stickslip_contact::{Contact, Law, Tangential};
+///
+/// let mindlin = Law { tangential: Tangential::Mindlin, ..Law::PAPER };
+/// let contact = Contact::new(1.2, 0.3, 0.0)?.with_law(mindlin, 0.0)?;
+/// // A spring that stiffens with the load is not conservative.
+/// assert!(contact.law().spring_energy().creates());
+/// # Ok::<(), stickslip_contact::InvalidParameter>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
+pub struct Law {
+    /// The elastic part of the normal force.
+    pub normal: Normal,
+    /// The damping η of the normal force.
+    pub damping: Damping,
+    /// The stiffness k of the tangential spring.
+    pub tangential: Tangential,
+    /// What the spring remembers.
+    pub history: HistoryOf,
+    /// Whether the history shrinks with √x while the overlap falls.
+    pub rescaled: bool,
+    /// Whether the normal force is kept from attracting. Without effect where `end` is
+    /// [`End::Force`].
+    pub limit_damping: bool,
+    /// Where the contact ends.
+    pub end: End,
+}
+
+/// The elastic part of the normal force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+pub enum Normal {
+    /// x.
+    Linear,
+    /// x^{3/2}.
+    Hertz,
+}
+
+/// The damping η of the normal force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+pub enum Damping {
+    /// 0.
+    None,
+    /// a.
+    Linear,
+    /// a √x.
+    Viscoelastic,
+    /// a x^{1/4}.
+    Tsuji,
+}
+
+/// The stiffness k of the tangential spring.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+pub enum Tangential {
+    /// κ.
+    Constant,
+    /// κ √x.
+    Mindlin,
+}
+
+/// What the spring remembers. With a constant stiffness both mean the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+pub enum HistoryOf {
+    /// Its elongation y, with dy/dt = w and the force k y.
+    Displacement,
+    /// Its force q, with dq/dt = k w.
+    Force,
+}
+
+/// Where a contact ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+pub enum End {
+    /// Where the normal force would begin to attract.
+    Force,
+    /// Where the overlap vanishes.
+    Overlap,
+}
+
+/// What becomes of the energy in the tangential spring while it sticks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpringEnergy {
+    /// It comes back.
+    Conserved,
+    /// Part of it is lost, and none created.
+    Lost,
+    /// It grows by itself while the overlap grows.
+    CreatedLoading,
+    /// It grows by itself while the overlap falls.
+    CreatedUnloading,
+}
+
+impl SpringEnergy {
+    /// Whether the spring creates energy.
+    #[must_use]
+    pub fn creates(self) -> bool {
+        matches!(self, Self::CreatedLoading | Self::CreatedUnloading)
+    }
+}
+
+impl fmt::Display for SpringEnergy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Conserved => "conserves energy",
+            Self::Lost => "loses energy",
+            Self::CreatedLoading => "creates energy while loading",
+            Self::CreatedUnloading => "creates energy while unloading",
+        })
+    }
+}
+
+impl Default for Law {
+    fn default() -> Self {
+        Self::PAPER
+    }
+}
+
+impl Law {
+    /// The law of Schwager, Becker and Pöschel.
+    pub const PAPER: Self = Self {
+        normal: Normal::Hertz,
+        damping: Damping::Viscoelastic,
+        tangential: Tangential::Constant,
+        history: HistoryOf::Displacement,
+        rescaled: false,
+        limit_damping: false,
+        end: End::Force,
+    };
+
+    /// The equations in scaled units, in one line.
+    #[must_use]
+    pub fn equations(&self) -> String {
+        let elastic = match self.normal {
+            Normal::Linear => "x",
+            Normal::Hertz => "x^(3/2)",
+        };
+        let eta = match self.damping {
+            Damping::None => "",
+            Damping::Linear => "a",
+            Damping::Viscoelastic => "a √x",
+            Damping::Tsuji => "a x^(1/4)",
+        };
+        let damped = self.damping != Damping::None;
+        let normal = match (damped, self.limit_damping && self.end == End::Overlap) {
+            (false, _) => format!("F = {elastic}"),
+            (true, false) => format!("F = {elastic} + {eta} v"),
+            (true, true) => format!("F = max(0, {elastic} + {eta} v)"),
+        };
+        let stiffness = match self.tangential {
+            Tangential::Constant => "κ",
+            Tangential::Mindlin => "κ √x",
+        };
+        let dashpot = if damped { format!(" + b {eta} w") } else { String::new() };
+        let rescaled = |history| {
+            if self.rescaled { format!(" (+ {history} v/(2x) where v < 0)") } else { String::new() }
+        };
+        let tangential = match self.history {
+            HistoryOf::Displacement => {
+                format!("Q = {stiffness} y{dashpot}, dy/dt = w{}", rescaled("y"))
+            }
+            HistoryOf::Force => {
+                format!("Q = q{dashpot}, dq/dt = {stiffness} w{}", rescaled("q"))
+            }
+        };
+        let end = match self.end {
+            End::Force => "F = 0",
+            End::Overlap => "x = 0",
+        };
+        format!("{normal}; {tangential}; |Q| ≤ |F|; ends at {end}")
+    }
+
+    /// What becomes of the energy in the tangential spring while it sticks.
+    ///
+    /// With the stiffness k(x) a spring with the force Q holds Q²/(2k). Where the elongation y is
+    /// kept, its change is Q w + y² k'v/2, and where the force is kept, Q w − Q² k'v/(2k²). A
+    /// history that is rescaled while the overlap falls adds Q² v/(2kx) to either, which is
+    /// negative and, where the force is kept, twice what the falling stiffness creates.
+    #[must_use]
+    pub fn spring_energy(&self) -> SpringEnergy {
+        match (self.tangential, self.history, self.rescaled) {
+            (Tangential::Constant, _, false) => SpringEnergy::Conserved,
+            (Tangential::Constant, _, true) | (_, HistoryOf::Force, true) => SpringEnergy::Lost,
+            (_, HistoryOf::Displacement, _) => SpringEnergy::CreatedLoading,
+            (_, HistoryOf::Force, false) => SpringEnergy::CreatedUnloading,
+        }
+    }
+
+    /// Whether a contact with this law and these dampings obeys the paper's: terms that differ
+    /// have no effect on it.
+    #[must_use]
+    pub fn acts_as_paper(&self, damping: f64, tangential_damping: f64) -> bool {
+        let elastic = self.normal == Normal::Hertz
+            && self.tangential == Tangential::Constant
+            && !self.rescaled;
+        let damped = self.damping == Damping::Viscoelastic
+            && tangential_damping == 0.0
+            && self.end == End::Force;
+        elastic && (damping == 0.0 || damped)
+    }
+
+    /// The least damping with which a contact never ends, because an attracting tail holds it
+    /// for ever; infinite where all contacts end.
+    ///
+    /// With x = uⁿ the end is a line that every trajectory crosses, unless one arrives at u = 0
+    /// with v = 0. For linear damping of a linear force that is known from its sines, for Tsuji's
+    /// of Hertz' force from v = −A x^{5/4}, 5A²/4 − aA + 1 = 0. For linear damping of Hertz' force
+    /// the last trajectory to escape arrives along v = −a x. No other law has a trajectory that
+    /// arrives.
+    #[must_use]
+    pub fn endless_from(&self) -> f64 {
+        if self.limit_damping || self.end == End::Force {
+            return f64::INFINITY;
+        }
+        match (self.normal, self.damping) {
+            (Normal::Linear, Damping::Linear) => 2.0,
+            (Normal::Hertz, Damping::Tsuji) => 5.0_f64.sqrt(),
+            (Normal::Hertz, Damping::Linear) => HERTZ_LINEAR,
+            _ => f64::INFINITY,
+        }
+    }
+}
+
+/// The damping from which Hertz' force with linear damping has contacts that never end: there the
+/// trajectory that arrives at x = 0 along v = −a x starts from x = 0 with v = 1. By a Taylor
+/// integration with 30 digits: `tests/data/endless_contacts.py`.
+const HERTZ_LINEAR: f64 = 1.127_988_135_520_169_2;

@@ -1,0 +1,36 @@
+//! The contact of two frictional spheres: its parameters, its law as data and as equations, and
+//! what a collision is.
+//!
+//! In scaled variables a collision has three parameters: the stiffness κ, the impact ratio ψ and
+//! the damping. With a [`Law`] they are a [`Contact`]. Whoever computes its [`Collision`] uses the
+//! names of this crate: `stickslip-exact` solves the equations in closed form, `stickslip-model`
+//! integrates them.
+//!
+//! Start reading in [`Contact`]; then, in this order: `law` (a contact law as data), `contact`
+//! (parameters), [`phase`] (what all laws have in common), [`presets`] (the laws of particle codes),
+//! [`regularized`] and [`general`] (the equations of the paper's law and of any law as hybrid
+//! systems), `result` (what every engine returns),[`domain`] (ranges of engines), [`numerics`]
+//! (numbers with twice the digits, roots in a bracket).
+//!
+//! With the feature `serde`, results serialise themselves.
+
+mod contact;
+pub mod domain;
+pub mod general;
+mod law;
+pub mod numerics;
+pub mod phase;
+pub mod presets;
+pub mod regularized;
+mod result;
+#[cfg(feature = "serde")]
+mod serialize;
+
+pub use contact::{Contact, InvalidParameter, OtherLaw};
+pub use law::{Damping, End, HistoryOf, Law, Normal, SpringEnergy, Tangential};
+pub use phase::{Regime, Side};
+pub use result::{Collision, EnergyLedger, FEW_SWITCHES, NotFinite, Switch, Switches};
+
+#[doc = include_str!("../README.md")]
+#[cfg(doctest)]
+pub struct Readme;

@@ -1,0 +1,94 @@
+//! Numbers of about 106 bits, made of two floating-point numbers each.
+//!
+//! The operations are those of T. J. Dekker, Numer. Math. 18, 224 (1971). The error of a product
+//! comes from a fused multiplication.
+
+/// A sum of two numbers that is kept as it is; the second is below the rounding of the first.
+#[derive(Clone, Copy, Debug)]
+pub struct DoubleDouble(pub f64, pub f64);
+
+impl DoubleDouble {
+    /// The exact sum a + b.
+    #[inline]
+    #[must_use]
+    pub fn sum(a: f64, b: f64) -> Self {
+        let high = a + b;
+        let part = high - a;
+        Self(high, (a - (high - part)) + (b - part))
+    }
+
+    /// The exact product a·b.
+    #[inline]
+    #[must_use]
+    pub fn product(a: f64, b: f64) -> Self {
+        let high = a * b;
+        Self(high, a.mul_add(b, -high))
+    }
+
+    /// The sum with `other`.
+    #[inline]
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        let Self(high, low) = Self::sum(self.0, other.0);
+        Self::sum(high, low + (self.1 + other.1))
+    }
+
+    /// The difference from `other`.
+    #[inline]
+    #[must_use]
+    pub fn minus(self, other: Self) -> Self {
+        self.plus(Self(-other.0, -other.1))
+    }
+
+    /// The product with `other`.
+    #[inline]
+    #[must_use]
+    pub fn times(self, other: Self) -> Self {
+        let Self(high, low) = Self::product(self.0, other.0);
+        Self::sum(high, low + (self.0 * other.1 + self.1 * other.0))
+    }
+
+    /// The product with a double.
+    #[inline]
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        let Self(high, low) = Self::product(self.0, factor);
+        Self::sum(high, self.1.mul_add(factor, low))
+    }
+
+    /// The quotient by `divisor`.
+    #[inline]
+    #[must_use]
+    pub fn over(self, divisor: Self) -> Self {
+        let quotient = self.0 / divisor.0;
+        let rest = (-quotient).mul_add(divisor.0, self.0) + self.1 - quotient * divisor.1;
+        Self::sum(quotient, rest / divisor.0)
+    }
+
+    /// The nearest double.
+    #[inline]
+    #[must_use]
+    pub fn nearest(self) -> f64 {
+        self.0 + self.1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pairs_keep_what_rounding_drops() {
+        let tiny = 2.0_f64.powi(-70);
+        let sum = DoubleDouble::sum(1.0, tiny);
+        assert_eq!((sum.0, sum.1), (1.0, tiny));
+        // (1 + ε)² = 1 + 2ε + ε²
+        let square =
+            sum.times(sum).minus(DoubleDouble(1.0, 0.0)).minus(DoubleDouble(2.0 * tiny, 0.0));
+        assert!(square.nearest().abs() < 1e-30);
+        let third = DoubleDouble(1.0, 0.0).over(DoubleDouble(3.0, 0.0));
+        let back = third.times(DoubleDouble(3.0, 0.0)).minus(DoubleDouble(1.0, 0.0));
+        assert!(back.nearest().abs() < 1e-31);
+        assert_eq!(DoubleDouble::product(0.1, 10.0).nearest(), 1.0);
+    }
+}

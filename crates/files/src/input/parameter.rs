@@ -1,0 +1,125 @@
+//! The parameters of a collision: their names and ranges on the command line and in files.
+
+use stickslip_model::quantity::Quantity;
+use stickslip_model::{Contact, Law, quantity};
+
+use crate::input::number::{self, NotANumber, SYNTAX};
+
+/// A parameter that an option or a column may give.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parameter {
+    /// Scaled stiffness κ of the tangential spring.
+    Kappa,
+    /// Reduced impact ratio ψ.
+    Psi,
+    /// Impact ratio g_t/g_n.
+    Ratio,
+    /// Coefficient of friction μ.
+    Mu,
+    /// Tangential inertia α.
+    Alpha,
+    /// Scaled damping a.
+    Damping,
+    /// Tangential damping (γ_t/γ_n)/α.
+    TangentialDamping,
+}
+
+impl Parameter {
+    /// The name of the column. The name of the option is the same after `--`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Kappa => "kappa",
+            Self::Psi => "psi",
+            Self::Ratio => "ratio",
+            Self::Mu => "mu",
+            Self::Alpha => "alpha",
+            Self::Damping => "damping",
+            Self::TangentialDamping => "tangential_damping",
+        }
+    }
+
+    /// The value in `text`.
+    ///
+    /// # Errors
+    /// [`BadValue`]: not a number, or out of the parameter's range.
+    pub fn parse(self, text: &str) -> Result<f64, BadValue> {
+        let value = number::parse(text)
+            .map_err(|problem| BadValue::Number { problem, expected: self.expected() })?;
+        self.check(value).map_err(|expected| BadValue::Range { expected })
+    }
+
+    /// `value`, if it is in the parameter's range. The model decides on the ranges that it knows.
+    ///
+    /// # Errors
+    /// What is expected.
+    pub fn check(self, value: f64) -> Result<f64, &'static str> {
+        let contact = match self {
+            Self::Kappa => Contact::new(value, 1.0, 0.0),
+            Self::Psi => Contact::new(1.0, value, 0.0),
+            Self::Damping => Contact::new(1.0, 1.0, value),
+            Self::TangentialDamping => {
+                Contact::new(1.0, 1.0, 0.0).and_then(|it| it.with_law(Law::PAPER, value))
+            }
+            Self::Mu => return quantity::FRICTION.check(value).map_err(|error| error.expected),
+            Self::Ratio => {
+                let ok = value > 0.0 && value.is_finite();
+                return if ok { Ok(value) } else { Err("a finite number above 0") };
+            }
+            Self::Alpha => return quantity::INERTIA.check(value).map_err(|error| error.expected),
+        };
+        contact.map(|_| value).map_err(|invalid| invalid.expected)
+    }
+
+    /// The range, for messages.
+    fn expected(self) -> &'static str {
+        // NaN is in no range, so that each parameter answers here.
+        self.check(f64::NAN).err().unwrap_or("a finite number")
+    }
+}
+
+/// The value of a quantity in SI units in `text`.
+///
+/// # Errors
+/// [`BadValue`]: not a number, or out of the quantity's range.
+pub fn quantity(quantity: &Quantity, text: &str) -> Result<f64, BadValue> {
+    let expected = quantity.expected;
+    let value = number::parse(text).map_err(|problem| BadValue::Number { problem, expected })?;
+    quantity.check(value).map_err(|_| BadValue::Range { expected })
+}
+
+/// The reason why a text is not the value of a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum BadValue {
+    /// The text is not a number.
+    #[error("{problem}; expected {expected}, {SYNTAX}")]
+    Number {
+        /// What is wrong with the text.
+        problem: NotANumber,
+        /// What is expected.
+        expected: &'static str,
+    },
+    /// The number is out of range.
+    #[error("out of range; expected {expected}")]
+    Range {
+        /// What is expected.
+        expected: &'static str,
+    },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Parameter::{Alpha, Damping, Kappa, Mu, Psi, Ratio, TangentialDamping};
+
+    #[test]
+    fn every_parameter_has_a_range() {
+        for parameter in [Kappa, Psi, Ratio, Mu, Alpha, Damping, TangentialDamping] {
+            assert!(parameter.check(f64::NAN).is_err(), "{parameter:?}");
+            assert!(parameter.parse("-1").is_err(), "{parameter:?}");
+            assert!(parameter.parse("1").is_ok(), "{parameter:?}");
+            let may_be_zero = matches!(parameter, Damping | TangentialDamping);
+            assert_eq!(parameter.parse("0").is_ok(), may_be_zero);
+        }
+        assert!(Alpha.parse("1.0000001").is_err());
+    }
+}

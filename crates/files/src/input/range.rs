@@ -1,0 +1,215 @@
+//! The syntax of intervals and of sizes: `0:70`, `1000x800`.
+
+use stickslip_plane::Range;
+
+use crate::input::number::{self, NotANumber};
+use crate::input::parameter::Parameter;
+
+/// Reads an interval `LO:HI` of `parameter`, both ends of which are in its range.
+///
+/// # Errors
+/// [`NotARange`] says what is wrong and what is expected.
+pub fn parse_for(parameter: Parameter, text: &str) -> Result<Range, NotARange> {
+    let Range { low, high } = parse(text)?;
+    match (parameter.check(low), parameter.check(high)) {
+        (Ok(low), Ok(high)) => Ok(Range { low, high }),
+        _ => Err(NotARange::Zero),
+    }
+}
+
+/// Reads an interval `LO:HI` above 0.
+///
+/// # Errors
+/// [`NotARange`] says what is wrong and what is expected.
+pub fn parse_above_0(text: &str) -> Result<Range, NotARange> {
+    let range = parse(text)?;
+    if range.low > 0.0 { Ok(range) } else { Err(NotARange::Zero) }
+}
+
+/// One value of a parameter, or an interval of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum OneOrRange {
+    /// One value.
+    One(f64),
+    /// An interval.
+    Range(Range),
+}
+
+impl OneOrRange {
+    /// The value, or `count` values of the interval in equal ratios, of which the first and the
+    /// last are its ends.
+    #[must_use]
+    pub fn values(self, count: usize) -> Vec<f64> {
+        match self {
+            Self::One(value) => vec![value],
+            Self::Range(Range { low, high }) => (0..count)
+                .map(|index| match index {
+                    0 => low,
+                    _ if index + 1 == count => high,
+                    _ => {
+                        let part = index as f64 / (count - 1) as f64;
+                        (low.ln() * (1.0 - part) + high.ln() * part).exp()
+                    }
+                })
+                .collect(),
+        }
+    }
+}
+
+/// Reads a value of `parameter`, or an interval `LO:HI` as [`parse_for`].
+///
+/// # Errors
+/// What is wrong and what is expected.
+pub fn parse_one_or_range(parameter: Parameter, text: &str) -> Result<OneOrRange, String> {
+    if text.contains(':') {
+        let range = parse_for(parameter, text).map_err(|problem| problem.to_string())?;
+        return Ok(OneOrRange::Range(range));
+    }
+    let value = parameter.parse(text).map_err(|problem| format!("{problem}, or an interval LO:HI"));
+    value.map(OneOrRange::One)
+}
+
+/// Reads an interval `LO:HI`, which may begin at 0.
+///
+/// # Errors
+/// [`NotARange`] says what is wrong and what is expected.
+pub fn parse(text: &str) -> Result<Range, NotARange> {
+    let (low, high) = text.split_once(':').ok_or(NotARange::Syntax)?;
+    let low = number::parse(low).map_err(|problem| NotARange::Low { problem })?;
+    let high = number::parse(high).map_err(|problem| NotARange::High { problem })?;
+    // −0 and 0 are the same lower end.
+    if low >= 0.0 && low < high {
+        Ok(Range { low: low.abs(), high })
+    } else {
+        Err(NotARange::Order)
+    }
+}
+
+/// The reason why a text is not an interval.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NotARange {
+    /// The text does not have two ends.
+    #[error("not a range; {EXPECTED}")]
+    Syntax,
+    /// The lower end is not a number.
+    #[error("the lower end is {problem}; {EXPECTED}")]
+    Low {
+        /// What is wrong with it.
+        problem: NotANumber,
+    },
+    /// The upper end is not a number.
+    #[error("the upper end is {problem}; {EXPECTED}")]
+    High {
+        /// What is wrong with it.
+        problem: NotANumber,
+    },
+    /// The lower end is negative, or not below the upper end.
+    #[error("out of range; {EXPECTED}")]
+    Order,
+    /// The lower end is 0 where both ends have to be collisions.
+    #[error(
+        "there is no collision at 0, and the boundaries near it have no end; expected LO:HI with \
+         LO > 0"
+    )]
+    Zero,
+}
+
+const EXPECTED: &str =
+    "expected LO:HI with finite numbers 0 <= LO < HI, written like 0:70 or 2/7:1.5e3";
+
+/// The numbers of columns and rows of a map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size {
+    /// The number of columns.
+    pub columns: usize,
+    /// The number of rows.
+    pub rows: usize,
+}
+
+impl Size {
+    /// Most points, 10¹⁰. The larger of the two arrays of results then takes 80 GB.
+    pub const MOST: usize = 10_usize.saturating_pow(10);
+
+    /// Reads `WxH`.
+    ///
+    /// # Errors
+    /// What is wrong and what is expected.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let expected = format!(
+            "expected WxH, two whole numbers from 1 whose product is at most {}, \
+             written like 1000x800",
+            Self::MOST
+        );
+        let size = text.split_once('x').and_then(|(columns, rows)| {
+            Some(Self { columns: columns.trim().parse().ok()?, rows: rows.trim().parse().ok()? })
+        });
+        let Some(size) = size else { return Err(format!("not a size; {expected}")) };
+        let points = size.columns.checked_mul(size.rows);
+        if points.is_some_and(|points| (1..=Self::MOST).contains(&points)) {
+            Ok(size)
+        } else {
+            Err(format!("out of range; {expected}"))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn intervals() {
+        assert_eq!(parse("0:70"), Ok(Range { low: 0.0, high: 70.0 }));
+        assert_eq!(parse(" 2/7 : 1.5e3 "), Ok(Range { low: 2.0 / 7.0, high: 1500.0 }));
+        assert!(parse("-0:1").unwrap().low.is_sign_positive());
+        for (text, expected) in [
+            ("", NotARange::Syntax),
+            ("70", NotARange::Syntax),
+            ("0-70", NotARange::Syntax),
+            (":70", NotARange::Low { problem: NotANumber::Empty }),
+            ("nan:70", NotARange::Low { problem: NotANumber::Syntax }),
+            ("0:", NotARange::High { problem: NotANumber::Empty }),
+            ("0:1:2", NotARange::High { problem: NotANumber::Syntax }),
+            ("0:inf", NotARange::High { problem: NotANumber::Infinite }),
+            ("-1:70", NotARange::Order),
+            ("1:1", NotARange::Order),
+            ("2:1", NotARange::Order),
+        ] {
+            assert_eq!(parse(text), Err(expected), "{text}");
+        }
+    }
+
+    #[test]
+    fn intervals_of_a_parameter_do_not_begin_at_0() {
+        let kappa = |text| parse_for(Parameter::Kappa, text);
+        assert_eq!(kappa("2/7:70"), Ok(Range { low: 2.0 / 7.0, high: 70.0 }));
+        assert_eq!(kappa("0:70"), Err(NotARange::Zero));
+        assert_eq!(kappa("-0:70"), Err(NotARange::Zero));
+        assert_eq!(kappa("2:1"), Err(NotARange::Order));
+    }
+
+    #[test]
+    fn one_value_or_a_grid() {
+        let read = |text| parse_one_or_range(Parameter::Kappa, text);
+        assert_eq!(read("18").map(|it| it.values(5)), Ok(vec![18.0]));
+        let grid = read("1:16").map(|it| it.values(5)).unwrap();
+        assert_eq!((grid.len(), grid[0], grid[4]), (5, 1.0, 16.0));
+        assert!(grid.windows(2).all(|pair| (pair[1] / pair[0] - 2.0).abs() < 1e-12));
+        let refused = read("0").unwrap_err();
+        assert!(refused.contains("above 0, or an interval LO:HI"), "{refused}");
+        assert!(read("0:1").is_err() && read("2:1").is_err() && read("1:2:3").is_err());
+    }
+
+    #[test]
+    fn sizes() {
+        assert_eq!(Size::parse("3x2"), Ok(Size { columns: 3, rows: 2 }));
+        assert_eq!(Size::parse("100000x100000"), Ok(Size { columns: 100_000, rows: 100_000 }));
+        for text in ["", "10", "10x", "x10", "10X10", "1x2x3", "-1x5", "1.5x2", "nanx1"] {
+            assert!(Size::parse(text).unwrap_err().starts_with("not a size"), "{text}");
+        }
+        let huge = "18446744073709551615x18446744073709551615";
+        for text in ["0x5", "5x0", "100000x100001", huge] {
+            assert!(Size::parse(text).unwrap_err().starts_with("out of range"), "{text}");
+        }
+    }
+}

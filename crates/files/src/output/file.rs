@@ -1,0 +1,268 @@
+//! Output files that are complete or not there at all.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
+
+use super::partial::Partial;
+use crate::error::FileError;
+
+/// The file that is written when `path` is. If `path` is a symbolic link, this is the file to which
+/// the link points, whether it exists or not. A device or a pipe has its own name.
+#[must_use]
+pub fn target(path: &Path) -> PathBuf {
+    const MOST_LINKS: usize = 40;
+    let mut target = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        match fs::read_link(&target) {
+            Ok(link) if !is_stream(&target) => {
+                target = target.parent().unwrap_or(Path::new("")).join(link);
+            }
+            _ => return target,
+        }
+    }
+    path.to_owned()
+}
+
+/// A file that is written beside its target and gets the target's name when it is complete.
+///
+/// If it is dropped before [`publish`], it disappears and the target stays as it was. A device or a
+/// pipe is written directly, because there is nothing to replace.
+#[derive(Debug)]
+pub struct OutputFile {
+    /// The path that the user gave.
+    path: PathBuf,
+    destination: Destination,
+}
+
+/// A file that is complete and stored, and lacks only its name.
+#[derive(Debug)]
+#[must_use = "it disappears unless it is published"]
+pub struct StoredFile(OutputFile);
+
+#[derive(Debug)]
+enum Destination {
+    Beside { partial: Partial<NamedTempFile>, target: PathBuf },
+    Direct { stream: File, unheard: bool },
+}
+
+impl OutputFile {
+    /// Starts to write `path`, whose directory must exist.
+    ///
+    /// # Errors
+    /// [`FileError::Output`]: the directory is missing or cannot be written, or `path` is a
+    /// directory.
+    pub fn create(path: &Path) -> Result<Self, FileError> {
+        let target = target(path);
+        let directory = match target.parent() {
+            Some(parent) if !parent.as_os_str().is_empty() => parent,
+            _ => Path::new("."),
+        };
+        Self::create_in(directory, path)
+    }
+
+    /// Starts to write `path`. The incomplete file is in `directory`, on the file system of the
+    /// target.
+    ///
+    /// # Errors
+    /// [`FileError::Output`]: `directory` is missing or cannot be written, or `path` is a directory.
+    pub fn create_in(directory: &Path, path: &Path) -> Result<Self, FileError> {
+        let destination = Destination::new(directory, path);
+        let destination = destination.map_err(|error| FileError::output(path, error))?;
+        Ok(Self { path: path.to_owned(), destination })
+    }
+
+    /// Writes `content` and stores the file.
+    ///
+    /// # Errors
+    /// [`FileError::Output`]: it cannot be written.
+    pub fn finish(mut self, content: &[u8]) -> Result<StoredFile, FileError> {
+        self.write_all(content).map_err(|error| self.failure(error))?;
+        self.store()
+    }
+
+    /// Makes sure that everything is stored on the disk.
+    ///
+    /// # Errors
+    /// [`FileError::Output`]: the disk is full or fails.
+    pub fn store(mut self) -> Result<StoredFile, FileError> {
+        let stored = match &self.destination {
+            Destination::Beside { partial, .. } => partial.as_file().sync_all(),
+            Destination::Direct { .. } => self.flush(),
+        };
+        match stored {
+            Ok(()) => Ok(StoredFile(self)),
+            Err(error) => Err(self.failure(error)),
+        }
+    }
+
+    /// Whether it is a pipe that nobody reads any more: the reader has seen enough.
+    #[must_use]
+    pub fn is_unheard(&self) -> bool {
+        matches!(self.destination, Destination::Direct { unheard: true, .. })
+    }
+
+    /// The failure to write this file.
+    pub fn failure(&self, error: impl Into<io::Error>) -> FileError {
+        FileError::output(&self.path, error)
+    }
+}
+
+/// Gives files their names. All of them are complete by now.
+///
+/// # Errors
+/// [`FileError::Output`]: a file cannot be renamed. It is removed, and so are the files after it.
+pub fn publish(files: impl IntoIterator<Item = StoredFile>) -> Result<(), FileError> {
+    files.into_iter().try_for_each(|StoredFile(OutputFile { path, destination })| match destination
+    {
+        Destination::Beside { partial, target } => {
+            partial.publish(&target).map_err(|error| FileError::output(&path, error))
+        }
+        Destination::Direct { .. } => Ok(()),
+    })
+}
+
+/// Writes a file at once or not at all.
+///
+/// # Errors
+/// [`FileError::Output`]: the file cannot be written.
+pub fn write(path: &Path, content: &[u8]) -> Result<(), FileError> {
+    publish([OutputFile::create(path)?.finish(content)?])
+}
+
+/// Writes a file at once or not at all, unless the power fails: it is not stored on the disk before
+/// it gets its name.
+///
+/// # Errors
+/// [`FileError::Output`]: the file cannot be written.
+pub fn write_unsynchronised(path: &Path, content: &[u8]) -> Result<(), FileError> {
+    let mut file = OutputFile::create(path)?;
+    file.write_all(content).map_err(|error| file.failure(error))?;
+    publish([StoredFile(file)])
+}
+
+impl Destination {
+    fn new(directory: &Path, path: &Path) -> io::Result<Self> {
+        let target = target(path);
+        if is_stream(&target) {
+            return Ok(Self::Direct { stream: stream(&target)?, unheard: false });
+        }
+        if target.is_dir() {
+            return Err(io::ErrorKind::IsADirectory.into());
+        }
+        fs::metadata(directory)?;
+        let name = target.file_name().ok_or(io::ErrorKind::InvalidFilename)?;
+        Ok(Self::Beside { partial: Partial::file(directory, name)?, target })
+    }
+}
+
+impl Write for OutputFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match &mut self.destination {
+            // Writing to the `NamedTempFile` itself would add the temporary name to the error.
+            Destination::Beside { partial, .. } => partial.as_file_mut().write(bytes),
+            Destination::Direct { unheard: true, .. } => Ok(bytes.len()),
+            Destination::Direct { stream, unheard } => match stream.write(bytes) {
+                Err(error) if error.kind() == io::ErrorKind::BrokenPipe => {
+                    *unheard = true;
+                    Ok(bytes.len())
+                }
+                written => written,
+            },
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match &mut self.destination {
+            Destination::Beside { partial, .. } => partial.as_file_mut().flush(),
+            Destination::Direct { stream, .. } => stream.flush(),
+        }
+    }
+}
+
+/// The stream to which `path` leads. A stream of the process is written where it stands.
+fn stream(path: &Path) -> io::Result<File> {
+    #[cfg(unix)]
+    {
+        use std::os::fd::AsFd;
+        let own = |number: &str| OWN.iter().any(|own| path == Path::new(own).join(number));
+        if path == Path::new("/dev/stdout") || own("1") {
+            return Ok(io::stdout().as_fd().try_clone_to_owned()?.into());
+        }
+        if path == Path::new("/dev/stderr") || own("2") {
+            return Ok(io::stderr().as_fd().try_clone_to_owned()?.into());
+        }
+    }
+    // Another program may have written before.
+    let stream = OpenOptions::new().append(true).open(path)?;
+    if stream.metadata()?.is_file() {
+        return Err(io::Error::other(
+            "is a file that another program has opened; expected its name",
+        ));
+    }
+    Ok(stream)
+}
+
+/// Where a process finds its streams by their numbers.
+const OWN: [&str; 2] = ["/dev/fd", "/proc/self/fd"];
+
+/// Whether `path` leads to a device, a pipe or a stream of the process. A file must not replace
+/// these.
+fn is_stream(path: &Path) -> bool {
+    let own = ["/dev/stdout", "/dev/stderr"];
+    own.iter().chain(&OWN).any(|stream| path.starts_with(stream))
+        || fs::metadata(path).is_ok_and(|existing| !existing.is_file() && !existing.is_dir())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(directory: &Path) -> Vec<String> {
+        let entries = fs::read_dir(directory).unwrap();
+        let mut names: Vec<_> =
+            entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_file_appears_when_it_is_published_and_not_before() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("out.csv");
+        let mut file = OutputFile::create(&path).unwrap();
+        file.write_all(b"a,b\n").unwrap();
+        assert!(!path.exists());
+        publish([file.store().unwrap()]).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"a,b\n");
+        assert_eq!(names(directory.path()), ["out.csv"]);
+    }
+
+    #[test]
+    fn a_dropped_file_leaves_what_was_there() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("out.csv");
+        fs::write(&path, "old").unwrap();
+        let mut file = OutputFile::create(&path).unwrap();
+        file.write_all(b"new").unwrap();
+        drop(file);
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(names(directory.path()), ["out.csv"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn behind_a_link_the_target_is_replaced_and_the_link_stays() {
+        let directory = tempfile::tempdir().unwrap();
+        let (target, link) = (directory.path().join("target"), directory.path().join("link"));
+        fs::write(&target, "old").unwrap();
+        std::os::unix::fs::symlink(&target, &link).unwrap();
+        let mut file = OutputFile::create(&link).unwrap();
+        file.write_all(b"new").unwrap();
+        publish([file.store().unwrap()]).unwrap();
+        assert_eq!(fs::read(&target).unwrap(), b"new");
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+    }
+}
