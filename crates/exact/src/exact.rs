@@ -10,8 +10,8 @@
 //! Source files in reading order: `moment` and `slip` are what a collision is made of; `normal` is
 //! the interface of normal motions, with the closed form without damping and the expansion with it;
 //! `slide` finds the end of a slip phase, `swing` and `release` the end of a stick phase, `phases`
-//! begins a collision, `margin` and `late` follow prescribed switches, `cusp` has what vanishes where
-//! grazes end in one point.
+//! begins a collision, `margin` and `late` follow prescribed switches, `cusp` has what vanishes
+//! where grazes end in one point.
 //!
 //! Source of the law: Schwager, Becker and Pöschel, Eur. Phys. J. E 27, 107 (2008). The statements
 //! on which the decisions rest are proved in docs/physics.md.
