@@ -7,10 +7,10 @@
 //! integrates them.
 //!
 //! Start reading in [`Contact`]; then, in this order: `law` (a contact law as data), `contact`
-//! (parameters), [`phase`] (what all laws have in common), [`presets`] (the laws of particle codes),
-//! [`regularized`] and [`general`] (the equations of the paper's law and of any law as hybrid
-//! systems), `result` (what every engine returns),[`domain`] (ranges of engines), [`numerics`]
-//! (numbers with twice the digits, roots in a bracket).
+//! (parameters), [`phase`] (what all laws have in common), [`presets`] (the laws of particle
+//! codes), [`regularized`] and [`general`] (the equations of the paper's law and of any law as
+//! hybrid systems), `result` (what every engine returns), [`domain`] (ranges of engines),
+//! [`numerics`] (numbers with twice the digits, roots in a bracket).
 //!
 //! With the feature `serde`, results serialise themselves.
 

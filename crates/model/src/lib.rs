@@ -7,8 +7,9 @@
 //! without steps. Both return a [`Collision`] with every switch, and an [`Engine`] is a choice
 //! between them.
 //!
-//! Start reading in [`integrator`]. Two crates below have what engines share and the exact solution;
-//! what users need of them is here too. The source has one folder for each idea; in reading order:
+//! Start reading in [`integrator`]. Two crates below have what engines share and the exact
+//! solution; what users need of them is here too. The source has one folder for each idea; in
+//! reading order:
 //!
 //! | crate or folder | modules |
 //! |---|---|

@@ -31,8 +31,8 @@ pub fn permits(law: Option<&str>, what: &str, damping: f64) -> Result<(), FileEr
 /// The law with this name, or otherwise in this file; without either, the paper's.
 ///
 /// # Errors
-/// [`FileError::Input`]: there is neither such a name nor such a file, or the file does not describe
-/// a law.
+/// [`FileError::Input`]: there is neither such a name nor such a file, or the file does not
+/// describe a law.
 pub fn by_name_or_file(text: Option<&str>) -> Result<Law, FileError> {
     let Some(text) = text else { return Ok(Law::PAPER) };
     presets::find(text).map_or_else(|| read(Path::new(text)), |preset| Ok(preset.law))

@@ -55,8 +55,8 @@ pub fn write(
     archive.finish().map_err(plain)?.flush()
 }
 
-/// The map of `grid` with its `results`, which `engine` computed in this `program`, as an archive in
-/// memory.
+/// The map of `grid` with its `results`, which `engine` computed in this `program`, as an archive
+/// in memory.
 ///
 /// # Errors
 /// The archive cannot be made.

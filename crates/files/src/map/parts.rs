@@ -47,8 +47,8 @@ impl Parts {
         Ok(Self(files.into_values().collect()))
     }
 
-    /// Checks every tile, and counts the points without a result. `checked` gets the number of points
-    /// of each tile.
+    /// Checks every tile, and counts the points without a result. `checked` gets the number of
+    /// points of each tile.
     ///
     /// # Errors
     /// [`FileError::Input`] names the file that is damaged or cannot be read.

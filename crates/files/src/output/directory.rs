@@ -10,7 +10,8 @@ use crate::error::FileError;
 /// directory if it is missing.
 ///
 /// # Errors
-/// [`FileError::Option`]: it is not a directory. [`FileError::Output`]: it cannot be created or written.
+/// [`FileError::Option`]: it is not a directory. [`FileError::Output`]: it cannot be created or
+/// written.
 pub fn prepare(directory: &Path) -> Result<(), FileError> {
     if directory.exists() && !directory.is_dir() {
         let directory = directory.display();

@@ -67,7 +67,8 @@ impl OutputFile {
     /// target.
     ///
     /// # Errors
-    /// [`FileError::Output`]: `directory` is missing or cannot be written, or `path` is a directory.
+    /// [`FileError::Output`]: `directory` is missing or cannot be written, or `path` is a
+    /// directory.
     pub fn create_in(directory: &Path, path: &Path) -> Result<Self, FileError> {
         let destination = Destination::new(directory, path);
         let destination = destination.map_err(|error| FileError::output(path, error))?;

@@ -7,7 +7,8 @@ use stickslip_practice::tables::{ACROSS, ALONG, Table, Window};
 
 use super::npz::{array, number, plain, text};
 
-/// The table that this `program` made as NumPy arrays, with the names of [`Arrays`](stickslip_practice::tables::Arrays).
+/// The table that this `program` made as NumPy arrays, with the names of
+/// [`Arrays`](stickslip_practice::tables::Arrays).
 ///
 /// # Errors
 /// The archive cannot be made.
