@@ -26,7 +26,7 @@ pub enum VelocitiesError {
     Both,
     /// One quantity of a form is given without the other one.
     Half {
-        /// The index in [`QUANTITIES`] of what is given.
+        /// The index in `QUANTITIES` of what is given.
         given: usize,
         /// The index of what is missing.
         missing: usize,
