@@ -94,8 +94,7 @@ fn behind_branch<F: Family>(
                 let value = runs.margin(&(from.node.point + normal * offset), own)?;
                 Ok(value.unwrap_or(f64::NAN))
             });
-            let values = values.collect::<Traced<Vec<_>, F>>()?;
-            if !stalls_with_root(&values) {
+            if !stalls_with_root(&values.collect::<Traced<Vec<_>, F>>()?) {
                 continue;
             }
             consider(&Root {
