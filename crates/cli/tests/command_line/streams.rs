@@ -125,7 +125,9 @@ fn signals_leave_no_incomplete_files() {
         let workspace = Workspace::new();
         let mut command = stickslip(&workspace, "collide --batch - --out out.csv --events ev.csv");
         let mut child = command.stdin(Stdio::piped()).spawn().unwrap();
-        child.stdin.as_mut().unwrap().write_all(ROWS.as_bytes()).unwrap();
+        // To wait for the child would close its input, and the batch could end before the signal.
+        let mut input = child.stdin.take().unwrap();
+        input.write_all(ROWS.as_bytes()).unwrap();
         let mut waited = 0;
         while workspace.names().len() < 2 {
             waited += 1;
