@@ -213,7 +213,7 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
             if let Some(index) = self.track.aim(&from, h)? {
                 return self.finish(End::Known(index), Vec::new());
             }
-            let cusps = cusp::ahead(&self.track, &from, h)?;
+            let cusps = cusp::ahead(&self.track, &from, 2.0 * h)?;
             for &place in &cusps {
                 if let Some(special) = cusp::reached(&self.track, &from, place)? {
                     return self.finish_at(special);
@@ -248,6 +248,9 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         /// A tangency that is so close to another end, as a part of the window's shorter extent, is
         /// the same place, and better known.
         const BETTER: f64 = 1e-2;
+        if let Some(special) = cusp::beyond(&self.track, from)? {
+            return self.finish_at(special);
+        }
         let mut found = tangency::begins_on_branch(&self.track, from, beyond)?;
         if found.is_none() {
             let other = special::give_up(&self.track, from, beyond, h)?;

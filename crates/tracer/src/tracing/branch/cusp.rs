@@ -13,16 +13,16 @@ use crate::window::Point;
 /// nothing else is looked for on it: the wedge of a cusp may be too thin for labels there.
 const TIP: f64 = 1e-5;
 
-/// The cusps ahead of `from`, within twice a failed step of length `h` or close by, for which the
-/// family knows what vanishes there: each place and the largest error of the place, nearest first.
+/// The cusps ahead of `from`, within `reach` or close by, for which the family knows what vanishes
+/// there: each place and the largest error of the place, nearest first.
 pub(crate) fn ahead<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,
-    h: f64,
+    reach: f64,
 ) -> Traced<Vec<(Point, f64)>, F> {
     let runs = track.runs;
     let (start, along) = (from.node.point, from.node.tangent);
-    let reach = (2.0 * h).max(TIP * runs.scale);
+    let reach = reach.max(TIP * runs.scale);
     let mut places = Vec::new();
     for [one, two] in runs.cusps(&track.margin) {
         let found = crossing(runs, [&one, &two], &start, &along, runs.scale, reach)?;
@@ -31,6 +31,51 @@ pub(crate) fn ahead<F: Family>(
     let progress = |point: &Point| (point - start).dot(&along);
     places.sort_by(|(one, _), (two, _)| progress(one).total_cmp(&progress(two)));
     Ok(places)
+}
+
+/// The cusp into which a branch leads beyond `from`, where even the shortest step fails; `None` if
+/// there is none. The wedge before it is thinner than runs can tell. In a window with unequal sides
+/// it is so far from the cusp.
+pub(crate) fn beyond<F: Family>(
+    track: &Track<'_, '_, F>,
+    from: &FootholdOf<F>,
+) -> Traced<Option<Special<F::Margin>>, F> {
+    /// The farthest such cusp, as a fraction of the window's shorter extent.
+    const FARTHEST: f64 = 1e-2;
+    for (point, uncertainty) in ahead(track, from, FARTHEST * track.runs.scale)? {
+        let arc = Cubic::between(&from.node, &track.end_node(&from.node, &point)?);
+        if follows(track, from, &arc, track.runs.options.interpolation)? {
+            return Ok(Some(end(track, point, uncertainty)));
+        }
+    }
+    Ok(None)
+}
+
+/// Whether the boundary that a branch follows is no farther than `error` from `arc`.
+fn follows<F: Family>(
+    track: &Track<'_, '_, F>,
+    from: &FootholdOf<F>,
+    arc: &Cubic,
+    error: f64,
+) -> Traced<bool, F> {
+    let floor = error * from.gradient.norm() + track.runs.options.noise;
+    for theta in [0.3, 0.7] {
+        let value = track.runs.margin(&arc.at(theta), &track.margin)?;
+        if value.is_none_or(|value| value.abs() > floor) {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// The end of a branch in a cusp.
+fn end<F: Family>(
+    track: &Track<'_, '_, F>,
+    point: Point,
+    uncertainty: f64,
+) -> Special<F::Margin> {
+    let (kind, margins) = (VertexKind::Degenerate, vec![track.margin.clone()]);
+    Special { point, kind, margins, uncertainty, solved: true }
 }
 
 /// The end of a branch in a cusp ahead of `from`; `None` if the cusp is too far away.
@@ -47,19 +92,13 @@ pub(crate) fn reached<F: Family>(
     let arc = Cubic::between(&from.node, &track.end_node(&from.node, &point)?);
     let tip = arc.chord() <= TIP * runs.scale;
     let error = runs.options.interpolation.max(if tip { SHORTEST * runs.scale } else { 0.0 });
-    let floor = error * from.gradient.norm() + runs.options.noise;
-    for theta in [0.3, 0.7] {
-        let value = runs.margin(&arc.at(theta), &track.margin)?;
-        let close = value.is_some_and(|value| value.abs() <= floor);
-        if !close {
-            return Ok(None);
-        }
+    if !follows(track, from, &arc, error)? {
+        return Ok(None);
     }
     for theta in [0.3, 0.5, 0.7] {
         if !tip && !track.holds(from, &arc.at(theta), 0.3 * arc.chord())? {
             return Ok(None);
         }
     }
-    let (kind, margins) = (VertexKind::Degenerate, vec![track.margin.clone()]);
-    Ok(Some(Special { point, kind, margins, uncertainty, solved: true }))
+    Ok(Some(end(track, point, uncertainty)))
 }
