@@ -183,6 +183,16 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         self.remove_vertex(index);
     }
 
+    /// Removes the vertices from the index `first` on at which no curve ends.
+    pub fn drop_unused(&mut self, first: usize) {
+        for vertex in (first..self.stops.len()).rev() {
+            let ends = |curve: &Curve<_, _>| curve.ends.is_some_and(|ends| ends.contains(&vertex));
+            if !self.network.curves.iter().any(ends) {
+                self.remove_vertex(vertex);
+            }
+        }
+    }
+
     /// Removes a vertex at which no curve ends. All later ones have other indices then.
     fn remove_vertex(&mut self, index: usize) {
         self.stops.remove(index);

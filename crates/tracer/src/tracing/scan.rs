@@ -5,12 +5,12 @@ use crate::curve::{Curve, Node, VertexKind};
 use crate::family::Family;
 use crate::tracing::branch::Branch;
 use crate::tracing::corrector::correct;
-use crate::tracing::end::{End, Special};
+use crate::tracing::end::{End, SHORTEST, Special};
 use crate::tracing::network::Unresolved;
 use crate::tracing::runs::Traced;
 use crate::tracing::seed::{Change, Seed, SeedOf, bisect, holds_closely, identify};
 use crate::tracing::tracer::Tracer;
-use crate::window::Point;
+use crate::window::{Point, Window};
 
 impl<F: Family> Tracer<'_, F> {
     /// Traces every curve that changes the label along a segment, unless it is known.
@@ -85,7 +85,9 @@ impl<F: Family> Tracer<'_, F> {
         Ok(())
     }
 
-    /// Traces the curve through a seed in both directions, unless it is known.
+    /// Traces the curve through a seed in both directions, unless it is known. A curve that leads
+    /// along an edge of the window, no farther inside than places can be told apart, is not in the
+    /// window.
     fn seed(&mut self, seed: &SeedOf<F>) -> Traced<(), F> {
         if self.builder.covers(&seed.point, &seed.labels) || !self.runs.window.contains(&seed.point)
         {
@@ -97,6 +99,7 @@ impl<F: Family> Tracer<'_, F> {
             return Ok(());
         }
         network.statistics.seeds += 1;
+        let known = self.builder.stops.len();
         let Some((origin, forward, end)) = self.follow(seed, true)? else {
             return Ok(());
         };
@@ -113,9 +116,24 @@ impl<F: Family> Tracer<'_, F> {
                 (nodes, Some([start.unwrap_or(end), end]))
             }
         };
+        if self.is_along_edge(&nodes) {
+            self.builder.drop_unused(known);
+            return Ok(());
+        }
         let sides = seed.labels.clone();
         self.builder.add_curve(Curve { margin: seed.margin.clone(), sides, nodes, ends });
         Ok(())
+    }
+
+    /// Whether all these nodes lie on one edge of the window, as far as places can be told apart.
+    fn is_along_edge(&self, nodes: &[Node]) -> bool {
+        let Window { low, high } = self.runs.window;
+        let near = SHORTEST * self.runs.scale;
+        (0..2).any(|axis| {
+            [low[axis], high[axis]]
+                .iter()
+                .any(|edge| nodes.iter().all(|node| (node.point[axis] - edge).abs() <= near))
+        })
     }
 
     /// Removes the suspects whose labels are wrong. On them two vertices lay between two nodes, and
