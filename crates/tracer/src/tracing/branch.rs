@@ -339,13 +339,16 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
     }
 
     /// Ends the branch at a special point, or at the known vertex that is the same place. If the
-    /// special point lies beyond the window's edge, the branch ends at the edge.
+    /// special point lies beyond the window's edge, the branch ends at the edge. A special point that
+    /// cannot be told from a place of the edge is there.
     fn finish_at(&mut self, special: Special<F::Margin>) -> Traced<(), F> {
-        let special = match self.track.exit_before(&special.point)? {
+        let mut special = match self.track.exit_before(&special.point)? {
             Some(exit) => special::edge(self.track.runs, &exit, &self.track.margin),
             None => special,
         };
-        let near = special.uncertainty + SHORTEST * self.track.runs.scale;
+        let shortest = SHORTEST * self.track.runs.scale;
+        special.point = self.track.runs.window.snapped(&special.point, shortest);
+        let near = special.uncertainty + shortest;
         let known = self
             .track
             .stops
