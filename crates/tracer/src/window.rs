@@ -53,7 +53,13 @@ impl Window {
     pub(crate) fn snapped(&self, point: &Point, near: f64) -> Point {
         point.zip_zip_map(&self.low, &self.high, |place, low, high| {
             let edge = |edge: f64| (place - edge).abs() <= near;
-            if edge(low) { low } else if edge(high) { high } else { place }
+            if edge(low) {
+                low
+            } else if edge(high) {
+                high
+            } else {
+                place
+            }
         })
     }
 

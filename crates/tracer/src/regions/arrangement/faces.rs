@@ -1,5 +1,6 @@
 //! Faces: the sides of edges that belong together.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use crate::regions::arrangement::piece::{Edge, Piece};
@@ -26,8 +27,9 @@ impl Faces {
     /// with the gaps beyond the walls of the slab. Edges that leave a vertex with one tangent are
     /// closer together than `reach` beside it, and interpolation leaves open which one is above. A
     /// gap therefore counts only if it is wider than `reach`. It is united with the side of a piece
-    /// only if the gap on the other side of the piece is wide too. `frame` are the edges of the
-    /// window, which have the outside on their right.
+    /// only if the gap on the other side of the piece is wide too. Where only two edges meet, each
+    /// has the faces of the other, however short they are. `frame` are the edges of the window,
+    /// which have the outside on their right.
     pub(crate) fn new(slabs: &Slabs, edges: &[Edge], frame: Range<usize>, reach: f64) -> Self {
         let outside = 2 * edges.len();
         let gap_above = |slab: usize, place: usize| outside + 1 + slabs.start(slab) + place;
@@ -36,6 +38,9 @@ impl Faces {
         for edge in frame {
             sets.unite(2 * edge + 1, outside);
             seen[2 * edge + 1] = true;
+        }
+        for [one, other] in turns(edges) {
+            sets.unite(one, other);
         }
         let piece = |index: usize| &slabs.pieces[index];
         for slab in 0..slabs.count() {
@@ -133,6 +138,21 @@ impl Faces {
             self.of_edges[piece.edge][usize::from(!piece.forward)]
         })
     }
+}
+
+/// The sides that lead into each other at the vertices where two edges meet and no other one.
+fn turns(edges: &[Edge]) -> impl Iterator<Item = [usize; 2]> {
+    // The left sides of edges that begin at a vertex, and the right sides of those that end there.
+    let mut leaving: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (edge, ends) in edges.iter().enumerate().filter_map(|(edge, own)| Some((edge, own.ends?))) {
+        for (end, vertex) in ends.into_iter().enumerate() {
+            leaving.entry(vertex).or_default().push(2 * edge + end);
+        }
+    }
+    leaving
+        .into_values()
+        .filter_map(|sides| <[usize; 2]>::try_from(sides).ok())
+        .flat_map(|[one, other]| [[one, other ^ 1], [one ^ 1, other]])
 }
 
 /// The number of a side of an edge in the sets. Left sides are even, and right sides are odd.

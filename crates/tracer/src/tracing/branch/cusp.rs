@@ -69,11 +69,7 @@ fn follows<F: Family>(
 }
 
 /// The end of a branch in a cusp.
-fn end<F: Family>(
-    track: &Track<'_, '_, F>,
-    point: Point,
-    uncertainty: f64,
-) -> Special<F::Margin> {
+fn end<F: Family>(track: &Track<'_, '_, F>, point: Point, uncertainty: f64) -> Special<F::Margin> {
     let (kind, margins) = (VertexKind::Degenerate, vec![track.margin.clone()]);
     Special { point, kind, margins, uncertainty, solved: true }
 }
