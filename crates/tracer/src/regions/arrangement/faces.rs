@@ -27,19 +27,19 @@ impl Faces {
     /// with the gaps beyond the walls of the slab. Edges that leave a vertex with one tangent are
     /// closer together than `reach` beside it, and interpolation leaves open which one is above. A
     /// gap therefore counts only if it is wider than `reach`. It is united with the side of a piece
-    /// only if the gap on the other side of the piece is wide too. Where only two edges meet, each
-    /// has the faces of the other, however short they are. `frame` are the edges of the window,
-    /// which have the outside on their right.
+    /// only if the gap on the other side of the piece is wide too. At vertices where the order of
+    /// edges is sure, neighbours have a face in common, however short they are. `frame` are the
+    /// edges of the window, which have the outside on their right.
     pub(crate) fn new(slabs: &Slabs, edges: &[Edge], frame: Range<usize>, reach: f64) -> Self {
         let outside = 2 * edges.len();
         let gap_above = |slab: usize, place: usize| outside + 1 + slabs.start(slab) + place;
         let mut sets = DisjointSets::new(gap_above(slabs.count(), 0));
         let mut seen = vec![false; outside];
-        for edge in frame {
+        for edge in frame.clone() {
             sets.unite(2 * edge + 1, outside);
             seen[2 * edge + 1] = true;
         }
-        for [one, other] in turns(edges) {
+        for [one, other] in turns(edges, &frame) {
             sets.unite(one, other);
         }
         let piece = |index: usize| &slabs.pieces[index];
@@ -140,19 +140,33 @@ impl Faces {
     }
 }
 
-/// The sides that lead into each other at the vertices where two edges meet and no other one.
-fn turns(edges: &[Edge]) -> impl Iterator<Item = [usize; 2]> {
-    // The left sides of edges that begin at a vertex, and the right sides of those that end there.
-    let mut leaving: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+/// The sides that lead into each other at a vertex where the order of edges around it is sure: at
+/// one of two edges, and where one edge leaves the frame of the window.
+fn turns(edges: &[Edge], frame: &Range<usize>) -> Vec<[usize; 2]> {
+    // The left sides of edges, seen from a vertex at which they begin or end.
+    let mut around: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (edge, ends) in edges.iter().enumerate().filter_map(|(edge, own)| Some((edge, own.ends?))) {
         for (end, vertex) in ends.into_iter().enumerate() {
-            leaving.entry(vertex).or_default().push(2 * edge + end);
+            around.entry(vertex).or_default().push(2 * edge + end);
         }
     }
-    leaving
-        .into_values()
-        .filter_map(|sides| <[usize; 2]>::try_from(sides).ok())
-        .flat_map(|[one, other]| [[one, other ^ 1], [one ^ 1, other]])
+    let mut turns = Vec::new();
+    for mut sides in around.into_values() {
+        // Counterclockwise: from the edge of the frame that leaves the vertex to the one that
+        // arrives there.
+        let place = |&side: &usize| match (frame.contains(&(side / 2)), side % 2) {
+            (true, 0) => 0,
+            (false, _) => 1,
+            (true, _) => 2,
+        };
+        sides.sort_by_key(place);
+        let framed = sides.iter().filter(|&side| place(side) != 1).count();
+        if sides.len() == 2 || (sides.len() == 3 && framed == 2) {
+            let next = sides.iter().cycle().skip(1);
+            turns.extend(sides.iter().zip(next).map(|(&one, &other)| [one, other ^ 1]));
+        }
+    }
+    turns
 }
 
 /// The number of a side of an edge in the sets. Left sides are even, and right sides are odd.
