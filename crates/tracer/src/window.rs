@@ -49,20 +49,6 @@ impl Window {
         (point - self.low).min().min((self.high - point).min())
     }
 
-    /// The point with the coordinates that are at most `near` from an edge on this edge.
-    pub(crate) fn snapped(&self, point: &Point, near: f64) -> Point {
-        point.zip_zip_map(&self.low, &self.high, |place, low, high| {
-            let edge = |edge: f64| (place - edge).abs() <= near;
-            if edge(low) {
-                low
-            } else if edge(high) {
-                high
-            } else {
-                place
-            }
-        })
-    }
-
     /// Whether a point lies inside or on the edge.
     #[must_use]
     pub fn contains(&self, point: &Point) -> bool {

@@ -48,6 +48,26 @@ fn small_and_long_windows_are_right() {
     assert!(long.report.agrees, "{:?}", long.report.objection());
 }
 
+/// One boundary that ends in the cusp is ψ = 1 itself, and the wedge between the two is soon thinner
+/// than runs can tell. In these windows an edge passes through the cusp or just beside it, and their
+/// sides are very unequal.
+#[test]
+fn edges_may_pass_through_the_cusp() {
+    for (kappa, psi) in [
+        ((1.0, 3.0), (1.0, 1.00001)),
+        ((1.2, 1.56846), (0.9999, 1.0)),
+        ((1.56, 1.57), (1.0, 1.001)),
+        ((1.5683, 1.5687), (1.0, 1.5)),
+        ((1.5684, 1.5686), (0.9, 1.1)),
+        ((1.5684, 1.5686), (0.999999, 1.5)),
+        ((1.56845, 1.56847), (1.0, 1.001)),
+    ] {
+        let verified = traced(frame(kappa, psi));
+        assert!(verified.report.agrees, "{kappa:?}, {psi:?}: {:?}", verified.report.objection());
+        assert_eq!(verified.atlas.regions.regions().len(), 2, "{kappa:?}, {psi:?}");
+    }
+}
+
 /// With little damping and small ψ: grazes just before the end of contact, and the place where one
 /// leaves through it, at κψ = √a.
 #[test]

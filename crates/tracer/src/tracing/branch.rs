@@ -339,16 +339,13 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
     }
 
     /// Ends the branch at a special point, or at the known vertex that is the same place. If the
-    /// special point lies beyond the window's edge, the branch ends at the edge. A special point that
-    /// cannot be told from a place of the edge is there.
+    /// special point lies beyond the window's edge, the branch ends at the edge.
     fn finish_at(&mut self, special: Special<F::Margin>) -> Traced<(), F> {
-        let mut special = match self.track.exit_before(&special.point)? {
+        let special = match self.track.exit_before(&special.point)? {
             Some(exit) => special::edge(self.track.runs, &exit, &self.track.margin),
             None => special,
         };
-        let shortest = SHORTEST * self.track.runs.scale;
-        special.point = self.track.runs.window.snapped(&special.point, shortest);
-        let near = special.uncertainty + shortest;
+        let near = special.uncertainty + SHORTEST * self.track.runs.scale;
         let known = self
             .track
             .stops
