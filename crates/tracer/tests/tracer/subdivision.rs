@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use self::planes::{
     KnownPlane, close_curves, crossing_circles, cusp, disturbed, edges_and_corner, figure_of_eight,
-    grid, islands, touching_circles, upright_cusp,
+    grid, islands, short_frame_parts, touching_circles, upright_cusp,
 };
 use stickslip_tracer::{Location, Point, Subdivision, VerifyOptions, verify};
 
@@ -138,6 +138,13 @@ fn curves_through_sides_and_corners_of_the_window() {
         &edges_and_corner(),
         &[(0, wave - quarter), (2, quarter), (5, disc), (1, 1.0 - wave - disc)],
     );
+}
+
+#[test]
+fn short_parts_of_the_frame() {
+    let (beside, between) = (0.1, 0.1 / PI);
+    let areas = [(0, 1.0 - beside - between), (1, beside), (2, between)];
+    holds(&short_frame_parts(), &areas);
 }
 
 #[test]

@@ -27,8 +27,8 @@ impl Faces {
     /// with the gaps beyond the walls of the slab. Edges that leave a vertex with one tangent are
     /// closer together than `reach` beside it, and interpolation leaves open which one is above. A
     /// gap therefore counts only if it is wider than `reach`. It is united with the side of a piece
-    /// only if the gap on the other side of the piece is wide too. At vertices where the order of
-    /// edges is sure, neighbours have a face in common, however short they are. `frame` are the
+    /// only if the gap on the other side of the piece is wide too. Where one edge leaves the
+    /// frame, it has faces in common with its neighbours, however short they are. `frame` are the
     /// edges of the window, which have the outside on their right.
     pub(crate) fn new(slabs: &Slabs, edges: &[Edge], frame: Range<usize>, reach: f64) -> Self {
         let outside = 2 * edges.len();
@@ -140,8 +140,8 @@ impl Faces {
     }
 }
 
-/// The sides that lead into each other at a vertex where the order of edges around it is sure: at
-/// one of two edges, and where one edge leaves the frame of the window.
+/// The sides that lead into each other where one edge leaves the frame of the window, so that the
+/// order around the vertex is sure.
 fn turns(edges: &[Edge], frame: &Range<usize>) -> Vec<[usize; 2]> {
     // The left sides of edges, seen from a vertex at which they begin or end.
     let mut around: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
@@ -150,20 +150,14 @@ fn turns(edges: &[Edge], frame: &Range<usize>) -> Vec<[usize; 2]> {
             around.entry(vertex).or_default().push(2 * edge + end);
         }
     }
+    let of_frame = |side: usize| frame.contains(&(side / 2));
     let mut turns = Vec::new();
-    for mut sides in around.into_values() {
-        // Counterclockwise: from the edge of the frame that leaves the vertex to the one that
-        // arrives there.
-        let place = |&side: &usize| match (frame.contains(&(side / 2)), side % 2) {
-            (true, 0) => 0,
-            (false, _) => 1,
-            (true, _) => 2,
-        };
-        sides.sort_by_key(place);
-        let framed = sides.iter().filter(|&side| place(side) != 1).count();
-        if sides.len() == 2 || (sides.len() == 3 && framed == 2) {
-            let next = sides.iter().cycle().skip(1);
-            turns.extend(sides.iter().zip(next).map(|(&one, &other)| [one, other ^ 1]));
+    for mut sides in around.into_values().filter(|sides| sides.len() == 3) {
+        // Counterclockwise: the edge of the frame that begins at the vertex, the other edge, and the
+        // edge of the frame that ends there.
+        sides.sort_by_key(|&side| if of_frame(side) { 2 * (side % 2) } else { 1 });
+        if of_frame(sides[0]) && of_frame(sides[2]) {
+            turns.extend([0, 1, 2].map(|i| [sides[i], sides[(i + 1) % 3] ^ 1]));
         }
     }
     turns

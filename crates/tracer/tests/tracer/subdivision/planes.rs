@@ -243,6 +243,34 @@ pub fn edges_and_corner() -> KnownPlane {
     .curve(circle(0.15, 0.7, 0.15), even(PI, 3.0 * PI, 160), [5, 1], Some([4, 4]))
 }
 
+/// A line that ends beside a corner, and two waves that begin beside each other on the left side of
+/// the window and meet inside. The parts of the window's boundary between these ends are hardly
+/// longer than the tolerance.
+pub fn short_frame_parts() -> KnownPlane {
+    const SHORT: f64 = 1.5 * TOLERANCE;
+    let line = |s: f64| [1.0 - SHORT - 0.2 * s, 1.0 - s, -0.2, -1.0];
+    let wave = |sign: f64| {
+        move |x: f64| {
+            let half = 0.5 * SHORT * (1.0 - 2.0 * x) + 0.05 * (TAU * x).sin();
+            let slope = 0.05 * TAU * (TAU * x).cos() - SHORT;
+            [x, 0.3 + sign * half, 1.0, sign * slope]
+        }
+    };
+    KnownPlane::new(|p| {
+        let half = 0.5 * SHORT * (1.0 - 2.0 * p.x) + 0.05 * (TAU * p.x).sin();
+        let between = p.x < 0.5 && (p.y - 0.3).abs() < half;
+        i32::from(p.x - 0.8 + SHORT > 0.2 * p.y) + 2 * i32::from(between)
+    })
+    .vertex(1.0 - SHORT, 1.0, VertexKind::WindowEdge)
+    .vertex(0.8 - SHORT, 0.0, VertexKind::WindowEdge)
+    .vertex(0.0, 0.3 - 0.5 * SHORT, VertexKind::WindowEdge)
+    .vertex(0.0, 0.3 + 0.5 * SHORT, VertexKind::WindowEdge)
+    .vertex(0.5, 0.3, VertexKind::Crossing)
+    .curve(line, even(0.0, 1.0, 10), [1, 0], Some([0, 1]))
+    .curve(wave(-1.0), even(0.0, 0.5, 100), [2, 0], Some([2, 4]))
+    .curve(wave(1.0), even(0.0, 0.5, 100), [0, 2], Some([3, 4]))
+}
+
 /// Three upright lines that cross three level ones. Vertices lie above each other, and pieces have
 /// no extent in x.
 pub fn grid() -> KnownPlane {
