@@ -153,8 +153,8 @@ fn turns(edges: &[Edge], frame: &Range<usize>) -> Vec<[usize; 2]> {
     let of_frame = |side: usize| frame.contains(&(side / 2));
     let mut turns = Vec::new();
     for mut sides in around.into_values().filter(|sides| sides.len() == 3) {
-        // Counterclockwise: the edge of the frame that begins at the vertex, the other edge, and the
-        // edge of the frame that ends there.
+        // Counterclockwise: the edge of the frame that begins at the vertex, the other edge, and
+        // the edge of the frame that ends there.
         sides.sort_by_key(|&side| if of_frame(side) { 2 * (side % 2) } else { 1 });
         if of_frame(sides[0]) && of_frame(sides[2]) {
             turns.extend([0, 1, 2].map(|i| [sides[i], sides[(i + 1) % 3] ^ 1]));
