@@ -48,9 +48,9 @@ fn small_and_long_windows_are_right() {
     assert!(long.report.agrees, "{:?}", long.report.objection());
 }
 
-/// One boundary that ends in the cusp is ψ = 1 itself, and the wedge between the two is soon thinner
-/// than runs can tell. In these windows an edge passes through the cusp or just beside it, and their
-/// sides are very unequal.
+/// One boundary that ends in the cusp is ψ = 1 itself, and the wedge between the two is soon
+/// thinner than runs can tell. In these windows an edge passes through the cusp or just beside it,
+/// and their sides are very unequal.
 #[test]
 fn edges_may_pass_through_the_cusp() {
     for (kappa, psi) in [
