@@ -27,8 +27,9 @@ impl Faces {
     /// with the gaps beyond the walls of the slab. Edges that leave a vertex with one tangent are
     /// closer together than `reach` beside it, and interpolation leaves open which one is above. A
     /// gap therefore counts only if it is wider than `reach`. It is united with the side of a piece
-    /// only if the gap on the other side of the piece is wide too. Where one edge leaves the
-    /// frame, it has faces in common with its neighbours, however short they are. `frame` are the
+    /// only if the gap on the other side of the piece is wide too. Edges that
+    /// leave a vertex on the frame in different directions have a face in common with their
+    /// neighbours there, however short they are. `frame` are the
     /// edges of the window, which have the outside on their right.
     pub(crate) fn new(slabs: &Slabs, edges: &[Edge], frame: Range<usize>, reach: f64) -> Self {
         let outside = 2 * edges.len();
@@ -39,7 +40,7 @@ impl Faces {
             sets.unite(2 * edge + 1, outside);
             seen[2 * edge + 1] = true;
         }
-        for [one, other] in turns(edges, &frame) {
+        for [one, other] in turns(&slabs.pieces, edges, &frame) {
             sets.unite(one, other);
         }
         let piece = |index: usize| &slabs.pieces[index];
@@ -140,24 +141,33 @@ impl Faces {
     }
 }
 
-/// The sides that lead into each other where one edge leaves the frame of the window, so that the
-/// order around the vertex is sure.
-fn turns(edges: &[Edge], frame: &Range<usize>) -> Vec<[usize; 2]> {
-    // The left sides of edges, seen from a vertex at which they begin or end.
-    let mut around: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+/// The sides that lead into each other at the vertices on the frame of the window where the order of
+/// edges is sure: one edge leaves the frame there, or several in different directions.
+fn turns(pieces: &[Piece], edges: &[Edge], frame: &Range<usize>) -> Vec<[usize; 2]> {
+    /// The least angle between two edges, in radians.
+    const APART: f64 = 1e-3;
+    // The left sides of edges, seen from a vertex at which they begin or end, and their directions.
+    let mut around: BTreeMap<usize, Vec<(usize, Point)>> = BTreeMap::new();
     for (edge, ends) in edges.iter().enumerate().filter_map(|(edge, own)| Some((edge, own.ends?))) {
         for (end, vertex) in ends.into_iter().enumerate() {
-            around.entry(vertex).or_default().push(2 * edge + end);
+            let away = edges[edge].direction(pieces, end);
+            around.entry(vertex).or_default().push((2 * edge + end, away));
         }
     }
-    let of_frame = |side: usize| frame.contains(&(side / 2));
     let mut turns = Vec::new();
-    for mut sides in around.into_values().filter(|sides| sides.len() == 3) {
-        // Counterclockwise: the edge of the frame that begins at the vertex, the other edge, and
-        // the edge of the frame that ends there.
-        sides.sort_by_key(|&side| if of_frame(side) { 2 * (side % 2) } else { 1 });
-        if of_frame(sides[0]) && of_frame(sides[2]) {
-            turns.extend([0, 1, 2].map(|i| [sides[i], sides[(i + 1) % 3] ^ 1]));
+    for sides in around.into_values() {
+        let (of_frame, mut inner): (Vec<_>, Vec<_>) =
+            sides.into_iter().partition(|&(side, _)| frame.contains(&(side / 2)));
+        let &[one, other] = &of_frame[..] else { continue };
+        let (begins, ends) = if one.0 % 2 == 0 { (one, other) } else { (other, one) };
+        // Counterclockwise from the edge of the frame that begins at the vertex.
+        let angle = |away: &Point| begins.1.perp(away).atan2(begins.1.dot(away));
+        inner.sort_by(|(_, one), (_, other)| angle(one).total_cmp(&angle(other)));
+        let order: Vec<_> = [begins].into_iter().chain(inner).chain([ends]).collect();
+        let apart = |pair: &[(usize, Point)]| angle(&pair[1].1) - angle(&pair[0].1) > APART;
+        if order.len() == 3 || order.windows(2).all(apart) {
+            let next = order.iter().cycle().skip(1);
+            turns.extend(order.iter().zip(next).map(|(one, other)| [one.0, other.0 ^ 1]));
         }
     }
     turns

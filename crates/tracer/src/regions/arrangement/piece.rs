@@ -14,6 +14,18 @@ pub(crate) struct Edge {
     pub(crate) pieces: Range<usize>,
 }
 
+impl Edge {
+    /// The direction in which the edge leaves the vertex at its `end`, 0 or 1; a unit vector.
+    pub(crate) fn direction(&self, pieces: &[Piece], end: usize) -> Point {
+        let piece = &pieces[if end == 0 { self.pieces.start } else { self.pieces.end - 1 }];
+        if piece.forward == (end == 0) {
+            piece.cubic.tangent(0.0)
+        } else {
+            -piece.cubic.tangent(1.0)
+        }
+    }
+}
+
 /// A part of an edge, in the direction in which x increases, or y if the part is vertical.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Piece {

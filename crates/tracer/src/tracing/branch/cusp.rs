@@ -41,7 +41,7 @@ pub(crate) fn beyond<F: Family>(
     from: &FootholdOf<F>,
 ) -> Traced<Option<Special<F::Margin>>, F> {
     /// The farthest such cusp, as a fraction of the window's shorter extent.
-    const FARTHEST: f64 = 1e-1;
+    const FARTHEST: f64 = 1.0;
     for (point, uncertainty) in ahead(track, from, FARTHEST * track.runs.scale)? {
         let arc = Cubic::between(&from.node, &track.end_node(&from.node, &point)?);
         if follows(track, from, &arc, track.runs.options.interpolation)? {
