@@ -180,7 +180,7 @@ pub(crate) fn require_traceable(plane: &CollisionPlane, tolerance: f64) -> Resul
 pub(crate) fn trace_options(plane: &CollisionPlane, tolerance: f64) -> TraceOptions {
     /// The e-folds up to which the usual parts of a side will do.
     const SIDE: f64 = 4.0;
-    let usual = TraceOptions::default();
+    let (usual, noise) = (TraceOptions::default(), plane.sheet().noise());
     let fineness = (plane.window().extent().min() / SIDE).max(1.0);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "32 to 1024")]
     let cells = (usual.cells as f64 * fineness.min(32.0)).ceil() as usize;
@@ -193,7 +193,9 @@ pub(crate) fn trace_options(plane: &CollisionPlane, tolerance: f64) -> TraceOpti
     let beyond = if plane.obeys_paper() { 0.0 } else { most.min(1e-3) };
     TraceOptions {
         beyond,
+        tolerance: usual.tolerance.max(0.1 * noise),
         interpolation: plane.sheet().interpolation(tolerance),
+        offset: usual.offset.max(10.0 * noise),
         max_step: usual.max_step / fineness,
         cells,
         ..usual
