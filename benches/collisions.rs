@@ -3,12 +3,9 @@
 //! The mean over the 200 random reference collisions is the figure to compare with other programs;
 //! every group runs on one thread.
 
-#[path = "inputs/contacts.rs"]
-mod contacts;
-
 use std::hint::black_box;
 
-use contacts::contacts;
+use benches::contacts::{self, contacts};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use stickslip::model::regularized::{self, Phase, Regularized};
 use stickslip::model::{Collider, Collision, Contact, exact};

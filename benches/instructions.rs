@@ -5,16 +5,12 @@
 //! start, input and what only the first round costs drop out of the difference. Valgrind (3.19)
 //! does not know all instructions of x86-64-v3, for which the workspace is built otherwise.
 
-#[path = "inputs/contacts.rs"]
-mod contacts;
-#[path = "inputs/plane.rs"]
-mod plane;
-
 use std::env;
 use std::error::Error;
 use std::hint::black_box;
 use std::process::Command;
 
+use benches::{contacts, plane};
 use stickslip::model::{Collider, Collision, Contact, exact};
 use stickslip::plane::{CollisionFamily, CollisionPlane};
 use stickslip::solver::EmbeddedPair;
@@ -61,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("{}", WORKLOADS[index.parse::<usize>()?].1(times.parse()?));
         return Ok(());
     }
-    // `cargo test` runs benches too, without this argument.
+    // `cargo test --benches` runs them too, without this argument.
     if !arguments.iter().any(|argument| argument == "--bench") {
         return Ok(());
     }

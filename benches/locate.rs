@@ -2,11 +2,9 @@
 //!
 //! One query at a time on one thread.
 
-#[path = "inputs/plane.rs"]
-mod plane;
-
 use std::hint::black_box;
 
+use benches::plane;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 fn locate(criterion: &mut Criterion) {

@@ -1,4 +1,4 @@
-//! Time a look-up in a table of ε_t: `cargo bench --bench table --features practice`.
+//! Time a look-up in a table of ε_t: `cargo bench --bench table`.
 //!
 //! One look-up at a time on one thread, at points at random over the whole window and at a hundred
 //! points again and again, beside the exact engine.
@@ -9,7 +9,7 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use fastrand::Rng;
 use stickslip::model::{Collision, Contact, exact};
 use stickslip::plane::progress;
-use stickslip::practice::tables::{self, Settings};
+use stickslip_practice::tables::{self, Settings};
 
 const POINTS: usize = 100_000;
 

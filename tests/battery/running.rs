@@ -63,7 +63,6 @@ macro_rules! sized {
     ($run:ident($method:expr, $case:expr $(, $more:expr)?)) => {
         match $case.size() {
             (1, 1) => $run::<M, 1, 1>($method, $case $(, $more)?),
-            (1, ..=4) => $run::<M, 1, 4>($method, $case $(, $more)?),
             (1, ..=32) => $run::<M, 1, 32>($method, $case $(, $more)?),
             (2, ..=2) => $run::<M, 2, 2>($method, $case $(, $more)?),
             (4, ..=2) => $run::<M, 4, 2>($method, $case $(, $more)?),

@@ -11,6 +11,7 @@ use stickslip_tracer::{
 pub(crate) mod gaining;
 pub(crate) mod general;
 
+pub use gaining::GainingFamily;
 pub use general::GeneralFamily;
 
 use crate::chart::Chart;
@@ -68,6 +69,8 @@ pub enum CollisionFamily {
     Integrated(HybridFamily<CollisionPlane, Dop853, STATE, GUARDS>),
     /// Collisions with another law than the paper's, computed by integration.
     General(GeneralFamily),
+    /// Collisions with any law, with labels that also tell whether |ε_t| is above 1.
+    Gaining(GainingFamily),
 }
 
 /// A collision of a family cannot be computed.
@@ -260,6 +263,12 @@ impl CollisionPlane {
         CollisionFamily::Integrated(HybridFamily { problem: self, method, options, end })
     }
 
+    /// The collisions, integrated as those of any law, with one more boundary: where |ε_t| is 1.
+    #[must_use]
+    pub fn gaining(self) -> CollisionFamily {
+        CollisionFamily::Gaining(GainingFamily::new(self))
+    }
+
     /// The collisions as those of any law are integrated.
     fn general(self) -> GeneralFamily {
         GeneralFamily::new(self, precise())
@@ -338,6 +347,7 @@ impl Family for CollisionFamily {
             }
             Self::Integrated(family) => fired(family, point, family.label(point)?)?,
             Self::General(family) => family.label(point)?,
+            Self::Gaining(family) => family.label(point)?,
         })
     }
 
@@ -346,6 +356,7 @@ impl Family for CollisionFamily {
             Self::Exact(plane) => exact::margin(&plane.contact_or_any(point), margin)?,
             Self::Integrated(family) => family.margin(point, margin)?,
             Self::General(family) => family.margin(point, margin),
+            Self::Gaining(family) => family.margin(point, margin)?,
         })
     }
 
@@ -356,6 +367,7 @@ impl Family for CollisionFamily {
             Self::General(family) => {
                 family.near_miss(point, margin).map_or_else(|| margin.clone(), |(moved, _)| moved)
             }
+            Self::Gaining(family) => family.moved(point, margin)?,
         })
     }
 
@@ -364,20 +376,21 @@ impl Family for CollisionFamily {
             Self::Exact(_) => true,
             Self::Integrated(family) => family.is_sure(margin),
             Self::General(_) => general::is_sure(margin),
+            Self::Gaining(family) => family.is_sure(margin),
         }
     }
 
     fn cusps(&self, margin: &Margin) -> Vec<[Margin; 2]> {
         match self {
             Self::Exact(plane) => exact::cusps(&plane.first, margin),
-            Self::Integrated(_) | Self::General(_) => Vec::new(),
+            Self::Integrated(_) | Self::General(_) | Self::Gaining(_) => Vec::new(),
         }
     }
 
     fn swallowtail(&self, margin: &Margin) -> Option<[Margin; 3]> {
         match self {
             Self::Exact(plane) => exact::swallowtail(&plane.first, margin),
-            Self::Integrated(_) | Self::General(_) => None,
+            Self::Integrated(_) | Self::General(_) | Self::Gaining(_) => None,
         }
     }
 
@@ -392,6 +405,7 @@ impl Family for CollisionFamily {
                 FreeRun { label: fired(family, point, label)?, margins }
             }
             Self::General(family) => family.free_run(point)?,
+            Self::Gaining(family) => family.free_run(point)?,
         })
     }
 }

@@ -6,8 +6,8 @@ use stickslip_solver::Margin;
 use stickslip_tracer::{Atlas, AtlasOptions, Curve, Mismatch, Surveyor};
 
 use crate::atlas::{AtlasError, Frame, polyline, require_traceable, trace_options, unresolved};
-use crate::family::CollisionPlane;
-use crate::family::gaining::{GainingFamily, gains, level};
+use crate::family::gaining::{gains, level};
+use crate::family::{CollisionFamily, CollisionPlane};
 use crate::progress::{InParallel, Watch};
 
 #[cfg(feature = "serde")]
@@ -23,7 +23,7 @@ pub struct Gaining {
     /// The accuracy of the lines in ψ.
     pub tolerance: f64,
     plane: CollisionPlane,
-    family: GainingFamily,
+    family: CollisionFamily,
     /// All regions in traced coordinates, also those of the switches, which divide those that are
     /// asked for; with what speaks against them.
     pub atlas: Atlas<Vec<usize>, Margin>,
@@ -91,7 +91,7 @@ fn trace_watched(frame: Frame, tolerance: f64, watch: Watch<'_>) -> Result<Gaini
         ..AtlasOptions::default()
     };
     let surveyor = Surveyor { options, executor: InParallel, watch };
-    let family = GainingFamily::new(plane);
+    let family = plane.gaining();
     let atlas = surveyor
         .atlas(&family, &plane.window())
         .map_err(|error| AtlasError::of_atlas(&plane, error))?;

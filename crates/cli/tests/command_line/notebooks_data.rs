@@ -85,6 +85,10 @@ impl Remade {
                     out = reproduce::RUN.path("out");
                     String::new()
                 }
+                _ if command.starts_with("trace --kappa 0.05:100 --psi 0.01:3 --out ") => {
+                    out = reproduce::ATLAS.path(".");
+                    String::new()
+                }
                 "converge --out out" => {
                     out = converge::USUAL.0.path("new/study");
                     String::new()

@@ -23,6 +23,14 @@ static RUNS: LazyLock<[Workspace; 2]> = LazyLock::new(|| {
     })
 });
 
+/// The atlas of the whole plane by a command of its own, which `notebooks_data` reads too.
+pub static ATLAS: LazyLock<Workspace> = LazyLock::new(|| {
+    let workspace = Workspace::new();
+    let line = "trace --kappa 0.05:100 --psi 0.01:3 --out atlas.json --plot atlas.svg";
+    assert_eq!(workspace.run(line).code, 0);
+    workspace
+});
+
 /// A run with so many threads.
 fn whole(out: &str, threads: u8) -> Workspace {
     let workspace = Workspace::new();
@@ -328,10 +336,8 @@ fn data_are_what_the_other_commands_make() {
     let alpha = format!("{:?}", 2.0 / 7.0);
     assert_eq!(facts, ["0.4", &alpha, "0.0", "exact", &version_in_maps()]);
 
-    let line = "trace --kappa 0.05:100 --psi 0.01:3 --out atlas.json --plot atlas.svg";
-    assert_eq!(RUN.run(line).code, 0);
-    assert!(RUN.read("atlas.json") == RUN.read("out/atlas.json"));
-    assert!(RUN.read("atlas.svg") == RUN.read("out/boundaries.svg"));
+    assert!(ATLAS.read("atlas.json") == RUN.read("out/atlas.json"));
+    assert!(ATLAS.read("atlas.svg") == RUN.read("out/boundaries.svg"));
     // The boundaries of Figure 4 are also an atlas.
     RUN.write("points.csv", "kappa,psi\n63,0.5\n");
     let line = "locate --atlas out/figure4_boundaries.json --batch points.csv --out located.csv";

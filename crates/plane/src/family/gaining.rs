@@ -21,7 +21,7 @@ pub struct GainingFamily(GeneralFamily);
 
 impl GainingFamily {
     /// The collisions of a plane, integrated as those of any law.
-    pub fn new(plane: CollisionPlane) -> Self {
+    pub(super) fn new(plane: CollisionPlane) -> Self {
         Self(plane.general())
     }
 

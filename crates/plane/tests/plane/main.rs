@@ -11,4 +11,5 @@ mod laws;
 mod refusal;
 mod stack;
 mod sweep;
+mod tile;
 mod windows;

@@ -20,8 +20,8 @@ const LAYERS: [&[&str]; 10] = [
     &["stickslip-practice", "stickslip-studies"],
     &["stickslip-files", "stickslip-reproduction"],
     &["stickslip", "stickslip-cli", "stickslip-python"],
-    // Tests and long batteries alone.
-    &["repository", "validation"],
+    // Tests, benches and long batteries alone.
+    &["benches", "repository", "validation"],
 ];
 
 /// Crates that are parts of the program. No library may use them.

@@ -9,6 +9,7 @@ mod docs;
 mod impact_files;
 mod packages;
 mod rust;
+mod schema;
 
 use std::path::{Path, PathBuf};
 

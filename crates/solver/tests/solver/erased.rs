@@ -1,12 +1,13 @@
 //! Runs along systems and observers of any type as runs along one type.
 //!
 //! The solver is compiled anew for each type of system and of observer that it runs along, which
-//! takes a second. Here it is compiled once for each method, type of modes, dimension and number of
-//! guards, for systems that can be read and for black boxes. The functions have the names, the
-//! arguments and the results of those of the solver, and call them. They take no account of a step
-//! that a system has of its own ([`HybridSystem::step`]), as weighted ones have.
+//! takes a second. Here it is compiled once for each method, dimension and number of guards, for
+//! systems that can be read and for black boxes; modes are numbered. The functions have the names,
+//! the arguments and the results of those of the solver, and call them. They take no account of a
+//! step that a system has of its own ([`HybridSystem::step`]), as weighted ones have.
 
 mod dynamic;
+mod modes;
 mod system;
 
 use stickslip_solver::{
@@ -15,7 +16,8 @@ use stickslip_solver::{
 };
 
 pub use dynamic::{run_dynamic, run_dynamic_backwards};
-use system::{Erased, Watching};
+use modes::Modes;
+use system::{Erased, Numbered, Told, Watching};
 
 use crate::runs::{Wave, at, ball};
 
@@ -23,10 +25,10 @@ use crate::runs::{Wave, at, ball};
 macro_rules! with_system {
     ($system:ident => $call:expr) => {
         if S::READABLE {
-            let $system = &Erased::<S::Mode, N, G, true>($system);
+            let $system = &Erased::<N, G, true>($system);
             $call
         } else {
-            let $system = &Erased::<S::Mode, N, G, false>($system);
+            let $system = &Erased::<N, G, false>($system);
             $call
         }
     };
@@ -34,15 +36,26 @@ macro_rules! with_system {
 
 /// Calls a function with an erased observer of the type `O`.
 macro_rules! with_observer {
-    ($observer:ident of $mode:ty => $call:expr) => {
+    ($observer:ident => $call:expr) => {
         if O::WANTS_SEGMENTS {
-            let $observer = &mut Watching::<$mode, N, true>($observer);
+            let $observer = &mut Watching::<N, true>($observer);
             $call
         } else {
-            let $observer = &mut Watching::<$mode, N, false>($observer);
+            let $observer = &mut Watching::<N, false>($observer);
             $call
         }
     };
+}
+
+/// Calls a function with an erased system, start and observer, and gives the end its mode back.
+macro_rules! with_numbers {
+    ($system:ident, $start:ident, $observer:ident => $call:expr) => {{
+        let modes = &Modes::default();
+        let ($system, $start) = (&Numbered { system: $system, modes }, modes.start($start));
+        let $observer = &mut Told { observer: $observer, modes };
+        let run = with_system!($system => with_observer!($observer => $call));
+        run.map(|run| modes.end(run))
+    }};
 }
 
 /// As [`stickslip_solver::run`].
@@ -58,9 +71,9 @@ where
     S: HybridSystem<N, G>,
     O: Observer<S::Mode, N>,
 {
-    with_system!(system => with_observer!(observer of S::Mode => {
+    with_numbers!(system, start, observer => {
         stickslip_solver::run(method, system, start, end, options, observer)
-    }))
+    })
 }
 
 /// As [`stickslip_solver::run_backwards`].
@@ -76,9 +89,9 @@ where
     S: HybridSystem<N, G>,
     O: Observer<S::Mode, N>,
 {
-    with_system!(system => with_observer!(observer of S::Mode => {
+    with_numbers!(system, start, observer => {
         stickslip_solver::run_backwards(method, system, start, end, options, observer)
-    }))
+    })
 }
 
 /// As [`stickslip_solver::run_with`].
@@ -94,9 +107,9 @@ where
     S: HybridSystem<N, G>,
     O: Observer<S::Mode, N>,
 {
-    with_system!(system => with_observer!(observer of S::Mode => {
+    with_numbers!(system, start, observer => {
         stickslip_solver::run_with(pair, system, start, end, options, observer)
-    }))
+    })
 }
 
 /// As [`stickslip_solver::integrate`].
@@ -110,9 +123,7 @@ pub fn integrate<M: Method, O: Observer<(), N>, const N: usize>(
     observer: &mut O,
 ) -> Result<Run<(), N>, RunError> {
     let field: &dyn Fn(f64, &State<N>) -> State<N> = &field;
-    with_observer!(observer of () => {
-        stickslip_solver::integrate(method, field, s, y, end, options, observer)
-    })
+    stickslip_solver::integrate(method, field, s, y, end, options, observer)
 }
 
 /// As [`stickslip_solver::margins`].
@@ -123,6 +134,8 @@ pub fn margins<M: Method, S: HybridSystem<N, G>, const N: usize, const G: usize>
     end: f64,
     options: &Options,
 ) -> Result<Margins, RunError> {
+    let modes = &Modes::default();
+    let (system, start) = (&Numbered { system, modes }, modes.start(start));
     with_system!(system => stickslip_solver::margins(method, system, start, end, options))
 }
 
@@ -135,6 +148,8 @@ pub fn margin<M: Method, S: HybridSystem<N, G>, const N: usize, const G: usize>(
     options: &Options,
     margin: &Margin,
 ) -> Result<Option<NearMiss>, RunError> {
+    let modes = &Modes::default();
+    let (system, start) = (&Numbered { system, modes }, modes.start(start));
     with_system!(system => stickslip_solver::margin(method, system, start, end, options, margin))
 }
 

@@ -1,9 +1,11 @@
 //! Any family as one type, so that the tracer is compiled once for all with the same labels,
-//! margins and errors: it is compiled anew for each type of family, which takes seconds.
+//! margins and errors: it is compiled anew for each type of family, which takes seconds. Systems
+//! with two guards as one type, for the same reason.
 
 use std::fmt::Debug;
 use std::hash::Hash;
 
+use stickslip_solver::{Guard, HybridSystem, State};
 use stickslip_tracer::{Family, FreeRun, Point};
 
 /// Any family with these labels, margins and errors.
@@ -56,4 +58,69 @@ where
     fn free_run(&self, point: &Point) -> Result<FreeRun<Label, Margin>, Error> {
         self.0.free_run(point)
     }
+}
+
+/// Any system with two guards whose modes are numbers. What else a system may say is as provided.
+pub struct AnySystem<const N: usize>(Box<dyn Parts<N>>);
+
+/// The system as one of any type.
+pub fn any_system<const N: usize>(
+    system: impl HybridSystem<N, 2, Mode = usize> + 'static,
+) -> AnySystem<N> {
+    AnySystem(Box::new(system))
+}
+
+/// What a system consists of.
+trait Parts<const N: usize> {
+    fn field(&self, mode: usize, s: f64, y: &State<N>) -> State<N>;
+    fn guards(&self, mode: usize) -> [Guard; 2];
+    fn guard_values(&self, mode: usize, s: f64, y: &State<N>) -> [f64; 2];
+    fn guard_rates(&self, mode: usize, s: f64, y: &State<N>) -> [f64; 2];
+    fn transition(&self, mode: usize, guard: usize, s: f64, y: &State<N>) -> (usize, State<N>);
+    fn transition_condition(&self, mode: usize, guard: usize, s: f64, y: &State<N>) -> f64;
+}
+
+/// Passes calls of a trait on to what stands behind a reference.
+macro_rules! pass_on {
+    ([$($to:tt)+], |$self:ident| $inner:expr) => {
+        fn field(&$self, mode: usize, s: f64, y: &State<N>) -> State<N> {
+            <$($to)+>::field($inner, mode, s, y)
+        }
+
+        fn guards(&$self, mode: usize) -> [Guard; 2] {
+            <$($to)+>::guards($inner, mode)
+        }
+
+        fn guard_values(&$self, mode: usize, s: f64, y: &State<N>) -> [f64; 2] {
+            <$($to)+>::guard_values($inner, mode, s, y)
+        }
+
+        fn guard_rates(&$self, mode: usize, s: f64, y: &State<N>) -> [f64; 2] {
+            <$($to)+>::guard_rates($inner, mode, s, y)
+        }
+
+        fn transition(
+            &$self,
+            mode: usize,
+            guard: usize,
+            s: f64,
+            y: &State<N>,
+        ) -> (usize, State<N>) {
+            <$($to)+>::transition($inner, mode, guard, s, y)
+        }
+
+        fn transition_condition(&$self, mode: usize, guard: usize, s: f64, y: &State<N>) -> f64 {
+            <$($to)+>::transition_condition($inner, mode, guard, s, y)
+        }
+    };
+}
+
+impl<S: HybridSystem<N, 2, Mode = usize>, const N: usize> Parts<N> for S {
+    pass_on!([S as HybridSystem<N, 2>], |self| self);
+}
+
+impl<const N: usize> HybridSystem<N, 2> for AnySystem<N> {
+    type Mode = usize;
+
+    pass_on!([dyn Parts<N>], |self| &*self.0);
 }

@@ -4,7 +4,7 @@
 use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Place, Start, State};
 use stickslip_tracer::{HybridFamily, Itinerary, Point, TraceOptions, Window, trace};
 
-use crate::any::any;
+use crate::any::{any, any_system};
 
 const WINDOW: Window = Window { low: Point::new(-0.5, -0.15), high: Point::new(0.45, 0.4) };
 const OFF: Guard = Guard::OFF;
@@ -50,7 +50,7 @@ impl HybridSystem<1, 2> for Clock {
 fn changes(clock: Clock, [below, above]: [&[usize]; 2], is_place: fn(&Place) -> bool) {
     let problem = move |point: &Point| {
         let h = point.y - point.x * point.x;
-        (Clock { h, ..clock }, Start { mode: 0, s: 0.0, state: State::from([0.0]) })
+        (any_system(Clock { h, ..clock }), Start { mode: 0, s: 0.0, state: State::from([0.0]) })
     };
     let options = Options { rtol: 1e-13, atol: 1e-13, max_step: 0.25, ..Options::default() };
     let family = any(HybridFamily { problem, method: Dop853, options, end: 2.0 });

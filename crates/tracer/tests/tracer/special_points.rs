@@ -9,7 +9,7 @@ use stickslip_tracer::{
     Window, trace,
 };
 
-use crate::any::any;
+use crate::any::{any, any_system};
 
 const END: f64 = 2.0;
 
@@ -17,42 +17,36 @@ const END: f64 = 2.0;
 /// fired, or 0.
 type Values = fn(f64, &Point, f64) -> [f64; 2];
 
-/// A run at a place of the plane. Its mode says which guards have fired, and its state is the time
-/// at which the first one did.
+/// A run at a place of the plane. Its mode says which guards have fired, one bit each, and its
+/// state is the time at which the first one did.
 struct Run {
     values: Values,
     point: Point,
 }
 
 impl HybridSystem<1, 2> for Run {
-    type Mode = [bool; 2];
+    type Mode = usize;
 
-    fn field(&self, _: [bool; 2], _s: f64, _: &State<1>) -> State<1> {
+    fn field(&self, _: usize, _s: f64, _: &State<1>) -> State<1> {
         State::from([0.0])
     }
-    fn guards(&self, fired: [bool; 2]) -> [Guard; 2] {
-        fired.map(|fired| if fired { Guard::OFF } else { Guard::new(Direction::Below) })
+    fn guards(&self, fired: usize) -> [Guard; 2] {
+        let has_fired = [fired & 1, fired & 2].map(|bit| bit != 0);
+        has_fired.map(|fired| if fired { Guard::OFF } else { Guard::new(Direction::Below) })
     }
-    fn guard_values(&self, _: [bool; 2], s: f64, y: &State<1>) -> [f64; 2] {
+    fn guard_values(&self, _: usize, s: f64, y: &State<1>) -> [f64; 2] {
         (self.values)(s, &self.point, y[0])
     }
-    fn transition(
-        &self,
-        mut fired: [bool; 2],
-        guard: usize,
-        s: f64,
-        y: &State<1>,
-    ) -> ([bool; 2], State<1>) {
-        fired[guard] = true;
-        (fired, if guard == 0 { State::from([s]) } else { *y })
+    fn transition(&self, fired: usize, guard: usize, s: f64, y: &State<1>) -> (usize, State<1>) {
+        (fired | (1 << guard), if guard == 0 { State::from([s]) } else { *y })
     }
 }
 
 /// All runs with these values of the guards.
 fn family(values: Values) -> impl Family<Label = Itinerary, Margin = Margin, Error: Debug> {
     let problem = move |point: &Point| {
-        let start = Start { mode: [false; 2], s: 0.0, state: State::from([0.0]) };
-        (Run { values, point: *point }, start)
+        let start = Start { mode: 0, s: 0.0, state: State::from([0.0]) };
+        (any_system(Run { values, point: *point }), start)
     };
     let options = Options { rtol: 1e-13, atol: 1e-13, max_step: 0.25, ..Options::default() };
     any(HybridFamily { problem, method: Dop853, options, end: END })

@@ -7,7 +7,7 @@ use stickslip_tracer::{
     Window, trace,
 };
 
-use crate::any::any;
+use crate::any::{AnySystem, any, any_system};
 
 /// The coefficients of the cubic guard at every point.
 struct CubicGuards(fn(&Point) -> [f64; 4]);
@@ -17,41 +17,42 @@ struct CubicGuard([f64; 4]);
 
 impl HybridSystem<1, 2> for CubicGuard {
     /// How often the guard has fired.
-    type Mode = u32;
+    type Mode = usize;
 
-    fn field(&self, _fired: u32, _s: f64, _y: &State<1>) -> State<1> {
+    fn field(&self, _fired: usize, _s: f64, _y: &State<1>) -> State<1> {
         State::from([1.0])
     }
 
-    fn guards(&self, fired: u32) -> [Guard; 2] {
+    fn guards(&self, fired: usize) -> [Guard; 2] {
         let own = Guard::new(Direction::Falling).from_zero(u32::from(fired > 0));
         [Guard::new(Direction::Below).terminal(), own]
     }
 
-    fn guard_values(&self, fired: u32, _s: f64, y: &State<1>) -> [f64; 2] {
+    fn guard_values(&self, fired: usize, _s: f64, y: &State<1>) -> [f64; 2] {
         let ([a, b, c, d], u) = (self.0, y[0]);
         [0.5 - u, sign(fired) * (a + u * (b + u * (c + u * d)))]
     }
 
-    fn guard_rates(&self, fired: u32, _s: f64, y: &State<1>) -> [f64; 2] {
+    fn guard_rates(&self, fired: usize, _s: f64, y: &State<1>) -> [f64; 2] {
         let ([_, b, c, d], u) = (self.0, y[0]);
         [-1.0, sign(fired) * (b + u * (2.0 * c + u * 3.0 * d))]
     }
 
-    fn transition(&self, fired: u32, _: usize, _s: f64, y: &State<1>) -> (u32, State<1>) {
+    fn transition(&self, fired: usize, _: usize, _s: f64, y: &State<1>) -> (usize, State<1>) {
         (fired + 1, *y)
     }
 }
 
-fn sign(fired: u32) -> f64 {
+fn sign(fired: usize) -> f64 {
     if fired.is_multiple_of(2) { 1.0 } else { -1.0 }
 }
 
 impl Problem<1, 2> for CubicGuards {
-    type System = CubicGuard;
+    type System = AnySystem<1>;
 
-    fn at(&self, point: &Point) -> (CubicGuard, Start<u32, 1>) {
-        (CubicGuard((self.0)(point)), Start { mode: 0, s: 0.0, state: State::from([-0.5]) })
+    fn at(&self, point: &Point) -> (AnySystem<1>, Start<usize, 1>) {
+        let start = Start { mode: 0, s: 0.0, state: State::from([-0.5]) };
+        (any_system(CubicGuard((self.0)(point))), start)
     }
 }
 

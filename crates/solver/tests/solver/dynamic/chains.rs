@@ -3,11 +3,11 @@
 use std::f64::consts::{PI, TAU};
 
 use stickslip_solver::{
-    Direction, Dop853, DynamicStart, Guard, HybridSystem, Options, Start, State, SwitchEvent, run,
-    run_dynamic,
+    Direction, Dop853, DynamicStart, Guard, HybridSystem, Options, Start, State, SwitchEvent,
 };
 
 use super::{Of, places};
+use crate::erased::{run, run_dynamic};
 
 /// A guard sin(ωs + φ). Whenever it fires, a bound is violated until that fires too, at the same
 /// instant. Then the first guard stands on its own zero, which rounding may move to either side.

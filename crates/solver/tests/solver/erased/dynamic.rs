@@ -1,11 +1,31 @@
 //! Systems and observers of any dimension.
 
-use std::fmt::Debug;
-
 use stickslip_solver::{
     DynamicDense, DynamicEvent, DynamicObserver, DynamicRun, DynamicStart, DynamicSystem, Grazing,
     Guard, Method, Options, Pole, RunError,
 };
+
+use super::modes::Modes;
+
+/// Calls a function with an erased system, start and observer, and gives the end its mode back.
+macro_rules! with_numbers {
+    ($run:path, $method:ident, $system:ident, $start:ident, $end:ident, $options:ident, $observer:ident) => {{
+        let modes = &Modes::default();
+        let system = &Erased(&Numbered { system: $system, modes });
+        let DynamicStart { mode, s, state } = $start;
+        let start = DynamicStart { mode: modes.number(mode), s, state };
+        let told = &mut Told { observer: $observer, modes };
+        let run = if O::WANTS_SEGMENTS {
+            $run($method, system, start, $end, $options, &mut Watching::<true>(told))
+        } else {
+            $run($method, system, start, $end, $options, &mut Watching::<false>(told))
+        };
+        run.map(|run| {
+            let DynamicRun { outcome, s, mode, state, statistics } = run;
+            DynamicRun { outcome, s, mode: modes.mode(mode), state, statistics }
+        })
+    }};
+}
 
 /// As [`stickslip_solver::run_dynamic`].
 pub fn run_dynamic<M: Method, S: DynamicSystem, O: DynamicObserver<S::Mode>>(
@@ -16,14 +36,7 @@ pub fn run_dynamic<M: Method, S: DynamicSystem, O: DynamicObserver<S::Mode>>(
     options: &Options,
     observer: &mut O,
 ) -> Result<DynamicRun<S::Mode>, RunError> {
-    let system = Erased::<S::Mode>(system);
-    if O::WANTS_SEGMENTS {
-        let observer = &mut Watching::<S::Mode, true>(observer);
-        stickslip_solver::run_dynamic(method, &system, start, end, options, observer)
-    } else {
-        let observer = &mut Watching::<S::Mode, false>(observer);
-        stickslip_solver::run_dynamic(method, &system, start, end, options, observer)
-    }
+    with_numbers!(stickslip_solver::run_dynamic, method, system, start, end, options, observer)
 }
 
 /// As [`stickslip_solver::run_dynamic_backwards`].
@@ -35,115 +48,154 @@ pub fn run_dynamic_backwards<M: Method, S: DynamicSystem, O: DynamicObserver<S::
     options: &Options,
     observer: &mut O,
 ) -> Result<DynamicRun<S::Mode>, RunError> {
-    let system = Erased::<S::Mode>(system);
-    if O::WANTS_SEGMENTS {
-        let observer = &mut Watching::<S::Mode, true>(observer);
-        stickslip_solver::run_dynamic_backwards(method, &system, start, end, options, observer)
-    } else {
-        let observer = &mut Watching::<S::Mode, false>(observer);
-        stickslip_solver::run_dynamic_backwards(method, &system, start, end, options, observer)
+    with_numbers!(
+        stickslip_solver::run_dynamic_backwards,
+        method,
+        system,
+        start,
+        end,
+        options,
+        observer
+    )
+}
+
+/// What a system consists of, with numbers for its modes.
+trait Parts {
+    fn field(&self, mode: usize, s: f64, y: &[f64], slope: &mut [f64]);
+    fn guards(&self, mode: usize) -> &[Guard];
+    fn guard_values(&self, mode: usize, s: f64, y: &[f64], values: &mut [f64]);
+    fn transition(&self, mode: usize, guard: usize, s: f64, y: &mut [f64]) -> usize;
+}
+
+/// A system whose modes have numbers.
+struct Numbered<'a, S: DynamicSystem> {
+    system: &'a S,
+    modes: &'a Modes<S::Mode>,
+}
+
+impl<S: DynamicSystem> Parts for Numbered<'_, S> {
+    fn field(&self, mode: usize, s: f64, y: &[f64], slope: &mut [f64]) {
+        self.system.field(self.modes.mode(mode), s, y, slope);
+    }
+
+    fn guards(&self, mode: usize) -> &[Guard] {
+        self.system.guards(self.modes.mode(mode))
+    }
+
+    fn guard_values(&self, mode: usize, s: f64, y: &[f64], values: &mut [f64]) {
+        self.system.guard_values(self.modes.mode(mode), s, y, values);
+    }
+
+    fn transition(&self, mode: usize, guard: usize, s: f64, y: &mut [f64]) -> usize {
+        self.modes.number(self.system.transition(self.modes.mode(mode), guard, s, y))
     }
 }
 
-/// What a system consists of.
-trait Parts<Mode> {
-    fn field(&self, mode: Mode, s: f64, y: &[f64], slope: &mut [f64]);
-    fn guards(&self, mode: Mode) -> &[Guard];
-    fn guard_values(&self, mode: Mode, s: f64, y: &[f64], values: &mut [f64]);
-    fn transition(&self, mode: Mode, guard: usize, s: f64, y: &mut [f64]) -> Mode;
-}
+/// Any system.
+struct Erased<'a>(&'a dyn Parts);
 
-impl<S: DynamicSystem> Parts<S::Mode> for S {
-    fn field(&self, mode: S::Mode, s: f64, y: &[f64], slope: &mut [f64]) {
-        DynamicSystem::field(self, mode, s, y, slope);
-    }
+impl DynamicSystem for Erased<'_> {
+    type Mode = usize;
 
-    fn guards(&self, mode: S::Mode) -> &[Guard] {
-        DynamicSystem::guards(self, mode)
-    }
-
-    fn guard_values(&self, mode: S::Mode, s: f64, y: &[f64], values: &mut [f64]) {
-        DynamicSystem::guard_values(self, mode, s, y, values);
-    }
-
-    fn transition(&self, mode: S::Mode, guard: usize, s: f64, y: &mut [f64]) -> S::Mode {
-        DynamicSystem::transition(self, mode, guard, s, y)
-    }
-}
-
-/// Any system of modes of one type.
-struct Erased<'a, Mode>(&'a dyn Parts<Mode>);
-
-impl<Mode: Copy + PartialEq + Debug> DynamicSystem for Erased<'_, Mode> {
-    type Mode = Mode;
-
-    fn field(&self, mode: Mode, s: f64, y: &[f64], slope: &mut [f64]) {
+    fn field(&self, mode: usize, s: f64, y: &[f64], slope: &mut [f64]) {
         self.0.field(mode, s, y, slope);
     }
 
-    fn guards(&self, mode: Mode) -> &[Guard] {
+    fn guards(&self, mode: usize) -> &[Guard] {
         self.0.guards(mode)
     }
 
-    fn guard_values(&self, mode: Mode, s: f64, y: &[f64], values: &mut [f64]) {
+    fn guard_values(&self, mode: usize, s: f64, y: &[f64], values: &mut [f64]) {
         self.0.guard_values(mode, s, y, values);
     }
 
-    fn transition(&self, mode: Mode, guard: usize, s: f64, y: &mut [f64]) -> Mode {
+    fn transition(&self, mode: usize, guard: usize, s: f64, y: &mut [f64]) -> usize {
         self.0.transition(mode, guard, s, y)
     }
 }
 
-/// What an observer does.
-trait Sees<Mode> {
-    fn on_switch(&mut self, event: &DynamicEvent<'_, Mode>);
-    fn on_grazing(&mut self, grazing: &Grazing<Mode>);
-    fn on_pole(&mut self, pole: &Pole<Mode>);
+/// What an observer does, with numbers for modes.
+trait Sees {
+    fn on_switch(&mut self, event: &DynamicEvent<'_, usize>);
+    fn on_grazing(&mut self, grazing: &Grazing<usize>);
+    fn on_pole(&mut self, pole: &Pole<usize>);
     fn stops(&self) -> bool;
-    fn on_segment(&mut self, mode: Mode, dense: &DynamicDense<'_>);
-    fn on_end(&mut self, mode: Mode, s: f64, state: &[f64]);
+    fn on_segment(&mut self, mode: usize, dense: &DynamicDense<'_>);
+    fn on_end(&mut self, mode: usize, s: f64, state: &[f64]);
 }
 
-/// Passes calls of a trait on to what stands behind a reference.
-macro_rules! tell {
-    ([$($to:tt)+], |$self:ident| $inner:expr) => {
-        fn on_switch(&mut $self, event: &DynamicEvent<'_, Mode>) {
-            <$($to)+>::on_switch($inner, event);
-        }
-
-        fn on_grazing(&mut $self, grazing: &Grazing<Mode>) {
-            <$($to)+>::on_grazing($inner, grazing);
-        }
-
-        fn on_pole(&mut $self, pole: &Pole<Mode>) {
-            <$($to)+>::on_pole($inner, pole);
-        }
-
-        fn stops(&$self) -> bool {
-            <$($to)+>::stops($inner)
-        }
-
-        fn on_segment(&mut $self, mode: Mode, dense: &DynamicDense<'_>) {
-            <$($to)+>::on_segment($inner, mode, dense);
-        }
-
-        fn on_end(&mut $self, mode: Mode, s: f64, state: &[f64]) {
-            <$($to)+>::on_end($inner, mode, s, state);
-        }
-    };
+/// An observer that is told of modes with numbers.
+struct Told<'a, O, Mode> {
+    observer: &'a mut O,
+    modes: &'a Modes<Mode>,
 }
 
-impl<O: DynamicObserver<Mode>, Mode> Sees<Mode> for O {
-    tell!([O as DynamicObserver<Mode>], |self| self);
+impl<O: DynamicObserver<Mode>, Mode: Copy + PartialEq> Sees for Told<'_, O, Mode> {
+    fn on_switch(&mut self, event: &DynamicEvent<'_, usize>) {
+        let DynamicEvent { s, guard, simultaneous, flatness, jump, from, to, before, after } =
+            *event;
+        let [from, to] = [from, to].map(|mode| self.modes.mode(mode));
+        self.observer.on_switch(&DynamicEvent {
+            s,
+            guard,
+            simultaneous,
+            flatness,
+            jump,
+            from,
+            to,
+            before,
+            after,
+        });
+    }
+
+    fn on_grazing(&mut self, grazing: &Grazing<usize>) {
+        self.observer.on_grazing(&self.modes.grazing(grazing));
+    }
+
+    fn on_pole(&mut self, pole: &Pole<usize>) {
+        self.observer.on_pole(&self.modes.pole(pole));
+    }
+
+    fn stops(&self) -> bool {
+        self.observer.stops()
+    }
+
+    fn on_segment(&mut self, mode: usize, dense: &DynamicDense<'_>) {
+        self.observer.on_segment(self.modes.mode(mode), dense);
+    }
+
+    fn on_end(&mut self, mode: usize, s: f64, state: &[f64]) {
+        self.observer.on_end(self.modes.mode(mode), s, state);
+    }
 }
 
-/// Any observer of modes of one type.
-struct Watching<'a, Mode, const WANTS_SEGMENTS: bool>(&'a mut dyn Sees<Mode>);
+/// Any observer.
+struct Watching<'a, const WANTS_SEGMENTS: bool>(&'a mut dyn Sees);
 
-impl<Mode, const WANTS_SEGMENTS: bool> DynamicObserver<Mode>
-    for Watching<'_, Mode, WANTS_SEGMENTS>
-{
+impl<const WANTS_SEGMENTS: bool> DynamicObserver<usize> for Watching<'_, WANTS_SEGMENTS> {
     const WANTS_SEGMENTS: bool = WANTS_SEGMENTS;
 
-    tell!([dyn Sees<Mode>], |self| self.0);
+    fn on_switch(&mut self, event: &DynamicEvent<'_, usize>) {
+        self.0.on_switch(event);
+    }
+
+    fn on_grazing(&mut self, grazing: &Grazing<usize>) {
+        self.0.on_grazing(grazing);
+    }
+
+    fn on_pole(&mut self, pole: &Pole<usize>) {
+        self.0.on_pole(pole);
+    }
+
+    fn stops(&self) -> bool {
+        self.0.stops()
+    }
+
+    fn on_segment(&mut self, mode: usize, dense: &DynamicDense<'_>) {
+        self.0.on_segment(mode, dense);
+    }
+
+    fn on_end(&mut self, mode: usize, s: f64, state: &[f64]) {
+        self.0.on_end(mode, s, state);
+    }
 }

@@ -1,149 +1,218 @@
 //! Systems and observers of fixed dimension.
 
-use std::fmt::Debug;
-
 use stickslip_solver::{
-    Dense, Enclosure, Grazing, Guard, HybridSystem, Observer, Pole, State, SwitchEvent,
+    Dense, Enclosure, Grazing, Guard, HybridSystem, Observer, Pole, Run, Start, State, SwitchEvent,
 };
 
-/// What a system consists of.
-pub trait Parts<Mode, const N: usize, const G: usize> {
-    fn field(&self, mode: Mode, s: f64, y: &State<N>) -> State<N>;
-    fn guards(&self, mode: Mode) -> [Guard; G];
-    fn guard_values(&self, mode: Mode, s: f64, y: &State<N>) -> [f64; G];
-    fn guard_rates(&self, mode: Mode, s: f64, y: &State<N>) -> [f64; G];
-    fn enclose_guards(&self, mode: Mode, s: Enclosure, y: &[Enclosure; N]) -> [Enclosure; G];
-    fn settle(&self, mode: Mode) -> Mode;
-    fn longest_first_step(&self, mode: Mode, s: f64, y: &State<N>) -> f64;
-    fn transition(&self, mode: Mode, guard: usize, s: f64, y: &State<N>) -> (Mode, State<N>);
-    fn transition_condition(&self, mode: Mode, guard: usize, s: f64, y: &State<N>) -> f64;
+use super::modes::Modes;
+
+/// What a system consists of, with numbers for its modes.
+pub trait Parts<const N: usize, const G: usize> {
+    fn field(&self, mode: usize, s: f64, y: &State<N>) -> State<N>;
+    fn guards(&self, mode: usize) -> [Guard; G];
+    fn guard_values(&self, mode: usize, s: f64, y: &State<N>) -> [f64; G];
+    fn guard_rates(&self, mode: usize, s: f64, y: &State<N>) -> [f64; G];
+    fn enclose_guards(&self, mode: usize, s: Enclosure, y: &[Enclosure; N]) -> [Enclosure; G];
+    fn settle(&self, mode: usize) -> usize;
+    fn longest_first_step(&self, mode: usize, s: f64, y: &State<N>) -> f64;
+    fn transition(&self, mode: usize, guard: usize, s: f64, y: &State<N>) -> (usize, State<N>);
+    fn transition_condition(&self, mode: usize, guard: usize, s: f64, y: &State<N>) -> f64;
 }
 
-/// Passes calls of a trait on to what stands behind a reference.
-macro_rules! pass_on {
-    ($mode:ty, [$($to:tt)+], |$self:ident| $inner:expr) => {
-        fn field(&$self, mode: $mode, s: f64, y: &State<N>) -> State<N> {
-            <$($to)+>::field($inner, mode, s, y)
-        }
-
-        fn guards(&$self, mode: $mode) -> [Guard; G] {
-            <$($to)+>::guards($inner, mode)
-        }
-
-        fn guard_values(&$self, mode: $mode, s: f64, y: &State<N>) -> [f64; G] {
-            <$($to)+>::guard_values($inner, mode, s, y)
-        }
-
-        fn guard_rates(&$self, mode: $mode, s: f64, y: &State<N>) -> [f64; G] {
-            <$($to)+>::guard_rates($inner, mode, s, y)
-        }
-
-        fn enclose_guards(
-            &$self,
-            mode: $mode,
-            s: Enclosure,
-            y: &[Enclosure; N],
-        ) -> [Enclosure; G] {
-            <$($to)+>::enclose_guards($inner, mode, s, y)
-        }
-
-        fn settle(&$self, mode: $mode) -> $mode {
-            <$($to)+>::settle($inner, mode)
-        }
-
-        fn longest_first_step(&$self, mode: $mode, s: f64, y: &State<N>) -> f64 {
-            <$($to)+>::longest_first_step($inner, mode, s, y)
-        }
-
-        fn transition(
-            &$self,
-            mode: $mode,
-            guard: usize,
-            s: f64,
-            y: &State<N>,
-        ) -> ($mode, State<N>) {
-            <$($to)+>::transition($inner, mode, guard, s, y)
-        }
-
-        fn transition_condition(&$self, mode: $mode, guard: usize, s: f64, y: &State<N>) -> f64 {
-            <$($to)+>::transition_condition($inner, mode, guard, s, y)
-        }
-    };
+/// A system whose modes have numbers.
+pub struct Numbered<'a, S, Mode> {
+    pub system: &'a S,
+    pub modes: &'a Modes<Mode>,
 }
 
-impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Parts<S::Mode, N, G> for S {
-    pass_on!(S::Mode, [S as HybridSystem<N, G>], |self| self);
+impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Parts<N, G>
+    for Numbered<'_, S, S::Mode>
+{
+    fn field(&self, mode: usize, s: f64, y: &State<N>) -> State<N> {
+        self.system.field(self.modes.mode(mode), s, y)
+    }
+
+    fn guards(&self, mode: usize) -> [Guard; G] {
+        self.system.guards(self.modes.mode(mode))
+    }
+
+    fn guard_values(&self, mode: usize, s: f64, y: &State<N>) -> [f64; G] {
+        self.system.guard_values(self.modes.mode(mode), s, y)
+    }
+
+    fn guard_rates(&self, mode: usize, s: f64, y: &State<N>) -> [f64; G] {
+        self.system.guard_rates(self.modes.mode(mode), s, y)
+    }
+
+    fn enclose_guards(&self, mode: usize, s: Enclosure, y: &[Enclosure; N]) -> [Enclosure; G] {
+        self.system.enclose_guards(self.modes.mode(mode), s, y)
+    }
+
+    fn settle(&self, mode: usize) -> usize {
+        self.modes.number(self.system.settle(self.modes.mode(mode)))
+    }
+
+    fn longest_first_step(&self, mode: usize, s: f64, y: &State<N>) -> f64 {
+        self.system.longest_first_step(self.modes.mode(mode), s, y)
+    }
+
+    fn transition(&self, mode: usize, guard: usize, s: f64, y: &State<N>) -> (usize, State<N>) {
+        let (mode, y) = self.system.transition(self.modes.mode(mode), guard, s, y);
+        (self.modes.number(mode), y)
+    }
+
+    fn transition_condition(&self, mode: usize, guard: usize, s: f64, y: &State<N>) -> f64 {
+        self.system.transition_condition(self.modes.mode(mode), guard, s, y)
+    }
 }
 
-/// Any system of modes of one type.
-pub struct Erased<'a, Mode, const N: usize, const G: usize, const READABLE: bool>(
-    pub &'a dyn Parts<Mode, N, G>,
+/// Any system.
+pub struct Erased<'a, const N: usize, const G: usize, const READABLE: bool>(
+    pub &'a dyn Parts<N, G>,
 );
 
-impl<Mode, const N: usize, const G: usize, const READABLE: bool> HybridSystem<N, G>
-    for Erased<'_, Mode, N, G, READABLE>
-where
-    Mode: Copy + PartialEq + Debug,
+impl<const N: usize, const G: usize, const READABLE: bool> HybridSystem<N, G>
+    for Erased<'_, N, G, READABLE>
 {
-    type Mode = Mode;
+    type Mode = usize;
 
     const READABLE: bool = READABLE;
 
-    pass_on!(Mode, [dyn Parts<Mode, N, G>], |self| self.0);
+    fn field(&self, mode: usize, s: f64, y: &State<N>) -> State<N> {
+        self.0.field(mode, s, y)
+    }
+
+    fn guards(&self, mode: usize) -> [Guard; G] {
+        self.0.guards(mode)
+    }
+
+    fn guard_values(&self, mode: usize, s: f64, y: &State<N>) -> [f64; G] {
+        self.0.guard_values(mode, s, y)
+    }
+
+    fn guard_rates(&self, mode: usize, s: f64, y: &State<N>) -> [f64; G] {
+        self.0.guard_rates(mode, s, y)
+    }
+
+    fn enclose_guards(&self, mode: usize, s: Enclosure, y: &[Enclosure; N]) -> [Enclosure; G] {
+        self.0.enclose_guards(mode, s, y)
+    }
+
+    fn settle(&self, mode: usize) -> usize {
+        self.0.settle(mode)
+    }
+
+    fn longest_first_step(&self, mode: usize, s: f64, y: &State<N>) -> f64 {
+        self.0.longest_first_step(mode, s, y)
+    }
+
+    fn transition(&self, mode: usize, guard: usize, s: f64, y: &State<N>) -> (usize, State<N>) {
+        self.0.transition(mode, guard, s, y)
+    }
+
+    fn transition_condition(&self, mode: usize, guard: usize, s: f64, y: &State<N>) -> f64 {
+        self.0.transition_condition(mode, guard, s, y)
+    }
 }
 
-/// What an observer does.
-pub trait Sees<Mode, const N: usize> {
-    fn on_switch(&mut self, event: &SwitchEvent<Mode, N>);
-    fn on_grazing(&mut self, grazing: &Grazing<Mode>);
-    fn on_pole(&mut self, pole: &Pole<Mode>);
+/// What an observer does, with numbers for modes.
+pub trait Sees<const N: usize> {
+    fn on_switch(&mut self, event: &SwitchEvent<usize, N>);
+    fn on_grazing(&mut self, grazing: &Grazing<usize>);
+    fn on_pole(&mut self, pole: &Pole<usize>);
     fn stops(&self) -> bool;
-    fn on_segment(&mut self, mode: Mode, dense: &Dense<N>);
-    fn on_end(&mut self, mode: Mode, s: f64, state: &State<N>);
+    fn on_segment(&mut self, mode: usize, dense: &Dense<N>);
+    fn on_end(&mut self, mode: usize, s: f64, state: &State<N>);
 }
 
-/// As `pass_on`.
-macro_rules! tell {
-    ([$($to:tt)+], |$self:ident| $inner:expr) => {
-        fn on_switch(&mut $self, event: &SwitchEvent<Mode, N>) {
-            <$($to)+>::on_switch($inner, event);
-        }
-
-        fn on_grazing(&mut $self, grazing: &Grazing<Mode>) {
-            <$($to)+>::on_grazing($inner, grazing);
-        }
-
-        fn on_pole(&mut $self, pole: &Pole<Mode>) {
-            <$($to)+>::on_pole($inner, pole);
-        }
-
-        fn stops(&$self) -> bool {
-            <$($to)+>::stops($inner)
-        }
-
-        fn on_segment(&mut $self, mode: Mode, dense: &Dense<N>) {
-            <$($to)+>::on_segment($inner, mode, dense);
-        }
-
-        fn on_end(&mut $self, mode: Mode, s: f64, state: &State<N>) {
-            <$($to)+>::on_end($inner, mode, s, state);
-        }
-    };
+/// An observer that is told of modes with numbers.
+pub struct Told<'a, O, Mode> {
+    pub observer: &'a mut O,
+    pub modes: &'a Modes<Mode>,
 }
 
-impl<O: Observer<Mode, N>, Mode, const N: usize> Sees<Mode, N> for O {
-    tell!([O as Observer<Mode, N>], |self| self);
+impl<O: Observer<Mode, N>, Mode: Copy + PartialEq, const N: usize> Sees<N> for Told<'_, O, Mode> {
+    fn on_switch(&mut self, event: &SwitchEvent<usize, N>) {
+        let SwitchEvent { s, guard, simultaneous, flatness, jump, from, to, before, after } =
+            *event;
+        let [from, to] = [from, to].map(|mode| self.modes.mode(mode));
+        self.observer.on_switch(&SwitchEvent {
+            s,
+            guard,
+            simultaneous,
+            flatness,
+            jump,
+            from,
+            to,
+            before,
+            after,
+        });
+    }
+
+    fn on_grazing(&mut self, grazing: &Grazing<usize>) {
+        self.observer.on_grazing(&self.modes.grazing(grazing));
+    }
+
+    fn on_pole(&mut self, pole: &Pole<usize>) {
+        self.observer.on_pole(&self.modes.pole(pole));
+    }
+
+    fn stops(&self) -> bool {
+        self.observer.stops()
+    }
+
+    fn on_segment(&mut self, mode: usize, dense: &Dense<N>) {
+        self.observer.on_segment(self.modes.mode(mode), dense);
+    }
+
+    fn on_end(&mut self, mode: usize, s: f64, state: &State<N>) {
+        self.observer.on_end(self.modes.mode(mode), s, state);
+    }
 }
 
-/// Any observer of modes of one type.
-pub struct Watching<'a, Mode, const N: usize, const WANTS_SEGMENTS: bool>(
-    pub &'a mut dyn Sees<Mode, N>,
-);
+/// Any observer.
+pub struct Watching<'a, const N: usize, const WANTS_SEGMENTS: bool>(pub &'a mut dyn Sees<N>);
 
-impl<Mode, const N: usize, const WANTS_SEGMENTS: bool> Observer<Mode, N>
-    for Watching<'_, Mode, N, WANTS_SEGMENTS>
+impl<const N: usize, const WANTS_SEGMENTS: bool> Observer<usize, N>
+    for Watching<'_, N, WANTS_SEGMENTS>
 {
     const WANTS_SEGMENTS: bool = WANTS_SEGMENTS;
 
-    tell!([dyn Sees<Mode, N>], |self| self.0);
+    fn on_switch(&mut self, event: &SwitchEvent<usize, N>) {
+        self.0.on_switch(event);
+    }
+
+    fn on_grazing(&mut self, grazing: &Grazing<usize>) {
+        self.0.on_grazing(grazing);
+    }
+
+    fn on_pole(&mut self, pole: &Pole<usize>) {
+        self.0.on_pole(pole);
+    }
+
+    fn stops(&self) -> bool {
+        self.0.stops()
+    }
+
+    fn on_segment(&mut self, mode: usize, dense: &Dense<N>) {
+        self.0.on_segment(mode, dense);
+    }
+
+    fn on_end(&mut self, mode: usize, s: f64, state: &State<N>) {
+        self.0.on_end(mode, s, state);
+    }
+}
+
+impl<Mode: Copy + PartialEq> Modes<Mode> {
+    /// The start of a run, with a number for its mode.
+    pub fn start<const N: usize>(&self, start: Start<Mode, N>) -> Start<usize, N> {
+        let Start { mode, s, state } = start;
+        Start { mode: self.number(mode), s, state }
+    }
+
+    /// The end of a run.
+    pub fn end<const N: usize>(&self, run: Run<usize, N>) -> Run<Mode, N> {
+        let Run { outcome, s, mode, state, statistics } = run;
+        Run { outcome, s, mode: self.mode(mode), state, statistics }
+    }
 }

@@ -9,6 +9,7 @@ const WINDOW: Window = Window { low: Point::new(0.0, 0.0), high: Point::new(1.0,
 const WAVES: u32 = 20;
 
 /// 40 curves of 4000 cubics in all, one above the other, each with an island.
+#[must_use]
 pub fn curves() -> (Vec<Curve<u32, u32>>, Vec<Vertex<u32>>) {
     let (mut curves, mut vertices) = (Vec::new(), Vec::new());
     for wave in 0..WAVES {
@@ -40,6 +41,10 @@ pub fn curves() -> (Vec<Curve<u32, u32>>, Vec<Vertex<u32>>) {
 }
 
 /// The regions between them.
+///
+/// # Panics
+/// There are not as many as there should be.
+#[must_use]
 pub fn subdivision(
     (curves, vertices): (Vec<Curve<u32, u32>>, Vec<Vertex<u32>>),
 ) -> Subdivision<u32, u32> {
@@ -49,6 +54,7 @@ pub fn subdivision(
 }
 
 /// Places all over it.
+#[must_use]
 pub fn points() -> Vec<Point> {
     let mut random = fastrand::Rng::with_seed(1);
     (0..10_000).map(|_| Point::new(random.f64(), random.f64())).collect()
