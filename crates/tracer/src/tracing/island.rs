@@ -9,23 +9,54 @@ use crate::window::Point;
 
 /// Segments from a place of the grid to places nearby where a margin has the other sign.
 ///
-/// A search starts for each margin that is closer to zero than at the neighbours. `grid` holds
-/// columns of `rows` places each; `cell` is the distance between neighbours.
+/// A search starts for each margin that is closer to zero than at the neighbours. Where it leads
+/// across no boundary that `is_known`, others of the same margin may be as near, and searches start
+/// from the places around too. `grid` holds columns of `rows` places each; `cell` is the distance
+/// between neighbours.
 pub(crate) fn beside<F: Family>(
     runs: &Runs<'_, F>,
     grid: &[Sampled<F>],
     rows: usize,
     index: usize,
     cell: &Point,
+    is_known: impl Fn(&[Point; 2]) -> bool,
 ) -> Traced<Vec<[Point; 2]>, F> {
     let (point, run) = &grid[index];
     let mut found = Vec::new();
     for (margin, value) in &run.margins {
-        if *value != 0.0 && is_least(grid, rows, index, margin, *value) {
-            found.extend(dive(runs, point, margin, *value, cell)?.map(|low| [*point, low]));
+        if *value != 0.0
+            && is_least(grid, rows, index, margin, *value)
+            && let Some(low) = dive(runs, point, margin, *value, cell)?
+        {
+            found.push([*point, low]);
+            if is_known(&[*point, low]) {
+                continue;
+            }
+            for (start, value) in around(grid, rows, index, margin, value.signum()) {
+                found.extend(dive(runs, &start, margin, value, cell)?.map(|low| [start, low]));
+            }
         }
     }
     Ok(found)
+}
+
+/// The places of the grid at most two rows and columns away where the margin has this sign, with
+/// its values there.
+fn around<L, M: PartialEq>(
+    grid: &[(Point, FreeRun<L, M>)],
+    rows: usize,
+    index: usize,
+    margin: &M,
+    sign: f64,
+) -> Vec<(Point, f64)> {
+    let (column, row, columns) = (index / rows, index % rows, grid.len() / rows);
+    let near = |place: usize, count: usize| place.saturating_sub(2)..(place + 3).min(count);
+    let places = near(column, columns).flat_map(|i| near(row, rows).map(move |j| i * rows + j));
+    let value = |(point, run): &(Point, FreeRun<L, M>)| {
+        let own = run.margins.iter().find(|(other, _)| other == margin);
+        own.map(|(_, value)| (*point, *value)).filter(|(_, value)| value * sign > 0.0)
+    };
+    places.filter(|&place| place != index).filter_map(|place| value(&grid[place])).collect()
 }
 
 /// Whether no neighbour on the grid has the same margin closer to zero or with the other sign. In

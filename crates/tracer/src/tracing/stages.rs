@@ -164,7 +164,9 @@ impl<F: Family> Tracer<'_, F> {
                 Stage::Islands { next, pending }
             }
             Stage::Islands { next, .. } if next < self.sampled.len() => {
-                let pending = island::beside(&self.runs, &self.sampled, cells, next, &self.cell())?;
+                let is_known = |[a, b]: &[Point; 2]| !self.builder.passages(a, b).is_empty();
+                let (grid, cell) = (&self.sampled, self.cell());
+                let pending = island::beside(&self.runs, grid, cells, next, &cell, is_known)?;
                 Stage::Islands { next: next + 1, pending }
             }
             Stage::Pairs { next, pairs } if next < pairs.len() => {

@@ -116,6 +116,29 @@ fn a_small_island() {
     assert!((length(&network.curves[0]) - TAU * 1e-3).abs() < 1e-8);
 }
 
+/// Ovals of Cassini: two closed curves of one margin, up to 1.6 cells of the grid apart. Of places
+/// next to them, only one need be closer to zero than all its neighbours.
+#[test]
+fn two_small_islands_side_by_side() {
+    fn ovals(point: &Point, apart: f64) -> f64 {
+        let one = Point::new(0.123, 0.234);
+        let other = one + Point::new(1.0, 0.3) * apart;
+        let square = |centre: Point| (point - centre).norm_squared() / (apart * apart);
+        square(one) * square(other) - 0.01
+    }
+    let families: [fn(&Point) -> f64; 5] = [
+        |p| ovals(p, 0.1),
+        |p| ovals(p, 0.05),
+        |p| ovals(p, 0.03),
+        |p| ovals(p, 0.02),
+        |p| ovals(p, 0.01),
+    ];
+    for (index, family) in families.into_iter().enumerate() {
+        let network = traced(vec![family], &SQUARE);
+        assert_eq!((network.curves.len(), network.vertices.len()), (2, 0), "{index}");
+    }
+}
+
 /// Two circles of radius 0.5 overlap in a lens that is 1e-7 thick and 4e-4 long. On both circles it
 /// lies between two nodes.
 #[test]

@@ -5,6 +5,7 @@ mod any;
 mod bent_chessboard;
 mod counting;
 mod documents;
+mod errors;
 mod every_change;
 mod extrema;
 mod following;

@@ -143,19 +143,59 @@ fn a_strip_between_regions_of_one_label_ends_where_the_boundaries_meet() {
         let family = Counted(Root { steepness });
         let atlas = Surveyor::default().atlas(&any(&family), &SQUARE).unwrap();
         assert!(atlas.agrees(), "{steepness}: {:?}", atlas.objection());
-        for c in atlas.plane.curves() {
-            println!(
-                "{steepness} {:?} {:?} {:?} {:?} {:?}",
-                c.margin,
-                c.sides,
-                c.ends,
-                c.nodes[0].point.as_slice(),
-                c.nodes.last().unwrap().point.as_slice()
-            );
+        assert_eq!((atlas.plane.curves().len(), atlas.plane.regions().len()), (4, 4));
+        let vertices = atlas.plane.vertices().iter();
+        let off = vertices.map(|vertex| (vertex.point - PLACE).norm()).fold(f64::NAN, f64::min);
+        assert!(off < 1e-11, "{steepness}: {off:e}");
+    }
+}
+
+/// As [`Counted`], with labels that tell the two events apart. All runs show the second margin, also
+/// those on both sides of the boundary of the graze.
+struct Shown(Counted);
+
+impl Shown {
+    fn value(&self, point: &Point, margin: usize) -> f64 {
+        match margin {
+            GRAZE => Root::coordinates(point).1,
+            _ => 0.1 * self.0.second(point),
         }
-        for r in atlas.plane.regions() {
-            println!("{:?} {}", r.label, r.area);
-        }
+    }
+}
+
+impl Family for &Shown {
+    /// Whether the two events happen.
+    type Label = Label;
+    type Margin = Margin;
+    type Error = Failed;
+
+    fn label(&self, point: &Point) -> Result<Label, Failed> {
+        Ok(vec![self.value(point, GRAZE) < 0.0, self.value(point, SECOND) > 0.0])
+    }
+
+    fn margin(&self, point: &Point, (margin, _): &Margin) -> Result<Option<f64>, Failed> {
+        Ok(Some(self.value(point, *margin)))
+    }
+
+    fn free_run(&self, point: &Point) -> Result<FreeRun<Label, Margin>, Failed> {
+        let label = self.label(point)?;
+        let shown = if label[0] { vec![SECOND] } else { vec![GRAZE, SECOND] };
+        let margins = shown.into_iter().map(|margin| {
+            let value = self.value(point, margin);
+            ((margin, Vec::new()), value)
+        });
+        Ok(FreeRun { label, margins: margins.collect() })
+    }
+}
+
+/// A branch along the graze runs past the place, and the margin that tells where it lies has one
+/// name on both of its sides.
+#[test]
+fn a_margin_that_is_known_on_both_sides_begins_on_a_graze() {
+    for steepness in [0.03, 0.3, 1.0, 3.0, 10.0, 40.0] {
+        let family = Shown(Counted(Root { steepness }));
+        let atlas = Surveyor::default().atlas(&any(&family), &SQUARE).unwrap();
+        assert!(atlas.agrees(), "{steepness}: {:?}", atlas.objection());
         assert_eq!((atlas.plane.curves().len(), atlas.plane.regions().len()), (4, 4));
         let vertices = atlas.plane.vertices().iter();
         let off = vertices.map(|vertex| (vertex.point - PLACE).norm()).fold(f64::NAN, f64::min);
