@@ -9,7 +9,6 @@ mod docs;
 mod impact_files;
 mod packages;
 mod rust;
-mod schema;
 
 use std::path::{Path, PathBuf};
 
