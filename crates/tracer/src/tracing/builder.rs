@@ -249,13 +249,35 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         })
     }
 
-    /// Drops the changes for which no margin was found where they were seen, but on which a curve
-    /// with their labels lies that was found elsewhere, and what is listed twice.
+    /// Whether known curves through a place lead from one label to another, in any order: they are
+    /// closer together than runs can tell.
+    fn leads(&self, point: &Point, labels: &[Label; 2]) -> bool {
+        let near = 4e-8 * self.scale;
+        let pieces = self.near(&[*point, *point]).into_iter();
+        let through =
+            pieces.filter(|&(curve, piece)| self.arc(curve, piece).closest(point).1 < near);
+        let sides: Vec<_> = through.map(|(curve, _)| &self.network.curves[curve].sides).collect();
+        let mut reached = vec![&labels[0]];
+        while let Some(next) = sides.iter().find_map(|[left, right]| {
+            match [left, right].map(|label| reached.contains(&label)) {
+                [true, false] => Some(right),
+                [false, true] => Some(left),
+                _ => None,
+            }
+        }) {
+            reached.push(next);
+        }
+        reached.contains(&&labels[1])
+    }
+
+    /// Drops the changes for which no margin was found where they were seen, but to which curves
+    /// lead that were found elsewhere, and what is listed twice.
     pub fn drop_explained(&mut self) {
         for open in std::mem::take(&mut self.network.unresolved) {
             let explained = match &open {
                 Unresolved::Change { between: [one, other], labels } => {
-                    self.covers(&one.lerp(other, 0.5), labels)
+                    let middle = one.lerp(other, 0.5);
+                    self.covers(&middle, labels) || (one == other && self.leads(&middle, labels))
                 }
                 _ => false,
             };

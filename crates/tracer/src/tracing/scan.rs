@@ -216,6 +216,9 @@ impl<F: Family> Tracer<'_, F> {
         statistics.nodes += nodes.len();
         statistics.rejected += rejected;
         if is_past {
+            // What lies behind the vertex is found from elsewhere, or is in doubt.
+            let (between, labels) = ([seed.point; 2], seed.labels.clone());
+            self.builder.network.unresolved.push(Unresolved::Change { between, labels });
             return Ok(None);
         }
         Ok(Some((origin, nodes, end)))

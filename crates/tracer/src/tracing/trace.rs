@@ -167,7 +167,11 @@ impl<'f, F: Family> Tracer<'f, F> {
         *unresolved = others;
         for change in changes {
             let Unresolved::Change { between: [a, b], labels } = &change else { continue };
-            if a == b && self.builder.covers(a, labels) {
+            if a == b {
+                // A branch was tried there already.
+                if !self.builder.covers(a, labels) {
+                    self.builder.network.unresolved.push(change);
+                }
                 continue;
             }
             let beside = (b - a).try_normalize(0.0).unwrap_or_default() * (1e-8 * self.runs.scale);

@@ -141,8 +141,8 @@ impl Faces {
     }
 }
 
-/// The sides that lead into each other at the vertices on the frame of the window where the order of
-/// edges is sure: one edge leaves the frame there, or several in different directions.
+/// The sides that lead into each other at the vertices on the frame of the window where the order
+/// of edges is sure: one edge leaves the frame there, or several in different directions.
 fn turns(pieces: &[Piece], edges: &[Edge], frame: &Range<usize>) -> Vec<[usize; 2]> {
     /// The least angle between two edges, in radians.
     const APART: f64 = 1e-3;
