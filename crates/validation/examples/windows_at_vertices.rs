@@ -1,9 +1,9 @@
-//! Windows around the vertices of the undamped atlas, and windows that have one on a corner or on an
-//! edge: is the atlas of each complete?
+//! Windows around the vertices of the undamped atlas, and windows that have one on a corner or on
+//! an edge: is the atlas of each complete?
 //!
-//! The vertices are those in κ 0.05:100, ψ 0.01:3. Around each lie windows of ±5e-7 and ±5e-5. Those
-//! with a vertex on a corner, or in the middle of an edge, have sides that are log-uniform from 3e-6
-//! to 0.5 in the logarithms, so that they may be very unequal. What is not complete is printed.
+//! The vertices are those in κ 0.05:100, ψ 0.01:3. Around each lie windows of ±5e-7 and ±5e-5.
+//! Those with a vertex on a corner, or within an edge, have sides that are log-uniform from 3e-6 to
+//! 0.5 in the logarithms, so that they may be very unequal. What is not complete is printed.
 //!
 //! Run with `cargo run --release -p validation --example windows_at_vertices -- [SEED]`.
 

@@ -27,10 +27,10 @@ impl Faces {
     /// with the gaps beyond the walls of the slab. Edges that leave a vertex with one tangent are
     /// closer together than `reach` beside it, and interpolation leaves open which one is above. A
     /// gap therefore counts only if it is wider than `reach`. It is united with the side of a piece
-    /// only if the gap on the other side of the piece is wide too. Edges that
-    /// leave a vertex on the frame in different directions have a face in common with their
-    /// neighbours there, however short they are. `frame` are the
-    /// edges of the window, which have the outside on their right.
+    /// only if the gap on the other side of the piece is wide too. A side that no such gap shows,
+    /// because its edge is too short, has the face of its neighbour at a vertex on the frame that
+    /// edges leave in different directions. `frame` are the edges of the window, which have the
+    /// outside on their right.
     pub(crate) fn new(slabs: &Slabs, edges: &[Edge], frame: Range<usize>, reach: f64) -> Self {
         let outside = 2 * edges.len();
         let gap_above = |slab: usize, place: usize| outside + 1 + slabs.start(slab) + place;
@@ -39,9 +39,6 @@ impl Faces {
         for edge in frame.clone() {
             sets.unite(2 * edge + 1, outside);
             seen[2 * edge + 1] = true;
-        }
-        for [one, other] in turns(&slabs.pieces, edges, &frame) {
-            sets.unite(one, other);
         }
         let piece = |index: usize| &slabs.pieces[index];
         for slab in 0..slabs.count() {
@@ -81,6 +78,13 @@ impl Faces {
                 } else {
                     j += 1;
                 }
+            }
+        }
+        for [one, other] in turns(&slabs.pieces, edges, &frame) {
+            if !(seen[one] && seen[other]) {
+                sets.unite(one, other);
+                let either = seen[one] || seen[other];
+                (seen[one], seen[other]) = (either, either);
             }
         }
         // The remaining sides belong to edges that are vertical or nearly so. A point beside the
