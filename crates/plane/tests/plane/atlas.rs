@@ -66,6 +66,16 @@ fn edges_may_pass_through_the_cusp() {
     }
 }
 
+/// Two boundaries cross in the upper right corner, to rounding: a step to the edge ends there.
+#[test]
+fn boundaries_may_cross_in_a_corner() {
+    let (kappa, psi) =
+        ((73.34140315565118, 73.39524206444307), (0.15321256238480244, 0.15403275473412606));
+    let verified = traced(frame(kappa, psi));
+    assert!(verified.report.agrees, "{:?}", verified.report.objection());
+    assert_eq!(verified.atlas.regions.regions().len(), 3);
+}
+
 /// With little damping and small ψ: grazes just before the end of contact, and the place where one
 /// leaves through it, at κψ = √a.
 #[test]

@@ -245,6 +245,8 @@ fn meet<F: Family>(
         (Some(first), Some(second)) if (first < 0.0) != (second < 0.0) => {
             start.lerp(&end, first / (first - second))
         }
+        // A step to an edge of the window may end where the two meet.
+        (Some(_), Some(second)) if second.abs() <= runs.options.noise => end,
         (Some(_), None) => start,
         (None, Some(_)) => end,
         _ => return Ok(None),
