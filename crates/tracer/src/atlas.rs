@@ -109,19 +109,10 @@ impl<Label: Clone + Ord, Margin: Clone> Atlas<Label, Margin> {
         options: &AtlasOptions,
         rounds: usize,
     ) -> Result<Self, SubdivisionError> {
-        let Network { window, mut curves, vertices, statistics, mut unresolved } = network;
-        let plane = loop {
-            let made =
-                Subdivision::new(window, curves.clone(), vertices.clone(), options.tolerance);
-            match made {
-                Err(SubdivisionError::NoLength { curve }) => {
-                    let curve = curves.remove(curve);
-                    let point = curve.nodes[0].point;
-                    unresolved.push(Unresolved::NoLength { point, labels: curve.sides });
-                }
-                made => break made?,
-            }
-        };
+        let Network { window, curves, vertices, statistics, mut unresolved } = network;
+        let (plane, left_out) =
+            Subdivision::leaving_out(window, &curves, &vertices, options.tolerance)?;
+        unresolved.extend(left_out.into_iter().map(|index| Unresolved::no_length(&curves[index])));
         let verification = Verification::untried(&plane);
         let doubtful = doubtful(&plane, &unresolved, &verification);
         let unfinished = None;

@@ -6,7 +6,7 @@ use stickslip_model::{Collider, Contact};
 use stickslip_solver::Margin;
 use stickslip_tracer::{
     AtlasOptions, Curve, Extremum, Network, Node, Point, Subdivision, Survey, Surveyor,
-    TraceOptions, Tracer, Vertex,
+    TraceOptions, Tracer, Unresolved, Vertex,
 };
 
 use super::boundary::{BoundaryKind, itinerary};
@@ -157,8 +157,11 @@ fn assess(
     any: &Contact,
 ) -> Result<(Regions, Vec<String>), AtlasError> {
     network.name_vertices();
+    let (regions, left_out) = regions(plane, tolerance, &network, any)?;
+    let left_out = left_out.into_iter().map(|index| Unresolved::no_length(&network.curves[index]));
+    network.unresolved.extend(left_out);
     let unresolved = verification::unresolved(plane, &network.vertices, &network.unresolved);
-    Ok((regions(plane, tolerance, network, any)?, unresolved))
+    Ok((regions, unresolved))
 }
 
 /// Refuses a plane in which boundaries cannot be accurate to `tolerance`, or not be verified.
@@ -214,24 +217,24 @@ fn unbounded(
         .collect()
 }
 
-/// The regions that the traced curves make.
+/// The regions that the traced curves make, and the curves that have no length in them.
 ///
 /// Points are converted to the two parameters and back, because a file holds κ and ψ. A file then
 /// makes the same regions, bit for bit.
 fn regions(
     plane: &CollisionPlane,
     tolerance: f64,
-    network: Network<Vec<usize>, Margin>,
+    network: &Network<Vec<usize>, Margin>,
     any: &Contact,
-) -> Result<Regions, AtlasError> {
+) -> Result<(Regions, Vec<usize>), AtlasError> {
     let sheet = plane.sheet();
     let written = |point: &Point| {
         let [x, y] = sheet.snapped(point);
         plane.point(x, y)
     };
-    let curves = network.curves.into_iter().map(|curve| Curve {
+    let curves = network.curves.iter().map(|curve| Curve {
         margin: BoundaryKind::of(any, &curve.margin),
-        sides: curve.sides.map(|guards| itinerary(any, &guards)),
+        sides: curve.sides.each_ref().map(|guards| itinerary(any, guards)),
         nodes: curve
             .nodes
             .iter()
@@ -240,7 +243,7 @@ fn regions(
         ends: curve.ends,
     });
     let curves: Vec<_> = curves.collect();
-    let vertices = network.vertices.into_iter().map(|vertex| Vertex {
+    let vertices = network.vertices.iter().map(|vertex| Vertex {
         point: written(&vertex.point),
         kind: vertex.kind,
         margins: Vec::new(),
@@ -248,5 +251,5 @@ fn regions(
     let vertices: Vec<_> = vertices.collect();
     let nodes = curves.iter().flat_map(|curve| &curve.nodes);
     let resolution = sheet.resolution_of(nodes, tolerance);
-    Ok(Subdivision::new(sheet.window(), curves, vertices, resolution)?)
+    Ok(Subdivision::leaving_out(sheet.window(), &curves, &vertices, resolution)?)
 }

@@ -135,6 +135,34 @@ impl<Label: Clone + Ord, Margin> Subdivision<Label, Margin> {
         Ok(plane)
     }
 
+    /// As [`Self::new`], without the curves that have no length at this tolerance. The result also
+    /// has their indices among `curves`, in order.
+    ///
+    /// # Errors
+    /// As [`Self::new`], except [`SubdivisionError::NoLength`].
+    pub fn leaving_out(
+        window: Window,
+        curves: &[Curve<Label, Margin>],
+        vertices: &[Vertex<Margin>],
+        tolerance: f64,
+    ) -> Result<(Self, Vec<usize>), SubdivisionError>
+    where
+        Margin: Clone,
+    {
+        let mut kept = curves.to_vec();
+        let mut left_out = Vec::new();
+        loop {
+            match Self::new(window, kept.clone(), vertices.to_vec(), tolerance) {
+                Err(SubdivisionError::NoLength { curve }) => {
+                    kept.remove(curve);
+                    // Curves are refused in their order.
+                    left_out.push(curve + left_out.len());
+                }
+                made => return Ok((made?, left_out)),
+            }
+        }
+    }
+
     /// Adds the findings about ends, sides and labels of curves, and about regions.
     fn find_inconsistencies(&mut self) {
         let mut degrees = vec![0_usize; self.vertices.len() + 4];

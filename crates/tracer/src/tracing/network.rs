@@ -83,3 +83,11 @@ pub enum Unresolved<Label> {
         point: Point,
     },
 }
+
+impl<Label: Clone> Unresolved<Label> {
+    /// A curve that was left out of a subdivision, because it has no length there.
+    #[must_use]
+    pub fn no_length<Margin>(curve: &Curve<Label, Margin>) -> Self {
+        Self::NoLength { point: curve.nodes[0].point, labels: curve.sides.clone() }
+    }
+}

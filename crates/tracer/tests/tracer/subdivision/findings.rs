@@ -3,12 +3,12 @@
 use std::f64::consts::TAU;
 
 use stickslip_tracer::{
-    Curve, Finding, Origin, Point, Side, Subdivision, SubdivisionError, VerifyError, VerifyOptions,
-    Vertex, VertexKind, verify,
+    Curve, Finding, Node, Origin, Point, Side, Subdivision, SubdivisionError, VerifyError,
+    VerifyOptions, Vertex, VertexKind, verify,
 };
 
 use crate::subdivision::planes::{
-    KnownPlane, TOLERANCE, circle, crossing_circles, even, inside, islands,
+    KnownPlane, TOLERANCE, UNIT, circle, crossing_circles, even, inside, islands,
 };
 
 /// The findings of a plane.
@@ -258,4 +258,26 @@ fn input_without_meaning_is_refused_by_name() {
     assert_eq!(error, VerifyError::Distances { nearest: 1.0, farthest: 0.5 });
     let vertex: Vertex<usize> = made.vertices()[0].clone();
     assert!(vertex.margins.is_empty() && made.tolerance() == TOLERANCE);
+}
+
+/// Curves between two vertices that are one place, as far as the tolerance tells, do not keep the
+/// others from dividing the window.
+#[test]
+fn curves_without_length_are_left_out() {
+    let mut plane = crossing_circles();
+    let place = plane.vertices[0].point;
+    let short = |tangent: Point| Curve {
+        margin: 7,
+        sides: [1, 2],
+        nodes: vec![Node { point: place, tangent }; 2],
+        ends: Some([0, 0]),
+    };
+    plane.curves.insert(0, short(Point::new(1.0, 0.0)));
+    plane.curves.insert(3, short(Point::new(0.0, 1.0)));
+    let refused = plane.subdivision().unwrap_err();
+    assert_eq!(refused, SubdivisionError::NoLength { curve: 0 });
+    let (made, left_out) =
+        Subdivision::leaving_out(UNIT, &plane.curves, &plane.vertices, TOLERANCE).unwrap();
+    assert_eq!(left_out, [0, 3]);
+    assert_eq!((made.regions().len(), made.findings()), (4, &[][..]));
 }
