@@ -4,6 +4,7 @@ use stickslip_tracer::{Family, FreeRun, Point, Surveyor};
 
 use crate::any::any;
 use crate::guards::{Failed, Label, Margin, SQUARE};
+use crate::roots::{GRAZE, Grazes, Grazing, PLACE, SECOND};
 
 /// An error of a run: below 1e-13, another one at each point, and always the same there.
 fn error(point: &Point, margin: usize) -> f64 {
@@ -15,12 +16,6 @@ fn error(point: &Point, margin: usize) -> f64 {
     1e-13 * (2.0 * part - 1.0)
 }
 
-const GRAZE: usize = 0;
-const SECOND: usize = 1;
-
-/// Where the boundary of the second event begins on that of the graze.
-const PLACE: Point = Point::new(0.03, -0.02);
-
 /// A guard grazes at r = 0 and fires behind. A second event fires where its margin
 /// s (u + α √−r) is positive, which is known with an error.
 struct Root {
@@ -28,7 +23,7 @@ struct Root {
     steepness: f64,
 }
 
-impl Root {
+impl Grazes for Root {
     fn value(&self, point: &Point, margin: usize) -> Option<f64> {
         let from = point - PLACE;
         let (u, v) = (0.95 * from.x + 0.3 * from.y, 0.95 * from.y - 0.3 * from.x);
@@ -41,37 +36,13 @@ impl Root {
     }
 }
 
-impl Family for Root {
-    /// Whether the two guards fire.
-    type Label = Label;
-    type Margin = Margin;
-    type Error = Failed;
-
-    fn label(&self, point: &Point) -> Result<Label, Failed> {
-        let second = self.value(point, SECOND);
-        Ok(vec![second.is_some(), second.is_some_and(|value| value > 0.0)])
-    }
-
-    fn margin(&self, point: &Point, (margin, _): &Margin) -> Result<Option<f64>, Failed> {
-        Ok(self.value(point, *margin))
-    }
-
-    fn free_run(&self, point: &Point) -> Result<FreeRun<Label, Margin>, Failed> {
-        let label = self.label(point)?;
-        let shown = if label[0] { SECOND } else { GRAZE };
-        let value = self.value(point, shown);
-        let margins = value.map(|value| ((shown, Vec::new()), value)).into_iter().collect();
-        Ok(FreeRun { label, margins })
-    }
-}
-
 /// The secant method for the place ends where its steps are errors of the runs.
 #[test]
 fn a_boundary_with_errors_begins_on_that_of_a_graze() {
     for slope in [1.0, 0.1, 0.01] {
         for steepness in [0.3, 3.0, 10.0] {
-            let family = any(Root { slope, steepness });
-            let atlas = Surveyor::default().atlas(&family, &SQUARE).unwrap();
+            let family = Grazing(Root { slope, steepness });
+            let atlas = Surveyor::default().atlas(&any(&family), &SQUARE).unwrap();
             assert!(atlas.agrees(), "{slope} {steepness}: {:?}", atlas.objection());
             assert_eq!(atlas.plane.curves().len(), 3, "{slope} {steepness}");
             let vertices = atlas.plane.vertices().iter();

@@ -6,16 +6,15 @@ use crate::any::any;
 use crate::guards::{Failed, Label, Margin, SQUARE, exact};
 
 /// A guard grazes at r = 0 and fires behind, and then a second one fires where its margin
-/// u + α √−r is positive. No run shows a margin that it cannot have: those before the graze do not
-/// know the second margin, and those behind do not list the graze.
+/// u + α √−r is positive.
 struct Root {
     steepness: f64,
 }
 
 /// Where the second boundary begins on the first.
-const PLACE: Point = Point::new(0.03, -0.02);
-const GRAZE: usize = 0;
-const SECOND: usize = 1;
+pub const PLACE: Point = Point::new(0.03, -0.02);
+pub const GRAZE: usize = 0;
+pub const SECOND: usize = 1;
 
 impl Root {
     /// The coordinates along and across the boundary of the graze, which is bent and slants.
@@ -24,7 +23,9 @@ impl Root {
         let (u, v) = (0.95 * from.x + 0.3 * from.y, 0.95 * from.y - 0.3 * from.x);
         (u, v + 0.3 * u * u)
     }
+}
 
+impl Grazes for Root {
     fn value(&self, point: &Point, margin: usize) -> Option<f64> {
         let (u, r) = Self::coordinates(point);
         match margin {
@@ -34,25 +35,35 @@ impl Root {
     }
 }
 
-impl Family for &Root {
+/// A guard that grazes, and a second event that the runs behind the graze may have.
+pub trait Grazes {
+    /// The margin of the graze or of the second event; `None` where a run cannot have it.
+    fn value(&self, point: &Point, margin: usize) -> Option<f64>;
+}
+
+/// The family of these events. No run shows a margin that it cannot have: those before the graze
+/// do not know the second margin, and those behind do not list the graze.
+pub struct Grazing<G>(pub G);
+
+impl<G: Grazes> Family for &Grazing<G> {
     /// Whether the two guards fire.
     type Label = Label;
     type Margin = Margin;
     type Error = Failed;
 
     fn label(&self, point: &Point) -> Result<Label, Failed> {
-        let second = self.value(point, SECOND);
+        let second = self.0.value(point, SECOND);
         Ok(vec![second.is_some(), second.is_some_and(|value| value > 0.0)])
     }
 
     fn margin(&self, point: &Point, (margin, _): &Margin) -> Result<Option<f64>, Failed> {
-        Ok(self.value(point, *margin))
+        Ok(self.0.value(point, *margin))
     }
 
     fn free_run(&self, point: &Point) -> Result<FreeRun<Label, Margin>, Failed> {
         let label = self.label(point)?;
         let shown = if label[0] { SECOND } else { GRAZE };
-        let value = self.value(point, shown);
+        let value = self.0.value(point, shown);
         let margins = value.map(|value| ((shown, Vec::new()), value)).into_iter().collect();
         Ok(FreeRun { label, margins })
     }
@@ -60,7 +71,7 @@ impl Family for &Root {
 
 /// Traces the boundaries, of which there are three that meet at one place, and returns how far from
 /// there they do.
-fn distance_of_place(family: &Root) -> f64 {
+fn distance_of_place(family: &Grazing<Root>) -> f64 {
     let network = trace(&any(family), &SQUARE, &exact()).unwrap();
     assert_eq!(network.unresolved, []);
     assert_eq!(network.curves.len(), 3);
@@ -75,14 +86,14 @@ fn distance_of_place(family: &Root) -> f64 {
 #[test]
 fn the_place_is_found_whatever_the_steepness() {
     for steepness in [0.03, 1.0, 7.0, 40.0] {
-        let family = Root { steepness };
+        let family = Grazing(Root { steepness });
         let off = distance_of_place(&family);
         assert!(off < 1e-12, "{steepness}: {off:e}");
         let atlas = Surveyor::default().atlas(&any(&family), &SQUARE).unwrap();
         assert!(atlas.agrees(), "{steepness}: {:?}", atlas.objection());
     }
     // The strip is thinner than 1e-5 up to the edge.
-    let off = distance_of_place(&Root { steepness: 300.0 });
+    let off = distance_of_place(&Grazing(Root { steepness: 300.0 }));
     assert!(off < 1e-12, "{off:e}");
 }
 
@@ -210,8 +221,8 @@ struct Ring;
 const CENTRE: Point = Point::new(0.04, 0.05);
 const RADIUS: f64 = 0.01;
 
-impl Ring {
-    fn value(point: &Point, margin: usize) -> Option<f64> {
+impl Grazes for Ring {
+    fn value(&self, point: &Point, margin: usize) -> Option<f64> {
         let from = point - CENTRE;
         let r = 0.5 * (from.norm_squared() / RADIUS - RADIUS);
         match margin {
@@ -221,34 +232,10 @@ impl Ring {
     }
 }
 
-impl Family for Ring {
-    /// Whether the two guards fire.
-    type Label = Label;
-    type Margin = Margin;
-    type Error = Failed;
-
-    fn label(&self, point: &Point) -> Result<Label, Failed> {
-        let second = Self::value(point, SECOND);
-        Ok(vec![second.is_some(), second.is_some_and(|value| value > 0.0)])
-    }
-
-    fn margin(&self, point: &Point, (margin, _): &Margin) -> Result<Option<f64>, Failed> {
-        Ok(Self::value(point, *margin))
-    }
-
-    fn free_run(&self, point: &Point) -> Result<FreeRun<Label, Margin>, Failed> {
-        let label = self.label(point)?;
-        let shown = if label[0] { SECOND } else { GRAZE };
-        let value = Self::value(point, shown);
-        let margins = value.map(|value| ((shown, Vec::new()), value)).into_iter().collect();
-        Ok(FreeRun { label, margins })
-    }
-}
-
 /// A branch that starts where the strip is thinner than runs can tell lies behind both its ends.
 /// What is not found is in doubt.
 #[test]
 fn a_strip_that_is_not_found_is_in_doubt() {
-    let network = trace(&any(Ring), &SQUARE, &exact()).unwrap();
+    let network = trace(&any(&Grazing(Ring)), &SQUARE, &exact()).unwrap();
     assert!(network.curves.len() == 3 || !network.unresolved.is_empty(), "{network:?}");
 }

@@ -40,9 +40,7 @@ pub(crate) fn beyond<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,
 ) -> Traced<Option<Special<F::Margin>>, F> {
-    /// The farthest such cusp, as a fraction of the window's shorter extent.
-    const FARTHEST: f64 = 1.0;
-    for (point, uncertainty) in ahead(track, from, FARTHEST * track.runs.scale)? {
+    for (point, uncertainty) in ahead(track, from, track.runs.scale)? {
         let arc = Cubic::between(&from.node, &track.end_node(&from.node, &point)?);
         if follows(track, from, &arc, track.runs.options.interpolation)? {
             return Ok(Some(end(track, point, uncertainty)));
