@@ -150,7 +150,7 @@ impl Gaining {
             format!("kappa = {kappa:?}, psi = {psi:?} does not belong to its region")
         };
         found.extend(verification.mismatches.iter().map(mismatch));
-        found.extend(plane.findings().iter().map(ToString::to_string));
+        found.extend(verification.standing(plane).map(ToString::to_string));
         found.extend(verification.failed().map(|failed| {
             let [kappa, psi] = self.plane.parameters(&failed.checkpoint.point);
             format!("the collision at kappa = {kappa:?}, psi = {psi:?} failed")

@@ -57,9 +57,16 @@ impl Sheet {
         self.chart.window(x, y)
     }
 
-    /// The error of a place in traced coordinates that comes from that of margins.
+    /// The errors of a place along both traced coordinates that come from that of margins.
+    fn errors(&self) -> [f64; 2] {
+        [self.chart.width, self.chart.height].map(|side| NOISE / side.min(1.0))
+    }
+
+    /// The error of a place along the coordinate in which it is less. A boundary that is steep in
+    /// the other one is known so well.
     pub(crate) fn noise(&self) -> f64 {
-        NOISE / self.chart.width.min(self.chart.height).min(1.0)
+        let [one, other] = self.errors();
+        one.min(other)
     }
 
     /// The distance in traced coordinates between a boundary and a curve that is accurate to
@@ -74,7 +81,8 @@ impl Sheet {
     /// curve's error, and at least 1e-9, since vertices are known less well.
     #[must_use]
     pub fn resolution(&self, tolerance: f64) -> f64 {
-        (10.0 * self.interpolation(tolerance)).max(1e3 * self.noise()).max(1e-9)
+        let [one, other] = self.errors();
+        (10.0 * self.interpolation(tolerance)).max(1e3 * one.max(other)).max(1e-9)
     }
 
     /// As [`Self::resolution`], for curves with these nodes.
@@ -84,8 +92,7 @@ impl Sheet {
     /// side, but not one that runs across it.
     #[must_use]
     pub fn resolution_of<'n>(&self, nodes: impl Iterator<Item = &'n Node>, tolerance: f64) -> f64 {
-        let [along, across] =
-            [self.chart.width, self.chart.height].map(|side| NOISE / side.min(1.0));
+        let [along, across] = self.errors();
         let moved =
             |Node { tangent, .. }: &Node| along * tangent.y.abs() + across * tangent.x.abs();
         let most = nodes.map(moved).fold(0.0, f64::max);

@@ -163,7 +163,8 @@ impl<Label, Margin> Atlas<Label, Margin> {
             return None;
         }
         let Verification { mismatches, euler, .. } = &self.verification;
-        let (findings, unresolved) = (self.plane.findings(), &self.unresolved);
+        let findings: Vec<_> = self.verification.standing(&self.plane).collect();
+        let unresolved = &self.unresolved;
         let failed: Vec<_> = self.verification.failed().collect();
         let first = if let Some(mismatch) = mismatches.first() {
             let Mismatch { checkpoint, region, expected, found, .. } = mismatch;
@@ -277,7 +278,7 @@ pub(crate) fn doubtful<Label, Margin>(
         }
     }
     let beside = |curve: usize| plane.regions_beside(curve).into_iter().flatten();
-    for finding in plane.findings() {
+    for finding in verification.standing(plane) {
         match finding {
             Finding::EndAway { curve, .. }
             | Finding::Dangling { curve, .. }

@@ -147,6 +147,7 @@ impl VerificationReport {
             unresolved.push(format!("kappa = {kappa:?}, psi = {psi:?}: {what}"));
         }
         let agrees = verification.agrees() && unresolved.is_empty();
+        let findings = verification.standing(regions).map(ToString::to_string).collect();
         let Verification { euler, mismatches, tried, untried_curves, .. } = verification;
         let mismatches = mismatches.into_iter().map(|mismatch| {
             let [kappa, psi] = scaled(plane, &mismatch.checkpoint.point);
@@ -175,7 +176,7 @@ impl VerificationReport {
             undecided,
             mismatches: mismatches.collect(),
             unresolved,
-            findings: regions.findings().iter().map(ToString::to_string).collect(),
+            findings,
             untried_boundaries: untried_curves,
             share_tried: verification.tried_area,
             share_wrong_bound: verification.wrong_area_bound,

@@ -89,7 +89,7 @@ impl FamilyAtlas {
     /// What is inconsistent, and what is unresolved, in words.
     #[getter]
     fn doubts(&self) -> (Vec<String>, Vec<String>) {
-        let findings = self.atlas.plane.findings().iter().map(ToString::to_string);
+        let findings = self.atlas.verification.standing(&self.atlas.plane).map(ToString::to_string);
         let unresolved = self.atlas.unresolved.iter().map(ToString::to_string);
         (findings.collect(), unresolved.collect())
     }

@@ -179,7 +179,7 @@ impl<Label: Clone + Ord, Margin> Subdivision<Label, Margin> {
             }
         }
         for (index, region) in self.regions.iter().enumerate() {
-            if region.clearance <= self.tolerance {
+            if self.is_thin(index) {
                 self.findings.push(Finding::Thin { region: index, clearance: region.clearance });
             }
             find_disagreements(index, region, &self.curves, &mut self.findings);
@@ -195,6 +195,11 @@ impl<Label, Margin> Subdivision<Label, Margin> {
     #[must_use]
     pub fn window(&self) -> &Window {
         &self.window
+    }
+
+    /// Whether a region is not wider than the tolerance.
+    pub(crate) fn is_thin(&self, region: usize) -> bool {
+        self.regions[region].clearance <= self.tolerance
     }
 
     /// The accuracy of curves and vertices.

@@ -82,9 +82,13 @@ pub fn verify_unless_cancelled<Label: Clone + Ord, Margin, Error>(
     }
     let mut unverified = Vec::new();
     let mut places = Vec::new();
-    for checkpoint in checkpoints(plane, options) {
+    for (index, checkpoint) in checkpoints(plane, options).into_iter().enumerate() {
         match plane.locate(&checkpoint.point) {
             Location::Region(region) => places.push((checkpoint, region)),
+            // The sample of a thin region. Those of all regions come first.
+            Location::OnBoundary { .. } if checkpoint.origin == Origin::Sample => {
+                places.push((checkpoint, index));
+            }
             // A point beside a curve near the window's boundary may lie outside and is left out.
             Location::Outside if !plane.window().contains(&checkpoint.point) => {}
             location => {

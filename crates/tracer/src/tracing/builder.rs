@@ -277,7 +277,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
             let explained = match &open {
                 Unresolved::Change { between: [one, other], labels } => {
                     let middle = one.lerp(other, 0.5);
-                    self.covers(&middle, labels) || (one == other && self.leads(&middle, labels))
+                    self.covers(&middle, labels) || self.leads(&middle, labels)
                 }
                 _ => false,
             };

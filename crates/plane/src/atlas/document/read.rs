@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use stickslip_model::Contact;
-use stickslip_tracer::{Curve, Location, Node, Point, Subdivision, Vertex};
+use stickslip_tracer::{Curve, Finding, Location, Node, Point, Subdivision, Vertex};
 
 use super::error::DocumentError;
 use super::layout::{
@@ -47,7 +47,9 @@ impl TryFrom<Document> for Atlas {
         let nodes = curves.iter().flat_map(|curve| &curve.nodes);
         let resolution = frame.sheet(&chart).resolution_of(nodes, tolerance);
         let regions = Subdivision::new(frame.window(&chart), curves, vertices, resolution)?;
-        if let Some(finding) = regions.findings().first() {
+        // Thin regions were found there by collisions, or there would be an objection above.
+        let is_thin = |finding: &&Finding<_>| matches!(finding, Finding::Thin { .. });
+        if let Some(finding) = regions.findings().iter().find(|finding| !is_thin(finding)) {
             return Err(DocumentError::Finding(finding.clone()));
         }
         let unbounded = unbounded(&chart, &regions, document.regions)?;

@@ -70,6 +70,11 @@ impl<'a, Label: Clone + Ord, Margin, Error> Judge<'a, Label, Margin, Error> {
             return;
         };
         let right = found == expected;
+        let is_known = checkpoint.origin != Origin::Sample || !self.plane.is_thin(region);
+        if !right && !is_known {
+            // The sample may lie beyond the boundary, by less than their errors.
+            return;
+        }
         self.tried[region] += 1;
         match checkpoint.origin {
             Origin::Sample => {}
@@ -106,9 +111,9 @@ impl<'a, Label: Clone + Ord, Margin, Error> Judge<'a, Label, Margin, Error> {
             .filter(|&(_, (&tried, &wrong))| tried > 0 && !wrong)
             .map(|(region, _)| region.area)
             .sum();
-        Verification {
+        let mut found = Verification {
             euler: self.plane.euler(),
-            findings: self.plane.findings().len(),
+            findings: 0,
             tried: self.tried,
             mismatches: self.mismatches,
             unverified: self.unverified,
@@ -117,7 +122,9 @@ impl<'a, Label: Clone + Ord, Margin, Error> Judge<'a, Label, Margin, Error> {
                 .collect(),
             tried_area: tried_area / self.plane.window().area(),
             wrong_area_bound: upper_limit(self.random, self.wrong_random),
-        }
+        };
+        found.findings = found.standing(self.plane).count();
+        found
     }
 }
 

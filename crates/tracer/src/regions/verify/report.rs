@@ -1,8 +1,9 @@
 //! What a verification finds, and its error.
 
-use crate::regions::finding::Euler;
+use crate::regions::finding::{Euler, Finding};
 use crate::regions::locate::Location;
 use crate::regions::region::Side;
+use crate::regions::subdivision::Subdivision;
 use crate::window::Point;
 
 /// A point at which a label was computed.
@@ -84,7 +85,7 @@ pub enum Reason<Error> {
 pub struct Verification<Label, Error> {
     /// The counts of Euler's formula.
     pub euler: Euler,
-    /// The number of findings of the subdivision.
+    /// The number of findings of the subdivision that [stand](Self::standing).
     pub findings: usize,
     /// The number of points in each region at which a label was compared.
     pub tried: Vec<usize>,
@@ -120,6 +121,18 @@ impl<Label, Error> Verification<Label, Error> {
             matches!(reason, Reason::Location(Location::OnBoundary { .. }))
         };
         self.unverified.iter().filter(move |open| !on_curve(&open.reason))
+    }
+
+    /// The findings of the subdivision that the runs do not settle. A region that is not wider than
+    /// the tolerance is there if the run at its sample point has its label.
+    pub fn standing<'p, Margin>(
+        &self,
+        plane: &'p Subdivision<Label, Margin>,
+    ) -> impl Iterator<Item = &'p Finding<Label>> {
+        plane.findings().iter().filter(|finding| match finding {
+            Finding::Thin { region, .. } => self.tried.get(*region).is_none_or(|tried| *tried == 0),
+            _ => true,
+        })
     }
 
     /// Whether there is no evidence against the subdivision.
