@@ -31,7 +31,7 @@ impl<F: Family> Track<'_, '_, F> {
     pub(crate) fn aim(&self, from: &FootholdOf<F>, h: f64) -> Traced<Option<usize>, F> {
         for (index, stop) in self.stops.iter().enumerate() {
             if let Some(arc) = self.leads_to(from, stop, 2.0 * h)?
-                && self.is_clear(from, &arc)?
+                && self.is_clear(from, &arc, 0.0)?
             {
                 return Ok(Some(index));
             }
@@ -90,19 +90,26 @@ impl<F: Family> Track<'_, '_, F> {
     }
 
     /// Whether the branch keeps its labels on `arc`, which ends at a vertex. They are computed at
-    /// three places and close to the vertex.
-    pub(crate) fn is_clear(&self, from: &FootholdOf<F>, arc: &Cubic) -> Traced<bool, F> {
+    /// three places and close to the vertex, but no closer than `apart`, where runs do not tell the
+    /// boundaries apart that meet there.
+    pub(crate) fn is_clear(
+        &self,
+        from: &FootholdOf<F>,
+        arc: &Cubic,
+        apart: f64,
+    ) -> Traced<bool, F> {
         /// The distance of the last place from the vertex, as a fraction of the window's shorter
         /// extent. If two curves touch at the vertex with a curvature of 1, the region between them
         /// is still wider there than the error of margins.
         const CLOSE: f64 = 3e-5;
         let chord = arc.chord();
         for theta in [0.5, 0.9, 0.99] {
-            if !self.holds(from, &arc.at(theta), 0.3 * chord)? {
+            let is_apart = (1.0 - theta) * chord >= apart;
+            if is_apart && !self.holds(from, &arc.at(theta), 0.3 * chord)? {
                 return Ok(false);
             }
         }
-        let close = CLOSE * self.runs.scale / chord;
+        let close = (CLOSE * self.runs.scale).max(apart) / chord;
         Ok(close > 0.5 || self.holds_closely(from, &arc.at(1.0 - close), 0.3 * chord)?)
     }
 

@@ -134,7 +134,7 @@ fn first<F: Family>(
     places.retain(|(_, off, _)| *off <= VAGUE * track.runs.scale);
     places.sort_by(|(one, ..), (two, ..)| progress(one).total_cmp(&progress(two)));
     for place in places {
-        if is_last(track, from, &place.0)? {
+        if is_last(track, from, &place.0, 3.0 * place.1)? {
             return Ok(Some(place));
         }
     }
@@ -261,11 +261,13 @@ fn meet<F: Family>(
     Ok((progress > -slack && progress < h + slack).then_some((point, off)))
 }
 
-/// Whether the branch has its labels up to `point` and not beyond it.
+/// Whether the branch has its labels up to `point` and not beyond it, as far as runs can tell:
+/// they do not tell boundaries apart that are closer to `point` than `apart`.
 fn is_last<F: Family>(
     track: &Track<'_, '_, F>,
     from: &FootholdOf<F>,
     point: &Point,
+    apart: f64,
 ) -> Traced<bool, F> {
     let runs = track.runs;
     let Some(gradient) = runs.gradient(point, &track.margin, &from.node.tangent, track.radius)?
@@ -274,10 +276,11 @@ fn is_last<F: Family>(
     };
     let node = Node { point: *point, tangent: track.tangent(&gradient) };
     let length = (point - from.node.point).norm();
-    if length > 1e-6 * runs.scale && !track.is_clear(from, &Cubic::between(&from.node, &node))? {
+    let arc = Cubic::between(&from.node, &node);
+    if length > 1e-6 * runs.scale && !track.is_clear(from, &arc, apart)? {
         return Ok(false);
     }
-    let after = point + node.tangent * (0.03 * length).max(1e-6 * runs.scale);
+    let after = point + node.tangent * (0.03 * length).max(1e-6 * runs.scale).max(apart);
     Ok(!track.holds_closely(from, &after, 0.3 * length + 1e-6 * runs.scale)?)
 }
 

@@ -101,7 +101,7 @@ impl<F: Family> Track<'_, '_, F> {
                     let end = self.end_node(&from.node, &self.stops[index].point)?;
                     let arc = Cubic::between(&from.node, &end);
                     // Another special point lies before the vertex. Shorter steps find it.
-                    if arc.chord() > 1e-6 * runs.scale && !self.is_clear(from, &arc)? {
+                    if arc.chord() > 1e-6 * runs.scale && !self.is_clear(from, &arc, 0.0)? {
                         return Ok(Attempt::Lost);
                     }
                 }
