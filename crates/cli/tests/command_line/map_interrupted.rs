@@ -13,8 +13,8 @@ use assert_cmd::cargo::cargo_bin;
 
 use crate::{Workspace, heeded};
 
-/// A map with 79 tiles of 256 points. The collisions are stiff, so that a tile takes about 20 ms.
-const LINE: &str = "map --kappa 0:1e6 --psi 0:2.9 --size 100x200 --method exact --out m.npz";
+/// A map with 79 tiles of 256 points. The collisions are stiff, so that a tile takes about 10 ms.
+const LINE: &str = "map --kappa 0:3e5 --psi 0:2.9 --size 100x200 --method exact --out m.npz";
 const TILES: usize = 79;
 const DIRECTORY: &str = "m.npz.tiles";
 
@@ -266,7 +266,7 @@ fn links_in_the_place_of_files_are_not_followed() {
 #[test]
 fn a_huge_map_begins_at_once() {
     let workspace = Workspace::new();
-    let line = LINE.replace("100x200", "100000x100000").replace("0:1e6", "1:2");
+    let line = LINE.replace("100x200", "100000x100000").replace("0:3e5", "1:2");
     interrupt_line(&workspace, &line, 2, Duration::ZERO, "-15");
     assert!(workspace.names_in(DIRECTORY).iter().all(|name| !name.contains("partial")));
 }

@@ -61,7 +61,7 @@ fn a_map_of_two_bodies_in_parts() {
     let file = file.replace("1e12", "1.1e16").replace("0.02", "0.020000000000000004");
     let file = file.replace("\"damping_time_s\": 0", "\"damping_time_s\": 1.2345678901234567e-7");
     workspace.write("pair.json", &file);
-    let line = "map --bodies pair.json --normal 0:200 --tangential 0:100 --size 19x41";
+    let line = "map --bodies pair.json --normal 0:200 --tangential 0:100 --size 13x29";
     make(&workspace, line, 3);
     // The parts know the bodies.
     fs::remove_file(workspace.path("pair.json")).unwrap();

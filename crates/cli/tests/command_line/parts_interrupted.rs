@@ -14,8 +14,8 @@ use crate::parts::backwards;
 use crate::{Ran, Workspace, heeded};
 
 /// The map of `map_interrupted`, with 79 tiles of 256 points. The collisions are stiff, so that a
-/// tile takes about 20 ms.
-const LINE: &str = "map --kappa 0:1e6 --psi 0:2.9 --size 100x200 --method exact";
+/// tile takes about 10 ms.
+const LINE: &str = "map --kappa 0:3e5 --psi 0:2.9 --size 100x200 --method exact";
 
 fn command(workspace: &Workspace, line: &str) -> Command {
     let mut command = Command::new(cargo_bin!("stickslip"));
@@ -210,7 +210,7 @@ fn a_full_disk_leaves_the_parts() {
 #[test]
 fn a_part_of_a_huge_map_begins_at_once() {
     let workspace = Workspace::new();
-    let line = LINE.replace("100x200", "100000x100000").replace("0:1e6", "1:2");
+    let line = LINE.replace("100x200", "100000x100000").replace("0:3e5", "1:2");
     let mut child = start(&workspace, &format!("{line} --part 64/64 --out 64.part"));
     wait_for(&workspace, "64.part", 1);
     signal(&mut child, "-15");
