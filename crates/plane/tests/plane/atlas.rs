@@ -6,7 +6,7 @@ use stickslip_plane::atlas::{AtlasError, BoundaryKind, Frame, Unlocated, switch_
 use stickslip_plane::progress::{Progress, SILENT, Watch};
 use stickslip_plane::{CollisionPlane, Range};
 use stickslip_solver::{Exit, Hint, Margin, Place};
-use stickslip_tracer::{Family, Location, VertexKind};
+use stickslip_tracer::{Family, Finding, Location, VertexKind};
 
 use crate::windows::{crossing, empty, frame, traced};
 
@@ -63,6 +63,35 @@ fn edges_may_pass_through_the_cusp() {
         let verified = traced(frame(kappa, psi));
         assert!(verified.report.agrees, "{kappa:?}, {psi:?}: {:?}", verified.report.objection());
         assert_eq!(verified.atlas.regions.regions().len(), 2, "{kappa:?}, {psi:?}");
+    }
+}
+
+/// A region along the lower edge of these windows is 1e-10 high in ψ, a hundred times what margins
+/// resolve. A collision in it shows that it is there.
+#[test]
+fn thin_regions_beside_the_cusp_are_there() {
+    for kappa in [(1.5683, 1.5687), (1.5684, 1.5686)] {
+        let verified = traced(frame(kappa, (0.9999, 1.0)));
+        assert!(verified.report.agrees, "{kappa:?}: {:?}", verified.report.objection());
+        let regions = &verified.atlas.regions;
+        assert!(matches!(regions.findings(), [Finding::Thin { .. }]), "{:?}", regions.findings());
+        assert_eq!(regions.regions().len(), 2);
+    }
+}
+
+/// A vertex lies on a corner or on an edge, to rounding, and the sides are very unequal: two
+/// boundaries are close together far from the vertex, as a part of the shorter side.
+#[test]
+fn a_vertex_may_lie_on_the_edge() {
+    for (kappa, psi) in [
+        ((42.8443035297909, 42.84603608457701), (0.2796520343202348, 0.28097688631363915)),
+        ((59.69883880087375, 59.69934086979169), (0.5535993387024969, 0.5547138976196172)),
+        ((76.6323348878188, 76.63337595142647), (0.4291076145068368, 0.4291463195935629)),
+        ((77.52677359820228, 111.10436016173465), (0.7977300441825201, 0.7977390307265566)),
+    ] {
+        let verified = traced(frame(kappa, psi));
+        assert!(verified.report.agrees, "{kappa:?}, {psi:?}: {:?}", verified.report.objection());
+        assert_eq!(verified.atlas.regions.regions().len(), 3, "{kappa:?}, {psi:?}");
     }
 }
 

@@ -5,7 +5,7 @@ use stickslip_plane::atlas::{
     VerifiedAtlas,
 };
 
-use crate::windows::{crossing, empty, frame};
+use crate::windows::{crossing, empty, frame, traced};
 
 /// The atlas as it comes back from its JSON.
 fn through_json(verified: &VerifiedAtlas) -> Atlas {
@@ -59,6 +59,14 @@ fn a_document_has_the_names_of_its_schema() {
     assert_eq!(words("boundaries", "kind"), ["end-of-contact", "stick-graze"]);
     assert_eq!(words("boundaries", "start"), ["vertex", "window"]);
     assert_eq!(words("vertices", "kind"), ["crossing", "window-edge"]);
+}
+
+/// One of the two regions is thinner than the tolerance.
+#[test]
+fn an_atlas_with_a_thin_region_comes_back() {
+    let verified = traced(frame((1.5684, 1.5686), (0.9999, 1.0)));
+    assert_eq!(verified.atlas.regions.findings().len(), 1);
+    assert_eq!(through_json(&verified).regions.regions().len(), 2);
 }
 
 #[test]

@@ -139,9 +139,18 @@ fn unbounded(
         require_id("regions", index, region.id)?;
         let itinerary = checked(region.switching, || format!("regions[{index}]"))?;
         let sample = positive(chart, region.sample, || format!("regions[{index}].sample"))?;
-        let around = &regions.regions()[index].label;
+        let made = &regions.regions()[index];
+        let around = &made.label;
         let fits = around.as_ref().is_none_or(|around| *around == itinerary);
-        if !fits || regions.locate(&sample) != Location::Region(index) {
+        let is_there = match regions.locate(&sample) {
+            Location::Region(found) => found == index,
+            Location::OnBoundary { curve, .. } => {
+                let is_thin = made.clearance <= regions.tolerance();
+                is_thin && regions.regions_beside(curve).contains(&Some(index))
+            }
+            Location::Outside => false,
+        };
+        if !fits || !is_there {
             return Err(DocumentError::Region { region: index });
         }
         if around.is_none() {

@@ -29,6 +29,31 @@ fn a_deleted_curve_leaves_labels_that_disagree() {
     );
 }
 
+/// A ring of half the tolerance is there where a run in it has its label, and stays in doubt where
+/// no run does.
+#[test]
+fn a_thin_region_is_there_if_a_run_in_it_says_so() {
+    let ring = |truth| {
+        KnownPlane::new(truth)
+            .curve(circle(0.5, 0.5, 0.25), even(0.0, TAU, 400), [2, 1], None)
+            .curve(circle(0.5, 0.5, 0.25 + 0.5 * TOLERANCE), even(0.0, TAU, 400), [1, 0], None)
+    };
+    let there = ring(|p| inside(p, 0.5, 0.5, 0.25) + inside(p, 0.5, 0.5, 0.25 + 0.5 * TOLERANCE));
+    let missing = ring(|p| 2 * inside(p, 0.5, 0.5, 0.25));
+    let options = VerifyOptions { random_points: 1000, near_points: 0, ..VerifyOptions::default() };
+    for (plane, stands) in [(there, 0), (missing, 1)] {
+        let made = plane.subdivision().expect("curves with a meaning");
+        let [Finding::Thin { region, .. }] = *made.findings() else {
+            panic!("{:?}", made.findings())
+        };
+        assert_eq!(made.regions()[region].label, Some(1));
+        let verification = verify(&made, &plane, &options).expect("distances in order");
+        assert_eq!(verification.standing(&made).count(), stands);
+        assert_eq!((verification.findings, verification.agrees()), (stands, stands == 0));
+        assert!(verification.mismatches.is_empty());
+    }
+}
+
 #[test]
 fn a_swapped_label_is_named() {
     let mut plane = crossing_circles();
