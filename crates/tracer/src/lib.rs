@@ -56,7 +56,8 @@
 //! let options = Options::with_tolerance(1e-14);
 //! let family = HybridFamily { problem: drop, method: Dop853, options, end: 2.4 };
 //! let window = Window { low: Point::new(0.5, 0.5), high: Point::new(2.0, 0.8) };
-//! let network = trace(&family, &window, &TraceOptions::default())?;
+//! // A coarse grid is enough for few curves.
+//! let network = trace(&family, &window, &TraceOptions { cells: 8, ..TraceOptions::default() })?;
 //! assert!(network.unresolved.is_empty());
 //!
 //! // The second bounce is at the time √(2x)(1 + 2y). On the boundary this is the end of the run.
