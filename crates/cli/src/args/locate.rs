@@ -21,13 +21,14 @@ pub struct LocateArguments {
 
 /// What `locate --help` says first.
 pub const ABOUT: &str = "\
-Look up the switches of collisions in an atlas, without computing a collision.
+Look up the switches of collisions in an atlas.
 
 POINTS.csv has the columns kappa and psi; other columns pass through. OUT.csv has the columns of the \
 input followed by switch_count, itinerary, region and distance. The distance, in ψ, is that to the \
-nearest boundary of the atlas at the same κ. A point has no count, itinerary and region if it lies \
-outside the window, or so close to a boundary that the boundary's error leaves its side open. The \
-first such point is named on standard error, and the exit code is 1.";
+nearest boundary of the atlas at the same κ. Within the error of a boundary, the collision itself is \
+computed, and decides. A point has no count, itinerary and region if it lies outside the window, or \
+if its collision has the switches of no region there. The first such point is named on standard \
+error, and the exit code is 1.";
 
 /// What `locate --help` says last.
 pub const EXAMPLES: &str = "\
