@@ -58,15 +58,8 @@ impl Sheet {
     }
 
     /// The errors of a place along both traced coordinates that come from that of margins.
-    fn errors(&self) -> [f64; 2] {
+    pub(crate) fn errors(&self) -> [f64; 2] {
         [self.chart.width, self.chart.height].map(|side| NOISE / side.min(1.0))
-    }
-
-    /// The error of a place along the coordinate in which it is less. A boundary that is steep in
-    /// the other one is known so well.
-    pub(crate) fn noise(&self) -> f64 {
-        let [one, other] = self.errors();
-        one.min(other)
     }
 
     /// The distance in traced coordinates between a boundary and a curve that is accurate to
@@ -103,7 +96,9 @@ impl Sheet {
     #[must_use]
     pub fn tolerances(&self) -> ToleranceRange {
         let shorter = self.window().extent().min().min(1.0);
-        let finest = FINEST.max(10.0 * self.noise());
+        // A boundary that runs along one coordinate is known as well as places are along the other.
+        let [one, other] = self.errors();
+        let finest = FINEST.max(10.0 * one.min(other));
         let [finest, usual, coarsest] =
             [finest, (1e-10 * shorter).max(finest), (1e-9 * shorter).max(10.0 * finest)]
                 .map(|part| part * self.chart.scale(self.sides[1].high));

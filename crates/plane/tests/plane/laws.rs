@@ -73,6 +73,19 @@ fn a_force_history_starts_in_slip() {
     }
 }
 
+/// A vertex on a corner or an edge, to rounding, of a window with unequal sides. Runs are integrated
+/// here, and known less well than those of the exact engine.
+#[test]
+fn a_vertex_of_another_law_may_lie_on_the_edge() {
+    for (kappa, psi) in [
+        ((10.500000000000018, 10.500102478148793), (0.09522670593196017, 0.09523809523809512)),
+        ((49.71964709330717, 49.73466815921272), (0.3195596771795261, 0.31956201986600774)),
+    ] {
+        let verified = traced(with_law("gran/hertz/history", 0.0, frame(kappa, psi)));
+        assert!(verified.report.agrees, "{kappa:?}, {psi:?}: {:?}", verified.report.objection());
+    }
+}
+
 /// Where attraction is limited, damped contacts are divided completely too.
 #[test]
 fn a_limited_contact_is_traced_with_damping() {
