@@ -73,9 +73,8 @@ fn a_force_history_starts_in_slip() {
     }
 }
 
-
-/// A vertex on a corner or an edge, to rounding, of a window with unequal sides. Runs are integrated,
-/// and known less well than those of the exact engine.
+/// A vertex on a corner or an edge, to rounding, of a window with unequal sides. Runs are
+/// integrated, and known less well than those of the exact engine.
 #[test]
 fn a_vertex_of_another_law_may_lie_on_the_edge() {
     for (kappa, psi) in [
