@@ -101,7 +101,7 @@ impl CollisionPlane {
         let sides = [kappa, psi].map(|(low, high)| Range { low, high });
         let first = Contact::new(kappa.0, psi.0, damping)?;
         Contact::new(kappa.1, psi.1, damping)?;
-        let sheet = Sheet { sides, chart: Chart::of(sides[0], sides[1]) };
+        let sheet = Sheet { sides, chart: Chart::of(sides[0], sides[1]), integrated: false };
         Ok(Self { sheet, parameters: Parameters::Scaled, first })
     }
 
@@ -146,7 +146,8 @@ impl CollisionPlane {
     pub fn velocities(pair: BodyPair, sides: [Range; 2]) -> Result<Self, InvalidParameter> {
         let [normal, tangential] = sides;
         let first = pair.impact(normal.low, tangential.low)?.contact;
-        let sheet = Sheet { sides, chart: Chart::of_velocities(normal, tangential) };
+        let chart = Chart::of_velocities(normal, tangential);
+        let sheet = Sheet { sides, chart, integrated: !first.obeys_paper() };
         let plane = Self { sheet, parameters: Parameters::Velocities(pair), first };
         plane.corners().into_iter().try_for_each(|corner| plane.contact_at(corner).map(drop))?;
         Ok(plane)
@@ -163,7 +164,9 @@ impl CollisionPlane {
     /// # Errors
     /// [`InvalidParameter`]: no collision has this law with the dampings.
     pub fn with_law(self, law: Law, tangential_damping: f64) -> Result<Self, InvalidParameter> {
-        Ok(Self { first: self.first.with_law(law, tangential_damping)?, ..self })
+        let first = self.first.with_law(law, tangential_damping)?;
+        let sheet = Sheet { integrated: !first.obeys_paper(), ..self.sheet };
+        Ok(Self { sheet, first, ..self })
     }
 
     /// The names of the two parameters.

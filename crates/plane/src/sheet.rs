@@ -12,6 +12,8 @@ pub struct Sheet {
     pub sides: [Range; 2],
     /// The traced coordinates.
     pub chart: Chart,
+    /// Whether margins come from integrated runs, which know them less well than the exact engine.
+    pub integrated: bool,
 }
 
 /// The accuracies that boundaries can have in a window, in units of its second parameter: ψ, or the
@@ -58,8 +60,15 @@ impl Sheet {
     }
 
     /// The errors of a place along both traced coordinates that come from that of margins.
-    pub(crate) fn errors(&self) -> [f64; 2] {
+    fn errors(&self) -> [f64; 2] {
         [self.chart.width, self.chart.height].map(|side| NOISE / side.min(1.0))
+    }
+
+    /// How closely a boundary can be known. One that runs along one coordinate is known as well as
+    /// places are along the other.
+    pub(crate) fn noise(&self) -> f64 {
+        let [one, other] = self.errors();
+        if self.integrated { one.max(other) } else { one.min(other) }
     }
 
     /// The distance in traced coordinates between a boundary and a curve that is accurate to
@@ -96,9 +105,7 @@ impl Sheet {
     #[must_use]
     pub fn tolerances(&self) -> ToleranceRange {
         let shorter = self.window().extent().min().min(1.0);
-        // A boundary that runs along one coordinate is known as well as places are along the other.
-        let [one, other] = self.errors();
-        let finest = FINEST.max(10.0 * one.min(other));
+        let finest = FINEST.max(10.0 * self.noise());
         let [finest, usual, coarsest] =
             [finest, (1e-10 * shorter).max(finest), (1e-9 * shorter).max(10.0 * finest)]
                 .map(|part| part * self.chart.scale(self.sides[1].high));

@@ -50,7 +50,8 @@ impl Frame {
     /// The window in these coordinates.
     #[must_use]
     pub fn sheet(&self, chart: &Chart) -> Sheet {
-        Sheet { sides: [self.kappa, self.psi], chart: *chart }
+        let integrated = !self.law.acts_as_paper(self.damping, self.tangential_damping);
+        Sheet { sides: [self.kappa, self.psi], chart: *chart, integrated }
     }
 
     /// The window in traced coordinates.

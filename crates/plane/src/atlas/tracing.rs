@@ -183,10 +183,7 @@ pub(crate) fn require_traceable(plane: &CollisionPlane, tolerance: f64) -> Resul
 pub(crate) fn trace_options(plane: &CollisionPlane, tolerance: f64) -> TraceOptions {
     /// The e-folds up to which the usual parts of a side will do.
     const SIDE: f64 = 4.0;
-    let (usual, sheet) = (TraceOptions::default(), plane.sheet());
-    let [one, other] = sheet.errors();
-    // Margins of integrated runs are known less well.
-    let noise = if plane.obeys_paper() { one.min(other) } else { one.max(other) };
+    let (usual, noise) = (TraceOptions::default(), plane.sheet().noise());
     let fineness = (plane.window().extent().min() / SIDE).max(1.0);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "32 to 1024")]
     let cells = (usual.cells as f64 * fineness.min(32.0)).ceil() as usize;
@@ -200,7 +197,7 @@ pub(crate) fn trace_options(plane: &CollisionPlane, tolerance: f64) -> TraceOpti
     TraceOptions {
         beyond,
         tolerance: usual.tolerance.max(0.1 * noise),
-        interpolation: sheet.interpolation(tolerance).max(10.0 * noise),
+        interpolation: plane.sheet().interpolation(tolerance),
         offset: usual.offset.max(10.0 * noise),
         max_step: usual.max_step / fineness,
         cells,
