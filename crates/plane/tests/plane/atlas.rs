@@ -95,6 +95,20 @@ fn a_vertex_may_lie_on_the_edge() {
     }
 }
 
+/// With damping: three boundaries end in a vertex, and places in this window are known to 1e-7 of
+/// it; and a boundary that ends at another one leaves in a corner, where they meet.
+#[test]
+fn damped_windows_at_a_vertex_are_right() {
+    for (kappa, psi, regions) in [
+        ((3.9604088266622157, 3.9604127870730226), (0.06736491654633595, 0.06736498391128617), 3),
+        ((0.7320200445501938, 0.7468238338430033), (1.5283597624857523, 1.5283829503644435), 2),
+    ] {
+        let verified = traced(Frame { damping: 0.1, ..frame(kappa, psi) });
+        assert!(verified.report.agrees, "{kappa:?}, {psi:?}: {:?}", verified.report.objection());
+        assert_eq!(verified.atlas.regions.regions().len(), regions, "{kappa:?}, {psi:?}");
+    }
+}
+
 /// Two boundaries cross in the upper right corner, to rounding: a step to the edge ends there.
 #[test]
 fn boundaries_may_cross_in_a_corner() {

@@ -248,6 +248,8 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         /// A tangency that is so close to another end, as a part of the window's shorter extent, is
         /// the same place, and better known.
         const BETTER: f64 = 1e-2;
+        /// A branch that stalls so close to an edge, as a part of the same, leaves the window there.
+        const EDGE: f64 = 1e-7;
         if let Some(special) = cusp::beyond(&self.track, from)? {
             return self.finish_at(special);
         }
@@ -259,11 +261,15 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
             let near = BETTER * self.track.runs.scale;
             found = tangency::branch_begins(&self.track, from)?
                 .filter(|(place, _)| !ceases || (place.point - other.point).norm() <= near);
-            if found.is_none()
-                && !other.solved
-                && let Some(index) = self.track.touched(from)?
-            {
-                return self.finish(End::Known(index), Vec::new());
+            if found.is_none() && !other.solved {
+                if let Some(index) = self.track.touched(from)? {
+                    return self.finish(End::Known(index), Vec::new());
+                }
+                let ahead = from.node.point + from.node.tangent * (EDGE * self.track.runs.scale);
+                if let Some(exit) = self.track.exit_before(&ahead)? {
+                    let exit = special::edge(self.track.runs, &exit, &self.track.margin);
+                    return self.finish_at(exit);
+                }
             }
             found = found.or(Some((other, true)));
         }

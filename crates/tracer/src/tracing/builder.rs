@@ -142,6 +142,29 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         (0..self.stops.len()).find(|&other| other != index && is_there(&self.stops[other]))
     }
 
+    /// The vertex beside which a branch stalled at `index`: a curve leads from the one to the
+    /// other, and is shorter than what runs can tell in a narrow window.
+    pub fn stalled_beside(&self, index: usize) -> Option<usize> {
+        /// The greatest length of the curve, as a fraction of the window's shorter extent.
+        const NEAR: f64 = 1e-5;
+        let is_stalled = |vertex| self.network.unresolved.contains(&Unresolved::Stalled { vertex });
+        let from = self.stops[index].point;
+        let is_short = |curve: &&Curve<Label, Margin>| {
+            let nodes = &mut curve.nodes.iter();
+            nodes.all(|node| (node.point - from).norm() <= NEAR * self.scale)
+        };
+        let other = |curve: &Curve<Label, Margin>| match curve.ends? {
+            [start, end] if start == index && end != index => Some(end),
+            [start, end] if end == index && start != index => Some(start),
+            _ => None,
+        };
+        if !is_stalled(index) {
+            return None;
+        }
+        let mut others = self.network.curves.iter().filter(is_short).filter_map(other);
+        others.find(|&vertex| !is_stalled(vertex))
+    }
+
     /// Leads the curves that end at a vertex to a better place, which may be another known vertex.
     pub fn lead_to(&mut self, index: usize, special: &Special<Margin>) {
         let target = self.add_vertex(special);

@@ -204,6 +204,10 @@ impl<'f, F: Family> Tracer<'f, F> {
     pub(super) fn polish(&mut self) -> Traced<(), F> {
         let mut index = 0;
         while let Some(&stop) = self.builder.stops.get(index) {
+            if let Some(target) = self.builder.stalled_beside(index) {
+                self.builder.join(index, target);
+                continue;
+            }
             let special = self.better_place(index, &stop)?;
             let same = special.as_ref().and_then(|it| self.builder.same_place(index, it));
             if let Some(other) = same {
