@@ -248,7 +248,7 @@ impl<'a, 'f, F: Family> Branch<'a, 'f, F> {
         /// A tangency that is so close to another end, as a part of the window's shorter extent, is
         /// the same place, and better known.
         const BETTER: f64 = 1e-2;
-        /// A branch that stalls so close to an edge, as a part of the same, leaves the window there.
+        /// A branch that stalls so close to an edge, as a part of the same, leaves there.
         const EDGE: f64 = 1e-7;
         if let Some(special) = cusp::beyond(&self.track, from)? {
             return self.finish_at(special);
