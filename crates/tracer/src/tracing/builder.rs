@@ -148,19 +148,18 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         /// The greatest length of the curve, as a fraction of the window's shorter extent.
         const NEAR: f64 = 1e-5;
         let is_stalled = |vertex| self.network.unresolved.contains(&Unresolved::Stalled { vertex });
+        if !is_stalled(index) {
+            return None;
+        }
         let from = self.stops[index].point;
         let is_short = |curve: &&Curve<Label, Margin>| {
-            let nodes = &mut curve.nodes.iter();
-            nodes.all(|node| (node.point - from).norm() <= NEAR * self.scale)
+            curve.nodes.iter().all(|node| (node.point - from).norm() <= NEAR * self.scale)
         };
         let other = |curve: &Curve<Label, Margin>| match curve.ends? {
             [start, end] if start == index && end != index => Some(end),
             [start, end] if end == index && start != index => Some(start),
             _ => None,
         };
-        if !is_stalled(index) {
-            return None;
-        }
         let mut others = self.network.curves.iter().filter(is_short).filter_map(other);
         others.find(|&vertex| !is_stalled(vertex))
     }

@@ -70,8 +70,7 @@ impl<'a, Label: Clone + Ord, Margin, Error> Judge<'a, Label, Margin, Error> {
             return;
         };
         let right = found == expected;
-        let is_known = checkpoint.origin != Origin::Sample || !self.plane.is_thin(region);
-        if !right && !is_known {
+        if !right && checkpoint.origin == Origin::Sample && self.plane.is_thin(region) {
             // The sample may lie beyond the boundary, by less than their errors.
             return;
         }
