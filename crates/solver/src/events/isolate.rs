@@ -14,6 +14,7 @@
 mod chebyshev;
 mod curve;
 mod enclosed;
+mod notice;
 mod panel;
 mod root;
 
@@ -25,6 +26,7 @@ use crate::events::isolate::panel::{Panel, Points};
 
 pub(crate) use curve::Curve;
 pub(crate) use enclosed::{Enclosed, first_enclosed_crossing, last_enclosed_sign};
+pub(crate) use notice::{Notice, Touch};
 pub(crate) use root::narrow;
 use root::root;
 
@@ -55,23 +57,6 @@ pub(crate) struct Bracket {
     pub(crate) low: f64,
     pub(crate) high: f64,
     pub(crate) guess: f64,
-}
-
-/// A local extremum whose distance from zero is within the error of the dense output, and its value
-/// by a step of the method.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Touch {
-    pub(crate) theta: f64,
-    pub(crate) margin: f64,
-}
-
-/// What isolation notices about a guard besides its crossings.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Notice {
-    /// It touches zero, or nearly.
-    Touch(Touch),
-    /// It changes its sign at a pole, at this step fraction.
-    Pole(f64),
 }
 
 /// Where isolation begins.

@@ -3,11 +3,13 @@
 //! | module | content |
 //! |---|---|
 //! | `methods` | order conditions of both pairs, and orders observed in steps |
+//! | `fitted_orders` | orders of convergence, fitted to errors that are known |
 //! | `smooth_problems` | published results, the DETEST problems, work counters |
 //! | `event_battery` | guards with known zeros, and systems with known switches |
 //! | `planted_roots` | random polynomials with planted roots as guards |
 //! | `plateaus` | guards that are zero on a stretch, or touch or leave zero without a slope |
 //! | `guard_rounding` | guards whose signs are lost in their own rounding |
+//! | `enclosures` | enclosures of formulas against their values at places |
 //! | `margins` | margins with a closed form |
 //! | `properties` | what holds of random systems; `checks` says it, for the fuzz targets too |
 //! | `planted_kinds` | random guards of every kind: steep, fast, kinked, with jumps and poles |
@@ -17,16 +19,20 @@
 //! | `dynamic` | systems whose dimension is known at run time |
 //! | `erased` | runs along any system as runs along one type, so that they are compiled once |
 //! | `black_box` | systems that can be read as black boxes |
+//! | `inside` | private modules, whose tests stand in them |
 //! | `runs` | what surrounds a run: closures, runs backwards, samples, ends, defined answers |
 //! | `serialization` | the JSON of results |
 
 mod black_box;
 mod checks;
 mod dynamic;
+mod enclosures;
 mod erased;
 mod event_battery;
 mod fast_guards;
+mod fitted_orders;
 mod guard_rounding;
+mod inside;
 mod margins;
 mod methods;
 mod planted_kinds;
@@ -39,3 +45,6 @@ mod serialization;
 mod singular;
 mod smooth_problems;
 mod strangers;
+
+// Where modules of the crate find each other.
+use inside::{events, hybrid, method, number};

@@ -9,6 +9,7 @@ mod goes_on;
 mod observers;
 mod pairs;
 mod samples;
+mod unlocated;
 mod weighted;
 
 use std::f64::consts::PI;
