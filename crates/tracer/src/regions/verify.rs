@@ -1,8 +1,9 @@
 //! Verification: do runs at random points have the labels of their regions?
 //!
-//! `report` holds what a verification finds, `judge` compares the labels.
+//! `report` holds what a verification finds, `judge` compares the labels, and `limit` is the statistics.
 
 mod judge;
+mod limit;
 pub mod report;
 
 use crate::family::Family;

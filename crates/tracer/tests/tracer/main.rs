@@ -10,6 +10,7 @@ mod every_change;
 mod extrema;
 mod following;
 mod guards;
+mod inside;
 mod known_curves;
 mod leaving_minimum;
 mod random_circles;
@@ -22,3 +23,6 @@ mod subdivision;
 mod surveys;
 mod vertex_kinds;
 mod window_edges;
+
+// Where modules of the crate find each other.
+use inside::{cubic, curve, tracing, window};
