@@ -2,8 +2,9 @@
 
 use super::FitError;
 use super::free::Free;
+use super::minima::Line;
 use super::quantile::{normal, student};
-use super::scan::{Line, Lines};
+use super::scan::Lines;
 use super::search::root;
 
 /// The interval of a fitted number, which may consist of several pieces.

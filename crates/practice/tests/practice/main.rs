@@ -8,6 +8,7 @@ mod lammps;
 mod c_program;
 mod fit;
 mod fit_strangers;
+mod inside;
 mod oblique;
 mod reference;
 mod strangers;
