@@ -53,13 +53,3 @@ pub fn spring(collision: &Collision) -> Option<f64> {
     close(regime, since, start, collision.contact_time, (0.0, collision.final_velocity));
     Some(largest)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_largest_force_is_that_of_the_largest_compression() {
-        assert_eq!(FORCE, 1.25_f64.powf(0.6));
-    }
-}

@@ -14,6 +14,8 @@ mod exact;
 mod forces;
 mod history;
 mod impacts;
+mod inside;
+mod largest;
 mod laws;
 mod linear;
 mod margins;
