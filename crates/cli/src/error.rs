@@ -154,18 +154,3 @@ impl From<AtlasError> for Failure {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use stickslip_model::Contact;
-
-    use super::*;
-
-    /// Nobody who asks for the reproduction gives such a parameter: the program is wrong.
-    #[test]
-    fn an_error_inside_the_reproduction_is_not_bad_usage() {
-        let invalid = Contact::new(-1.0, 1.0, 0.0).unwrap_err();
-        let inside = Failure::from(ReproductionError::from(invalid));
-        assert_eq!((inside.code(), Failure::from(AtlasError::from(invalid)).code()), (1, 2));
-    }
-}

@@ -2,17 +2,17 @@
 //!
 //! It is well-formed XML as well, so that any tool can read it.
 
+mod markup;
 pub mod report;
 
-use std::fmt::Write;
-
 use askama::Template;
-use askama::filters::{Html, escape};
-use stickslip_figure::markup::{Piece, PieceStyle, pieces, plain};
+use stickslip_figure::markup::plain;
 use stickslip_figure::number;
 use stickslip_reproduction::figures::{Section, headlines};
 use stickslip_reproduction::statements::{Audit, Verdict};
 use stickslip_studies::{Cell, Column, Study, Table, contact_laws};
+
+use markup::markup;
 
 /// The title of the page and of the report.
 pub const TITLE: &str = "Tangential restitution of viscoelastic spheres, computed anew";
@@ -76,32 +76,6 @@ pub fn laws(study: Study) -> String {
     Page { title, introduction, command, sections }.render().unwrap_or_default()
 }
 
-/// `text` as HTML, with subscripts, superscripts and code set as such.
-fn markup(text: &str) -> String {
-    let mut html = String::with_capacity(text.len());
-    for Piece { text, style } in pieces(text) {
-        let tag = match style {
-            PieceStyle::Plain => None,
-            PieceStyle::Lowered => Some("sub"),
-            PieceStyle::Raised => Some("sup"),
-            PieceStyle::Code => Some("code"),
-        };
-        let text = escaped(text);
-        // Writing to a string cannot fail.
-        let _ = match tag {
-            Some(tag) => write!(html, "<{tag}>{text}</{tag}>"),
-            None => write!(html, "{text}"),
-        };
-    }
-    html
-}
-
-/// `text` with the characters escaped that mean something in HTML.
-fn escaped(text: &str) -> String {
-    // Escaping cannot fail.
-    escape(text, Html).map(|escaped| escaped.to_string()).unwrap_or_default()
-}
-
 /// The tables of a section that stand on the page; an audit is shown statement by statement
 /// instead.
 fn shown(section: &Section) -> Vec<&Table> {
@@ -144,20 +118,5 @@ fn class(cell: &Cell) -> &'static str {
         Cell::Number(_) | Cell::Count(_) => "number",
         Cell::Text(text) if !text.contains(' ') => "word",
         Cell::Text(_) => "words",
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::markup;
-
-    #[test]
-    fn markup_is_set_and_everything_else_escaped() {
-        assert_eq!(markup("g_t/g_n < 2μ/α"), "g<sub>t</sub>/g<sub>n</sub> &#60; 2μ/α");
-        assert_eq!(markup("β^{−2/5}, ε_t^C"), "β<sup>−2/5</sup>, ε<sub>t</sub><sup>C</sup>");
-        assert_eq!(
-            markup("`collide --psi <P>` a_b"),
-            "<code>collide --psi &#60;P&#62;</code> a<sub>b</sub>"
-        );
     }
 }

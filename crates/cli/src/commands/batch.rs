@@ -1,6 +1,8 @@
 //! A file with a case in each row, which is read in portions, computed in parallel, and written in
 //! the order of the input.
 
+mod piece;
+
 use rayon::prelude::*;
 use stickslip_files::input::rows::{Input, Reading, Row};
 use stickslip_files::output::csv::{CsvFile, Rows};
@@ -10,9 +12,8 @@ use crate::error::Failure;
 use crate::output::progress::Bar;
 use crate::plan::BatchFiles;
 use crate::threads;
+use piece::piece;
 
-/// Largest number of rows that are computed as one piece of work.
-const ROWS_AT_ONCE: usize = 128;
 /// Rows are computed together until their collisions have about this many switches, which take
 /// 50 MB as text, beside those that are written meanwhile. The memory of more rows is then that of
 /// the largest collision.
@@ -202,22 +203,4 @@ fn compute<W: Work>(
             *failed += u64::from(written != Ok(true));
         }
     });
-}
-
-/// The number of rows in a piece of work, so that `threads` have several pieces each even where few
-/// `rows` are computed together.
-fn piece(rows: usize, threads: usize) -> usize {
-    (rows / (4 * threads)).clamp(1, ROWS_AT_ONCE)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn few_rows_are_several_pieces() {
-        for (rows, threads, expected) in [(1, 8, 1), (110, 4, 6), (16_384, 2, 128), (40, 1, 10)] {
-            assert_eq!(piece(rows, threads), expected);
-        }
-    }
 }
