@@ -1,6 +1,7 @@
 //! Verification: do runs at random points have the labels of their regions?
 //!
-//! `report` holds what a verification finds, `judge` compares the labels, and `limit` is the statistics.
+//! `report` holds what a verification finds, `judge` compares the labels, and `limit` has the
+//! statistics.
 
 mod judge;
 mod limit;
