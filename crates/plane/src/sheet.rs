@@ -60,7 +60,7 @@ impl Sheet {
     }
 
     /// The errors of a place along both traced coordinates that come from that of margins.
-    fn errors(&self) -> [f64; 2] {
+    pub(crate) fn errors(&self) -> [f64; 2] {
         [self.chart.width, self.chart.height].map(|side| NOISE / side.min(1.0))
     }
 

@@ -44,8 +44,8 @@ pub struct GeneralFamily {
 /// What the runs of the family are made of.
 type System = (GeneralContact, Start<Mode, STATE>);
 
-/// Where else a run is looked at that fails, in traced coordinates.
-const BESIDE: [(f64, f64); 4] = [(1e-12, 0.0), (-1e-12, 0.0), (0.0, 1e-12), (0.0, -1e-12)];
+/// Where else a run is looked at that fails, in parts of what rounding leaves open of a place.
+const BESIDE: [(f64, f64); 4] = [(10.0, 0.0), (-10.0, 0.0), (0.0, 10.0), (0.0, -10.0)];
 
 impl GeneralFamily {
     /// The family, with options for every run.
@@ -83,7 +83,9 @@ impl GeneralFamily {
         &self,
         point: &Point,
     ) -> Result<(Vec<usize>, f64), CollisionFamilyError> {
-        let beside = |(x, y)| self.labelled_at(&Point::new(point.x + x, point.y + y)).ok();
+        let errors = Point::from(self.plane.sheet().errors());
+        let beside =
+            |(x, y)| self.labelled_at(&(point + errors.component_mul(&Point::new(x, y)))).ok();
         self.labelled_at(point).or_else(|error| BESIDE.into_iter().find_map(beside).ok_or(error))
     }
 
