@@ -431,10 +431,11 @@ fn contacts_on_the_border_of_slip_stick() {
 }
 
 /// At b = ψ = 1 a contact is on the border of slip, and its dashpots leave no term in the guard of
-/// slip.
+/// slip. What ends a contact does not matter to its beginning.
 #[test]
 fn contacts_on_the_border_of_slip_with_even_dashpots() {
-    for law in laws().into_iter().filter(|law| law.damping != Damping::None) {
+    let damped = |law: &Law| law.damping != Damping::None && law.end == End::Force;
+    for law in laws().into_iter().filter(damped) {
         let at = |psi: f64| {
             let contact = Contact::new(2.0, psi, 0.2).unwrap().with_law(law, 1.0).unwrap();
             collide(contact)

@@ -101,7 +101,7 @@ fn the_itinerary_of_a_region_appears_where_it_is_born() -> Result<(), InvalidPar
 /// meet.
 #[test]
 fn a_region_dies_in_a_swallowtail() -> Result<(), InvalidParameter> {
-    for [kappa, psi] in [[(0.5, 30.0), (0.05, 2.0)], [(1.0, 5.0), (0.5, 1.0)]] {
+    for [kappa, psi] in [[(0.8, 12.0), (0.2, 1.5)], [(1.0, 5.0), (0.5, 1.0)]] {
         let window = frame(kappa, psi);
         let tolerance = window.tolerances().usual;
         let stack = stack(window, &[0.41, 0.4108, 0.412], tolerance, SILENT).unwrap();

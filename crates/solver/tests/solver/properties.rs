@@ -75,8 +75,13 @@ fn common_roots_found_before() {
 }
 
 #[test]
-fn expressions_as_systems() {
-    hold(1500, &vec(any::<u8>(), 0..200), |bytes| checks::expressions(&bytes));
+fn short_expressions_as_systems() {
+    hold(750, &vec(any::<u8>(), 0..100), |bytes| checks::expressions(&bytes));
+}
+
+#[test]
+fn long_expressions_as_systems() {
+    hold(750, &vec(any::<u8>(), 100..200), |bytes| checks::expressions(&bytes));
 }
 
 /// Faults that fuzzing found.
