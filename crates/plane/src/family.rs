@@ -349,7 +349,7 @@ impl Family for CollisionFamily {
                 CollisionPlane::label(&exact::collide(plane.contact_or_any(point))?)
             }
             Self::Integrated(family) => fired(family, point, family.label(point)?)?,
-            Self::General(family) => family.label(point)?,
+            Self::General(family) => family.label(point),
             Self::Gaining(family) => family.label(point)?,
         })
     }
@@ -407,7 +407,7 @@ impl Family for CollisionFamily {
                 let FreeRun { label, margins } = family.free_run(point)?;
                 FreeRun { label: fired(family, point, label)?, margins }
             }
-            Self::General(family) => family.free_run(point)?,
+            Self::General(family) => family.free_run(point),
             Self::Gaining(family) => family.free_run(point)?,
         })
     }

@@ -7,6 +7,7 @@ use stickslip_tracer::{Atlas, AtlasOptions, Curve, Mismatch, Surveyor};
 
 use crate::atlas::{AtlasError, Frame, polyline, require_traceable, trace_options, unresolved};
 use crate::family::gaining::{gains, level};
+use crate::family::general::failed;
 use crate::family::{CollisionFamily, CollisionPlane};
 use crate::progress::{InParallel, Watch};
 
@@ -119,7 +120,7 @@ impl Gaining {
     pub fn gains(&self, contact: &Contact) -> Option<bool> {
         let point = self.plane.point(contact.kappa(), contact.psi());
         let label = self.atlas.decide(&self.family, &point).ok()??;
-        Some(gains(&label))
+        (label != failed()).then(|| gains(&label))
     }
 
     /// The least and the largest κ and ψ along the lines; `None` if there are none.

@@ -6,11 +6,11 @@ use stickslip_model::{Collider, Contact};
 use stickslip_solver::Margin;
 use stickslip_tracer::{
     AtlasOptions, Curve, Extremum, Network, Node, Point, Subdivision, Survey, Surveyor,
-    TraceOptions, Tracer, Unresolved, Vertex,
+    TraceOptions, Tracer, Unresolved, Vertex, Window,
 };
 
 use super::boundary::{BoundaryKind, itinerary};
-use super::error::{AtlasError, LabelError};
+use super::error::AtlasError;
 use super::frame::Frame;
 use super::regions::{Atlas, Regions, itinerary_in};
 use super::verification::{self, VerificationReport};
@@ -145,7 +145,7 @@ fn divide_watched(
         report.unresolved.insert(0, "cancelled before the end".to_owned());
     }
     let extrema = tracer.extrema().map_err(failed)?;
-    let unbounded = unbounded(plane, &regions)?;
+    let unbounded = unbounded(plane, &regions);
     Ok(Division { plane: *plane, tolerance, regions, unbounded, extrema, report })
 }
 
@@ -164,7 +164,8 @@ fn assess(
     Ok((regions, unresolved))
 }
 
-/// Refuses a plane in which boundaries cannot be accurate to `tolerance`, or not be verified.
+/// Refuses a plane in which boundaries cannot be accurate to `tolerance`, or not be verified, or of
+/// which no corner can be computed.
 pub(crate) fn require_traceable(plane: &CollisionPlane, tolerance: f64) -> Result<(), AtlasError> {
     plane.sheet().require_wide(plane.names())?;
     let ToleranceRange { finest, coarsest, .. } = plane.sheet().tolerances();
@@ -173,6 +174,12 @@ pub(crate) fn require_traceable(plane: &CollisionPlane, tolerance: f64) -> Resul
     }
     for corner in plane.corners() {
         Collider::require(&plane.contact_at(corner)?)?;
+    }
+    let Window { low, high } = plane.window();
+    let corners = [low, high, Point::new(low.x, high.y), Point::new(high.x, low.y)];
+    let computed = corners.map(|corner| verification::itinerary(plane, &corner));
+    if let [Err(error), Err(_), Err(_), Err(_)] = computed {
+        return Err(error.into());
     }
     Ok(())
 }
@@ -205,15 +212,14 @@ pub(crate) fn trace_options(plane: &CollisionPlane, tolerance: f64) -> TraceOpti
     }
 }
 
-/// The itineraries of the regions that no boundary touches.
-fn unbounded(
-    plane: &CollisionPlane,
-    regions: &Regions,
-) -> Result<BTreeMap<usize, String>, LabelError> {
+/// The itineraries of the regions that no boundary touches, where collisions can be computed.
+fn unbounded(plane: &CollisionPlane, regions: &Regions) -> BTreeMap<usize, String> {
     let regions = regions.regions().iter().enumerate();
     regions
         .filter(|(_, region)| region.label.is_none())
-        .map(|(index, region)| Ok((index, verification::itinerary(plane, &region.sample)?)))
+        .filter_map(|(index, region)| {
+            Some((index, verification::itinerary(plane, &region.sample).ok()?))
+        })
         .collect()
 }
 

@@ -62,7 +62,8 @@ impl Family for GainingFamily {
     type Error = CollisionFamilyError;
 
     fn label(&self, point: &Point) -> Result<Vec<usize>, CollisionFamilyError> {
-        self.0.labelled(point).map(|(label, eps_t)| with_level(label, eps_t))
+        let found = self.0.labelled(point);
+        Ok(found.map_or_else(general::failed, |(label, eps_t)| with_level(label, eps_t)))
     }
 
     fn margin(&self, point: &Point, margin: &Margin) -> Result<Option<f64>, CollisionFamilyError> {
@@ -88,7 +89,7 @@ impl Family for GainingFamily {
     }
 
     fn free_run(&self, point: &Point) -> Result<FreeRun<Vec<usize>, Margin>, CollisionFamilyError> {
-        let FreeRun { label, mut margins } = self.0.free_run(point)?;
+        let FreeRun { label, mut margins } = self.0.free_run(point);
         // Those of the last phase have all exits.
         let is_whole = |exits: &Vec<Exit>| {
             exits.iter().filter(|exit| exit.guard != CREST).count() == label.len()

@@ -9,19 +9,22 @@ use stickslip_model::general::{Beginning, CREST, GUARDS, GeneralContact, Mode, S
 use stickslip_model::regularized::{END, OTHER_SIDE, SAME_SIDE};
 use stickslip_model::{Contact, Regime, Side};
 use stickslip_solver::{
-    Dop853, Exit, Followed, Margin, Margins, Observer, Options, Outcome, Place, Start, State,
+    Dop853, Exit, Followed, Margin, Margins, Observer, Options, Outcome, Place, Run, Start, State,
     SwitchEvent, follow, margin, margins, run,
 };
-use stickslip_tracer::{FamilyError, FreeRun, Point};
+use stickslip_tracer::{FreeRun, Point};
 
-use super::{CollisionFamilyError, CollisionPlane};
+use super::CollisionPlane;
 
 /// What a label has instead of [`END`] where slip goes on.
 const SLIPS_ON: usize = GUARDS;
 /// What is added to the place of a beginning in its list.
 const BEGINS: usize = GUARDS + 1;
-/// Numbers from here on stand for nothing in labels and margins.
+/// The next two numbers tell whether |ε_t| is above 1, in a family that asks for it.
 pub(super) const BEYOND_GUARDS: usize = BEGINS + BEGINNINGS.len();
+
+/// The only number in the label of a collision that cannot be computed.
+const FAILS: usize = BEYOND_GUARDS + 2;
 
 const BEGINNINGS: [Beginning; 4] =
     [Beginning::Stick, Beginning::Slip, Beginning::Reset, Beginning::Overturned];
@@ -30,6 +33,10 @@ const BEGINNINGS: [Beginning; 4] =
 /// little beyond the place where it exists, but an itinerary that is not followed up to there is
 /// not followed at all.
 const BEYOND: f64 = 1.1;
+
+/// The most steps of a collision that is traced. One that is damped so much that it only creeps
+/// takes more the more it is damped.
+const LONGEST: usize = 20_000;
 
 /// Collisions with any law, integrated.
 #[derive(Clone, Copy, Debug)]
@@ -50,56 +57,55 @@ const BESIDE: [(f64, f64); 4] = [(10.0, 0.0), (-10.0, 0.0), (0.0, 10.0), (0.0, -
 impl GeneralFamily {
     /// The family, with options for every run.
     pub(super) fn new(plane: CollisionPlane, options: Options) -> Self {
-        // A run that follows a prescribed itinerary may never end.
         let motions = plane.normal_motions();
         let stiffest = motions[0].kappa().max(motions[1].kappa());
         let oscillations = stiffest.sqrt().min(1e5);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 1e7")]
-        let max_steps = 1000 + (100.0 * oscillations) as usize;
-        let options = Options { max_steps, ..options };
-        let span = |contact| {
+        let mut max_steps = 1000 + (100.0 * oscillations) as usize;
+        let (mut span, longest) = (0.0_f64, Options { max_steps: LONGEST, ..options });
+        for contact in motions {
             let (system, start) = started(GeneralContact::new(contact));
-            let found = run(Dop853, &system, start, f64::INFINITY, &options, &mut ());
-            found.map_or(f64::INFINITY, |run| BEYOND * run.s)
-        };
-        let span = motions.into_iter().map(span).fold(0.0, f64::max);
-        Self { plane, options, span }
+            match run(Dop853, &system, start, f64::INFINITY, &longest, &mut ()) {
+                Ok(Run { outcome: Outcome::EndedByGuard { .. }, s, statistics, .. }) => {
+                    span = span.max(BEYOND * s);
+                    // A run that follows a prescribed itinerary may never end.
+                    max_steps = max_steps.max(4 * (statistics.accepted + statistics.rejected));
+                }
+                _ => span = f64::INFINITY,
+            }
+        }
+        Self { plane, options: Options { max_steps, ..options }, span }
     }
 
     fn system(&self, point: &Point) -> GeneralContact {
         GeneralContact::new(self.plane.contact_or_any(point))
     }
 
-    /// The label of the run at a point.
-    pub(super) fn label(&self, point: &Point) -> Result<Vec<usize>, CollisionFamilyError> {
-        self.labelled(point).map(|(label, _)| label)
+    /// The label of the run at a point. Collisions that cannot be computed have one of their own.
+    pub(super) fn label(&self, point: &Point) -> Vec<usize> {
+        self.labelled(point).map_or_else(failed, |(label, _)| label)
     }
 
     /// The label of the run at a point, and its ε_t.
     ///
     /// On a boundary, a last phase can be as short as rounding, so that its guards cannot be looked
     /// at. Then the run beside the point counts, at a distance far below the accuracy of traces.
-    pub(super) fn labelled(
-        &self,
-        point: &Point,
-    ) -> Result<(Vec<usize>, f64), CollisionFamilyError> {
+    pub(super) fn labelled(&self, point: &Point) -> Option<(Vec<usize>, f64)> {
         let errors = Point::from(self.plane.sheet().errors());
-        let beside =
-            |(x, y)| self.labelled_at(&(point + errors.component_mul(&Point::new(x, y)))).ok();
-        self.labelled_at(point).or_else(|error| BESIDE.into_iter().find_map(beside).ok_or(error))
+        let beside = |(x, y)| self.labelled_at(&(point + errors.component_mul(&Point::new(x, y))));
+        self.labelled_at(point).or_else(|| BESIDE.into_iter().find_map(beside))
     }
 
-    fn labelled_at(&self, point: &Point) -> Result<(Vec<usize>, f64), CollisionFamilyError> {
+    fn labelled_at(&self, point: &Point) -> Option<(Vec<usize>, f64)> {
         let (system, start) = started(self.system(point));
         let mut fired = Fired(vec![code(system.beginning())]);
-        let found = run(Dop853, &system, start, f64::INFINITY, &self.options, &mut fired)
-            .map_err(|error| FamilyError { point: *point, error })?;
+        let found = run(Dop853, &system, start, f64::INFINITY, &self.options, &mut fired).ok()?;
         if found.outcome != (Outcome::EndedByGuard { guard: END }) {
-            return Err(CollisionFamilyError::Unfinished(found.outcome));
+            return None;
         }
         fired.0.pop();
         fired.0.extend(system.last_slip(found.mode, &found.state).map(|(guard, _)| guard));
-        Ok((fired.0, restitution(&system, &found.state)))
+        Some((fired.0, restitution(&system, &found.state)))
     }
 
     /// ε_t at a point, with the itinerary prescribed that `exits` name, and the exits there.
@@ -116,20 +122,14 @@ impl GeneralFamily {
     }
 
     /// The label of the run at a point, and its margins.
-    pub(super) fn free_run(
-        &self,
-        point: &Point,
-    ) -> Result<FreeRun<Vec<usize>, Margin>, CollisionFamilyError> {
+    pub(super) fn free_run(&self, point: &Point) -> FreeRun<Vec<usize>, Margin> {
         let (system, start) = started(self.system(point));
         // Where a last phase is as short as rounding, its guards cannot be looked at. The label is
         // known without them, and changes beside such a point need the margins of its neighbours.
         let Ok(found) = margins(Dop853, &system, start, self.span, &self.options) else {
-            return Ok(FreeRun { label: self.label(point)?, margins: Vec::new() });
+            return FreeRun { label: self.label(point), margins: Vec::new() };
         };
-        let label = match known_label(&found, &system) {
-            Some(label) => label,
-            None => self.label(point)?,
-        };
+        let label = known_label(&found, &system).unwrap_or_else(|| self.label(point));
         let begins = Exit::falling(code(system.beginning()), 0.0);
         let mut found: Vec<_> = found
             .near_misses
@@ -147,7 +147,7 @@ impl GeneralFamily {
         for (margin, value) in (0..).zip(system.beginning_margins()) {
             found.extend(value.map(|value| (beginning(margin), value)));
         }
-        Ok(FreeRun { label, margins: found })
+        FreeRun { label, margins: found }
     }
 
     /// The value of a margin at a point, and its name there.
@@ -172,6 +172,11 @@ impl GeneralFamily {
     pub(super) fn margin(&self, point: &Point, which: &Margin) -> Option<f64> {
         self.near_miss(point, which).map(|(_, value)| value)
     }
+}
+
+/// The label of a collision that cannot be computed.
+pub fn failed() -> Vec<usize> {
+    vec![FAILS]
 }
 
 /// Whether the itinerary changes where a margin vanishes, and not only the order of events.
@@ -282,8 +287,12 @@ pub fn phases(
     phases
 }
 
-/// The itinerary of a collision with this label: one character per phase.
+/// The itinerary of a collision with this label: one character per phase, and none where it is not
+/// known.
 pub fn itinerary(contact: &Contact, label: &[usize]) -> String {
+    if label == failed() {
+        return String::new();
+    }
     let fired = label.iter().skip(1).map(|&code| match code {
         SLIPS_ON => (END, true),
         guard => (guard, false),

@@ -2,11 +2,11 @@
 
 use std::f64::consts::PI;
 
-use stickslip_model::{Damping, End, Law, Normal, presets};
-use stickslip_plane::CollisionPlane;
+use stickslip_model::{BodyPair, Damping, End, Law, Material, Normal, Surface, presets};
 use stickslip_plane::atlas::{BoundaryKind, Frame, VerifiedAtlas};
+use stickslip_plane::{CollisionPlane, Range};
 use stickslip_solver::Margin;
-use stickslip_tracer::Family;
+use stickslip_tracer::{Family, TraceOptions, Unresolved, trace};
 
 use crate::windows::{frame, traced};
 
@@ -186,4 +186,43 @@ fn a_graze_just_behind_greatest_compression_has_its_margin() {
     let below = family.margin(&beyond, &which).unwrap().unwrap();
     assert!(-1e-9 < below && below < -1e-10, "{below}");
     assert_ne!(family.label(&beyond).unwrap(), run(1.234_928).label);
+}
+
+/// With much damping a Hertzian contact that ends with its overlap only creeps, and takes more steps
+/// than a trace can afford. Such contacts have a label of their own, and the rest is traced.
+#[test]
+fn contacts_that_cannot_be_computed_stop_no_trace() {
+    let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
+    let surface =
+        Surface { friction: 0.4, tangential_stiffness_kg_per_s2: 1e9, damping_time_s: 1e-3 };
+    let pair = BodyPair::equal_spheres(0.02, &steel, &surface).unwrap();
+    let pair = BodyPair { law: presets::find("gran/hertz/history").unwrap().law, ..pair };
+    let sides = [Range { low: 1e-4, high: 0.1 }, Range { low: 1e-4, high: 2e-4 }];
+    let plane = CollisionPlane::velocities(pair, sides).unwrap();
+    let (family, window) = (plane.family(), plane.window());
+    let [computed, fails] = [1e-4, 0.1].map(|normal| {
+        let label = family.label(&plane.point(normal, 1.5e-4)).unwrap();
+        family.free_run(&plane.point(normal, 1.5e-4)).map(|run| (label, run.margins)).unwrap()
+    });
+    assert!(computed.0.len() > 1 && !computed.1.is_empty());
+    assert!(fails.0.len() == 1 && fails.1.is_empty());
+    let options = TraceOptions { cells: 4, ..TraceOptions::default() };
+    let network = trace(&family, &window, &options).unwrap();
+    assert!(!network.curves.is_empty());
+    assert!(network.curves.iter().all(|curve| !curve.sides.contains(&fails.0)));
+    // Where they begin, the label changes without a margin.
+    assert!(!network.unresolved.is_empty());
+    for open in &network.unresolved {
+        let Unresolved::Change { labels, .. } = open else { panic!("{open:?}") };
+        assert!(labels.contains(&fails.0), "{open:?}");
+    }
+}
+
+/// Up to 20 000 steps, a contact that creeps is traced like others.
+#[test]
+fn a_contact_that_creeps_is_computed() {
+    let plane = CollisionPlane::new((1.0, 2.0), (0.5, 1.0), 8.0).unwrap();
+    let plane = plane.with_law(presets::find("gran/hertz/history").unwrap().law, 1.0).unwrap();
+    let run = plane.family().free_run(&plane.point(1.5, 0.7)).unwrap();
+    assert!(run.label.len() > 1 && !run.margins.is_empty(), "{run:?}");
 }
