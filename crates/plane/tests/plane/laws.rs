@@ -188,8 +188,8 @@ fn a_graze_just_behind_greatest_compression_has_its_margin() {
     assert_ne!(family.label(&beyond).unwrap(), run(1.234_928).label);
 }
 
-/// With much damping a Hertzian contact that ends with its overlap only creeps, and takes more steps
-/// than a trace can afford. Such contacts have a label of their own, and the rest is traced.
+/// With much damping a Hertzian contact that ends with its overlap only creeps, and takes more
+/// steps than a trace can afford. Such contacts have a label of their own, and the rest is traced.
 #[test]
 fn contacts_that_cannot_be_computed_stop_no_trace() {
     let steel = Material { young_modulus_pa: 210e9, poisson_ratio: 0.3, density_kg_per_m3: 7850.0 };
