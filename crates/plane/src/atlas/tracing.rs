@@ -112,6 +112,9 @@ pub fn divide<'w>(
 
 /// [`divide`], compiled once, in this crate: what is generic is compiled in every crate that calls
 /// it, and here the whole tracer comes along.
+///
+/// Where a vertex lies a hair beside an edge of the window, boundaries that are followed beyond the
+/// edge may be right and those that are not may not, or the other way round.
 fn divide_watched(
     plane: &CollisionPlane,
     tolerance: f64,
@@ -119,11 +122,29 @@ fn divide_watched(
 ) -> Result<Division, AtlasError> {
     require_traceable(plane, tolerance)?;
     let surveyor = Surveyor { options: AtlasOptions::default(), executor: InParallel, watch };
+    let options = trace_options(plane, tolerance);
+    let first = surveyed(plane, tolerance, &options, &surveyor)?;
+    if first.report.agrees || surveyor.watch.is_cancelled() {
+        return Ok(first);
+    }
+    let beyond = if options.beyond > 0.0 { 0.0 } else { room_beyond(plane) };
+    match surveyed(plane, tolerance, &TraceOptions { beyond, ..options }, &surveyor) {
+        Ok(second) if second.report.agrees => Ok(second),
+        _ => Ok(first),
+    }
+}
+
+/// The regions of a plane that a survey with these options makes.
+fn surveyed(
+    plane: &CollisionPlane,
+    tolerance: f64,
+    options: &TraceOptions,
+    surveyor: &Surveyor<'_, InParallel>,
+) -> Result<Division, AtlasError> {
     let any = plane.contact(&plane.window().low)?;
     let family = plane.family();
-    let options = trace_options(plane, tolerance);
     let failed = |error| AtlasError::of(plane, error);
-    let mut tracer = Tracer::new(&family, &plane.window(), &options).map_err(failed)?;
+    let mut tracer = Tracer::new(&family, &plane.window(), options).map_err(failed)?;
     tracer.require_few(&surveyor.executor, &surveyor.watch).map_err(failed)?;
     let survey = surveyor.survey(&mut tracer, ROUNDS, Survey::BEGINNING, |network, round| {
         let found = assess(plane, tolerance, network, &any)?;
@@ -194,13 +215,8 @@ pub(crate) fn trace_options(plane: &CollisionPlane, tolerance: f64) -> TraceOpti
     let fineness = (plane.window().extent().min() / SIDE).max(1.0);
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "32 to 1024")]
     let cells = (usual.cells as f64 * fineness.min(32.0)).ceil() as usize;
-    // Below half of the window's lower end the second parameter is kept, see
-    // `CollisionPlane::contact`.
-    let [x, y] = plane.corners()[0];
-    let room = plane.window().low.y - plane.point(x, 0.5 * y).y;
-    let most = 0.5 * room / plane.window().extent().min();
     // The stored figures of the paper's law keep their digits.
-    let beyond = if plane.obeys_paper() { 0.0 } else { most.min(1e-3) };
+    let beyond = if plane.obeys_paper() { 0.0 } else { room_beyond(plane) };
     TraceOptions {
         beyond,
         tolerance: usual.tolerance.max(0.1 * noise),
@@ -210,6 +226,14 @@ pub(crate) fn trace_options(plane: &CollisionPlane, tolerance: f64) -> TraceOpti
         cells,
         ..usual
     }
+}
+
+/// How far beyond the window boundaries may be followed, as a part of its shorter side: below half
+/// of the window's lower end the second parameter is kept, see [`CollisionPlane::contact`].
+fn room_beyond(plane: &CollisionPlane) -> f64 {
+    let [x, y] = plane.corners()[0];
+    let room = plane.window().low.y - plane.point(x, 0.5 * y).y;
+    (0.5 * room / plane.window().extent().min()).min(1e-3)
 }
 
 /// The itineraries of the regions that no boundary touches, where collisions can be computed.
