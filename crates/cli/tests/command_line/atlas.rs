@@ -403,6 +403,12 @@ fn damaged_atlases_are_refused() {
     refused("", &["line 1"]);
     refused(&atlas().0[..5000], &["line 1 column 5000"]);
     refused("{}", &["schema"]);
+    refused(&format!("\u{feff}{}", atlas().0), &["line 1 column 1"]);
+    refused(
+        &atlas().0.replace(r#""tolerance":"#, r#""tolerance":1e-9,"tolerance":"#),
+        &["tolerance"],
+    );
+    refused(&atlas().0.replace(r#""damping":0.0"#, r#""damping":NaN"#), &["line 1"]);
     refused(r#"{"schema": "stickslip.atlas/2"}"#, &["stickslip.atlas/2", "stickslip.atlas/1"]);
     let refused_with = |change: &dyn Fn(&mut Value), parts: &[&str]| {
         let mut atlas = parsed();
@@ -439,6 +445,16 @@ fn damaged_atlases_are_refused() {
     refused_with(&|atlas| atlas["boundaries"][0]["tangents"][0][0] = 3.into(), &["tangent"]);
     refused_with(&|atlas| atlas["window"]["psi"][0] = 0.into(), &["window.psi"]);
     refused_with(&|atlas| atlas["tolerance"] = 0.into(), &["tolerance"]);
+    refused_with(&|atlas| atlas["tolerance"] = 1e-3.into(), &["tolerance"]);
+    refused_with(
+        &|atlas| {
+            let (one, other) = (atlas["regions"][0].clone(), atlas["regions"][1].clone());
+            atlas["regions"][0]["itinerary"] = other["itinerary"].clone();
+            atlas["regions"][0]["switch_count"] = other["switch_count"].clone();
+            assert_ne!(one["itinerary"], other["itinerary"]);
+        },
+        &["regions[0]"],
+    );
     refused_with(&|atlas| atlas["verification"]["agrees"] = false.into(), &["verification"]);
     refused_with(&|atlas| atlas["regions"].as_array_mut().unwrap().clear(), &["regions"]);
     refused_with(

@@ -160,12 +160,11 @@ fn unbounded(
     Ok(unbounded)
 }
 
-/// The itinerary, if it is one and has as many switches as the count says. It is empty where
-/// collisions could not be computed.
+/// The itinerary, if it is one and has as many switches as the count says.
 fn checked(switching: Switching, place: impl Fn() -> String) -> Result<String, DocumentError> {
     let Switching { switch_count: count, itinerary } = switching;
     let phases = itinerary.as_bytes();
-    let known = phases.iter().all(|phase| b"+o-".contains(phase));
+    let known = !phases.is_empty() && phases.iter().all(|phase| b"+o-".contains(phase));
     let alternating = phases.windows(2).all(|pair| (pair[0] == b'o') != (pair[1] == b'o'));
     if known && alternating && switch_count(&itinerary) == count {
         return Ok(itinerary);
