@@ -3,10 +3,8 @@
 //! Start reading in `panel` (cells, axes, lines and points), then `restitution` and `switches` (the
 //! colours of each quantity and their keys).
 
-mod colour_scale;
 mod panel;
 mod restitution;
-mod steps;
 mod switches;
 
 pub use panel::{MapAxis, MapPanel, Values};

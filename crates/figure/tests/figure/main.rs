@@ -5,13 +5,8 @@ mod charts;
 mod collisions;
 mod examples;
 mod families;
-mod inside;
 mod layout;
 mod maps;
-mod panels;
 mod stacks;
 mod svg;
 mod unusual;
-
-// Where modules of the crate find each other.
-use inside::canvas;

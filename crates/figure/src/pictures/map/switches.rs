@@ -5,13 +5,15 @@ use std::collections::BTreeSet;
 use colorous::Color;
 
 use super::panel::{MapPanel, Values};
-use super::steps::{MOST_NUMBERS, even_step};
 use crate::canvas::panel::{LINEAR, Panel};
 use crate::canvas::shape::Rectangle;
 use crate::canvas::style::{self, SMALL};
 use crate::canvas::svg::{Anchor, Svg, Words};
 use crate::canvas::{Cells, place};
 use crate::error::FigureError;
+
+/// The largest number of labels beside the key.
+const MOST_NUMBERS: usize = 16;
 
 /// All numbers of switches that occur in `maps`, so that each number has one colour in all panels.
 pub fn counts(maps: &[MapPanel<'_>]) -> Vec<i32> {
@@ -102,4 +104,25 @@ fn key(svg: &mut Svg, frame: Rectangle, counts: &[i32], colour: impl Fn(i32) -> 
     }
     svg.end_group();
     key.border(svg);
+}
+
+/// A round even number, of which at most [`MOST_NUMBERS`] multiples are below `largest`.
+fn even_step(largest: i32) -> i32 {
+    let steps = (0..9).flat_map(|power| [2, 4, 10].map(|digit| digit * 10_i32.pow(power)));
+    let fits = |step: &i32| largest / step < i32::try_from(MOST_NUMBERS).unwrap_or(i32::MAX);
+    steps.filter(|step| *step > 0).find(fits).unwrap_or(largest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::even_step;
+
+    #[test]
+    fn steps_of_the_key_are_even_and_few() {
+        for (largest, step) in
+            [(17, 2), (34, 4), (164, 20), (218, 20), (1000, 100), (i32::MAX, 200_000_000)]
+        {
+            assert_eq!(even_step(largest), step, "{largest}");
+        }
+    }
 }
