@@ -20,8 +20,8 @@
 //! 5. The angles at which the switches of the best fit change are traced.
 //!
 //! Start reading here; then, in this order: `data`, `columns`, `bodies`, `free`, `settings` (what
-//! is asked), `problem` (what the model says), `axis`, `minima`, `scan`, `local`, `survey` (the
-//! search), `quantile`, `intervals`, `normal` (damping), `course`, `picture`.
+//! is asked), `problem` (what the model says), `axis`, `scan`, `local`, `survey` (the search),
+//! `quantile`, `intervals`, `normal` (damping), `course`, `picture`.
 
 mod axis;
 mod bodies;
@@ -31,7 +31,6 @@ mod data;
 mod free;
 mod intervals;
 mod local;
-mod minima;
 mod normal;
 mod picture;
 mod problem;
@@ -53,6 +52,7 @@ pub use data::{Datum, Measured};
 pub use free::{Free, Ranges};
 pub use intervals::{Interval, Piece};
 pub use normal::DampingFit;
+pub use search::SearchError;
 pub use settings::{InvalidFit, Settings};
 pub use survey::Survey;
 
@@ -237,39 +237,4 @@ pub enum FitError {
     /// A search for a minimum or a zero failed.
     #[error(transparent)]
     Search(#[from] SearchError),
-}
-
-/// Why a search has no result.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum SearchError {
-    /// A search has no places to start from.
-    #[error("a search has no places to start from")]
-    NoPlaces,
-    /// Brent's method for a minimum failed.
-    #[error("Brent's method for a minimum failed from {low:?} to {high:?}")]
-    Minimum {
-        /// The beginning of the interval.
-        low: f64,
-        /// Its end.
-        high: f64,
-    },
-    /// Brent's method for a zero failed.
-    #[error(
-        "Brent's method for a zero failed from {low:?} to {high:?}; expected values of two signs \
-         at the ends"
-    )]
-    Zero {
-        /// The beginning of the interval.
-        low: f64,
-        /// Its end.
-        high: f64,
-    },
-    /// The simplex method of Nelder and Mead failed.
-    #[error("the simplex method failed from {start:?} with the sides {sides:?}")]
-    Simplex {
-        /// The place at which it began.
-        start: [f64; 2],
-        /// The sides of the triangle.
-        sides: [f64; 2],
-    },
 }

@@ -2,9 +2,8 @@
 
 use super::FitError;
 use super::free::Free;
-use super::minima::Line;
 use super::quantile::{normal, student};
-use super::scan::Lines;
+use super::scan::{Line, Lines};
 use super::search::root;
 
 /// The interval of a fitted number, which may consist of several pieces.

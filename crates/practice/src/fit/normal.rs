@@ -2,15 +2,15 @@
 
 use stickslip_model::{Contact, Engine};
 
+use super::FitError;
 use super::axis::Axis;
 use super::bodies::{Bodies, Units};
 use super::free::Free;
 use super::intervals::{Interval, interval, threshold};
-use super::minima::{Line, candidates};
 use super::problem::Problem;
-use super::scan::Lines;
+use super::scan::{Line, Lines, candidates};
+use super::search::SearchError;
 use super::settings::Settings;
-use super::{FitError, SearchError};
 use crate::time_steps::ContactFailure;
 
 /// The fit of the damping to ε_n.

@@ -7,7 +7,42 @@ use argmin::core::{CostFunction, Error, Executor, IterState, Solver, State};
 use argmin::solver::brent::{BrentOpt, BrentRoot};
 use argmin::solver::neldermead::NelderMead;
 
-use super::{FitError, SearchError};
+use super::FitError;
+
+/// Why a search has no result.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum SearchError {
+    /// A search has no places to start from.
+    #[error("a search has no places to start from")]
+    NoPlaces,
+    /// Brent's method for a minimum failed.
+    #[error("Brent's method for a minimum failed from {low:?} to {high:?}")]
+    Minimum {
+        /// The beginning of the interval.
+        low: f64,
+        /// Its end.
+        high: f64,
+    },
+    /// Brent's method for a zero failed.
+    #[error(
+        "Brent's method for a zero failed from {low:?} to {high:?}; expected values of two signs \
+         at the ends"
+    )]
+    Zero {
+        /// The beginning of the interval.
+        low: f64,
+        /// Its end.
+        high: f64,
+    },
+    /// The simplex method of Nelder and Mead failed.
+    #[error("the simplex method failed from {start:?} with the sides {sides:?}")]
+    Simplex {
+        /// The place at which it began.
+        start: [f64; 2],
+        /// The sides of the triangle.
+        sides: [f64; 2],
+    },
+}
 
 /// The place of the one minimum of `cost` in an interval and the value there, by Brent's method, to
 /// a `tolerance` in parts of the interval.

@@ -8,7 +8,6 @@ mod lammps;
 mod c_program;
 mod fit;
 mod fit_strangers;
-mod inside;
 mod oblique;
 mod reference;
 mod strangers;
