@@ -100,15 +100,9 @@ fn a_vertex_may_lie_on_the_edge() {
 /// another law, only those that are not.
 #[test]
 fn a_window_with_a_doubt_is_traced_in_another_way() {
-    let windows = [
-        ((42.83456086197498, 42.86378886542274), (0.2796520343202348, 0.28070126816178054)),
-        ((0.8689966063196453, 2.967384774021437), (1.0, 1.0000181877830543)),
-        ((95.36458096828902, 95.36679070498631), (0.33903364286041776, 0.33903724300239296)),
-    ];
+    let paper = frame((0.8689966063196453, 2.967384774021437), (1.0, 1.0000181877830543));
     let hooke = frame((1.0, 1.000057293278027), (0.9999954665433843, 1.0));
-    let mut frames = windows.map(|(kappa, psi)| frame(kappa, psi)).to_vec();
-    frames.push(with_law("gran/hooke/history", 0.0, hooke));
-    for window in frames {
+    for window in [paper, with_law("gran/hooke/history", 0.0, hooke)] {
         let verified = traced(window);
         assert!(verified.report.agrees, "{window:?}: {:?}", verified.report.objection());
     }
