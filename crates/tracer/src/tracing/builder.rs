@@ -1,7 +1,7 @@
 //! A network that grows while it is traced, with an index of its pieces by place.
 
 use crate::cubic::Cubic;
-use crate::curve::{Curve, Node, Vertex};
+use crate::curve::{Curve, Node, Vertex, VertexKind};
 use crate::tracing::end::{SHORTEST, Special, Stop};
 use crate::tracing::network::{Network, TraceStatistics, Unresolved};
 use crate::window::{Point, Window};
@@ -142,26 +142,35 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         (0..self.stops.len()).find(|&other| other != index && is_there(&self.stops[other]))
     }
 
-    /// The vertex beside which a branch stalled at `index`: a curve leads from the one to the
-    /// other, and is shorter than what runs can tell in a narrow window.
-    pub fn stalled_beside(&self, index: usize) -> Option<usize> {
+    /// The vertex that cannot be told from `index`: a curve leads from the one to the other, and is
+    /// shorter than `near`; or a branch stalled at `index`, and the curve is shorter than what runs
+    /// can tell in a narrow window.
+    pub fn indistinct(&self, index: usize, near: f64) -> Option<usize> {
         /// The greatest length of the curve, as a fraction of the window's shorter extent.
-        const NEAR: f64 = 1e-5;
+        const STALLED: f64 = 1e-5;
         let is_stalled = |vertex| self.network.unresolved.contains(&Unresolved::Stalled { vertex });
-        if !is_stalled(index) {
+        let on_edge = |vertex: usize| {
+            let kind = self.network.vertices[vertex].kind;
+            matches!(kind, VertexKind::WindowEdge | VertexKind::WindowCorner)
+        };
+        let Stop { point: from, uncertainty } = self.stops[index];
+        let stalled = is_stalled(index);
+        if !stalled && on_edge(index) {
             return None;
         }
-        let from = self.stops[index].point;
+        let farthest = if stalled { STALLED * self.scale } else { near };
         let is_short = |curve: &&Curve<Label, Margin>| {
-            curve.nodes.iter().all(|node| (node.point - from).norm() <= NEAR * self.scale)
+            curve.nodes.iter().all(|node| (node.point - from).norm() <= farthest)
         };
         let other = |curve: &Curve<Label, Margin>| match curve.ends? {
             [start, end] if start == index && end != index => Some(end),
             [start, end] if end == index && start != index => Some(start),
             _ => None,
         };
+        let is_better =
+            |vertex: usize| !on_edge(vertex) && self.stops[vertex].uncertainty <= uncertainty;
         let mut others = self.network.curves.iter().filter(is_short).filter_map(other);
-        others.find(|&vertex| !is_stalled(vertex))
+        others.find(|&vertex| !is_stalled(vertex) && (stalled || is_better(vertex)))
     }
 
     /// Leads the curves that end at a vertex to a better place, which may be another known vertex.
@@ -175,7 +184,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
     }
 
     /// Leads the curves that end at a vertex to another one, and removes the first vertex with the
-    /// short curves between the two.
+    /// short curves between the two, and those that lead back to it.
     pub fn join(&mut self, index: usize, target: usize) {
         let from = self.stops[index].point;
         let point = self.stops[target].point;
@@ -189,7 +198,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
             self.leave(curve);
             let own = &mut self.network.curves[curve];
             let is_short = own.nodes.iter().all(|node| (node.point - point).norm() <= farthest);
-            if is_short && ends.contains(&target) {
+            if is_short && (ends.contains(&target) || ends == [index; 2]) {
                 removed.push(curve);
             }
             let last = own.nodes.len() - 1;
@@ -454,7 +463,6 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::curve::VertexKind;
 
     /// A boundary that stalled at a vertex ends at the one with which that is joined.
     #[test]

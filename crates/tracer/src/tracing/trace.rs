@@ -202,9 +202,12 @@ impl<'f, F: Family> Tracer<'f, F> {
     /// these may meet at a large angle, which makes their crossing accurate. A vertex that turns
     /// out to be another one is joined with it.
     pub(super) fn polish(&mut self) -> Traced<(), F> {
+        /// How many tolerances apart vertices at both ends of a curve count as two.
+        const APART: f64 = 1e3;
+        let near = APART * self.runs.options.tolerance;
         let mut index = 0;
         while let Some(&stop) = self.builder.stops.get(index) {
-            if let Some(target) = self.builder.stalled_beside(index) {
+            if let Some(target) = self.builder.indistinct(index, near) {
                 self.builder.join(index, target);
                 continue;
             }

@@ -1,9 +1,9 @@
 //! Traces and subdivisions with known answers.
 
 mod any;
-#[cfg(feature = "serde")]
 mod bent_chessboard;
 mod counting;
+#[cfg(feature = "serde")]
 mod documents;
 mod errors;
 mod every_change;
