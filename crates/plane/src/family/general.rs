@@ -34,8 +34,8 @@ const BEGINNINGS: [Beginning; 4] =
 /// not followed at all.
 const BEYOND: f64 = 1.1;
 
-/// The most steps of a collision that is traced. One that is damped so much that it only creeps
-/// takes more the more it is damped.
+/// The most steps of the collisions in two corners of the window, from which the limit of all
+/// follows. The more a contact is damped that only creeps, the more steps it takes.
 const LONGEST: usize = 20_000;
 
 /// Collisions with any law, integrated.
