@@ -104,6 +104,7 @@ fn the_subdivision_is_that_of_collisions() {
 /// Margins of the exact solution and of the integrator, which share nothing, lead to the same
 /// vertices and curves; these have all nodes in common to 1e-9.
 #[test]
+#[ignore = "long; .ci/run runs it"]
 fn both_engines_trace_the_same_atlas() {
     let plane = undamped();
     let integrated = traced(&plane.integrated(), &plane, &TraceOptions::default());

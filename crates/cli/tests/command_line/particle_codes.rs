@@ -32,6 +32,7 @@ fn commands(page: &str) -> Vec<(String, Vec<String>)> {
 }
 
 #[test]
+#[ignore = "long; .ci/run runs it"]
 fn every_command_of_the_page_runs() {
     let workspace = Workspace::new();
     let folder = workspace.path("examples");

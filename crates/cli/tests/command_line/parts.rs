@@ -54,6 +54,7 @@ fn joined_parts_are_the_whole_map() {
 }
 
 #[test]
+#[ignore = "long; .ci/run runs it"]
 fn a_map_of_two_bodies_in_parts() {
     let workspace = Workspace::new();
     let file = fs::read_to_string("../../examples/steel_pair.json").unwrap();

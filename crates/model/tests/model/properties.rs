@@ -37,6 +37,12 @@ fn contacts(kappa: std::ops::Range<f64>) -> impl Strategy<Value = Contact> {
 
 #[test]
 fn collisions_over_the_whole_range() {
+    hold(1000, &contacts(-12.0..5.0), checks::every_engine);
+}
+
+#[test]
+#[ignore = "long; .ci/run runs it"]
+fn more_collisions_over_the_whole_range() {
     hold(4000, &contacts(-12.0..5.0), checks::every_engine);
 }
 

@@ -110,15 +110,23 @@ fn wrong(seed: u64, points: usize) -> (usize, f64) {
     (wrong, atlas.sure_area())
 }
 
-/// `FAMILIES=300 cargo test --release -p stickslip-tracer random_guards -- --nocapture` tries more.
-/// Many of them are in doubt for the greater part, since their guards often fire at one instant.
 #[test]
+fn a_random_family_is_right_where_it_is_sure() {
+    let (wrong, sure) = wrong(3, 500);
+    assert!(wrong == 0 && sure > 0.9999, "{wrong} wrong, {sure} sure");
+}
+
+/// `FAMILIES=300 cargo test --release -p stickslip-tracer random -- --ignored --nocapture` tries
+/// more. Many of them are in doubt for the greater part, since their guards often fire at one
+/// instant.
+#[test]
+#[ignore = "long; .ci/run runs it"]
 fn random_families_are_right_where_they_are_sure() {
     let families = env::var("FAMILIES");
     let chosen = families.is_ok();
     let seeds = match families {
         Ok(count) => (0..count.parse().expect("a number")).collect(),
-        Err(_) => vec![3, 4, 6],
+        Err(_) => vec![4, 6],
     };
     for seed in seeds {
         let (wrong, sure) = wrong(seed, 500);
