@@ -102,6 +102,7 @@ mod document;
 mod executor;
 mod family;
 mod hybrid;
+mod inverse;
 mod options;
 mod polyline;
 mod regions;

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
 use crate::family::Family;
+use crate::inverse;
 use crate::stack::conditions::{Condition, Conditions, MeetingKind};
 use crate::window::{Point, Window};
 
@@ -146,7 +147,7 @@ fn newton<F: Family>(
             continue;
         };
         let slopes = slopes(family, conditions, &at, within)?;
-        update = slopes.try_inverse()? * values;
+        update = inverse::of_three(&slopes)? * values;
         let size = update.norm();
         let finite = size.is_finite();
         if !finite {
@@ -189,7 +190,9 @@ fn is_passage<F: Family>(
         let pair = [(third + 1) % 3, (third + 2) % 3];
         let [in_x, in_y, in_z] =
             [0, 1, 2].map(|axis| Vector2::from(pair.map(|index| slopes[(index, axis)])));
-        let Some(inverse) = Matrix2::from_columns(&[in_x, in_y]).try_inverse() else { continue };
+        let Some(inverse) = inverse::of_two(&Matrix2::from_columns(&[in_x, in_y])) else {
+            continue;
+        };
         let along = (-inverse * in_z).push(1.0);
         for change in [-PASSAGE, PASSAGE] {
             let mut place = at + along * change;

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use crate::family::Family;
+use crate::inverse;
 use crate::tracing::runs::{Runs, Traced};
 use crate::window::Point;
 
@@ -133,7 +134,8 @@ pub(crate) fn crossing<F: Family>(
             if !independent {
                 return Ok(None);
             }
-            inverse = Matrix2::from_rows(&[one.transpose(), two.transpose()]).try_inverse();
+            let gradients = Matrix2::from_rows(&[one.transpose(), two.transpose()]);
+            inverse = inverse::of_two(&gradients);
         }
         let Some(solver) = inverse else { return Ok(None) };
         update = solver * Vector2::new(first, second);
@@ -173,7 +175,7 @@ pub(crate) fn stationary<F: Family>(
         let Some((gradient, second)) = derivatives(runs, margin, &point, h)? else {
             return Ok(None);
         };
-        let Some(inverse) = second.try_inverse() else { return Ok(None) };
+        let Some(inverse) = inverse::of_two(&second) else { return Ok(None) };
         let update = inverse * gradient;
         point -= update;
         let within = (point - guess).norm() <= reach;

@@ -3,6 +3,7 @@
 use nalgebra::Matrix2;
 
 use crate::family::{Family, FreeRun};
+use crate::inverse;
 use crate::tracing::corrector::derivatives;
 use crate::tracing::runs::{Runs, Sampled, Traced};
 use crate::window::Point;
@@ -135,7 +136,7 @@ fn dive<F: Family>(
 /// The step to the lowest point of a quadratic model, or downhill if it has none; no longer than
 /// `trust`.
 fn downhill(slope: &Point, second: &Matrix2<f64>, trust: f64) -> Point {
-    let newton = second.try_inverse().map(|inverse| -(inverse * slope));
+    let newton = inverse::of_two(second).map(|inverse| -(inverse * slope));
     match newton {
         Some(step) if second.trace() > 0.0 && second.determinant() > 0.0 => {
             step * (trust / step.norm()).min(1.0)
