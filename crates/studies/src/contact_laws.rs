@@ -19,7 +19,9 @@ use crate::error::StudyError;
 use crate::study::Study;
 use law::LawOnPlane;
 
-pub use settings::{InvalidContactLaws, MOST_CELLS, Named, Settings, distinct};
+pub use crate::error::InvalidContactLaws;
+pub use crate::limits::MOST_CELLS;
+pub use settings::{Named, Settings, distinct};
 pub use tables::LAWS;
 
 /// The name of the layout of the JSON, with its version.

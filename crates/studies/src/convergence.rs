@@ -24,10 +24,12 @@ use crate::study::Study;
 use collisions::Accuracy;
 use series::{ErrorRow, ErrorSeries, Scheme};
 
+pub use crate::error::InvalidConvergence;
+pub use crate::limits::MOST_STIFFNESS;
 pub use measure::{
     Approximation, Coordinates, Deviation, Errors, Spread, Switching, integrate, measure, reference,
 };
-pub use settings::{InvalidConvergence, MOST_STIFFNESS, Settings};
+pub use settings::Settings;
 pub use tables::{ORDERS, TIMES};
 
 /// The name of the layout of the JSON, with its version.

@@ -1,12 +1,11 @@
 //! What can go wrong in a study.
 
 use stickslip_figure::FigureError;
-use stickslip_model::{Contact, EngineError};
+use stickslip_model::exact::ExactError;
+use stickslip_model::{Contact, EngineError, InvalidParameter, OtherLaw};
 
-use crate::contact_laws::InvalidContactLaws;
-use crate::convergence::InvalidConvergence;
-use crate::stiff_springs::InvalidStiffSprings;
-use crate::stiff_springs::limit::StiffError;
+use crate::limits::{MOST_CELLS, MOST_LAWS, MOST_PSI, MOST_STIFFNESS, STIFFNESSES};
+use crate::search::SearchError;
 
 /// Why a study has no result.
 #[derive(Debug, thiserror::Error)]
@@ -29,6 +28,106 @@ pub enum StudyError {
     /// The limit of stiff springs cannot be studied.
     #[error("the limit of stiff springs cannot be studied: {0}")]
     Stiff(#[from] StiffError),
+}
+
+/// The settings of a study of convergence are out of range.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum InvalidConvergence {
+    /// There is nothing to measure.
+    #[error("a study of 0 collisions; expected at least one")]
+    NoContacts,
+    /// A collision is too stiff.
+    #[error(
+        "kappa = {kappa:?} is out of range; expected a number above 0, at most {MOST_STIFFNESS:?}"
+    )]
+    Stiff {
+        /// The stiffness of the collision.
+        kappa: f64,
+    },
+    /// A collision has another law than the paper's.
+    #[error(transparent)]
+    Law(#[from] OtherLaw),
+}
+
+/// The settings of a study of contact laws are out of range.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum InvalidContactLaws {
+    /// There are no laws, or too many.
+    #[error("{count} laws; expected 1 to {MOST_LAWS}")]
+    LawCount {
+        /// The number of laws.
+        count: usize,
+    },
+    /// There are no cells, or too many.
+    #[error("{cells} cells along an axis; expected 1 to {MOST_CELLS}")]
+    Cells {
+        /// The number of cells.
+        cells: usize,
+    },
+    /// An interval is empty, or reaches below 0.
+    #[error("{name} {low:?}:{high:?} is out of range; expected LO:HI with 0 <= LO < HI")]
+    Window {
+        /// The name of the axis.
+        name: &'static str,
+        /// The lower end of the interval.
+        low: f64,
+        /// The upper end of the interval.
+        high: f64,
+    },
+    /// A parameter is out of range for one of the laws.
+    #[error(transparent)]
+    Parameter(#[from] InvalidParameter),
+}
+
+/// The settings of a study of stiff springs are out of range.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum InvalidStiffSprings {
+    /// The interval of the stiffness is out of range.
+    #[error(
+        "kappa {low:?}:{high:?} is out of range; expected LO:HI with {:?} <= LO < HI <= {:?}",
+        STIFFNESSES.low, STIFFNESSES.high
+    )]
+    Kappa {
+        /// The lower end of the interval.
+        low: f64,
+        /// The upper end of the interval.
+        high: f64,
+    },
+    /// There are too few or too many impact ratios.
+    #[error("psi has {count} values; expected 1 to {MOST_PSI}")]
+    PsiCount {
+        /// The number of impact ratios.
+        count: usize,
+    },
+    /// An impact ratio is out of range.
+    #[error(
+        "psi {psi:?} is out of range; expected numbers above 0 and below 2, from where on there is no \
+         switch"
+    )]
+    Psi {
+        /// The impact ratio.
+        psi: f64,
+    },
+    /// An impact ratio is given twice.
+    #[error("psi has {psi:?} twice; expected each value once")]
+    PsiTwice {
+        /// The impact ratio.
+        psi: f64,
+    },
+}
+
+/// Why the limit of stiff springs has no maximum.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StiffError {
+    /// A parameter is out of its range.
+    #[error(transparent)]
+    Parameter(#[from] InvalidParameter),
+    /// The exact engine refuses a collision.
+    #[error(transparent)]
+    Exact(#[from] ExactError),
+    /// The search for a maximum failed.
+    #[error(transparent)]
+    Search(#[from] SearchError),
 }
 
 /// A collision cannot be computed.

@@ -24,6 +24,7 @@
 pub mod contact_laws;
 pub mod convergence;
 mod error;
+mod limits;
 pub mod paper;
 pub mod search;
 pub mod stiff_springs;

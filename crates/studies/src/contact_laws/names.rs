@@ -1,7 +1,9 @@
 //! Names of pictures.
 
+use crate::limits::MOST_LAWS;
+
 /// The names of the pictures of each law: maps, and forces.
-pub const NAMES: [[&str; 2]; 24] = [
+pub const NAMES: [[&str; 2]; MOST_LAWS] = [
     ["law_01_maps", "law_01_forces"],
     ["law_02_maps", "law_02_forces"],
     ["law_03_maps", "law_03_forces"],

@@ -4,10 +4,8 @@ use stickslip_model::presets::{self, Preset};
 use stickslip_model::{Contact, Damping, InvalidParameter, Law};
 use stickslip_plane::Range;
 
-/// The most cells along an axis of a map.
-pub const MOST_CELLS: usize = 1000;
-/// The most laws: as many pictures have names.
-pub const MOST_LAWS: usize = super::names::NAMES.len();
+use crate::error::InvalidContactLaws;
+use crate::limits::{MOST_CELLS, MOST_LAWS};
 
 /// The laws of a study, and the window over which they are computed.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,36 +35,6 @@ pub struct Named {
     pub law: Law,
     /// Whether the codes' laws have this form with tangential damping too; otherwise it is 0.
     pub tangential_damping: bool,
-}
-
-/// Settings are out of range.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum InvalidContactLaws {
-    /// There are no laws, or too many.
-    #[error("{count} laws; expected 1 to {MOST_LAWS}")]
-    LawCount {
-        /// The number of laws.
-        count: usize,
-    },
-    /// There are no cells, or too many.
-    #[error("{cells} cells along an axis; expected 1 to {MOST_CELLS}")]
-    Cells {
-        /// The number of cells.
-        cells: usize,
-    },
-    /// An interval is empty, or reaches below 0.
-    #[error("{name} {low:?}:{high:?} is out of range; expected LO:HI with 0 <= LO < HI")]
-    Window {
-        /// The name of the axis.
-        name: &'static str,
-        /// The lower end of the interval.
-        low: f64,
-        /// The upper end of the interval.
-        high: f64,
-    },
-    /// A parameter is out of range for one of the laws.
-    #[error(transparent)]
-    Parameter(#[from] InvalidParameter),
 }
 
 impl Default for Settings {

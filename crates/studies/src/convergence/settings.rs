@@ -1,36 +1,16 @@
 //! What a study of convergence is about.
 
-use stickslip_model::{Contact, InvalidParameter, OtherLaw};
+use stickslip_model::{Contact, InvalidParameter};
 
+use crate::error::InvalidConvergence;
+use crate::limits::MOST_STIFFNESS;
 use crate::paper::{Reading, STIFFNESS};
-
-/// The largest stiffness of a study, which takes seconds at it. Work grows as √κ.
-pub const MOST_STIFFNESS: f64 = 1e6;
 
 /// The collisions of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// The collisions whose errors are measured; κ is at most [`MOST_STIFFNESS`].
     pub contacts: Vec<Contact>,
-}
-
-/// Settings are out of range.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum InvalidConvergence {
-    /// There is nothing to measure.
-    #[error("a study of 0 collisions; expected at least one")]
-    NoContacts,
-    /// A collision is too stiff.
-    #[error(
-        "kappa = {kappa:?} is out of range; expected a number above 0, at most {MOST_STIFFNESS:?}"
-    )]
-    Stiff {
-        /// The stiffness of the collision.
-        kappa: f64,
-    },
-    /// A collision has another law than the paper's.
-    #[error(transparent)]
-    Law(#[from] OtherLaw),
 }
 
 impl Settings {

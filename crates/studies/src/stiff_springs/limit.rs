@@ -7,10 +7,11 @@
 
 use std::f64::consts::PI;
 
-use stickslip_model::exact::{self, ExactError};
+use stickslip_model::exact;
 use stickslip_model::{Collision, Contact, InvalidParameter, largest};
 
-use crate::search::{SearchError, highest, root};
+pub use crate::error::StiffError;
+use crate::search::{highest, root};
 
 /// (5/4)^{3/5}, the largest value of x^{3/2}: the factor that the bound (27) of Schwager, Becker
 /// and Pöschel (2008) lacks.
@@ -34,20 +35,6 @@ pub struct Crest {
     pub last_stick: f64,
     /// Number of switches.
     pub switch_count: usize,
-}
-
-/// Why there is no maximum.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum StiffError {
-    /// A parameter is out of its range.
-    #[error(transparent)]
-    Parameter(#[from] InvalidParameter),
-    /// The exact engine refuses a collision.
-    #[error(transparent)]
-    Exact(#[from] ExactError),
-    /// The search for a maximum failed.
-    #[error(transparent)]
-    Search(#[from] SearchError),
 }
 
 /// The largest |w_final| between the two zeros of w_final(ψ) around `psi`, at stiffness `kappa`
