@@ -67,3 +67,10 @@ pub enum VertexKind {
     /// begin where it ends.
     VanishingPhase,
 }
+
+impl VertexKind {
+    /// Whether the vertex is where a boundary leaves the window, or a corner.
+    pub(crate) fn is_on_window(self) -> bool {
+        matches!(self, Self::WindowEdge | Self::WindowCorner)
+    }
+}

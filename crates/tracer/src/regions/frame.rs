@@ -1,27 +1,42 @@
 //! The frame of a subdivision: the window's boundary, cut at its corners and at the vertices on it.
 
-use crate::curve::{Vertex, VertexKind};
+use crate::curve::{Curve, Vertex};
 use crate::regions::finding::Finding;
 use crate::window::{Point, Window};
 
 /// The points on the window's boundary, counterclockwise: vertices, and the corners between them.
 ///
-/// The vertices among `points` are moved onto the boundary, and the corners are added to `points`.
+/// The vertices among `points` are moved onto the boundary, and the corners are added to `points`. A
+/// vertex inside from which a short curve leads to the boundary stays where it is.
 pub fn frame<Label, Margin>(
     window: &Window,
+    curves: &[Curve<Label, Margin>],
     vertices: &[Vertex<Margin>],
     tolerance: f64,
     points: &mut Vec<Point>,
     findings: &mut Vec<Finding<Label>>,
 ) -> Vec<usize> {
+    let stays_inside = |index: usize| {
+        let Vertex { point, kind, .. } = &vertices[index];
+        let leads = |curve: &Curve<Label, Margin>| {
+            let other = match curve.ends {
+                Some([start, end]) if start == index => end,
+                Some([start, end]) if end == index => start,
+                _ => return false,
+            };
+            vertices[other].kind.is_on_window()
+                && curve.nodes.iter().all(|node| (node.point - point).norm() <= tolerance)
+        };
+        !kind.is_on_window() && window.contains(point) && curves.iter().any(leads)
+    };
     let mut around = Vec::new();
     for (index, vertex) in vertices.iter().enumerate() {
         if let Some(point) = window.onto_boundary(&vertex.point, tolerance) {
-            points[index] = point;
-            around.push(index);
-        } else if !window.contains(&vertex.point)
-            || matches!(vertex.kind, VertexKind::WindowEdge | VertexKind::WindowCorner)
-        {
+            if !stays_inside(index) {
+                points[index] = point;
+                around.push(index);
+            }
+        } else if !window.contains(&vertex.point) || vertex.kind.is_on_window() {
             findings.push(Finding::VertexOffWindow { vertex: index });
         }
     }

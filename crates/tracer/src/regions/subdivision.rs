@@ -56,10 +56,11 @@ impl<Label: Clone + Ord, Margin> Subdivision<Label, Margin> {
     /// The regions into which `curves` divide `window`.
     ///
     /// `tolerance` is the accuracy of the curves, which are interpolated, and of the vertices. A
-    /// vertex that is closer than this to the window's boundary lies on the boundary. A closed
-    /// curve may repeat its first node as its last node. Inconsistencies become [`Finding`]s.
-    /// Without findings the regions are those of the curves. Time and memory grow as the number of
-    /// cubic pieces times the number of curves over one abscissa.
+    /// vertex that is closer than this to the window's boundary lies on the boundary, unless a curve
+    /// as short leads there. A closed curve may repeat its first node as its last node.
+    /// Inconsistencies become [`Finding`]s. Without findings the regions are those of the curves.
+    /// Time and memory grow as the number of cubic pieces times the number of curves over one
+    /// abscissa.
     ///
     /// # Errors
     /// The input has no meaning: a number is not finite, an index is out of range, or the window
@@ -79,7 +80,7 @@ impl<Label: Clone + Ord, Margin> Subdivision<Label, Margin> {
         for point in &mut points {
             point.x = abscissae.of(point.x);
         }
-        let around = frame(&window, &vertices, tolerance, &mut points, &mut findings);
+        let around = frame(&window, &curves, &vertices, tolerance, &mut points, &mut findings);
         let mut pieces = Vec::new();
         let mut edges = Vec::with_capacity(curves.len() + around.len());
         for (index, curve) in curves.iter().enumerate() {

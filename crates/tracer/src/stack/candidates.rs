@@ -1,6 +1,6 @@
 //! Which codimension-2 points may have met between two atlases of different structure.
 
-use crate::curve::{Curve, VertexKind};
+use crate::curve::Curve;
 use crate::family::Family;
 use crate::regions::outline::Stretch;
 use crate::stack::conditions::{Condition, Conditions};
@@ -156,7 +156,7 @@ fn at_vertex<F: Family>(
     let plane = &sample.atlas.plane;
     let own = &plane.vertices()[vertex];
     let mut conditions = Vec::new();
-    if matches!(own.kind, VertexKind::WindowEdge | VertexKind::WindowCorner) {
+    if own.kind.is_on_window() {
         conditions.extend(sides_at(sample, &own.point));
     }
     let arriving = plane

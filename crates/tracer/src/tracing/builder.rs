@@ -1,7 +1,7 @@
 //! A network that grows while it is traced, with an index of its pieces by place.
 
 use crate::cubic::Cubic;
-use crate::curve::{Curve, Node, Vertex, VertexKind};
+use crate::curve::{Curve, Node, Vertex};
 use crate::tracing::end::{SHORTEST, Special, Stop};
 use crate::tracing::network::{Network, TraceStatistics, Unresolved};
 use crate::window::{Point, Window};
@@ -149,10 +149,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
         /// The greatest length of the curve, as a fraction of the window's shorter extent.
         const STALLED: f64 = 1e-5;
         let is_stalled = |vertex| self.network.unresolved.contains(&Unresolved::Stalled { vertex });
-        let on_edge = |vertex: usize| {
-            let kind = self.network.vertices[vertex].kind;
-            matches!(kind, VertexKind::WindowEdge | VertexKind::WindowCorner)
-        };
+        let on_edge = |vertex: usize| self.network.vertices[vertex].kind.is_on_window();
         let Stop { point: from, uncertainty } = self.stops[index];
         let stalled = is_stalled(index);
         if !stalled && on_edge(index) {
@@ -470,7 +467,7 @@ mod tests {
         let window = Window { low: Point::new(0.0, 0.0), high: Point::new(1.0, 1.0) };
         let special = |x: f64, solved: bool| Special {
             point: Point::new(x, 0.5),
-            kind: VertexKind::Crossing,
+            kind: crate::curve::VertexKind::Crossing,
             margins: Vec::new(),
             uncertainty: 1e-12,
             solved,

@@ -281,11 +281,8 @@ impl<F: Family> Cutter<'_, '_, F> {
         let Window { low, high } = *self.window;
         let place = place.sup(&low).inf(&high);
         let point = self.window.onto_boundary(&place, self.near).unwrap_or(place);
-        let on_edge = |vertex: &Vertex<F::Margin>| {
-            matches!(vertex.kind, VertexKind::WindowEdge | VertexKind::WindowCorner)
-        };
         let known = |vertex: &Vertex<F::Margin>| {
-            on_edge(vertex) && (vertex.point - point).norm() <= self.near
+            vertex.kind.is_on_window() && (vertex.point - point).norm() <= self.near
         };
         let index = self.new.iter().position(known).unwrap_or_else(|| {
             let corner = self.window.corners().contains(&point);

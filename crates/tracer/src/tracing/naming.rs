@@ -27,8 +27,7 @@ impl<Label> Network<Label, Margin> {
             }
         }
         for (vertex, margins) in self.vertices.iter_mut().zip(&arrivals) {
-            let at_window =
-                matches!(vertex.kind, VertexKind::WindowEdge | VertexKind::WindowCorner);
+            let at_window = vertex.kind.is_on_window();
             if !at_window && !margins.is_empty() {
                 vertex.kind = kind(margins);
             }

@@ -2,7 +2,7 @@
 
 use stickslip_solver::{Margin, Place};
 
-use crate::curve::{Curve, Vertex, VertexKind};
+use crate::curve::{Curve, Vertex};
 use crate::regions::subdivision::Subdivision;
 use crate::tracing::network::Network;
 use crate::window::{Point, Window};
@@ -72,9 +72,7 @@ fn special_points<Label>(
         arrivals[start].push(Arrival { margin, away: curve.nodes[0].tangent });
         arrivals[end].push(Arrival { margin, away: -curve.nodes[last].tangent });
     }
-    let inside = |vertex: &Vertex<Margin>| {
-        !matches!(vertex.kind, VertexKind::WindowEdge | VertexKind::WindowCorner)
-    };
+    let inside = |vertex: &Vertex<Margin>| !vertex.kind.is_on_window();
     let near = CUSP * window.extent().min();
     let partner = |index: usize| {
         let beside = |other: &usize| {

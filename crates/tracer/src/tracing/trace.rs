@@ -143,7 +143,7 @@ impl<'f, F: Family> Tracer<'f, F> {
         };
         let (point, kind) = (vertex.point, vertex.kind);
         self.probed += 1;
-        if !matches!(kind, VertexKind::WindowEdge | VertexKind::WindowCorner) {
+        if !kind.is_on_window() {
             for radius in CIRCLES {
                 self.circle(&point, radius * self.runs.scale)?;
             }
