@@ -70,7 +70,8 @@ pub enum VertexKind {
 
 impl VertexKind {
     /// Whether the vertex is where a boundary leaves the window, or a corner.
-    pub(crate) fn is_on_window(self) -> bool {
+    #[must_use]
+    pub fn is_on_window(self) -> bool {
         matches!(self, Self::WindowEdge | Self::WindowCorner)
     }
 }

@@ -460,6 +460,7 @@ impl<Label: Clone + Eq, Margin: Clone + Ord> Builder<Label, Margin> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::curve::VertexKind;
 
     /// A boundary that stalled at a vertex ends at the one with which that is joined.
     #[test]
@@ -467,7 +468,7 @@ mod tests {
         let window = Window { low: Point::new(0.0, 0.0), high: Point::new(1.0, 1.0) };
         let special = |x: f64, solved: bool| Special {
             point: Point::new(x, 0.5),
-            kind: crate::curve::VertexKind::Crossing,
+            kind: VertexKind::Crossing,
             margins: Vec::new(),
             uncertainty: 1e-12,
             solved,
