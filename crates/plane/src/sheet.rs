@@ -112,13 +112,18 @@ impl Sheet {
         ToleranceRange { finest, usual, coarsest }
     }
 
+    /// The width and the height of the window in the logarithms of its parameters.
+    pub(crate) fn extents(&self) -> [f64; 2] {
+        self.sides.map(|side| (side.high / side.low).ln())
+    }
+
     /// Refuses a window that is too narrow for the accuracy of its boundaries. The error calls both
     /// parameters by their `names`.
     ///
     /// # Errors
     /// [`TooNarrow`] has the size of the window.
     pub fn require_wide(&self, names: [&'static str; 2]) -> Result<(), TooNarrow> {
-        let [width, height] = self.sides.map(|side| (side.high / side.low).ln());
+        let [width, height] = self.extents();
         if width >= NARROWEST && height >= NARROWEST {
             return Ok(());
         }
