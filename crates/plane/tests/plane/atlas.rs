@@ -109,8 +109,10 @@ fn a_window_with_a_doubt_is_traced_in_another_way() {
 }
 
 /// With damping: three boundaries end in a vertex, and places in this window are known to 1e-7 of
-/// it; a boundary that ends at another one leaves in a corner, where they meet; and a graze runs so
-/// close to the line it leaves that their crossing is found 6e-6 of the window beside the vertex.
+/// it; a boundary that ends at another one leaves in a corner, where they meet; a graze runs so
+/// close to the line it leaves that their crossing is found 6e-6 of the window beside the vertex; a
+/// vertex is 2e-8 of the window beside the edge; and two windows are so narrow that a margin that is
+/// off by 1e-13 would move a crossing by 3e-6 of them.
 #[test]
 fn damped_windows_at_a_vertex_are_right() {
     for (damping, kappa, psi, regions) in [
@@ -131,6 +133,24 @@ fn damped_windows_at_a_vertex_are_right() {
             (0.9567599785578079, 0.9567609353182649),
             (0.1027289475246634, 0.10272905025366229),
             3,
+        ),
+        (
+            0.3,
+            (1.0623903864312139, 1.0639268773182513),
+            (0.31619140480226515, 0.31707125176389084),
+            3,
+        ),
+        (
+            2.0,
+            (55.926918196053556, 55.92697412299972),
+            (0.17451678943165572, 0.17451696394853242),
+            4,
+        ),
+        (
+            5.0,
+            (48.14109445674257, 48.141142597861105),
+            (0.09330673581353068, 0.09330682912031314),
+            4,
         ),
     ] {
         let verified = traced(Frame { damping, ..frame(kappa, psi) });

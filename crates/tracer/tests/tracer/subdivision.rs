@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use self::planes::{
     KnownPlane, close_curves, crossing_circles, cusp, disturbed, edges_and_corner, figure_of_eight,
-    grid, islands, short_frame_parts, touching_circles, upright_cusp,
+    grid, islands, short_frame_parts, touching_circles, upright_cusp, vertex_beside_the_frame,
 };
 use stickslip_tracer::{Location, Point, Subdivision, VerifyOptions, verify};
 
@@ -145,6 +145,11 @@ fn short_parts_of_the_frame() {
     let (beside, between) = (0.1, 0.1 / PI);
     let areas = [(0, 1.0 - beside - between), (1, beside), (2, between)];
     holds(&short_frame_parts(), &areas);
+}
+
+#[test]
+fn a_vertex_beside_the_frame_with_a_curve_to_it() {
+    holds(&vertex_beside_the_frame(), &[(0, 0.1), (1, 0.5), (2, 0.4)]);
 }
 
 #[test]

@@ -271,6 +271,27 @@ pub fn short_frame_parts() -> KnownPlane {
     .curve(wave(1.0), even(0.0, 0.5, 100), [0, 2], Some([3, 4]))
 }
 
+/// Three curves that meet closer to the lower side than the tolerance. The shortest leads there, with
+/// the rounding of its nodes.
+pub fn vertex_beside_the_frame() -> KnownPlane {
+    const HIGH: f64 = 0.3 * TOLERANCE;
+    let right = |s: f64| [0.5 + 0.2 * s, HIGH + (1.0 - HIGH) * s, 0.2, 1.0 - HIGH];
+    let left = |s: f64| [0.5 - 0.5 * s, HIGH + (0.4 - HIGH) * s, -0.5, 0.4 - HIGH];
+    let down = |s: f64| [0.5 - 3e-13 * (PI * s).sin(), HIGH * (1.0 - s), 0.0, -1.0];
+    KnownPlane::new(|p| match p {
+        _ if p.x > 0.5 + 0.2 * p.y => 2,
+        _ if p.y < 0.4 - 0.8 * p.x => 0,
+        _ => 1,
+    })
+    .vertex(0.5, HIGH, VertexKind::Crossing)
+    .vertex(0.7, 1.0, VertexKind::WindowEdge)
+    .vertex(0.0, 0.4, VertexKind::WindowEdge)
+    .vertex(0.5, 0.0, VertexKind::WindowEdge)
+    .curve(right, even(0.0, 1.0, 10), [1, 2], Some([0, 1]))
+    .curve(left, even(0.0, 1.0, 10), [0, 1], Some([0, 2]))
+    .curve(down, even(0.0, 1.0, 2), [2, 0], Some([0, 3]))
+}
+
 /// Three upright lines that cross three level ones. Vertices lie above each other, and pieces have
 /// no extent in x.
 pub fn grid() -> KnownPlane {
