@@ -271,8 +271,8 @@ pub fn short_frame_parts() -> KnownPlane {
     .curve(wave(1.0), even(0.0, 0.5, 100), [0, 2], Some([3, 4]))
 }
 
-/// Three curves that meet closer to the lower side than the tolerance. The shortest leads there, with
-/// the rounding of its nodes.
+/// Three curves that meet closer to the lower side than the tolerance. The shortest leads there,
+/// with the rounding of its nodes.
 pub fn vertex_beside_the_frame() -> KnownPlane {
     const HIGH: f64 = 0.3 * TOLERANCE;
     let right = |s: f64| [0.5 + 0.2 * s, HIGH + (1.0 - HIGH) * s, 0.2, 1.0 - HIGH];
