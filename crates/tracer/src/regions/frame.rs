@@ -6,8 +6,8 @@ use crate::window::{Point, Window};
 
 /// The points on the window's boundary, counterclockwise: vertices, and the corners between them.
 ///
-/// The vertices among `points` are moved onto the boundary, and the corners are added to `points`. A
-/// vertex inside from which a short curve leads to the boundary stays where it is.
+/// The vertices among `points` are moved onto the boundary, and the corners are added to `points`.
+/// A vertex inside from which a short curve leads to the boundary stays where it is.
 pub fn frame<Label, Margin>(
     window: &Window,
     curves: &[Curve<Label, Margin>],
