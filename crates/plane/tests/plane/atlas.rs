@@ -111,8 +111,8 @@ fn a_window_with_a_doubt_is_traced_in_another_way() {
 /// With damping: three boundaries end in a vertex, and places in this window are known to 1e-7 of
 /// it; a boundary that ends at another one leaves in a corner, where they meet; a graze runs so
 /// close to the line it leaves that their crossing is found 6e-6 of the window beside the vertex; a
-/// vertex is 2e-8 of the window beside the edge; and two windows are so narrow that a margin that is
-/// off by 1e-13 would move a crossing by 3e-6 of them.
+/// vertex is 2e-8 of the window beside the edge; and two windows are so narrow that a margin off by
+/// 1e-13 would move a crossing by 3e-6 of them.
 #[test]
 fn damped_windows_at_a_vertex_are_right() {
     for (damping, kappa, psi, regions) in [
