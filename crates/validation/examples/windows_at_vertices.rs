@@ -1,35 +1,39 @@
-//! Windows around the vertices of the undamped atlas, and windows that have one on a corner or on
-//! an edge: is the atlas of each complete?
+//! Windows around the vertices of an atlas, and windows that have one on a corner or on an edge: is
+//! the atlas of each complete?
 //!
 //! The vertices are those in κ 0.05:100, ψ 0.01:3. Around each lie windows of ±5e-7 and ±5e-5.
 //! Those with a vertex on a corner, or within an edge, have sides that are log-uniform from 3e-6 to
 //! 0.5 in the logarithms, so that they may be very unequal. What is not complete is printed.
 //!
-//! Run with `cargo run --release -p validation --example windows_at_vertices -- [SEED]`.
+//! Run with `cargo run --release -p validation --example windows_at_vertices -- [SEED] [DAMPING]
+//! [LAW]`; without damping and with the law of the paper unless these are given.
 
 use std::error::Error;
 
+use stickslip::model::presets;
 use stickslip::plane::Range;
 use stickslip::plane::atlas::{self, Frame};
 use stickslip::plane::progress::SILENT;
-use stickslip::tracer::VertexKind;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let seed = std::env::args().nth(1).map_or(Ok(3), |seed| seed.parse())?;
+    let mut words = std::env::args().skip(1);
+    let seed = words.next().map_or(Ok(3), |seed| seed.parse())?;
+    let damping = words.next().map_or(Ok(0.0), |damping| damping.parse())?;
     let mut random = fastrand::Rng::with_seed(seed);
     let all = [Range { low: 0.05, high: 100.0 }, Range { low: 0.01, high: 3.0 }];
-    let found = traced(all)?.atlas;
+    let mut frame = Frame::new(all[0], all[1], damping);
+    if let Some(law) = words.next() {
+        frame.law = presets::find(&law).ok_or(law)?.law;
+    }
+    let found = traced(frame)?.atlas;
     let places = found.regions.vertices().iter();
     let places: Vec<(bool, [f64; 2])> = places
-        .map(|vertex| {
-            let on_edge = matches!(vertex.kind, VertexKind::WindowEdge | VertexKind::WindowCorner);
-            (!on_edge, found.chart.parameters(&vertex.point))
-        })
+        .map(|vertex| (!vertex.kind.is_on_window(), found.chart.parameters(&vertex.point)))
         .collect();
     let mut tally = Tally::default();
     for (_, place) in &places {
         for width in [5e-7, 5e-5] {
-            tally.trace("around", place.map(|at| range(at, [width, width])));
+            tally.trace("around", frame, place.map(|at| range(at, [width, width])));
         }
     }
     println!("{}", std::mem::take(&mut tally));
@@ -39,7 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 let length = 10.0_f64.powf(-5.5 + 5.2 * random.f64());
                 range(at, [below * length, above * length])
             };
-            tally.trace("at", [side(place[0], first), side(place[1], second)]);
+            tally.trace("at", frame, [side(place[0], first), side(place[1], second)]);
         }
     }
     println!("{tally}");
@@ -55,8 +59,7 @@ fn range(at: f64, [below, above]: [f64; 2]) -> Range {
     Range { low: at * (1.0 - below), high: at * (1.0 + above) }
 }
 
-fn traced([kappa, psi]: [Range; 2]) -> Result<atlas::VerifiedAtlas, atlas::AtlasError> {
-    let frame = Frame::new(kappa, psi, 0.0);
+fn traced(frame: Frame) -> Result<atlas::VerifiedAtlas, atlas::AtlasError> {
     atlas::trace(frame, frame.tolerances().usual, SILENT)
 }
 
@@ -68,8 +71,8 @@ struct Tally {
 }
 
 impl Tally {
-    fn trace(&mut self, what: &str, sides: [Range; 2]) {
-        let objection = match traced(sides) {
+    fn trace(&mut self, what: &str, frame: Frame, [kappa, psi]: [Range; 2]) {
+        let objection = match traced(Frame { kappa, psi, ..frame }) {
             Ok(found) => {
                 self.mismatches += found.report.mismatches.len();
                 found.report.objection()
@@ -78,7 +81,7 @@ impl Tally {
         };
         if let Some(objection) = objection {
             self.others += 1;
-            let [kappa, psi] = sides.map(|Range { low, high }| format!("{low:?}:{high:?}"));
+            let [kappa, psi] = [kappa, psi].map(|Range { low, high }| format!("{low:?}:{high:?}"));
             println!("{what} a vertex, --kappa {kappa} --psi {psi}: {objection}");
         } else {
             self.complete += 1;
