@@ -101,21 +101,30 @@ fn the_subdivision_is_that_of_collisions() {
     assert_right(&undamped(), &ATLAS, KAPPA, PSI);
 }
 
-/// Margins of the exact solution and of the integrator, which share nothing, lead to the same
-/// vertices and curves; these have all nodes in common to 1e-9.
+#[test]
+fn both_engines_trace_the_same_window() {
+    let plane = CollisionPlane::new((4.0, 6.0), (0.5, 1.0), 0.0).expect("collisions");
+    assert_engines_agree(&plane, &atlas(&plane, &TraceOptions::default()));
+}
+
 #[test]
 #[ignore = "long; .ci/run runs it"]
 fn both_engines_trace_the_same_atlas() {
-    let plane = undamped();
-    let integrated = traced(&plane.integrated(), &plane, &TraceOptions::default());
+    assert_engines_agree(&undamped(), &ATLAS);
+}
+
+/// Margins of the exact solution and of the integrator, which share nothing, lead to the same
+/// vertices and curves; these have all nodes in common to 1e-9.
+fn assert_engines_agree(plane: &CollisionPlane, exact: &Atlas) {
+    let integrated = traced(&plane.integrated(), plane, &TraceOptions::default());
     let mut largest = 0.0_f64;
     for vertex in integrated.vertices() {
-        let distances = ATLAS.vertices().iter().filter(|other| other.kind == vertex.kind);
+        let distances = exact.vertices().iter().filter(|other| other.kind == vertex.kind);
         let nearest = distances.map(|other| (other.point - vertex.point).norm());
         largest = largest.max(nearest.fold(f64::INFINITY, f64::min));
     }
     println!("vertices within {largest:.1e}");
-    assert_eq!(integrated.vertices().len(), ATLAS.vertices().len());
+    assert_eq!(integrated.vertices().len(), exact.vertices().len());
     assert!(largest < 1e-7);
     let curves = |atlas: &Atlas| {
         let kind = |place: &Place| *place == Place::End;
@@ -128,11 +137,11 @@ fn both_engines_trace_the_same_atlas() {
         curves.sort();
         curves
     };
-    assert_eq!(curves(&integrated), curves(&ATLAS));
+    assert_eq!(curves(&integrated), curves(exact));
     // Ends are vertices.
     let between = integrated.curves().iter().flat_map(|c| &c.nodes[1..c.nodes.len() - 1]);
     for Node { point, .. } in between {
-        let place = ATLAS.locate(point);
+        let place = exact.locate(point);
         assert!(matches!(place, Location::OnBoundary { .. }), "{point:?}: {place:?}");
     }
 }

@@ -69,7 +69,7 @@ pub enum VertexKind {
 }
 
 impl VertexKind {
-    /// Whether the vertex is where a boundary leaves the window, or a corner.
+    /// Whether the vertex is on an edge of the window or in a corner.
     #[must_use]
     pub fn is_on_window(self) -> bool {
         matches!(self, Self::WindowEdge | Self::WindowCorner)

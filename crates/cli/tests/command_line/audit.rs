@@ -189,6 +189,12 @@ fn another_model_has_other_verdicts() {
 }
 
 #[test]
+fn a_verdict_of_another_model() {
+    let line = "reproduce --statement 10 --model unreset-spring --format json";
+    assert_eq!(verdict(&statements(&stickslip(line).stdout)[0]), HOLDS);
+}
+
+#[test]
 fn one_statement_as_text() {
     let ran = stickslip("reproduce --statement 7");
     assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));

@@ -107,6 +107,11 @@ fn one_collision_has_the_same_files_with_any_number_of_threads() {
             ),
         }
     }
+    for (method, order) in [("dopri5", 5.0), ("dop853", 8.0)] {
+        let found = &json(&workspace, "1/convergence.json");
+        let [velocity, _] = orders(found, [method, "regularised", "located", "step"]);
+        assert!((velocity - order).abs() < 0.3, "{method}: {velocity}");
+    }
     let times = rows(&workspace.read(&format!("1/{TIMES}")));
     assert_eq!(times[0].last().map(String::as_str), Some("microseconds"));
     assert!(times[1..].iter().all(|row| row[6].parse::<f64>().is_ok_and(|time| time > 0.0)));

@@ -208,9 +208,15 @@ fn lines_on_which_a_law_begins_to_gain_are_written() {
     let collision: Value = serde_json::from_str(&ran.stdout).unwrap();
     let off = collision["eps_t"].as_f64().unwrap() - line["eps_t"].as_f64().unwrap();
     assert!(off.abs() < 1e-8, "{collision}");
-    // The paper's law creates none.
+}
+
+#[test]
+fn the_law_of_the_paper_has_no_lines_on_which_it_begins_to_gain() {
+    let directory = Workspace::new();
+    let window = "trace --kappa 1.2:1.3 --psi 0.85:1 --out atlas.json --gaining gaining.json";
     assert_eq!(directory.run(window).code, 0);
     let gaining: Value = serde_json::from_str(&directory.read("gaining.json")).unwrap();
+    assert_eq!(gaining["schema"], "stickslip.gaining/1");
     assert_eq!((&gaining["agrees"], &gaining["lines"]), (&true.into(), &json!([])));
     let same = "trace --kappa 1:2 --psi 1:2 --out a.json --gaining a.json";
     assert_eq!(directory.run(same).code, 2);

@@ -7,7 +7,6 @@ use crate::svg::{count_in, texts};
 
 /// In this window two regions are born, and once only neighbours change.
 #[test]
-#[ignore = "long; .ci/run runs it"]
 fn every_change_is_drawn_over_the_damping_and_at_its_place() {
     let range = |low, high| Range { low, high };
     let frame = Frame::new(range(5.0, 20.0), range(0.2, 2.5), 0.0);

@@ -81,7 +81,8 @@ pub fn trace<'w>(
 ///
 /// The runs of the grid and of the verification are computed on the threads of the current rayon
 /// pool. If the verification finds other switches than the regions have, the tracer looks again
-/// there, in up to eight rounds. `watch` is told of every step. If it cancels, the division is what
+/// there, in up to eight rounds. A window in which something is in doubt is traced in up to three
+/// other ways, of which the first without a doubt counts. `watch` is told of every step. If it cancels, the division is what
 /// was found so far, and its report says so.
 ///
 /// ```
@@ -114,8 +115,9 @@ pub fn divide<'w>(
 /// it, and here the whole tracer comes along.
 ///
 /// Where a vertex lies a hair beside an edge of the window, boundaries that are followed beyond the
-/// edge may be right and those that are not may not, or the other way round. In a narrow window,
-/// what is taken for the error of a margin may hide a vertex, or a smaller one may invent some.
+/// edge may be right and those that are not may not, or the other way round. In a narrow window, the
+/// usual error of margins may be so large that a vertex is missed, and a smaller one so small that
+/// rounding makes vertices.
 fn divide_watched(
     plane: &CollisionPlane,
     tolerance: f64,
@@ -128,7 +130,7 @@ fn divide_watched(
     if first.report.agrees {
         return Ok(first);
     }
-    for other in other_options(plane, options)? {
+    for other in other_options(plane, options) {
         if surveyor.watch.is_cancelled() {
             break;
         }
@@ -142,31 +144,31 @@ fn divide_watched(
 }
 
 /// Other options that may make a window right in which something is in doubt.
-fn other_options(
-    plane: &CollisionPlane,
-    options: TraceOptions,
-) -> Result<Vec<TraceOptions>, AtlasError> {
-    /// The side, in logarithms, below which errors of margins are much of it.
+fn other_options(plane: &CollisionPlane, options: TraceOptions) -> Vec<TraceOptions> {
+    /// With a shorter side than this, in logarithms, a window is narrow.
     const NARROW: f64 = 1e-3;
     let beyond = if options.beyond > 0.0 { 0.0 } else { room_beyond(plane) };
     let beyond = |options| TraceOptions { beyond, ..options };
     let mut others = vec![beyond(options)];
     let [width, height] = plane.sheet().extents();
-    if width.min(height) < NARROW {
-        let finer = TraceOptions { noise: margin_error(plane)?, ..options };
+    let finer = TraceOptions { noise: margin_error(plane), ..options };
+    if width.min(height) < NARROW && finer.noise < options.noise {
         others.extend([finer, beyond(finer)]);
     }
-    Ok(others)
+    others
 }
 
-/// The error of margins in a window. From one place to the next, those of the exact engine are off
-/// by some 1e-16 √κ (`examples/margin_errors.rs` of `validation`); this is ten times as much.
-fn margin_error(plane: &CollisionPlane) -> Result<f64, AtlasError> {
-    let mut stiffest: f64 = 0.0;
-    for corner in plane.corners() {
-        stiffest = stiffest.max(plane.contact_at(corner)?.kappa());
+/// The error of margins in a window. Integrated ones have the usual one. Those of the exact engine
+/// are ten times as accurate up to κ = 100, and lose digits as √κ grows
+/// (`examples/margin_errors.rs` of `validation`).
+fn margin_error(plane: &CollisionPlane) -> f64 {
+    let usual = TraceOptions::default().noise;
+    if plane.sheet().integrated {
+        return usual;
     }
-    Ok((1e-15 * stiffest.sqrt()).clamp(1e-14, TraceOptions::default().noise))
+    let contacts = plane.corners().into_iter().filter_map(|corner| plane.contact_at(corner).ok());
+    let stiffest = contacts.map(|contact| contact.kappa()).fold(100.0, f64::max);
+    (1e-15 * stiffest.sqrt()).min(usual)
 }
 
 /// The regions of a plane that a survey with these options makes.

@@ -16,8 +16,7 @@ pub fn frame<Label, Margin>(
     points: &mut Vec<Point>,
     findings: &mut Vec<Finding<Label>>,
 ) -> Vec<usize> {
-    let stays_inside = |index: usize| {
-        let Vertex { point, kind, .. } = &vertices[index];
+    let stays_inside = |index: usize, point: &Point| {
         let leads = |curve: &Curve<Label, Margin>| {
             let other = match curve.ends {
                 Some([start, end]) if start == index => end,
@@ -27,12 +26,13 @@ pub fn frame<Label, Margin>(
             vertices[other].kind.is_on_window()
                 && curve.nodes.iter().all(|node| (node.point - point).norm() <= tolerance)
         };
-        !kind.is_on_window() && window.contains(point) && curves.iter().any(leads)
+        let is_inner = !vertices[index].kind.is_on_window() && window.depth(point) > 0.0;
+        is_inner && curves.iter().any(leads)
     };
     let mut around = Vec::new();
     for (index, vertex) in vertices.iter().enumerate() {
         if let Some(point) = window.onto_boundary(&vertex.point, tolerance) {
-            if !stays_inside(index) {
+            if !stays_inside(index, &points[index]) {
                 points[index] = point;
                 around.push(index);
             }
