@@ -158,9 +158,10 @@ fn other_options(plane: &CollisionPlane, options: TraceOptions) -> Vec<TraceOpti
     others
 }
 
-/// The error of margins in a window. Integrated ones have the usual one. Those of the exact engine
-/// are ten times as accurate up to κ = 100, and lose digits as √κ grows
-/// (`examples/margin_errors.rs` of `validation`).
+/// The error of margins in a window, where their slope in the logarithms is 1. Integrated ones have
+/// the usual one. Those of the exact engine are ten times as accurate up to κ = 100, and lose digits
+/// as √κ grows (`examples/margin_errors.rs` of `validation`). Steeper ones may be off by more, which
+/// moves their zeros by as little.
 fn margin_error(plane: &CollisionPlane) -> f64 {
     let usual = TraceOptions::default().noise;
     if plane.sheet().integrated {
