@@ -82,8 +82,8 @@ pub fn trace<'w>(
 /// The runs of the grid and of the verification are computed on the threads of the current rayon
 /// pool. If the verification finds other switches than the regions have, the tracer looks again
 /// there, in up to eight rounds. A window in which something is in doubt is traced in up to three
-/// other ways, of which the first without a doubt counts. `watch` is told of every step. If it cancels, the division is what
-/// was found so far, and its report says so.
+/// other ways, of which the first without a doubt counts. `watch` is told of every step. If it
+/// cancels, the division is what was found so far, and its report says so.
 ///
 /// ```
 /// use stickslip_model::{BodyPair, Material, Surface};
@@ -115,9 +115,9 @@ pub fn divide<'w>(
 /// it, and here the whole tracer comes along.
 ///
 /// Where a vertex lies a hair beside an edge of the window, boundaries that are followed beyond the
-/// edge may be right and those that are not may not, or the other way round. In a narrow window, the
-/// usual error of margins may be so large that a vertex is missed, and a smaller one so small that
-/// rounding makes vertices.
+/// edge may be right and those that are not may not, or the other way round. In a narrow window,
+/// the usual error of margins may be so large that a vertex is missed, and a smaller one so small
+/// that rounding makes vertices.
 fn divide_watched(
     plane: &CollisionPlane,
     tolerance: f64,
@@ -159,9 +159,9 @@ fn other_options(plane: &CollisionPlane, options: TraceOptions) -> Vec<TraceOpti
 }
 
 /// The error of margins in a window, where their slope in the logarithms is 1. Integrated ones have
-/// the usual one. Those of the exact engine are ten times as accurate up to κ = 100, and lose digits
-/// as √κ grows (`examples/margin_errors.rs` of `validation`). Steeper ones may be off by more, which
-/// moves their zeros by as little.
+/// the usual one. Those of the exact engine are ten times as accurate up to κ = 100, and lose
+/// digits as √κ grows (`examples/margin_errors.rs` of `validation`). Steeper ones may be off by
+/// more, which moves their zeros by as little.
 fn margin_error(plane: &CollisionPlane) -> f64 {
     let usual = TraceOptions::default().noise;
     if plane.sheet().integrated {
