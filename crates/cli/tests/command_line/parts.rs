@@ -55,7 +55,7 @@ fn joined_parts_are_the_whole_map() {
 
 #[test]
 fn a_map_of_two_bodies_in_parts() {
-    two_bodies_in_parts("13x5");
+    two_bodies_in_parts("13x11");
 }
 
 #[test]
