@@ -1,6 +1,6 @@
 //! A boundary that begins on that of a graze, with a square root of any steepness.
 
-use stickslip_tracer::{Family, FreeRun, Point, Surveyor, VertexKind, trace};
+use stickslip_tracer::{Family, FreeRun, Point, Surveyor, trace};
 
 use crate::any::any;
 use crate::guards::{Failed, Label, Margin, SQUARE, exact};
@@ -75,8 +75,8 @@ fn distance_of_place(family: &Grazing<Root>) -> f64 {
     let network = trace(&any(family), &SQUARE, &exact()).unwrap();
     assert_eq!(network.unresolved, []);
     assert_eq!(network.curves.len(), 3);
-    let inner = |kind| !matches!(kind, VertexKind::WindowEdge | VertexKind::WindowCorner);
-    let inside: Vec<_> = network.vertices.iter().filter(|vertex| inner(vertex.kind)).collect();
+    let inside: Vec<_> =
+        network.vertices.iter().filter(|vertex| !vertex.kind.is_on_window()).collect();
     assert_eq!(inside.len(), 1);
     (inside[0].point - PLACE).norm()
 }

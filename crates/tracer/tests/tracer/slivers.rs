@@ -1,6 +1,6 @@
 //! Regions much thinner than a cell of the grid, with the same label on both sides.
 
-use stickslip_tracer::{Family, FreeRun, Point, TraceOptions, VertexKind, trace};
+use stickslip_tracer::{Family, FreeRun, Point, TraceOptions, trace};
 
 use crate::any::any;
 use crate::guards::{Failed, Label, Margin, SQUARE};
@@ -49,8 +49,7 @@ impl Family for Sliver {
 fn found(height: fn(f64) -> f64) -> [usize; 2] {
     let network = trace(&any(Sliver { height }), &SQUARE, &TraceOptions::default()).unwrap();
     assert_eq!(network.unresolved, []);
-    let inside = |kind| !matches!(kind, VertexKind::WindowEdge | VertexKind::WindowCorner);
-    let vertices = network.vertices.iter().filter(|vertex| inside(vertex.kind)).count();
+    let vertices = network.vertices.iter().filter(|vertex| !vertex.kind.is_on_window()).count();
     [network.curves.len(), vertices]
 }
 
