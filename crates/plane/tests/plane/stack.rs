@@ -165,6 +165,20 @@ fn a_meeting_beside_a_change_is_not_its_cause() {
     assert_eq!(regions, [15, 16], "{change:?}");
 }
 
+/// Behind the change, the crossing is a few 1e-8 inside the window, and the region that is born
+/// reaches the edge a few 1e-7 beside it.
+#[test]
+fn a_region_is_born_in_a_sharp_crossing_on_the_edge() {
+    let window = frame((0.3, 0.6), (0.01, 0.5));
+    let stack = stack(window, &[4.59e-6, 4.6e-6], window.tolerances().usual, SILENT).unwrap();
+    assert_eq!(stack.objection(), None, "{:?}", stack.changes);
+    let [change] = &stack.changes[..] else { panic!("{:?}", stack.changes) };
+    let meeting = change.meeting.as_ref().unwrap();
+    assert_eq!((meeting.kind, meeting.psi), ("edge", 0.01));
+    let [low, high] = change.between;
+    assert!(high - low < 1.1e-5 * low && low < meeting.damping && meeting.damping < high);
+}
+
 /// A layer that was not compared with the changes, and is not inside one, speaks against the stack.
 #[test]
 fn a_layer_that_was_not_compared_is_an_objection() {

@@ -23,7 +23,10 @@ impl<F: Family> Tracer<'_, F> {
         /// curves of further ones.
         const CHANGES: usize = 64;
         let [a, b] = segment;
-        let gap = 2e-9 * self.runs.scale / (b - a).norm();
+        let length = (b - a).norm();
+        // On a short segment, a curve that is no farther than this from another one counts too.
+        let short = (2e-3 * length).max(2.0 * self.runs.options.interpolation);
+        let gap = (2e-9 * self.runs.scale).min(short) / length;
         let [mut label, last] = labels;
         let mut place = 0.0;
         for _ in 0..CHANGES {

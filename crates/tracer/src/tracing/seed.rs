@@ -51,7 +51,8 @@ pub(crate) struct Change<Label> {
 }
 
 /// Bisects a change of the label between two places of the segment from `a` to `b`, down to 1e-9 of
-/// the window's shorter extent.
+/// the window's shorter extent, or to a thousandth of a segment that is shorter than a thousand of
+/// these.
 ///
 /// The result is a place where the label of the first place ends. Beyond it the label may change
 /// again.
@@ -63,7 +64,7 @@ pub(crate) fn bisect<F: Family>(
 ) -> Traced<Change<F::Label>, F> {
     let [mut low, mut high] = places;
     let [first, mut second] = labels;
-    let width = 1e-9 * runs.scale / (b - a).norm();
+    let width = (1e-9 * runs.scale / (b - a).norm()).min(1e-3);
     while high - low > width {
         let middle = 0.5 * (low + high);
         if !(middle > low && middle < high) {

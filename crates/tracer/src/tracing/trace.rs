@@ -150,7 +150,7 @@ impl<'f, F: Family> Tracer<'f, F> {
             // Curves that leave the window between the vertex and these circles.
             let Window { low, high } = self.runs.window;
             let to_edge = (point - low).inf(&(high - point)).min() / self.runs.scale;
-            if (10.0 * SHORTEST..CIRCLES[1]).contains(&to_edge) {
+            if (SHORTEST..CIRCLES[1]).contains(&to_edge) {
                 self.circle(&point, 0.5 * to_edge * self.runs.scale)?;
             }
         }

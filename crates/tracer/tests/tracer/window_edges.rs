@@ -2,11 +2,12 @@
 //! hair inside, and in corners.
 
 use stickslip_tracer::{
-    Atlas, AtlasOf, AtlasOptions, Family, Point, TraceOptions, VerifyOptions, VertexKind, Window,
+    Atlas, AtlasOf, AtlasOptions, Family, FreeRun, Point, TraceOptions, VerifyOptions, VertexKind,
+    Window,
 };
 
 use crate::any::any;
-use crate::guards::{Guards, SQUARE, exact};
+use crate::guards::{Failed, Guards, Label, Margin, SQUARE, exact};
 
 /// The atlas of the functions, against which nothing may speak, and which is right at points of
 /// every distance from the edges.
@@ -137,4 +138,53 @@ fn circles_that_touch_an_edge() {
         right(vec![|p| (p - Point::new(0.5, 0.0)).norm_squared() - 0.500_000_1 * 0.500_000_1]);
     assert_eq!((beyond.plane.curves().len(), beyond.plane.regions().len()), (1, 2));
     assert!(inside.plane.curves()[0].ends.is_none() && beyond.plane.curves()[0].ends.is_some());
+}
+
+/// Two lines that cross at a depth below the upper edge, at a small angle to it and to each other.
+struct Lines {
+    depth: f64,
+    slopes: [f64; 2],
+}
+
+impl Lines {
+    /// The heights of a point above them.
+    fn heights(&self, point: &Point) -> [f64; 2] {
+        self.slopes.map(|slope| point.y - (1.0 - self.depth) - slope * (point.x - 0.2))
+    }
+}
+
+impl Family for Lines {
+    type Label = Label;
+    type Margin = Margin;
+    type Error = Failed;
+
+    fn label(&self, point: &Point) -> Result<Label, Failed> {
+        Ok(self.heights(point).map(|height| height < 0.0).to_vec())
+    }
+
+    fn margin(&self, point: &Point, margin: &Margin) -> Result<Option<f64>, Failed> {
+        Ok(Some(self.heights(point)[margin.0]))
+    }
+
+    fn free_run(&self, point: &Point) -> Result<FreeRun<Label, Margin>, Failed> {
+        let (label, heights) = (self.label(point)?, self.heights(point));
+        let margin = |line: usize| ((line, label[..line].to_vec()), heights[line]);
+        let margins = (0..2).filter(|&line| !label[line]).map(margin).collect();
+        Ok(FreeRun { label, margins })
+    }
+}
+
+/// At each depth both lines reach the edge within a few hundred depths of their crossing.
+#[test]
+fn a_sharp_crossing_just_inside_an_edge() {
+    for slopes in [[-0.01, 0.01], [0.01, 0.028]] {
+        for tenths in 0..20 {
+            let depth = 3e-8 * 10_f64.powf(0.1 * f64::from(tenths));
+            let family = any(Lines { depth, slopes });
+            let atlas = Atlas::of(&family, &SQUARE, &AtlasOptions::default()).unwrap();
+            let plane = &atlas.plane;
+            assert_eq!(atlas.objection(), None, "{slopes:?}, {depth:e}");
+            assert_eq!((plane.curves().len(), plane.regions().len()), (4, 4));
+        }
+    }
 }
