@@ -6,10 +6,10 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 use stickslip_model::InvalidParameter;
-use stickslip_tracer::{AtlasOptions, Effect, MeetingKind, Stack, StackError, StackOptions};
+use stickslip_tracer::{AtlasOptions, Effect, MeetingKind, Stack, StackError, StackOptions, Watch};
 
 use crate::atlas::{self, AtlasError, Frame, VerifiedAtlas, itinerary};
-use crate::progress::{Progress, Report, SILENT};
+use crate::progress::{InParallel, Progress, Report, SILENT};
 
 /// The name of the layout of a stack that is written, with its version.
 pub const SCHEMA: &str = "stickslip.stack/1";
@@ -108,7 +108,7 @@ pub enum DampingStackError {
 ///
 /// Each atlas is traced as [`atlas::trace`] does it. The changes come from atlases of their own,
 /// see [`stickslip_tracer::Stack`]; `as_stacked` tells whether both agree. The atlases are computed
-/// on the threads of the current rayon pool. `progress` is told about each of `dampings`.
+/// on the threads of the current rayon pool. `progress` is told about each of them.
 ///
 /// ```
 /// use stickslip_plane::atlas::Frame;
@@ -133,7 +133,7 @@ pub fn stack(
     let damped = damped(dampings)?;
     let undamped = dampings.len() - damped.len();
     let at = |damping: f64| Frame { damping, ..frame };
-    progress(Progress::Begin { steps: dampings.len() + 1 });
+    progress(Progress::Begin { steps: dampings.len() });
     let layer = |&damping: &f64| {
         let made = atlas::trace(at(damping), tolerance, SILENT);
         progress(Progress::Advance { steps: 1 });
@@ -142,11 +142,7 @@ pub fn stack(
     };
     let (layers, followed) = rayon::join(
         || dampings.par_iter().map(layer).collect::<Result<Vec<_>, _>>(),
-        || {
-            let followed = follow(&at, damped, tolerance);
-            progress(Progress::Advance { steps: 1 });
-            followed
-        },
+        || follow(&at, damped, tolerance, progress),
     );
     let (mut layers, Followed { changes, labels, atlases }) = (layers?, followed?);
     for (layer, labels) in layers[undamped..].iter_mut().zip(labels) {
@@ -181,6 +177,7 @@ fn follow(
     at: &impl Fn(f64) -> Frame,
     dampings: &[f64],
     tolerance: f64,
+    progress: Report<'_>,
 ) -> Result<Followed, DampingStackError> {
     let first = dampings[0];
     let failed = |damping, source| DampingStackError::Atlas { damping, source };
@@ -202,15 +199,14 @@ fn follow(
         },
         ..StackOptions::default()
     };
-    let stack =
-        Stack::of(family, &sample.window(), dampings, &options).map_err(|error| match error {
-            StackError::Atlas { value, source } => {
-                failed(value, AtlasError::of_atlas(&sample, source))
-            }
-            StackError::Values | StackError::Width(_) => {
-                DampingStackError::Dampings { dampings: dampings.to_vec() }
-            }
-        })?;
+    let (window, watch) = (sample.window(), Watch::from(progress));
+    let made = Stack::watched(family, &window, dampings, &options, InParallel, watch);
+    let stack = made.map_err(|error| match error {
+        StackError::Atlas { value, source } => failed(value, AtlasError::of_atlas(&sample, source)),
+        StackError::Values | StackError::Width(_) => {
+            DampingStackError::Dampings { dampings: dampings.to_vec() }
+        }
+    })?;
     let any = sample.contact_or_any(&sample.window().low);
     let text = |label: &Vec<usize>| itinerary(&any, label);
     let changes = stack.changes.iter().map(|change| DampingChange {

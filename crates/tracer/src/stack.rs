@@ -17,11 +17,16 @@ mod sample;
 mod search;
 mod structure;
 
+use std::fmt::Debug;
+
 use crate::atlas::{Atlas, AtlasError, AtlasOptions};
+use crate::executor::{Executor, Serial};
 use crate::family::Family;
 use crate::stack::change::Change;
 use crate::stack::search::Search;
 use crate::stack::structure::Structure;
+use crate::survey::Surveyor;
+use crate::watch::{Progress, Watch};
 use crate::window::Window;
 
 /// The options of a [`Stack`].
@@ -92,6 +97,9 @@ pub struct Stack<Label, Margin> {
     pub changes: Vec<Change<Label>>,
     /// The number of atlases that were traced.
     pub atlases: usize,
+    /// Whether the search came to its end. If it was cancelled, `layers` are those that were
+    /// finished, and changes between them are missing or in doubt.
+    pub finished: bool,
     /// The structures of the first and the last layer that is not in doubt, and those behind each
     /// change.
     structures: Vec<(f64, Structure<Label>)>,
@@ -145,6 +153,26 @@ impl<Label: Clone + Ord, Margin: Clone + PartialEq> Stack<Label, Margin> {
     where
         F: Family<Label = Label, Margin = Margin>,
     {
+        Self::watched(family, window, values, options, Serial, Watch::SILENT)
+    }
+
+    /// The same stack, bit for bit, whose runs `executor` computes. `watch` sees each atlas as a
+    /// step, and can cancel; the result is then [not finished](Self::finished).
+    ///
+    /// # Errors
+    /// As [`of`](Self::of).
+    pub fn watched<F, E>(
+        family: impl Fn(f64) -> F,
+        window: &Window,
+        values: &[f64],
+        options: &StackOptions,
+        executor: E,
+        watch: Watch<'_>,
+    ) -> Result<Self, StackError<F::Error>>
+    where
+        F: Family<Label = Label, Margin = Margin>,
+        E: Executor<F>,
+    {
         let ascend = values.windows(2).all(|pair| pair[0] < pair[1]);
         if values.len() < 2 || !ascend || !values.iter().all(|value| value.is_finite()) {
             return Err(StackError::Values);
@@ -155,10 +183,17 @@ impl<Label: Clone + Ord, Margin: Clone + PartialEq> Stack<Label, Margin> {
         // Places beyond the window's edges say nothing about changes inside.
         let mut options = *options;
         options.atlas.trace.beyond = 0.0;
-        let mut search = Search::new(&family, *window, options);
+        let surveyor = Surveyor { options: options.atlas, executor, watch: watch.silently() };
+        let mut search = Search::new(&family, *window, options, surveyor, watch);
+        watch.report(Progress::Begin { steps: values.len() });
         let mut samples = Vec::with_capacity(values.len());
         for &value in values {
-            samples.push(search.sample(value)?);
+            let sample = search.sample(value)?;
+            if !sample.atlas.is_finished() {
+                break;
+            }
+            samples.push(sample);
+            watch.report(Progress::Advance { steps: 1 });
         }
         let sure: Vec<_> = samples.iter().filter(|sample| sample.atlas.agrees()).collect();
         for pair in sure.windows(2) {
@@ -167,7 +202,7 @@ impl<Label: Clone + Ord, Margin: Clone + PartialEq> Stack<Label, Margin> {
         let first = sure.first().map(|sample| (sample.value, sample.structure.clone()));
         let last = sure.last().map(|sample| (sample.value, sample.structure.clone()));
         let mut structures: Vec<_> = first.into_iter().collect();
-        let atlases = search.count();
+        let (atlases, finished) = (search.count(), !watch.is_cancelled());
         let (changes, behind): (Vec<_>, Vec<_>) = search.joined().into_iter().unzip();
         let ends = changes.iter().map(|change: &Change<Label>| change.between[1]);
         structures.extend(ends.zip(behind));
@@ -176,7 +211,33 @@ impl<Label: Clone + Ord, Margin: Clone + PartialEq> Stack<Label, Margin> {
             .into_iter()
             .map(|sample| Layer { value: sample.value, atlas: sample.atlas })
             .collect();
-        Ok(Self { layers, changes, atlases, structures })
+        Ok(Self { layers, changes, atlases, finished, structures })
+    }
+
+    /// What speaks against the stack, in one sentence: it is not finished, or a layer or a change
+    /// is in doubt. `None` if nothing does.
+    #[must_use]
+    pub fn objection(&self) -> Option<String>
+    where
+        Label: Debug,
+    {
+        if !self.finished {
+            return Some("it is not finished".to_owned());
+        }
+        let of_layer = |layer: &Layer<Label, Margin>| {
+            Some(format!("at the value {:?}: {}", layer.value, layer.atlas.objection()?))
+        };
+        let of_change = |change: &Change<Label>| {
+            let [low, high] = change.between;
+            let what = match (change.doubtful, change.meeting) {
+                (false, Some(_)) => return None,
+                (true, Some(_)) => "several changes may lie between the values",
+                (_, None) => "nothing is known of what changes between the values",
+            };
+            Some(format!("{what} {low:?} and {high:?}"))
+        };
+        let layers = self.layers.iter().find_map(of_layer);
+        layers.or_else(|| self.changes.iter().find_map(of_change))
     }
 
     /// The labels of all regions at a value of the third parameter, in order; `None` inside the

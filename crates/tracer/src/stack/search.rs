@@ -1,5 +1,6 @@
 //! How changes of the structure are isolated between two values of the third parameter.
 
+use crate::executor::Executor;
 use crate::family::Family;
 use crate::stack::candidates::candidates;
 use crate::stack::change::Change;
@@ -7,8 +8,10 @@ use crate::stack::meeting::{Box3, Meeting, Solved, solve, touching};
 use crate::stack::sample::Sample;
 use crate::stack::structure::Structure;
 use crate::stack::{StackError, StackOptions};
-use crate::window::Window;
-use crate::{Atlas, AtlasError, TraceError};
+use crate::survey::Surveyor;
+use crate::watch::{Progress, Watch};
+use crate::window::{Point, Window};
+use crate::{AtlasError, TraceError};
 
 /// A change, and the structure behind it.
 type Found<F> = (Change<<F as Family>::Label>, Structure<<F as Family>::Label>);
@@ -37,16 +40,24 @@ impl<F: Family> Beside<F> {
 }
 
 /// A search for changes.
-pub(super) struct Search<'a, F: Family, At> {
+pub(super) struct Search<'a, F: Family, At, E> {
     family: &'a At,
     window: Window,
     options: StackOptions,
+    surveyor: Surveyor<'a, E>,
+    watch: Watch<'a>,
     count: usize,
     found: Vec<Found<F>>,
-    /// Values that were solved for and close to which the structure does not change.
-    passed: Vec<f64>,
-    /// Those at which it does not change farther away either.
-    refuted: Vec<f64>,
+    /// The meetings at which the structure does not change.
+    tried: Vec<Tried<F::Label>>,
+}
+
+/// A meeting at which the structure does not change, as far as atlases within reach tell.
+struct Tried<Label> {
+    meeting: Meeting,
+    reach: Reach,
+    /// The values of atlases on both sides that are not in doubt, and their structure.
+    around: Option<([f64; 2], Structure<Label>)>,
 }
 
 /// The distances from a meeting of atlases that are far from it, in widths.
@@ -61,16 +72,23 @@ enum Reach {
     Far,
 }
 
-impl<'a, F: Family, At: Fn(f64) -> F> Search<'a, F, At> {
-    pub fn new(family: &'a At, window: Window, options: StackOptions) -> Self {
+impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
+    pub fn new(
+        family: &'a At,
+        window: Window,
+        options: StackOptions,
+        surveyor: Surveyor<'a, E>,
+        watch: Watch<'a>,
+    ) -> Self {
         Self {
             family,
             window,
             options,
+            surveyor,
+            watch,
             count: 0,
             found: Vec::new(),
-            passed: Vec::new(),
-            refuted: Vec::new(),
+            tried: Vec::new(),
         }
     }
 
@@ -84,13 +102,25 @@ impl<'a, F: Family, At: Fn(f64) -> F> Search<'a, F, At> {
         self.count += 1;
         let family = (self.family)(value);
         let at = StackError::at(value);
-        let atlas = Atlas::of(&family, &self.window, &self.options.atlas).map_err(&at)?;
+        let atlas = self.surveyor.atlas(&family, &self.window).map_err(&at)?;
         let structure = Structure::of(&atlas.plane, &family).map_err(|source| {
             // The error of a run has its place.
             let point = self.window.low;
             at(AtlasError::Trace(TraceError::Run { point, source }))
         })?;
         Ok(Sample { value, atlas, structure })
+    }
+
+    /// The atlas at a value between two others; `None` if it is in doubt, or if no more atlases may
+    /// be made.
+    fn between(&mut self, value: f64) -> Searched<Option<Sample<F>>, F> {
+        if self.count >= self.options.atlases || self.watch.is_cancelled() {
+            return Ok(None);
+        }
+        self.watch.report(Progress::Begin { steps: 1 });
+        let sample = self.sample(value)?;
+        self.watch.report(Progress::Advance { steps: 1 });
+        Ok(sample.atlas.agrees().then_some(sample))
     }
 
     /// The width of a bracket that is narrow enough, around a value.
@@ -102,7 +132,18 @@ impl<'a, F: Family, At: Fn(f64) -> F> Search<'a, F, At> {
     pub fn refine(&mut self, low: &Sample<F>, high: &Sample<F>) -> Searched<(), F> {
         let Some(differing) = low.structure.differing(&high.structure) else { return Ok(()) };
         if high.value - low.value <= self.width(low.value, high.value) {
-            self.push([low, high], None, false);
+            match self.unseen(low, high, &differing) {
+                Some((meeting, between)) => {
+                    let change =
+                        Change { between, ..Change::new([low, high], Some(meeting), false) };
+                    self.found.push((change, high.structure.clone()));
+                }
+                None => self.push([low, high], None, false),
+            }
+            return Ok(());
+        }
+        if self.watch.is_cancelled() {
+            self.push([low, high], None, true);
             return Ok(());
         }
         if self.solved(low, high, &differing, Reach::Close)? {
@@ -123,10 +164,6 @@ impl<'a, F: Family, At: Fn(f64) -> F> Search<'a, F, At> {
             if self.isolated(low, high, &meeting, reach)? {
                 return Ok(true);
             }
-            match reach {
-                Reach::Close => self.passed.push(meeting.value),
-                Reach::Far => self.refuted.push(meeting.value),
-            }
         }
         Ok(false)
     }
@@ -146,10 +183,11 @@ impl<'a, F: Family, At: Fn(f64) -> F> Search<'a, F, At> {
         let near = self.width(values[0], values[1]);
         let (mut tried, mut vague) = (Vec::new(), Vec::new());
         let mut meetings: Vec<Meeting> = Vec::new();
-        let passed = if reach == Reach::Close { &self.passed[..] } else { &[] };
+        let tried_before = |tried: &&Tried<_>| reach == Reach::Close || tried.reach == Reach::Far;
         let mut add = |found: Meeting| {
             let is_near = |other: f64| (other - found.value).abs() < near;
-            let known = self.refuted.iter().chain(passed).any(|&other| is_near(other))
+            let mut before = self.tried.iter().filter(tried_before);
+            let known = before.any(|tried| is_near(tried.meeting.value))
                 || meetings.iter().any(|other| is_near(other.value));
             if !known {
                 meetings.push(found);
@@ -199,21 +237,26 @@ impl<'a, F: Family, At: Fn(f64) -> F> Search<'a, F, At> {
             Reach::Close => &[0.5],
             Reach::Far => &FAR,
         };
+        let mut around = None;
         // A value may be 0.
         let least = 1e-2 * (high.value - low.value);
         let width = self.options.width * meeting.value.abs().max(least);
         for part in widths {
             let below = self.beside(meeting.value - part * width, [low, high])?;
             let above = self.beside(meeting.value + part * width, [low, high])?;
-            if let (Some(below), Some(above)) = (below.or(low), above.or(high))
-                && below.structure.differing(&above.structure).is_some()
-            {
+            let (Some(below), Some(above)) = (below.or(low), above.or(high)) else { continue };
+            if below.structure.differing(&above.structure).is_some() {
                 self.refine(low, below)?;
                 self.push([below, above], Some(*meeting), false);
                 self.refine(above, high)?;
                 return Ok(true);
             }
+            around.get_or_insert_with(|| {
+                let between = [below.value, above.value];
+                (between, below.structure.clone())
+            });
         }
+        self.tried.push(Tried { meeting: *meeting, reach, around });
         Ok(false)
     }
 
@@ -222,11 +265,8 @@ impl<'a, F: Family, At: Fn(f64) -> F> Search<'a, F, At> {
         if value <= ends[0].value || value >= ends[1].value {
             return Ok(Beside::End);
         }
-        if self.count >= self.options.atlases {
-            return Ok(Beside::Doubtful);
-        }
-        let sample = self.sample(value)?;
-        Ok(if sample.atlas.agrees() { Beside::Between(Box::new(sample)) } else { Beside::Doubtful })
+        let sample = self.between(value)?;
+        Ok(sample.map_or(Beside::Doubtful, |sample| Beside::Between(Box::new(sample))))
     }
 
     /// Divides the search at an atlas between the two that agrees. Where that is about as close to
@@ -250,20 +290,19 @@ impl<'a, F: Family, At: Fn(f64) -> F> Search<'a, F, At> {
         let mut places = PLACES.map(|part| low.value + part * (high.value - low.value)).to_vec();
         // Where regions may be too small to be seen, an atlas tells nothing.
         let too_close = |place: f64| {
-            let near = |value: f64| (value - place).abs() <= FAR[1] * width;
-            let is_open =
-                |value: f64| !self.refuted.iter().any(|other| (other - value).abs() <= width);
-            self.passed.iter().any(|&value| near(value) && is_open(value))
+            let is = |tried: &Tried<_>, reach: Reach, value: f64, widths: f64| {
+                tried.reach == reach && (tried.meeting.value - value).abs() <= widths * width
+            };
+            self.tried.iter().any(|tried| {
+                let again = |other: &_| is(other, Reach::Far, tried.meeting.value, 1.0);
+                is(tried, Reach::Close, place, FAR[1]) && !self.tried.iter().any(again)
+            })
         };
         if !narrow {
             places.sort_by_key(|&place| too_close(place));
         }
         for place in places {
-            if self.count >= self.options.atlases {
-                break;
-            }
-            let middle = self.sample(place)?;
-            if middle.atlas.agrees() {
+            if let Some(middle) = self.between(place)? {
                 self.refine(low, &middle)?;
                 return self.refine(&middle, high);
             }
@@ -273,6 +312,48 @@ impl<'a, F: Family, At: Fn(f64) -> F> Search<'a, F, At> {
         }
         self.push([low, high], None, true);
         Ok(())
+    }
+
+    /// A meeting beside a change that atlases have enclosed, and the bracket that holds both: a
+    /// region that is born or dies there is too small to be seen in atlases that are closer to the
+    /// meeting. From the change up to the meeting the atlases have one structure.
+    fn unseen(
+        &self,
+        low: &Sample<F>,
+        high: &Sample<F>,
+        differing: &[Vec<usize>; 2],
+    ) -> Option<(Meeting, [f64; 2])> {
+        /// How far the meeting may be, in widths.
+        const FARTHEST: f64 = 400.0;
+        /// How far it may be from the region, and the half width of that, as parts of the window's
+        /// shorter extent.
+        const BESIDE: f64 = 1e-2;
+        const SMALL: f64 = 1e-5;
+        let near = FARTHEST * self.width(low.value, high.value);
+        let scale = self.window.extent().min();
+        let is_beside = |sample: &Sample<F>, regions: &[usize], point: &Point| {
+            let mut regions = regions.iter().map(|&region| &sample.atlas.plane.regions()[region]);
+            regions.any(|region| {
+                region.clearance <= SMALL * scale
+                    && (region.sample - point).norm() <= BESIDE * scale
+            })
+        };
+        let found = self.tried.iter().filter_map(|Tried { meeting, around, .. }| {
+            let (between, structure) = around.as_ref()?;
+            let same = |sample: &Sample<F>| sample.structure.differing(structure).is_none();
+            let (between, gap) = if meeting.value > high.value && same(high) {
+                ([low.value, between[1]], meeting.value - high.value)
+            } else if meeting.value < low.value && same(low) {
+                ([between[0], high.value], low.value - meeting.value)
+            } else {
+                return None;
+            };
+            let ends = [low, high].into_iter().zip(differing);
+            let beside = ends.into_iter().any(|(end, own)| is_beside(end, own, &meeting.point));
+            (gap <= near && beside).then_some((*meeting, between, gap))
+        });
+        let nearest = found.min_by(|one, other| one.2.total_cmp(&other.2));
+        nearest.map(|(meeting, between, _)| (meeting, between))
     }
 
     fn push(&mut self, ends: [&Sample<F>; 2], meeting: Option<Meeting>, doubtful: bool) {

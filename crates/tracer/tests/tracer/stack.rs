@@ -1,8 +1,10 @@
 //! Stacks of families whose changes have closed forms.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use stickslip_tracer::{
-    AtlasOptions, Change, Effect, Family, FreeRun, MeetingKind, Point, Stack, StackOptions,
-    TraceOptions, VerifyOptions, Window,
+    AtlasOptions, Change, Effect, Family, FreeRun, MeetingKind, Point, Progress, Serial, Stack,
+    StackOf, StackOptions, TraceOptions, VerifyOptions, Watch, Window,
 };
 
 use crate::any::any;
@@ -155,10 +157,106 @@ fn a_jump_is_a_bracket() {
     let [change] = &stack.changes[..] else { panic!("{:?}", stack.changes) };
     let [low, high] = change.between;
     assert!(change.meeting.is_none() && !change.doubtful);
+    assert!(stack.objection().unwrap().starts_with("nothing is known"));
     assert!(low < 0.3 && 0.3 <= high && high - low <= 1e-5 * high, "{change:?}");
     assert_eq!(stack.labels(0.2), Some(vec![vec![false], vec![true]]));
     assert_eq!(stack.labels(0.5).unwrap().len(), 5);
     assert_eq!(stack.labels(0.61), None);
+}
+
+/// A disc that dies at t = 1, and whose runs do not see it for some time before: so it is with
+/// regions that are too small.
+struct Unseen {
+    value: f64,
+    /// The square of the radius at t = 0.
+    area: f64,
+    seen_until: f64,
+}
+
+impl Family for Unseen {
+    type Label = bool;
+    type Margin = ();
+    type Error = Failed;
+
+    fn label(&self, point: &Point) -> Result<bool, Failed> {
+        Ok(self.value < self.seen_until && self.margin(point, &())?.is_some_and(|it| it < 0.0))
+    }
+
+    fn margin(&self, point: &Point, (): &()) -> Result<Option<f64>, Failed> {
+        Ok(Some((point - Point::new(0.25, 0.125)).norm_squared() - self.area * (1.0 - self.value)))
+    }
+
+    fn free_run(&self, point: &Point) -> Result<FreeRun<bool, ()>, Failed> {
+        let margin = self.margin(point, &())?.filter(|_| self.value < self.seen_until);
+        let margins = margin.into_iter().map(|value| ((), value)).collect();
+        Ok(FreeRun { label: self.label(point)?, margins })
+    }
+}
+
+#[test]
+fn the_cause_of_a_change_may_lie_beside_it() {
+    let found = |area, seen_until| {
+        let family = |value| any(Unseen { value, area, seen_until });
+        Stack::of(family, &SQUARE, &[0.5, 1.5], &options()).unwrap()
+    };
+    let stack = found(1e-8, 0.998);
+    assert_eq!(stack.objection(), None);
+    let [change] = &stack.changes[..] else { panic!("{:?}", stack.changes) };
+    let meeting = change.meeting.unwrap();
+    assert_eq!(meeting.kind, MeetingKind::Flat);
+    assert!((meeting.value - 1.0).abs() < 1e-9, "{meeting:?}");
+    let [low, high] = change.between;
+    assert!(0.998 - 1e-5 < low && low < 0.998 && 1.0 < high && high < 1.001, "{change:?}");
+    assert_eq!(change.effects, [Effect::Dies(true)]);
+    // These are too far away to be the cause, and too large to be overlooked.
+    for (area, seen_until) in [(1e-8, 0.99), (0.1, 0.998)] {
+        let stack = found(area, seen_until);
+        let [change] = &stack.changes[..] else { panic!("{:?}", stack.changes) };
+        assert_eq!(change.meeting, None);
+    }
+}
+
+/// A disc that is born at t = 0, in a stack that ends when it has been asked so often whether to go
+/// on; and the steps that begin and that are done.
+fn asked(patience: usize) -> (StackOf<Moving>, [usize; 2]) {
+    const DISC: [fn(&Point, f64) -> f64; 1] = [|point, t| point.norm_squared() - t];
+    let (asked, begun, done) = (AtomicUsize::new(0), AtomicUsize::new(0), AtomicUsize::new(0));
+    let report = |progress: Progress| {
+        match progress {
+            Progress::Begin { steps } => begun.fetch_add(steps, Ordering::Relaxed),
+            Progress::Advance { steps } => done.fetch_add(steps, Ordering::Relaxed),
+        };
+    };
+    let cancelled = || asked.fetch_add(1, Ordering::Relaxed) >= patience;
+    let watch = Watch::from(&report).cancelled_by(&cancelled);
+    let family = |value| any(Moving { guards: &DISC, value });
+    let values = [-0.5, 0.25, 0.5];
+    let stack = Stack::watched(family, &SQUARE, &values, &options(), Serial, watch).unwrap();
+    (stack, [begun, done].map(AtomicUsize::into_inner))
+}
+
+#[test]
+fn a_stack_is_watched_and_cancelled() {
+    let (whole, [begun, done]) = asked(usize::MAX);
+    assert!(whole.finished && whole.objection().is_none());
+    assert_eq!([begun, done], [whole.atlases; 2]);
+    let [change] = &whole.changes[..] else { panic!("{:?}", whole.changes) };
+    let mut seen = [false; 3];
+    for patience in (0..20_000).step_by(500) {
+        let (part, [begun, done]) = asked(patience);
+        if part.finished {
+            assert_eq!((&part.changes, part.atlases), (&whole.changes, whole.atlases));
+            continue;
+        }
+        assert_eq!(part.objection().as_deref(), Some("it is not finished"));
+        assert!(done <= begun && part.layers.len() <= 3);
+        assert!(part.layers.iter().all(|layer| layer.atlas.agrees()));
+        for other in &part.changes {
+            assert!(other == change || other.doubtful, "{other:?}");
+        }
+        seen[part.changes.len() + usize::from(part.layers.len() == 3)] = true;
+    }
+    assert_eq!(seen, [true; 3]);
 }
 
 /// Values have to ascend.
