@@ -4,7 +4,8 @@ Start with `collide` (one collision), `eps_t` and `collide_many` (arrays), `impa
 `trace` (every boundary in a window), `gaining_lines` (where a law creates energy), `stack`
 (regions over the damping), `map` and `sweep` (xarray), `timestep` (errors of the steps of particle
 codes), `fit` (contact laws to measured impacts), `table` (restitution to be looked up), `solve`
-(systems of your own), `trace_family` (where their events change over two parameters).
+(systems of your own), `trace_family` (where their events change over two parameters),
+`stack_family` (and how that changes with a third one).
 """
 
 from stickslip import _native
@@ -41,6 +42,13 @@ from stickslip.families import (
     Unresolved,
     VerifyOptions,
     trace_family,
+)
+from stickslip.family_stacks import (
+    FamilyChange,
+    FamilyLayer,
+    FamilyStack,
+    StackInterrupted,
+    stack_family,
 )
 from stickslip.fits import Fit, fit
 from stickslip.gaining import GainingLine, GainingLines, gaining_lines
@@ -92,10 +100,13 @@ __all__ = [
     "DenseOutput",
     "Estimate",
     "FamilyAtlas",
+    "FamilyChange",
     "FamilyCurve",
+    "FamilyLayer",
     "FamilyLocated",
     "FamilyMargin",
     "FamilyRegion",
+    "FamilyStack",
     "FamilyVertex",
     "Fit",
     "Followed",
@@ -119,6 +130,7 @@ __all__ = [
     "Solution",
     "Sphere",
     "Stack",
+    "StackInterrupted",
     "StepErrors",
     "Study",
     "Surface",
@@ -150,6 +162,7 @@ __all__ = [
     "reproduction_parts",
     "solve",
     "stack",
+    "stack_family",
     "sweep",
     "table",
     "table_of_velocities",

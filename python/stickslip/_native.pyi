@@ -119,6 +119,23 @@ class HybridFamily:
         monitors: list[Callable[[float, float], float]],
     ) -> dict[str, Any] | None: ...
 
+_ChangeFields: TypeAlias = tuple[
+    list[float],
+    tuple[str, float, float, float] | None,
+    bool,
+    list[tuple[str, _Label]],
+]
+
+def stack_family(
+    function: Callable[[float], HybridFamily],
+    window: _Window,
+    values: list[float],
+    options: tuple[str, float, int],
+    threads: int,
+    callbacks: _Calls,
+) -> tuple[
+    list[FamilyAtlas], list[_ChangeFields], int, bool, str | None, BaseException | None
+]: ...
 @final
 class FamilyAtlas:
     @staticmethod

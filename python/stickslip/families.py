@@ -9,7 +9,7 @@ import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field
 from itertools import count, pairwise
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -56,6 +56,9 @@ __all__ = [
     "VerifyOptions",
     "trace_family",
 ]
+
+
+_Window: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
 
 
 @dataclass(frozen=True)
@@ -296,6 +299,21 @@ def trace_family(
     """
     if not isinstance(family, HybridFamily):
         raise TypeError(f"{type(family).__name__} is not a HybridFamily")
+    window, text = _survey(x, y, options, verify, tolerance, rounds)
+    _check_calls(progress, cancelled)
+    calls = (progress, cancelled)
+    return _finish(family._native.trace(window, text, _threads(threads), calls))
+
+
+def _survey(
+    x: tuple[float, float],
+    y: tuple[float, float],
+    options: TraceOptions | None,
+    verify: VerifyOptions | None,
+    tolerance: float,
+    rounds: int,
+) -> tuple[_Window, str]:
+    """The window, and the options of an atlas as JSON."""
     text = _json(
         {
             "trace": asdict(options or TraceOptions()),
@@ -309,11 +327,13 @@ def trace_family(
         raise ValueError(
             f"tolerance = {tolerance}; expected above 0 and below a thousandth of the window"
         )
+    return window, text
+
+
+def _check_calls(progress: Any, cancelled: Any) -> None:
     for name, function in (("progress", progress), ("cancelled", cancelled)):
         if function is not None and not callable(function):
             raise TypeError(f"{name} is of type {type(function).__name__}; expected a callable")
-    calls = (progress, cancelled)
-    return _finish(family._native.trace(window, text, _threads(threads), calls))
 
 
 def _finish(found: tuple[_native.FamilyAtlas, BaseException | None]) -> FamilyAtlas:

@@ -2,8 +2,8 @@
 //!
 //! In reading order: `blueprint` (what Python passes), `member` (one system of the family), `sizes`
 //! (a family of any dimension as one type), `runner` (what the tracer sees), `survey` (threads,
-//! progress, Ctrl-C), `atlas` (what is found), `family` (what Python calls), `failure` (why nothing
-//! is found).
+//! progress, Ctrl-C), `atlas` (what is found), `family` (what Python calls), `stack` (a third
+//! parameter), `failure` (why nothing is found).
 
 mod atlas;
 mod blueprint;
@@ -12,7 +12,9 @@ mod family;
 mod member;
 mod runner;
 mod sizes;
+mod stack;
 mod survey;
 
 pub use atlas::FamilyAtlas;
 pub use family::HybridFamily;
+pub use stack::stack_family;

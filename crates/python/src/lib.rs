@@ -36,7 +36,7 @@ mod _native {
     #[pymodule_export]
     use super::failure::ComputationError;
     #[pymodule_export]
-    use super::families::{FamilyAtlas, HybridFamily};
+    use super::families::{FamilyAtlas, HybridFamily, stack_family};
     #[pymodule_export]
     use super::fits::Fit;
     #[pymodule_export]

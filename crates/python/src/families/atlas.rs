@@ -30,6 +30,19 @@ pub struct FamilyAtlas {
 pub struct Description(String, [String; 2], Vec<String>);
 
 impl Description {
+    /// Requires a family to have the same parameters and guards as another one of its stack.
+    pub fn expect_like(&self, first: &Self) -> PyResult<()> {
+        let Self(_, axes, guards) = self;
+        let Self(_, others, theirs) = first;
+        if (axes, guards) == (others, theirs) {
+            return Ok(());
+        }
+        Err(bad_input(format!(
+            "the family is of {axes:?} with guards {guards:?}; expected {others:?} with guards \
+             {theirs:?}, as in the first one"
+        )))
+    }
+
     /// Requires an atlas to be of this family.
     pub fn expect(&self, family: &Self) -> PyResult<()> {
         if self == family {

@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use pyo3::PyErr;
-use stickslip_tracer::{AtlasError, FamilyError, SubdivisionError, TraceError};
+use pyo3::prelude::*;
+use stickslip_tracer::{AtlasError, FamilyError, StackError, SubdivisionError, TraceError};
 
 use crate::failure::{bad_input, failed};
 
@@ -46,4 +46,20 @@ pub fn of_atlas(error: &AtlasError<UserError>) -> PyErr {
         ) => bad_input(error),
         AtlasError::Subdivision(_) => failed(error),
     }
+}
+
+/// The exception for a stack that failed.
+pub fn of_stack(py: Python<'_>, error: &StackError<UserError>) -> PyErr {
+    match error {
+        StackError::Values | StackError::Width(_) => bad_input(error),
+        StackError::Atlas { value, source } => with_value(py, of_atlas(source), *value),
+    }
+}
+
+/// The same exception, with a note of the third parameter.
+pub fn with_value(py: Python<'_>, error: PyErr, value: f64) -> PyErr {
+    let note = format!("with the third parameter {value:?}");
+    // Without the note it is the same exception.
+    let _ = error.value(py).call_method1("add_note", (note,));
+    error
 }

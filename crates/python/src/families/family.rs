@@ -26,8 +26,8 @@ type MarginFields = (Vec<usize>, usize, &'static str, f64);
 /// A family of systems of one's own.
 #[pyclass(frozen, module = "stickslip._native")]
 pub struct HybridFamily {
-    blueprint: Arc<Blueprint>,
-    description: Description,
+    pub blueprint: Arc<Blueprint>,
+    pub description: Description,
 }
 
 #[pymethods]
@@ -176,12 +176,12 @@ impl HybridFamily {
 
 impl HybridFamily {
     /// The threads that the runs may have; `None` if they need this one.
-    fn threads(&self, threads: usize) -> Option<usize> {
+    pub fn threads(&self, threads: usize) -> Option<usize> {
         self.blueprint.is_compiled().then_some(threads)
     }
 
     fn runner(&self, trouble: Trouble, looks: bool) -> Runner {
-        Runner::new(&self.blueprint, trouble, looks)
+        Runner::new(&self.blueprint, Arc::new(trouble), looks)
     }
 
     /// The labels of the runs at points.
@@ -202,6 +202,7 @@ impl HybridFamily {
     }
 }
 
-fn window_of(((left, right), (bottom, top)): ((f64, f64), (f64, f64))) -> Window {
+/// The window between two values of each parameter.
+pub fn window_of(((left, right), (bottom, top)): ((f64, f64), (f64, f64))) -> Window {
     Window { low: Point::new(left, bottom), high: Point::new(right, top) }
 }

@@ -25,8 +25,7 @@ pub struct Runner {
 impl Runner {
     /// The runs of the family that Python passes. It `looks` for Ctrl-C if they are on the thread
     /// that has to do it.
-    pub fn new(blueprint: &Arc<Blueprint>, trouble: Trouble, looks: bool) -> Self {
-        let trouble = Arc::new(trouble);
+    pub fn new(blueprint: &Arc<Blueprint>, trouble: Arc<Trouble>, looks: bool) -> Self {
         let runs = sizes::runs(blueprint, &trouble);
         Self { runs, trouble, looked: looks.then(|| Mutex::new(Instant::now())) }
     }

@@ -57,19 +57,6 @@ impl Executor<Runner> for Runs {
     }
 }
 
-/// The work of a trace: what a surveyor makes of a family.
-pub trait Work:
-    Fn(&Surveyor<'_, Runs>, &Runner) -> Result<AtlasOf<Runner>, AtlasError<UserError>> + Send + Sync
-{
-}
-
-impl<W> Work for W where
-    W: Fn(&Surveyor<'_, Runs>, &Runner) -> Result<AtlasOf<Runner>, AtlasError<UserError>>
-        + Send
-        + Sync
-{
-}
-
 /// The atlas that `work` makes, and an exception that has asked for an end.
 ///
 /// With `threads` no run may need the interpreter. They run while this one waits for Ctrl-C.
@@ -79,29 +66,42 @@ pub fn survey(
     options: AtlasOptions,
     threads: Option<usize>,
     callbacks: &Callbacks,
-    work: impl Work,
+    work: impl Fn(&Surveyor<'_, Runs>, &Runner) -> Result<AtlasOf<Runner>, AtlasError<UserError>>
+    + Send
+    + Sync,
 ) -> PyResult<(AtlasOf<Runner>, Option<PyErr>)> {
-    let trouble = runner.trouble();
+    let (made, wish) = watched(py, runner.trouble(), threads, callbacks, |executor, watch| {
+        work(&Surveyor { options, executor, watch }, runner)
+    })?;
+    Ok((made.map_err(|error| of_atlas(&error))?, wish))
+}
+
+/// What `work` makes, and an exception that has asked for an end.
+pub fn watched<T: Send>(
+    py: Python<'_>,
+    trouble: &Arc<Trouble>,
+    threads: Option<usize>,
+    callbacks: &Callbacks,
+    work: impl Fn(Runs, Watch<'_>) -> T + Send + Sync,
+) -> PyResult<(T, Option<PyErr>)> {
     let meter = Mutex::new(Meter { done: 0, steps: 0, told: None });
     let report = |progress: Progress| callbacks.tell(&meter, progress, trouble);
     let said = AtomicBool::new(false);
     let cancelled = || callbacks.cancel(&said, trouble);
     let watch = Watch::from(&report).cancelled_by(&cancelled);
-    let parallel = threads.is_some();
-    let surveyor = Surveyor { options, executor: Runs { parallel }, watch };
+    let executor = Runs { parallel: threads.is_some() };
     let made = match threads {
-        None => work(&surveyor, runner),
+        None => work(executor, watch),
         Some(threads) => {
             let pool = Threads::pool(threads)?;
-            await_thread(py, trouble, || pool.install(|| work(&surveyor, runner)))?
+            await_thread(py, trouble, || pool.install(|| work(executor, watch)))?
         }
     };
     if let Some(error) = trouble.take_failure() {
         return Err(error);
     }
-    let atlas = made.map_err(|error| of_atlas(&error))?;
     callbacks.tell_last(&meter, trouble);
-    Ok((atlas, trouble.take_wish()))
+    Ok((made, trouble.take_wish()))
 }
 
 /// Does `work` on another thread, and looks for Ctrl-C meanwhile.
