@@ -136,6 +136,7 @@ def stack_family(
 ) -> tuple[
     list[FamilyAtlas], list[_ChangeFields], int, bool, str | None, BaseException | None
 ]: ...
+
 @final
 class FamilyAtlas:
     @staticmethod

@@ -50,13 +50,14 @@ class FamilyChange:
 class FamilyStack:
     """Atlases of a family at several values of a third parameter, from `stack_family`."""
 
+    #: The atlases at the values; at the first ones of them, if the search was cancelled.
     layers: tuple[FamilyLayer, ...]
     #: The changes between the layers, in the order of the third parameter.
     changes: tuple[FamilyChange, ...]
     #: The number of atlases that were traced to find them.
     atlases: int
-    #: Whether the search came to its end. If it was cancelled, `layers` are those that were
-    #: finished, and changes are missing or in doubt.
+    #: Whether the search came to its end. If it was cancelled, changes between the layers are in
+    #: doubt.
     finished: bool
     #: What speaks against the stack; None if nothing does.
     objection: str | None
@@ -93,20 +94,26 @@ def stack_family(
     """Atlases of a family at several values of a third parameter, and the values between them at
     which regions are born, split, merge or die.
 
-    family: returns the `HybridFamily` at a value between the first and the last one; it is called
-    once for each value, of which there are hundreds. The systems must have the same guards, and
-    depend on the value as smoothly as on the two parameters. values: two or more, in ascending
-    order. x, y, options, verify, tolerance, rounds, threads, progress, cancelled: as in
-    `trace_family`, for every atlas; boundaries are followed up to the window's edges only, and
-    `progress` counts atlases. Ctrl-C raises StackInterrupted, whose `stack` has what was found.
+    family: returns the `HybridFamily` at a value between the first and the last one. It is called
+    for hundreds of values, or thousands, on the thread that traces. The systems must have the same
+    guards, depend on the value as smoothly as on the two parameters, and all be compiled if the
+    first one is. values: two or more, in ascending order. x, y, options, verify, tolerance, rounds,
+    threads, progress, cancelled: as in `trace_family`, for every atlas; boundaries are followed up
+    to the window's edges only, and `progress` counts atlases. The first Ctrl-C raises
+    StackInterrupted, whose `stack` has what was found; a second one ends the run that is under way,
+    and nothing is kept.
 
     width: of the bracket of a change, as a part of the greater one of its two values, from 1e-9 to
-    0.1. atlases: their number, at most.
+    0.1. It is wider where atlases are in doubt, or where a region is too small to be seen before it
+    dies. atlases: their number, at most.
 
     Where neighbouring atlases differ, others between them isolate the changes, and what happens
-    there is solved for in all three parameters. Changes that undo each other between two atlases
-    are not seen. If anything speaks against the result, it says so in an AtlasWarning and in
-    `objection`.
+    there is solved for in all three parameters, to about 1e-9 of their intervals, or to 1e-6 where
+    two boundaries touch for every value. Changes that undo each other between two atlases are not
+    seen. If anything speaks against the result, it says so in an AtlasWarning and in `objection`.
+
+    Raises ValueError for what is not possible, TypeError for what is of another type, and what
+    functions raise, with a note that has the third parameter.
     """
     if not callable(family):
         raise TypeError(f"family is of type {type(family).__name__}; expected a callable")
@@ -122,7 +129,8 @@ def stack_family(
     def member(value: float) -> _native.HybridFamily:
         found = family(value)
         if not isinstance(found, HybridFamily):
-            raise TypeError(f"family({value}) is of type {type(found).__name__}")
+            kind = type(found).__name__
+            raise TypeError(f"family({value}) is of type {kind}; expected a HybridFamily")
         return found._native
 
     search = (text, width, _count(atlases, "atlases"))
@@ -130,7 +138,8 @@ def stack_family(
     planes, changes, count, finished, objection, error = _native.stack_family(
         member, window, heights.tolist(), search, _threads(threads), calls
     )
-    layers = [FamilyLayer(value, FamilyAtlas(plane)) for value, plane in zip(heights.tolist(), planes, strict=False)]
+    rows = zip(heights.tolist(), planes, strict=False)
+    layers = [FamilyLayer(value, FamilyAtlas(plane)) for value, plane in rows]
     guards = layers[0].atlas._guards if layers else []
     made = tuple(_change(one, guards) for one in changes)
     stack = FamilyStack(tuple(layers), made, count, finished, objection)

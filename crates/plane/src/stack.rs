@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 use stickslip_model::InvalidParameter;
-use stickslip_tracer::{AtlasOptions, Effect, MeetingKind, Stack, StackError, StackOptions, Watch};
+use stickslip_tracer::{AtlasOptions, Effect, Stack, StackError, StackOptions, Watch};
 
 use crate::atlas::{self, AtlasError, Frame, VerifiedAtlas, itinerary};
 use crate::progress::{InParallel, Progress, Report, SILENT};
@@ -209,14 +209,18 @@ fn follow(
     })?;
     let any = sample.contact_or_any(&sample.window().low);
     let text = |label: &Vec<usize>| itinerary(&any, label);
+    let effect = |effect: &Effect<Vec<usize>>| RegionEffect {
+        effect: effect.name(),
+        itinerary: text(effect.label()),
+    };
     let changes = stack.changes.iter().map(|change| DampingChange {
         between: change.between,
         meeting: change.meeting.map(|meeting| {
             let [kappa, psi] = sample.sheet().snapped(&meeting.point);
-            DampingMeeting { kind: name(meeting.kind), damping: meeting.value, kappa, psi }
+            DampingMeeting { kind: meeting.kind.name(), damping: meeting.value, kappa, psi }
         }),
-        doubtful: change.doubtful || change.meeting.is_none(),
-        effects: change.effects.iter().map(|effect| region_effect(effect, text)).collect(),
+        doubtful: change.is_doubtful(),
+        effects: change.effects.iter().map(effect).collect(),
     });
     let labels = dampings.iter().map(|&damping| {
         let labels = stack.labels(damping)?;
@@ -225,32 +229,6 @@ fn follow(
         Some(labels)
     });
     Ok(Followed { changes: changes.collect(), labels: labels.collect(), atlases: stack.atlases })
-}
-
-/// The name of what happens where special points meet.
-fn name(kind: MeetingKind) -> &'static str {
-    match kind {
-        MeetingKind::Crossing => "crossing",
-        MeetingKind::Touch => "touch",
-        MeetingKind::Flat => "flat",
-        MeetingKind::Edge => "edge",
-        MeetingKind::EdgeTouch => "edge-touch",
-        MeetingKind::Corner => "corner",
-        MeetingKind::Swallowtail => "swallowtail",
-    }
-}
-
-fn region_effect(
-    effect: &Effect<Vec<usize>>,
-    text: impl Fn(&Vec<usize>) -> String,
-) -> RegionEffect {
-    let (effect, label) = match effect {
-        Effect::Born(label) => ("born", label),
-        Effect::Dies(label) => ("dies", label),
-        Effect::Merge(label) => ("merge", label),
-        Effect::Splits(label) => ("splits", label),
-    };
-    RegionEffect { effect, itinerary: text(label) }
 }
 
 /// The itineraries of all regions of an atlas, in order.

@@ -36,7 +36,8 @@ pub struct StackOptions {
     pub atlas: AtlasOptions,
     /// The width of the bracket in which a change is isolated, relative to the greater one of the
     /// two values, from 1e-9 to 0.1. Around a change that is solved for, the bracket is wider if
-    /// narrower ones have atlases that are in doubt.
+    /// narrower ones have atlases that are in doubt, or in which a region is too small to be seen:
+    /// up to 400 widths, or 4e-3 of the value.
     pub width: f64,
     /// The greatest number of atlases. Changes between the last ones are brackets in doubt.
     pub atlases: usize,
@@ -91,14 +92,14 @@ impl Default for StackOptions {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Stack<Label, Margin> {
-    /// The atlases at the values asked for.
+    /// The atlases at the values asked for; at the first ones of them, if the search was cancelled.
     pub layers: Vec<Layer<Label, Margin>>,
     /// The changes of the structure, in the order of the third parameter.
     pub changes: Vec<Change<Label>>,
     /// The number of atlases that were traced.
     pub atlases: usize,
-    /// Whether the search came to its end. If it was cancelled, `layers` are those that were
-    /// finished, and changes between them are missing or in doubt.
+    /// Whether the search came to its end. If it was cancelled, changes between the layers are in
+    /// doubt.
     pub finished: bool,
     /// The structures of the first and the last layer that is not in doubt, and those behind each
     /// change.
@@ -156,8 +157,9 @@ impl<Label: Clone + Ord, Margin: Clone + PartialEq> Stack<Label, Margin> {
         Self::watched(family, window, values, options, Serial, Watch::SILENT)
     }
 
-    /// The same stack, bit for bit, whose runs `executor` computes. `watch` sees each atlas as a
-    /// step, and can cancel; the result is then [not finished](Self::finished).
+    /// The same stack, bit for bit, whose runs `executor` computes; `family` is called on this
+    /// thread. `watch` sees each atlas as a step, and can cancel; the result is then [not
+    /// finished](Self::finished).
     ///
     /// # Errors
     /// As [`of`](Self::of).
@@ -184,7 +186,8 @@ impl<Label: Clone + Ord, Margin: Clone + PartialEq> Stack<Label, Margin> {
         let mut options = *options;
         options.atlas.trace.beyond = 0.0;
         let surveyor = Surveyor { options: options.atlas, executor, watch: watch.silently() };
-        let mut search = Search::new(&family, *window, options, surveyor, watch);
+        let span = values[values.len() - 1] - values[0];
+        let mut search = Search::new(&family, *window, options, surveyor, watch, span);
         watch.report(Progress::Begin { steps: values.len() });
         let mut samples = Vec::with_capacity(values.len());
         for &value in values {
@@ -202,7 +205,7 @@ impl<Label: Clone + Ord, Margin: Clone + PartialEq> Stack<Label, Margin> {
         let first = sure.first().map(|sample| (sample.value, sample.structure.clone()));
         let last = sure.last().map(|sample| (sample.value, sample.structure.clone()));
         let mut structures: Vec<_> = first.into_iter().collect();
-        let (atlases, finished) = (search.count(), !watch.is_cancelled());
+        let (atlases, finished) = (search.count(), search.is_finished());
         let (changes, behind): (Vec<_>, Vec<_>) = search.joined().into_iter().unzip();
         let ends = changes.iter().map(|change: &Change<Label>| change.between[1]);
         structures.extend(ends.zip(behind));
@@ -229,12 +232,12 @@ impl<Label: Clone + Ord, Margin: Clone + PartialEq> Stack<Label, Margin> {
         };
         let of_change = |change: &Change<Label>| {
             let [low, high] = change.between;
-            let what = match (change.doubtful, change.meeting) {
-                (false, Some(_)) => return None,
-                (true, Some(_)) => "several changes may lie between the values",
-                (_, None) => "nothing is known of what changes between the values",
+            let what = if change.meeting.is_some() {
+                "several changes may lie between the values"
+            } else {
+                "nothing is known of what changes between the values"
             };
-            Some(format!("{what} {low:?} and {high:?}"))
+            change.is_doubtful().then(|| format!("{what} {low:?} and {high:?}"))
         };
         let layers = self.layers.iter().find_map(of_layer);
         layers.or_else(|| self.changes.iter().find_map(of_change))

@@ -1,14 +1,13 @@
 //! Stacks of families: atlases over a third parameter.
 
-use std::collections::HashMap;
+use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
 
 use pyo3::prelude::*;
-use stickslip_tracer::{AtlasOptions, Change, Effect, Itinerary, MeetingKind, Stack, StackOptions};
+use stickslip_tracer::{AtlasOptions, Change, Itinerary, Layer, Stack, StackOptions};
 
 use crate::failure::bad_input;
 use crate::families::atlas::{FamilyAtlas, Label, label};
-use crate::families::blueprint::Blueprint;
 use crate::families::failure::{of_stack, with_value};
 use crate::families::family::{HybridFamily, window_of};
 use crate::families::runner::Runner;
@@ -39,22 +38,22 @@ pub fn stack_family(
     callbacks: Callbacks,
 ) -> PyResult<StackFields> {
     let _level = Level::enter()?;
-    let atlas: AtlasOptions = serde_json::from_str(options.0).map_err(bad_input)?;
+    let mut atlas: AtlasOptions = serde_json::from_str(options.0).map_err(bad_input)?;
+    // A stack follows boundaries up to the window's edges.
+    atlas.trace.beyond = 0.0;
     let options = StackOptions { atlas, width: options.1, atlases: options.2 };
-    let Some(&start) = values.first() else {
-        return Err(bad_input("values are empty; expected two or more"));
-    };
-    let families = Families::new(py, function, start)?;
+    let families = Families::new(py, function, &values)?;
     let threads = families.first.get().threads(threads);
     let trouble = families.trouble.clone();
-    let (made, wish) = watched(py, &trouble, threads, &callbacks, |executor, watch| {
+    let found = watched(py, &trouble, threads, &callbacks, |executor, watch| {
         let family = |value| families.runner(value, threads.is_none());
         Stack::watched(family, &window_of(window), &values, &options, executor, watch)
-    })?;
+    });
+    let (made, wish) = found.map_err(|error| with_value(py, error, lock(&families.kept).value))?;
     let stack = made.map_err(|error| of_stack(py, &error))?;
     let objection = stack.objection();
     let Stack { layers, changes, atlases, finished, .. } = stack;
-    let of_layer = |layer: stickslip_tracer::Layer<_, _>| {
+    let of_layer = |layer: Layer<_, _>| {
         let description = families.at(py, layer.value)?.get().description.clone();
         Ok(FamilyAtlas::new(layer.atlas, options.atlas, description))
     };
@@ -64,55 +63,82 @@ pub fn stack_family(
     Ok((layers, changes, atlases, finished, objection, wish))
 }
 
-/// The families over the third parameter, each of which is made once.
+/// The families over the third parameter.
 struct Families {
     function: Py<PyAny>,
     first: Py<HybridFamily>,
-    made: Mutex<HashMap<u64, Py<HybridFamily>>>,
+    /// The values at which atlases stay.
+    values: Vec<f64>,
+    kept: Mutex<Kept>,
     trouble: Arc<Trouble>,
 }
 
+/// Families that are likely to be asked for again.
+struct Kept {
+    /// Those of layers, and the last other ones.
+    families: VecDeque<(f64, Py<HybridFamily>)>,
+    /// The value that was asked for last.
+    value: f64,
+}
+
 impl Families {
-    fn new(py: Python<'_>, function: Py<PyAny>, start: f64) -> PyResult<Self> {
-        let first = made(py, &function, start)?;
+    fn new(py: Python<'_>, function: Py<PyAny>, values: &[f64]) -> PyResult<Self> {
+        let Some(&value) = values.first() else {
+            return Err(bad_input("values are empty; expected two or more"));
+        };
+        let first = made(py, &function, value).map_err(|error| with_value(py, error, value))?;
+        let families = VecDeque::from([(value, first.clone_ref(py))]);
+        let kept = Mutex::new(Kept { families, value });
         let trouble = Arc::new(Trouble::patient());
-        let made = Mutex::new(HashMap::from([(start.to_bits(), first.clone_ref(py))]));
-        Ok(Self { function, first, made, trouble })
+        Ok(Self { function, first, values: values.to_vec(), kept, trouble })
     }
 
     /// The family at a value.
+    #[expect(clippy::float_cmp, reason = "the same value is asked for again")]
     fn at(&self, py: Python<'_>, value: f64) -> PyResult<Py<HybridFamily>> {
-        if let Some(known) = lock(&self.made).get(&value.to_bits()) {
-            return Ok(known.clone_ref(py));
+        /// The number of families that are not those of layers.
+        const RECENT: usize = 4;
+        {
+            let mut kept = lock(&self.kept);
+            kept.value = value;
+            if let Some((_, known)) = kept.families.iter().find(|(own, _)| *own == value) {
+                return Ok(known.clone_ref(py));
+            }
         }
         let family = made(py, &self.function, value)?;
         let first = self.first.get();
-        let is_like = family.get().description.expect_like(&first.description);
-        is_like.map_err(|error| with_value(py, error, value))?;
-        let compiled = |family: &HybridFamily| family.blueprint.is_compiled();
-        if compiled(first) && !compiled(family.get()) {
-            return Err(bad_input(format!(
-                "the family at {value:?} has functions of Python; expected compiled ones, as in \
-                 the first one"
-            )));
+        family.get().description.expect_like(&first.description)?;
+        if first.blueprint.is_compiled() && !family.get().blueprint.is_compiled() {
+            return Err(bad_input(
+                "the family has functions of Python; expected compiled ones, as in the first one",
+            ));
         }
-        lock(&self.made).insert(value.to_bits(), family.clone_ref(py));
+        let families = &mut lock(&self.kept).families;
+        families.push_back((value, family.clone_ref(py)));
+        let is_recent = |(own, _): &(f64, _)| !self.values.contains(own);
+        if families.iter().filter(|one| is_recent(one)).count() > RECENT
+            && let Some(oldest) = families.iter().position(is_recent)
+        {
+            families.remove(oldest);
+        }
         Ok(family)
     }
 
-    /// The runs of the family at a value. If there is none, they fail.
+    /// The runs of the family at a value. If there is none, they fail. An interruption that only
+    /// asks for an end does not spoil the call, which is repeated.
     fn runner(&self, value: f64, looks: bool) -> Runner {
-        let blueprint: Arc<Blueprint> = Python::attach(|py| {
-            let found = if self.trouble.has_failed() { None } else { Some(self.at(py, value)) };
-            let family = match found {
-                Some(Ok(family)) => family,
-                Some(Err(error)) => {
-                    self.trouble.fail(error);
-                    self.first.clone_ref(py)
+        let blueprint = Python::attach(|py| {
+            while !self.trouble.has_failed() {
+                match self.at(py, value) {
+                    Ok(family) => return family.get().blueprint.clone(),
+                    Err(error) => {
+                        if let Some(error) = self.trouble.postpone(error) {
+                            self.trouble.fail(error);
+                        }
+                    }
                 }
-                None => self.first.clone_ref(py),
-            };
-            family.get().blueprint.clone()
+            }
+            self.first.get().blueprint.clone()
         });
         Runner::new(&blueprint, self.trouble.clone(), looks)
     }
@@ -120,29 +146,14 @@ impl Families {
 
 /// Calls the function of Python that makes families.
 fn made(py: Python<'_>, function: &Py<PyAny>, value: f64) -> PyResult<Py<HybridFamily>> {
-    let made = function.call1(py, (value,)).map_err(|error| with_value(py, error, value))?;
-    Ok(made.extract(py)?)
+    Ok(function.call1(py, (value,))?.extract(py)?)
 }
 
 /// A change as Python gets it.
 fn fields(change: &Change<Itinerary>) -> ChangeFields {
-    let meeting = change.meeting.map(|meeting| {
-        let kind = match meeting.kind {
-            MeetingKind::Crossing => "crossing",
-            MeetingKind::Touch => "touch",
-            MeetingKind::Flat => "flat",
-            MeetingKind::Edge => "edge",
-            MeetingKind::EdgeTouch => "edge-touch",
-            MeetingKind::Corner => "corner",
-            MeetingKind::Swallowtail => "swallowtail",
-        };
-        (kind, meeting.value, meeting.point.x, meeting.point.y)
-    });
-    let effects = change.effects.iter().map(|effect| match effect {
-        Effect::Born(region) => ("born", label(region)),
-        Effect::Dies(region) => ("dies", label(region)),
-        Effect::Merge(region) => ("merge", label(region)),
-        Effect::Splits(region) => ("splits", label(region)),
-    });
-    (change.between, meeting, change.doubtful || change.meeting.is_none(), effects.collect())
+    let meeting = change
+        .meeting
+        .map(|meeting| (meeting.kind.name(), meeting.value, meeting.point.x, meeting.point.y));
+    let effects = change.effects.iter().map(|effect| (effect.name(), label(effect.label())));
+    (change.between, meeting, change.is_doubtful(), effects.collect())
 }

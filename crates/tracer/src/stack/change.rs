@@ -34,6 +34,37 @@ pub enum Effect<Label> {
     Splits(Label),
 }
 
+impl<Label> Effect<Label> {
+    /// `born`, `dies`, `merge` or `splits`.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Born(_) => "born",
+            Self::Dies(_) => "dies",
+            Self::Merge(_) => "merge",
+            Self::Splits(_) => "splits",
+        }
+    }
+
+    /// The label of the region.
+    #[must_use]
+    pub const fn label(&self) -> &Label {
+        match self {
+            Self::Born(label) | Self::Dies(label) | Self::Merge(label) | Self::Splits(label) => {
+                label
+            }
+        }
+    }
+}
+
+impl<Label> Change<Label> {
+    /// Whether there may be several changes, or nothing could be solved for.
+    #[must_use]
+    pub fn is_doubtful(&self) -> bool {
+        self.doubtful || self.meeting.is_none()
+    }
+}
+
 impl<Label: Clone + Ord> Change<Label> {
     pub(super) fn new<F: Family<Label = Label>>(
         samples: [&Sample<F>; 2],
@@ -47,7 +78,7 @@ impl<Label: Clone + Ord> Change<Label> {
     /// Adds a later change to this one, as one that is in doubt. A region that is born and dies
     /// again between the two values is not mentioned.
     pub(super) fn join(&mut self, later: Self) {
-        self.between[1] = later.between[1];
+        self.between[1] = self.between[1].max(later.between[1]);
         self.meeting = self.meeting.or(later.meeting);
         self.doubtful = true;
         for effect in later.effects {

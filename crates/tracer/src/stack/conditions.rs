@@ -48,6 +48,22 @@ pub enum MeetingKind {
     Swallowtail,
 }
 
+impl MeetingKind {
+    /// The name, in lower case and with hyphens.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Crossing => "crossing",
+            Self::Touch => "touch",
+            Self::Flat => "flat",
+            Self::Edge => "edge",
+            Self::EdgeTouch => "edge-touch",
+            Self::Corner => "corner",
+            Self::Swallowtail => "swallowtail",
+        }
+    }
+}
+
 impl<Margin: Clone + PartialEq> Conditions<Margin> {
     /// The conditions for the ends of a stretch of the arrangement to meet: what vanishes along it,
     /// and what else vanishes at its ends.

@@ -41,6 +41,11 @@ impl Box3 {
         let [low, high] = self.values;
         low + (high - low) * unknowns.z
     }
+
+    /// Whether the family is defined there: up to a hundredth of the window beyond its edges.
+    fn is_defined(unknowns: &Vector3<f64>) -> bool {
+        unknowns.xy().iter().all(|part| (-0.01..=1.01).contains(part))
+    }
 }
 
 /// A step of a difference of values, as a part of the box. If values have an error of 1e-14, the
@@ -157,16 +162,14 @@ fn newton<F: Family>(
         update *= (0.2 / size).min(1.0);
         at -= update;
         at.z = at.z.clamp(0.0, 1.0);
-        let inside = at.xy().iter().all(|part| (-0.3..=1.3).contains(part));
-        if !inside {
-            return None;
-        }
         if size < SMALL && (size < SQUARE * last || size < ROUNDING) && independent(&slopes) {
             return is_passage(family, conditions, (&at, &slopes), within)
                 .then_some(Reached::Sure(at));
         }
         last = size;
-        conditions.move_to(&family(within.value(&at)), &within.point(&at));
+        if Box3::is_defined(&at) {
+            conditions.move_to(&family(within.value(&at)), &within.point(&at));
+        }
     }
     (last < NEAR).then_some(Reached::Vague(at))
 }
@@ -311,6 +314,7 @@ impl<F: Family> Here<'_, F> {
     /// The value of a condition.
     fn value(&self, condition: &Condition<F::Margin>, at: &Vector3<f64>) -> Option<f64> {
         match condition {
+            Condition::Margin(_) if !Box3::is_defined(at) => None,
             Condition::Margin(margin) => {
                 let value = self.family.margin(&self.within.point(at), margin).ok().flatten();
                 value.filter(|value| value.is_finite())

@@ -1,16 +1,19 @@
 //! How changes of the structure are isolated between two values of the third parameter.
 
+use std::cell::Cell;
+
 use crate::executor::Executor;
 use crate::family::Family;
+use crate::regions::region::Region;
 use crate::stack::candidates::candidates;
-use crate::stack::change::Change;
+use crate::stack::change::{Change, Effect};
 use crate::stack::meeting::{Box3, Meeting, Solved, solve, touching};
 use crate::stack::sample::Sample;
 use crate::stack::structure::Structure;
 use crate::stack::{StackError, StackOptions};
 use crate::survey::Surveyor;
 use crate::watch::{Progress, Watch};
-use crate::window::{Point, Window};
+use crate::window::Window;
 use crate::{AtlasError, TraceError};
 
 /// A change, and the structure behind it.
@@ -26,6 +29,8 @@ enum Beside<F: Family> {
     Between(Box<Sample<F>>),
     /// One that is in doubt.
     Doubtful,
+    /// None: there are as many as there may be, or the watch cancels.
+    Refused,
 }
 
 impl<F: Family> Beside<F> {
@@ -34,7 +39,7 @@ impl<F: Family> Beside<F> {
         match self {
             Self::End => Some(end),
             Self::Between(sample) => Some(sample),
-            Self::Doubtful => None,
+            Self::Doubtful | Self::Refused => None,
         }
     }
 }
@@ -46,7 +51,10 @@ pub(super) struct Search<'a, F: Family, At, E> {
     options: StackOptions,
     surveyor: Surveyor<'a, E>,
     watch: Watch<'a>,
+    /// The distance between the first value and the last one.
+    span: f64,
     count: usize,
+    cancelled: Cell<bool>,
     found: Vec<Found<F>>,
     /// The meetings at which the structure does not change.
     tried: Vec<Tried<F::Label>>,
@@ -79,6 +87,7 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         options: StackOptions,
         surveyor: Surveyor<'a, E>,
         watch: Watch<'a>,
+        span: f64,
     ) -> Self {
         Self {
             family,
@@ -86,7 +95,9 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
             options,
             surveyor,
             watch,
+            span,
             count: 0,
+            cancelled: Cell::new(false),
             found: Vec::new(),
             tried: Vec::new(),
         }
@@ -97,12 +108,24 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         self.count
     }
 
+    /// Whether the watch has cancelled.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancelled.set(self.cancelled.get() || self.watch.is_cancelled());
+        self.cancelled.get()
+    }
+
+    /// Whether the search came to its end.
+    pub fn is_finished(&self) -> bool {
+        !self.cancelled.get()
+    }
+
     /// The atlas at a value.
     pub fn sample(&mut self, value: f64) -> Searched<Sample<F>, F> {
         self.count += 1;
         let family = (self.family)(value);
         let at = StackError::at(value);
         let atlas = self.surveyor.atlas(&family, &self.window).map_err(&at)?;
+        self.cancelled.set(self.cancelled.get() || !atlas.is_finished());
         let structure = Structure::of(&atlas.plane, &family).map_err(|source| {
             // The error of a run has its place.
             let point = self.window.low;
@@ -111,38 +134,37 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         Ok(Sample { value, atlas, structure })
     }
 
-    /// The atlas at a value between two others; `None` if it is in doubt, or if no more atlases may
-    /// be made.
-    fn between(&mut self, value: f64) -> Searched<Option<Sample<F>>, F> {
-        if self.count >= self.options.atlases || self.watch.is_cancelled() {
-            return Ok(None);
+    /// The atlas at a value between two others.
+    fn between(&mut self, value: f64) -> Searched<Beside<F>, F> {
+        if self.count >= self.options.atlases || self.is_cancelled() {
+            return Ok(Beside::Refused);
         }
         self.watch.report(Progress::Begin { steps: 1 });
         let sample = self.sample(value)?;
         self.watch.report(Progress::Advance { steps: 1 });
-        Ok(sample.atlas.agrees().then_some(sample))
+        let agrees = sample.atlas.agrees();
+        Ok(if agrees { Beside::Between(Box::new(sample)) } else { Beside::Doubtful })
     }
 
-    /// The width of a bracket that is narrow enough, around a value.
+    /// The width of a bracket that is narrow enough, around a value, which may be 0.
     fn width(&self, low: f64, high: f64) -> f64 {
-        self.options.width * low.abs().max(high.abs())
+        /// The least width, as a part of all values.
+        const LEAST: f64 = 1e-12;
+        (self.options.width * low.abs().max(high.abs())).max(LEAST * self.span)
     }
 
     /// Finds the changes between two atlases that agree.
     pub fn refine(&mut self, low: &Sample<F>, high: &Sample<F>) -> Searched<(), F> {
         let Some(differing) = low.structure.differing(&high.structure) else { return Ok(()) };
         if high.value - low.value <= self.width(low.value, high.value) {
-            match self.unseen(low, high, &differing) {
-                Some((meeting, between)) => {
-                    let change =
-                        Change { between, ..Change::new([low, high], Some(meeting), false) };
-                    self.found.push((change, high.structure.clone()));
-                }
-                None => self.push([low, high], None, false),
+            let mut change = Change::new([low, high], None, false);
+            if let Some((meeting, between)) = self.unseen(low, high, &change.effects, &differing) {
+                (change.meeting, change.between) = (Some(meeting), between);
             }
+            self.found.push((change, high.structure.clone()));
             return Ok(());
         }
-        if self.watch.is_cancelled() {
+        if self.is_cancelled() {
             self.push([low, high], None, true);
             return Ok(());
         }
@@ -197,6 +219,9 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         for (sample, regions) in ends.into_iter().zip(differing) {
             let here = (self.family)(sample.value);
             for candidate in candidates(&here, sample, regions).into_iter().take(TRIED) {
+                if self.is_cancelled() {
+                    return Vec::new();
+                }
                 if tried.contains(&(candidate.conditions.clone(), sample.value)) {
                     continue;
                 }
@@ -244,6 +269,9 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         for part in widths {
             let below = self.beside(meeting.value - part * width, [low, high])?;
             let above = self.beside(meeting.value + part * width, [low, high])?;
+            if matches!(below, Beside::Refused) || matches!(above, Beside::Refused) {
+                return Ok(false);
+            }
             let (Some(below), Some(above)) = (below.or(low), above.or(high)) else { continue };
             if below.structure.differing(&above.structure).is_some() {
                 self.refine(low, below)?;
@@ -265,8 +293,7 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         if value <= ends[0].value || value >= ends[1].value {
             return Ok(Beside::End);
         }
-        let sample = self.between(value)?;
-        Ok(sample.map_or(Beside::Doubtful, |sample| Beside::Between(Box::new(sample))))
+        self.between(value)
     }
 
     /// Divides the search at an atlas between the two that agrees. Where that is about as close to
@@ -302,7 +329,10 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
             places.sort_by_key(|&place| too_close(place));
         }
         for place in places {
-            if let Some(middle) = self.between(place)? {
+            if place <= low.value || place >= high.value {
+                continue;
+            }
+            if let Beside::Between(middle) = self.between(place)? {
                 self.refine(low, &middle)?;
                 return self.refine(&middle, high);
             }
@@ -316,44 +346,45 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
 
     /// A meeting beside a change that atlases have enclosed, and the bracket that holds both: a
     /// region that is born or dies there is too small to be seen in atlases that are closer to the
-    /// meeting. From the change up to the meeting the atlases have one structure.
+    /// meeting. Between the change and the meeting, the atlases have one structure.
     fn unseen(
         &self,
         low: &Sample<F>,
         high: &Sample<F>,
+        effects: &[Effect<F::Label>],
         differing: &[Vec<usize>; 2],
     ) -> Option<(Meeting, [f64; 2])> {
-        /// How far the meeting may be, in widths.
-        const FARTHEST: f64 = 400.0;
+        /// How far the meeting may be, in widths, and as a part of the value.
+        const FARTHEST: [f64; 2] = [400.0, 4e-3];
         /// How far it may be from the region, and the half width of that, as parts of the window's
         /// shorter extent.
-        const BESIDE: f64 = 1e-2;
+        const BESIDE: f64 = 1e-3;
         const SMALL: f64 = 1e-5;
-        let near = FARTHEST * self.width(low.value, high.value);
+        let greatest = low.value.abs().max(high.value.abs());
+        let near = (FARTHEST[0] * self.width(low.value, high.value)).min(FARTHEST[1] * greatest);
         let scale = self.window.extent().min();
-        let is_beside = |sample: &Sample<F>, regions: &[usize], point: &Point| {
-            let mut regions = regions.iter().map(|&region| &sample.atlas.plane.regions()[region]);
-            regions.any(|region| {
-                region.clearance <= SMALL * scale
-                    && (region.sample - point).norm() <= BESIDE * scale
-            })
-        };
         let found = self.tried.iter().filter_map(|Tried { meeting, around, .. }| {
             let (between, structure) = around.as_ref()?;
-            let same = |sample: &Sample<F>| sample.structure.differing(structure).is_none();
-            let (between, gap) = if meeting.value > high.value && same(high) {
-                ([low.value, between[1]], meeting.value - high.value)
-            } else if meeting.value < low.value && same(low) {
-                ([between[0], high.value], low.value - meeting.value)
-            } else {
-                return None;
+            let dies = meeting.value > high.value;
+            let (seen, regions, unseen) =
+                if dies { (low, &differing[0], high) } else { (high, &differing[1], low) };
+            let is_it = |&region: &usize| {
+                let label = seen.structure.label(region).clone();
+                let effect = if dies { Effect::Dies(label) } else { Effect::Born(label) };
+                let Region { sample, clearance, .. } = &seen.atlas.plane.regions()[region];
+                *clearance <= SMALL * scale
+                    && (sample - meeting.point).norm() <= BESIDE * scale
+                    && effects.contains(&effect)
             };
-            let ends = [low, high].into_iter().zip(differing);
-            let beside = ends.into_iter().any(|(end, own)| is_beside(end, own, &meeting.point));
-            (gap <= near && beside).then_some((*meeting, between, gap))
+            let gap = if dies { meeting.value - high.value } else { low.value - meeting.value };
+            let is_cause = (0.0..=near).contains(&gap)
+                && regions.iter().any(is_it)
+                && unseen.structure.differing(structure).is_none();
+            let ends = if dies { [low.value, between[1]] } else { [between[0], high.value] };
+            is_cause.then_some((*meeting, ends, gap))
         });
         let nearest = found.min_by(|one, other| one.2.total_cmp(&other.2));
-        nearest.map(|(meeting, between, _)| (meeting, between))
+        nearest.map(|(meeting, ends, _)| (meeting, ends))
     }
 
     fn push(&mut self, ends: [&Sample<F>; 2], meeting: Option<Meeting>, doubtful: bool) {
@@ -361,18 +392,19 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         self.found.push((change, ends[1].structure.clone()));
     }
 
-    /// The changes found, in order, with the structure behind each. Brackets that almost touch each
-    /// other are one, in doubt, unless both are solved for: there the structure changes in steps
-    /// that are too small to tell one change from several.
+    /// The changes found, in order, with the structure behind each. Brackets that overlap are one,
+    /// in doubt. So are those that almost touch each other, unless both are solved for: there the
+    /// structure changes in steps that are too small to tell one change from several.
     pub fn joined(self) -> Vec<Found<F>> {
         /// The greatest gap between brackets that are joined, in widths.
         const GAP: f64 = 10.0;
         let mut joined: Vec<Found<F>> = Vec::new();
         for (change, behind) in self.found {
             if let Some((last, structure)) = joined.last_mut()
-                && (last.meeting.is_none() || change.meeting.is_none())
-                && change.between[0] - last.between[1]
-                    <= GAP * self.options.width * change.between[1].abs()
+                && (change.between[0] < last.between[1]
+                    || (last.meeting.is_none() || change.meeting.is_none())
+                        && change.between[0] - last.between[1]
+                            <= GAP * self.options.width * change.between[1].abs())
             {
                 last.join(change);
                 *structure = behind;

@@ -24,7 +24,7 @@ impl<F: Family> Tracer<'_, F> {
         const CHANGES: usize = 64;
         let [a, b] = segment;
         let length = (b - a).norm();
-        // On a short segment, a curve that is no farther than this from another one counts too.
+        // On a short segment it is a small part of that, but not less than the error of curves.
         let short = (2e-3 * length).max(2.0 * self.runs.options.interpolation);
         let gap = (2e-9 * self.runs.scale).min(short) / length;
         let [mut label, last] = labels;

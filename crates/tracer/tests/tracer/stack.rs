@@ -208,12 +208,95 @@ fn the_cause_of_a_change_may_lie_beside_it() {
     let [low, high] = change.between;
     assert!(0.998 - 1e-5 < low && low < 0.998 && 1.0 < high && high < 1.001, "{change:?}");
     assert_eq!(change.effects, [Effect::Dies(true)]);
+    // The other way round, it is born.
+    let family = |value| any(Unseen { value: 2.0 - value, area: 1e-8, seen_until: 0.998 });
+    let stack = Stack::of(family, &SQUARE, &[0.5, 1.5], &options()).unwrap();
+    let [change] = &stack.changes[..] else { panic!("{:?}", stack.changes) };
+    assert!((change.meeting.unwrap().value - 1.0).abs() < 1e-9, "{change:?}");
+    let [low, high] = change.between;
+    assert!(0.999 < low && low < 1.0 && 1.002 <= high && high < 1.002 + 2e-5, "{change:?}");
     // These are too far away to be the cause, and too large to be overlooked.
     for (area, seen_until) in [(1e-8, 0.99), (0.1, 0.998)] {
         let stack = found(area, seen_until);
         let [change] = &stack.changes[..] else { panic!("{:?}", stack.changes) };
         assert_eq!(change.meeting, None);
     }
+}
+
+/// A jump at t = 0, where a bracket cannot be narrow relative to its ends.
+#[test]
+fn a_jump_at_zero_is_a_bracket() {
+    const JUMP: [fn(&Point, f64) -> f64; 1] =
+        [|point, t| point.norm_squared() - if t < 0.0 { 0.2 } else { 1.5 }];
+    let family = |value| any(Moving { guards: &JUMP, value });
+    let stack = Stack::of(family, &SQUARE, &[-1.0, 1.0], &options()).unwrap();
+    let [change] = &stack.changes[..] else { panic!("{:?}", stack.changes) };
+    let [low, high] = change.between;
+    assert!(low < 0.0 && 0.0 <= high && high - low < 1e-11, "{change:?}");
+    assert!(stack.atlases < 200, "{}", stack.atlases);
+}
+
+/// So few atlases do not isolate the birth, and the bracket that is left is in doubt.
+#[test]
+fn a_stack_of_few_atlases_is_in_doubt() {
+    const DISC: [fn(&Point, f64) -> f64; 1] = [|point, t| point.norm_squared() - t];
+    let family = |value| any(Moving { guards: &DISC, value });
+    for atlases in [2, 3] {
+        let few = StackOptions { atlases, ..options() };
+        let stack = Stack::of(family, &SQUARE, &[-0.5, 0.5], &few).unwrap();
+        assert!(stack.finished && stack.atlases <= atlases);
+        let [change] = &stack.changes[..] else { panic!("{:?}", stack.changes) };
+        assert!(change.doubtful && change.is_doubtful());
+        assert!(stack.objection().is_some());
+    }
+}
+
+/// Newton's method asks for margins close to the window only.
+#[test]
+fn margins_are_asked_for_near_the_window() {
+    struct Bounded(Moving);
+
+    impl Bounded {
+        fn check(point: &Point) {
+            let beyond = point.amax() - 1.0;
+            assert!(beyond < 0.0201, "{point:?}");
+        }
+    }
+
+    impl Family for Bounded {
+        type Label = Label;
+        type Margin = Margin;
+        type Error = Failed;
+
+        fn label(&self, point: &Point) -> Result<Label, Failed> {
+            Self::check(point);
+            self.0.label(point)
+        }
+
+        fn margin(&self, point: &Point, margin: &Margin) -> Result<Option<f64>, Failed> {
+            Self::check(point);
+            self.0.margin(point, margin)
+        }
+
+        fn moved(&self, point: &Point, margin: &Margin) -> Result<Margin, Failed> {
+            Self::check(point);
+            Ok(margin.clone())
+        }
+
+        fn free_run(&self, point: &Point) -> Result<FreeRun<Label, Margin>, Failed> {
+            Self::check(point);
+            self.0.free_run(point)
+        }
+    }
+
+    const CURVES: [fn(&Point, f64) -> f64; 2] = [
+        |point, t| (point - Point::new(0.7, 0.1)).norm_squared() - t,
+        |point, t| point.y - 0.9 * t - 0.3 * point.x * point.x,
+    ];
+    let family = |value| any(Bounded(Moving { guards: &CURVES, value }));
+    let stack = Stack::of(family, &SQUARE, &[-0.2, 0.05, 0.85], &options()).unwrap();
+    assert_eq!(stack.objection(), None);
+    assert!(stack.changes.len() > 3, "{:?}", stack.changes);
 }
 
 /// A disc that is born at t = 0, in a stack that ends when it has been asked so often whether to go
@@ -227,7 +310,8 @@ fn asked(patience: usize) -> (StackOf<Moving>, [usize; 2]) {
             Progress::Advance { steps } => done.fetch_add(steps, Ordering::Relaxed),
         };
     };
-    let cancelled = || asked.fetch_add(1, Ordering::Relaxed) >= patience;
+    // It says so only once.
+    let cancelled = || asked.fetch_add(1, Ordering::Relaxed) == patience;
     let watch = Watch::from(&report).cancelled_by(&cancelled);
     let family = |value| any(Moving { guards: &DISC, value });
     let values = [-0.5, 0.25, 0.5];
