@@ -56,8 +56,8 @@ class FamilyStack:
     changes: tuple[FamilyChange, ...]
     #: The number of atlases that were traced to find them.
     atlases: int
-    #: Whether the search came to its end. If it was cancelled, changes between the layers are in
-    #: doubt.
+    #: Whether the search came to its end. If it was cancelled, what was not isolated by then is a
+    #: bracket in doubt.
     finished: bool
     #: What speaks against the stack; None if nothing does.
     objection: str | None
@@ -95,8 +95,8 @@ def stack_family(
     which regions are born, split, merge or die.
 
     family: returns the `HybridFamily` at a value between the first and the last one. It is called
-    for hundreds of values, or thousands, on the thread that traces. The systems must have the same
-    guards, depend on the value as smoothly as on the two parameters, and all be compiled if the
+    for hundreds of values, or thousands: first on this thread, then on the one that traces. The
+    systems must be defined a hundredth of the window beyond its edges, have the same guards, depend on the value as smoothly as on the two parameters, and all be compiled if the
     first one is. values: two or more, in ascending order. x, y, options, verify, tolerance, rounds,
     threads, progress, cancelled: as in `trace_family`, for every atlas; boundaries are followed up
     to the window's edges only, and `progress` counts atlases. The first Ctrl-C raises

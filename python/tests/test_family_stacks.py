@@ -1,5 +1,6 @@
 """Stacks of families, against closed forms."""
 
+import itertools
 import pickle
 import re
 import signal
@@ -105,7 +106,8 @@ def test_functions_of_python() -> None:
     )
     (change,) = found.changes
     assert change.kind == "corner" and change.value == pytest.approx(2.5, abs=1e-9)
-    assert min(asked) == 2.45 and max(asked) == 2.55 and len(asked) < 1000
+    assert min(asked) == 2.45 and max(asked) == 2.55
+    assert all(one != other for one, other in itertools.pairwise(asked))
     assert done[-1] == (found.atlases, found.atlases)
 
 
@@ -164,7 +166,7 @@ def test_it_is_cancelled() -> None:
 
 
 @pytest.mark.parametrize("make", [ball, plain_ball])
-def test_an_interruption_keeps_what_was_found(stack, make) -> None:
+def test_an_interruption_keeps_what_was_found(make) -> None:
     """It comes when the first family behind the layers is made."""
     few = {"options": stickslip.TraceOptions(cells=4), "verify": stickslip.VerifyOptions(100, 2)}
     ends = [2.45, 2.55]
@@ -175,6 +177,8 @@ def test_an_interruption_keeps_what_was_found(stack, make) -> None:
         if end not in ends and not between:
             between.append(end)
             signal.raise_signal(signal.SIGINT)
+            # Beside another thread, this one gives it the time to see that.
+            time.sleep(0.3)
         return make(end)
 
     with pytest.raises(StackInterrupted) as caught:
@@ -184,7 +188,8 @@ def test_an_interruption_keeps_what_was_found(stack, make) -> None:
     assert [layer.value for layer in found.layers] == ends
     for layer, known in zip(found.layers, whole.layers, strict=True):
         assert layer.atlas.document == known.atlas.document
-    assert all(change.doubtful for change in found.changes)
+    (change,) = found.changes
+    assert change.doubtful
 
 
 def test_a_second_interruption_ends_the_run() -> None:

@@ -36,8 +36,8 @@ pub struct StackOptions {
     pub atlas: AtlasOptions,
     /// The width of the bracket in which a change is isolated, relative to the greater one of the
     /// two values, from 1e-9 to 0.1. Around a change that is solved for, the bracket is wider if
-    /// narrower ones have atlases that are in doubt, or in which a region is too small to be seen:
-    /// up to 400 widths, or 4e-3 of the value.
+    /// narrower ones have atlases that are in doubt, up to 100 widths, or in which a region is too
+    /// small to be seen, up to 450 widths.
     pub width: f64,
     /// The greatest number of atlases. Changes between the last ones are brackets in doubt.
     pub atlases: usize,
@@ -98,8 +98,8 @@ pub struct Stack<Label, Margin> {
     pub changes: Vec<Change<Label>>,
     /// The number of atlases that were traced.
     pub atlases: usize,
-    /// Whether the search came to its end. If it was cancelled, changes between the layers are in
-    /// doubt.
+    /// Whether the search came to its end. If it was cancelled, what was not isolated by then is a
+    /// bracket in doubt.
     pub finished: bool,
     /// The structures of the first and the last layer that is not in doubt, and those behind each
     /// change.

@@ -120,13 +120,17 @@ fn await_thread<T: Send>(
             made
         });
         let waits = || lock(&receiver).recv_timeout(PAUSE) == Err(RecvTimeoutError::Timeout);
-        while py.detach(waits) {
+        let look = || {
             if let Err(error) = py.check_signals()
                 && let Some(error) = trouble.postpone(error)
             {
                 trouble.fail(error);
             }
+        };
+        while py.detach(waits) {
+            look();
         }
+        look();
         py.detach(|| thread.join()).map_err(|_| failed("a thread of the trace has panicked"))
     })
 }

@@ -78,7 +78,8 @@ impl<Label: Clone + Ord> Change<Label> {
     /// Adds a later change to this one, as one that is in doubt. A region that is born and dies
     /// again between the two values is not mentioned.
     pub(super) fn join(&mut self, later: Self) {
-        self.between[1] = self.between[1].max(later.between[1]);
+        let [low, high] = later.between;
+        self.between = [self.between[0].min(low), self.between[1].max(high)];
         self.meeting = self.meeting.or(later.meeting);
         self.doubtful = true;
         for effect in later.effects {

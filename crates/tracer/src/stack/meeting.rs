@@ -141,7 +141,8 @@ fn newton<F: Family>(
     let mut update = Vector3::zeros();
     let mut last = f64::NAN;
     for _ in 0..30 {
-        let Some(values) = residuals(family, conditions, &at, within) else {
+        let values = Box3::is_defined(&at).then(|| residuals(family, conditions, &at, within));
+        let Some(values) = values.flatten() else {
             // A margin does not exist here, as at the far side of the boundary where it ends.
             update *= 0.5;
             at += update;

@@ -141,16 +141,20 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         }
         self.watch.report(Progress::Begin { steps: 1 });
         let sample = self.sample(value)?;
+        if !sample.atlas.is_finished() {
+            return Ok(Beside::Refused);
+        }
         self.watch.report(Progress::Advance { steps: 1 });
         let agrees = sample.atlas.agrees();
         Ok(if agrees { Beside::Between(Box::new(sample)) } else { Beside::Doubtful })
     }
 
-    /// The width of a bracket that is narrow enough, around a value, which may be 0.
+    /// The width of a bracket that is narrow enough, around a value.
     fn width(&self, low: f64, high: f64) -> f64 {
-        /// The least width, as a part of all values.
+        /// The least width around 0, as a part of all values.
         const LEAST: f64 = 1e-12;
-        (self.options.width * low.abs().max(high.abs())).max(LEAST * self.span)
+        let width = self.options.width * low.abs().max(high.abs());
+        if low <= 0.0 && 0.0 <= high { width.max(LEAST * self.span) } else { width }
     }
 
     /// Finds the changes between two atlases that agree.
@@ -242,6 +246,9 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
             }
         }
         for place in vague {
+            if self.is_cancelled() {
+                return Vec::new();
+            }
             if touching(self.family, &place, &within).is_some_and(&mut add) {
                 break;
             }
@@ -329,9 +336,6 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
             places.sort_by_key(|&place| too_close(place));
         }
         for place in places {
-            if place <= low.value || place >= high.value {
-                continue;
-            }
             if let Beside::Between(middle) = self.between(place)? {
                 self.refine(low, &middle)?;
                 return self.refine(&middle, high);
@@ -354,7 +358,7 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
         effects: &[Effect<F::Label>],
         differing: &[Vec<usize>; 2],
     ) -> Option<(Meeting, [f64; 2])> {
-        /// How far the meeting may be, in widths, and as a part of the value.
+        /// How far the meeting may be, in widths, and as a part of the value, whichever is less.
         const FARTHEST: [f64; 2] = [400.0, 4e-3];
         /// How far it may be from the region, and the half width of that, as parts of the window's
         /// shorter extent.
@@ -395,22 +399,23 @@ impl<'a, F: Family, At: Fn(f64) -> F, E: Executor<F>> Search<'a, F, At, E> {
     /// The changes found, in order, with the structure behind each. Brackets that overlap are one,
     /// in doubt. So are those that almost touch each other, unless both are solved for: there the
     /// structure changes in steps that are too small to tell one change from several.
-    pub fn joined(self) -> Vec<Found<F>> {
+    pub fn joined(mut self) -> Vec<Found<F>> {
         /// The greatest gap between brackets that are joined, in widths.
         const GAP: f64 = 10.0;
+        let found = std::mem::take(&mut self.found);
+        let is_one = |one: &Change<F::Label>, other: &Change<F::Label>| {
+            let [low, high] = other.between;
+            let unsolved = one.meeting.is_none() || other.meeting.is_none();
+            let gap = low - one.between[1];
+            gap < 0.0 || unsolved && gap <= GAP * self.width(low, high)
+        };
         let mut joined: Vec<Found<F>> = Vec::new();
-        for (change, behind) in self.found {
-            if let Some((last, structure)) = joined.last_mut()
-                && (change.between[0] < last.between[1]
-                    || (last.meeting.is_none() || change.meeting.is_none())
-                        && change.between[0] - last.between[1]
-                            <= GAP * self.options.width * change.between[1].abs())
-            {
+        for (mut change, behind) in found {
+            while let Some((mut last, _)) = joined.pop_if(|(last, _)| is_one(last, &change)) {
                 last.join(change);
-                *structure = behind;
-            } else {
-                joined.push((change, behind));
+                change = last;
             }
+            joined.push((change, behind));
         }
         joined
     }

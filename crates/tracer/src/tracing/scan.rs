@@ -24,7 +24,8 @@ impl<F: Family> Tracer<'_, F> {
         const CHANGES: usize = 64;
         let [a, b] = segment;
         let length = (b - a).norm();
-        // On a short segment it is a small part of that, but not less than the error of curves.
+        // The gap behind a curve in which runs may not tell is a small part of a short segment, but
+        // there not less than twice the error of the curve.
         let short = (2e-3 * length).max(2.0 * self.runs.options.interpolation);
         let gap = (2e-9 * self.runs.scale).min(short) / length;
         let [mut label, last] = labels;

@@ -246,9 +246,20 @@ fn a_stack_of_few_atlases_is_in_doubt() {
         let stack = Stack::of(family, &SQUARE, &[-0.5, 0.5], &few).unwrap();
         assert!(stack.finished && stack.atlases <= atlases);
         let [change] = &stack.changes[..] else { panic!("{:?}", stack.changes) };
-        assert!(change.doubtful && change.is_doubtful());
+        assert!(change.doubtful);
         assert!(stack.objection().is_some());
     }
+}
+
+/// Close beside a corner that a line passes through, nothing tells that this is the cause.
+#[test]
+fn a_change_without_atlases_beside_it_is_in_doubt() {
+    const LINE: [fn(&Point, f64) -> f64; 1] = [|point, t| point.x - 0.8 * point.y - t];
+    let family = |value| any(Moving { guards: &LINE, value });
+    let few = StackOptions { atlases: 2, ..options() };
+    let stack = Stack::of(family, &SQUARE, &[0.19992, 0.20008], &few).unwrap();
+    let [change] = &stack.changes[..] else { panic!("{:?}", stack.changes) };
+    assert!(change.doubtful && stack.atlases == 2);
 }
 
 /// Newton's method asks for margins close to the window only.
