@@ -262,6 +262,47 @@ fn a_change_without_atlases_beside_it_is_in_doubt() {
     assert!(change.doubtful && stack.atlases == 2);
 }
 
+/// A birth that is seen late, and a label that is another one for a while in between: the bracket
+/// of the birth holds all three changes, which are one in doubt.
+#[test]
+fn brackets_that_overlap_are_one() {
+    struct Both {
+        late: Unseen,
+        on: bool,
+    }
+
+    impl Family for Both {
+        type Label = [bool; 2];
+        type Margin = ();
+        type Error = Failed;
+
+        fn label(&self, point: &Point) -> Result<[bool; 2], Failed> {
+            Ok([self.late.label(point)?, self.on])
+        }
+
+        fn margin(&self, point: &Point, (): &()) -> Result<Option<f64>, Failed> {
+            self.late.margin(point, &())
+        }
+
+        fn free_run(&self, point: &Point) -> Result<FreeRun<[bool; 2], ()>, Failed> {
+            let margins = self.late.free_run(point)?.margins;
+            Ok(FreeRun { label: self.label(point)?, margins })
+        }
+    }
+
+    let family = |value: f64| {
+        let late = Unseen { value: 2.0 - value, area: 1e-8, seen_until: 0.998 };
+        any(Both { late, on: (1.0006..1.0012).contains(&value) })
+    };
+    let stack = Stack::of(family, &SQUARE, &[0.9, 1.1], &options()).unwrap();
+    let [change] = &stack.changes[..] else { panic!("{:?}", stack.changes) };
+    assert!(change.doubtful);
+    assert!((change.meeting.unwrap().value - 1.0).abs() < 1e-9, "{change:?}");
+    let [low, high] = change.between;
+    assert!(0.999 < low && low < 1.0 && (high - 1.002).abs() < 2e-5, "{change:?}");
+    assert_eq!(change.effects, [Effect::Born([true, false])]);
+}
+
 /// Newton's method asks for margins close to the window only.
 #[test]
 fn margins_are_asked_for_near_the_window() {
