@@ -83,21 +83,11 @@
 //! all guards and as many states of the dense output, and more the faster it varies. An event takes
 //! a few steps of the method. The largest number of guards that has been tried is 100.
 
-mod arrival;
 mod backwards;
 mod by_name;
-mod curve;
 mod dense;
-mod event;
-mod examination;
-mod first_guard;
-mod first_step;
-mod locate;
-mod one_guard;
-mod phase;
 mod results;
 mod runner;
-mod step;
 mod system;
 
 pub use backwards::run_dynamic_backwards;
@@ -105,4 +95,12 @@ pub use by_name::run_dynamic_with;
 pub use dense::DynamicDense;
 pub use results::{DynamicEvent, DynamicObserver, DynamicRun, DynamicSwitch};
 pub use runner::run_dynamic;
-pub use system::{DynamicStart, DynamicSystem};
+pub use system::{DynamicStart, DynamicSystem, ReadableDynamic};
+
+/// Some bits that depend on `i` irregularly (the finaliser of splitmix64).
+pub(crate) fn scramble(i: usize) -> u64 {
+    let mut z = (i as u64).wrapping_add(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}

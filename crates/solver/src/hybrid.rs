@@ -15,7 +15,7 @@ pub use readable::ReadableSystem;
 pub use results::{Grazing, Observer, Outcome, Pole, Run, Statistics, SwitchEvent, Unfinished};
 
 use crate::method::{Method, State, Step, Trial};
-use crate::number::Enclosure;
+use stickslip_number::Enclosure;
 
 /// A piecewise-smooth ODE of `N` components with at most `G` guards in a mode.
 ///

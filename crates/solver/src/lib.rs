@@ -116,7 +116,6 @@
 //! | module | content |
 //! |---|---|
 //! | [`hybrid`] | what a user writes (a system with guards), and the results of a run |
-//! | [`number`] | numbers in which a system is written once: doubles, dual numbers, enclosures |
 //! | `options`, `error` | settings of a run, and why it can fail |
 //! | `runs` | the loop from switch to switch; smooth problems, trajectories, runs without event location |
 //! | `events` | one step and its guards: which guard fires first, and where |
@@ -127,13 +126,13 @@
 
 pub mod hybrid;
 
-pub mod number;
-
 mod options;
 
 mod error;
 
 mod runs;
+
+mod system;
 
 mod events;
 
@@ -147,7 +146,7 @@ pub mod dynamic;
 
 pub use dynamic::{
     DynamicDense, DynamicEvent, DynamicObserver, DynamicRun, DynamicStart, DynamicSwitch,
-    DynamicSystem, run_dynamic, run_dynamic_backwards, run_dynamic_with,
+    DynamicSystem, ReadableDynamic, run_dynamic, run_dynamic_backwards, run_dynamic_with,
 };
 pub use error::RunError;
 pub use hybrid::{
@@ -161,7 +160,6 @@ pub use method::{
     Dense, Dop853, Dopri5, EmbeddedPair, Method, Order, State, Step, Tableau, Trial,
     UnknownEmbeddedPair, fit_order,
 };
-pub use number::{Enclosure, Interval, Number};
 pub use options::{InvalidOption, Options, StepSize};
 pub use runs::{
     Closures, InvalidTimes, Recorder, Sample, Samples, Segment, Trajectory, Weighted, integrate,
@@ -170,6 +168,7 @@ pub use runs::{
 pub use sensitivity::{
     Change, Differentiable, Sensitivities, SwitchSensitivity, sensitivities, sensitivities_with,
 };
+pub use stickslip_number::{Enclosure, Interval, Number};
 
 #[doc = include_str!("../README.md")]
 #[cfg(doctest)]

@@ -13,14 +13,16 @@ mod order;
 mod pair;
 mod state;
 mod step;
+mod store;
 mod tableau;
 
-pub use dense::Dense;
+pub use dense::{Dense, DenseOf};
 pub use dop853::Dop853;
 pub use dopri5::Dopri5;
 pub use order::{Order, fit_order};
 pub use pair::{EmbeddedPair, UnknownEmbeddedPair};
-pub(crate) use state::add_product;
+
 pub use state::{FUSED_PRODUCTS, State};
-pub use step::{Step, Trial};
+pub use step::{Step, StepOf, Trial, TrialOf};
+pub use store::Store;
 pub use tableau::{INTERIOR_NODES, MAX_STAGES, Method, Tableau};

@@ -10,9 +10,9 @@
 use crate::error::RunError;
 use crate::hybrid::{Guard, HybridSystem, Observer, Outcome, Start, Statistics, SwitchEvent};
 use crate::method::{Dop853, Dopri5, EmbeddedPair, Method, State};
-use crate::number::Enclosure;
 use crate::options::Options;
 use crate::runs::run;
+use stickslip_number::Enclosure;
 
 /// A small change of the independent variable, of the state and of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -10,7 +10,8 @@ use cargo_metadata::MetadataCommand;
 use crate::root;
 
 /// The layers of docs/architecture.md from below. A crate may use the crates of all lower layers.
-const LAYERS: [&[&str]; 10] = [
+const LAYERS: [&[&str]; 11] = [
+    &["stickslip-number"],
     &["stickslip-solver"],
     &["stickslip-contact", "stickslip-tracer"],
     &["stickslip-exact"],

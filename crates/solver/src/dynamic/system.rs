@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::hybrid::Guard;
+use stickslip_number::{Enclosure, Number};
 
 /// A piecewise-smooth ODE whose number of components is known at run time only.
 ///
@@ -30,6 +31,24 @@ pub trait DynamicSystem {
     /// [`Self::guards`]. Values of guards that are [off](Guard::OFF) are ignored.
     fn guard_values(&self, mode: Self::Mode, s: f64, y: &[f64], values: &mut [f64]);
 
+    /// Whether [`Self::enclose_guard`] bounds the guards.
+    const READABLE: bool = false;
+
+    /// The components that the guards read.
+    fn reads(&self, _mode: Self::Mode) -> &[usize] {
+        &[]
+    }
+
+    /// Bounds for the guards of `mode` along a curve.
+    fn enclose_guards(
+        &self,
+        _mode: Self::Mode,
+        _s: Enclosure,
+        _y: &[Enclosure],
+        _values: &mut [Enclosure],
+    ) {
+    }
+
     /// Changes the state `y` on `guard` of `mode` to the one that follows when the guard fires, and
     /// returns the mode that follows.
     ///
@@ -37,6 +56,60 @@ pub trait DynamicSystem {
     /// only report a crossing. A run may call this function more than once for an event.
     fn transition(&self, mode: Self::Mode, _guard: usize, _s: f64, _y: &mut [f64]) -> Self::Mode {
         mode
+    }
+}
+
+/// A piecewise-smooth ODE whose number of components is known at run time only, and whose formulas
+/// the solver can read: its guards are decided by bounds.
+pub trait ReadableDynamic {
+    /// A smooth regime.
+    type Mode: Copy + PartialEq + fmt::Debug;
+
+    /// Writes the derivative of the state `y` in `mode` to `slope`.
+    fn field<T: Number>(&self, mode: Self::Mode, s: T, y: &[T], slope: &mut [T]);
+
+    /// The guards of `mode`.
+    fn guards(&self, mode: Self::Mode) -> &[Guard];
+
+    /// Writes the values of the guards of `mode` to `values`.
+    fn guard_values<T: Number>(&self, mode: Self::Mode, s: T, y: &[T], values: &mut [T]);
+
+    /// The components that the guards read. (To be found by the solver.)
+    fn reads(&self, mode: Self::Mode) -> &[usize];
+
+    /// As [`DynamicSystem::transition`].
+    fn transition(&self, mode: Self::Mode, _guard: usize, _s: f64, _y: &mut [f64]) -> Self::Mode {
+        mode
+    }
+}
+
+impl<S: ReadableDynamic> DynamicSystem for S {
+    type Mode = S::Mode;
+    const READABLE: bool = true;
+
+    fn field(&self, mode: S::Mode, s: f64, y: &[f64], slope: &mut [f64]) {
+        ReadableDynamic::field(self, mode, s, y, slope);
+    }
+    fn guards(&self, mode: S::Mode) -> &[Guard] {
+        ReadableDynamic::guards(self, mode)
+    }
+    fn guard_values(&self, mode: S::Mode, s: f64, y: &[f64], values: &mut [f64]) {
+        ReadableDynamic::guard_values(self, mode, s, y, values);
+    }
+    fn reads(&self, mode: S::Mode) -> &[usize] {
+        ReadableDynamic::reads(self, mode)
+    }
+    fn enclose_guards(
+        &self,
+        mode: S::Mode,
+        s: Enclosure,
+        y: &[Enclosure],
+        values: &mut [Enclosure],
+    ) {
+        ReadableDynamic::guard_values(self, mode, s, y, values);
+    }
+    fn transition(&self, mode: S::Mode, guard: usize, s: f64, y: &mut [f64]) -> S::Mode {
+        ReadableDynamic::transition(self, mode, guard, s, y)
     }
 }
 
@@ -50,21 +123,4 @@ pub struct DynamicStart<'a, Mode> {
     /// The state at the start. Its length is the dimension of the run, and may be 0: then only the
     /// time passes.
     pub state: &'a [f64],
-}
-
-/// A guard of a mode as a function of time and state, with a sign.
-#[derive(Clone, Copy)]
-pub(crate) struct SignedGuard<'a, S: DynamicSystem> {
-    pub(crate) system: &'a S,
-    pub(crate) mode: S::Mode,
-    pub(crate) guard: usize,
-    pub(crate) sign: f64,
-}
-
-impl<S: DynamicSystem> SignedGuard<'_, S> {
-    /// The guard's value. All `values` are written.
-    pub(crate) fn value(&self, s: f64, y: &[f64], values: &mut [f64]) -> f64 {
-        self.system.guard_values(self.mode, s, y, values);
-        self.sign * values[self.guard]
-    }
 }

@@ -6,48 +6,73 @@ use crate::error::RunError;
 use crate::events::aside::{Aside, resolution};
 use crate::events::isolate::{Curve, Enclosed};
 use crate::events::path::Path;
-use crate::hybrid::{HybridSystem, Statistics};
-use crate::method::{Dense, Method, State, Step, Trial};
-use crate::number::{Enclosure, Interval};
+use crate::hybrid::Statistics;
+use crate::method::{DenseOf, Method, StepOf, Store, TrialOf};
+use crate::system::{List, PerComponent, Room, Shape, System};
+use stickslip_number::{Enclosure, Interval};
 
 /// The relative change of state and time with which a guard's sensitivity to them is measured.
 pub(crate) const SLIGHT: f64 = 1e-12;
 
-/// The change of a guard's `value` at (`s`, `y`) if time and state change by some units in the last
-/// place of `s_scale` and `y_scale`.
+/// The number of patterns of signs by which large states are moved.
+const PATTERNS: usize = 8;
+
+/// The change of a guard's value at (`s`, `y`) if time and state change by some units in the last
+/// place of `s_scale` and `y_scale`, and the evaluations.
 ///
 /// It is zero if the guard has no value nearby, since nothing is known about it beyond its domain.
-pub(crate) fn rounding<const N: usize>(
-    value: impl Fn(f64, &State<N>) -> f64,
-    (s, y): (f64, &State<N>),
-    (s_scale, y_scale): (f64, &State<N>),
-) -> f64 {
-    let here = value(s, y);
-    let mut change = (value(s + SLIGHT * s_scale.abs(), y) - here).abs();
-    for i in 0..N {
-        let mut moved = *y;
-        moved[i] += SLIGHT * y_scale[i].abs();
-        change += (value(s, &moved) - here).abs();
+pub(crate) fn rounding<S: System>(
+    system: &S,
+    at: (S::Mode, usize),
+    (s, y): (f64, &S::State),
+    (s_scale, y_scale): (f64, &S::State),
+    room: &mut Room<S>,
+) -> (f64, usize) {
+    let here = room.value(system, at, s, y);
+    let mut change = (room.value(system, at, s + SLIGHT * s_scale.abs(), y) - here).abs();
+    let (n, mut count) = (y.size(), 2);
+    let mut moved = room.state();
+    moved.set(y);
+    if n <= S::State::FEW {
+        for i in 0..n {
+            moved[i] += SLIGHT * y_scale[i].abs();
+            change += (room.value(system, at, s, &moved) - here).abs();
+            moved[i] = y[i];
+            count += 1;
+        }
+    } else {
+        let mut most = 0.0;
+        for pattern in 0..PATTERNS {
+            for i in 0..n {
+                let change = SLIGHT * y_scale[i].abs();
+                let down = pattern > 0 && crate::dynamic::scramble(i) >> pattern & 1 == 1;
+                moved[i] = y[i] + if down { -change } else { change };
+            }
+            let change = (room.value(system, at, s, &moved) - here).abs();
+            // NaN stays.
+            most = if change <= most { most } else { change };
+            count += 1;
+        }
+        change += most;
     }
-    if change.is_finite() { 4.0 * f64::EPSILON / SLIGHT * change } else { 0.0 }
+    room.give(moved);
+    (if change.is_finite() { 4.0 * f64::EPSILON / SLIGHT * change } else { 0.0 }, count)
 }
 
-/// The dense output over a step taken in `mode`.
+/// Writes the dense output over a step taken in `mode`.
 ///
 /// All callers share this one function, because what it compiles to is large.
 #[inline(never)]
-pub(crate) fn dense_output<S, M, const N: usize, const G: usize>(
+pub(crate) fn dense_output<S: System, M: Method>(
     system: &S,
     mode: S::Mode,
-    step: &mut Step<N>,
-) -> Dense<N>
-where
-    S: HybridSystem<N, G>,
-    M: Method,
-{
+    step: &mut StepOf<S::State>,
+    dense: &mut DenseOf<S::State>,
+) {
     // Dispatched at run time, so that it is compiled once for each method and dimension.
-    let field: &mut dyn FnMut(f64, &State<N>) -> State<N> = &mut |s, y| system.field(mode, s, y);
-    step.dense::<M>(&mut &mut *field)
+    let mut field: &mut dyn FnMut(f64, &S::State, &mut S::State) =
+        &mut |s, y, slope| system.field(mode, s, y, slope);
+    step.dense_in_place::<M>(&mut field, dense);
 }
 
 /// The step `trial` in `mode`, taken again to look at the solution more closely.
@@ -55,121 +80,119 @@ where
 /// All callers share this one function, apart from the step of the run itself, because what it
 /// compiles to is large.
 #[inline(never)]
-pub(crate) fn repeated_step<S, M, const N: usize, const G: usize>(
+pub(crate) fn repeated_step<S: System, M: Method>(
     system: &S,
     mode: S::Mode,
-    trial: &Trial<'_, N>,
+    trial: &TrialOf<'_, S::State>,
     statistics: &mut Statistics,
-) -> Step<N>
-where
-    S: HybridSystem<N, G>,
-    M: Method,
-{
+    room: &mut Room<S>,
+) -> StepOf<S::State> {
     statistics.resteps += 1;
     statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
-    let mut step = Step::blank();
+    let mut step = room.step();
     system.step::<M>(mode, trial, &mut step);
     step
 }
 
 /// A guard as a function along a step, for isolation.
-pub(crate) struct AlongStep<'a, S: HybridSystem<N, G>, M, const N: usize, const G: usize> {
+pub(crate) struct AlongStep<'a, S: System, M> {
     pub(crate) system: &'a S,
     pub(crate) mode: S::Mode,
     pub(crate) guard: usize,
     pub(crate) sign: f64,
-    pub(crate) step: &'a Step<N>,
-    pub(crate) dense: &'a Dense<N>,
+    pub(crate) step: &'a StepOf<S::State>,
+    pub(crate) dense: &'a DenseOf<S::State>,
     pub(crate) statistics: &'a mut Statistics,
+    pub(crate) room: &'a mut Room<S>,
     pub(crate) method: PhantomData<M>,
 }
 
-impl<S, M, const N: usize, const G: usize> AlongStep<'_, S, M, N, G>
-where
-    S: HybridSystem<N, G>,
-    M: Method,
-{
-    fn value(&mut self, theta: f64, y: &State<N>) -> f64 {
+impl<S: System, M: Method> AlongStep<'_, S, M> {
+    fn value(&mut self, theta: f64, y: &S::State) -> f64 {
         self.statistics.guards += 1;
         let s = self.step.s + theta * self.step.h;
-        self.sign * self.system.guard_values(self.mode, s, y)[self.guard]
+        self.sign * self.room.value(self.system, (self.mode, self.guard), s, y)
     }
 
     /// Bounds of the guard from bounds of time and state.
-    fn enclose(&mut self, (s, y): (Enclosure, [Enclosure; N])) -> Enclosure {
+    fn enclose(&mut self, (s, y): (Enclosure, PerComponent<S, Enclosure>)) -> Enclosure {
         self.statistics.enclosures += 1;
-        let bounds = self.system.enclose_guards(self.mode, s, &y)[self.guard];
+        let bounds = self.system.enclose(self.mode, s, &y, self.guard);
         if self.sign < 0.0 { -bounds } else { bounds }
     }
 
     /// The state by a step of the method to `theta`.
-    fn state_at(&mut self, theta: f64) -> State<N> {
+    fn state_at(&mut self, theta: f64) -> StepOf<S::State> {
         let shorter = self.step.shortened(theta * self.step.h);
-        repeated_step::<S, M, N, G>(self.system, self.mode, &shorter, self.statistics).y1
+        repeated_step::<S, M>(self.system, self.mode, &shorter, self.statistics, self.room)
     }
 
     /// `theta`, or a place beside it if the guard has no value there, with the state by a step of
     /// the method and the guard's value.
-    fn step_to(&mut self, theta: f64) -> Result<(f64, State<N>, f64), RunError> {
+    fn step_to(&mut self, theta: f64) -> Result<(f64, StepOf<S::State>, f64), RunError> {
         let step = self.step;
         let mut aside = Aside::new(self.guard, step.s, resolution(step.s, step.h));
         let mut place = theta;
         loop {
             let state = self.state_at(place);
-            let value = self.value(place, &state);
+            let value = self.value(place, &state.y1);
             if !value.is_nan() {
                 return Ok((place, state, value));
             }
+            self.room.give_step(state);
             place = aside.of(theta)?;
         }
     }
 }
 
-impl<S, M, const N: usize, const G: usize> Curve for AlongStep<'_, S, M, N, G>
-where
-    S: HybridSystem<N, G>,
-    M: Method,
-{
+impl<S: System, M: Method> Curve for AlongStep<'_, S, M> {
     fn dense(&mut self, theta: f64) -> f64 {
-        self.value(theta, &self.dense.at(theta))
+        let mut y = self.room.state();
+        self.dense.write(theta, &mut y);
+        let value = self.value(theta, &y);
+        self.room.give(y);
+        value
     }
 
     fn coarse(&mut self, theta: f64) -> f64 {
-        self.value(theta, &self.dense.coarse_at(theta))
+        let mut y = self.room.state();
+        self.dense.write_coarse(theta, &mut y);
+        let value = self.value(theta, &y);
+        self.room.give(y);
+        value
     }
 
     fn rounding(&mut self) -> (f64, f64) {
-        self.statistics.guards += 3 * (N + 2);
-        let value = |s: f64, y: &State<N>| self.system.guard_values(self.mode, s, y)[self.guard];
         let [start, middle, end] = [0.0, 0.5, 1.0].map(|theta| {
-            let (s, y) = (self.step.s + theta * self.step.h, self.dense.at(theta));
-            rounding(value, (s, &y), (s, &y))
+            let s = self.step.s + theta * self.step.h;
+            let mut y = self.room.state();
+            self.dense.write(theta, &mut y);
+            let at = (self.mode, self.guard);
+            let (effect, count) = rounding(self.system, at, (s, &y), (s, &y), self.room);
+            self.statistics.guards += count;
+            self.room.give(y);
+            effect
         });
         (start, start.max(middle).max(end))
     }
 
     fn truth(&mut self, theta: f64) -> Result<f64, RunError> {
-        self.step_to(theta).map(|(.., value)| value)
+        let (_, step, value) = self.step_to(theta)?;
+        self.room.give_step(step);
+        Ok(value)
     }
 }
 
 /// A guard of a readable system along a step.
-pub(crate) struct EnclosedAlongStep<'a, S, M, const N: usize, const G: usize>
-where
-    S: HybridSystem<N, G>,
-{
-    pub(crate) along: AlongStep<'a, S, M, N, G>,
+pub(crate) struct EnclosedAlongStep<'a, S: System, M> {
+    pub(crate) along: AlongStep<'a, S, M>,
     /// The path along the dense output.
-    pub(crate) path: Path<N>,
+    pub(crate) path: Path<S::Components>,
     /// The path on the part of the step that is looked at more closely.
-    pub(crate) local: Option<Path<N>>,
+    pub(crate) local: Option<Path<S::Components>>,
 }
 
-impl<S, M, const N: usize, const G: usize> Enclosed for EnclosedAlongStep<'_, S, M, N, G>
-where
-    S: HybridSystem<N, G>,
-    M: Method,
-{
+impl<S: System, M: Method> Enclosed for EnclosedAlongStep<'_, S, M> {
     fn over(&mut self, low: f64, high: f64) -> Enclosure {
         let part = self.local.as_ref().unwrap_or(&self.path).part(low, high);
         self.along.enclose(part.whole())
@@ -192,8 +215,11 @@ where
         let (theta, y, value) = self.along.step_to(theta)?;
         let AlongStep { system, mode, guard, sign, step, .. } = self.along;
         let s = Enclosure::from(step.s + theta * step.h);
-        let state = std::array::from_fn(|i| Enclosure::from(y[i]));
-        let bounds = system.enclose_guards(mode, s, &state)[guard].value;
+        let read = system.reads(mode);
+        let n = S::Components::count(&read, y.y1.size());
+        let state = List::made(n, |i| Enclosure::from(y.y1[S::Components::place(&read, i)]));
+        let bounds = system.enclose(mode, s, &state, guard).value;
+        self.along.room.give_step(y);
         Ok((value, if sign < 0.0 { bounds.negated() } else { bounds }))
     }
 
@@ -204,13 +230,25 @@ where
     fn refine(&mut self, low: f64, high: f64) -> Result<Option<bool>, RunError> {
         let AlongStep { system, mode, step, .. } = self.along;
         let (middle, reach) = (0.5 * (low + high), 0.5 * (high - low) * step.h);
-        let y = self.along.state_at(middle);
+        let end = self.along.state_at(middle);
+        let y = &end.y1;
         let s = step.s + middle * step.h;
-        let slope = system.field(mode, s, &y);
-        let away = |by: f64| system.field(mode, s + by, &(y + slope * by));
-        let bend = (away(reach) - away(-reach)) / (2.0 * reach);
+        let room = &mut *self.along.room;
+        let (mut slope, mut moved) = (room.state(), room.state());
+        let (mut ahead, mut bend) = (room.state(), room.state());
+        system.field(mode, s, y, &mut slope);
+        S::State::shifted(&mut moved, y, &slope, reach);
+        system.field(mode, s + reach, &moved, &mut ahead);
+        S::State::shifted(&mut moved, y, &slope, -reach);
+        system.field(mode, s - reach, &moved, &mut bend);
+        S::State::each(&mut bend, [&ahead], |behind, [ahead]| (ahead - behind) / (2.0 * reach));
         self.along.statistics.field += 3;
-        let local = self.path.local((low, high), [&y, &slope, &bend]);
+        let local = self.path.local((low, high), [y, &slope, &bend].map(Store::parts));
+        let room = &mut *self.along.room;
+        for state in [slope, moved, ahead, bend] {
+            room.give(state);
+        }
+        room.give_step(end);
         Ok(local.map(|(local, exact)| {
             self.local = Some(local);
             exact

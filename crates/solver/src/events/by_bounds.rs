@@ -4,17 +4,15 @@ use crate::events::examination::Examination;
 use crate::events::one_guard::{Crossing, Status};
 use crate::events::path::Path;
 use crate::events::quick;
-use crate::hybrid::{Direction, HybridSystem};
+use crate::hybrid::Direction;
 use crate::method::Method;
-use crate::number::Enclosure;
+use crate::system::{PerComponent, System};
+use stickslip_number::Enclosure;
 
 /// A step is divided at most into 2 to this power parts.
 const HALVINGS: u32 = 3;
 
-impl<S, const N: usize, const G: usize> Examination<'_, S, N, G>
-where
-    S: HybridSystem<N, G>,
-{
+impl<S: System> Examination<'_, S> {
     /// What bounds of a guard along the quick path tell about it. Its six values on the step are
     /// in `column`.
     ///
@@ -24,7 +22,7 @@ where
         &mut self,
         guard: usize,
         column: &[f64; 6],
-        path: &Path<N>,
+        path: &Path<S::Components>,
     ) -> Status {
         let (direction, order) =
             (self.phase.guards[guard].direction(), self.phase.zero_orders[guard]);
@@ -79,7 +77,7 @@ where
     }
 
     /// Whether a guard with these `bounds` on the step has one sign throughout.
-    fn same_side(&mut self, guard: usize, path: &Path<N>, bounds: &Enclosure) -> bool {
+    fn same_side(&mut self, guard: usize, path: &Path<S::Components>, bounds: &Enclosure) -> bool {
         bounds.value.sign() != 0.0 || self.side_in_halves(guard, path, (0.0, 1.0), HALVINGS) != 0.0
     }
 
@@ -88,7 +86,7 @@ where
     fn crosses_once(
         &mut self,
         guard: usize,
-        path: &Path<N>,
+        path: &Path<S::Components>,
         first: f64,
         (low, high): (f64, f64),
         halvings: u32,
@@ -104,13 +102,23 @@ where
     }
 
     /// Bounds of a guard from bounds of time and state.
-    fn enclosed(&mut self, guard: usize, (s, y): (Enclosure, [Enclosure; N])) -> Enclosure {
+    fn enclosed(
+        &mut self,
+        guard: usize,
+        (s, y): (Enclosure, PerComponent<S, Enclosure>),
+    ) -> Enclosure {
         self.statistics.enclosures += 1;
-        self.system.enclose_guards(self.phase.mode, s, &y)[guard]
+        self.system.enclose(self.phase.mode, s, &y, guard)
     }
 
     /// Bounds of a guard between two step fractions, along a path.
-    fn bounds(&mut self, guard: usize, path: &Path<N>, low: f64, high: f64) -> Enclosure {
+    fn bounds(
+        &mut self,
+        guard: usize,
+        path: &Path<S::Components>,
+        low: f64,
+        high: f64,
+    ) -> Enclosure {
         let part = path.part(low, high);
         let plain = self.enclosed(guard, part.whole());
         if plain.value.sign() != 0.0 || !plain.slope.is_bounded() {
@@ -124,7 +132,7 @@ where
     fn side_in_halves(
         &mut self,
         guard: usize,
-        path: &Path<N>,
+        path: &Path<S::Components>,
         (low, high): (f64, f64),
         halvings: u32,
     ) -> f64 {
@@ -141,7 +149,13 @@ where
     }
 
     /// The sign that a guard has between two step fractions, 0 if the bounds do not exclude zero.
-    fn side(&mut self, guard: usize, path: &Path<N>, part: (f64, f64), halvings: u32) -> f64 {
+    fn side(
+        &mut self,
+        guard: usize,
+        path: &Path<S::Components>,
+        part: (f64, f64),
+        halvings: u32,
+    ) -> f64 {
         let sign = self.bounds(guard, path, part.0, part.1).value.sign();
         if sign == 0.0 { self.side_in_halves(guard, path, part, halvings) } else { sign }
     }

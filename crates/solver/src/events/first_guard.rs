@@ -7,32 +7,33 @@ use crate::events::isolate::{Beginning, Bracket};
 use crate::events::one_guard::{Crossing, Status};
 use crate::events::phase::Phase;
 use crate::events::quick;
-use crate::hybrid::{Direction, HybridSystem, Statistics, SwitchEvent};
-use crate::method::{Method, Step};
+use crate::hybrid::{Direction, Statistics};
+use crate::method::{Method, StepOf, Store};
+use crate::system::{List, Note, PerGuard, Room, System};
 
 /// Guards whose zeros are closer together than this part of the step fire together.
 pub(crate) const TOGETHER: f64 = 1e-12;
 
-impl<S, const N: usize, const G: usize> Examination<'_, S, N, G>
-where
-    S: HybridSystem<N, G>,
-{
+impl<S: System> Examination<'_, S> {
     /// Finds the first guard that fires on `step` and changes something, and writes it to `event`,
     /// which is empty. Guards that fire before it and change nothing are noted. `values` are those
     /// of the guards at the nodes of the step, and if all are `away` from zero, none fires.
     #[inline(never)]
     pub(crate) fn look<M: Method>(
         &mut self,
-        step: &mut Step<N>,
-        event: &mut Option<Event<N>>,
-        values: &[[f64; G]; 6],
+        step: &mut StepOf<S::State>,
+        event: &mut Option<Event<S::State>>,
+        values: &[PerGuard<S, f64>; 6],
         away: bool,
-    ) -> Result<Found<G>, RunError> {
+    ) -> Result<Found<S>, RunError> {
         if away {
-            return Ok(Found::Nothing(values[5]));
+            let mut ends = self.room.row();
+            ends.set(&values[5]);
+            return Ok(Found::Nothing(ends));
         }
         let statuses = self.glances::<M>(step, values);
-        if statuses.iter().all(|&status| status == Status::Clear) {
+        if statuses.parts().iter().all(|&status| status == Status::Clear) {
+            self.room.give_statuses(statuses);
             Ok(Found::Nothing(self.on_their_side::<M>(step, values)))
         } else {
             self.decide::<M>(step, event, values, statuses)
@@ -42,18 +43,18 @@ where
     /// Decides which guard fires first if the quick look alone does not tell that none fires.
     fn decide<M: Method>(
         &mut self,
-        step: &mut Step<N>,
-        event: &mut Option<Event<N>>,
-        values: &[[f64; G]; 6],
-        mut statuses: [Status; G],
-    ) -> Result<Found<G>, RunError> {
+        step: &mut StepOf<S::State>,
+        event: &mut Option<Event<S::State>>,
+        values: &[PerGuard<S, f64>; 6],
+        mut statuses: PerGuard<S, Status>,
+    ) -> Result<Found<S>, RunError> {
         let end_values = self.on_their_side::<M>(step, values);
         // Where the part of the step begins that is still to be examined, for each guard.
-        let mut beginnings: [Beginning; G] = std::array::from_fn(|guard| Beginning {
-            theta: 0.0,
-            value: self.phase.values[guard],
-            zero_order: self.phase.zero_orders[guard],
-        });
+        let mut beginnings: PerGuard<S, Beginning> = self.room.beginnings();
+        for guard in 0..self.phase.count() {
+            let (value, zero_order) = (self.phase.values[guard], self.phase.zero_orders[guard]);
+            beginnings[guard] = Beginning { theta: 0.0, value, zero_order };
+        }
         let mut last: Option<f64> = None;
         loop {
             *event = None;
@@ -63,6 +64,8 @@ where
                 return Ok(Found::TooCoarse(guard));
             }
             let Some(next) = event.as_mut() else {
+                self.room.give_beginnings(beginnings);
+                self.room.give_statuses(statuses);
                 return Ok(Found::Nothing(end_values));
             };
             let guard = next.guard;
@@ -82,29 +85,30 @@ where
     }
 
     /// Whether an event only reports a crossing: mode and state go on unchanged.
-    pub(crate) fn is_noted(&self, event: &Event<N>) -> bool {
+    pub(crate) fn is_noted(&self, event: &Event<S::State>) -> bool {
         let about = self.phase.guards[event.guard];
         let before = self.notes_of(event.guard).count();
         if about.direction() == Direction::Below
             || before + 1 == about.fires_until_end() as usize
-            || !event.state.iter().all(|value| value.is_finite())
+            || !event.state.parts().iter().all(|value| value.is_finite())
         {
             return false;
         }
         let s = self.trial.s + event.elapsed;
-        self.system.transition(self.phase.mode, event.guard, s, &event.state)
-            == (self.phase.mode, event.state)
+        let mut after = event.state.clone();
+        self.system.transition(self.phase.mode, event.guard, s, &mut after) == self.phase.mode
+            && after == event.state
     }
 
     /// The notes of a guard on this step.
-    pub(crate) fn notes_of(&self, guard: usize) -> impl Iterator<Item = &SwitchEvent<S::Mode, N>> {
+    pub(crate) fn notes_of(&self, guard: usize) -> impl Iterator<Item = &Note<S>> {
         self.notes
             .iter()
             .filter(move |note| note.guard == guard || note.simultaneous & bit(guard) != 0)
     }
 
     /// Notes an event that changes nothing. If it is `together` with the one before, both are one.
-    pub(crate) fn note(&mut self, event: &Event<N>, together: bool) {
+    pub(crate) fn note(&mut self, event: &Event<S::State>, together: bool) {
         if together
             && bit(event.guard) != 0
             && let Some(last) = self.notes.last_mut()
@@ -115,7 +119,7 @@ where
             return;
         }
         let largest = self.phase.largest[event.guard];
-        self.notes.push(SwitchEvent {
+        self.notes.push(Note {
             s: self.trial.s + event.elapsed,
             guard: event.guard,
             simultaneous: 0,
@@ -123,8 +127,8 @@ where
             jump: event.jump,
             from: self.phase.mode,
             to: self.phase.mode,
-            before: event.state,
-            after: event.state,
+            before: event.state.clone(),
+            after: event.state.clone(),
         });
     }
 
@@ -133,22 +137,27 @@ where
     /// finds on the `full` step is kept.
     fn first<M: Method>(
         &mut self,
-        step: &mut Step<N>,
-        event: &mut Option<Event<N>>,
-        full_values: &[[f64; G]; 6],
-        full: &mut [Status; G],
-        beginnings: &[Beginning; G],
+        step: &mut StepOf<S::State>,
+        event: &mut Option<Event<S::State>>,
+        full_values: &[PerGuard<S, f64>; 6],
+        full: &mut PerGuard<S, Status>,
+        beginnings: &PerGuard<S, Beginning>,
     ) -> Result<Option<usize>, RunError> {
-        let (mut values, mut statuses) = (*full_values, *full);
+        let mut values = [(); 6].map(|()| self.room.row());
+        for (values, full) in values.iter_mut().zip(full_values) {
+            values.set(full);
+        }
+        let mut statuses = self.room.statuses();
+        statuses.set(full);
         loop {
             let first = self.earliest(&statuses);
             let starts = first.is_some_and(|(_, crossing)| crossing.bracket.high == 0.0);
-            if (first.is_none() || starts) && statuses.contains(&Status::Unclear) {
+            if (first.is_none() || starts) && statuses.parts().contains(&Status::Unclear) {
                 let shortened = event.is_some();
                 let on = event.as_mut().map_or(&mut *step, |event| &mut event.step);
                 // Whether a guard fires together with an event at the start shows after the event.
                 let may_wait = starts || on.h <= TOGETHER * self.trial.h;
-                for guard in 0..G {
+                for guard in 0..self.phase.count() {
                     if statuses[guard] == Status::Unclear {
                         let status = match self.isolate_rest::<M>(guard, on, &values, beginnings)? {
                             Some(status) => status,
@@ -164,13 +173,15 @@ where
                 continue;
             }
             let Some((guard, crossing)) = first else {
+                values.map(|values| self.room.give_row(values));
+                self.room.give_statuses(statuses);
                 return Ok(None);
             };
             statuses[guard] = Status::Clear;
             let on = event.as_ref().map_or(&*step, |event| &event.step);
             let exact = self.wants_segments
                 || event.is_some()
-                || statuses.iter().any(|&status| status != Status::Clear);
+                || statuses.parts().iter().any(|&status| status != Status::Clear);
             let Some(mut next) = self.locate::<M>(on, guard, &crossing, exact)? else {
                 return Ok(Some(guard));
             };
@@ -179,7 +190,7 @@ where
                     Status::Fires(crossing) => crossing.bracket.high == 0.0,
                     _ => false,
                 };
-                next.simultaneous = mask(&statuses.map(at_start));
+                next.simultaneous = mask(statuses.parts().iter().map(|&status| at_start(status)));
                 *event = Some(next);
                 return Ok(None);
             }
@@ -190,7 +201,8 @@ where
                 // Both fire at the end of the shortened step, and the event's guard precedes.
                 continue;
             }
-            let mut at_nodes = self.values_on(&next.step);
+            let mut at_nodes = values.clone();
+            self.values_on(&next.step, &mut at_nodes);
             let mut together = self.together(&next, &at_nodes);
             let on = event.as_mut().map_or(&mut *step, |event| &mut event.step);
             let others = (&together, &statuses);
@@ -199,12 +211,12 @@ where
                 // puts another one earlier.
                 next = preceding;
                 statuses[next.guard] = Status::Clear;
-                at_nodes = self.values_on(&next.step);
+                self.values_on(&next.step, &mut at_nodes);
                 together = self.together(&next, &at_nodes);
             }
-            next.simultaneous = mask(&together);
+            next.simultaneous = mask(together.parts().iter().copied());
             values = at_nodes;
-            for (other, status) in statuses.iter_mut().enumerate() {
+            for (other, status) in statuses.parts_mut().iter_mut().enumerate() {
                 if *status == Status::Clear {
                     continue;
                 }
@@ -223,16 +235,16 @@ where
     fn isolate_rest<M: Method>(
         &mut self,
         guard: usize,
-        step: &mut Step<N>,
-        values: &[[f64; G]; 6],
-        beginnings: &[Beginning; G],
+        step: &mut StepOf<S::State>,
+        values: &[PerGuard<S, f64>; 6],
+        beginnings: &PerGuard<S, Beginning>,
     ) -> Result<Option<Status>, RunError> {
         let mut beginning = beginnings[guard];
         beginning.theta *= self.trial.h / step.h;
         if beginning.theta >= 1.0 {
             return Ok(Some(Status::Clear));
         }
-        self.isolate::<M>(guard, step, &column(values, guard), beginning)
+        self.isolate::<M>(guard, step, &column::<S>(values, guard), beginning)
     }
 
     /// Whether guard `first` decides the transition if it fires together with guard `second`. The
@@ -244,9 +256,9 @@ where
 
     /// The crossing with the smallest step fraction, and its guard. If two fractions are equal, the
     /// guard that precedes is taken.
-    fn earliest(&self, statuses: &[Status; G]) -> Option<(usize, Crossing)> {
+    fn earliest(&self, statuses: &PerGuard<S, Status>) -> Option<(usize, Crossing)> {
         let mut first: Option<(usize, Crossing)> = None;
-        for (guard, status) in statuses.iter().enumerate() {
+        for (guard, status) in statuses.parts().iter().enumerate() {
             let Status::Fires(crossing) = *status else { continue };
             let before = |(other, at): (usize, Crossing)| {
                 let (here, there) = (crossing.bracket.guess, at.bracket.guess);
@@ -264,13 +276,13 @@ where
     /// belong to that step. Which guards are zero at the event is known.
     fn preceding<M: Method>(
         &mut self,
-        event: &Event<N>,
-        step: &mut Step<N>,
-        values: &[[f64; G]; 6],
-        (zero, statuses): (&[bool; G], &[Status; G]),
-        beginnings: &[Beginning; G],
-    ) -> Result<Option<Event<N>>, RunError> {
-        for (first, &status) in statuses.iter().enumerate() {
+        event: &Event<S::State>,
+        step: &mut StepOf<S::State>,
+        values: &[PerGuard<S, f64>; 6],
+        (zero, statuses): (&PerGuard<S, bool>, &PerGuard<S, Status>),
+        beginnings: &PerGuard<S, Beginning>,
+    ) -> Result<Option<Event<S::State>>, RunError> {
+        for (first, &status) in statuses.parts().iter().enumerate() {
             if !zero[first] || !self.precedes(first, event.guard) {
                 continue;
             }
@@ -297,55 +309,62 @@ where
 
     /// Which guards other than that of `event` are zero there. `values` are those at the nodes of
     /// the event's step, which may end beside the event.
-    fn together(&mut self, event: &Event<N>, values: &[[f64; G]; 6]) -> [bool; G] {
-        let there = if G == 1 {
-            values[5]
+    fn together(
+        &mut self,
+        event: &Event<S::State>,
+        values: &[PerGuard<S, f64>; 6],
+    ) -> PerGuard<S, bool> {
+        let mut there = self.room.row();
+        if self.phase.count() == 1 {
+            there.set(&values[5]);
         } else {
             self.statistics.guards += 1;
             let s = self.trial.s + event.elapsed;
-            self.system.guard_values(self.phase.mode, s, &event.state)
-        };
-        std::array::from_fn(|other| {
+            self.system.guard_values(self.phase.mode, s, &event.state, &mut there);
+        }
+        List::made(self.phase.count(), |other| {
             other != event.guard
                 && self.phase.guards[other].direction() != Direction::Off
-                && there[other].abs() <= TOGETHER * largest(other, values)
+                && there[other].abs() <= TOGETHER * largest::<S>(other, values)
         })
     }
 }
 
 /// The guards of a set, one bit each.
-fn mask<const G: usize>(guards: &[bool; G]) -> u64 {
-    guards.iter().enumerate().fold(0, |bits, (guard, &one)| bits | if one { bit(guard) } else { 0 })
+fn mask(guards: impl Iterator<Item = bool>) -> u64 {
+    guards.enumerate().fold(0, |bits, (guard, one)| bits | if one { bit(guard) } else { 0 })
 }
 
 /// Whether all guards stay clearly on the side where they do not fire. This holds on most steps.
 #[inline(always)]
-pub(crate) fn all_clearly_away<S: HybridSystem<N, G>, const N: usize, const G: usize>(
+pub(crate) fn all_clearly_away<S: System>(
     system: &S,
-    phase: &Phase<S::Mode, G>,
+    phase: &Phase<S>,
     guard_scale: f64,
-    step: &Step<N>,
-    values: &[[f64; G]; 6],
+    step: &StepOf<S::State>,
+    values: &[PerGuard<S, f64>; 6],
     statistics: &mut Statistics,
+    room: &mut Room<S>,
+    sure: &mut PerGuard<S, bool>,
 ) -> bool {
-    // The verdicts are collected in an array, so that the loop is unrolled and the values stay in
-    // registers.
-    let away: [bool; G] = std::array::from_fn(|guard| {
-        let column = column(values, guard);
-        match phase.guards[guard].direction() {
+    // The verdicts are collected, so that the loop is unrolled and the values stay in registers.
+    for guard in 0..phase.count() {
+        let column = column::<S>(values, guard);
+        sure[guard] = match phase.guards[guard].direction() {
             Direction::Off => true,
             Direction::Below => column[0] > 0.0 && quick::clearly_away(column),
             _ => quick::clearly_away(column),
-        }
-    });
+        };
+    }
     let read = S::READABLE && !phase.smooth;
-    !phase.at_zero
-        && !read
-        && away == [true; G]
-        && confirmed(system, phase, guard_scale, step, values, statistics) == [true; G]
+    let away = sure.parts().iter().all(|away| *away);
+    !phase.at_zero && !read && away && {
+        confirmed(system, phase, guard_scale, step, values, sure, statistics, room);
+        sure.parts().iter().all(|sure| *sure)
+    }
 }
 
 /// The largest absolute value of a guard at the nodes of a step.
-fn largest<const G: usize>(guard: usize, values: &[[f64; G]; 6]) -> f64 {
-    column(values, guard).iter().fold(0.0, |size, value| size.max(value.abs()))
+fn largest<S: System>(guard: usize, values: &[PerGuard<S, f64>; 6]) -> f64 {
+    column::<S>(values, guard).iter().fold(0.0, |size, value| size.max(value.abs()))
 }

@@ -10,8 +10,8 @@ use crate::events::event::Event;
 use crate::events::examination::Examination;
 use crate::events::isolate::{Bracket, narrow};
 use crate::events::one_guard::Crossing;
-use crate::hybrid::HybridSystem;
-use crate::method::{Method, State, Step};
+use crate::method::{Method, StepOf, Store};
+use crate::system::{Room, System};
 
 /// The largest distance from the end of a repeated step to the switch, as a part of the step, that
 /// the midpoint rule bridges. Its error is the cube of this part, which is below rounding.
@@ -35,25 +35,22 @@ pub(crate) const INSIDE: f64 = 0.1;
 /// slope.
 pub(crate) const LEAST_REACH: f64 = 1e-5;
 
-impl<S, const N: usize, const G: usize> Examination<'_, S, N, G>
-where
-    S: HybridSystem<N, G>,
-{
+impl<S: System> Examination<'_, S> {
     /// Ends `step` where `guard` crosses zero inside the bracket. If `exact`, the event's step ends
     /// exactly at the crossing; otherwise it ends within a small part of itself. The result is
     /// `None` if steps of the method do not find the signs that the bracket claims.
     pub(crate) fn locate<M: Method>(
         &mut self,
-        step: &Step<N>,
+        step: &StepOf<S::State>,
         guard: usize,
         crossing: &Crossing,
         exact: bool,
-    ) -> Result<Option<Event<N>>, RunError> {
+    ) -> Result<Option<Event<S::State>>, RunError> {
         let (system, mode) = (self.system, self.phase.mode);
         let Bracket { mut low, mut high, guess: mut theta } = crossing.bracket;
         let (mut seen_low, mut seen_high) = (false, false);
         let beyond = crossing.bracket.high * step.h;
-        let event = |at: Landing<N>, step: Step<N>| Event {
+        let event = |at: Landing<S::State>, step: StepOf<S::State>| Event {
             guard,
             simultaneous: 0,
             slope: at.slope.abs(),
@@ -67,7 +64,7 @@ where
         };
         let start = self.phase.values[guard];
         let at_start = |residual: f64, slope: f64| {
-            let (elapsed, state, jump) = (0.0, step.y0, false);
+            let (elapsed, state, jump) = (0.0, step.y0.clone(), false);
             let landing = Landing { elapsed, state, residual, slope, jump };
             Ok(Some(event(landing, step.shrunk_to_start())))
         };
@@ -89,11 +86,12 @@ where
             let mut trial = self.restep::<M>(step, theta * step.h);
             let reach = (REACH * trial.h).min((INSIDE * width).max(LEAST_REACH * trial.h));
             let near = Near { system, mode, guard, sign: crossing.sign, reach };
-            let end = near.probe(trial.s + trial.h, &trial.y1);
+            let end = near.probe(trial.s + trial.h, &trial.y1, self.room);
             self.count_probe();
             if end.value.is_nan() {
                 if high - low <= AT_HOLE * resolution {
-                    let landing = near.landing_at_hole(&trial, &end, resolution * step.h);
+                    let landing =
+                        near.landing_at_hole(&trial, &end, resolution * step.h, self.room);
                     return Ok(Some(event(landing, trial)));
                 }
                 theta = aside.of(theta)?;
@@ -106,7 +104,7 @@ where
             }
             if low >= high {
                 // Within rounding, either sign may be true.
-                if end.value.abs() > 16.0 * near.rounding(trial.s + trial.h, &trial.y1) {
+                if end.value.abs() > 16.0 * near.rounding(trial.s + trial.h, &trial.y1, self.room) {
                     return Ok(None);
                 }
                 return Ok(Some(event(Landing::at_end(&trial, &end), trial)));
@@ -114,7 +112,7 @@ where
             let shift = end.shift() / step.h;
             let next = theta + shift;
             let by_newton = if shift.abs() <= BRIDGE * theta && next >= low && next <= high {
-                self.bridge(&near, &trial, end)
+                self.bridge(&near, &trial, &end)
             } else {
                 None
             };
@@ -128,8 +126,9 @@ where
                 if at.elapsed > step.h {
                     // The other guards have been examined only up to the end of the step.
                     trial = self.restep::<M>(step, step.h);
-                    at.residual = near.value(step.s + step.h, &trial.y1);
-                    (at.elapsed, at.state) = (step.h, trial.y1);
+                    at.residual = near.value(step.s + step.h, &trial.y1, self.room);
+                    at.elapsed = step.h;
+                    at.state.set(&trial.y1);
                 } else if exact && at.elapsed != trial.h {
                     trial = self.restep::<M>(step, at.elapsed);
                 }
@@ -158,68 +157,79 @@ where
     }
 
     /// The slope of a guard that is zero at the start of `step` and falls from there.
-    fn falls_from_start(&mut self, step: &Step<N>, guard: usize, sign: f64) -> Option<f64> {
+    fn falls_from_start(
+        &mut self,
+        step: &StepOf<S::State>,
+        guard: usize,
+        sign: f64,
+    ) -> Option<f64> {
         let from_zero = self.phase.values[guard].abs() <= f64::MIN_POSITIVE
             && self.phase.zero_orders[guard] == 0;
         if !from_zero || self.notes_of(guard).next().is_some() {
             return None;
         }
         let (system, mode, reach) = (self.system, self.phase.mode, REACH * step.h);
-        let probe = Near { system, mode, guard, sign, reach }.probe(step.s, &step.y0);
+        let near = Near { system, mode, guard, sign, reach };
+        let probe = near.probe(step.s, &step.y0, self.room);
         self.count_probe();
         let falls = probe.slope < 0.0 && probe.bend.abs() * reach < 0.1 * probe.slope.abs();
         falls.then_some(probe.slope)
     }
 
     /// A step of size `h` from the start of `step`.
-    fn restep<M: Method>(&mut self, step: &Step<N>, h: f64) -> Step<N> {
+    fn restep<M: Method>(&mut self, step: &StepOf<S::State>, h: f64) -> StepOf<S::State> {
         let shorter = step.shortened(h);
-        repeated_step::<S, M, N, G>(self.system, self.phase.mode, &shorter, self.statistics)
+        repeated_step::<S, M>(self.system, self.phase.mode, &shorter, self.statistics, self.room)
     }
 
     /// Moves from the end of `trial` to the zero of the guard. The result is `None` if Newton's
     /// method does not converge as it does near a simple zero.
     fn bridge(
         &mut self,
-        near: &Near<'_, S, N, G>,
-        trial: &Step<N>,
-        mut at: Probe<N>,
-    ) -> Option<Landing<N>> {
-        let (mut moved, mut y) = (0.0, trial.y1);
+        near: &Near<'_, S>,
+        trial: &StepOf<S::State>,
+        at: &Probe<S::State>,
+    ) -> Option<Landing<S::State>> {
+        let (mut moved, mut y) = (0.0, trial.y1.clone());
+        let mut at = at.clone();
         let s = trial.s + trial.h;
         for _ in 0..4 {
             let shift = at.shift();
             if shift.abs() <= 1e-9 * trial.h && at.left_by(shift) <= f64::EPSILON * trial.h {
                 moved += shift;
-                y += at.slope_of_state * shift;
-                let mut residual = near.value(s + moved, &y);
+                y.shift(&at.slope_of_state, shift);
+                let mut residual = near.value(s + moved, &y, self.room);
                 self.statistics.guards += 1;
                 // A large value means that the slope changes within the reach of its difference.
                 if residual.abs() > 0.01 * at.value.abs()
-                    && residual.abs() > 2.0 * near.rounding(s + moved, &y)
+                    && residual.abs() > 2.0 * near.rounding(s + moved, &y, self.room)
                 {
                     return None;
                 }
                 let rest = -residual / at.slope;
                 if residual != 0.0 && rest.abs() > f64::EPSILON * trial.h {
                     moved += rest;
-                    y += at.slope_of_state * rest;
+                    y.shift(&at.slope_of_state, rest);
                     let before = residual.abs();
-                    residual = near.value(s + moved, &y);
+                    residual = near.value(s + moved, &y, self.room);
                     self.statistics.guards += 1;
                     let far = residual.abs() > 0.01 * before;
-                    if far && residual.abs() > 2.0 * near.rounding(s + moved, &y) {
+                    if far && residual.abs() > 2.0 * near.rounding(s + moved, &y, self.room) {
                         return None;
                     }
                 }
                 let elapsed = trial.h + moved;
                 return Some(Landing { elapsed, state: y, residual, slope: at.slope, jump: false });
             }
-            let middle = y + at.slope_of_state * (0.5 * shift);
-            y += self.system.field(near.mode, s + moved + 0.5 * shift, &middle) * shift;
+            let (mut middle, mut slope) = (self.room.state(), self.room.state());
+            S::State::shifted(&mut middle, &y, &at.slope_of_state, 0.5 * shift);
+            self.system.field(near.mode, s + moved + 0.5 * shift, &middle, &mut slope);
+            y.shift(&slope, shift);
+            self.room.give(middle);
+            self.room.give(slope);
             moved += shift;
             let before = at.value.abs();
-            at = near.probe(s + moved, &y);
+            at = near.probe(s + moved, &y, self.room);
             self.statistics.field += 1;
             self.count_probe();
             if at.value.abs() > 0.1 * before {
@@ -234,29 +244,37 @@ where
     /// is `None` if it is farther away, or the guard is not steep.
     fn search_nearby(
         &mut self,
-        near: &Near<'_, S, N, G>,
-        step: &Step<N>,
-        trial: &Step<N>,
-        at: &Probe<N>,
+        near: &Near<'_, S>,
+        step: &StepOf<S::State>,
+        trial: &StepOf<S::State>,
+        at: &Probe<S::State>,
         (low, high): (f64, f64),
-    ) -> Option<Landing<N>> {
+    ) -> Option<Landing<S::State>> {
         let (s, y, reach) = (trial.s + trial.h, &trial.y1, BRIDGE * trial.h);
         let low = (low * step.h - trial.h).max(-reach);
         let high = (high * step.h - trial.h).min(reach);
-        let slope = at.slope_of_state;
-        let ahead = self.system.field(near.mode, s + reach, &(y + slope * reach));
-        let behind = self.system.field(near.mode, s - reach, &(y - slope * reach));
-        let bend = (ahead - behind) / (4.0 * reach);
+        let slope = &at.slope_of_state;
+        let room = &mut *self.room;
+        let (mut moved, mut bend, mut behind) = (room.state(), room.state(), room.state());
+        S::State::shifted(&mut moved, y, slope, reach);
+        self.system.field(near.mode, s + reach, &moved, &mut bend);
+        S::State::shifted(&mut moved, y, slope, -reach);
+        self.system.field(near.mode, s - reach, &moved, &mut behind);
+        S::State::each(&mut bend, [&behind], |ahead, [behind]| (ahead - behind) / (4.0 * reach));
         self.statistics.field += 2;
-        let state = |moved: f64| y + (slope + bend * moved) * moved;
+        let mut state = behind;
+        // The state is known to rounding only, which a flat guard would magnify.
+        let end = near.value(step.s + step.h, &step.y1, room).abs();
         let mut count = 0;
         let mut value = |moved: f64| {
             count += 1;
-            near.value(s + moved, &state(moved))
+            let of = [y, slope, &bend];
+            S::State::each(&mut state, of, |_, [y, slope, bend]| {
+                y + (slope + bend * moved) * moved
+            });
+            near.value(s + moved, &state, room)
         };
         let (before, after) = (value(low), value(high));
-        // The state is known to rounding only, which a flat guard would magnify.
-        let end = near.value(step.s + step.h, &step.y1).abs();
         let steep = before - after > STEEP * self.phase.largest[near.guard].max(end);
         let found = (before >= 0.0 && after < 0.0 && steep)
             .then(|| narrow(&mut value, (low, before), (high, after), f64::EPSILON * trial.h));
@@ -265,9 +283,11 @@ where
         // Without a value in between, it jumps too.
         let crosses = left.1 - right.1 <= 0.1 * (before - after);
         let jump = !crosses;
-        let (moved, residual) = if left.1 < -right.1 && !jump { left } else { right };
+        let (by, residual) = if left.1 < -right.1 && !jump { left } else { right };
+        let of = [y, slope, &bend];
+        S::State::each(&mut state, of, |_, [y, slope, bend]| y + (slope + bend * by) * by);
         let slope = (right.1 - left.1) / (right.0 - left.0);
-        Some(Landing { elapsed: trial.h + moved, state: state(moved), residual, slope, jump })
+        Some(Landing { elapsed: trial.h + by, state, residual, slope, jump })
     }
 
     fn count_probe(&mut self) {
@@ -285,10 +305,10 @@ pub(crate) fn room((low, high): (f64, f64), theta: f64) -> f64 {
 }
 
 /// Where a guard is zero.
-struct Landing<const N: usize> {
+struct Landing<V> {
     /// The time from the start of the step.
     elapsed: f64,
-    state: State<N>,
+    state: V,
     /// The value that remains.
     residual: f64,
     /// The slope of the guard.
@@ -297,16 +317,16 @@ struct Landing<const N: usize> {
     jump: bool,
 }
 
-impl<const N: usize> Landing<N> {
+impl<V: Store> Landing<V> {
     /// A zero at the end of a step, with what was seen of the guard there.
-    fn at_end(step: &Step<N>, end: &Probe<N>) -> Self {
-        let (elapsed, state, jump) = (step.h, step.y1, false);
+    fn at_end(step: &StepOf<V>, end: &Probe<V>) -> Self {
+        let (elapsed, state, jump) = (step.h, step.y1.clone(), false);
         Self { elapsed, state, residual: end.value, slope: end.slope, jump }
     }
 }
 
 /// A guard near its zero.
-struct Near<'a, S: HybridSystem<N, G>, const N: usize, const G: usize> {
+struct Near<'a, S: System> {
     system: &'a S,
     mode: S::Mode,
     guard: usize,
@@ -316,16 +336,16 @@ struct Near<'a, S: HybridSystem<N, G>, const N: usize, const G: usize> {
 }
 
 /// A guard's value at a place, its derivatives along the solution, and the slope of the state.
-#[derive(Clone, Copy)]
-struct Probe<const N: usize> {
+#[derive(Clone)]
+struct Probe<V> {
     value: f64,
     slope: f64,
     /// Half the second derivative.
     bend: f64,
-    slope_of_state: State<N>,
+    slope_of_state: V,
 }
 
-impl<const N: usize> Probe<N> {
+impl<V> Probe<V> {
     /// The Newton step to the zero.
     fn shift(&self) -> f64 {
         if self.value == 0.0 { 0.0 } else { -self.value / self.slope }
@@ -337,31 +357,43 @@ impl<const N: usize> Probe<N> {
     }
 }
 
-impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Near<'_, S, N, G> {
-    fn value(&self, s: f64, y: &State<N>) -> f64 {
-        self.sign * self.system.guard_values(self.mode, s, y)[self.guard]
+impl<S: System> Near<'_, S> {
+    fn value(&self, s: f64, y: &S::State, room: &mut Room<S>) -> f64 {
+        self.sign * room.value(self.system, (self.mode, self.guard), s, y)
     }
 
     /// A zero at the end of a step where the guard has no value, but close behind it.
-    fn landing_at_hole(&self, step: &Step<N>, end: &Probe<N>, least: f64) -> Landing<N> {
-        let behind =
-            |by: f64| self.value(step.s + step.h + by, &(step.y1 + end.slope_of_state * by));
+    fn landing_at_hole(
+        &self,
+        step: &StepOf<S::State>,
+        end: &Probe<S::State>,
+        least: f64,
+        room: &mut Room<S>,
+    ) -> Landing<S::State> {
+        let mut moved = room.state();
+        let mut behind = |by: f64| {
+            S::State::shifted(&mut moved, &step.y1, &end.slope_of_state, by);
+            self.value(step.s + step.h + by, &moved, room)
+        };
         let jump = behind(AT_HOLE * least) < 0.1 * behind(self.reach.max(1e4 * least));
-        let (elapsed, state) = (step.h, step.y1);
+        let (elapsed, state) = (step.h, step.y1.clone());
         Landing { elapsed, state, residual: 0.0, slope: f64::INFINITY, jump }
     }
 
-    fn rounding(&self, s: f64, y: &State<N>) -> f64 {
-        rounding(|s, y| self.value(s, y), (s, y), (s, y))
+    fn rounding(&self, s: f64, y: &S::State, room: &mut Room<S>) -> f64 {
+        rounding(self.system, (self.mode, self.guard), (s, y), (s, y), room).0
     }
 
-    fn probe(&self, s: f64, y: &State<N>) -> Probe<N> {
-        let slope_of_state = self.system.field(self.mode, s, y);
-        let reach = slope_of_state * self.reach;
-        let ahead = self.value(s + self.reach, &(y + reach));
-        let behind = self.value(s - self.reach, &(y - reach));
+    fn probe(&self, s: f64, y: &S::State, room: &mut Room<S>) -> Probe<S::State> {
+        let (mut slope_of_state, mut moved) = (room.state(), room.state());
+        self.system.field(self.mode, s, y, &mut slope_of_state);
+        S::State::shifted(&mut moved, y, &slope_of_state, self.reach);
+        let ahead = self.value(s + self.reach, &moved, room);
+        S::State::shifted(&mut moved, y, &slope_of_state, -self.reach);
+        let behind = self.value(s - self.reach, &moved, room);
+        room.give(moved);
         let slope = (ahead - behind) / (2.0 * self.reach);
-        let value = self.value(s, y);
+        let value = self.value(s, y, room);
         let bend = (0.5 * (ahead + behind) - value) / (self.reach * self.reach);
         Probe { value, slope, bend, slope_of_state }
     }

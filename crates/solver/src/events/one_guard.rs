@@ -15,8 +15,9 @@ use crate::events::isolate::{
 use crate::events::notices::{FEW, Noticed};
 use crate::events::path::Path;
 use crate::events::quick::{self, Quick};
-use crate::hybrid::{Direction, HybridSystem};
-use crate::method::{Method, Step, Trial};
+use crate::hybrid::Direction;
+use crate::method::{Method, StepOf, TrialOf};
+use crate::system::{List, PerGuard, System};
 
 /// A guard that is zero throughout a step is examined on longer steps, each four times as long as
 /// the one before, at most this often. The shortest step that moves the time grows to ordinary
@@ -79,10 +80,7 @@ impl Status {
     }
 }
 
-impl<S, const N: usize, const G: usize> Examination<'_, S, N, G>
-where
-    S: HybridSystem<N, G>,
-{
+impl<S: System> Examination<'_, S> {
     /// Whether bounds decide about a guard of a readable system. Where one asks, `S::READABLE`
     /// comes first: it is a constant, so that black boxes are compiled without the code for bounds.
     #[inline(always)]
@@ -93,35 +91,41 @@ where
     /// What a quick look at a step tells about each guard.
     pub(crate) fn glances<M: Method>(
         &mut self,
-        step: &Step<N>,
-        values: &[[f64; G]; 6],
-    ) -> [Status; G] {
-        let confirmed = self.confirmed(step, values);
+        step: &StepOf<S::State>,
+        values: &[PerGuard<S, f64>; 6],
+    ) -> PerGuard<S, Status> {
+        let mut confirmed = self.room.bools();
+        self.confirmed(step, values, &mut confirmed);
         let mut path = None;
-        std::array::from_fn(|guard| {
-            if confirmed[guard] {
+        let mut statuses = self.room.statuses();
+        for guard in 0..self.phase.count() {
+            statuses[guard] = if confirmed[guard] {
                 self.glance_at::<M>(guard, step, values, &mut path)
             } else if self.phase.guards[guard].direction() == Direction::Off {
                 Status::Clear
             } else {
                 Status::Unclear
-            }
-        })
+            };
+        }
+        self.room.give_bools(confirmed);
+        statuses
     }
 
     /// What a quick look at a step tells about a guard. The quick `path` is made if it is needed.
     pub(crate) fn glance_at<M: Method>(
         &mut self,
         guard: usize,
-        step: &Step<N>,
-        values: &[[f64; G]; 6],
-        path: &mut Option<Path<N>>,
+        step: &StepOf<S::State>,
+        values: &[PerGuard<S, f64>; 6],
+        path: &mut Option<Path<S::Components>>,
     ) -> Status {
-        let column = column(values, guard);
+        let column = column::<S>(values, guard);
         if self.phase.guards[guard].direction() == Direction::Off {
             Status::Clear
         } else if S::READABLE && self.has_bounds(guard) {
-            let path = path.get_or_insert_with(|| Path::quick(step, M::QUICK_ERROR));
+            let path = path.get_or_insert_with(|| {
+                Path::quick(step, M::QUICK_ERROR, self.system.reads(self.phase.mode))
+            });
             self.glance_at_bounds::<M>(guard, &column, path)
         } else {
             self.glance::<M>(guard, &column)
@@ -137,17 +141,19 @@ where
 
     /// Whether a guard that is zero throughout `step` becomes nonzero on a longer step that meets
     /// the tolerance. Then it is zero only because `step` is short.
-    fn leaves_zero<M: Method>(&mut self, guard: usize, step: &Step<N>) -> bool {
+    fn leaves_zero<M: Method>(&mut self, guard: usize, step: &StepOf<S::State>) -> bool {
         let (system, mode) = (self.system, self.phase.mode);
+        let mut values = [(); 6].map(|()| self.room.row());
         for k in 1..=LONGER {
-            let longer = Trial { h: step.h * 4_f64.powi(k), ..*self.trial };
-            let longer = repeated_step::<S, M, N, G>(system, mode, &longer, self.statistics);
+            let longer = TrialOf { h: step.h * 4_f64.powi(k), ..*self.trial };
+            let longer = repeated_step::<S, M>(system, mode, &longer, self.statistics, self.room);
             // Written so that NaN ends the search.
             let good = longer.error < 1.0;
             if !good {
                 return false;
             }
-            let values = column(&self.values_on(&longer), guard);
+            self.values_on(&longer, &mut values);
+            let values = column::<S>(&values, guard);
             if values[1..].iter().any(|&value| value != 0.0 && !value.is_nan()) {
                 return true;
             }
@@ -160,7 +166,7 @@ where
     pub(crate) fn isolate<M: Method>(
         &mut self,
         guard: usize,
-        step: &mut Step<N>,
+        step: &mut StepOf<S::State>,
         values: &[f64; 6],
         beginning: Beginning,
     ) -> Result<Option<Status>, RunError> {
@@ -177,7 +183,7 @@ where
     fn isolate_from<M: Method>(
         &mut self,
         guard: usize,
-        step: &mut Step<N>,
+        step: &mut StepOf<S::State>,
         values: &[f64; 6],
         beginning: Beginning,
     ) -> Result<Option<Status>, RunError> {
@@ -200,7 +206,8 @@ where
         }
         self.statistics.isolations += 1;
         let (system, mode) = (self.system, self.phase.mode);
-        let dense = dense_output::<_, M, N, G>(system, mode, step);
+        let mut dense = self.room.dense();
+        dense_output::<_, M>(system, mode, step, &mut dense);
         self.statistics.field += M::DENSE_STAGES - 1;
         let direction = self.phase.guards[guard].direction();
         let resolution = resolution(step.s, step.h);
@@ -213,8 +220,9 @@ where
         let signs = if both { &[1.0] } else { direction.signs() };
         for &sign in signs {
             let (statistics, method) = (&mut *self.statistics, PhantomData::<M>);
+            let (dense, room) = (&dense, &mut *self.room);
             let mut along =
-                AlongStep { system, mode, guard, sign, step, dense: &dense, statistics, method };
+                AlongStep { system, mode, guard, sign, step, dense, statistics, room, method };
             let mut noticed = SmallVec::<[Notice; FEW]>::new();
             let mut notice = |found: Notice| noticed.push(found);
             let task = Task {
@@ -226,8 +234,11 @@ where
                 widest: self.guard_scale / step.h,
             };
             let verdict = if bounded {
-                let mut enclosed =
-                    EnclosedAlongStep { along, path: Path::dense(&dense), local: None };
+                let mut enclosed = EnclosedAlongStep {
+                    along,
+                    path: Path::dense(dense, system.reads(mode)),
+                    local: None,
+                };
                 first_enclosed_crossing(&mut enclosed, &task, &mut notice)?
             } else {
                 first_crossing(&mut along, &task, &mut notice)?
@@ -248,11 +259,12 @@ where
                 _ => Status::Fires(crossing),
             };
         }
+        self.room.give_dense(dense);
         Ok(Some(found))
     }
 
     /// Collects what isolation noticed of a guard.
-    fn collect(&mut self, guard: usize, sign: f64, step: &Step<N>, noticed: &[Notice]) {
+    fn collect(&mut self, guard: usize, sign: f64, step: &StepOf<S::State>, noticed: &[Notice]) {
         for &notice in noticed {
             let found = Noticed::of(notice, (guard, sign), self.phase.mode, (step.s, step.h));
             self.notices.add(found, step.h);
@@ -263,14 +275,15 @@ where
     /// the smallest number with the sign that the guard had before.
     pub(crate) fn on_their_side<M: Method>(
         &mut self,
-        step: &mut Step<N>,
-        values: &[[f64; G]; 6],
-    ) -> [f64; G] {
-        let mut ends = values[5];
-        for (guard, end) in ends.iter_mut().enumerate() {
-            if *end == 0.0 && self.phase.guards[guard].direction() != Direction::Off {
-                let column = column(values, guard);
-                *end = self.last_side::<M>(guard, step, &column);
+        step: &mut StepOf<S::State>,
+        values: &[PerGuard<S, f64>; 6],
+    ) -> PerGuard<S, f64> {
+        let mut ends = self.room.row();
+        ends.set(&values[5]);
+        for guard in 0..self.phase.count() {
+            if ends[guard] == 0.0 && self.phase.guards[guard].direction() != Direction::Off {
+                let column = column::<S>(values, guard);
+                ends[guard] = self.last_side::<M>(guard, step, &column);
             }
         }
         ends
@@ -278,21 +291,41 @@ where
 
     /// The smallest number with the sign that a guard had last, if it is zero where the step ends.
     /// The result is 0 if the guard shows no sign.
-    fn last_side<M: Method>(&mut self, guard: usize, step: &mut Step<N>, values: &[f64; 6]) -> f64 {
+    fn last_side<M: Method>(
+        &mut self,
+        guard: usize,
+        step: &mut StepOf<S::State>,
+        values: &[f64; 6],
+    ) -> f64 {
         let bounded = self.has_bounds(guard);
         let (system, mode) = (self.system, self.phase.mode);
-        let dense = dense_output::<_, M, N, G>(system, mode, step);
+        let mut dense = self.room.dense();
+        dense_output::<_, M>(system, mode, step, &mut dense);
         self.statistics.field += M::DENSE_STAGES - 1;
         let (sign, resolution) = (1.0, resolution(step.s, step.h));
         let (statistics, method) = (&mut *self.statistics, PhantomData::<M>);
-        let mut along =
-            AlongStep { system, mode, guard, sign, step, dense: &dense, statistics, method };
+        let mut along = AlongStep {
+            system,
+            mode,
+            guard,
+            sign,
+            step,
+            dense: &dense,
+            statistics,
+            room: &mut *self.room,
+            method,
+        };
         let last = if S::READABLE && bounded {
-            let mut enclosed = EnclosedAlongStep { along, path: Path::dense(&dense), local: None };
+            let mut enclosed = EnclosedAlongStep {
+                along,
+                path: Path::dense(&dense, system.reads(mode)),
+                local: None,
+            };
             last_enclosed_sign(&mut enclosed, values[0], resolution).map(Some)
         } else {
             last_sign(&mut along, resolution)
         };
+        self.room.give_dense(dense);
         match last {
             Ok(Some(last)) if last != 0.0 => f64::MIN_POSITIVE.copysign(last),
             // Otherwise the last nonzero value at the nodes decides.

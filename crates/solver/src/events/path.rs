@@ -7,8 +7,9 @@
 //! size of rounding.
 
 use crate::events::quick::{NODES, each, expand};
-use crate::method::{Dense, State, Step};
-use crate::number::{Enclosure, Interval};
+use crate::method::{DenseOf, StepOf, Store};
+use crate::system::{List, Shape};
+use stickslip_number::{Enclosure, Interval};
 
 /// The largest number of terms.
 const TERMS: usize = 8;
@@ -26,27 +27,29 @@ const ROUNDING: f64 = 32.0 * f64::EPSILON;
 /// The state along a step.
 ///
 /// Terms and bounds lie component beside component, so that all components are computed at once.
-pub(crate) struct Path<const N: usize> {
+pub(crate) struct Path<F: Shape> {
+    n: usize,
+    read: F::Read,
     s: f64,
     h: f64,
     /// The coefficients of powers of the step fraction.
-    terms: [[f64; N]; TERMS],
+    terms: [F::Of<f64>; TERMS],
     /// The sums of the terms beyond the constant one.
-    size: [f64; N],
+    size: F::Of<f64>,
     /// Bounds for the errors of the polynomials.
-    error: [f64; N],
+    error: F::Of<f64>,
     /// Bounds for the rounding of the state at the end of the step.
-    rounding: [f64; N],
+    rounding: F::Of<f64>,
     kind: Kind,
 }
 
 /// A path about the middle of a part of the step.
-pub(crate) struct Part<'a, const N: usize> {
-    path: &'a Path<N>,
+pub(crate) struct Part<'a, F: Shape> {
+    path: &'a Path<F>,
     low: f64,
     high: f64,
     /// The coefficients about the middle.
-    terms: [[f64; N]; TERMS],
+    terms: [F::Of<f64>; TERMS],
 }
 
 /// How a path is made, which says how its error varies.
@@ -58,43 +61,53 @@ enum Kind {
     Local(f64, f64),
 }
 
-impl<const N: usize> Path<N> {
+impl<F: Shape> Path<F> {
     fn new(
         (s, h): (f64, f64),
-        terms: [[f64; N]; TERMS],
-        error: [f64; N],
-        ends: [f64; N],
+        terms: [F::Of<f64>; TERMS],
+        error: F::Of<f64>,
+        ends: F::Of<f64>,
         kind: Kind,
+        read: F::Read,
     ) -> Self {
-        let size = each(|i| terms[1..].iter().map(|term| term[i].abs()).sum());
-        let rounding = ends.map(|end| 2.0 * f64::EPSILON * end);
-        Self { s, h, terms, size, error, rounding, kind }
+        let n = ends.parts().len();
+        let size = each::<F>(n, |i| terms[1..].iter().map(|term| term[i].abs()).sum());
+        let rounding = each::<F>(n, |i| 2.0 * f64::EPSILON * ends[i]);
+        Self { n, read, s, h, terms, size, error, rounding, kind }
     }
 
     /// The path along the six states of a step. The part `trust` of the next-to-last term counts
     /// as error.
-    pub(crate) fn quick(step: &Step<N>, trust: f64) -> Self {
+    pub(crate) fn quick<V: Store>(step: &StepOf<V>, trust: f64, read: F::Read) -> Self {
+        let n = F::count(&read, step.y0.size());
         let [a, b, c, d] = &step.interior;
-        let states = [&step.y0, a, b, c, d, &step.y1].map(|state| each(|i| state[i]));
-        let (quintic, error) = expand(&states, trust);
-        let mut terms = [[0.0; N]; TERMS];
-        terms[..NODES.len()].copy_from_slice(&quintic);
-        let ends = each(|i| states[0][i].abs().max(states[5][i].abs()));
-        Self::new((step.s, step.h), terms, error, ends, Kind::Quick)
+        let states = [&step.y0, a, b, c, d, &step.y1];
+        let (quintic, error) = expand::<F>(n, |node, i| states[node][F::place(&read, i)], trust);
+        let [a, b, c, d, e, f] = quintic;
+        let none = || each::<F>(n, |_| 0.0);
+        let terms = [a, b, c, d, e, f, none(), none()];
+        let ends = each::<F>(n, |i| {
+            let i = F::place(&read, i);
+            states[0][i].abs().max(states[5][i].abs())
+        });
+        Self::new((step.s, step.h), terms, error, ends, Kind::Quick, read)
     }
 
     /// The path along the dense output of a step.
-    pub(crate) fn dense(dense: &Dense<N>) -> Self {
-        let (mut terms, mut error, mut ends) = ([[0.0; N]; TERMS], [0.0; N], [0.0; N]);
-        for i in 0..N {
-            let (along, last) = dense.terms(i);
+    pub(crate) fn dense<V: Store>(dense: &DenseOf<V>, read: F::Read) -> Self {
+        let n = F::count(&read, dense.r[0].size());
+        let none = |_| each::<F>(n, |_| 0.0);
+        let (mut terms, mut error, mut ends) =
+            (std::array::from_fn::<_, TERMS, _>(none), none(0), none(0));
+        for i in 0..n {
+            let (along, last) = dense.terms(F::place(&read, i));
             ends[i] = along[0].abs().max(along.iter().sum::<f64>().abs());
             error[i] = SAFETY * last;
             for (term, along) in terms.iter_mut().zip(along) {
                 term[i] = along;
             }
         }
-        Self::new((dense.start(), dense.size()), terms, error, ends, Kind::Dense)
+        Self::new((dense.start(), dense.size()), terms, error, ends, Kind::Dense, read)
     }
 
     /// The path between two step fractions from the state `y` in the middle, with its first and
@@ -103,32 +116,33 @@ impl<const N: usize> Path<N> {
     pub(crate) fn local(
         &self,
         (low, high): (f64, f64),
-        [y, slope, bend]: [&State<N>; 3],
+        [y, slope, bend]: [&[f64]; 3],
     ) -> Option<(Self, bool)> {
         let (middle, radius) = (0.5 * (low + high), 0.5 * (high - low));
         let about = self.about::<TERMS>(middle);
-        let error = each(|i| {
+        let error = each::<F>(self.n, |i| {
             let beyond = about[3..].iter().rev().fold(0.0, |sum, c| sum * radius + c[i].abs());
             let error = beyond * radius.powi(3);
             // Steps of the method to neighbouring places do not follow the right-hand side exactly.
             SAFETY * error + 8.0 * self.error[i] * radius
         });
-        let mut terms = [[0.0; N]; TERMS];
-        terms[0] = each(|i| y[i]);
-        terms[1] = each(|i| self.h * slope[i]);
-        terms[2] = each(|i| 0.5 * self.h * self.h * bend[i]);
-        let ends = terms[0].map(f64::abs);
+        let n = self.n;
+        let mut terms: [F::Of<f64>; TERMS] = std::array::from_fn(|_| each::<F>(n, |_| 0.0));
+        terms[0] = each::<F>(n, |i| y[F::place(&self.read, i)]);
+        terms[1] = each::<F>(n, |i| self.h * slope[F::place(&self.read, i)]);
+        terms[2] = each::<F>(n, |i| 0.5 * self.h * self.h * bend[F::place(&self.read, i)]);
+        let ends = each::<F>(n, |i| y[F::place(&self.read, i)].abs());
         let kind = Kind::Local(middle, radius);
-        let local = Self::new((self.s, self.h), terms, error, ends, kind);
+        let local = Self::new((self.s, self.h), terms, error, ends, kind, self.read.clone());
         let [present, ..] = self.band(low, high);
         let exact = |i: usize| local.error[i] <= local.rounding[i];
-        let better = (0..N).all(|i| local.error[i] <= NEARER * present[i] || exact(i));
-        let all_exact = (0..N).all(exact);
+        let better = (0..self.n).all(|i| local.error[i] <= NEARER * present[i] || exact(i));
+        let all_exact = (0..self.n).all(exact);
         better.then_some((local, all_exact))
     }
 
     /// The part between two step fractions.
-    pub(crate) fn part(&self, low: f64, high: f64) -> Part<'_, N> {
+    pub(crate) fn part(&self, low: f64, high: f64) -> Part<'_, F> {
         let middle = 0.5 * (low + high);
         let terms = match self.kind {
             Kind::Quick => self.about::<{ NODES.len() }>(middle),
@@ -140,12 +154,15 @@ impl<const N: usize> Path<N> {
 
     /// The first `K` coefficients about `middle`. The others are zero.
     #[inline(always)]
-    fn about<const K: usize>(&self, middle: f64) -> [[f64; N]; TERMS] {
+    fn about<const K: usize>(&self, middle: f64) -> [F::Of<f64>; TERMS] {
         // Repeated division by θ − middle.
-        let mut c = self.terms;
+        let mut c = self.terms.clone();
         for first in 0..K - 1 {
             for k in (first..K - 1).rev() {
-                c[k] = each(|i| c[k][i] + middle * c[k + 1][i]);
+                let (low, high) = c.split_at_mut(k + 1);
+                for i in 0..self.n {
+                    low[k][i] += middle * high[0][i];
+                }
             }
         }
         c
@@ -153,7 +170,7 @@ impl<const N: usize> Path<N> {
 
     /// The bounds of the errors between two step fractions, and of their first two derivatives.
     #[inline(always)]
-    fn band(&self, low: f64, high: f64) -> [[f64; N]; 3] {
+    fn band(&self, low: f64, high: f64) -> [F::Of<f64>; 3] {
         let (left, right) = (high, 1.0 - low);
         let near = left.min(right);
         let truncation = match self.kind {
@@ -167,7 +184,7 @@ impl<const N: usize> Path<N> {
         let rounding = [(4.0 * left * left).min(1.0), (8.0 * left).min(8.0), 16.0];
         let polynomial = [left, 8.0, 64.0].map(|factor| ROUNDING * factor);
         std::array::from_fn(|k| {
-            each(|i| {
+            each::<F>(self.n, |i| {
                 truncation[k] * self.error[i]
                     + rounding[k] * self.rounding[i]
                     + polynomial[k] * self.size[i]
@@ -176,16 +193,18 @@ impl<const N: usize> Path<N> {
     }
 }
 
-impl<const N: usize> Part<'_, N> {
+impl<F: Shape> Part<'_, F> {
     /// Bounds for the time and the state, with their derivatives by the step fraction.
-    pub(crate) fn whole(&self) -> (Enclosure, [Enclosure; N]) {
+    pub(crate) fn whole(&self) -> (Enclosure, F::Of<Enclosure>) {
         let radius = 0.5 * (self.high - self.low);
         let c = &self.terms;
         // The remainders beyond the first derivatives.
-        let mut remainders = [[0.0; N]; 3];
+        let n_all = self.path.n;
+        let none = || each::<F>(n_all, |_| 0.0);
+        let mut remainders = [none(), none(), none()];
         for k in (1..TERMS).rev() {
             let n = k as f64;
-            for i in 0..N {
+            for i in 0..n_all {
                 let c = c[k][i].abs();
                 let [value, slope, bend] = &mut remainders;
                 value[i] = (value[i] + c) * radius;
@@ -201,9 +220,10 @@ impl<const N: usize> Part<'_, N> {
     }
 
     /// The same bounds in the middle alone.
-    pub(crate) fn centre(&self) -> (Enclosure, [Enclosure; N]) {
+    pub(crate) fn centre(&self) -> (Enclosure, F::Of<Enclosure>) {
         let middle = 0.5 * (self.low + self.high);
-        self.around(middle, middle, &[[0.0; N]; 3])
+        let none = || each::<F>(self.path.n, |_| 0.0);
+        self.around(middle, middle, &[none(), none(), none()])
     }
 
     #[inline(always)]
@@ -211,29 +231,31 @@ impl<const N: usize> Part<'_, N> {
         &self,
         low: f64,
         high: f64,
-        remainders: &[[f64; N]; 3],
-    ) -> (Enclosure, [Enclosure; N]) {
-        let Path { s, h, .. } = *self.path;
+        remainders: &[F::Of<f64>; 3],
+    ) -> (Enclosure, F::Of<Enclosure>) {
+        let &Path { s, h, n, .. } = self.path;
         let time = Enclosure {
             value: Interval::point(s).plus(Interval::new(low, high).scaled(h)),
             slope: Interval::point(h),
             bend: Interval::ZERO,
         };
         let band = self.path.band(low, high);
-        let [value, slope, bend, ..] = &self.terms;
-        let middles = [*value, *slope, bend.map(|bend| 2.0 * bend)];
-        let (mut lower, mut upper) = ([[0.0; N]; 3], [[0.0; N]; 3]);
+        let factors = [1.0, 1.0, 2.0];
+        let none = || each::<F>(n, |_| 0.0);
+        let (mut lower, mut upper) = ([none(), none(), none()], [none(), none(), none()]);
         for k in 0..3 {
-            let radius: [f64; N] = each(|i| {
+            let middles = &self.terms[k];
+            for i in 0..n {
                 let radius = (1.0 + 64.0 * f64::EPSILON) * (remainders[k][i] + band[k][i]);
+                let middle = factors[k] * middles[i];
                 // It contains the rounding of the bounds. A constant has none.
-                if radius == 0.0 { 0.0 } else { radius + f64::EPSILON * middles[k][i].abs() }
-            });
-            lower[k] = each(|i| middles[k][i] - radius[i]);
-            upper[k] = each(|i| middles[k][i] + radius[i]);
+                let radius = if radius == 0.0 { 0.0 } else { radius + f64::EPSILON * middle.abs() };
+                lower[k][i] = middle - radius;
+                upper[k][i] = middle + radius;
+            }
         }
-        let mut state = [time; N];
-        for (i, component) in state.iter_mut().enumerate() {
+        let mut state = F::Of::<Enclosure>::of(n, time);
+        for (i, component) in state.parts_mut().iter_mut().enumerate() {
             let [value, slope, bend] = [0, 1, 2].map(|k| Interval::new(lower[k][i], upper[k][i]));
             *component = Enclosure { value, slope, bend };
         }

@@ -5,6 +5,8 @@
 //! not declared to be smooth, three more are compared with them. All other cases go to
 //! [`crate::events::isolate`].
 
+use crate::system::{List, Shape};
+
 mod tables;
 
 pub(crate) use tables::NODES;
@@ -57,46 +59,59 @@ pub(crate) fn look(values: &[f64; COUNT], zero_order: u32, trust: f64) -> Quick 
 /// The coefficients of the quintics through `values` at [`NODES`] for powers of the step fraction,
 /// and bounds for their errors, in which the part `trust` of the next-to-last term counts. Each
 /// value has `N` components, and there is a quintic for each.
-pub(crate) fn expand<const N: usize>(
-    values: &[[f64; N]; COUNT],
+pub(crate) fn expand<F: Shape>(
+    n: usize,
+    values: impl Fn(usize, usize) -> f64,
     trust: f64,
-) -> ([[f64; N]; COUNT], [f64; N]) {
+) -> ([F::Of<f64>; COUNT], F::Of<f64>) {
     // A constant would only bring rounding.
-    let rises: [[f64; N]; COUNT] = values.map(|value| each(|i| value[i] - values[0][i]));
+    let none = |_| each::<F>(n, |_| 0.0);
     // The rise at the start is zero.
-    let mut bernstein = [[0.0; N]; COUNT];
-    let (mut last, mut before) = ([0.0; N], [0.0; N]);
+    let mut bernstein: [F::Of<f64>; COUNT] = std::array::from_fn(none);
+    let (mut last, mut before) = (none(0), none(0));
     for node in 1..COUNT {
+        let rise = each::<F>(n, |i| values(node, i) - values(0, i));
         for (sum, entry) in bernstein.iter_mut().zip(QUINTIC[node]) {
-            *sum = each(|i| sum[i] + entry * rises[node][i]);
+            for i in 0..n {
+                sum[i] += entry * rise[i];
+            }
         }
-        last = each(|i| last[i] + QUINTIC_TERM[node] * rises[node][i]);
-        before = each(|i| before[i] + QUARTIC_TERM[node] * rises[node][i]);
+        for i in 0..n {
+            last[i] += QUINTIC_TERM[node] * rise[i];
+            before[i] += QUARTIC_TERM[node] * rise[i];
+        }
     }
-    let error = each(|i| {
+    let error = each::<F>(n, |i| {
         let largest =
             bernstein.iter().fold(0.0, |most, b| if b[i].abs() > most { b[i].abs() } else { most });
         last[i].abs() + trust * before[i].abs() + ROUNDING * largest
     });
     // The k-th differences of the coefficients, times the binomial coefficients of 5 over k.
     let mut differences = bernstein;
-    let mut terms = [[0.0; N]; COUNT];
+    let mut terms: [F::Of<f64>; COUNT] = std::array::from_fn(none);
     for (k, term) in terms.iter_mut().enumerate() {
-        *term = differences[0].map(|difference| [1.0, 5.0, 10.0, 10.0, 5.0, 1.0][k] * difference);
+        for i in 0..n {
+            term[i] = [1.0, 5.0, 10.0, 10.0, 5.0, 1.0][k] * differences[0][i];
+        }
         for j in 0..COUNT - 1 - k {
-            differences[j] = each(|i| differences[j + 1][i] - differences[j][i]);
+            let (low, high) = differences.split_at_mut(j + 1);
+            for i in 0..n {
+                low[j][i] = high[0][i] - low[j][i];
+            }
         }
     }
-    terms[0] = values[0];
+    for i in 0..n {
+        terms[0][i] = values(0, i);
+    }
     (terms, error)
 }
 
 /// A component for each entry.
 #[inline(always)]
-pub(crate) fn each<const N: usize>(mut value: impl FnMut(usize) -> f64) -> [f64; N] {
+pub(crate) fn each<F: Shape>(n: usize, mut value: impl FnMut(usize) -> f64) -> F::Of<f64> {
     // `from_fn` is not always compiled into its caller.
-    let mut all = [0.0; N];
-    for (i, entry) in all.iter_mut().enumerate() {
+    let mut all = F::Of::<f64>::of(n, 0.0);
+    for (i, entry) in all.parts_mut().iter_mut().enumerate() {
         *entry = value(i);
     }
     all

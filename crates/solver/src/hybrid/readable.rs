@@ -6,7 +6,7 @@ use num_dual::Dual64;
 
 use crate::hybrid::{Guard, HybridSystem};
 use crate::method::{Method, State, Step, Trial};
-use crate::number::{Enclosure, Number};
+use stickslip_number::{Enclosure, Number};
 
 /// A piecewise-smooth ODE of `N` components with at most `G` guards in a mode, whose formulas the
 /// solver can read.

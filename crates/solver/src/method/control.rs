@@ -4,6 +4,7 @@
 //! Wanner, *Solving Ordinary Differential Equations I*, sections II.4 and IV.2.
 
 use crate::method::state::State;
+use crate::method::store::Store;
 use crate::method::tableau::Method;
 
 const SAFETY: f64 = 0.9;
@@ -113,9 +114,23 @@ pub(crate) fn first_step<M: Method, const N: usize>(
     tolerances: (f64, f64),
     longest: f64,
 ) -> f64 {
+    let room = (&mut State::zeros(), &mut State::zeros());
+    let mut field = |s: f64, y: &State<N>, slope: &mut State<N>| *slope = field(s, y);
+    first_step_of::<M, _>(&mut field, (s, y0, f0), tolerances, longest, room)
+}
+
+/// The same, whatever states are stored in. `moved` and `f1` are room.
+pub(crate) fn first_step_of<M: Method, V: Store>(
+    field: &mut impl FnMut(f64, &V, &mut V),
+    (s, y0, f0): (f64, &V, &V),
+    tolerances: (f64, f64),
+    longest: f64,
+    (moved, f1): (&mut V, &mut V),
+) -> f64 {
     let (rtol, atol) = tolerances;
-    let norm = |v: &State<N>| -> f64 {
-        v.iter().zip(y0.iter()).map(|(v, y)| (v / (atol + rtol * y.abs())).powi(2)).sum()
+    let norm = |v: &V| -> f64 {
+        let parts = v.parts().iter().zip(y0.parts());
+        parts.map(|(v, y)| (v / (atol + rtol * y.abs())).powi(2)).sum()
     };
     let (state_size, slope_size) = (norm(y0), norm(f0));
     let guess = if state_size <= 1e-10 || slope_size <= 1e-10 {
@@ -126,8 +141,10 @@ pub(crate) fn first_step<M: Method, const N: usize>(
     // Numbers at the ends of the range of doubles may overflow in between.
     let guess = if guess > 0.0 { guess } else { 1e-6 };
     let h = guess.min(longest);
-    let f1 = field(s + h, &(y0 + f0 * h));
-    let curvature = norm(&(f1 - f0)).sqrt() / h;
+    V::shifted(moved, y0, f0, h);
+    field(s + h, moved, f1);
+    V::each(f1, [f0], |f1, [f0]| f1 - f0);
+    let curvature = norm(f1).sqrt() / h;
     let largest = curvature.max(slope_size.sqrt());
     let order = M::CONTROL_ORDER as f64;
     let step =

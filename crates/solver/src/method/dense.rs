@@ -1,18 +1,53 @@
 //! Dense output: the state between the ends of a step.
 
 use crate::method::state::State;
+use crate::method::store::Store;
 
 /// The dense output (continuous extension) of one step: a polynomial in the step fraction
 /// θ ∈ [0, 1], r₀ + θ(r₁ + (1−θ)(r₂ + θ(r₃ + (1−θ)(r₄ + …)))).
+pub type Dense<const N: usize> = DenseOf<State<N>>;
+
+/// The dense output, whatever its states are stored in.
 #[derive(Clone, Copy, Debug)]
-pub struct Dense<const N: usize> {
-    pub(super) s: f64,
-    pub(super) h: f64,
-    pub(super) r: [State<N>; 8],
-    pub(super) degree: usize,
+pub struct DenseOf<V> {
+    pub(crate) s: f64,
+    pub(crate) h: f64,
+    pub(crate) r: [V; 8],
+    pub(crate) degree: usize,
 }
 
-impl<const N: usize> Dense<N> {
+impl<const N: usize> DenseOf<State<N>> {
+    /// The state at step fraction `theta`.
+    #[must_use]
+    pub fn at(&self, theta: f64) -> State<N> {
+        let mut y = State::zeros();
+        self.write(theta, &mut y);
+        y
+    }
+
+    /// The state at step fraction `theta` without the last term of the polynomial. The size of that
+    /// term bounds the error of [`Self::at`].
+    #[must_use]
+    pub fn coarse_at(&self, theta: f64) -> State<N> {
+        let mut y = State::zeros();
+        self.write_coarse(theta, &mut y);
+        y
+    }
+
+    /// The same states, as a step in −s.
+    pub(crate) fn reversed(&self) -> Self {
+        Self { s: 0.0 - self.s, h: -self.h, ..*self }
+    }
+}
+
+impl<V: Store> DenseOf<V> {
+    /// Room for the dense output of a step of dimension `n`.
+    #[inline(always)]
+    pub(crate) fn room(n: usize) -> Self {
+        let r = || V::room(n);
+        Self { s: 0.0, h: 0.0, r: [r(), r(), r(), r(), r(), r(), r(), r()], degree: 0 }
+    }
+
     /// The place where the step starts.
     #[must_use]
     pub fn start(&self) -> f64 {
@@ -25,22 +60,14 @@ impl<const N: usize> Dense<N> {
         self.h
     }
 
-    /// The same states, as a step in −s.
-    pub(crate) fn reversed(&self) -> Self {
-        Self { s: 0.0 - self.s, h: -self.h, ..*self }
+    /// Writes the state at step fraction `theta`.
+    pub fn write(&self, theta: f64, state: &mut V) {
+        self.truncated(theta, self.degree, state);
     }
 
-    /// The state at step fraction `theta`.
-    #[must_use]
-    pub fn at(&self, theta: f64) -> State<N> {
-        self.truncated(theta, self.degree)
-    }
-
-    /// The state at step fraction `theta` without the last term of the polynomial. The size of that
-    /// term bounds the error of [`Self::at`].
-    #[must_use]
-    pub fn coarse_at(&self, theta: f64) -> State<N> {
-        self.truncated(theta, self.degree - 1)
+    /// Writes the state without the last term of the polynomial.
+    pub(crate) fn write_coarse(&self, theta: f64, state: &mut V) {
+        self.truncated(theta, self.degree - 1, state);
     }
 
     /// The coefficients of component `i` for powers of the step fraction, and the largest size of
@@ -67,12 +94,14 @@ impl<const N: usize> Dense<N> {
         (terms, most * self.r[self.degree][i].abs())
     }
 
-    fn truncated(&self, theta: f64, degree: usize) -> State<N> {
-        let mut sum = self.r[degree];
+    fn truncated(&self, theta: f64, degree: usize, sum: &mut V) {
+        sum.set(&self.r[degree]);
         for i in (0..degree).rev() {
-            sum = self.r[i] + sum * if i % 2 == 0 { theta } else { 1.0 - theta };
+            let factor = if i % 2 == 0 { theta } else { 1.0 - theta };
+            for (sum, r) in sum.parts_mut().iter_mut().zip(self.r[i].parts()) {
+                *sum = r + *sum * factor;
+            }
         }
-        sum
     }
 }
 

@@ -8,9 +8,9 @@ use crate::hybrid::{
     Grazing, Guard, HybridSystem, Observer, Outcome, Pole, Run, Start, SwitchEvent,
 };
 use crate::method::{Dense, Method, State, Step, Trial};
-use crate::number::Enclosure;
 use crate::options::Options;
 use crate::runs::runner::run;
+use stickslip_number::Enclosure;
 
 /// Integrates `system` from `start` down to `end` < `start.s`, through every switch on the way.
 ///

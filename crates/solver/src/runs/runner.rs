@@ -10,14 +10,17 @@ use crate::events::{
     Event, Examination, Found, Noticed, Notices, Phase, all_clearly_away, bit, dense_output,
     values_on,
 };
-use crate::hybrid::{HybridSystem, Observer, Outcome, Run, Start, Statistics, SwitchEvent};
-use crate::method::control::{Controller, first_step};
-use crate::method::{Method, State, Step, Trial};
+use crate::hybrid::{
+    Grazing, HybridSystem, Observer, Outcome, Pole, Run, Start, Statistics, SwitchEvent,
+};
+use crate::method::control::{Controller, first_step_of};
+use crate::method::{DenseOf, Method, State, StepOf, Store, TrialOf};
 use crate::options::{Options, StepSize};
 use crate::runs::clock::{Clock, Zeno};
 use crate::runs::finite::{check_finite, is_finite};
 use crate::runs::last_part::last_part;
 use crate::runs::rejected::after_rejection;
+use crate::system::{Fixed, List, Note, PerGuard, Room, System};
 
 /// Integrates `system` from `start` to `end`, through every switch on the way.
 ///
@@ -42,32 +45,121 @@ where
     S: HybridSystem<N, G>,
     O: Observer<S::Mode, N>,
 {
-    options.validate()?;
-    if !(start.s.is_finite() && end > start.s) {
-        return Err(RunError::Span { from: start.s, to: end });
+    let mut told = Told(observer);
+    let state = &start.state;
+    let run =
+        run_any::<M, _, _>(&Fixed(system), (start.mode, start.s, state), end, options, &mut told)?;
+    let End { outcome, s, mode, state, statistics } = run;
+    Ok(Run { outcome, s, mode, state, statistics })
+}
+
+/// The end of a run.
+pub(crate) struct End<S: System> {
+    pub(crate) outcome: Outcome,
+    pub(crate) s: f64,
+    pub(crate) mode: S::Mode,
+    pub(crate) state: S::State,
+    pub(crate) statistics: Statistics,
+}
+
+/// Receives what a run finds.
+pub(crate) trait Watcher<S: System> {
+    const WANTS_SEGMENTS: bool;
+    fn on_switch(&mut self, event: &Note<S>);
+    fn on_grazing(&mut self, grazing: &Grazing<S::Mode>);
+    fn on_pole(&mut self, pole: &Pole<S::Mode>);
+    fn stops(&self) -> bool;
+    fn on_segment(&mut self, mode: S::Mode, dense: &DenseOf<S::State>);
+    fn on_end(&mut self, mode: S::Mode, s: f64, state: &S::State);
+}
+
+/// An observer of a run of fixed dimension.
+struct Told<'a, O>(&'a mut O);
+
+impl<S, O, const N: usize, const G: usize> Watcher<Fixed<'_, S, N, G>> for Told<'_, O>
+where
+    S: HybridSystem<N, G>,
+    O: Observer<S::Mode, N>,
+{
+    const WANTS_SEGMENTS: bool = O::WANTS_SEGMENTS;
+    #[inline(always)]
+    fn on_switch(&mut self, note: &Note<Fixed<'_, S, N, G>>) {
+        self.0.on_switch(&SwitchEvent {
+            s: note.s,
+            guard: note.guard,
+            simultaneous: note.simultaneous,
+            flatness: note.flatness,
+            jump: note.jump,
+            from: note.from,
+            to: note.to,
+            before: note.before,
+            after: note.after,
+        });
     }
+    #[inline(always)]
+    fn on_grazing(&mut self, grazing: &Grazing<S::Mode>) {
+        self.0.on_grazing(grazing);
+    }
+    #[inline(always)]
+    fn on_pole(&mut self, pole: &Pole<S::Mode>) {
+        self.0.on_pole(pole);
+    }
+    #[inline(always)]
+    fn stops(&self) -> bool {
+        self.0.stops()
+    }
+    #[inline(always)]
+    fn on_segment(&mut self, mode: S::Mode, dense: &DenseOf<State<N>>) {
+        self.0.on_segment(mode, dense);
+    }
+    #[inline(always)]
+    fn on_end(&mut self, mode: S::Mode, s: f64, state: &State<N>) {
+        self.0.on_end(mode, s, state);
+    }
+}
+
+#[inline]
+pub(crate) fn run_any<M: Method, S: System, O: Watcher<S>>(
+    system: &S,
+    (mode, s, state): (S::Mode, f64, &S::State),
+    end: f64,
+    options: &Options,
+    observer: &mut O,
+) -> Result<End<S>, RunError> {
+    options.validate()?;
+    if !(s.is_finite() && end > s) {
+        return Err(RunError::Span { from: s, to: end });
+    }
+    let n = state.size();
+    let room = || S::State::room(n);
+    let row = || PerGuard::<S, f64>::of(0, 0.0);
     let mut runner = Runner {
         system,
         options,
         observer,
         end,
-        clock: Clock::new(start.s),
-        phase: Phase::enter(system, start.mode, (start.s, &start.state), &[0; G])?,
-        state: start.state,
-        rest: State::zeros(),
-        slope: State::zeros(),
+        clock: Clock::new(s),
+        phase: Phase::new(mode),
+        state: state.clone(),
+        rest: room(),
+        slope: room(),
         other_h: None,
         h: 0.0,
         controller: Controller::new(),
-        zeno: Zeno::new(start.s),
-        fired: [0; G],
+        zeno: Zeno::new(s),
+        fired: List::of(0, 0),
         notes: Vec::new(),
         notices: Notices::new(),
         statistics: Statistics { guards: 1, ..Statistics::default() },
+        room: Room::new(n),
+        nodes: [row(), row(), row(), row(), row(), row()],
+        sure: List::of(0, true),
+        stood: List::of(0, false),
     };
+    runner.phase.enter(system, mode, (s, state), &mut runner.fired)?;
     let outcome = runner.run::<M>()?;
     runner.observer.on_end(runner.phase.mode, runner.clock.s, &runner.state);
-    Ok(Run {
+    Ok(End {
         outcome,
         s: runner.clock.s,
         mode: runner.phase.mode,
@@ -77,18 +169,18 @@ where
 }
 
 /// The state of a run between two steps.
-struct Runner<'a, S: HybridSystem<N, G>, O, const N: usize, const G: usize> {
+struct Runner<'a, S: System, O> {
     system: &'a S,
     options: &'a Options,
     observer: &'a mut O,
     end: f64,
     clock: Clock,
-    phase: Phase<S::Mode, G>,
-    state: State<N>,
+    phase: Phase<S>,
+    state: S::State,
     /// What rounding has cut off from the state.
-    rest: State<N>,
+    rest: S::State,
     /// The derivative of the state.
-    slope: State<N>,
+    slope: S::State,
     /// The size of the next step.
     h: f64,
     /// The size of the first step of the next phase. It is taken over from the phase before the
@@ -97,26 +189,26 @@ struct Runner<'a, S: HybridSystem<N, G>, O, const N: usize, const G: usize> {
     controller: Controller,
     zeno: Zeno,
     /// How often each guard has fired.
-    fired: [u32; G],
+    fired: PerGuard<S, u32>,
     /// The events on the present step that change nothing.
-    notes: Vec<SwitchEvent<S::Mode, N>>,
+    notes: Vec<Note<S>>,
     /// The touches and poles on the present step.
     notices: Notices<S::Mode>,
     statistics: Statistics,
+    room: Room<S>,
+    nodes: [PerGuard<S, f64>; 6],
+    sure: PerGuard<S, bool>,
+    stood: PerGuard<S, bool>,
 }
 
-impl<S, O, const N: usize, const G: usize> Runner<'_, S, O, N, G>
-where
-    S: HybridSystem<N, G>,
-    O: Observer<S::Mode, N>,
-{
+impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
     fn run<M: Method>(&mut self) -> Result<Outcome, RunError> {
         self.refresh_slope()?;
         self.h = match (self.options.step_size, self.options.first_step) {
             (StepSize::Fixed(h), _) | (StepSize::Adaptive, Some(h)) => h,
             (StepSize::Adaptive, None) => self.estimate_first_step::<M>(),
         };
-        let (mut step, mut event) = (Step::blank(), None);
+        let (mut step, mut event) = (StepOf::new(self.room.n), None);
         loop {
             if let Some(outcome) = self.advance::<M>(&mut step, &mut event)? {
                 return Ok(outcome);
@@ -127,7 +219,7 @@ where
                 return Ok(outcome);
             }
             if self.clock.until(self.end) <= 0.0 {
-                check_finite(self.clock.s, self.state.as_slice())?;
+                check_finite(self.clock.s, self.state.parts())?;
                 return Ok(Outcome::ReachedEnd);
             }
             if self.observer.stops() {
@@ -143,12 +235,13 @@ where
     /// would copy it on every step.
     fn advance<M: Method>(
         &mut self,
-        step: &mut Step<N>,
-        event: &mut Option<Event<N>>,
+        step: &mut StepOf<S::State>,
+        event: &mut Option<Event<S::State>>,
     ) -> Result<Option<Outcome>, RunError> {
         *event = None;
         let (system, mode) = (self.system, self.phase.mode);
-        let mut field = |s: f64, y: &State<N>| system.field(mode, s, y);
+        let count = self.phase.count();
+        self.room.guards = count;
         let mut cuts = 0;
         loop {
             if self.statistics.tried() >= self.options.max_steps {
@@ -156,7 +249,7 @@ where
             }
             let h = self.h.min(self.options.max_step);
             let (h, last) = self.clock.step_towards(self.end, h);
-            let trial = Trial {
+            let trial = TrialOf {
                 s: self.clock.s,
                 y: &self.state,
                 rest: &self.rest,
@@ -168,35 +261,51 @@ where
             self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
             let error = match self.options.step_size {
                 StepSize::Adaptive => step.error,
-                StepSize::Fixed(_) if is_finite(step.y1.as_slice()) => 0.0,
+                StepSize::Fixed(_) if is_finite(step.y1.parts()) => 0.0,
                 StepSize::Fixed(_) => f64::NAN,
             };
             // NaN is not good.
             if !matches!(error.partial_cmp(&1.0), Some(Ordering::Less)) {
-                let finite = is_finite(step.y1.as_slice());
+                let finite = is_finite(step.y1.parts());
                 let work = (&mut self.controller, &mut self.statistics);
                 self.h =
                     after_rejection::<M>(work, self.options, (self.clock.s, h), error, finite)?;
                 continue;
             }
             self.notes.clear();
-            let values = values_on(system, &self.phase, step, &mut self.statistics);
+            let [a, b, c, d, e, f] = &mut self.nodes;
+            let mut values = [a, b, c, d, e, f].map(|row| {
+                row.fit(count, 0.0);
+                row.lend(0.0)
+            });
+            self.sure.fit(count, true);
+            let mut sure = self.sure.lend(true);
+            values_on(system, &self.phase, step, &mut values, &mut self.statistics);
             let (phase, statistics) = (&self.phase, &mut self.statistics);
             let scale = self.options.scale_of_guards();
-            let away = all_clearly_away(system, phase, scale, step, &values, statistics);
-            if away && !last {
-                self.phase.advance(values[5]);
-            } else if let Some(guard) =
+            let room = &mut self.room;
+            let away =
+                all_clearly_away(system, phase, scale, step, &values, statistics, room, &mut sure);
+            let close = if away && !last {
+                self.phase.advance(&values[5]);
+                None
+            } else {
                 self.look_closely::<M>(h, step, event, (&values, away), last)?
-            {
+            };
+            let known = close.is_none_or(|guard| values.iter().all(|row| !row[guard].is_nan()));
+            let [a, b, c, d, e, f] = values;
+            for (row, values) in self.nodes.iter_mut().zip([a, b, c, d, e, f]) {
+                row.back(values);
+            }
+            self.sure.back(sure);
+            if let Some(guard) = close {
                 self.statistics.too_coarse += 1;
                 cuts += 1;
                 // A step may become so short that it is less than the rest.
-                self.rest = State::zeros();
+                self.rest.parts_mut().fill(0.0);
                 self.h = 0.2 * h;
                 // A step that does not move the time is useless.
                 if cuts > 60 || self.h <= f64::EPSILON * self.clock.s.abs() {
-                    let known = values.iter().all(|value| !value[guard].is_nan());
                     return Err(RunError::unresolved(guard, (self.clock.s, h), known));
                 }
                 continue;
@@ -212,7 +321,8 @@ where
                 && let Some(outcome) = self.report_notes()
             {
                 let (s, statistics) = (self.clock.s, &mut self.statistics);
-                last_part::<M, S, O, N, G>(system, mode, step, s, statistics, self.observer);
+                let room = &mut self.room;
+                last_part::<M, S, O>(system, mode, step, s, statistics, self.observer, room);
                 return Ok(Some(outcome));
             }
             if let Some(event) = event {
@@ -228,8 +338,11 @@ where
             }
             self.tell_until(f64::INFINITY);
             self.show::<M>(mode, step);
-            (self.state, self.rest) = (step.y1, step.rest);
-            self.slope = step.finish::<M>(&mut field);
+            self.state.set(&step.y1);
+            self.rest.set(&step.rest);
+            let mut field =
+                |s: f64, y: &S::State, slope: &mut S::State| system.field(mode, s, y, slope);
+            self.slope.set(step.end_slope(&mut field));
             self.statistics.field += usize::from(!M::ERROR_USES_END);
             self.clock.advance(h);
             if last {
@@ -237,10 +350,11 @@ where
             }
             let settled = system.settle(mode);
             if settled != mode {
-                let largest = self.phase.largest;
+                let largest = self.phase.largest.clone();
                 let place = (self.clock.s, &self.state);
-                self.phase = Phase::enter(system, settled, place, &self.fired)?;
-                self.phase = Phase { at_zero: false, zero_orders: [0; G], largest, ..self.phase };
+                self.phase.enter(system, settled, place, &mut self.fired)?;
+                self.phase.forget_zeros();
+                self.phase.largest = largest;
                 self.statistics.guards += 1;
                 self.refresh_slope()?;
             }
@@ -254,15 +368,15 @@ where
     fn look_closely<M: Method>(
         &mut self,
         h: f64,
-        step: &mut Step<N>,
-        event: &mut Option<Event<N>>,
-        (values, away): (&[[f64; G]; 6], bool),
+        step: &mut StepOf<S::State>,
+        event: &mut Option<Event<S::State>>,
+        (values, away): (&[PerGuard<S, f64>; 6], bool),
         last: bool,
     ) -> Result<Option<usize>, RunError> {
         self.notices.clear();
         let tolerances = (self.options.rtol, self.options.atol);
         let (y, rest, slope) = (&self.state, &self.rest, &self.slope);
-        let trial = Trial { s: self.clock.s, y, rest, slope, h, tolerances };
+        let trial = TrialOf { s: self.clock.s, y, rest, slope, h, tolerances };
         let mut examination = Examination {
             system: self.system,
             phase: &self.phase,
@@ -272,6 +386,7 @@ where
             statistics: &mut self.statistics,
             wants_segments: O::WANTS_SEGMENTS,
             notices: &mut self.notices,
+            room: &mut self.room,
         };
         let at_end = match examination.look::<M>(step, event, values, away)? {
             Found::Nothing(at_end) => at_end,
@@ -282,17 +397,20 @@ where
             examination.arrive(step, event);
         }
         if event.is_none() {
-            self.phase.advance(at_end);
+            self.phase.advance(&at_end);
         }
+        self.room.give_row(at_end);
         Ok(None)
     }
 
     /// Shows an accepted step to the observer, if it wants to see steps.
     #[inline(always)]
-    fn show<M: Method>(&mut self, mode: S::Mode, step: &mut Step<N>) {
+    fn show<M: Method>(&mut self, mode: S::Mode, step: &mut StepOf<S::State>) {
         if O::WANTS_SEGMENTS {
-            let dense = dense_output::<_, M, N, G>(self.system, mode, step);
+            let mut dense = self.room.dense();
+            dense_output::<_, M>(self.system, mode, step, &mut dense);
             self.observer.on_segment(mode, &dense);
+            self.room.give_dense(dense);
         }
     }
 
@@ -313,13 +431,15 @@ where
     /// Reports the events on the step that change nothing. The run may end at one of them.
     fn report_notes(&mut self) -> Option<Outcome> {
         for index in 0..self.notes.len() {
-            let note = self.notes[index];
-            self.tell_until(note.s);
-            self.observer.on_switch(&note);
-            let others = (0..G).filter(|&other| note.simultaneous & bit(other) != 0);
+            self.tell_until(self.notes[index].s);
+            let note = &self.notes[index];
+            self.observer.on_switch(note);
+            let others =
+                (0..self.phase.count()).filter(|&other| note.simultaneous & bit(other) != 0);
+            let (phase, fired) = (&mut self.phase.guards, &mut self.fired);
             for guard in others.chain([note.guard]) {
-                self.fired[guard] += 1;
-                self.phase.guards[guard] = self.phase.guards[guard].fired(1);
+                fired[guard] += 1;
+                phase[guard] = phase[guard].fired(1);
             }
             self.statistics.switches += 1;
             let outcome = if self.statistics.switches >= self.options.max_switches {
@@ -329,7 +449,8 @@ where
             } else {
                 continue;
             };
-            (self.state, self.rest) = (note.after, State::zeros());
+            self.state.set(&note.after);
+            self.rest.parts_mut().fill(0.0);
             self.clock.arrive(note.s);
             return Some(outcome);
         }
@@ -337,21 +458,19 @@ where
     }
 
     /// Reports the switch and enters the next phase, or ends the run.
-    fn switch(&mut self, event: &Event<N>) -> Result<Option<Outcome>, RunError> {
+    fn switch(&mut self, event: &Event<S::State>) -> Result<Option<Outcome>, RunError> {
         let (s, from, guard) = (self.clock.s, self.phase.mode, event.guard);
-        check_finite(s, event.state.as_slice())?;
+        check_finite(s, event.state.parts())?;
         let ends = self.phase.guards[guard].ends_run();
-        let (to, after) = if ends {
-            (from, event.state)
-        } else {
-            self.system.transition(from, guard, s, &event.state)
-        };
+        let mut after = event.state.clone();
+        let to = if ends { from } else { self.system.transition(from, guard, s, &mut after) };
         self.fired[guard] += 1;
         self.statistics.switches += usize::from(!ends);
         let largest = self.phase.largest[guard];
         // A guard that has always been zero has no size.
         let flatness = if largest == 0.0 { 0.0 } else { largest / event.slope };
-        self.observer.on_switch(&SwitchEvent {
+        self.state.set(&after);
+        self.observer.on_switch(&Note {
             s,
             guard,
             simultaneous: event.simultaneous,
@@ -359,10 +478,10 @@ where
             jump: event.jump,
             from,
             to,
-            before: event.state,
-            after,
+            before: event.state.clone(),
+            after: after.clone(),
         });
-        (self.state, self.rest) = (after, State::zeros());
+        self.rest.parts_mut().fill(0.0);
         if ends {
             return Ok(Some(Outcome::EndedByGuard { guard }));
         }
@@ -373,10 +492,15 @@ where
         if let Some(outcome) = self.zeno.after_switch(s, self.clock.phase, self.options) {
             return Ok(Some(outcome));
         }
-        let stood = if self.clock.phase == 0.0 { self.phase.forgiven } else { [false; G] };
+        self.stood.set(&self.phase.forgiven);
+        if self.clock.phase != 0.0 {
+            self.stood.parts_mut().fill(false);
+        }
         self.clock.phase = 0.0;
-        self.phase = Phase::enter(self.system, to, (s, &after), &self.fired)?;
-        self.phase.forgive(self.system, (s, &after), event, (from, largest), &stood);
+        self.phase.enter(self.system, to, (s, &after), &mut self.fired)?;
+        self.room.guards = self.phase.count();
+        let (phase, room) = (&mut self.phase, &mut self.room);
+        phase.forgive(self.system, (s, &after), event, (from, largest), &self.stood, room);
         self.statistics.guards += 1;
         if self.options.step_size == StepSize::Adaptive {
             let h = self.other_h.replace(self.h).unwrap_or(self.h);
@@ -391,10 +515,10 @@ where
 
     fn refresh_slope(&mut self) -> Result<(), RunError> {
         let s = self.clock.s;
-        check_finite(s, self.state.as_slice())?;
-        self.slope = self.system.field(self.phase.mode, s, &self.state);
+        check_finite(s, self.state.parts())?;
+        self.system.field(self.phase.mode, s, &self.state, &mut self.slope);
         self.statistics.field += 1;
-        if is_finite(self.slope.as_slice()) {
+        if is_finite(self.slope.parts()) {
             Ok(())
         } else {
             Err(RunError::Field { s, step: self.statistics.tried() })
@@ -403,10 +527,21 @@ where
 
     fn estimate_first_step<M: Method>(&mut self) -> f64 {
         let (system, mode) = (self.system, self.phase.mode);
-        let mut field = |s: f64, y: &State<N>| system.field(mode, s, y);
+        let mut field =
+            |s: f64, y: &S::State, slope: &mut S::State| system.field(mode, s, y, slope);
         self.statistics.field += 1;
         let longest = self.clock.until(self.end).min(self.options.max_step);
         let tolerances = (self.options.rtol, self.options.atol);
-        first_step::<M, N>(&mut field, self.clock.s, &self.state, &self.slope, tolerances, longest)
+        let (mut moved, mut slope) = (self.room.state(), self.room.state());
+        let h = first_step_of::<M, _>(
+            &mut field,
+            (self.clock.s, &self.state, &self.slope),
+            tolerances,
+            longest,
+            (&mut moved, &mut slope),
+        );
+        self.room.give(moved);
+        self.room.give(slope);
+        h
     }
 }

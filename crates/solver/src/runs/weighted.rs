@@ -2,8 +2,8 @@
 
 use crate::hybrid::{Guard, HybridSystem};
 use crate::method::{Method, State, Step, Trial};
-use crate::number::Enclosure;
 use crate::options::InvalidOption;
+use stickslip_number::Enclosure;
 
 /// A system with a relative and an absolute tolerance for each component of the state.
 ///

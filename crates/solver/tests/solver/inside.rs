@@ -5,28 +5,6 @@
 
 pub use stickslip_solver::hybrid;
 
-#[path = "../../src/number"]
-pub mod number {
-    mod four;
-    mod interval;
-
-    pub use interval::Interval;
-}
-
-#[path = "../../src/method"]
-pub mod method {
-    mod control;
-    mod dense;
-    pub mod state {
-        pub use stickslip_solver::State;
-    }
-    pub mod tableau {
-        pub use stickslip_solver::Method;
-    }
-
-    pub use stickslip_solver::method::INTERIOR_NODES;
-}
-
 #[path = "../../src/events"]
 pub mod events {
     pub mod isolate {
@@ -35,5 +13,4 @@ pub mod events {
         pub(crate) use notice::{Notice, Touch};
     }
     mod notices;
-    mod quick;
 }

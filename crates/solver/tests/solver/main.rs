@@ -47,4 +47,4 @@ mod smooth_problems;
 mod strangers;
 
 // Where modules of the crate find each other.
-use inside::{events, hybrid, method, number};
+use inside::{events, hybrid};

@@ -9,7 +9,7 @@ use crate::error::RunError;
 use crate::events::isolate::{
     AROUND, Beginning, Bracket, Notice, Task, Touch, Verdict, narrow, root,
 };
-use crate::number::{Enclosure, Interval};
+use stickslip_number::{Enclosure, Interval};
 
 /// A guard along a step.
 pub(crate) trait Enclosed {

@@ -1,9 +1,11 @@
 //! Numbers in which a system can be written once and read in three ways.
 //!
-//! A [`ReadableSystem`](crate::ReadableSystem) is generic in its numbers. With `f64` it is
-//! integrated. With dual numbers the same lines give the rates of its guards. With [`Enclosure`]s
-//! they bound a guard and its derivatives over a part of a step, so that a zero there can be
-//! excluded.
+//! A formula that is generic in its [`Number`]s gives values with `f64`. With dual numbers the same
+//! lines give derivatives. With [`Enclosure`]s they bound the formula and its first two derivatives
+//! over an interval of one variable, so that a zero there can be excluded.
+//!
+//! `interval` has the arithmetic of intervals, and `four` computes four of them side by side;
+//! `enclosure` is built on both.
 
 mod enclosure;
 mod four;
@@ -17,15 +19,14 @@ use num_dual::{Dual64, DualNum};
 pub use enclosure::Enclosure;
 pub use interval::Interval;
 
-/// A number of a [`ReadableSystem`](crate::ReadableSystem): a double, a dual number or an
-/// enclosure.
+/// A number in which a formula is written: a double, a dual number or an enclosure.
 ///
 /// A number cannot be compared, because an enclosure may have no answer. Formulas with cases are
 /// written with [`Self::select`], [`Self::abs`], [`Self::min`], [`Self::max`] and
-/// [`Self::floor`], and the solver then knows where they have kinks and jumps.
+/// [`Self::floor`], and bounds then know where they have kinks and jumps.
 ///
 /// ```
-/// use stickslip_solver::Number;
+/// use stickslip_number::Number;
 ///
 /// /// A force that acts in the second half of each period.
 /// fn pulse<T: Number>(time: T, period: f64) -> T {
@@ -198,3 +199,7 @@ impl Number for Dual64 {
     }
     dual!(sqrt exp ln sin cos tan sinh cosh tanh asin acos atan);
 }
+
+#[doc = include_str!("../README.md")]
+#[cfg(doctest)]
+pub struct Readme;

@@ -10,7 +10,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// be none, it is [`Interval::ENTIRE`].
 ///
 /// ```
-/// use stickslip_solver::Interval;
+/// use stickslip_number::Interval;
 ///
 /// let x = Interval::new(-1.0, 2.0);
 /// assert!(x.times(x).contains(-2.0) && x.powi(2).lower() >= 0.0);

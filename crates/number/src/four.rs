@@ -2,8 +2,8 @@
 
 use wide::f64x4;
 
-use crate::number::Interval;
-use crate::number::interval::{HALF_UNIT, LEAST};
+use crate::Interval;
+use crate::interval::{HALF_UNIT, LEAST};
 
 /// Four intervals. Their sums are those of [`Interval`], bit for bit.
 #[derive(Clone, Copy, Debug)]

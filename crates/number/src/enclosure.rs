@@ -2,8 +2,8 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::number::four::{Four, product_rule};
-use crate::number::{Interval, Number};
+use crate::four::{Four, product_rule};
+use crate::{Interval, Number};
 
 /// Bounds for the values, the slopes and the second derivatives of a function over an interval of
 /// its variable.
@@ -12,7 +12,7 @@ use crate::number::{Interval, Number};
 /// mean that the function is continuous, and slopes of one sign then mean that it is monotone.
 ///
 /// ```
-/// use stickslip_solver::{Enclosure, Interval, Number};
+/// use stickslip_number::{Enclosure, Interval, Number};
 ///
 /// // The variable itself, over [0.5, 1.5].
 /// let x = Enclosure::variable(Interval::new(0.5, 1.5));
@@ -47,7 +47,7 @@ impl Enclosure {
     /// The same bounds, made tighter by an expansion about the middle, with the bounds `centre`
     /// there and the distance `radius` from there to the ends.
     #[must_use]
-    pub(crate) fn about(self, centre: &Self, radius: f64) -> Self {
+    pub fn about(self, centre: &Self, radius: f64) -> Self {
         let away = Interval::around(0.0, radius);
         let Self { mut value, mut slope, bend } = self;
         if bend.is_bounded() {

@@ -1,0 +1,471 @@
+//! A hybrid system as the engine sees it, whatever its states and lists of guards are stored in.
+
+use std::cell::RefCell;
+use std::fmt::Debug;
+use std::ops::{Index, IndexMut};
+
+use smallvec::SmallVec;
+
+use crate::dynamic::DynamicSystem;
+use crate::events::isolate::Beginning;
+use crate::events::one_guard::Status;
+use crate::hybrid::{Guard, HybridSystem};
+use crate::method::{DenseOf, Method, State, StepOf, Store, TrialOf};
+use stickslip_number::Enclosure;
+
+/// A list: an array, or a buffer.
+pub(crate) trait List<T>:
+    Clone + Debug + Index<usize, Output = T> + IndexMut<usize>
+{
+    fn of(n: usize, value: T) -> Self;
+    fn made(n: usize, value: impl FnMut(usize) -> T) -> Self;
+    fn parts(&self) -> &[T];
+    fn parts_mut(&mut self) -> &mut [T];
+    fn set(&mut self, other: &Self);
+    /// Makes room for `n` values.
+    fn fit(&mut self, n: usize, value: T);
+    /// Lends the list, whose values are lost.
+    fn lend(&mut self, value: T) -> Self;
+    fn back(&mut self, lent: Self);
+}
+
+impl<T: Copy + Debug, const N: usize> List<T> for [T; N] {
+    #[inline(always)]
+    fn of(_: usize, value: T) -> Self {
+        [value; N]
+    }
+    #[inline(always)]
+    fn made(_: usize, mut value: impl FnMut(usize) -> T) -> Self {
+        if N == 0 {
+            return std::array::from_fn(value);
+        }
+        let mut all = [value(0); N];
+        for i in 1..N {
+            all[i] = value(i);
+        }
+        all
+    }
+    #[inline(always)]
+    fn parts(&self) -> &[T] {
+        self
+    }
+    #[inline(always)]
+    fn parts_mut(&mut self) -> &mut [T] {
+        self
+    }
+    #[inline(always)]
+    fn set(&mut self, other: &Self) {
+        *self = *other;
+    }
+    #[inline(always)]
+    fn fit(&mut self, _: usize, _: T) {}
+    #[inline(always)]
+    fn lend(&mut self, value: T) -> Self {
+        [value; N]
+    }
+    #[inline(always)]
+    fn back(&mut self, _: Self) {}
+}
+
+impl<T: Copy + Debug> List<T> for Vec<T> {
+    fn of(n: usize, value: T) -> Self {
+        vec![value; n]
+    }
+    fn made(n: usize, value: impl FnMut(usize) -> T) -> Self {
+        (0..n).map(value).collect()
+    }
+    fn parts(&self) -> &[T] {
+        self
+    }
+    fn parts_mut(&mut self) -> &mut [T] {
+        self
+    }
+    fn set(&mut self, other: &Self) {
+        self.clone_from(other);
+    }
+    fn fit(&mut self, n: usize, value: T) {
+        self.resize(n, value);
+    }
+    fn lend(&mut self, _: T) -> Self {
+        std::mem::take(self)
+    }
+    fn back(&mut self, lent: Self) {
+        *self = lent;
+    }
+}
+
+impl<T: Copy + Debug> List<T> for SmallVec<[T; 8]> {
+    fn of(n: usize, value: T) -> Self {
+        smallvec::smallvec![value; n]
+    }
+    fn made(n: usize, value: impl FnMut(usize) -> T) -> Self {
+        (0..n).map(value).collect()
+    }
+    fn parts(&self) -> &[T] {
+        self
+    }
+    fn parts_mut(&mut self) -> &mut [T] {
+        self
+    }
+    fn set(&mut self, other: &Self) {
+        self.clone_from(other);
+    }
+    fn fit(&mut self, n: usize, value: T) {
+        self.resize(n, value);
+    }
+    fn lend(&mut self, _: T) -> Self {
+        std::mem::take(self)
+    }
+    fn back(&mut self, lent: Self) {
+        *self = lent;
+    }
+}
+
+/// Lists of one length.
+pub(crate) trait Shape: Copy + Debug {
+    type Of<T: Copy + Debug>: List<T>;
+    /// Which components are bounded: all, or those that guards read.
+    type Read: Clone;
+    fn count(read: &Self::Read, n: usize) -> usize;
+    fn place(read: &Self::Read, i: usize) -> usize;
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FixedShape<const N: usize>;
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AnyShape;
+
+impl<const N: usize> Shape for FixedShape<N> {
+    type Of<T: Copy + Debug> = [T; N];
+    type Read = ();
+    #[inline(always)]
+    fn count((): &(), _: usize) -> usize {
+        N
+    }
+    #[inline(always)]
+    fn place((): &(), i: usize) -> usize {
+        i
+    }
+}
+impl Shape for AnyShape {
+    type Of<T: Copy + Debug> = Vec<T>;
+    type Read = ();
+    fn count((): &(), n: usize) -> usize {
+        n
+    }
+    fn place((): &(), i: usize) -> usize {
+        i
+    }
+}
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ReadShape;
+impl Shape for ReadShape {
+    type Of<T: Copy + Debug> = SmallVec<[T; 8]>;
+    type Read = SmallVec<[usize; 8]>;
+    fn count(read: &Self::Read, _: usize) -> usize {
+        read.len()
+    }
+    fn place(read: &Self::Read, i: usize) -> usize {
+        read[i]
+    }
+}
+
+/// A list with an entry for each guard, and one with an entry for each component.
+pub(crate) type PerGuard<S, T> = <<S as System>::Guards as Shape>::Of<T>;
+pub(crate) type PerComponent<S, T> = <<S as System>::Components as Shape>::Of<T>;
+
+/// Room for what lives during one call: new arrays, which cost nothing, or buffers that are used
+/// again.
+pub(crate) struct Room<S: System> {
+    /// The number of components, and that of guards of the active mode.
+    pub(crate) n: usize,
+    pub(crate) guards: usize,
+    states: Vec<S::State>,
+    rows: Vec<PerGuard<S, f64>>,
+    denses: Vec<DenseOf<S::State>>,
+    steps: Vec<StepOf<S::State>>,
+    statuses: Vec<PerGuard<S, Status>>,
+    beginnings: Vec<PerGuard<S, Beginning>>,
+    bools: Vec<PerGuard<S, bool>>,
+}
+
+macro_rules! lists {
+    ($($lend:ident $give:ident: $type:ty = $value:expr;)*) => {$(
+        #[inline(always)]
+        pub(crate) fn $lend(&mut self) -> PerGuard<S, $type> {
+            let n = self.guards;
+            let mut list = match S::State::KEEPS.then(|| self.$lend.pop()).flatten() {
+                Some(list) => list,
+                None => PerGuard::<S, $type>::of(n, $value),
+            };
+            list.fit(n, $value);
+            list
+        }
+        #[inline(always)]
+        pub(crate) fn $give(&mut self, lent: PerGuard<S, $type>) {
+            if S::State::KEEPS {
+                self.$lend.push(lent);
+            }
+        }
+    )*};
+}
+
+impl<S: System> Room<S> {
+    lists! {
+        statuses give_statuses: Status = Status::Clear;
+        beginnings give_beginnings: Beginning =
+            Beginning { theta: 0.0, value: 0.0, zero_order: 0 };
+        bools give_bools: bool = true;
+    }
+
+    pub(crate) fn new(n: usize) -> Self {
+        let (states, rows, denses, steps) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let (statuses, beginnings, bools) = (Vec::new(), Vec::new(), Vec::new());
+        Self { n, guards: 0, states, rows, denses, steps, statuses, beginnings, bools }
+    }
+    #[inline(always)]
+    pub(crate) fn state(&mut self) -> S::State {
+        if S::State::KEEPS {
+            let n = self.n;
+            self.states.pop().unwrap_or_else(|| S::State::room(n))
+        } else {
+            S::State::room(self.n)
+        }
+    }
+    #[inline(always)]
+    pub(crate) fn give(&mut self, lent: S::State) {
+        if S::State::KEEPS {
+            self.states.push(lent);
+        }
+    }
+    #[inline(always)]
+    pub(crate) fn row(&mut self) -> PerGuard<S, f64> {
+        if S::State::KEEPS {
+            let n = self.guards;
+            let mut row = self.rows.pop().unwrap_or_else(|| PerGuard::<S, f64>::of(n, 0.0));
+            row.fit(n, 0.0);
+            row
+        } else {
+            PerGuard::<S, f64>::of(self.guards, 0.0)
+        }
+    }
+    #[inline(always)]
+    pub(crate) fn give_row(&mut self, lent: PerGuard<S, f64>) {
+        if S::State::KEEPS {
+            self.rows.push(lent);
+        }
+    }
+    #[inline(always)]
+    pub(crate) fn dense(&mut self) -> DenseOf<S::State> {
+        if S::State::KEEPS {
+            let n = self.n;
+            self.denses.pop().unwrap_or_else(|| DenseOf::room(n))
+        } else {
+            DenseOf::room(self.n)
+        }
+    }
+    #[inline(always)]
+    pub(crate) fn give_dense(&mut self, lent: DenseOf<S::State>) {
+        if S::State::KEEPS {
+            self.denses.push(lent);
+        }
+    }
+    #[inline(always)]
+    pub(crate) fn step(&mut self) -> StepOf<S::State> {
+        if S::State::KEEPS {
+            let n = self.n;
+            self.steps.pop().unwrap_or_else(|| StepOf::new(n))
+        } else {
+            StepOf::new(self.n)
+        }
+    }
+    #[inline(always)]
+    pub(crate) fn give_step(&mut self, lent: StepOf<S::State>) {
+        if S::State::KEEPS {
+            self.steps.push(lent);
+        }
+    }
+    /// A guard's value.
+    #[inline(always)]
+    pub(crate) fn value(
+        &mut self,
+        system: &S,
+        (mode, guard): (S::Mode, usize),
+        s: f64,
+        y: &S::State,
+    ) -> f64 {
+        let mut values = self.row();
+        system.guard_values(mode, s, y, &mut values);
+        let value = values[guard];
+        self.give_row(values);
+        value
+    }
+}
+
+/// An event that changes nothing, or a switch.
+pub(crate) struct Note<S: System> {
+    pub(crate) s: f64,
+    pub(crate) guard: usize,
+    pub(crate) simultaneous: u64,
+    pub(crate) flatness: f64,
+    pub(crate) jump: bool,
+    pub(crate) from: S::Mode,
+    pub(crate) to: S::Mode,
+    pub(crate) before: S::State,
+    pub(crate) after: S::State,
+}
+
+/// A hybrid system.
+pub(crate) trait System: Sized {
+    type Mode: Copy + PartialEq + Debug;
+    type State: Store;
+    type Components: Shape;
+    type Guards: Shape;
+    const READABLE: bool;
+
+    fn field(&self, mode: Self::Mode, s: f64, y: &Self::State, slope: &mut Self::State);
+    /// The guards of a mode, whose list has had room for others.
+    fn guards(&self, mode: Self::Mode, guards: &mut PerGuard<Self, Guard>);
+    fn guard_values(
+        &self,
+        mode: Self::Mode,
+        s: f64,
+        y: &Self::State,
+        values: &mut PerGuard<Self, f64>,
+    );
+    fn enclose(
+        &self,
+        mode: Self::Mode,
+        s: Enclosure,
+        y: &PerComponent<Self, Enclosure>,
+        guard: usize,
+    ) -> Enclosure;
+    fn reads(&self, mode: Self::Mode) -> <Self::Components as Shape>::Read;
+    fn settle(&self, mode: Self::Mode) -> Self::Mode;
+    fn longest_first_step(&self, mode: Self::Mode, s: f64, y: &Self::State) -> f64;
+    fn step<M: Method>(
+        &self,
+        mode: Self::Mode,
+        trial: &TrialOf<'_, Self::State>,
+        step: &mut StepOf<Self::State>,
+    );
+    fn transition(&self, mode: Self::Mode, guard: usize, s: f64, y: &mut Self::State)
+    -> Self::Mode;
+}
+
+/// A system of fixed dimension.
+pub(crate) struct Fixed<'a, S, const N: usize, const G: usize>(pub(crate) &'a S);
+
+impl<S: HybridSystem<N, G>, const N: usize, const G: usize> System for Fixed<'_, S, N, G> {
+    type Mode = S::Mode;
+    type State = State<N>;
+    type Components = FixedShape<N>;
+    type Guards = FixedShape<G>;
+    const READABLE: bool = S::READABLE;
+
+    #[inline(always)]
+    fn field(&self, mode: S::Mode, s: f64, y: &State<N>, slope: &mut State<N>) {
+        *slope = self.0.field(mode, s, y);
+    }
+    #[inline(always)]
+    fn guards(&self, mode: S::Mode, guards: &mut [Guard; G]) {
+        *guards = self.0.guards(mode);
+    }
+    #[inline(always)]
+    fn guard_values(&self, mode: S::Mode, s: f64, y: &State<N>, values: &mut [f64; G]) {
+        *values = self.0.guard_values(mode, s, y);
+    }
+    #[inline(always)]
+    fn enclose(&self, mode: S::Mode, s: Enclosure, y: &[Enclosure; N], guard: usize) -> Enclosure {
+        self.0.enclose_guards(mode, s, y)[guard]
+    }
+    #[inline(always)]
+    fn reads(&self, _: S::Mode) {}
+    #[inline(always)]
+    fn settle(&self, mode: S::Mode) -> S::Mode {
+        self.0.settle(mode)
+    }
+    #[inline(always)]
+    fn longest_first_step(&self, mode: S::Mode, s: f64, y: &State<N>) -> f64 {
+        self.0.longest_first_step(mode, s, y)
+    }
+    #[inline(always)]
+    fn step<M: Method>(
+        &self,
+        mode: S::Mode,
+        trial: &TrialOf<'_, State<N>>,
+        step: &mut StepOf<State<N>>,
+    ) {
+        self.0.step::<M>(mode, trial, step);
+    }
+    #[inline(always)]
+    fn transition(&self, mode: S::Mode, guard: usize, s: f64, y: &mut State<N>) -> S::Mode {
+        let to;
+        (to, *y) = self.0.transition(mode, guard, s, y);
+        to
+    }
+}
+
+/// A system whose dimension is known at run time.
+pub(crate) struct Free<'a, S>(
+    pub(crate) &'a S,
+    pub(crate) RefCell<(Vec<Enclosure>, Vec<Enclosure>)>,
+);
+
+impl<S: DynamicSystem> System for Free<'_, S> {
+    type Mode = S::Mode;
+    type State = Vec<f64>;
+    type Components = ReadShape;
+    type Guards = AnyShape;
+    const READABLE: bool = S::READABLE;
+
+    fn field(&self, mode: S::Mode, s: f64, y: &Vec<f64>, slope: &mut Vec<f64>) {
+        self.0.field(mode, s, y, slope);
+    }
+    fn guards(&self, mode: S::Mode, guards: &mut Vec<Guard>) {
+        guards.clear();
+        guards.extend_from_slice(self.0.guards(mode));
+    }
+    fn guard_values(&self, mode: S::Mode, s: f64, y: &Vec<f64>, values: &mut Vec<f64>) {
+        values.resize(self.0.guards(mode).len(), f64::NAN);
+        self.0.guard_values(mode, s, y, values);
+    }
+    fn enclose(
+        &self,
+        mode: S::Mode,
+        s: Enclosure,
+        y: &SmallVec<[Enclosure; 8]>,
+        guard: usize,
+    ) -> Enclosure {
+        let (all, values) = &mut *self.1.borrow_mut();
+        for (&place, &y) in self.0.reads(mode).iter().zip(y) {
+            all[place] = y;
+        }
+        values.resize(self.0.guards(mode).len(), Enclosure::ENTIRE);
+        self.0.enclose_guards(mode, s, all, values);
+        values[guard]
+    }
+    fn reads(&self, mode: S::Mode) -> SmallVec<[usize; 8]> {
+        self.0.reads(mode).into()
+    }
+    fn settle(&self, mode: S::Mode) -> S::Mode {
+        mode
+    }
+    fn longest_first_step(&self, _: S::Mode, _: f64, _: &Vec<f64>) -> f64 {
+        f64::INFINITY
+    }
+    fn step<M: Method>(
+        &self,
+        mode: S::Mode,
+        trial: &TrialOf<'_, Vec<f64>>,
+        step: &mut StepOf<Vec<f64>>,
+    ) {
+        // Dispatched at run time, so that it is compiled once for each method.
+        let mut field =
+            |s: f64, y: &Vec<f64>, slope: &mut Vec<f64>| self.0.field(mode, s, y, slope);
+        step.take_buffers::<M>(&mut field, trial);
+    }
+    fn transition(&self, mode: S::Mode, guard: usize, s: f64, y: &mut Vec<f64>) -> S::Mode {
+        self.0.transition(mode, guard, s, y)
+    }
+}
