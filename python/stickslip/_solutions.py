@@ -86,6 +86,15 @@ class Solution:
     touches: NDArray[np.void]
     #: Where a guard changed its sign at a pole, and did not fire: time, guard and mode.
     poles: NDArray[np.void]
+    #: Guards that crossed zero and did not act, because another one that acted before at the same
+    #: instant led to a mode without them: time, guard and mode.
+    preempted: NDArray[np.void]
+    #: Where events accumulated and the run went on behind them: time, its error, guard, mode `from`
+    #: and `to`.
+    rests: NDArray[np.void]
+    #: Whether all guards and events were decided. Those of callables are sampled: one that changes
+    #: faster than the state may have fired unseen. A `guard_scale` helps there.
+    decided: bool
     #: 0 if the end was reached, 1 if a guard or an event ended the run, and else -1.
     status: int
     #: The same in a word: reached_end, ended_by_guard, zeno, switch_limit, step_limit,

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from stickslip._compiled import Compiled, Function
+from stickslip._compiled import Compiled, Function, _number
 
 Floats: TypeAlias = NDArray[np.float64]
 Direction: TypeAlias = Literal["below", "falling", "rising", "either"]
@@ -26,8 +26,10 @@ class Guard:
     terminal: bool | int = False
     from_zero: int = 0
     smooth: bool = False
-    yields: bool = False
+    priority: int = 0
     condition: Function | None = None
+    sees_jumps: bool = False
+    rest: "str | Mode | Callable[..., Any] | None" = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str):
@@ -42,6 +44,10 @@ class Guard:
                 raise TypeError(f"{about}: {name} = {value!r}; expected a whole number")
             if not 0 <= operator.index(value) < 2**31:
                 raise ValueError(f"{about}: {name} = {value}; expected 0 or above")
+        if not hasattr(self.priority, "__index__"):
+            raise TypeError(f"{about}: priority = {self.priority!r}; expected a whole number")
+        if not -128 <= operator.index(self.priority) < 128:
+            raise ValueError(f"{about}: priority = {self.priority}; expected -128 to 127")
         if self.transition is not None and (self.to is not None or self.reset is not None):
             raise ValueError(f"{about}: a transition says it all; expected no to and no reset")
         if isinstance(self.transition, Compiled):
@@ -54,6 +60,8 @@ class Guard:
         for name, function in functions.items():
             if function is not None:
                 _check_function(function, f"{name} of {about}")
+        if isinstance(self.rest, Compiled):
+            raise TypeError(f"{about}: rest is compiled; expected a mode or a callable")
         if self.direction == "below" and not self.changes and self.terminal != 1:
             raise ValueError(
                 f"{about} would fire for ever, because it stays below zero: expected to, reset, "
@@ -67,10 +75,17 @@ class Guard:
 
 
 @dataclass(frozen=True)
-class _Source:
-    """A function that returns the values of successive guards."""
+class _Clock(Guard):
+    """A guard that fires at given times: a period and a phase, or a list."""
 
-    function: Function
+    times: tuple[float, float] | list[float] = ()  # type: ignore[assignment]
+
+
+@dataclass(frozen=True)
+class _Source:
+    """A function that returns the values of successive guards; a clock has none."""
+
+    function: Function | None
     label: str
     guards: tuple[Guard, ...]
 
@@ -100,8 +115,10 @@ class Mode:
         terminal: bool | int = False,
         from_zero: int = 0,
         smooth: bool = False,
-        yields: bool = False,
+        priority: int = 0,
         condition: Function | None = None,
+        sees_jumps: bool = False,
+        rest: "str | Mode | Callable[..., Any] | None" = None,
     ) -> "Mode":
         """Adds a guard, and returns the mode.
 
@@ -116,13 +133,28 @@ class Mode:
         terminal: True ends the run, and a number k ends it when the guard fires for the k-th time.
         from_zero: the order of the zero from which the guard starts whenever the mode begins; only
         needed if rounding may hide that it is 0 there, or if it is a double zero. smooth: the guard
-        varies as slowly as the state, so that fewer values are enough. yields: of guards that fire
-        together the first one decides what follows; this one gives way to the others.
-        condition(t, y): a number that is positive where the transition takes one branch, and
+        varies as slowly as the state, so that fewer values are enough. condition(t, y): a number that is positive where the transition takes one branch, and
         negative where it takes another one; only a `HybridFamily` uses it.
+
+        priority: of guards that fire at one instant all act, each once, those of higher priority
+        first, and else in the order in which they were added. sees_jumps: it fires, too, where a
+        transition carries its number across zero. rest: where its events accumulate, the run goes
+        on in this mode, or rest(t, y) says what follows as a transition does; without it the run
+        ends there.
         """
         guard = Guard(
-            name, direction, to, reset, transition, terminal, from_zero, smooth, yields, condition
+            name,
+            direction,
+            to,
+            reset,
+            transition,
+            terminal,
+            from_zero,
+            smooth,
+            priority,
+            condition,
+            sees_jumps,
+            rest,
         )
         return self._add(function, f"guard {name!r} of mode {self.name!r}", (guard,))
 
@@ -132,8 +164,68 @@ class Mode:
             raise ValueError("no guards are given; expected at least one")
         return self._add(function, f"the guards of mode {self.name!r}", guards)
 
-    def _add(self, function: Function, label: str, guards: tuple[Guard, ...]) -> "Mode":
-        _check_function(function, label)
+    def at(
+        self,
+        name: str,
+        times: ArrayLike,
+        *,
+        to: "str | Mode | None" = None,
+        reset: Function | None = None,
+        transition: Callable[..., Any] | None = None,
+        terminal: bool | int = False,
+        priority: int = 0,
+    ) -> "Mode":
+        """Adds events at times, and returns the mode. Steps end there exactly, without a search.
+
+        What follows is said as for a guard. A time at which the mode begins belongs to the mode
+        before; at the start of the run it counts.
+
+        >>> tank = HybridSystem()
+        >>> empties = tank.mode("empties", lambda t, y: -y)
+        >>> empties.at("dose", [0.0, 1.0], reset=lambda t, y: y + 1.0)
+        Mode('empties', guards: 'dose')
+        >>> round(float(solve(tank, (0.0, 2.0), [0.0]).y[0, -1]), 12)
+        0.503214724408
+        """
+        listed = np.atleast_1d(np.asarray(times, dtype=np.float64)).tolist()
+        return self._clock(name, listed, to, reset, transition, terminal, priority)
+
+    def every(
+        self,
+        name: str,
+        period: float,
+        *,
+        phase: float = 0.0,
+        to: "str | Mode | None" = None,
+        reset: Function | None = None,
+        transition: Callable[..., Any] | None = None,
+        terminal: bool | int = False,
+        priority: int = 0,
+    ) -> "Mode":
+        """Adds events at the times phase + k period, as `at` does, and returns the mode."""
+        times = (_number(period, "period"), _number(phase, "phase"))
+        if not (0.0 < times[0] < np.inf and np.isfinite(times[1])):
+            raise ValueError(f"period, phase = {times}; expected a period above 0, both finite")
+        return self._clock(name, times, to, reset, transition, terminal, priority)
+
+    def _clock(
+        self,
+        name: str,
+        times: tuple[float, float] | list[float],
+        to: "str | Mode | None",
+        reset: Function | None,
+        transition: Callable[..., Any] | None,
+        terminal: bool | int,
+        priority: int,
+    ) -> "Mode":
+        guard = _Clock(
+            name, "falling", to, reset, transition, terminal, priority=priority, times=times
+        )
+        return self._add(None, f"clock {name!r} of mode {self.name!r}", (guard,))
+
+    def _add(self, function: Function | None, label: str, guards: tuple[Guard, ...]) -> "Mode":
+        if function is not None:
+            _check_function(function, label)
         names = [guard.name for guard in self.guard_list + guards]
         for name in names:
             if names.count(name) > 1:

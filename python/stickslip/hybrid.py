@@ -4,6 +4,7 @@ A `HybridSystem` has modes, each with a right-hand side and guards; `solve` runs
 switch. A plain function with events, as for SciPy's `solve_ivp`, needs no system.
 """
 
+import operator
 from collections.abc import Callable, Iterable
 from itertools import count
 from typing import Any, TypeAlias
@@ -14,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip import _native
 from stickslip._compiled import Compiled, Function, _count, _number, _reals
 from stickslip._solutions import DenseOutput, Solution
-from stickslip._systems import Guard, HybridSystem, Mode, _check_function, _Source
+from stickslip._systems import Guard, HybridSystem, Mode, _check_function, _Clock, _Source
 
 Floats: TypeAlias = NDArray[np.float64]
 #: The names of methods; in small letters they mean the same.
@@ -166,11 +167,13 @@ class _Table:
             names: list[str] = []
             for number, source in enumerate([*sources, *mode._sources]):
                 if number == len(self.events):
-                    off = ("", "off", 0, 0, False, False, (None, None, False), None)
+                    change = (None, None, False)
+                    off = ("", "off", 0, 0, 0, False, change, None, False, None, None)
                     guards += [off] * skipped
                     names += [""] * skipped
-                native = (source.label, _callee(source.function))
-                native_sources.append((native, len(guards), len(source.guards)))
+                if source.function is not None:
+                    native = (source.label, _callee(source.function))
+                    native_sources.append((native, len(guards), len(source.guards)))
                 guards += [self.guard(guard, mode, source) for guard in source.guards]
                 names += [guard.name for guard in source.guards]
             offset += len(mode.guard_list)
@@ -187,29 +190,46 @@ class _Table:
         """A guard for the native module."""
         about = f"guard {guard.name!r} of mode {mode.name!r}"
         label = source.label if source in self.events else about
-        target = guard.to.name if isinstance(guard.to, Mode) else guard.to
-        if target is not None and target not in self.names:
-            raise ValueError(f"{about} leads to mode {target!r}; expected one of {self.names}")
-        to = None if target is None else self.names.index(target)
+        to = self.target(guard.to, about)
         change: tuple[int | None, Any, bool] = (to, None, False)
         if guard.reset is not None:
             change = (to, (f"the reset of {about}", _callee(guard.reset)), False)
         elif guard.transition is not None:
             what = f"the transition of {about}"
             change = (None, (what, self.transition(guard.transition, what)), True)
+        clock = isinstance(guard, _Clock)
         condition: Any = None
         if self.conditions and guard.condition is not None:
             condition = (f"the condition of {about}", _callee(guard.condition))
         return (
             label,
-            guard.direction,
+            "clock" if clock else guard.direction,
             None if self.plain and not guard.from_zero else guard.from_zero,
             int(guard.terminal),
-            guard.yields,
+            operator.index(guard.priority),
             guard.smooth,
             change,
             condition,
+            guard.sees_jumps,
+            self.rest(guard, about),
+            guard.times if clock else None,
         )
+
+    def target(self, mode: str | Mode | None, about: str) -> int | None:
+        """The index of the mode that follows."""
+        name = mode.name if isinstance(mode, Mode) else mode
+        if name is not None and name not in self.names:
+            raise ValueError(f"{about} leads to mode {name!r}; expected one of {self.names}")
+        return None if name is None else self.names.index(name)
+
+    def rest(self, guard: Guard, about: str) -> Any:
+        """What follows where the events of a guard accumulate."""
+        if guard.rest is None:
+            return None
+        if isinstance(guard.rest, str | Mode):
+            return (self.target(guard.rest, about), None, False)
+        what = f"the rest of {about}"
+        return (None, (what, self.transition(guard.rest, what)), True)
 
     def transition(self, transition: Callable[..., Any], what: str) -> Callable[..., Any]:
         """A transition that returns the index of the mode or None, and the state or None."""
@@ -244,7 +264,12 @@ class _Table:
         text = f"U{max(map(len, [*self.names, *self.event_names, ' ']))}"
         place = [("time", "f8"), ("guard", text), ("mode", text)]
         touches = [(t, self.places[mode][g], names[mode], m) for t, mode, g, m in found["touches"]]
-        poles = [(t, self.places[mode][guard], names[mode]) for t, mode, guard in found["poles"]]
+        where = lambda rows: [(t, self.places[mode][guard], names[mode]) for t, mode, guard in rows]
+        poles, preempted = where(found["poles"]), where(found["preempted"])
+        rests = [
+            (t, error, self.places[left][guard], names[left], names[to])
+            for t, error, guard, left, to in found["rests"]
+        ]
         events = self.event_array(found, dimension, text)
         rows = self.rows(events, found["status"] == 1)
         return Solution(
@@ -258,6 +283,11 @@ class _Table:
             events=events,
             touches=np.array(touches, dtype=[*place, ("margin", "f8")]),
             poles=np.array(poles, dtype=place),
+            preempted=np.array(preempted, dtype=place),
+            rests=np.array(
+                rests, dtype=[place[0], ("error", "f8"), place[1], ("from", text), ("to", text)]
+            ),
+            decided=found["decided"],
             status=found["status"],
             outcome=found["outcome"],
             message=found["message"],

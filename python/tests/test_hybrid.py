@@ -356,7 +356,7 @@ def test_guards_together():
     mode = system.mode("a", lambda t, y: [1.0])
     mode.guard("first", lambda t, y: y[0] - 1, direction="either")
     mode.guard("second", lambda t, y: 2 * y[0] - 2, direction="either")
-    mode.guard("end", lambda t, y: 3 - y[0], yields=True, to="b")
+    mode.guard("end", lambda t, y: 3 - y[0], priority=-1, to="b")
     mode.guard("last", lambda t, y: 6 - 2 * y[0], terminal=True)
     system.mode("b", lambda t, y: [1.0])
     found = solve(system, (0, 5), [0.0], "a")

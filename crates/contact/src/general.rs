@@ -358,7 +358,7 @@ impl ReadableSystem<STATE, GUARDS> for GeneralContact {
         let end =
             if self.attracts() && mode.stage != Stage::Tail { below } else { below.terminal() };
         // Where both limits are 0, a spring that is there slips first.
-        let end = if mode.regime == Regime::Stick { end.yielding() } else { end };
+        let end = if mode.regime == Regime::Stick { end.priority(-1) } else { end };
         // Without damping the contact starts at u = 0.
         let starts = touched && mode.stage != Stage::Tail && !e.damped;
         let end = if starts { end.from_zero(1) } else { end };

@@ -164,7 +164,7 @@ impl ReadableSystem<STATE, GUARDS> for Regularized {
         let end = Guard::new(Direction::Below).smooth().terminal();
         // With damping both limits are 0 at the end: a spring that is there then slips first.
         let damped_stick = phase.regime == Regime::Stick && self.is_damped();
-        let end = if damped_stick { end.yielding() } else { end };
+        let end = if damped_stick { end.priority(-1) } else { end };
         let leave = Guard::new(Direction::Below).smooth();
         match (phase.regime, phase.progress) {
             // Without damping the contact starts at u = 0.

@@ -141,7 +141,8 @@ impl Job {
         if self.is_empty() {
             record.on_end(mode, s, state);
             let (outcome, statistics) = (Outcome::ReachedEnd, Statistics::default());
-            return Ok(DynamicRun { outcome, s, mode, state: state.clone(), statistics });
+            let (state, decided) = (state.clone(), true);
+            return Ok(DynamicRun { outcome, s, mode, state, decided, statistics });
         }
         if self.forwards() {
             return run_dynamic_with(self.pair, system, start, end, options, record);

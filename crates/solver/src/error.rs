@@ -3,7 +3,7 @@
 use crate::options::InvalidOption;
 
 /// The reason for which a run failed. Every variant carries the numbers that tell where.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RunError {
     /// An option is out of its range.
     #[error(transparent)]
@@ -69,6 +69,32 @@ pub enum RunError {
         /// Where the step started.
         s: f64,
     },
+    /// The schedule of a clock is not valid: its period is not a finite number above 0, or its phase
+    /// or a time is not a number.
+    #[error(
+        "the schedule of a clock has no time after s = {s}; expected a period above 0 and times that \
+         are numbers"
+    )]
+    Schedule {
+        /// Where the next time was asked for.
+        s: f64,
+    },
+    /// Transitions lead from one to the next and no time passes
+    /// ([`Options::max_at_one_instant`](crate::Options::max_at_one_instant)). Observers do not keep
+    /// these transitions.
+    #[error(
+        "{count} transitions follow each other at s = {s}, and no end is in sight: {}, again and \
+         again. Guards may contradict each other there, or the state has to slide along a surface",
+        listed(cycle)
+    )]
+    Cycle {
+        /// The place of the transitions.
+        s: f64,
+        /// Their number.
+        count: usize,
+        /// The guards that repeat, or the last ones, each with its mode as `Debug` writes it.
+        cycle: Vec<(usize, String)>,
+    },
     /// A guard has more structure than any step can resolve. It is not smooth there, or it starts
     /// from a zero of another order than [`Guard::from_zero`](crate::Guard::from_zero) declares.
     #[error(
@@ -103,6 +129,8 @@ impl RunError {
             Self::Span { from, to } => (*from, *to) = (0.0 - *from, 0.0 - *to),
             Self::State { s, .. }
             | Self::Field { s, .. }
+            | Self::Schedule { s }
+            | Self::Cycle { s, .. }
             | Self::Tolerance { s, .. }
             | Self::GuardNotANumber { s, .. }
             | Self::GuardIdenticallyZero { s, .. }
@@ -110,4 +138,9 @@ impl RunError {
         }
         self
     }
+}
+
+fn listed(cycle: &[(usize, String)]) -> String {
+    let named = cycle.iter().map(|(guard, mode)| format!("guard {guard} of mode {mode}"));
+    named.collect::<Vec<_>>().join(", ")
 }

@@ -5,9 +5,9 @@
 //! | file | content |
 //! |---|---|
 //! | `phase` | the active mode with its guards, between two steps |
-//! | `event` | a guard that fires on a step |
+//! | `event` | the guards that fire on a step at one instant |
 //! | `examination` | everything that the examination of a step needs |
-//! | `first_guard` | which guard of a step fires first |
+//! | `first_guard` | which guards of a step fire first |
 //! | `one_guard` | what one guard does on a step |
 //! | `quick` | the first look at a guard, from six values that the step already has |
 //! | `by_bounds` | the first look at a guard of a readable system |
@@ -17,7 +17,7 @@
 //! | `aside` | places beside one where a guard has no value |
 //! | `locate` | the place of a switch, by steps of the method |
 //! | `notices` | touches and poles, until the step is accepted |
-//! | `arrival` | guards that are zero where the span of a run ends |
+//! | `arrival` | guards that are zero where a step must end, and clocks |
 
 pub(crate) mod along_step;
 pub(crate) mod arrival;
@@ -31,11 +31,11 @@ pub(crate) mod locate;
 pub(crate) mod notices;
 pub(crate) mod one_guard;
 mod path;
-mod phase;
+pub(crate) mod phase;
 pub(crate) mod quick;
 
 pub(crate) use along_step::{dense_output, repeated_step};
-pub(crate) use event::{Event, Found, bit};
+pub(crate) use event::{Crossed, Event, Found};
 pub(crate) use examination::{Examination, values_on};
 pub(crate) use first_guard::all_clearly_away;
 pub(crate) use notices::{Noticed, Notices};

@@ -7,12 +7,16 @@
 mod guard;
 mod readable;
 mod results;
+mod schedule;
 
 use std::fmt;
 
 pub use guard::{Direction, Guard};
 pub use readable::ReadableSystem;
-pub use results::{Grazing, Observer, Outcome, Pole, Run, Statistics, SwitchEvent, Unfinished};
+pub use results::{
+    Grazing, Observer, Outcome, Pole, Preempted, Rest, Run, Statistics, SwitchEvent, Unfinished,
+};
+pub use schedule::{Schedule, Times};
 
 use crate::method::{Method, State, Step, Trial};
 use stickslip_number::Enclosure;
@@ -106,6 +110,27 @@ pub trait HybridSystem<const N: usize, const G: usize> {
         y: &State<N>,
     ) -> (Self::Mode, State<N>) {
         (mode, *y)
+    }
+
+    /// The times at which a [clock](Guard::clock) among the guards of `mode` fires.
+    ///
+    /// Steps end at these times, without a search. A time at which a phase begins belongs to the
+    /// phase before; the run itself starts with the events at its start.
+    fn schedule(&self, _mode: Self::Mode, _guard: usize) -> Schedule<'_> {
+        Schedule::NEVER
+    }
+
+    /// The mode and state in which the run goes on behind the place `s` at which its switches
+    /// accumulate, if it does; `y` is the state after the last switch, of `guard` into `mode`. The
+    /// provided version lets the run end there ([`Outcome::Zeno`]).
+    fn rest(
+        &self,
+        _mode: Self::Mode,
+        _guard: usize,
+        _s: f64,
+        _y: &State<N>,
+    ) -> Option<(Self::Mode, State<N>)> {
+        None
     }
 
     /// A number that is positive where [`Self::transition`] takes one branch, and negative where it

@@ -150,8 +150,8 @@ pub use dynamic::{
 };
 pub use error::RunError;
 pub use hybrid::{
-    Direction, Grazing, Guard, HybridSystem, Observer, Outcome, Pole, ReadableSystem, Run, Start,
-    Statistics, SwitchEvent, Unfinished,
+    Direction, Grazing, Guard, HybridSystem, Observer, Outcome, Pole, Preempted, ReadableSystem,
+    Run, Schedule, Start, Statistics, SwitchEvent, Times, Unfinished,
 };
 pub use margin::{
     Exit, Followed, Hint, Margin, Margins, NearMiss, Place, Way, follow, margin, margins,

@@ -36,7 +36,7 @@ pub struct Options {
     pub max_steps: usize,
     /// The run stops after this many switches.
     pub max_switches: usize,
-    /// The run stops after this many successive transitions at one instant, at least 1.
+    /// The run fails after this many successive transitions at one instant, at least 1.
     pub max_at_one_instant: usize,
     /// The bound for a Zeno accumulation, or 0 if switches are never said to accumulate.
     ///

@@ -1,6 +1,7 @@
 //! Runs from switch to switch, and observers that record them.
 //!
-//! Start reading in `runner` (the loop) and `clock` (its independent variable). Then come `smooth`
+//! Start reading in `runner` (the loop), `instant` (the events of one instant, in order) and `clock`
+//! (the independent variable). Then come `smooth`
 //! (problems without guards), `closures` (systems of one mode), `trajectory` (recorded runs),
 //! `samples` (output at given times), `both` (two observers), `backwards` (runs that go backwards),
 //! `by_name` (pairs that are chosen at run time), `weighted` (tolerances of components) and
@@ -13,6 +14,7 @@ mod by_name;
 pub(crate) mod clock;
 mod closures;
 pub(crate) mod finite;
+mod instant;
 mod last_part;
 pub(crate) mod rejected;
 pub(crate) mod runner;

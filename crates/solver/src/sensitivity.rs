@@ -8,7 +8,9 @@
 //! Bifurcations of Non-Smooth Mechanical Systems*, 2004, section 7.3).
 
 use crate::error::RunError;
-use crate::hybrid::{Guard, HybridSystem, Observer, Outcome, Start, Statistics, SwitchEvent};
+use crate::hybrid::{
+    Guard, HybridSystem, Observer, Outcome, Schedule, Start, Statistics, SwitchEvent,
+};
 use crate::method::{Dop853, Dopri5, EmbeddedPair, Method, State};
 use crate::options::Options;
 use crate::runs::run;
@@ -271,6 +273,10 @@ where
 
     fn longest_first_step(&self, mode: S::Mode, s: f64, y: &State<A>) -> f64 {
         self.system.longest_first_step(mode, s, &part(y, 0))
+    }
+
+    fn schedule(&self, mode: S::Mode, guard: usize) -> Schedule<'_> {
+        self.system.schedule(mode, guard)
     }
 
     fn settle(&self, mode: S::Mode) -> S::Mode {

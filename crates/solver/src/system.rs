@@ -306,7 +306,7 @@ impl<S: System> Room<S> {
 pub(crate) struct Note<S: System> {
     pub(crate) s: f64,
     pub(crate) guard: usize,
-    pub(crate) simultaneous: u64,
+    pub(crate) simultaneous: PerGuard<S, bool>,
     pub(crate) flatness: f64,
     pub(crate) jump: bool,
     pub(crate) from: S::Mode,
@@ -343,6 +343,16 @@ pub(crate) trait System: Sized {
     fn reads(&self, mode: Self::Mode) -> <Self::Components as Shape>::Read;
     fn settle(&self, mode: Self::Mode) -> Self::Mode;
     fn longest_first_step(&self, mode: Self::Mode, s: f64, y: &Self::State) -> f64;
+    /// The mode behind an accumulation of switches at `s`, if the run goes on there.
+    fn rest(
+        &self,
+        mode: Self::Mode,
+        guard: usize,
+        s: f64,
+        y: &mut Self::State,
+    ) -> Option<Self::Mode>;
+    /// The first time after `s` at which a clock fires.
+    fn next_time(&self, mode: Self::Mode, guard: usize, s: f64) -> f64;
     fn step<M: Method>(
         &self,
         mode: Self::Mode,
@@ -384,6 +394,14 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> System for Fixed<'_,
     #[inline(always)]
     fn settle(&self, mode: S::Mode) -> S::Mode {
         self.0.settle(mode)
+    }
+    fn rest(&self, mode: S::Mode, guard: usize, s: f64, y: &mut State<N>) -> Option<S::Mode> {
+        let (to, after) = self.0.rest(mode, guard, s, y)?;
+        *y = after;
+        Some(to)
+    }
+    fn next_time(&self, mode: S::Mode, guard: usize, s: f64) -> f64 {
+        self.0.schedule(mode, guard).next_after(s)
     }
     #[inline(always)]
     fn longest_first_step(&self, mode: S::Mode, s: f64, y: &State<N>) -> f64 {
@@ -450,6 +468,12 @@ impl<S: DynamicSystem> System for Free<'_, S> {
     }
     fn settle(&self, mode: S::Mode) -> S::Mode {
         mode
+    }
+    fn rest(&self, mode: S::Mode, guard: usize, s: f64, y: &mut Vec<f64>) -> Option<S::Mode> {
+        self.0.rest(mode, guard, s, y)
+    }
+    fn next_time(&self, mode: S::Mode, guard: usize, s: f64) -> f64 {
+        self.0.schedule(mode, guard).next_after(s)
     }
     fn longest_first_step(&self, _: S::Mode, _: f64, _: &Vec<f64>) -> f64 {
         f64::INFINITY

@@ -138,8 +138,11 @@ where
     type Error = FamilyError;
 
     fn label(&self, point: &Point) -> Result<Itinerary, FamilyError> {
-        Ok(value_of(point, self.run(point))?
-            .map_or(Itinerary::Fails, |(outcome, fired)| itinerary(outcome, fired)))
+        match self.run(point) {
+            Err(RunError::Cycle { .. }) => Ok(Itinerary::Accumulates),
+            run => Ok(value_of(point, run)?
+                .map_or(Itinerary::Fails, |(outcome, fired)| itinerary(outcome, fired))),
+        }
     }
 
     fn margin(&self, point: &Point, which: &Margin) -> Result<Option<f64>, FamilyError> {
@@ -160,6 +163,9 @@ where
     fn free_run(&self, point: &Point) -> Result<FreeRun<Itinerary, Margin>, FamilyError> {
         let (system, start) = self.problem.at(point);
         let found = margins(self.method, &system, start, self.end, &self.options);
+        if let Err(RunError::Cycle { .. }) = found {
+            return Ok(FreeRun { label: Itinerary::Accumulates, margins: Vec::new() });
+        }
         let Some(found) = value_of(point, found)? else {
             return Ok(FreeRun { label: Itinerary::Fails, margins: Vec::new() });
         };
@@ -183,7 +189,7 @@ fn value_of<T>(point: &Point, result: Result<T, RunError>) -> Result<Option<T>, 
 fn itinerary(outcome: Outcome, fired: Vec<usize>) -> Itinerary {
     match outcome {
         Outcome::EndedByGuard { .. } | Outcome::ReachedEnd => Itinerary::Fires(fired),
-        Outcome::Zeno { .. } | Outcome::InstantLimit { .. } => Itinerary::Accumulates,
+        Outcome::Zeno { .. } => Itinerary::Accumulates,
         Outcome::SwitchLimit => Itinerary::Begins(fired),
         Outcome::StepLimit | Outcome::Stopped => Itinerary::Unfinished,
     }

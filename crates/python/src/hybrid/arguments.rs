@@ -3,7 +3,7 @@
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use stickslip_solver::{
-    Direction, EmbeddedPair, Guard, InvalidOption, Options, UnknownEmbeddedPair,
+    Direction, EmbeddedPair, Guard, InvalidOption, Options, Schedule, Times, UnknownEmbeddedPair,
 };
 
 use crate::failure::bad_input;
@@ -25,19 +25,52 @@ pub struct FunctionArguments(pub String, pub Callee);
 #[derive(FromPyObject)]
 pub struct ChangeArguments(pub Option<usize>, pub Option<FunctionArguments>, pub bool);
 
+/// The times of a clock: its period and its phase, or a list.
+#[derive(FromPyObject)]
+pub enum ClockArguments {
+    Every(f64, f64),
+    At(Vec<f64>),
+}
+
+/// The times of a clock.
+pub enum Clock {
+    Every(f64, f64),
+    At(Times),
+}
+
+impl Clock {
+    pub fn new(arguments: ClockArguments) -> PyResult<Self> {
+        Ok(match arguments {
+            ClockArguments::Every(period, phase) => Self::Every(period, phase),
+            ClockArguments::At(times) => Self::At(Times::new(times).map_err(bad_input)?),
+        })
+    }
+
+    pub fn schedule(&self) -> Schedule<'_> {
+        match self {
+            Self::Every(period, phase) => Schedule::every(*period, *phase),
+            Self::At(times) => Schedule::at(times),
+        }
+    }
+}
+
 /// A guard: what messages call it, direction, order of the zero from which it starts (`None` if
-/// that is to be found out), count after which it ends the run, whether it yields, whether it is
-/// smooth, what follows, and the condition of a transition that branches.
+/// that is to be found out), count after which it ends the run, priority, whether it is smooth, what
+/// follows, the condition of a transition that branches, whether it sees jumps, what follows an
+/// accumulation, and the times of a clock.
 #[derive(FromPyObject)]
 pub struct GuardArguments(
     pub String,
     String,
     pub Option<u32>,
     u32,
-    bool,
+    i8,
     bool,
     pub ChangeArguments,
     pub Option<FunctionArguments>,
+    bool,
+    pub Option<ChangeArguments>,
+    pub Option<ClockArguments>,
 );
 
 /// A function that returns the values of successive guards, the first of them, and their number.
@@ -51,18 +84,20 @@ pub struct ModeArguments(pub FunctionArguments, pub Vec<GuardArguments>, pub Vec
 impl GuardArguments {
     /// The guard that the solver knows.
     pub fn guard(&self) -> PyResult<Guard> {
-        let Self(_, direction, zero_order, terminal, yields, smooth, ..) = self;
+        let Self(_, direction, zero_order, terminal, priority, smooth, _, _, sees_jumps, ..) = self;
         let direction = match direction.as_str() {
             "below" => Direction::Below,
             "falling" => Direction::Falling,
             "rising" => Direction::Rising,
             "either" => Direction::Either,
+            "clock" => Direction::Clock,
             "off" => Direction::Off,
             other => return Err(bad_input(format!("direction = {other:?}"))),
         };
         let guard =
             Guard::new(direction).from_zero(zero_order.unwrap_or(0)).terminal_after(*terminal);
-        let guard = if *yields { guard.yielding() } else { guard };
+        let guard = guard.priority(*priority);
+        let guard = if *sees_jumps { guard.sees_jumps() } else { guard };
         Ok(if *smooth { guard.smooth() } else { guard })
     }
 }

@@ -27,6 +27,9 @@ impl Ending {
         };
         let run = match run {
             Ok(run) => run,
+            Err(error @ RunError::Cycle { .. }) => {
+                return ending("instant_limit", -1, reason(system, error));
+            }
             Err(error) => return ending("failed", -1, reason(system, error)),
         };
         let s = run.s;
@@ -43,11 +46,6 @@ impl Ending {
                 "switch_limit",
                 -1,
                 format!("Stopped at t = {s:?}: max_switches was reached."),
-            ),
-            Outcome::InstantLimit { s } => ending(
-                "instant_limit",
-                -1,
-                format!("Stopped at t = {s:?}: transitions follow each other, and no time passes."),
             ),
             Outcome::Zeno { accumulation } => Self {
                 accumulation: Some(accumulation),
@@ -71,6 +69,7 @@ impl Ending {
         columns.set_item("status", self.status)?;
         columns.set_item("message", self.message)?;
         columns.set_item("accumulation", self.accumulation)?;
+        columns.set_item("decided", run.as_ref().is_ok_and(|run| run.decided))?;
         let statistics = PyDict::new(columns.py());
         if let Ok(run) = run {
             let work = run.statistics;
@@ -92,6 +91,18 @@ fn reason(system: &System, error: &RunError) -> String {
     let mode = system.last_mode();
     let field = system.field_label(mode);
     match *error {
+        RunError::Cycle { s, count, ref cycle } => {
+            // The modes are numbers here.
+            let label = |(guard, mode): &(usize, String)| {
+                mode.parse().map_or_else(|_| mode.clone(), |mode| system.guard_label(mode, *guard))
+            };
+            format!(
+                "At t = {s:?}, {count} transitions follow each other and no time passes: {}, again \
+                 and again. Guards may contradict each other, or the state has to slide.",
+                cycle.iter().map(label).collect::<Vec<_>>().join(", ")
+            )
+        }
+        RunError::Schedule { s } => format!("After t = {s:?}, a clock has no valid next time."),
         RunError::Option(error) => error.to_string(),
         RunError::Span { from, to } => format!("no run leads from t = {from:?} to t = {to:?}"),
         RunError::State { s, component } => {

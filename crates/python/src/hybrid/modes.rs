@@ -3,7 +3,7 @@
 use pyo3::prelude::*;
 use stickslip_solver::{Direction, Guard};
 
-use crate::hybrid::arguments::{ChangeArguments, ModeArguments, SourceArguments};
+use crate::hybrid::arguments::{ChangeArguments, Clock, ModeArguments, SourceArguments};
 use crate::hybrid::function::Function;
 
 pub struct Mode {
@@ -13,11 +13,14 @@ pub struct Mode {
     pub labels: Vec<String>,
     pub sources: Vec<Source>,
     pub changes: Vec<Change>,
+    /// What follows where the events of a guard accumulate, and when a clock fires.
+    pub rests: Vec<Option<Change>>,
+    pub clocks: Vec<Option<Clock>>,
     /// The conditions of transitions that branch.
     pub conditions: Vec<Option<Function>>,
     /// The guards that may start from a zero whose order is to be found out.
     pub undeclared: Vec<usize>,
-    /// Whether some of the guards are off.
+    /// Whether some of the guards have no values: they are off, or clocks.
     pub gaps: bool,
 }
 
@@ -46,13 +49,15 @@ impl Mode {
             labels: Vec::new(),
             sources: Vec::new(),
             changes: Vec::new(),
+            rests: Vec::new(),
+            clocks: Vec::new(),
             conditions: Vec::new(),
             undeclared: Vec::new(),
             gaps: false,
         };
         for arguments in guards {
             let guard = arguments.guard()?;
-            mode.gaps |= guard.direction() == Direction::Off;
+            mode.gaps |= matches!(guard.direction(), Direction::Off | Direction::Clock);
             if arguments.2.is_none() {
                 mode.undeclared.push(mode.guards.len());
             }
@@ -60,6 +65,8 @@ impl Mode {
             mode.labels.push(arguments.0);
             mode.changes.push(Change::new(arguments.6)?);
             mode.conditions.push(arguments.7.map(Function::new).transpose()?);
+            mode.rests.push(arguments.9.map(Change::new).transpose()?);
+            mode.clocks.push(arguments.10.map(Clock::new).transpose()?);
         }
         for SourceArguments(function, first, count) in sources {
             mode.sources.push(Source { function: Function::new(function)?, first, count });
@@ -69,7 +76,8 @@ impl Mode {
 
     /// Whether no function needs the interpreter.
     pub fn is_compiled(&self) -> bool {
-        let changes = self.changes.iter().filter_map(Change::function);
+        let changes = self.changes.iter().chain(self.rests.iter().flatten());
+        let changes = changes.filter_map(Change::function);
         let conditions = self.conditions.iter().flatten();
         let sources = self.sources.iter().map(|source| &source.function);
         changes.chain(conditions).chain(sources).chain([&self.field]).all(Function::is_compiled)
@@ -77,7 +85,8 @@ impl Mode {
 
     /// All functions.
     pub fn functions_mut(&mut self) -> impl Iterator<Item = &mut Function> {
-        let changes = self.changes.iter_mut().filter_map(Change::function_mut);
+        let changes = self.changes.iter_mut().chain(self.rests.iter_mut().flatten());
+        let changes = changes.filter_map(Change::function_mut);
         let conditions = self.conditions.iter_mut().flatten();
         let sources = self.sources.iter_mut().map(|source| &mut source.function);
         changes.chain(conditions).chain(sources).chain([&mut self.field])

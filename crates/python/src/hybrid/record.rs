@@ -5,7 +5,9 @@ use std::sync::Arc;
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods};
-use stickslip_solver::{DynamicDense, DynamicEvent, DynamicObserver, Grazing, Pole};
+use stickslip_solver::{
+    DynamicDense, DynamicEvent, DynamicObserver, Grazing, Pole, Preempted, Rest,
+};
 
 use crate::hybrid::Job;
 use crate::hybrid::segments::{Segments, fraction};
@@ -24,6 +26,8 @@ pub struct Record<const SEGMENTS: bool> {
     events: Events,
     touches: Vec<(f64, usize, usize, f64)>,
     poles: Vec<(f64, usize, usize)>,
+    preempted: Vec<(f64, usize, usize)>,
+    rests: Vec<(f64, f64, usize, usize, usize)>,
     /// All segments if they are kept, and else the last one.
     segments: Segments,
     dense: bool,
@@ -67,6 +71,8 @@ impl<const SEGMENTS: bool> Record<SEGMENTS> {
             events: Events::default(),
             touches: Vec::new(),
             poles: Vec::new(),
+            preempted: Vec::new(),
+            rests: Vec::new(),
             segments: Segments::default(),
             dense,
             last: job.start.clone(),
@@ -128,6 +134,8 @@ impl<const SEGMENTS: bool> Record<SEGMENTS> {
         columns.set_item("event_after", events.after.into_pyarray(py))?;
         columns.set_item("touches", self.touches)?;
         columns.set_item("poles", self.poles)?;
+        columns.set_item("preempted", self.preempted)?;
+        columns.set_item("rests", self.rests)?;
         columns.set_item("end_state", self.last.2.into_pyarray(py))?;
         columns.set_item("end_time", self.last.1)?;
         columns.set_item("end_mode", self.last.0)?;
@@ -159,6 +167,27 @@ impl<const SEGMENTS: bool> DynamicObserver<usize> for Record<SEGMENTS> {
 
     fn on_pole(&mut self, pole: &Pole<usize>) {
         self.poles.push((pole.s, pole.mode, pole.guard));
+    }
+
+    fn on_preempted(&mut self, preempted: &Preempted<usize>) {
+        self.preempted.push((preempted.s, preempted.mode, preempted.guard));
+    }
+
+    fn on_rest(&mut self, rest: &Rest<usize>) {
+        self.rests.push((rest.s, rest.error, rest.guard, rest.from, rest.to));
+    }
+
+    fn forget(&mut self, switches: usize) {
+        let kept = self.events.times.len().saturating_sub(switches);
+        let Some(&s) = self.events.times.get(kept) else { return };
+        let n = self.last.2.len();
+        let before = self.events.before[kept * n..(kept + 1) * n].to_vec();
+        self.last = (self.events.from[kept], s, before);
+        self.moved = false;
+        while self.points.times.last() == Some(&s) {
+            self.points.pop(n);
+        }
+        self.events.truncate(kept, n);
     }
 
     fn stops(&self) -> bool {
@@ -205,6 +234,12 @@ impl Points {
         self.states.extend_from_slice(state);
     }
 
+    fn pop(&mut self, n: usize) {
+        self.times.pop();
+        self.modes.pop();
+        self.states.truncate(self.states.len().saturating_sub(n));
+    }
+
     fn ends_at(&self, mode: usize, time: f64, state: &[f64]) -> bool {
         self.times.last() == Some(&time)
             && self.modes.last() == Some(&mode)
@@ -223,5 +258,18 @@ impl Events {
         self.simultaneous.push(event.simultaneous.to_vec());
         self.before.extend_from_slice(event.before);
         self.after.extend_from_slice(event.after);
+    }
+
+    /// Keeps the first `kept` events, with states of `n` components.
+    fn truncate(&mut self, kept: usize, n: usize) {
+        self.times.truncate(kept);
+        self.guards.truncate(kept);
+        self.from.truncate(kept);
+        self.to.truncate(kept);
+        self.flatness.truncate(kept);
+        self.jump.truncate(kept);
+        self.simultaneous.truncate(kept);
+        self.before.truncate(kept * n);
+        self.after.truncate(kept * n);
     }
 }

@@ -6,8 +6,9 @@ use std::time::{Duration, Instant};
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use stickslip_solver::{DynamicSystem, Guard};
+use stickslip_solver::{DynamicSystem, Guard, Schedule};
 
+use crate::hybrid::arguments::Clock;
 use crate::hybrid::function::{Caller, Code, Function};
 use crate::hybrid::modes::{Change, Mode, Source};
 use crate::hybrid::numbers::{Problem, read};
@@ -272,6 +273,15 @@ impl DynamicSystem for System {
         for Source { function, first, count } in &mode.sources {
             self.evaluate(function, t, y, &mut values[*first..first + count], true);
         }
+    }
+
+    fn schedule(&self, mode: usize, guard: usize) -> Schedule<'_> {
+        self.modes[mode].clocks[guard].as_ref().map_or(Schedule::NEVER, Clock::schedule)
+    }
+
+    fn rest(&self, mode: usize, guard: usize, t: f64, y: &mut [f64]) -> Option<usize> {
+        let change = self.modes[mode].rests[guard].as_ref()?;
+        Some(self.change(mode, change, t, y))
     }
 
     fn transition(&self, mode: usize, guard: usize, t: f64, y: &mut [f64]) -> usize {

@@ -5,7 +5,7 @@ use crate::dynamic::results::{DynamicEvent, DynamicObserver, DynamicRun};
 use crate::dynamic::runner::run_dynamic;
 use crate::dynamic::system::{DynamicStart, DynamicSystem};
 use crate::error::RunError;
-use crate::hybrid::{Grazing, Guard, Pole};
+use crate::hybrid::{Grazing, Guard, Pole, Preempted, Rest, Schedule};
 use crate::method::Method;
 use crate::options::Options;
 use crate::runs::backwards::{original, reverse};
@@ -60,6 +60,14 @@ impl<S: DynamicSystem> DynamicSystem for Reversed<&S> {
         self.0.guard_values(mode, reverse(tau), y, values);
     }
 
+    fn schedule(&self, mode: S::Mode, guard: usize) -> Schedule<'_> {
+        self.0.schedule(mode, guard).reversed()
+    }
+
+    fn rest(&self, mode: S::Mode, guard: usize, tau: f64, y: &mut [f64]) -> Option<S::Mode> {
+        self.0.rest(mode, guard, reverse(tau), y)
+    }
+
     fn transition(&self, mode: S::Mode, guard: usize, tau: f64, y: &mut [f64]) -> S::Mode {
         self.0.transition(mode, guard, reverse(tau), y)
     }
@@ -78,6 +86,18 @@ impl<O: DynamicObserver<Mode>, Mode: Copy> DynamicObserver<Mode> for Reversed<&m
 
     fn on_pole(&mut self, pole: &Pole<Mode>) {
         self.0.on_pole(&Pole { s: reverse(pole.s), ..*pole });
+    }
+
+    fn on_preempted(&mut self, preempted: &Preempted<Mode>) {
+        self.0.on_preempted(&Preempted { s: reverse(preempted.s), ..*preempted });
+    }
+
+    fn on_rest(&mut self, rest: &Rest<Mode>) {
+        self.0.on_rest(&Rest { s: reverse(rest.s), ..*rest });
+    }
+
+    fn forget(&mut self, switches: usize) {
+        self.0.forget(switches);
     }
 
     fn stops(&self) -> bool {

@@ -1,7 +1,7 @@
 //! What a run of a dynamic system reports, and how it ends.
 
 use crate::dynamic::dense::DynamicDense;
-use crate::hybrid::{Grazing, Outcome, Pole, Statistics, Unfinished};
+use crate::hybrid::{Grazing, Outcome, Pole, Preempted, Rest, Statistics, Unfinished};
 
 /// A guard of a [`DynamicSystem`](crate::DynamicSystem) fired. The slices live as long as the call
 /// of the observer; [`Self::to_switch`] keeps them.
@@ -86,6 +86,16 @@ pub trait DynamicObserver<Mode> {
     /// A guard changed its sign at a pole.
     fn on_pole(&mut self, _pole: &Pole<Mode>) {}
 
+    /// A guard has crossed zero and does not act.
+    fn on_preempted(&mut self, _preempted: &Preempted<Mode>) {}
+
+    /// The switches of the run accumulated, and it goes on behind them.
+    fn on_rest(&mut self, _rest: &Rest<Mode>) {}
+
+    /// The last `switches` switches are no part of the run: they belong to a chain at one instant
+    /// that does not end, with which the run fails ([`RunError::Cycle`](crate::RunError::Cycle)).
+    fn forget(&mut self, _switches: usize) {}
+
     /// Whether the run should stop. It is asked after every step and every switch, and the run then
     /// ends with [`Outcome::Stopped`].
     fn stops(&self) -> bool {
@@ -108,6 +118,10 @@ impl<Mode: Copy> DynamicObserver<Mode> for Vec<DynamicSwitch<Mode>> {
     fn on_switch(&mut self, event: &DynamicEvent<'_, Mode>) {
         self.push(event.to_switch());
     }
+
+    fn forget(&mut self, switches: usize) {
+        self.truncate(self.len().saturating_sub(switches));
+    }
 }
 
 /// How a run of a [`DynamicSystem`](crate::DynamicSystem) ended.
@@ -122,6 +136,10 @@ pub struct DynamicRun<Mode> {
     pub mode: Mode,
     /// The state at the end.
     pub state: Vec<f64>,
+    /// Whether every guard was decided by bounds. It is false if guards of a black box were active:
+    /// they are sampled, so that one that changes faster than the solution may have fired unseen. A
+    /// [`ReadableDynamic`](crate::ReadableDynamic) has decided guards.
+    pub decided: bool,
     /// The work done by the run.
     pub statistics: Statistics,
 }

@@ -4,7 +4,7 @@ use crate::dynamic::dense::DynamicDense;
 use crate::dynamic::results::{DynamicEvent, DynamicObserver, DynamicRun};
 use crate::dynamic::system::{DynamicStart, DynamicSystem};
 use crate::error::RunError;
-use crate::hybrid::{Grazing, Pole};
+use crate::hybrid::{Grazing, Pole, Preempted, Rest};
 use crate::method::{DenseOf, Method};
 use crate::options::Options;
 use crate::runs::runner::{End, Watcher, run_any};
@@ -39,8 +39,8 @@ where
     let bounds = (vec![stickslip_number::Enclosure::ENTIRE; start.state.len()], Vec::new());
     let system = Free(system, std::cell::RefCell::new(bounds));
     let run = run_any::<M, _, _>(&system, from, end, options, &mut told)?;
-    let End { outcome, s, mode, state, statistics } = run;
-    Ok(DynamicRun { outcome, s, mode, state, statistics })
+    let End { outcome, s, mode, state, decided, statistics } = run;
+    Ok(DynamicRun { outcome, s, mode, state, decided, statistics })
 }
 
 /// An observer of a run, with room for lists.
@@ -56,7 +56,8 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Watcher<Free<'_, S>> for Tol
     fn on_switch(&mut self, note: &Note<Free<'_, S>>) {
         let &Note { s, guard, flatness, jump, from, to, .. } = note;
         self.simultaneous.clear();
-        self.simultaneous.extend((0..64).filter(|&other| note.simultaneous >> other & 1 == 1));
+        self.simultaneous
+            .extend((0..note.simultaneous.len()).filter(|&other| note.simultaneous[other]));
         self.observer.on_switch(&DynamicEvent {
             s,
             guard,
@@ -74,6 +75,15 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Watcher<Free<'_, S>> for Tol
     }
     fn on_pole(&mut self, pole: &Pole<S::Mode>) {
         self.observer.on_pole(pole);
+    }
+    fn on_preempted(&mut self, preempted: &Preempted<S::Mode>) {
+        self.observer.on_preempted(preempted);
+    }
+    fn on_rest(&mut self, rest: &Rest<S::Mode>) {
+        self.observer.on_rest(rest);
+    }
+    fn forget(&mut self, switches: usize) {
+        self.observer.forget(switches);
     }
     fn stops(&self) -> bool {
         self.observer.stops()

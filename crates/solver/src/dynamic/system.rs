@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::hybrid::Guard;
+use crate::hybrid::{Guard, Schedule};
 use stickslip_number::{Enclosure, Number};
 
 /// A piecewise-smooth ODE whose number of components is known at run time only.
@@ -49,6 +49,24 @@ pub trait DynamicSystem {
     ) {
     }
 
+    /// As [`HybridSystem::schedule`](crate::HybridSystem::schedule).
+    fn schedule(&self, _mode: Self::Mode, _guard: usize) -> Schedule<'_> {
+        Schedule::NEVER
+    }
+
+    /// The mode in which the run goes on behind the place `s` at which its switches accumulate, if it
+    /// does. The state `y` after the last switch, of `guard` into `mode`, is changed to that from
+    /// which it goes on. The provided version lets the run end there.
+    fn rest(
+        &self,
+        _mode: Self::Mode,
+        _guard: usize,
+        _s: f64,
+        _y: &mut [f64],
+    ) -> Option<Self::Mode> {
+        None
+    }
+
     /// Changes the state `y` on `guard` of `mode` to the one that follows when the guard fires, and
     /// returns the mode that follows.
     ///
@@ -76,6 +94,22 @@ pub trait ReadableDynamic {
 
     /// The components that the guards read. (To be found by the solver.)
     fn reads(&self, mode: Self::Mode) -> &[usize];
+
+    /// As [`HybridSystem::schedule`](crate::HybridSystem::schedule).
+    fn schedule(&self, _mode: Self::Mode, _guard: usize) -> Schedule<'_> {
+        Schedule::NEVER
+    }
+
+    /// As [`DynamicSystem::rest`].
+    fn rest(
+        &self,
+        _mode: Self::Mode,
+        _guard: usize,
+        _s: f64,
+        _y: &mut [f64],
+    ) -> Option<Self::Mode> {
+        None
+    }
 
     /// As [`DynamicSystem::transition`].
     fn transition(&self, mode: Self::Mode, _guard: usize, _s: f64, _y: &mut [f64]) -> Self::Mode {
@@ -107,6 +141,12 @@ impl<S: ReadableDynamic> DynamicSystem for S {
         values: &mut [Enclosure],
     ) {
         ReadableDynamic::guard_values(self, mode, s, y, values);
+    }
+    fn schedule(&self, mode: S::Mode, guard: usize) -> Schedule<'_> {
+        ReadableDynamic::schedule(self, mode, guard)
+    }
+    fn rest(&self, mode: S::Mode, guard: usize, s: f64, y: &mut [f64]) -> Option<S::Mode> {
+        ReadableDynamic::rest(self, mode, guard, s, y)
     }
     fn transition(&self, mode: S::Mode, guard: usize, s: f64, y: &mut [f64]) -> S::Mode {
         ReadableDynamic::transition(self, mode, guard, s, y)

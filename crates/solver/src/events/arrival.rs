@@ -1,84 +1,130 @@
-//! Guards that are zero where the span of a run ends.
+//! Guards that are zero where a step ends at which the run must not go on without them: at the end
+//! of the span, at the time of a clock, and at an event of another guard.
 
-use crate::events::along_step::rounding;
-use crate::events::event::{Event, bit};
+use crate::events::event::{Crossed, Event, only};
 use crate::events::examination::Examination;
-use crate::hybrid::Direction;
+use crate::events::phase::NEAR_ZERO;
 use crate::method::{StepOf, Store};
-use crate::system::System;
+use crate::system::{List, System};
 
 /// The part of the step over which a guard is differenced, on both sides of the end.
-pub(crate) const REACH: f64 = 1e-3;
+const REACH: f64 = 1e-3;
 /// An event this close to the end of its step is the one at the end.
-pub(crate) const SAME: f64 = 1e-6;
+const SAME: f64 = 1e-6;
 
 impl<S: System> Examination<'_, S> {
     /// Finds guards that are zero at the end of `step`, to within rounding, and cross there in
     /// their direction. Such a guard fires, since no other step will find it.
-    pub(crate) fn arrive(&mut self, step: &StepOf<S::State>, event: &mut Option<Event<S::State>>) {
-        let (system, mode) = (self.system, self.phase.mode);
-        let (s, y) = (step.s + step.h, &step.y1);
-        let mut values = self.room.row();
-        system.guard_values(mode, s, y, &mut values);
-        self.statistics.guards += 1;
-        let s_scale = s.abs().max(step.s.abs());
-        let mut y_scale = self.room.state();
-        S::State::each(&mut y_scale, [y, &step.y0], |_, [a, b]| a.abs().max(b.abs()));
+    pub(crate) fn arrive(&mut self, step: &StepOf<S::State>, event: &mut Option<Event<S>>) {
         for guard in 0..self.phase.count() {
-            let at_end = values[guard];
-            let direction = self.phase.guards[guard].direction();
-            let far =
-                self.phase.largest[guard] > 0.0 && at_end.abs() > 1e-6 * self.phase.largest[guard];
-            if direction == Direction::Off
-                || far
-                || self.notes_of(guard).any(|note| note.s >= s - SAME * step.h)
-            {
+            let s = step.s + step.h;
+            if self.notes_of(guard).any(|note| note.s >= s - SAME * step.h) {
                 continue;
             }
-            let room = &mut *self.room;
-            let (hidden, count) =
-                rounding(system, (mode, guard), (s, y), (s_scale, &y_scale), room);
-            self.statistics.guards += count + 2;
-            self.statistics.field += 1;
-            let reach = REACH * step.h;
-            let (mut slope, mut moved) = (room.state(), room.state());
-            system.field(mode, s, y, &mut slope);
-            S::State::shifted(&mut moved, y, &slope, -reach);
-            let behind = room.value(system, (mode, guard), s - reach, &moved);
-            S::State::shifted(&mut moved, y, &slope, reach);
-            let ahead = room.value(system, (mode, guard), s + reach, &moved);
-            room.give(slope);
-            room.give(moved);
-            let shows = behind.abs() > 4.0 * hidden && ahead.abs() > 4.0 * hidden;
-            let crosses = shows && (behind < 0.0) != (ahead < 0.0);
-            if at_end.abs() > hidden || !crosses || !direction.fires_from(behind) {
-                continue;
-            }
-            let found = Event {
-                guard,
-                simultaneous: 0,
-                slope: ((ahead - behind) / (2.0 * reach)).abs(),
-                elapsed: step.h,
-                state: step.y1.clone(),
-                residual: at_end.abs(),
-                sign: behind.signum(),
-                beyond: step.h,
-                jump: false,
-                step: step.clone(),
-            };
+            let Some(crossed) = self.arrival(guard, step, step.h, &step.y1) else { continue };
+            let found = self.at_end(guard, crossed, step);
             if self.is_noted(&found) {
                 let together = self.notes.last().is_some_and(|last| last.s == s);
                 self.note(&found, together);
                 continue;
             }
-            // Of guards that fire together the one that precedes decides, and names the others.
             *event = Some(match event.take() {
                 None => found,
-                Some(first) if self.precedes(guard, first.guard) => {
-                    Event { simultaneous: first.simultaneous | bit(first.guard), ..found }
-                }
-                Some(first) => Event { simultaneous: first.simultaneous | bit(guard), ..first },
+                Some(first) => self.merged(first, found),
             });
+        }
+    }
+
+    /// Adds the clocks that are `due` at the end of `step` to the event, if it does not come before.
+    pub(crate) fn tick(&mut self, step: &StepOf<S::State>, due: f64, event: &mut Option<Event<S>>) {
+        if let Some(first) = event {
+            let rounding = 4.0 * f64::EPSILON * due.abs().max(step.s.abs());
+            if step.h - first.elapsed > self.error_of(first) + rounding {
+                return;
+            }
+            // The clock knows the time of the instant exactly.
+            first.elapsed = step.h;
+        }
+        let mode = self.phase.mode;
+        for guard in (0..self.phase.count()).filter(|&guard| self.phase.is_clock(guard)) {
+            if self.system.next_time(mode, guard, due.next_down()) > due {
+                continue;
+            }
+            let crossed = Crossed { slope: 1.0, jump: false, sign: 1.0 };
+            let tick = self.at_end(guard, crossed, step);
+            *event = Some(match event.take() {
+                None => tick,
+                Some(first) => self.merged(first, tick),
+            });
+        }
+    }
+
+    /// Two events of one instant as one, of the guard that precedes.
+    pub(crate) fn merged(&self, one: Event<S>, other: Event<S>) -> Event<S> {
+        let precedes = self.precedes(one.guard, other.guard);
+        let (mut first, second) = if precedes { (one, other) } else { (other, one) };
+        first.take_in(&second);
+        first.simultaneous[first.guard] = false;
+        first
+    }
+
+    /// How a guard crosses zero at a place of `step`, if it does so in its direction and is zero
+    /// there to within rounding.
+    pub(crate) fn arrival(
+        &mut self,
+        guard: usize,
+        step: &StepOf<S::State>,
+        elapsed: f64,
+        y: &S::State,
+    ) -> Option<Crossed> {
+        let direction = self.phase.guards[guard].direction();
+        if !direction.has_values() {
+            return None;
+        }
+        let (system, mode, s) = (self.system, self.phase.mode, step.s + elapsed);
+        let there = self.room.value(system, (mode, guard), s, y);
+        self.statistics.guards += 1;
+        let largest = self.phase.largest[guard];
+        if largest > 0.0 && there.abs() > NEAR_ZERO * largest {
+            return None;
+        }
+        let hidden = self.hidden_at(guard, step, elapsed, y);
+        let reach = REACH * elapsed;
+        let room = &mut *self.room;
+        let (mut slope, mut moved) = (room.state(), room.state());
+        system.field(mode, s, y, &mut slope);
+        S::State::shifted(&mut moved, y, &slope, -reach);
+        let behind = room.value(system, (mode, guard), s - reach, &moved);
+        S::State::shifted(&mut moved, y, &slope, reach);
+        let ahead = room.value(system, (mode, guard), s + reach, &moved);
+        room.give(slope);
+        room.give(moved);
+        self.statistics.field += 1;
+        self.statistics.guards += 2;
+        let shows = behind.abs() > 4.0 * hidden && ahead.abs() > 4.0 * hidden;
+        let crosses = shows && (behind < 0.0) != (ahead < 0.0);
+        let fires = there.abs() <= hidden && crosses && direction.fires_from(behind);
+        let slope = ((ahead - behind) / (2.0 * reach)).abs();
+        fires.then_some(Crossed { slope, jump: false, sign: behind.signum() })
+    }
+
+    /// The event of a guard at the end of `step`.
+    pub(crate) fn at_end(
+        &self,
+        guard: usize,
+        crossed: Crossed,
+        step: &StepOf<S::State>,
+    ) -> Event<S> {
+        let count = self.phase.count();
+        Event {
+            guard,
+            crossed: only(count, guard, crossed),
+            simultaneous: List::of(count, false),
+            elapsed: step.h,
+            state: step.y1.clone(),
+            residual: 0.0,
+            beyond: (1.0 + REACH) * step.h,
+            step: step.clone(),
         }
     }
 }

@@ -35,7 +35,7 @@ impl Aside {
     /// It fails if too many have been tried.
     pub(crate) fn of(&mut self, theta: f64) -> Result<f64, RunError> {
         if self.tried == PLACES {
-            return Err(self.nowhere);
+            return Err(self.nowhere.clone());
         }
         let away = 4_f64.powi(self.tried) * self.resolution.max(f64::EPSILON * theta);
         let before = self.tried % 2 != 0 || theta + away > 1.0;

@@ -1,36 +1,67 @@
-//! The result of examining a step: the guard that fires, or none.
+//! The result of examining a step: the guards that fire at one instant, or none.
 
-use crate::method::{StepOf, Store};
-use crate::system::{PerGuard, System};
+use crate::method::StepOf;
+use crate::system::{List, PerGuard, System};
 
-/// A guard fires on a step.
-#[derive(Clone, Debug)]
-pub(crate) struct Event<V: Store> {
-    pub(crate) guard: usize,
-    /// Further guards that are zero where the step ends, one bit each.
-    pub(crate) simultaneous: u64,
+/// How a guard crosses zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Crossed {
     /// The absolute slope of the guard where it fires.
     pub(crate) slope: f64,
+    /// Whether it jumps over zero.
+    pub(crate) jump: bool,
+    /// The sign of the guard before it fired.
+    pub(crate) sign: f64,
+}
+
+impl Crossed {
+    /// A guard that is beyond zero where it is looked at. It has not been located, and hides nothing.
+    pub(crate) const AT_ONCE: Self = Self { slope: f64::INFINITY, jump: false, sign: 1.0 };
+}
+
+/// A guard fires on a step, and others perhaps at the same instant.
+#[derive(Debug)]
+pub(crate) struct Event<S: System> {
+    /// The guard that acts first.
+    pub(crate) guard: usize,
+    /// All guards that cross zero at this instant, with this one among them.
+    pub(crate) crossed: PerGuard<S, Option<Crossed>>,
+    /// Further guards that are zero there.
+    pub(crate) simultaneous: PerGuard<S, bool>,
     /// The time from the start of the step to the event.
     pub(crate) elapsed: f64,
     /// The state on the guard.
-    pub(crate) state: V,
+    pub(crate) state: S::State,
     /// The absolute value of the guard at that state, which is zero up to rounding.
     pub(crate) residual: f64,
-    /// The sign of the guard before it fired.
-    pub(crate) sign: f64,
     /// The time from the start of the step to a place behind the event, up to which the guard does
     /// not cross zero again.
     pub(crate) beyond: f64,
-    /// Whether the guard jumps over zero.
-    pub(crate) jump: bool,
     /// The step that ends at the event.
-    pub(crate) step: StepOf<V>,
+    pub(crate) step: StepOf<S::State>,
 }
 
-/// The bit of a guard in a mask, or 0 for guards beyond the 64 that a mask can hold.
-pub(crate) fn bit(guard: usize) -> u64 {
-    if guard < 64 { 1 << guard } else { 0 }
+impl<S: System> Event<S> {
+    /// How the guard that acts first crosses zero.
+    pub(crate) fn own(&self) -> Crossed {
+        self.crossed[self.guard].unwrap_or(Crossed::AT_ONCE)
+    }
+
+    /// Takes the guards of another event of the same instant, which act after this one's.
+    pub(crate) fn take_in(&mut self, other: &Self) {
+        let crossed = self.crossed.parts_mut().iter_mut().zip(other.crossed.parts());
+        for (own, crossed) in crossed {
+            *own = own.or(*crossed);
+        }
+    }
+}
+
+/// The list of guards that cross zero in which there is only one.
+#[inline(always)]
+pub(crate) fn only<L: List<Option<Crossed>>>(count: usize, guard: usize, crossed: Crossed) -> L {
+    let mut list = L::of(count, None);
+    list[guard] = Some(crossed);
+    list
 }
 
 /// The result of examining a step.

@@ -1,17 +1,20 @@
 //! Which guard of a step fires first, if any.
 
+use smallvec::SmallVec;
+
 use crate::error::RunError;
-use crate::events::event::{Event, Found, bit};
+use crate::events::along_step::rounding;
+use crate::events::event::{Crossed, Event, Found};
 use crate::events::examination::{Examination, column, confirmed};
 use crate::events::isolate::{Beginning, Bracket};
 use crate::events::one_guard::{Crossing, Status};
-use crate::events::phase::Phase;
-use crate::events::quick;
+use crate::events::phase::{NEAR_ZERO, Phase};
+use crate::events::quick::{self, NODES};
 use crate::hybrid::{Direction, Statistics};
 use crate::method::{Method, StepOf, Store};
 use crate::system::{List, Note, PerGuard, Room, System};
 
-/// Guards whose zeros are closer together than this part of the step fire together.
+/// A guard is zero at an event if its value there is below this part of its values before.
 pub(crate) const TOGETHER: f64 = 1e-12;
 
 impl<S: System> Examination<'_, S> {
@@ -22,7 +25,7 @@ impl<S: System> Examination<'_, S> {
     pub(crate) fn look<M: Method>(
         &mut self,
         step: &mut StepOf<S::State>,
-        event: &mut Option<Event<S::State>>,
+        event: &mut Option<Event<S>>,
         values: &[PerGuard<S, f64>; 6],
         away: bool,
     ) -> Result<Found<S>, RunError> {
@@ -44,18 +47,19 @@ impl<S: System> Examination<'_, S> {
     fn decide<M: Method>(
         &mut self,
         step: &mut StepOf<S::State>,
-        event: &mut Option<Event<S::State>>,
+        event: &mut Option<Event<S>>,
         values: &[PerGuard<S, f64>; 6],
         mut statuses: PerGuard<S, Status>,
     ) -> Result<Found<S>, RunError> {
-        let end_values = self.on_their_side::<M>(step, values);
+        let mut end_values = self.on_their_side::<M>(step, values);
         // Where the part of the step begins that is still to be examined, for each guard.
         let mut beginnings: PerGuard<S, Beginning> = self.room.beginnings();
         for guard in 0..self.phase.count() {
             let (value, zero_order) = (self.phase.values[guard], self.phase.zero_orders[guard]);
             beginnings[guard] = Beginning { theta: 0.0, value, zero_order };
         }
-        let mut last: Option<f64> = None;
+        // The event before that changed nothing.
+        let mut last: Option<Event<S>> = None;
         loop {
             *event = None;
             let coarse = self.first::<M>(step, event, values, &mut statuses, &beginnings)?;
@@ -73,19 +77,24 @@ impl<S: System> Examination<'_, S> {
                 return Ok(Found::Event);
             }
             // Rounding must not put it before the one before.
-            next.elapsed = next.elapsed.max(last.unwrap_or(0.0));
-            let elapsed = next.elapsed;
-            self.note(next, last.is_some_and(|last| elapsed - last <= TOGETHER * step.h));
-            last = Some(elapsed);
+            let together = last.as_ref().is_some_and(|last| last.crossed[guard].is_some());
+            next.elapsed = next.elapsed.max(last.as_ref().map_or(0.0, |last| last.elapsed));
+            self.note(next, together);
             // Whether the guard crosses again is not known beyond the bracket of this crossing.
             let theta = next.beyond / step.h;
-            beginnings[guard] = Beginning { theta, value: -next.sign, zero_order: 0 };
+            beginnings[guard] = Beginning { theta, value: -next.own().sign, zero_order: 0 };
             statuses[guard] = if theta < 1.0 { Status::Unclear } else { Status::Clear };
+            let sign = next.own().sign;
+            if theta >= 1.0 && end_values[guard] * sign >= 0.0 {
+                // It has crossed within rounding of the end of the step.
+                end_values[guard] = -f64::MIN_POSITIVE.copysign(sign);
+            }
+            last = event.take();
         }
     }
 
     /// Whether an event only reports a crossing: mode and state go on unchanged.
-    pub(crate) fn is_noted(&self, event: &Event<S::State>) -> bool {
+    pub(crate) fn is_noted(&self, event: &Event<S>) -> bool {
         let about = self.phase.guards[event.guard];
         let before = self.notes_of(event.guard).count();
         if about.direction() == Direction::Below
@@ -102,29 +111,26 @@ impl<S: System> Examination<'_, S> {
 
     /// The notes of a guard on this step.
     pub(crate) fn notes_of(&self, guard: usize) -> impl Iterator<Item = &Note<S>> {
-        self.notes
-            .iter()
-            .filter(move |note| note.guard == guard || note.simultaneous & bit(guard) != 0)
+        self.notes.iter().filter(move |note| note.guard == guard || note.simultaneous[guard])
     }
 
     /// Notes an event that changes nothing. If it is `together` with the one before, both are one.
-    pub(crate) fn note(&mut self, event: &Event<S::State>, together: bool) {
+    pub(crate) fn note(&mut self, event: &Event<S>, together: bool) {
         if together
-            && bit(event.guard) != 0
             && let Some(last) = self.notes.last_mut()
             && last.guard != event.guard
-            && last.simultaneous & bit(event.guard) == 0
+            && !last.simultaneous[event.guard]
         {
-            last.simultaneous |= bit(event.guard);
+            last.simultaneous[event.guard] = true;
             return;
         }
-        let largest = self.phase.largest[event.guard];
+        let Crossed { slope, jump, .. } = event.own();
         self.notes.push(Note {
             s: self.trial.s + event.elapsed,
             guard: event.guard,
-            simultaneous: 0,
-            flatness: if largest == 0.0 { 0.0 } else { largest / event.slope },
-            jump: event.jump,
+            simultaneous: List::of(self.phase.count(), false),
+            flatness: self.phase.flatness(event.guard, slope),
+            jump,
             from: self.phase.mode,
             to: self.phase.mode,
             before: event.state.clone(),
@@ -132,102 +138,282 @@ impl<S: System> Examination<'_, S> {
         });
     }
 
-    /// Finds the first guard that fires, whether or not it changes something, and writes it to
-    /// `event`. Returns the guard for which the step is too coarse, if there is one. What isolation
-    /// finds on the `full` step is kept.
+    /// Finds the first guard that fires, whether or not it changes something, with all guards that
+    /// fire at the same instant, and writes it to `event`. Returns the guard for which the step is
+    /// too coarse, if there is one. What isolation finds on the full step is kept in `statuses`.
+    ///
+    /// Only guards that may be the first are located: the others are on their side of zero where
+    /// the first one fires.
     fn first<M: Method>(
         &mut self,
         step: &mut StepOf<S::State>,
-        event: &mut Option<Event<S::State>>,
-        full_values: &[PerGuard<S, f64>; 6],
-        full: &mut PerGuard<S, Status>,
+        event: &mut Option<Event<S>>,
+        values: &[PerGuard<S, f64>; 6],
+        statuses: &mut PerGuard<S, Status>,
         beginnings: &PerGuard<S, Beginning>,
     ) -> Result<Option<usize>, RunError> {
-        let mut values = [(); 6].map(|()| self.room.row());
-        for (values, full) in values.iter_mut().zip(full_values) {
-            values.set(full);
+        let mut search = Search::<S> {
+            open: self.room.bools(),
+            there: self.room.row(),
+            nodes: [(); 6].map(|()| self.room.row()),
+            nodes_known: false,
+            located: SmallVec::new(),
+        };
+        for (open, status) in search.open.parts_mut().iter_mut().zip(statuses.parts()) {
+            *open = *status != Status::Clear;
         }
-        let mut statuses = self.room.statuses();
-        statuses.set(full);
-        loop {
-            let first = self.earliest(&statuses);
-            let starts = first.is_some_and(|(_, crossing)| crossing.bracket.high == 0.0);
-            if (first.is_none() || starts) && statuses.parts().contains(&Status::Unclear) {
-                let shortened = event.is_some();
-                let on = event.as_mut().map_or(&mut *step, |event| &mut event.step);
-                // Whether a guard fires together with an event at the start shows after the event.
-                let may_wait = starts || on.h <= TOGETHER * self.trial.h;
-                for guard in 0..self.phase.count() {
-                    if statuses[guard] == Status::Unclear {
-                        let status = match self.isolate_rest::<M>(guard, on, &values, beginnings)? {
-                            Some(status) => status,
-                            None if may_wait => Status::Clear,
-                            None => return Ok(Some(guard)),
-                        };
-                        statuses[guard] = status;
-                        if !shortened {
-                            full[guard] = status;
+        let mut coarse: Option<usize> = None;
+        while coarse.is_none() {
+            let candidate = self.candidate(statuses, &mut search, event.as_ref(), (step.h, values));
+            let open = search.open.parts().iter().zip(statuses.parts());
+            let unclear =
+                open.enumerate().find(|(_, (open, status))| **open && **status == Status::Unclear);
+            let unclear = unclear.map(|(guard, _)| guard);
+            // Whether a guard fires together with an event at the start is asked on the whole step.
+            let starts = candidate.is_some_and(|(_, crossing)| crossing.bracket.high == 0.0);
+            let next = match (candidate, unclear, event.as_mut()) {
+                (None, None, _) => break,
+                (_, Some(guard), None) if candidate.is_none() || starts => {
+                    match self.isolate_rest::<M>(guard, step, values, beginnings)? {
+                        Some(status) => statuses[guard] = status,
+                        None if starts => search.open[guard] = false,
+                        None => coarse = Some(guard),
+                    }
+                    search.open[guard] &= statuses[guard] != Status::Clear;
+                    None
+                }
+                (Some((guard, crossing)), ..) => {
+                    search.open[guard] = false;
+                    let exact = self.wants_segments || unclear.is_some();
+                    let next = self.locate::<M>(step, guard, &crossing, exact)?;
+                    coarse = next.is_none().then_some(guard);
+                    next
+                }
+                // Behind an event it does not matter what an unclear guard does.
+                (None, Some(guard), Some(found)) => {
+                    search.open[guard] = false;
+                    match self.until::<M>(guard, found, &mut search, beginnings)? {
+                        Ok(next) => next,
+                        Err(Unresolved) => {
+                            coarse = Some(guard);
+                            None
                         }
                     }
                 }
+                // The second arm has taken this case.
+                (None, Some(_), None) => break,
+            };
+            if let Some(next) = next {
+                self.take(next, event, &mut search);
+            }
+        }
+        if let Some(event) = event {
+            if let Some(&own) = search.located.iter().find(|located| located.guard == event.guard) {
+                let others = search.located.iter().filter(|other| own.is_together_with(other));
+                others.for_each(|other| event.crossed[other.guard] = Some(other.crossed));
+            }
+            self.arrive_with(event, &search.there, values, step.h);
+            self.name_simultaneous(event, &search.there, values, step.h);
+        }
+        let Search { open, there, nodes, .. } = search;
+        self.room.give_bools(open);
+        for row in nodes.into_iter().chain([there]) {
+            self.room.give_row(row);
+        }
+        Ok(coarse)
+    }
+
+    /// The guard that seems to fire first, of those that may fire no later than the event, if one
+    /// is known. Guards that fire later are closed.
+    fn candidate(
+        &self,
+        statuses: &PerGuard<S, Status>,
+        search: &mut Search<S>,
+        event: Option<&Event<S>>,
+        (h, values): (f64, &[PerGuard<S, f64>; 6]),
+    ) -> Option<(usize, Crossing)> {
+        let mut first: Option<(usize, Crossing)> = None;
+        for (guard, status) in statuses.parts().iter().enumerate() {
+            let Status::Fires(crossing) = *status else { continue };
+            if !search.open[guard] {
                 continue;
             }
-            let Some((guard, crossing)) = first else {
-                values.map(|values| self.room.give_row(values));
-                self.room.give_statuses(statuses);
-                return Ok(None);
-            };
-            statuses[guard] = Status::Clear;
-            let on = event.as_ref().map_or(&*step, |event| &event.step);
-            let exact = self.wants_segments
-                || event.is_some()
-                || statuses.parts().iter().any(|&status| status != Status::Clear);
-            let Some(mut next) = self.locate::<M>(on, guard, &crossing, exact)? else {
-                return Ok(Some(guard));
-            };
-            if next.elapsed == 0.0 {
-                let at_start = |status: Status| match status {
-                    Status::Fires(crossing) => crossing.bracket.high == 0.0,
-                    _ => false,
-                };
-                next.simultaneous = mask(statuses.parts().iter().map(|&status| at_start(status)));
-                *event = Some(next);
-                return Ok(None);
-            }
-            if let Some(event) = event.as_mut()
-                && next.elapsed >= (1.0 - TOGETHER) * event.elapsed
-                && self.precedes(event.guard, guard)
-            {
-                // Both fire at the end of the shortened step, and the event's guard precedes.
-                continue;
-            }
-            let mut at_nodes = values.clone();
-            self.values_on(&next.step, &mut at_nodes);
-            let mut together = self.together(&next, &at_nodes);
-            let on = event.as_mut().map_or(&mut *step, |event| &mut event.step);
-            let others = (&together, &statuses);
-            if let Some(preceding) = self.preceding::<M>(&next, on, &values, others, beginnings)? {
-                // Of guards that fire together the one that precedes decides, even if rounding
-                // puts another one earlier.
-                next = preceding;
-                statuses[next.guard] = Status::Clear;
-                self.values_on(&next.step, &mut at_nodes);
-                together = self.together(&next, &at_nodes);
-            }
-            next.simultaneous = mask(together.parts().iter().copied());
-            values = at_nodes;
-            for (other, status) in statuses.parts_mut().iter_mut().enumerate() {
-                if *status == Status::Clear {
+            if let Some(event) = event {
+                let (theta, Bracket { low, high, .. }) = (event.elapsed / h, crossing.bracket);
+                // In the bracket it crosses zero once, so that its sign tells on which side it is.
+                let before = crossing.sign * search.there[guard];
+                if low > (1.0 + TOGETHER) * theta
+                    || high >= theta && before > NEAR_ZERO * largest::<S>(guard, values)
+                {
+                    search.open[guard] = false;
                     continue;
                 }
-                // A quick look would find again what a guard has already been noted for.
-                *status = if self.notes_of(other).next().is_some() {
-                    Status::Unclear
-                } else {
-                    self.glance_at::<M>(other, &next.step, &values, &mut None)
-                };
             }
-            *event = Some(next);
+            let before = |(other, at): (usize, Crossing)| {
+                let (here, there) = (crossing.bracket.guess, at.bracket.guess);
+                here < there || (here == there && self.precedes(guard, other))
+            };
+            if first.is_none_or(before) {
+                first = Some((guard, crossing));
+            }
+        }
+        first
+    }
+
+    /// The event of a guard that is unclear, if it fires no later than the event that was `found`.
+    fn until<M: Method>(
+        &mut self,
+        guard: usize,
+        found: &mut Event<S>,
+        search: &mut Search<S>,
+        beginnings: &PerGuard<S, Beginning>,
+    ) -> Result<Result<Option<Event<S>>, Unresolved>, RunError> {
+        if beginnings[guard].theta > 0.0 && beginnings[guard].theta * self.trial.h >= found.elapsed
+        {
+            // It has fired already.
+            return Ok(Ok(None));
+        }
+        if !search.nodes_known {
+            self.values_on(&found.step, &mut search.nodes);
+            search.nodes_known = true;
+        }
+        // Whether it fires together with an event at the start shows after the event.
+        let may_wait = found.step.h <= TOGETHER * self.trial.h;
+        // A quick look would find again what a guard has already been noted for.
+        let mut status = if self.notes_of(guard).next().is_some() {
+            Status::Unclear
+        } else {
+            self.glance_at::<M>(guard, &found.step, &search.nodes, &mut None)
+        };
+        if status == Status::Unclear {
+            let step = &mut found.step;
+            status = match self.isolate_rest::<M>(guard, step, &search.nodes, beginnings)? {
+                Some(status) => status,
+                None if may_wait => Status::Clear,
+                None => return Ok(Err(Unresolved)),
+            };
+        }
+        Ok(match status {
+            Status::Fires(crossing) => {
+                self.locate::<M>(&found.step, guard, &crossing, true)?.map(Some).ok_or(Unresolved)
+            }
+            _ if found.elapsed > 0.0 => {
+                let Event { step, elapsed, state, .. } = &*found;
+                let crossed = self.arrival(guard, step, *elapsed, state);
+                Ok(crossed.map(|crossed| self.at_end(guard, crossed, &found.step)))
+            }
+            _ => Ok(None),
+        })
+    }
+
+    /// Takes the event `next` if it is the first one so far, or precedes at the same instant.
+    fn take(&mut self, next: Event<S>, event: &mut Option<Event<S>>, search: &mut Search<S>) {
+        if let Some(found) = event {
+            if search.located.is_empty() {
+                let found = self.located(found);
+                search.located.push(found);
+            }
+            let (one, other) = (self.located(&next), self.located(found));
+            search.located.push(one);
+            let before = if one.is_together_with(&other) {
+                self.precedes(next.guard, found.guard)
+            } else {
+                next.elapsed < found.elapsed
+            };
+            if !before {
+                return;
+            }
+        }
+        if self.phase.count() > 1 {
+            let s = self.trial.s + next.elapsed;
+            self.statistics.guards += 1;
+            self.system.guard_values(self.phase.mode, s, &next.state, &mut search.there);
+        }
+        search.nodes_known = false;
+        *event = Some(next);
+    }
+
+    fn located(&mut self, event: &Event<S>) -> Located {
+        let (guard, crossed) = (event.guard, event.own());
+        Located { guard, elapsed: event.elapsed, error: self.error_of(event), crossed }
+    }
+
+    /// By how much the place of an event may be wrong: by what rounding of time and state, and what
+    /// is left of the guard, move its zero.
+    pub(crate) fn error_of(&mut self, event: &Event<S>) -> f64 {
+        let Crossed { slope, jump, .. } = event.own();
+        if event.elapsed == 0.0 || jump {
+            return 0.0;
+        }
+        let hidden = self.hidden_at(event.guard, &event.step, event.elapsed, &event.state);
+        let error = (hidden + event.residual) / slope;
+        4.0 * f64::EPSILON * event.elapsed + if error.is_finite() { error } else { 0.0 }
+    }
+
+    /// The effect of rounding on a guard at a place of `step`.
+    pub(crate) fn hidden_at(
+        &mut self,
+        guard: usize,
+        step: &StepOf<S::State>,
+        elapsed: f64,
+        y: &S::State,
+    ) -> f64 {
+        let s = step.s + elapsed;
+        let mut scale = self.room.state();
+        S::State::each(&mut scale, [y, &step.y0], |_, [a, b]| a.abs().max(b.abs()));
+        let scales = (s.abs().max(step.s.abs()), &scale);
+        let at = (self.phase.mode, guard);
+        let (hidden, count) = rounding(self.system, at, (s, y), scales, self.room);
+        self.statistics.guards += count;
+        self.room.give(scale);
+        hidden
+    }
+
+    /// Adds the guards that cross zero behind the end of a step of size `h`, but within rounding of
+    /// an event there.
+    fn arrive_with(
+        &mut self,
+        event: &mut Event<S>,
+        there: &PerGuard<S, f64>,
+        values: &[PerGuard<S, f64>; 6],
+        h: f64,
+    ) {
+        if self.phase.count() == 1 || event.elapsed < (1.0 - TOGETHER) * h {
+            return;
+        }
+        for guard in 0..self.phase.count() {
+            let near = there[guard].abs() <= NEAR_ZERO * largest::<S>(guard, values);
+            if near
+                && event.crossed[guard].is_none()
+                && self.notes_of(guard).next().is_none()
+                && let Some(crossed) = self.arrival(guard, &event.step, event.elapsed, &event.state)
+            {
+                event.crossed[guard] = Some(crossed);
+                if self.precedes(guard, event.guard) {
+                    event.guard = guard;
+                }
+            }
+        }
+    }
+
+    /// Names the guards that are zero at an event, besides its own.
+    fn name_simultaneous(
+        &mut self,
+        event: &mut Event<S>,
+        there: &PerGuard<S, f64>,
+        values: &[PerGuard<S, f64>; 6],
+        h: f64,
+    ) {
+        for other in 0..self.phase.count() {
+            // The largest value up to the event.
+            let until = |node: usize| NODES[node] <= event.elapsed / h;
+            let column = column::<S>(values, other);
+            let sizes = (0..NODES.len()).filter(|&node| until(node)).map(|node| column[node].abs());
+            let zero = event.elapsed > 0.0
+                && self.phase.guards[other].direction().has_values()
+                && there[other].abs() <= TOGETHER * sizes.fold(0.0, f64::max);
+            event.simultaneous[other] =
+                other != event.guard && (zero || event.crossed[other].is_some());
         }
     }
 
@@ -247,93 +433,45 @@ impl<S: System> Examination<'_, S> {
         self.isolate::<M>(guard, step, &column::<S>(values, guard), beginning)
     }
 
-    /// Whether guard `first` decides the transition if it fires together with guard `second`. The
-    /// guard that does not yield decides; if both yield or neither does, the one listed first.
+    /// Whether guard `first` acts before guard `second` at one instant: that of higher priority, or
+    /// the one that is listed first.
     pub(crate) fn precedes(&self, first: usize, second: usize) -> bool {
-        let rank = |guard: usize| (self.phase.guards[guard].yields(), guard);
-        rank(first) < rank(second)
-    }
-
-    /// The crossing with the smallest step fraction, and its guard. If two fractions are equal, the
-    /// guard that precedes is taken.
-    fn earliest(&self, statuses: &PerGuard<S, Status>) -> Option<(usize, Crossing)> {
-        let mut first: Option<(usize, Crossing)> = None;
-        for (guard, status) in statuses.parts().iter().enumerate() {
-            let Status::Fires(crossing) = *status else { continue };
-            let before = |(other, at): (usize, Crossing)| {
-                let (here, there) = (crossing.bracket.guess, at.bracket.guess);
-                here < there || (here == there && self.precedes(guard, other))
-            };
-            if first.is_none_or(before) {
-                first = Some((guard, crossing));
-            }
-        }
-        first
-    }
-
-    /// The event of the first guard that fires together with the guard of `event` and precedes it.
-    /// `step` is the step before `event` shortens it; `values` and the statuses of the guards
-    /// belong to that step. Which guards are zero at the event is known.
-    fn preceding<M: Method>(
-        &mut self,
-        event: &Event<S::State>,
-        step: &mut StepOf<S::State>,
-        values: &[PerGuard<S, f64>; 6],
-        (zero, statuses): (&PerGuard<S, bool>, &PerGuard<S, Status>),
-        beginnings: &PerGuard<S, Beginning>,
-    ) -> Result<Option<Event<S::State>>, RunError> {
-        for (first, &status) in statuses.parts().iter().enumerate() {
-            if !zero[first] || !self.precedes(first, event.guard) {
-                continue;
-            }
-            let status = match status {
-                Status::Unclear => self.isolate_rest::<M>(first, step, values, beginnings)?,
-                known => Some(known),
-            };
-            let Some(Status::Fires(Crossing { sign, bracket })) = status else { continue };
-            let guess = event.elapsed / step.h;
-            let Bracket { low, high, .. } = bracket;
-            if low <= (1.0 + TOGETHER) * guess && (1.0 - TOGETHER) * guess <= high {
-                let crossing = Crossing { sign, bracket: Bracket { guess, ..bracket } };
-                let preceding = self.locate::<M>(step, first, &crossing, true)?;
-                // A guard that only touches zero here may fire elsewhere.
-                if let Some(preceding) = preceding
-                    && (preceding.elapsed - event.elapsed).abs() <= TOGETHER * event.elapsed
-                {
-                    return Ok(Some(preceding));
-                }
-            }
-        }
-        Ok(None)
-    }
-
-    /// Which guards other than that of `event` are zero there. `values` are those at the nodes of
-    /// the event's step, which may end beside the event.
-    fn together(
-        &mut self,
-        event: &Event<S::State>,
-        values: &[PerGuard<S, f64>; 6],
-    ) -> PerGuard<S, bool> {
-        let mut there = self.room.row();
-        if self.phase.count() == 1 {
-            there.set(&values[5]);
-        } else {
-            self.statistics.guards += 1;
-            let s = self.trial.s + event.elapsed;
-            self.system.guard_values(self.phase.mode, s, &event.state, &mut there);
-        }
-        List::made(self.phase.count(), |other| {
-            other != event.guard
-                && self.phase.guards[other].direction() != Direction::Off
-                && there[other].abs() <= TOGETHER * largest::<S>(other, values)
-        })
+        self.phase.precedes(first, second)
     }
 }
 
-/// The guards of a set, one bit each.
-fn mask(guards: impl Iterator<Item = bool>) -> u64 {
-    guards.enumerate().fold(0, |bits, (guard, one)| bits | if one { bit(guard) } else { 0 })
+/// The search for the first event on a step.
+struct Search<S: System> {
+    /// Whether a guard may still fire no later than the event.
+    open: PerGuard<S, bool>,
+    /// The values of the guards at the event.
+    there: PerGuard<S, f64>,
+    /// The values at the nodes of the event's step, if they are known.
+    nodes: [PerGuard<S, f64>; 6],
+    nodes_known: bool,
+    /// The crossings that were located, if there are several.
+    located: SmallVec<[Located; 2]>,
 }
+
+/// A crossing whose place is known, and how accurately.
+#[derive(Clone, Copy)]
+struct Located {
+    guard: usize,
+    elapsed: f64,
+    error: f64,
+    crossed: Crossed,
+}
+
+impl Located {
+    /// Whether the errors of the places do not tell two crossings apart, so that they are of one
+    /// instant.
+    fn is_together_with(&self, other: &Self) -> bool {
+        (self.elapsed - other.elapsed).abs() <= self.error + other.error
+    }
+}
+
+/// A guard is not resolved on a step.
+struct Unresolved;
 
 /// Whether all guards stay clearly on the side where they do not fire. This holds on most steps.
 #[inline(always)]
@@ -351,7 +489,7 @@ pub(crate) fn all_clearly_away<S: System>(
     for guard in 0..phase.count() {
         let column = column::<S>(values, guard);
         sure[guard] = match phase.guards[guard].direction() {
-            Direction::Off => true,
+            Direction::Off | Direction::Clock => true,
             Direction::Below => column[0] > 0.0 && quick::clearly_away(column),
             _ => quick::clearly_away(column),
         };

@@ -6,12 +6,12 @@
 use crate::error::RunError;
 use crate::events::along_step::{repeated_step, rounding};
 use crate::events::aside::{Aside, resolution};
-use crate::events::event::Event;
+use crate::events::event::{Crossed, Event, only};
 use crate::events::examination::Examination;
 use crate::events::isolate::{Bracket, narrow};
 use crate::events::one_guard::Crossing;
 use crate::method::{Method, StepOf, Store};
-use crate::system::{Room, System};
+use crate::system::{List, Room, System};
 
 /// The largest distance from the end of a repeated step to the switch, as a part of the step, that
 /// the midpoint rule bridges. Its error is the cube of this part, which is below rounding.
@@ -45,21 +45,20 @@ impl<S: System> Examination<'_, S> {
         guard: usize,
         crossing: &Crossing,
         exact: bool,
-    ) -> Result<Option<Event<S::State>>, RunError> {
+    ) -> Result<Option<Event<S>>, RunError> {
         let (system, mode) = (self.system, self.phase.mode);
         let Bracket { mut low, mut high, guess: mut theta } = crossing.bracket;
         let (mut seen_low, mut seen_high) = (false, false);
         let beyond = crossing.bracket.high * step.h;
+        let (count, sign) = (self.phase.count(), crossing.sign);
         let event = |at: Landing<S::State>, step: StepOf<S::State>| Event {
             guard,
-            simultaneous: 0,
-            slope: at.slope.abs(),
+            crossed: only(count, guard, Crossed { slope: at.slope.abs(), jump: at.jump, sign }),
+            simultaneous: List::of(count, false),
             elapsed: at.elapsed,
             state: at.state,
             residual: at.residual.abs(),
-            sign: crossing.sign,
             beyond,
-            jump: at.jump,
             step,
         };
         let start = self.phase.values[guard];

@@ -101,7 +101,7 @@ impl<S: System> Examination<'_, S> {
         for guard in 0..self.phase.count() {
             statuses[guard] = if confirmed[guard] {
                 self.glance_at::<M>(guard, step, values, &mut path)
-            } else if self.phase.guards[guard].direction() == Direction::Off {
+            } else if !self.phase.guards[guard].direction().has_values() {
                 Status::Clear
             } else {
                 Status::Unclear
@@ -120,7 +120,7 @@ impl<S: System> Examination<'_, S> {
         path: &mut Option<Path<S::Components>>,
     ) -> Status {
         let column = column::<S>(values, guard);
-        if self.phase.guards[guard].direction() == Direction::Off {
+        if !self.phase.guards[guard].direction().has_values() {
             Status::Clear
         } else if S::READABLE && self.has_bounds(guard) {
             let path = path.get_or_insert_with(|| {
@@ -281,7 +281,7 @@ impl<S: System> Examination<'_, S> {
         let mut ends = self.room.row();
         ends.set(&values[5]);
         for guard in 0..self.phase.count() {
-            if ends[guard] == 0.0 && self.phase.guards[guard].direction() != Direction::Off {
+            if ends[guard] == 0.0 && self.phase.guards[guard].direction().has_values() {
                 let column = column::<S>(values, guard);
                 ends[guard] = self.last_side::<M>(guard, step, &column);
             }

@@ -1,11 +1,8 @@
 //! The active mode with its guards, between two steps.
 
 use crate::error::RunError;
-use crate::events::along_step::rounding;
-use crate::events::event::Event;
 use crate::hybrid::{Direction, Guard};
-use crate::method::Store;
-use crate::system::{List, PerGuard, Room, System};
+use crate::system::{List, PerGuard, System};
 
 /// The part of its largest value that a guard may have where it has just fired.
 pub(crate) const NEAR_ZERO: f64 = 1e-6;
@@ -16,6 +13,8 @@ pub(crate) struct Phase<S: System> {
     pub(crate) guards: PerGuard<S, Guard>,
     /// Whether all guards are declared to be smooth.
     pub(crate) smooth: bool,
+    /// Whether guards of a black box have been active in the run, whose signs are sampled.
+    pub(crate) sampled: bool,
     /// The values of the guards.
     pub(crate) values: PerGuard<S, f64>,
     /// Whether any guard starts the next step from a known zero.
@@ -35,6 +34,7 @@ impl<S: System> Phase<S> {
             mode,
             guards: List::of(0, Guard::OFF),
             smooth: true,
+            sampled: false,
             values: List::of(0, 0.0),
             at_zero: false,
             zero_orders: List::of(0, 0),
@@ -71,9 +71,11 @@ impl<S: System> Phase<S> {
         self.largest.fit(n, 0.0);
         self.smooth = self.guards.parts().iter().all(Guard::needs_no_look);
         self.at_zero = false;
+        let has_values = |guard: &Guard| guard.direction().has_values();
+        self.sampled |= !S::READABLE && self.guards.parts().iter().any(has_values);
         for guard in 0..n {
             let (of, value) = (&self.guards[guard], self.values[guard]);
-            if of.direction() != Direction::Off && value.is_nan() {
+            if of.direction().has_values() && value.is_nan() {
                 return Err(RunError::GuardNotANumber { guard, s });
             }
             self.at_zero |= of.zero_order() > 0;
@@ -84,68 +86,30 @@ impl<S: System> Phase<S> {
         Ok(())
     }
 
-    /// Whether a guard of the mode `from` before `event` seems to be one of this mode too: where
-    /// the state `y` goes on unchanged, it has the same value or its negative.
-    #[inline(never)]
-    fn is_same_guard(
-        &self,
-        system: &S,
-        (s, y): (f64, &S::State),
-        event: &Event<S::State>,
-        (from, guard): (S::Mode, usize),
-        room: &mut Room<S>,
-    ) -> bool {
-        *y == event.state
-            && room.value(system, (from, guard), s, y).abs() == self.values[guard].abs()
+    /// Whether a guard is a clock.
+    pub(crate) fn is_clock(&self, guard: usize) -> bool {
+        self.guards[guard].direction() == Direction::Clock
     }
 
-    /// Takes values that may be due to rounding of the state at `event`, which led here, for zeros.
-    /// `from` is the mode before the event, and `largest` the largest value there of the guard that
-    /// fired. `stood` tells which guards have fired before at the same instant and stood on their
-    /// zero.
-    pub(crate) fn forgive(
-        &mut self,
-        system: &S,
-        (s, y): (f64, &S::State),
-        event: &Event<S::State>,
-        (from, largest): (S::Mode, f64),
-        stood: &PerGuard<S, bool>,
-        room: &mut Room<S>,
-    ) {
-        for guard in 0..self.count() {
-            let stood = stood.parts().get(guard).is_some_and(|stood| *stood);
-            let (value, direction) = (self.values[guard], self.guards[guard].direction());
-            // A guard that fired stands on its zero where it goes on, also exactly, and whatever
-            // its rounding is.
-            let is_near = || value.abs() <= NEAR_ZERO * largest.max(event.slope * event.step.h);
-            let stands = !matches!(direction, Direction::Off | Direction::Below)
-                && (if guard == event.guard { is_near() } else { stood })
-                && self.is_same_guard(system, (s, y), event, (from, guard), room);
-            let may_be_zero = match direction {
-                Direction::Off => false,
-                // On the right side, a bound of the domain needs no pardon.
-                Direction::Below => value < 0.0,
-                _ => stands || (guard == event.guard && from == self.mode),
-            };
-            if !may_be_zero || self.zero_orders[guard] > 0 {
-                continue;
-            }
-            let s_scale = s.abs().max(event.step.s.abs());
-            let mut scale = room.state();
-            let of = [&event.state, &event.step.y0, y];
-            S::State::each(&mut scale, of, |_, [a, b, c]| a.abs().max(b.abs()).max(c.abs()));
-            let residual = if guard == event.guard { event.residual } else { 0.0 };
-            let mut hidden = || {
-                let (about, scales) = ((s, y), (s_scale, &scale));
-                rounding(system, (self.mode, guard), about, scales, room).0.max(residual)
-            };
-            if stands || value.abs() <= hidden() {
-                self.at_zero = true;
-                self.zero_orders[guard] = 1;
-                self.forgiven[guard] = true;
-            }
-            room.give(scale);
-        }
+    /// Whether guard `first` acts before guard `second` at one instant: that of higher priority, or
+    /// the one that is listed first.
+    pub(crate) fn precedes(&self, first: usize, second: usize) -> bool {
+        let rank = |guard: usize| (-i16::from(self.guards[guard].rank()), guard);
+        rank(first) < rank(second)
+    }
+
+    /// The largest value of a guard in the phase over its `slope`.
+    pub(crate) fn flatness(&self, guard: usize, slope: f64) -> f64 {
+        let largest = self.largest[guard];
+        // A guard that has always been zero has no size.
+        if largest == 0.0 { 0.0 } else { largest / slope }
+    }
+
+    /// Starts the next step of this guard from a zero, from which rounding may have moved it away.
+    pub(crate) fn forgive(&mut self, guard: usize) {
+        self.at_zero = true;
+        self.zero_orders[guard] = 1;
+        self.forgiven[guard] = true;
     }
 
     /// Goes on after a step, at whose end the guards have these values.

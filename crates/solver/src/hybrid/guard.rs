@@ -14,6 +14,8 @@ pub enum Direction {
     Rising,
     /// When it falls or rises through zero.
     Either,
+    /// At the times of its [schedule](crate::HybridSystem::schedule). Its value is not used.
+    Clock,
     /// Never: the guard is not part of this mode.
     Off,
 }
@@ -32,6 +34,21 @@ impl Direction {
     pub(crate) fn fires_from(self, before: f64) -> bool {
         self.signs().iter().any(|sign| sign * before > 0.0)
     }
+
+    /// Whether a guard that has left this side of zero acts: also a clock, which has no sides.
+    pub(crate) fn acts_from(self, before: f64) -> bool {
+        self == Self::Clock || self.is_edge() && self.fires_from(before)
+    }
+
+    /// Whether the guard's values decide when it fires.
+    pub(crate) fn has_values(self) -> bool {
+        !matches!(self, Self::Off | Self::Clock)
+    }
+
+    /// Whether the guard fires where it crosses zero, and not as long as it is negative.
+    pub(crate) fn is_edge(self) -> bool {
+        matches!(self, Self::Falling | Self::Rising | Self::Either)
+    }
 }
 
 /// A guard of a mode: when it fires, what it causes, and whether it starts from zero.
@@ -48,7 +65,8 @@ pub struct Guard {
     direction: Direction,
     zero_order: u32,
     terminal: u32,
-    yields: bool,
+    priority: i8,
+    sees_jumps: bool,
     smooth: bool,
 }
 
@@ -59,7 +77,14 @@ impl Guard {
     /// A guard that fires in `direction` and causes a transition.
     #[must_use]
     pub const fn new(direction: Direction) -> Self {
-        Self { direction, zero_order: 0, terminal: 0, yields: false, smooth: false }
+        let (priority, sees_jumps, smooth) = (0, false, false);
+        Self { direction, zero_order: 0, terminal: 0, priority, sees_jumps, smooth }
+    }
+
+    /// A guard that fires at the times of its [schedule](crate::HybridSystem::schedule).
+    #[must_use]
+    pub const fn clock() -> Self {
+        Self::new(Direction::Clock)
     }
 
     /// Declares that the guard starts from a zero of this order whenever the mode is entered, also
@@ -104,11 +129,18 @@ impl Guard {
         Self { smooth: true, ..self }
     }
 
-    /// Makes the guard yield to every other guard that fires at the same place: the other one
-    /// decides the transition.
+    /// The priority of the guard, 0 unless it is given. Of guards that fire at one instant, those of
+    /// higher priority act first, and those of one priority in the order in which they are listed.
     #[must_use]
-    pub const fn yielding(self) -> Self {
-        Self { yields: true, ..self }
+    pub const fn priority(self, priority: i8) -> Self {
+        Self { priority, ..self }
+    }
+
+    /// Makes the guard fire, too, if a transition carries its value across zero. Without this,
+    /// only a continuous change is a crossing.
+    #[must_use]
+    pub const fn sees_jumps(self) -> Self {
+        Self { sees_jumps: true, ..self }
     }
 
     /// When the guard fires.
@@ -131,7 +163,7 @@ impl Guard {
 
     /// Whether six values tell enough: the guard is smooth, or not part of the mode.
     pub(crate) fn needs_no_look(&self) -> bool {
-        self.smooth || self.direction == Direction::Off
+        self.smooth || !self.direction.has_values()
     }
 
     /// The guard, declared to be smooth if `other` is.
@@ -157,9 +189,13 @@ impl Guard {
         self.smooth
     }
 
-    /// Whether the guard yields to others that fire at the same place.
-    #[must_use]
-    pub const fn yields(&self) -> bool {
-        self.yields
+    /// The priority with which the guard acts among those of one instant.
+    pub(crate) fn rank(&self) -> i8 {
+        self.priority
+    }
+
+    /// Whether the guard fires where a transition carries its value across zero.
+    pub(crate) fn watches_jumps(&self) -> bool {
+        self.sees_jumps
     }
 }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use num_dual::Dual64;
 
-use crate::hybrid::{Guard, HybridSystem};
+use crate::hybrid::{Guard, HybridSystem, Schedule};
 use crate::method::{Method, State, Step, Trial};
 use stickslip_number::{Enclosure, Number};
 
@@ -93,6 +93,22 @@ pub trait ReadableSystem<const N: usize, const G: usize> {
         (mode, *y)
     }
 
+    /// As [`HybridSystem::schedule`].
+    fn schedule(&self, _mode: Self::Mode, _guard: usize) -> Schedule<'_> {
+        Schedule::NEVER
+    }
+
+    /// As [`HybridSystem::rest`].
+    fn rest(
+        &self,
+        _mode: Self::Mode,
+        _guard: usize,
+        _s: f64,
+        _y: &State<N>,
+    ) -> Option<(Self::Mode, State<N>)> {
+        None
+    }
+
     /// As [`HybridSystem::transition_condition`].
     fn transition_condition(
         &self,
@@ -156,6 +172,20 @@ impl<S: ReadableSystem<N, G>, const N: usize, const G: usize> HybridSystem<N, G>
 
     fn transition(&self, mode: S::Mode, guard: usize, s: f64, y: &State<N>) -> (S::Mode, State<N>) {
         ReadableSystem::transition(self, mode, guard, s, y)
+    }
+
+    fn schedule(&self, mode: S::Mode, guard: usize) -> Schedule<'_> {
+        ReadableSystem::schedule(self, mode, guard)
+    }
+
+    fn rest(
+        &self,
+        mode: S::Mode,
+        guard: usize,
+        s: f64,
+        y: &State<N>,
+    ) -> Option<(S::Mode, State<N>)> {
+        ReadableSystem::rest(self, mode, guard, s, y)
     }
 
     #[inline]

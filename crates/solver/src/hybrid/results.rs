@@ -10,13 +10,11 @@ pub struct SwitchEvent<Mode, const N: usize> {
     /// The guard that fired.
     pub guard: usize,
     /// Further guards of the mode that vanish at the same place, one bit each; of a mode with more
-    /// than 64 guards, the first 64 are named. If several guards fire together, the guard that is
-    /// listed first decides the transition, unless it yields
-    /// ([`Guard::yielding`](crate::Guard::yielding)).
+    /// than 64 guards, the first 64 are named.
     ///
-    /// If mode and state go on unchanged, these are the guards that cross here in their direction
-    /// and change nothing either. They have fired with this event and do not fire again. All others
-    /// that cross here fire next, with an event of their own at the same place.
+    /// Those that cross zero here act next, with an event of their own at the same place. If mode
+    /// and state go on unchanged, these are the guards that cross here in their direction and change
+    /// nothing either: they have fired with this event and do not fire again.
     pub simultaneous: u64,
     /// The guard's largest value in the phase divided by its slope here, in units of s. An error
     /// of the guard, relative to its largest value, moves the switch by the error times this
@@ -61,6 +59,36 @@ pub struct Pole<Mode> {
     pub guard: usize,
 }
 
+/// A guard has crossed zero, but a guard that acted before it at the same instant led to a mode
+/// that does not have it. It does not act.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Preempted<Mode> {
+    /// The place of the instant.
+    pub s: f64,
+    /// The mode that has the guard.
+    pub mode: Mode,
+    /// The guard that does not act.
+    pub guard: usize,
+}
+
+/// The switches of a run accumulated, and the run goes on behind the place where they do
+/// ([`HybridSystem::rest`](crate::HybridSystem::rest)).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Rest<Mode> {
+    /// The place where the switches accumulate, extrapolated geometrically.
+    pub s: f64,
+    /// The error of that place.
+    pub error: f64,
+    /// The guard that fired last.
+    pub guard: usize,
+    /// The mode that the last switch led to.
+    pub from: Mode,
+    /// The mode in which the run goes on.
+    pub to: Mode,
+}
+
 /// Receives what a run finds, in order.
 pub trait Observer<Mode, const N: usize> {
     /// Whether the run calls [`Self::on_segment`]. Dense output costs further stages.
@@ -74,6 +102,16 @@ pub trait Observer<Mode, const N: usize> {
 
     /// A guard changed its sign at a pole.
     fn on_pole(&mut self, _pole: &Pole<Mode>) {}
+
+    /// A guard has crossed zero and does not act.
+    fn on_preempted(&mut self, _preempted: &Preempted<Mode>) {}
+
+    /// The switches of the run accumulated, and it goes on behind them.
+    fn on_rest(&mut self, _rest: &Rest<Mode>) {}
+
+    /// The last `switches` switches are no part of the run: they belong to a chain at one instant
+    /// that does not end, with which the run fails ([`RunError::Cycle`](crate::RunError::Cycle)).
+    fn forget(&mut self, _switches: usize) {}
 
     /// Whether the run should stop. It is asked after every step and every switch, and the run then
     /// ends with [`Outcome::Stopped`].
@@ -107,12 +145,6 @@ pub enum Outcome {
     StepLimit,
     /// [`Options::max_switches`](crate::Options::max_switches) was reached.
     SwitchLimit,
-    /// [`Options::max_at_one_instant`](crate::Options::max_at_one_instant) was reached: transitions
-    /// lead from one to the next and no time passes.
-    InstantLimit {
-        /// The place of these transitions.
-        s: f64,
-    },
     /// The observer asked for it ([`Observer::stops`]).
     Stopped,
     /// The switches accumulate.
@@ -168,6 +200,10 @@ pub struct Run<Mode, const N: usize> {
     pub mode: Mode,
     /// The state at the end.
     pub state: State<N>,
+    /// Whether every guard was decided by bounds. It is false if guards of a black box were active:
+    /// they are sampled, so that one that changes faster than the solution may have fired unseen. A
+    /// [`ReadableSystem`](crate::ReadableSystem) has decided guards.
+    pub decided: bool,
     /// The work done by the run.
     pub statistics: Statistics,
 }

@@ -5,7 +5,8 @@
 
 use crate::error::RunError;
 use crate::hybrid::{
-    Grazing, Guard, HybridSystem, Observer, Outcome, Pole, Run, Start, SwitchEvent,
+    Grazing, Guard, HybridSystem, Observer, Outcome, Pole, Preempted, Rest, Run, Schedule, Start,
+    SwitchEvent,
 };
 use crate::method::{Dense, Method, State, Step, Trial};
 use crate::options::Options;
@@ -67,7 +68,6 @@ pub(crate) fn reverse(s: f64) -> f64 {
 /// The outcome of a run in s that ended so as a run in −s.
 pub(crate) fn original(outcome: Outcome) -> Outcome {
     match outcome {
-        Outcome::InstantLimit { s } => Outcome::InstantLimit { s: reverse(s) },
         Outcome::Zeno { accumulation } => Outcome::Zeno { accumulation: reverse(accumulation) },
         Outcome::EndedByGuard { .. }
         | Outcome::ReachedEnd
@@ -127,6 +127,20 @@ where
         step.reverse();
     }
 
+    fn schedule(&self, mode: S::Mode, guard: usize) -> Schedule<'_> {
+        self.0.schedule(mode, guard).reversed()
+    }
+
+    fn rest(
+        &self,
+        mode: S::Mode,
+        guard: usize,
+        tau: f64,
+        y: &State<N>,
+    ) -> Option<(S::Mode, State<N>)> {
+        self.0.rest(mode, guard, reverse(tau), y)
+    }
+
     fn transition(
         &self,
         mode: S::Mode,
@@ -154,6 +168,18 @@ where
 
     fn on_pole(&mut self, pole: &Pole<Mode>) {
         self.0.on_pole(&Pole { s: reverse(pole.s), ..*pole });
+    }
+
+    fn on_preempted(&mut self, preempted: &Preempted<Mode>) {
+        self.0.on_preempted(&Preempted { s: reverse(preempted.s), ..*preempted });
+    }
+
+    fn on_rest(&mut self, rest: &Rest<Mode>) {
+        self.0.on_rest(&Rest { s: reverse(rest.s), ..*rest });
+    }
+
+    fn forget(&mut self, switches: usize) {
+        self.0.forget(switches);
     }
 
     fn stops(&self) -> bool {

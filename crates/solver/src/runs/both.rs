@@ -1,6 +1,6 @@
 //! Two observers of one run.
 
-use crate::hybrid::{Grazing, Observer, Pole, SwitchEvent};
+use crate::hybrid::{Grazing, Observer, Pole, Preempted, Rest, SwitchEvent};
 use crate::method::{Dense, State};
 
 /// Two observers of one run. The first one is called first, and the run stops if either asks for
@@ -37,6 +37,21 @@ where
     fn on_pole(&mut self, pole: &Pole<Mode>) {
         self.0.on_pole(pole);
         self.1.on_pole(pole);
+    }
+
+    fn on_preempted(&mut self, preempted: &Preempted<Mode>) {
+        self.0.on_preempted(preempted);
+        self.1.on_preempted(preempted);
+    }
+
+    fn on_rest(&mut self, rest: &Rest<Mode>) {
+        self.0.on_rest(rest);
+        self.1.on_rest(rest);
+    }
+
+    fn forget(&mut self, switches: usize) {
+        self.0.forget(switches);
+        self.1.forget(switches);
     }
 
     fn stops(&self) -> bool {

@@ -1,6 +1,5 @@
 //! The independent variable of a run, and switches that accumulate in it.
 
-use crate::hybrid::Outcome;
 use crate::options::Options;
 
 /// The last step may be longer than it should by this part of itself.
@@ -71,18 +70,25 @@ impl Zeno {
         Self { start: s, gaps: [0.0; 2 * Self::HALF], count: 0, instant: (s, 0) }
     }
 
-    /// Records a switch at `s` that ends a phase of length `phase`. Returns the outcome of the run
-    /// if the switches accumulate.
+    /// Counts a switch at `s`. Returns how many came there.
+    pub(crate) fn count_at(&mut self, s: f64) -> usize {
+        self.instant = if s == self.instant.0 { (s, self.instant.1 + 1) } else { (s, 1) };
+        self.instant.1
+    }
+
+    /// How many more switches are allowed at the instant of the last one.
+    pub(crate) fn left_at_instant(&self, options: &Options) -> usize {
+        options.max_at_one_instant - self.instant.1.min(options.max_at_one_instant)
+    }
+
+    /// Records a switch at `s` that ends a phase of length `phase`. Returns the place where the
+    /// switches accumulate, if they do, with its error.
     pub(crate) fn after_switch(
         &mut self,
         s: f64,
         phase: f64,
         options: &Options,
-    ) -> Option<Outcome> {
-        self.instant = if s == self.instant.0 { (s, self.instant.1 + 1) } else { (s, 1) };
-        if self.instant.1 >= options.max_at_one_instant {
-            return Some(Outcome::InstantLimit { s });
-        }
+    ) -> Option<Accumulation> {
         if phase <= 0.0 || options.zeno == 0.0 {
             return None;
         }
@@ -98,9 +104,20 @@ impl Zeno {
         let (before, last) = (sum(0, half), sum(half, half));
         // Gaps that only follow a long rest are not shorter and shorter.
         let lately = sum(half + quarter, quarter) / sum(half, quarter);
-        let ratio = (last / before).max(lately * lately);
+        let ratios = [last / before, lately * lately];
+        let [one, other] = ratios.map(|ratio| last * ratio / (1.0 - ratio));
+        let ratio = ratios[0].max(ratios[1]);
         let left = last * ratio / (1.0 - ratio);
         let soon = ratio < 1.0 && left <= options.zeno * (s - self.start);
-        soon.then_some(Outcome::Zeno { accumulation: s + left })
+        // Two extrapolations differ by as much as the ratio changes from gap to gap.
+        let error = (one - other).abs() + f64::EPSILON * s.abs();
+        soon.then_some(Accumulation { s: s + left, error })
     }
+}
+
+/// Where switches accumulate, extrapolated geometrically.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Accumulation {
+    pub(crate) s: f64,
+    pub(crate) error: f64,
 }

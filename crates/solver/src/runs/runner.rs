@@ -7,17 +7,18 @@ use std::cmp::Ordering;
 
 use crate::error::RunError;
 use crate::events::{
-    Event, Examination, Found, Noticed, Notices, Phase, all_clearly_away, bit, dense_output,
-    values_on,
+    Event, Examination, Found, Noticed, Notices, Phase, all_clearly_away, dense_output, values_on,
 };
 use crate::hybrid::{
-    Grazing, HybridSystem, Observer, Outcome, Pole, Run, Start, Statistics, SwitchEvent,
+    Grazing, HybridSystem, Observer, Outcome, Pole, Preempted, Rest, Run, Start, Statistics,
+    SwitchEvent,
 };
 use crate::method::control::{Controller, first_step_of};
 use crate::method::{DenseOf, Method, State, StepOf, Store, TrialOf};
 use crate::options::{Options, StepSize};
 use crate::runs::clock::{Clock, Zeno};
 use crate::runs::finite::{check_finite, is_finite};
+use crate::runs::instant::Instant;
 use crate::runs::last_part::last_part;
 use crate::runs::rejected::after_rejection;
 use crate::system::{Fixed, List, Note, PerGuard, Room, System};
@@ -49,8 +50,8 @@ where
     let state = &start.state;
     let run =
         run_any::<M, _, _>(&Fixed(system), (start.mode, start.s, state), end, options, &mut told)?;
-    let End { outcome, s, mode, state, statistics } = run;
-    Ok(Run { outcome, s, mode, state, statistics })
+    let End { outcome, s, mode, state, decided, statistics } = run;
+    Ok(Run { outcome, s, mode, state, decided, statistics })
 }
 
 /// The end of a run.
@@ -59,6 +60,7 @@ pub(crate) struct End<S: System> {
     pub(crate) s: f64,
     pub(crate) mode: S::Mode,
     pub(crate) state: S::State,
+    pub(crate) decided: bool,
     pub(crate) statistics: Statistics,
 }
 
@@ -68,6 +70,9 @@ pub(crate) trait Watcher<S: System> {
     fn on_switch(&mut self, event: &Note<S>);
     fn on_grazing(&mut self, grazing: &Grazing<S::Mode>);
     fn on_pole(&mut self, pole: &Pole<S::Mode>);
+    fn on_preempted(&mut self, preempted: &Preempted<S::Mode>);
+    fn on_rest(&mut self, rest: &Rest<S::Mode>);
+    fn forget(&mut self, switches: usize);
     fn stops(&self) -> bool;
     fn on_segment(&mut self, mode: S::Mode, dense: &DenseOf<S::State>);
     fn on_end(&mut self, mode: S::Mode, s: f64, state: &S::State);
@@ -87,7 +92,7 @@ where
         self.0.on_switch(&SwitchEvent {
             s: note.s,
             guard: note.guard,
-            simultaneous: note.simultaneous,
+            simultaneous: mask(&note.simultaneous),
             flatness: note.flatness,
             jump: note.jump,
             from: note.from,
@@ -105,6 +110,18 @@ where
         self.0.on_pole(pole);
     }
     #[inline(always)]
+    fn on_preempted(&mut self, preempted: &Preempted<S::Mode>) {
+        self.0.on_preempted(preempted);
+    }
+    #[inline(always)]
+    fn on_rest(&mut self, rest: &Rest<S::Mode>) {
+        self.0.on_rest(rest);
+    }
+    #[inline(always)]
+    fn forget(&mut self, switches: usize) {
+        self.0.forget(switches);
+    }
+    #[inline(always)]
     fn stops(&self) -> bool {
         self.0.stops()
     }
@@ -116,6 +133,12 @@ where
     fn on_end(&mut self, mode: S::Mode, s: f64, state: &State<N>) {
         self.0.on_end(mode, s, state);
     }
+}
+
+/// The guards of a set among the first 64, one bit each.
+fn mask(guards: &[bool]) -> u64 {
+    let first = guards.iter().take(64).enumerate();
+    first.fold(0, |bits, (guard, &one)| bits | u64::from(one) << guard)
 }
 
 #[inline]
@@ -138,6 +161,7 @@ pub(crate) fn run_any<M: Method, S: System, O: Watcher<S>>(
         options,
         observer,
         end,
+        due: f64::INFINITY,
         clock: Clock::new(s),
         phase: Phase::new(mode),
         state: state.clone(),
@@ -154,9 +178,11 @@ pub(crate) fn run_any<M: Method, S: System, O: Watcher<S>>(
         room: Room::new(n),
         nodes: [row(), row(), row(), row(), row(), row()],
         sure: List::of(0, true),
-        stood: List::of(0, false),
+        instant: Instant::new(),
     };
     runner.phase.enter(system, mode, (s, state), &mut runner.fired)?;
+    // What is due at the start fires there.
+    runner.due = runner.next_due(s.next_down())?;
     let outcome = runner.run::<M>()?;
     runner.observer.on_end(runner.phase.mode, runner.clock.s, &runner.state);
     Ok(End {
@@ -164,21 +190,24 @@ pub(crate) fn run_any<M: Method, S: System, O: Watcher<S>>(
         s: runner.clock.s,
         mode: runner.phase.mode,
         state: runner.state,
+        decided: !runner.phase.sampled,
         statistics: runner.statistics,
     })
 }
 
 /// The state of a run between two steps.
-struct Runner<'a, S: System, O> {
-    system: &'a S,
-    options: &'a Options,
-    observer: &'a mut O,
-    end: f64,
-    clock: Clock,
-    phase: Phase<S>,
-    state: S::State,
+pub(super) struct Runner<'a, S: System, O> {
+    pub(super) system: &'a S,
+    pub(super) options: &'a Options,
+    pub(super) observer: &'a mut O,
+    pub(super) end: f64,
+    /// The next time of a clock.
+    due: f64,
+    pub(super) clock: Clock,
+    pub(super) phase: Phase<S>,
+    pub(super) state: S::State,
     /// What rounding has cut off from the state.
-    rest: S::State,
+    pub(super) rest: S::State,
     /// The derivative of the state.
     slope: S::State,
     /// The size of the next step.
@@ -187,18 +216,20 @@ struct Runner<'a, S: System, O> {
     /// present one, since modes mostly alternate.
     other_h: Option<f64>,
     controller: Controller,
-    zeno: Zeno,
+    pub(super) zeno: Zeno,
     /// How often each guard has fired.
-    fired: PerGuard<S, u32>,
+    pub(super) fired: PerGuard<S, u32>,
     /// The events on the present step that change nothing.
     notes: Vec<Note<S>>,
     /// The touches and poles on the present step.
     notices: Notices<S::Mode>,
-    statistics: Statistics,
-    room: Room<S>,
+    pub(super) statistics: Statistics,
+    pub(super) room: Room<S>,
+    /// The values of the guards at the nodes of a step.
     nodes: [PerGuard<S, f64>; 6],
+    /// Whether a quick look at the values of a guard is sure.
     sure: PerGuard<S, bool>,
-    stood: PerGuard<S, bool>,
+    pub(super) instant: Instant<S>,
 }
 
 impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
@@ -236,7 +267,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
     fn advance<M: Method>(
         &mut self,
         step: &mut StepOf<S::State>,
-        event: &mut Option<Event<S::State>>,
+        event: &mut Option<Event<S>>,
     ) -> Result<Option<Outcome>, RunError> {
         *event = None;
         let (system, mode) = (self.system, self.phase.mode);
@@ -248,7 +279,8 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
                 return Ok(Some(Outcome::StepLimit));
             }
             let h = self.h.min(self.options.max_step);
-            let (h, last) = self.clock.step_towards(self.end, h);
+            let stop = self.end.min(self.due);
+            let (h, last) = self.clock.step_towards(stop, h);
             let trial = TrialOf {
                 s: self.clock.s,
                 y: &self.state,
@@ -332,7 +364,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
                 }
                 self.clock.advance(event.elapsed);
                 if last && event.elapsed == h {
-                    self.clock.arrive(self.end);
+                    self.clock.arrive(stop);
                 }
                 return Ok(None);
             }
@@ -346,7 +378,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             self.statistics.field += usize::from(!M::ERROR_USES_END);
             self.clock.advance(h);
             if last {
-                self.clock.arrive(self.end);
+                self.clock.arrive(stop);
             }
             let settled = system.settle(mode);
             if settled != mode {
@@ -369,7 +401,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         &mut self,
         h: f64,
         step: &mut StepOf<S::State>,
-        event: &mut Option<Event<S::State>>,
+        event: &mut Option<Event<S>>,
         (values, away): (&[PerGuard<S, f64>; 6], bool),
         last: bool,
     ) -> Result<Option<usize>, RunError> {
@@ -389,17 +421,22 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             room: &mut self.room,
         };
         let at_end = match examination.look::<M>(step, event, values, away)? {
-            Found::Nothing(at_end) => at_end,
-            Found::Event => return Ok(None),
+            Found::Nothing(at_end) => Some(at_end),
+            Found::Event => None,
             Found::TooCoarse(guard) => return Ok(Some(guard)),
         };
-        if last {
+        if last && event.is_none() {
             examination.arrive(step, event);
         }
-        if event.is_none() {
-            self.phase.advance(&at_end);
+        if last && self.due <= self.end {
+            examination.tick(step, self.due, event);
         }
-        self.room.give_row(at_end);
+        if let Some(at_end) = at_end {
+            if event.is_none() {
+                self.phase.advance(&at_end);
+            }
+            self.room.give_row(at_end);
+        }
         Ok(None)
     }
 
@@ -434,10 +471,9 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             self.tell_until(self.notes[index].s);
             let note = &self.notes[index];
             self.observer.on_switch(note);
-            let others =
-                (0..self.phase.count()).filter(|&other| note.simultaneous & bit(other) != 0);
             let (phase, fired) = (&mut self.phase.guards, &mut self.fired);
-            for guard in others.chain([note.guard]) {
+            let together = |guard: &usize| *guard == note.guard || note.simultaneous[*guard];
+            for guard in (0..phase.parts().len()).filter(together) {
                 fired[guard] += 1;
                 phase[guard] = phase[guard].fired(1);
             }
@@ -457,60 +493,30 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         None
     }
 
-    /// Reports the switch and enters the next phase, or ends the run.
-    fn switch(&mut self, event: &Event<S::State>) -> Result<Option<Outcome>, RunError> {
-        let (s, from, guard) = (self.clock.s, self.phase.mode, event.guard);
-        check_finite(s, event.state.parts())?;
-        let ends = self.phase.guards[guard].ends_run();
-        let mut after = event.state.clone();
-        let to = if ends { from } else { self.system.transition(from, guard, s, &mut after) };
-        self.fired[guard] += 1;
-        self.statistics.switches += usize::from(!ends);
-        let largest = self.phase.largest[guard];
-        // A guard that has always been zero has no size.
-        let flatness = if largest == 0.0 { 0.0 } else { largest / event.slope };
-        self.state.set(&after);
-        self.observer.on_switch(&Note {
-            s,
-            guard,
-            simultaneous: event.simultaneous,
-            flatness,
-            jump: event.jump,
-            from,
-            to,
-            before: event.state.clone(),
-            after: after.clone(),
-        });
-        self.rest.parts_mut().fill(0.0);
-        if ends {
-            return Ok(Some(Outcome::EndedByGuard { guard }));
-        }
-        self.phase.mode = to;
-        if self.statistics.switches >= self.options.max_switches {
-            return Ok(Some(Outcome::SwitchLimit));
-        }
-        if let Some(outcome) = self.zeno.after_switch(s, self.clock.phase, self.options) {
-            return Ok(Some(outcome));
-        }
-        self.stood.set(&self.phase.forgiven);
-        if self.clock.phase != 0.0 {
-            self.stood.parts_mut().fill(false);
-        }
-        self.clock.phase = 0.0;
-        self.phase.enter(self.system, to, (s, &after), &mut self.fired)?;
-        self.room.guards = self.phase.count();
-        let (phase, room) = (&mut self.phase, &mut self.room);
-        phase.forgive(self.system, (s, &after), event, (from, largest), &self.stood, room);
-        self.statistics.guards += 1;
+    /// Enters the phase after the events of an instant.
+    pub(super) fn begin(&mut self) -> Result<(), RunError> {
         if self.options.step_size == StepSize::Adaptive {
+            let (to, s) = (self.phase.mode, self.clock.s);
             let h = self.other_h.replace(self.h).unwrap_or(self.h);
-            let longest = self.system.longest_first_step(to, s, &after);
+            let longest = self.system.longest_first_step(to, s, &self.state);
             // A length that is none would keep the run where it is.
             self.h = if longest > 0.0 { h.min(longest) } else { h };
             self.controller.begin();
         }
-        self.refresh_slope()?;
-        Ok(None)
+        self.due = self.next_due(self.clock.s)?;
+        self.refresh_slope()
+    }
+
+    /// The first time after `s` at which a clock of the mode fires.
+    fn next_due(&self, s: f64) -> Result<f64, RunError> {
+        let clocks = (0..self.phase.count()).filter(|&guard| self.phase.is_clock(guard));
+        clocks.map(|guard| self.system.next_time(self.phase.mode, guard, s)).try_fold(
+            f64::INFINITY,
+            |least, next| match next {
+                next if next.is_nan() => Err(RunError::Schedule { s }),
+                next => Ok(least.min(next)),
+            },
+        )
     }
 
     fn refresh_slope(&mut self) -> Result<(), RunError> {

@@ -60,25 +60,15 @@ impl<Mode: Copy, const N: usize> Samples<Mode, N> {
     /// [`InvalidTimes`] unless the times are numbers in ascending or in descending order. Equal
     /// ones may follow each other.
     pub fn new(times: Vec<f64>) -> Result<Self, InvalidTimes> {
-        let descending = times.iter().find(|&&s| s != times[0]).is_some_and(|&s| s < times[0]);
-        let in_order = |i: usize| {
-            !times[i].is_nan()
-                && (i == 0 || {
-                    let (before, after) = (times[i - 1], times[i]);
-                    if descending { after <= before } else { after >= before }
-                })
-        };
-        match (0..times.len()).find(|&i| !in_order(i)) {
-            Some(index) => Err(InvalidTimes { index, value: times[index] }),
-            None => Ok(Self {
-                samples: Vec::with_capacity(times.len()),
-                switches: Vec::new(),
-                times,
-                done: 0,
-                missing: Vec::new(),
-                last: None,
-            }),
-        }
+        InvalidTimes::check(&times)?;
+        Ok(Self {
+            samples: Vec::with_capacity(times.len()),
+            switches: Vec::new(),
+            times,
+            done: 0,
+            missing: Vec::new(),
+            last: None,
+        })
     }
 
     /// Samples at `times`.
@@ -134,6 +124,10 @@ impl<Mode: Copy, const N: usize> Observer<Mode, N> for Samples<Mode, N> {
         self.switches.push(*event);
     }
 
+    fn forget(&mut self, switches: usize) {
+        Observer::forget(&mut self.switches, switches);
+    }
+
     fn on_segment(&mut self, mode: Mode, dense: &Dense<N>) {
         let forwards = dense.size() > 0.0;
         if self.last.is_none() {
@@ -166,4 +160,22 @@ pub struct InvalidTimes {
     pub index: usize,
     /// The time there.
     pub value: f64,
+}
+
+impl InvalidTimes {
+    /// Checks that `times` are numbers in ascending or in descending order.
+    pub(crate) fn check(times: &[f64]) -> Result<(), Self> {
+        let descending = times.iter().find(|&&s| s != times[0]).is_some_and(|&s| s < times[0]);
+        let in_order = |i: usize| {
+            !times[i].is_nan()
+                && (i == 0 || {
+                    let (before, after) = (times[i - 1], times[i]);
+                    if descending { after <= before } else { after >= before }
+                })
+        };
+        match (0..times.len()).find(|&i| !in_order(i)) {
+            Some(index) => Err(Self { index, value: times[index] }),
+            None => Ok(()),
+        }
+    }
 }

@@ -57,6 +57,10 @@ impl<Mode: Copy, const N: usize> Observer<Mode, N> for Vec<SwitchEvent<Mode, N>>
     fn on_switch(&mut self, event: &SwitchEvent<Mode, N>) {
         self.push(*event);
     }
+
+    fn forget(&mut self, switches: usize) {
+        self.truncate(self.len().saturating_sub(switches));
+    }
 }
 
 /// Records switches, touches and the trajectory.
@@ -99,6 +103,10 @@ impl<Mode: Copy, const N: usize> Observer<Mode, N> for Recorder<Mode, N> {
 
     fn on_grazing(&mut self, grazing: &Grazing<Mode>) {
         self.grazings.push(*grazing);
+    }
+
+    fn forget(&mut self, switches: usize) {
+        Observer::forget(&mut self.switches, switches);
     }
 
     fn on_segment(&mut self, mode: Mode, dense: &Dense<N>) {

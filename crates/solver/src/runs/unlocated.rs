@@ -99,7 +99,7 @@ where
         statistics.guards += 1;
         let guards = system.guards(mode);
         let mut fired = None;
-        for guard in (0..G).filter(|&guard| guards[guard].direction() != Direction::Off) {
+        for guard in (0..G).filter(|&guard| guards[guard].direction().has_values()) {
             if ends[guard].is_nan() {
                 return Err(RunError::GuardNotANumber { guard, s: step.s });
             }
@@ -158,6 +158,6 @@ fn fires(direction: Direction, before: f64, now: f64) -> bool {
         Direction::Falling => falls,
         Direction::Rising => rises,
         Direction::Either => falls || rises,
-        Direction::Off => false,
+        Direction::Off | Direction::Clock => false,
     }
 }

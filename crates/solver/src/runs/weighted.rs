@@ -1,6 +1,6 @@
 //! Tolerances of their own for each component.
 
-use crate::hybrid::{Guard, HybridSystem};
+use crate::hybrid::{Guard, HybridSystem, Schedule};
 use crate::method::{Method, State, Step, Trial};
 use crate::options::InvalidOption;
 use stickslip_number::Enclosure;
@@ -96,6 +96,20 @@ where
     fn step<M: Method>(&self, mode: S::Mode, trial: &Trial<'_, N>, step: &mut Step<N>) {
         let mut field = |s: f64, y: &State<N>| self.system.field(mode, s, y);
         step.take_with::<M>(&mut field, trial, |component| self.tolerances[component]);
+    }
+
+    fn schedule(&self, mode: S::Mode, guard: usize) -> Schedule<'_> {
+        self.system.schedule(mode, guard)
+    }
+
+    fn rest(
+        &self,
+        mode: S::Mode,
+        guard: usize,
+        s: f64,
+        y: &State<N>,
+    ) -> Option<(S::Mode, State<N>)> {
+        self.system.rest(mode, guard, s, y)
     }
 
     fn transition(&self, mode: S::Mode, guard: usize, s: f64, y: &State<N>) -> (S::Mode, State<N>) {

@@ -292,7 +292,7 @@ impl Bytes<'_> {
         let guard =
             Guard::new(directions[usize::from(byte % 5)]).from_zero(u32::from(byte / 5 % 4 % 3));
         let guard = if byte & 64 == 0 { guard } else { guard.terminal() };
-        if byte & 128 == 0 { guard } else { guard.yielding() }
+        if byte & 128 == 0 { guard } else { guard.priority(-1) }
     }
 
     fn expression(&mut self) -> Expression {

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use stickslip_solver::{
     Direction, Dop853, Dopri5, Enclosure, Guard, HybridSystem, Method, Number, Options, Outcome,
-    ReadableSystem, Recorder, Start, State, StepSize, SwitchEvent,
+    ReadableSystem, Recorder, RunError, Start, State, StepSize, SwitchEvent,
 };
 
 use crate::black_box::BlackBox;
@@ -118,9 +118,11 @@ fn finitely_many_transitions_at_one_instant_are_not_an_accumulation() {
             assert_eq!((end.outcome, end.mode), (Outcome::ReachedEnd, count));
             assert!((end.state[0] - 2.0).abs() < 1e-14);
         }
-        let end = run(Dop853, &Chain(2000), start, 2.0, &options, &mut ()).unwrap();
-        let Outcome::InstantLimit { s } = end.outcome else { panic!("{end:?}") };
-        assert!((s - 1.0).abs() < 1e-14 && end.finished().is_err());
+        let mut switches = Vec::new();
+        let error = run(Dop853, &Chain(2000), start, 2.0, &options, &mut switches).unwrap_err();
+        let RunError::Cycle { s, count: 1000, cycle } = error else { panic!("{error:?}") };
+        assert!((s - 1.0).abs() < 1e-14 && cycle.last() == Some(&(0, "999".to_owned())));
+        assert!(switches.is_empty());
     }
 }
 

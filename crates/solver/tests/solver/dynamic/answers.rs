@@ -210,7 +210,7 @@ fn limits() {
     let start = DynamicStart { mode: true, s: 0.0, state: &[0.25] };
     let trapped =
         run_dynamic(Dop853, &Trap(Guard::new(Direction::Below)), start, 1.0, &options, &mut ());
-    let Outcome::InstantLimit { s } = trapped.expect("a trap").outcome else { panic!("no limit") };
+    let Err(RunError::Cycle { s, .. }) = trapped else { panic!("no limit") };
     assert!((s - 0.25).abs() < 1e-15);
 }
 

@@ -173,7 +173,7 @@ fn several_guards_that_are_noted_and_several_that_change_something() {
         either,
         Guard::new(Direction::Rising),
         Guard::new(Direction::Falling),
-        Guard::new(Direction::Falling).yielding(),
+        Guard::new(Direction::Falling).priority(-1),
         Guard::OFF,
     ];
     // The second and the third guard vanish together; the fourth vanishes with the third.
@@ -197,7 +197,7 @@ fn ties_are_decided_by_the_guard_that_does_not_yield_or_by_the_first() {
     for (first, second) in [(false, false), (true, false), (false, true), (true, true)] {
         let with = |yields: bool| {
             let guard = Guard::new(Direction::Below);
-            if yields { guard.yielding() } else { guard }
+            if yields { guard.priority(-1) } else { guard }
         };
         let system = Closures::new(|_s, _y: &State<1>| State::from([1.0]))
             .guards([with(first), with(second)], |_s, y| [0.7 - y[0], 1.4 - 2.0 * y[0]])

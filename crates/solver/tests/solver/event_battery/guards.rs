@@ -80,11 +80,11 @@ fn of_two_guards_the_earlier_fires_and_of_equal_ones_the_first() {
         both(|s| [0.43 - s, 2.0 * (0.43 - s)], (0.43, 0, 0b10));
         both(|s| [(0.43 - s) * (1.0 + s), 0.43 - s], (0.43, 0, 0b10));
         // A guard that yields is reported as simultaneous, and fires only if it is earlier.
-        let yielding = [guard.yielding(), guard];
+        let yielding = [guard.priority(-1), guard];
         check(|s| [0.43 - s, 2.0 * (0.43 - s)], yielding, (0.43, 1, 0b01));
         check(|s| [(0.43 - s) * (1.0 + s), 0.43 - s], yielding, (0.43, 1, 0b01));
         check(|s| [0.37 - s, 0.43 - s], yielding, (0.37, 0, 0));
-        check(|s| [0.43 - s, 0.43 - s], [guard.yielding(); 2], (0.43, 0, 0b10));
+        check(|s| [0.43 - s, 0.43 - s], [guard.priority(-1); 2], (0.43, 0, 0b10));
         // At different places the earlier guard fires, wherever it is listed.
         both(|s| [0.43 - s, 0.37 - s], (0.37, 1, 0));
         both(|s| [0.37 - s, 0.43 - s], (0.37, 0, 0));

@@ -13,7 +13,7 @@ fn fires(guard: impl Fn(Direction) -> Guard, shape: fn(f64) -> f64) -> [Vec<f64>
     use Direction::{Below, Either, Falling, Rising};
     [Below, Falling, Rising, Either].map(|direction| {
         let places = [fixed(1.0), fixed(0.125), Options::default()].map(|options| {
-            let options = Options { max_at_one_instant: 2, ..options };
+            let options = Options { max_switches: 2, ..options };
             let mut log = Log::default();
             let system = line([guard(direction)], shape_of(shape));
             assert!(run(Dop853, &system, start_of_line(), 1.0, &options, &mut log).is_ok());
@@ -59,7 +59,7 @@ fn the_first_guard_of_the_list_decides_unless_it_yields() {
     let guards = |first: Guard| [first.terminal(), Guard::new(Direction::Falling).terminal()];
     for (first, fires, other) in [
         (Guard::new(Direction::Falling), 0, 0b10),
-        (Guard::new(Direction::Falling).yielding(), 1, 0b01),
+        (Guard::new(Direction::Falling).priority(-1), 1, 0b01),
     ] {
         let system = line(guards(first), |s| [0.43 - s, 2.0 * (0.43 - s)]);
         let mut log = Log::default();
@@ -149,7 +149,7 @@ fn the_list_decides_at_the_start_and_at_the_end_too() {
     // At the end of the span: the first guard yields.
     for (first, decides, other) in [
         (Guard::new(Direction::Falling), 0, 0b10),
-        (Guard::new(Direction::Falling).yielding(), 1, 0b01),
+        (Guard::new(Direction::Falling).priority(-1), 1, 0b01),
     ] {
         let guards = [first, Guard::new(Direction::Falling)].map(Guard::terminal);
         let system = line(guards, |s| [1e-170 * (1.0 - s), 2.0 * (1.0 - s)]);

@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use stickslip_solver::{
-    Closures, Dense, Direction, Dop853, EmbeddedPair, Guard, Observer, Options, Outcome, State,
-    Unfinished,
+    Closures, Dense, Direction, Dop853, EmbeddedPair, Guard, Observer, Options, Outcome, RunError,
+    State, Unfinished,
 };
 
 use super::{Log, at, ball, bounce, fixed, line, start_of_line, thrown};
@@ -103,25 +103,24 @@ fn an_observer_stops_the_run() {
 }
 
 #[test]
-fn transitions_at_one_instant_end_the_run() {
+fn a_chain_of_transitions_at_one_instant_is_an_error_that_names_it() {
     // At s = 0.5 the guard stays negative, whatever the transition does.
     let system = Closures::new(|_s, _y: &State<1>| State::from([1.0]))
         .guards([Guard::new(Direction::Below)], |s, _y| [0.5 - s])
         .transition(|_guard, _s, y| State::from([y[0] + 1.0]));
     let options = Options { max_at_one_instant: 7, ..Options::default() };
     let (mut log, mut back) = (Log::default(), Log::default());
-    let end = run(Dop853, &system, start_of_line(), 1.0, &options, &mut log).unwrap();
-    let Outcome::InstantLimit { s } = end.outcome else { panic!("{end:?}") };
-    assert!((s - 0.5).abs() < 1e-15 && end.s == s);
-    let last = &log.switches[log.switches.len() - 7..];
-    assert!(last.iter().all(|event| event.s == s));
-    assert_eq!(end.state, last[6].after);
-    assert_eq!(end.finished(), Err(Unfinished { outcome: end.outcome, s }));
+    let chain = (&system, start_of_line(), &options);
+    let error = run(Dop853, chain.0, chain.1, 1.0, chain.2, &mut log).unwrap_err();
+    let RunError::Cycle { s, count: 7, cycle } = error else { panic!("{error:?}") };
+    assert!((s - 0.5).abs() < 1e-15);
+    assert_eq!(cycle, [(0, "()".to_owned())]);
+    assert_eq!(log.switches, []);
     let mirrored = Closures::new(|_s, _y: &State<1>| State::from([1.0]))
         .guards([Guard::new(Direction::Below)], |s, _y| [0.5 + s])
         .transition(|_guard, _s, y| State::from([y[0] + 1.0]));
-    let end = run_backwards(Dop853, &mirrored, start_of_line(), -1.0, &options, &mut back).unwrap();
-    assert_eq!(end.outcome, Outcome::InstantLimit { s: -s });
+    let back = run_backwards(Dop853, &mirrored, start_of_line(), -1.0, &options, &mut back);
+    assert!(matches!(back, Err(RunError::Cycle { s: at, .. }) if at == -s));
 }
 
 #[test]
