@@ -273,8 +273,8 @@ where
         self.system.longest_first_step(mode, s, &part(y, 0))
     }
 
-    fn settle(&self, mode: S::Mode) -> S::Mode {
-        self.system.settle(mode)
+    fn settle(&self, mode: S::Mode, y: &State<A>) -> S::Mode {
+        self.system.settle(mode, &part(y, 0))
     }
 
     fn transition(&self, mode: S::Mode, guard: usize, s: f64, y: &State<A>) -> (S::Mode, State<A>) {

@@ -348,7 +348,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             if last {
                 self.clock.arrive(self.end);
             }
-            let settled = system.settle(mode);
+            let settled = system.settle(mode, &self.state);
             if settled != mode {
                 let largest = self.phase.largest.clone();
                 let place = (self.clock.s, &self.state);
@@ -503,7 +503,9 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         phase.forgive(self.system, (s, &after), event, (from, largest), &self.stood, room);
         self.statistics.guards += 1;
         if self.options.step_size == StepSize::Adaptive {
-            let h = self.other_h.replace(self.h).unwrap_or(self.h);
+            // A phase much shorter than the one before shows little about the steps of its mode.
+            let least = Controller::FIRST_CUT * self.h;
+            let h = self.other_h.replace(self.h).unwrap_or(self.h).max(least);
             let longest = self.system.longest_first_step(to, s, &after);
             // A length that is none would keep the run where it is.
             self.h = if longest > 0.0 { h.min(longest) } else { h };
