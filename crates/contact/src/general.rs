@@ -40,7 +40,7 @@ pub const W: usize = 3;
 pub const T: usize = 4;
 /// Normal energy taken by damping.
 pub const DAMPING: usize = 5;
-/// In the first step of a stick phase, the gap between the force and its limit on the side of the
+/// Until a stick phase is settled, the gap between the force and its limit on the side of the
 /// phase, divided by c and a power of u.
 pub const GAP: usize = 6;
 /// The rate of that gap, divided by c once more.
@@ -115,7 +115,7 @@ pub enum Progress {
     Reset,
     /// At a switch.
     Switched,
-    /// It has taken its first step.
+    /// Long enough ago for the gaps between the force and its limit to be ordinary differences.
     Settled,
 }
 
@@ -297,7 +297,10 @@ impl GeneralContact {
     #[must_use]
     pub fn after(&self, mode: Mode, guard: usize, slips: bool) -> Mode {
         let (regime, side, progress) = match (guard, mode.regime) {
-            (CREST, _) => return Mode { stage: Stage::Unloading, ..self.settle(mode) },
+            (CREST, _) => {
+                let progress = Progress::Settled;
+                return Mode { stage: Stage::Unloading, progress, ..mode };
+            }
             (END, _) => {
                 let (regime, progress) = if slips {
                     (Regime::Slip, Progress::Switched)
@@ -386,13 +389,16 @@ impl ReadableSystem<STATE, GUARDS> for GeneralContact {
         self.equations.guards(mode, y)
     }
 
-    fn longest_first_step(&self, _mode: Mode, _s: f64, y: &State<STATE>) -> f64 {
-        longest_first_step(y[U], self.compression_rate(y))
+    fn longest_first_step(&self, mode: Mode, s: f64, y: &State<STATE>) -> f64 {
+        let end = self.guard_values(mode, s, array(y))[END];
+        longest_first_step(end, self.guard_rates(mode, s, y)[END])
     }
 
     #[inline(always)]
-    fn settle(&self, mode: Mode) -> Mode {
-        Mode { progress: Progress::Settled, ..mode }
+    fn settle(&self, mode: Mode, y: &State<STATE>) -> Mode {
+        let opens = mode.regime == Regime::Slip
+            || mode.progress != Progress::Settled && Equations::is_open(array(y));
+        if opens { Mode { progress: Progress::Settled, ..mode } } else { mode }
     }
 
     fn transition(

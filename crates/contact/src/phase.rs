@@ -88,7 +88,7 @@ pub enum Progress {
     Touched,
     /// A switch has just happened.
     Switched,
-    /// The first step of the phase is done.
+    /// The gap between the spring and its limit has become [`open`](is_open).
     Settled,
 }
 
@@ -116,10 +116,18 @@ impl Phase {
     }
 }
 
-/// The longest first step of a phase. Near its end a contact has no other scale than the time that
-/// is left, u/|v|, which may be far below the tolerance.
-pub(crate) fn longest_first_step(u: f64, v: f64) -> f64 {
+/// Whether the `gap` between the spring and its `limit` may be computed as a difference from now
+/// on. As long as it is a smaller part of the limit, errors of steps and rounding may exceed it.
+#[inline(always)]
+pub(crate) fn is_open(gap: f64, limit: f64) -> bool {
+    const OPEN: f64 = 1e-3;
+    gap > OPEN * limit
+}
+
+/// The longest first step of a phase, by the guard that ends the contact and its rate. Near its end
+/// a contact has no other scale than the time that is left, which may be far below the tolerance.
+pub(crate) fn longest_first_step(end: f64, rate: f64) -> f64 {
     /// The step goes at most this part of the time left beyond it.
     const BEYOND: f64 = 1.5;
-    if v < 0.0 { BEYOND * u / -v } else { f64::INFINITY }
+    if rate < 0.0 { BEYOND * end / -rate } else { f64::INFINITY }
 }

@@ -10,8 +10,8 @@
 //! ```
 //!
 //! At the start of a stick phase the spring is at its limit and moves as fast as the limit does:
-//! gap = F − s κ y has a double zero there. In the first step of the phase the gap is therefore a
-//! component of its own that starts with gap = 0 and rate = gap' = 0:
+//! gap = F − s κ y has a double zero there. Until it is [open](crate::phase::Progress::Settled) the
+//! gap is therefore a component of its own that starts with gap = 0 and rate = gap' = 0:
 //!
 //! ```text
 //! gap' = rate     rate' = F'' − 2sκ v w + 4u²κ s κ y
@@ -30,7 +30,7 @@ pub mod equations;
 
 use crate::contact::Contact;
 pub use crate::phase::{END, GUARDS, OTHER_SIDE, Phase, Progress, SAME_SIDE};
-use crate::phase::{Regime, Side, longest_first_step};
+use crate::phase::{Regime, Side, is_open, longest_first_step};
 use components::array;
 pub use components::{DAMPING, GAP, RATE, SPRING, STATE, T, U, V, W};
 use equations::{Equations, Force};
@@ -227,16 +227,18 @@ impl ReadableSystem<STATE, GUARDS> for Regularized {
         }
     }
 
-    fn longest_first_step(&self, _phase: Phase, _s: f64, y: &State<STATE>) -> f64 {
-        longest_first_step(y[U], self.compression_rate(y))
+    fn longest_first_step(&self, phase: Phase, s: f64, y: &State<STATE>) -> f64 {
+        let end = if self.is_damped() { self.equations.push::<true>(y[U], y[V]) } else { y[U] };
+        longest_first_step(end, self.guard_rates(phase, s, y)[END])
     }
 
     #[inline(always)]
-    fn settle(&self, phase: Phase) -> Phase {
-        match phase.regime {
-            Regime::Slip => phase,
-            Regime::Stick => Phase { progress: Progress::Settled, ..phase },
+    fn settle(&self, phase: Phase, y: &State<STATE>) -> Phase {
+        if phase.regime == Regime::Slip || phase.progress == Progress::Settled {
+            return phase;
         }
+        let settles = is_open(self.equations.scale * y[GAP], self.normal_force(y));
+        if settles { Phase { progress: Progress::Settled, ..phase } } else { phase }
     }
 
     fn transition(

@@ -67,13 +67,13 @@ pub trait HybridSystem<const N: usize, const G: usize> {
         [Enclosure::ENTIRE; G]
     }
 
-    /// The mode in which a phase goes on after its first step.
+    /// The mode in which a phase goes on that has taken a step to the state `y`.
     ///
-    /// A mode that starts from a known zero may need more state, or another form of its guards,
-    /// for its first step than for later ones. This function then replaces it by a mode that has
-    /// the same solutions.
+    /// A mode that starts from a known zero may need more state, or another form of its guards, as
+    /// long as a guard is so near to that zero that its usual form would be rounding alone. This
+    /// function then replaces it by a mode that has the same solutions.
     #[inline]
-    fn settle(&self, mode: Self::Mode) -> Self::Mode {
+    fn settle(&self, mode: Self::Mode, _y: &State<N>) -> Self::Mode {
         mode
     }
 

@@ -279,8 +279,8 @@ where
         self.system.schedule(mode, guard)
     }
 
-    fn settle(&self, mode: S::Mode) -> S::Mode {
-        self.system.settle(mode)
+    fn settle(&self, mode: S::Mode, y: &State<A>) -> S::Mode {
+        self.system.settle(mode, &part(y, 0))
     }
 
     fn transition(&self, mode: S::Mode, guard: usize, s: f64, y: &State<A>) -> (S::Mode, State<A>) {

@@ -341,7 +341,7 @@ pub(crate) trait System: Sized {
         guard: usize,
     ) -> Enclosure;
     fn reads(&self, mode: Self::Mode) -> <Self::Components as Shape>::Read;
-    fn settle(&self, mode: Self::Mode) -> Self::Mode;
+    fn settle(&self, mode: Self::Mode, y: &Self::State) -> Self::Mode;
     fn longest_first_step(&self, mode: Self::Mode, s: f64, y: &Self::State) -> f64;
     /// The mode behind an accumulation of switches at `s`, if the run goes on there.
     fn rest(
@@ -392,8 +392,8 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> System for Fixed<'_,
     #[inline(always)]
     fn reads(&self, _: S::Mode) {}
     #[inline(always)]
-    fn settle(&self, mode: S::Mode) -> S::Mode {
-        self.0.settle(mode)
+    fn settle(&self, mode: S::Mode, y: &State<N>) -> S::Mode {
+        self.0.settle(mode, y)
     }
     fn rest(&self, mode: S::Mode, guard: usize, s: f64, y: &mut State<N>) -> Option<S::Mode> {
         let (to, after) = self.0.rest(mode, guard, s, y)?;
@@ -466,7 +466,7 @@ impl<S: DynamicSystem> System for Free<'_, S> {
     fn reads(&self, mode: S::Mode) -> SmallVec<[usize; 8]> {
         self.0.reads(mode).into()
     }
-    fn settle(&self, mode: S::Mode) -> S::Mode {
+    fn settle(&self, mode: S::Mode, _: &Vec<f64>) -> S::Mode {
         mode
     }
     fn rest(&self, mode: S::Mode, guard: usize, s: f64, y: &mut Vec<f64>) -> Option<S::Mode> {

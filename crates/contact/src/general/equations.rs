@@ -10,7 +10,7 @@ use super::{
     T as TIME, U, V, W,
 };
 use crate::contact::Contact;
-use crate::phase::{OTHER_SIDE, Regime, SAME_SIDE, Side};
+use crate::phase::{OTHER_SIDE, Regime, SAME_SIDE, Side, is_open};
 
 /// The least damping for which the component V is a³(v + u^{p−d}/a); see
 /// [`regularized`](crate::regularized).
@@ -248,7 +248,7 @@ impl Equations {
         slope
     }
 
-    /// The right-hand side of a stick phase behind its first step.
+    /// The right-hand side of a stick phase that has settled.
     #[inline(always)]
     pub fn stick<T: Number>(&self, mode: Mode, y: &[T; STATE]) -> [T; STATE] {
         let e = self.exponents;
@@ -261,7 +261,7 @@ impl Equations {
         slope
     }
 
-    /// The right-hand side of the first step of a stick phase.
+    /// The right-hand side of a stick phase until it settles.
     #[inline(always)]
     pub fn first_stick<T: Number>(&self, mode: Mode, y: &[T; STATE]) -> [T; STATE] {
         let mut slope = self.stick(mode, y);
@@ -442,6 +442,12 @@ impl Equations {
         if mode.progress != Progress::Switched {
             y[RATE] = near.1 / rate;
         }
+    }
+
+    /// Whether the gaps of a stick phase are [open](crate::phase::is_open).
+    pub fn is_open(y: &[f64; STATE]) -> bool {
+        let [near, far] = [y[GAP], y[FAR_GAP]];
+        is_open(near.min(far), 0.5 * (near + far))
     }
 
     /// Whether the gap on the side of a stick phase, in its first step, grows from within

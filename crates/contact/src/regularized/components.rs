@@ -21,9 +21,9 @@ pub const W: usize = 3;
 pub const T: usize = 4;
 /// Normal energy taken by damping.
 pub const DAMPING: usize = 5;
-/// gap/c, in the first step of a stick phase.
+/// gap/c, until a stick phase is settled.
 pub const GAP: usize = 6;
-/// rate/c², in the first step of a stick phase.
+/// rate/c², until a stick phase is settled.
 pub const RATE: usize = 7;
 
 /// The components of a state as an array.

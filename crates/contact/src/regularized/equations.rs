@@ -245,7 +245,7 @@ impl<T: Number> Equations<T> {
         [v, slope, stretch, pull, u * 2.0, self.loss::<DAMPED>(u, v), zero, zero]
     }
 
-    /// The right-hand side of the first step of a stick phase, with its gap.
+    /// The right-hand side of a stick phase that is not settled, with its gap.
     #[inline(always)]
     #[must_use]
     pub fn first_stick<const DAMPED: bool>(&self, side: Side, y: &[T; STATE]) -> [T; STATE] {

@@ -7,6 +7,7 @@ use stickslip_contact::Contact;
 use super::MOST_SWITCHES;
 use super::error::{ExactError, checked, too_many};
 use super::flank::Flanks;
+use super::late::LateHalfSwing;
 use super::margin::{end_margin, swing};
 use super::moment::At;
 use super::normal::Trajectory;
@@ -71,8 +72,10 @@ impl Task for Nearest {
 fn passed<T: Trajectory>(swing: &Swing<T>, least: &mut f64) -> SlipPhase {
     let release = Release::of(swing);
     let halves = half_swings(swing.first, release.half_swing);
-    let tops = halves.flat_map(|k| top_gaps(swing, k)).flatten();
-    let gaps = tops.chain(bend_gap(swing, &release)).chain(end_margin(swing, release.half_swing));
+    let tops = halves.clone().flat_map(|k| top_gaps(swing, k)).flatten();
+    let late = halves.filter_map(|k| late_gap(swing, k));
+    let others = bend_gap(swing, &release).into_iter().chain(end_margin(swing, release.half_swing));
+    let gaps = tops.chain(late).chain(others);
     *least = gaps.fold(*least, |least, gap| least.min(gap.abs()));
     let velocity = super::swing::half_swing_sign(release.half_swing) * release.velocity;
     SlipPhase::new(swing.path.impulse(), &release.end, velocity)
@@ -90,7 +93,7 @@ fn as_velocity<T: Trajectory>(swing: &Swing<T>, at: &At<T::Motion>, gap: f64, al
 
 /// The half swings from the `first` to the `last` one on which the spring may come nearest to its
 /// limit. The limit rises and then falls: they are among the first and the last ones.
-fn half_swings(first: u32, last: u32) -> impl Iterator<Item = u32> {
+fn half_swings(first: u32, last: u32) -> impl Iterator<Item = u32> + Clone {
     const ENDS: u32 = 3;
     let early = first + ENDS;
     (first..=last.min(early)).chain((last.saturating_sub(ENDS)..=last).filter(move |&k| k > early))
@@ -104,6 +107,13 @@ fn top_gaps<T: Trajectory>(swing: &Swing<T>, k: u32) -> [Option<f64>; 2] {
         // At impact the spring is 0 without any error.
         Some(as_velocity(swing, &at, swing.gap(k, &at).value, swing.first == AT_IMPACT))
     })
+}
+
+/// The gap D, as a velocity, where it is least on half swing `k`, near the end of contact. A spring
+/// that falls with its limit is nearest to it there, and relative to the limit at the end itself.
+fn late_gap<T: Trajectory>(swing: &Swing<T>, k: u32) -> Option<f64> {
+    let at = LateHalfSwing::of(swing, k)?.least(swing)?;
+    Some(as_velocity(swing, &at, swing.gap(k, &at).value, swing.first == AT_IMPACT))
 }
 
 /// The gap, as a velocity, where it bends upwards again on the first half swing after slip, if the

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::moment::Moment;
+use super::moment::{At, Moment};
 use super::normal::Trajectory;
 use super::normal::roots::{along_root, root_between};
 use super::swing::{Gap, Swing, half_swing_sign};
@@ -50,14 +50,19 @@ impl LateHalfSwing {
     /// contact, R is not a smooth function of the parameters. D is, since L falls to 0 at an
     /// even rate.
     pub fn margin<T: Trajectory>(&self, swing: &Swing<T>) -> Option<f64> {
+        let part = swing.gap(self.k, &self.least(swing)?).value / swing.amplitude;
+        Some(part * (part + 2.0))
+    }
+
+    /// Where the gap D is least.
+    pub fn least<T: Trajectory>(&self, swing: &Swing<T>) -> Option<At<T::Motion>> {
         let &Self { k, first, high } = self;
         let path = swing.path;
         let least = root_between(path, first, high?, None, |at| {
             let Gap { rate, acceleration, .. } = swing.gap(k, at);
             along_root(path, at, -rate, -acceleration, 0.0)
         });
-        let part = swing.gap(k, &path.at(least)).value / swing.amplitude;
-        Some(part * (part + 2.0))
+        Some(path.at(least))
     }
 }
 

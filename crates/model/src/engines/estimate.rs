@@ -20,8 +20,9 @@ pub struct Estimate {
     /// Up to 0.1, the itinerary is the same for all ψ that are nearer than this, relative to ψ;
     /// above, this holds to its order of magnitude only.
     pub distance: f64,
-    /// Whether the itinerary is certain: the distance is above the larger of `eps_t_error` and 100
-    /// tolerances, since errors of w may be larger at some moment than what is left at the end.
+    /// Whether the itinerary is certain: the second opinion has the same one, and the distance is
+    /// above the larger of `eps_t_error` and 100 tolerances, since errors of w may be larger at some
+    /// moment than what is left at the end.
     pub certain: bool,
 }
 
@@ -64,10 +65,12 @@ impl Engine {
         contact.require_paper("the estimate").map_err(CollisionError::Law)?;
         let engine = self.resolved(&contact);
         let distance = exact::distance(&contact)?;
-        let difference = match engine {
-            Self::Exact | Self::Auto => 0.0,
+        let (difference, agrees) = match engine {
+            Self::Exact | Self::Auto => (0.0, true),
             Self::Dop853(_) | Self::Dopri5(_) => {
-                (collision.eps_t() - exact::collide(contact)?.eps_t()).abs()
+                let exact = exact::collide(contact)?;
+                let difference = (collision.eps_t() - exact.eps_t()).abs();
+                (difference, collision.itinerary() == exact.itinerary())
             }
         };
         let eps_t_error = SAFETY * difference + rounding(collision);
@@ -75,7 +78,7 @@ impl Engine {
         let of_steps = engine
             .tolerances()
             .map_or(0.0, |Tolerances { rtol, atol }| most * rtol.max(atol).max(LEAST_TOLERANCE));
-        let certain = distance > eps_t_error.max(of_steps);
+        let certain = agrees && distance > eps_t_error.max(of_steps);
         Ok(Estimate { eps_t_error, distance, certain })
     }
 }

@@ -72,7 +72,7 @@ pub trait ReadableSystem<const N: usize, const G: usize> {
 
     /// As [`HybridSystem::settle`].
     #[inline]
-    fn settle(&self, mode: Self::Mode) -> Self::Mode {
+    fn settle(&self, mode: Self::Mode, _y: &State<N>) -> Self::Mode {
         mode
     }
 
@@ -161,8 +161,8 @@ impl<S: ReadableSystem<N, G>, const N: usize, const G: usize> HybridSystem<N, G>
     }
 
     #[inline]
-    fn settle(&self, mode: S::Mode) -> S::Mode {
-        ReadableSystem::settle(self, mode)
+    fn settle(&self, mode: S::Mode, y: &State<N>) -> S::Mode {
+        ReadableSystem::settle(self, mode, y)
     }
 
     #[inline]

@@ -367,8 +367,8 @@ where
         self.system.longest_first_step(at.mode, s, y)
     }
 
-    fn settle(&self, at: Self::Mode) -> Self::Mode {
-        PhaseMode { mode: self.system.settle(at.mode), ..at }
+    fn settle(&self, at: Self::Mode, y: &State<N>) -> Self::Mode {
+        PhaseMode { mode: self.system.settle(at.mode, y), ..at }
     }
 
     fn step<M: Method>(&self, at: Self::Mode, trial: &Trial<'_, N>, step: &mut Step<N>) {

@@ -18,6 +18,10 @@ pub(crate) struct Controller {
 }
 
 impl Controller {
+    /// The factor by which the first step of a right-hand side may be cut at once, since it is a
+    /// guess and may be too long by far.
+    pub(crate) const FIRST_CUT: f64 = 0.01;
+
     pub(crate) fn new() -> Self {
         Self { last_error: 1e-4, just_rejected: false, fresh: true }
     }
@@ -43,8 +47,7 @@ impl Controller {
     pub(crate) fn rejected<M: Method>(&mut self, h: f64, error: f64) -> f64 {
         self.just_rejected = true;
         if error.is_finite() {
-            // The first step of a right-hand side is a guess, and may be too long by far.
-            let least = if self.fresh { 0.01 } else { M::STEP_FACTORS.0 };
+            let least = if self.fresh { Self::FIRST_CUT } else { M::STEP_FACTORS.0 };
             h * (SAFETY * power(error, -exponent::<M>())).max(least)
         } else {
             0.1 * h

@@ -115,8 +115,8 @@ where
         self.0.longest_first_step(mode, reverse(tau), y)
     }
 
-    fn settle(&self, mode: S::Mode) -> S::Mode {
-        self.0.settle(mode)
+    fn settle(&self, mode: S::Mode, y: &State<N>) -> S::Mode {
+        self.0.settle(mode, y)
     }
 
     /// The system's own step, of negative size.

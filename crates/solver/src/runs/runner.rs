@@ -380,7 +380,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             if last {
                 self.clock.arrive(stop);
             }
-            let settled = system.settle(mode);
+            let settled = system.settle(mode, &self.state);
             if settled != mode {
                 let largest = self.phase.largest.clone();
                 let place = (self.clock.s, &self.state);
@@ -497,7 +497,9 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
     pub(super) fn begin(&mut self) -> Result<(), RunError> {
         if self.options.step_size == StepSize::Adaptive {
             let (to, s) = (self.phase.mode, self.clock.s);
-            let h = self.other_h.replace(self.h).unwrap_or(self.h);
+            // A phase much shorter than the one before shows little about the steps of its mode.
+            let least = Controller::FIRST_CUT * self.h;
+            let h = self.other_h.replace(self.h).unwrap_or(self.h).max(least);
             let longest = self.system.longest_first_step(to, s, &self.state);
             // A length that is none would keep the run where it is.
             self.h = if longest > 0.0 { h.min(longest) } else { h };

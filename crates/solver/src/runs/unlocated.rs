@@ -108,13 +108,13 @@ where
             }
         }
         let from = mode;
-        mode = system.settle(mode);
+        mode = system.settle(mode, &state);
         if let Some(guard) = fired {
             let terminal = guards[guard].ends_run();
             let before = state;
             if !terminal {
                 let (to, after) = system.transition(from, guard, s, &before);
-                (mode, state) = (system.settle(to), after);
+                (mode, state) = (system.settle(to, &after), after);
                 statistics.switches += 1;
             }
             let to = if terminal { from } else { mode };

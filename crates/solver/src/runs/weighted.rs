@@ -89,8 +89,8 @@ where
         self.system.longest_first_step(mode, s, y)
     }
 
-    fn settle(&self, mode: S::Mode) -> S::Mode {
-        self.system.settle(mode)
+    fn settle(&self, mode: S::Mode, y: &State<N>) -> S::Mode {
+        self.system.settle(mode, y)
     }
 
     fn step<M: Method>(&self, mode: S::Mode, trial: &Trial<'_, N>, step: &mut Step<N>) {

@@ -13,7 +13,7 @@ pub trait Parts<const N: usize, const G: usize> {
     fn guard_values(&self, mode: usize, s: f64, y: &State<N>) -> [f64; G];
     fn guard_rates(&self, mode: usize, s: f64, y: &State<N>) -> [f64; G];
     fn enclose_guards(&self, mode: usize, s: Enclosure, y: &[Enclosure; N]) -> [Enclosure; G];
-    fn settle(&self, mode: usize) -> usize;
+    fn settle(&self, mode: usize, y: &State<N>) -> usize;
     fn longest_first_step(&self, mode: usize, s: f64, y: &State<N>) -> f64;
     fn transition(&self, mode: usize, guard: usize, s: f64, y: &State<N>) -> (usize, State<N>);
     fn transition_condition(&self, mode: usize, guard: usize, s: f64, y: &State<N>) -> f64;
@@ -48,8 +48,8 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Parts<N, G>
         self.system.enclose_guards(self.modes.mode(mode), s, y)
     }
 
-    fn settle(&self, mode: usize) -> usize {
-        self.modes.number(self.system.settle(self.modes.mode(mode)))
+    fn settle(&self, mode: usize, y: &State<N>) -> usize {
+        self.modes.number(self.system.settle(self.modes.mode(mode), y))
     }
 
     fn longest_first_step(&self, mode: usize, s: f64, y: &State<N>) -> f64 {
@@ -98,8 +98,8 @@ impl<const N: usize, const G: usize, const READABLE: bool> HybridSystem<N, G>
         self.0.enclose_guards(mode, s, y)
     }
 
-    fn settle(&self, mode: usize) -> usize {
-        self.0.settle(mode)
+    fn settle(&self, mode: usize, y: &State<N>) -> usize {
+        self.0.settle(mode, y)
     }
 
     fn longest_first_step(&self, mode: usize, s: f64, y: &State<N>) -> f64 {
