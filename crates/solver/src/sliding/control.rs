@@ -1,0 +1,169 @@
+//! The equivalent control: the multipliers with which a field leads along surfaces.
+
+use crate::sliding::{MOST, Side, Sides};
+use stickslip_number::Number;
+
+pub(super) type Row<T> = [T; MOST];
+pub(super) type Square<T> = [[T; MOST]; MOST];
+
+/// A switched system in one of its own modes, in numbers of one kind.
+pub(super) trait View<T: Number> {
+    /// Writes the field with these signs, one for each surface.
+    fn field(&self, signs: &[T], s: T, y: &[T], slope: &mut [T]);
+    /// The surfaces' functions.
+    fn surfaces(&self, s: T, y: &[T]) -> Row<T>;
+    /// The rates at which the surfaces' functions change where the state changes with this slope.
+    fn rates(&self, s: T, y: &[T], slope: &[T]) -> Row<T>;
+}
+
+/// The determinant of the first `size` ≥ 1 rows and columns.
+fn determinant<T: Number>(a: &Square<T>, size: usize) -> T {
+    expanded(a, 0, size, 0)
+}
+
+/// The minor of the rows from `row` on and of the columns that are not `used`.
+fn expanded<T: Number>(a: &Square<T>, row: usize, size: usize, used: usize) -> T {
+    let mut sum: Option<T> = None;
+    let mut adds = true;
+    for column in (0..size).filter(|column| used >> column & 1 == 0) {
+        let entry = a[row][column];
+        let rest = row + 1 < size;
+        let term =
+            if rest { entry * expanded(a, row + 1, size, used | 1 << column) } else { entry };
+        sum = Some(match sum {
+            None => term,
+            Some(sum) if adds => sum + term,
+            Some(sum) => sum - term,
+        });
+        adds = !adds;
+    }
+    sum.unwrap_or_else(|| T::from(1.0))
+}
+
+/// The subsets of so many rows, without the empty one.
+pub(super) fn subsets(size: usize) -> impl Iterator<Item = Vec<usize>> {
+    (1_usize..1 << size).map(move |bits| (0..size).filter(|i| bits >> i & 1 == 1).collect())
+}
+
+/// The principal minor of −a with these rows.
+pub(super) fn minor<T: Number>(a: &Square<T>, rows: &[usize]) -> T {
+    let mut part = [[T::from(0.0); MOST]; MOST];
+    for (row, &i) in rows.iter().enumerate() {
+        for (column, &j) in rows.iter().enumerate() {
+            part[row][column] = -a[i][j];
+        }
+    }
+    determinant(&part, rows.len())
+}
+
+/// Solves a x = b by Cramer's rule, which needs no comparisons. With `size` 1 it is a quotient.
+pub(super) fn solved<T: Number>(a: &Square<T>, b: &Row<T>, size: usize) -> Row<T> {
+    let all = determinant(a, size);
+    let mut x = [T::from(0.0); MOST];
+    for j in 0..size {
+        let mut replaced = *a;
+        for i in 0..size {
+            replaced[i][j] = b[i];
+        }
+        x[j] = determinant(&replaced, size) / all;
+    }
+    x
+}
+
+/// The shares of the fields above sliding surfaces.
+struct Shares<T> {
+    /// The share of the field above each sliding surface, in order: (1 + λ)/2.
+    shares: Row<T>,
+    count: usize,
+    /// The rates of the surfaces' functions above each surface, less those below all.
+    rates: Square<T>,
+}
+
+/// The shares with which the state slides. `fields` has room for one field more than there are
+/// sliding surfaces. It then holds the field below all of them, and those above one each.
+///
+/// Nothing else but +1 and −1 is ever passed to a field, so that it may be two formulas.
+fn shares<T: Number>(
+    view: &impl View<T>,
+    sides: &Sides,
+    (s, y): (T, &[T]),
+    fields: &mut [T],
+) -> Shares<T> {
+    let n = y.len();
+    let (below, above) = fields.split_at_mut(n);
+    let mut signs: Row<T> =
+        sides.sides.map(|side| T::from(if side == Side::Above { 1.0 } else { -1.0 }));
+    view.field(&signs[..sides.count], s, y, below);
+    let base = view.rates(s, y, below);
+    let (mut a, mut b) = ([[T::from(0.0); MOST]; MOST], [T::from(0.0); MOST]);
+    let mut count = 0;
+    for (j, surface) in sides.sliding().enumerate() {
+        let field = &mut above[j * n..(j + 1) * n];
+        signs[surface] = T::from(1.0);
+        view.field(&signs[..sides.count], s, y, field);
+        signs[surface] = T::from(-1.0);
+        let rates = view.rates(s, y, field);
+        for (i, row) in sides.sliding().enumerate() {
+            a[i][j] = rates[row] - base[row];
+        }
+        b[j] = -base[surface];
+        count = j + 1;
+    }
+    let shares = if count == 0 { b } else { solved(&a, &b, count) };
+    Shares { shares, count, rates: a }
+}
+
+/// Writes the field of a mode to `slope`. `fields` is room as in [`shares`]. The field is NaN where
+/// the solution is not attracted to the surfaces that it slides along: it is not unique there.
+pub(super) fn field<T: Number>(
+    view: &impl View<T>,
+    sides: &Sides,
+    (s, y): (T, &[T]),
+    fields: &mut [T],
+    slope: &mut [T],
+) {
+    if sides.refusal.is_some() {
+        slope.fill(T::from(f64::NAN));
+        return;
+    }
+    if sides.sliding().next().is_none() {
+        let signs = sides.sides.map(|side| T::from(side.sign()));
+        view.field(&signs[..sides.count], s, y, slope);
+        return;
+    }
+    let Shares { shares, count, rates } = shares(view, sides, (s, y), fields);
+    let n = y.len();
+    for (k, slope) in slope.iter_mut().enumerate() {
+        let below = fields[k];
+        *slope =
+            (0..count).fold(below, |sum, j| sum + shares[j] * (fields[(j + 1) * n + k] - below));
+    }
+    for rows in subsets(count) {
+        let attracts = minor(&rates, &rows);
+        slope.iter_mut().for_each(|slope| *slope = attracts.select(*slope, T::from(f64::NAN)));
+    }
+}
+
+/// The two guards of each surface: on a side, how far it is from the surface; while it slides,
+/// 1 − λ and 1 + λ with the multiplier λ.
+pub(super) fn guards<T: Number>(
+    view: &impl View<T>,
+    sides: &Sides,
+    (s, y): (T, &[T]),
+    fields: &mut [T],
+) -> [[T; 2]; MOST] {
+    let values = view.surfaces(s, y);
+    let mut sliding = sides.sliding().peekable();
+    let shares =
+        sliding.peek().is_some().then(|| shares(view, sides, (s, y), fields).shares);
+    let mut next = 0;
+    std::array::from_fn(|i| match (sides.sides[i], &shares) {
+        (Side::Sliding, Some(shares)) => {
+            let share = shares[next];
+            next += 1;
+            [(-share + 1.0) * 2.0, share * 2.0]
+        }
+        (Side::Below, _) => [-values[i], T::from(1.0)],
+        _ => [values[i], T::from(1.0)],
+    })
+}
