@@ -15,8 +15,8 @@
 //! Control and Optimization*, 1992, chapter 2); with one surface, the field is the one above.
 //!
 //! A [`Switched`] system states its field for given signs, and its surfaces. [`Filippov`] makes an
-//! ordinary hybrid system of it, so that [`run`](crate::run), [`fn@margins`](crate::margins),
-//! [`sensitivities`](crate::sensitivities) and all else can be had of it.
+//! ordinary hybrid system of it, so that [`run`](crate::run), [`margins`](fn@crate::margins),
+//! [`sensitivities`](fn@crate::sensitivities) and all else can be had of it.
 //!
 //! ```
 //! use stickslip_solver::{Dop853, Number, Options, Start, State, run};
@@ -87,7 +87,7 @@ pub use sampled::{SampledFilippov, SwitchedDynamic, TwoFields};
 pub use sides::{Refusal, Side, SlidingMode};
 
 use crate::hybrid::{Direction, Guard};
-use crate::sliding::control::View;
+use crate::sliding::control::{Row, View};
 use crate::sliding::decision::{Cause, decide};
 use crate::sliding::sides::Sides;
 
@@ -104,11 +104,11 @@ fn guards_of(surfaces: &Sides) -> [[Guard; 2]; MOST] {
     })
 }
 
-/// What a guard that has fired at the state `before` says about the surfaces.
-fn cause_of<'a>(surfaces: &Sides, guard: usize, before: &'a [f64]) -> Cause<'a> {
+/// What a guard that has fired says about the surfaces, whose functions have these values there.
+fn cause_of(surfaces: &Sides, guard: usize, values: impl Fn() -> Row<f64>) -> Cause<'static> {
     let surface = guard / 2;
     if surface >= surfaces.count {
-        Cause::Moved(before)
+        Cause::Moved(values())
     } else if surfaces.sides[surface] != Side::Sliding {
         Cause::Arrived(surface)
     } else {
@@ -126,10 +126,7 @@ fn start<Mode>(
     given: &[Option<Side>],
 ) -> Result<SlidingMode<Mode>, Refusal> {
     let values = view.surfaces(s, y);
-    let mut sides = Sides::new(&vec![Side::Above; given.len()]);
-    for i in 0..given.len() {
-        sides.sides[i] = Side::of(values[i]);
-    }
+    let sides = Sides::new(given.len(), values.map(Side::of));
     let surfaces = decide(view, &sides, Cause::Start(given), s, &mut y.to_vec());
     match surfaces.refusal {
         Some(refusal) => Err(refusal),

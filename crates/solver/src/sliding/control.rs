@@ -16,20 +16,17 @@ pub(super) trait View<T: Number> {
     fn rates(&self, s: T, y: &[T], slope: &[T]) -> Row<T>;
 }
 
-/// The determinant of the first `size` ≥ 1 rows and columns.
-fn determinant<T: Number>(a: &Square<T>, size: usize) -> T {
-    expanded(a, 0, size, 0)
-}
-
-/// The minor of the rows from `row` on and of the columns that are not `used`.
-fn expanded<T: Number>(a: &Square<T>, row: usize, size: usize, used: usize) -> T {
+/// The determinant of the rows and columns with these bits, as many of each and at least one.
+fn determinant<T: Number>(a: &Square<T>, rows: usize, columns: usize) -> T {
+    let (row, rest) = (rows.trailing_zeros() as usize, rows & (rows - 1));
     let mut sum: Option<T> = None;
     let mut adds = true;
-    for column in (0..size).filter(|column| used >> column & 1 == 0) {
+    for column in (0..MOST).filter(|column| columns >> column & 1 == 1) {
         let entry = a[row][column];
-        let rest = row + 1 < size;
-        let term =
-            if rest { entry * expanded(a, row + 1, size, used | 1 << column) } else { entry };
+        let term = match rest {
+            0 => entry,
+            _ => entry * determinant(a, rest, columns & !(1 << column)),
+        };
         sum = Some(match sum {
             None => term,
             Some(sum) if adds => sum + term,
@@ -40,32 +37,23 @@ fn expanded<T: Number>(a: &Square<T>, row: usize, size: usize, used: usize) -> T
     sum.unwrap_or_else(|| T::from(1.0))
 }
 
-/// The subsets of so many rows, without the empty one.
-pub(super) fn subsets(size: usize) -> impl Iterator<Item = Vec<usize>> {
-    (1_usize..1 << size).map(move |bits| (0..size).filter(|i| bits >> i & 1 == 1).collect())
-}
-
-/// The principal minor of −a with these rows.
-pub(super) fn minor<T: Number>(a: &Square<T>, rows: &[usize]) -> T {
-    let mut part = [[T::from(0.0); MOST]; MOST];
-    for (row, &i) in rows.iter().enumerate() {
-        for (column, &j) in rows.iter().enumerate() {
-            part[row][column] = -a[i][j];
-        }
-    }
-    determinant(&part, rows.len())
+/// The principal minor of −a with these bits, at least one.
+pub(super) fn minor<T: Number>(a: &Square<T>, rows: usize) -> T {
+    let determinant = determinant(a, rows, rows);
+    if rows.count_ones() % 2 == 1 { -determinant } else { determinant }
 }
 
 /// Solves a x = b by Cramer's rule, which needs no comparisons. With `size` 1 it is a quotient.
 pub(super) fn solved<T: Number>(a: &Square<T>, b: &Row<T>, size: usize) -> Row<T> {
-    let all = determinant(a, size);
+    let rows = (1 << size) - 1;
+    let all = determinant(a, rows, rows);
     let mut x = [T::from(0.0); MOST];
     for j in 0..size {
         let mut replaced = *a;
         for i in 0..size {
             replaced[i][j] = b[i];
         }
-        x[j] = determinant(&replaced, size) / all;
+        x[j] = determinant(&replaced, rows, rows) / all;
     }
     x
 }
@@ -138,8 +126,8 @@ pub(super) fn field<T: Number>(
         *slope =
             (0..count).fold(below, |sum, j| sum + shares[j] * (fields[(j + 1) * n + k] - below));
     }
-    for rows in subsets(count) {
-        let attracts = minor(&rates, &rows);
+    for rows in 1..1 << count {
+        let attracts = minor(&rates, rows);
         slope.iter_mut().for_each(|slope| *slope = attracts.select(*slope, T::from(f64::NAN)));
     }
 }

@@ -8,7 +8,7 @@
 //! combinations are tried, and surfaces are slid along only where their part of −A is a P-matrix,
 //! so that the solution is attracted to them.
 
-use crate::sliding::control::{self, Row, Square, View, minor, solved, subsets};
+use crate::sliding::control::{self, Row, Square, View, minor, solved};
 use crate::sliding::{MOST, Refusal, Side, Sides};
 
 /// A number relative to its scale below which its sign is not taken for granted.
@@ -23,8 +23,9 @@ pub(super) enum Cause<'a> {
     Arrived(usize),
     /// The multiplier of this surface has reached the sign of a side.
     Released(usize, Side),
-    /// The system itself has changed its mode, or this state.
-    Moved(&'a [f64]),
+    /// The system itself has changed its mode or the state. The surfaces' functions had these
+    /// values before.
+    Moved(Row<f64>),
 }
 
 /// Decides how the solution goes on from `y`, where it came from the `old` sides. Where it begins
@@ -100,10 +101,8 @@ pub(super) fn condition(
 /// The sides from which the solution goes on, before it is asked how.
 fn came_from(view: &impl View<f64>, old: &Sides, cause: Cause<'_>, s: f64, y: &[f64]) -> Sides {
     let mut from = Sides { zeros: [[0; 2]; MOST], unique: true, refusal: None, ..*old };
-    if let Cause::Moved(before) = cause
-        && before != y
-    {
-        let (was, is) = (view.surfaces(s, before), view.surfaces(s, y));
+    if let Cause::Moved(was) = cause {
+        let is = view.surfaces(s, y);
         let known = rounding(view, s, y, &is);
         for i in 0..from.count {
             let stays = match from.sides[i] {
@@ -138,7 +137,7 @@ fn rounding(view: &impl View<f64>, s: f64, y: &[f64], values: &Row<f64>) -> Row<
 
 /// Which surfaces the state lies on, one bit each: those that it slides along, the one that it has
 /// arrived at, and those from which rounding of state or time may have moved it away.
-fn surfaces_at(view: &impl View<f64>, from: &Sides, cause: Cause<'_>, s: f64, y: &[f64]) -> u8 {
+fn surfaces_at(view: &impl View<f64>, from: &Sides, cause: Cause<'_>, s: f64, y: &[f64]) -> usize {
     let values = view.surfaces(s, y);
     let known = rounding(view, s, y, &values);
     let n = y.len();
@@ -151,7 +150,7 @@ fn surfaces_at(view: &impl View<f64>, from: &Sides, cause: Cause<'_>, s: f64, y:
         let is_on = from.sides[i] == Side::Sliding
             || matches!(cause, Cause::Arrived(surface) if surface == i)
             || values[i].abs() <= known[i] + if soon.is_finite() { soon } else { 0.0 };
-        on |= u8::from(is_on) << i;
+        on |= usize::from(is_on) << i;
     }
     on
 }
@@ -187,20 +186,20 @@ enum Verdict {
     No,
     Yes,
     /// Some multipliers are ±1 as nearly as can be told: the surfaces with these bits.
-    Nearly(u8),
+    Nearly(usize),
 }
 
 impl Problem {
     fn new(
         view: &impl View<f64>,
         from: &Sides,
-        bits: u8,
+        on_bits: usize,
         s: f64,
         y: &[f64],
     ) -> Result<Self, Refusal> {
         let mut on = [0; MOST];
         let mut size = 0;
-        for i in (0..from.count).filter(|i| bits >> i & 1 == 1) {
+        for i in (0..from.count).filter(|i| on_bits >> i & 1 == 1) {
             on[size] = i;
             size += 1;
         }
@@ -288,7 +287,7 @@ impl Problem {
                 }
                 b[row] = -rate(i, &multipliers);
             }
-            if self.minor(&sliding).abs() <= SMALL {
+            if minor(&self.scaled, bits(sliding.iter().copied())).abs() <= SMALL {
                 return Err(singular(a, b, sliding.len()));
             }
             let solved = solved(&a, &b, sliding.len());
@@ -303,20 +302,14 @@ impl Problem {
         Ok(Outcome { multipliers, rates })
     }
 
-    /// The principal minor of the scaled −A with these rows.
-    fn minor(&self, rows: &[usize]) -> f64 {
-        minor(&self.scaled, rows)
-    }
-
     /// Whether the solution is attracted to the surfaces that are slid along.
     fn attracts(&self, choice: &[Side; MOST]) -> bool {
-        subsets(self.size).all(|rows| {
-            rows.iter().any(|&i| choice[i] != Side::Sliding) || self.minor(&rows) > SMALL
-        })
+        let slides = bits((0..self.size).filter(|&i| choice[i] == Side::Sliding));
+        (1..1 << self.size).all(|rows| rows & !slides != 0 || minor(&self.scaled, rows) > SMALL)
     }
 
     /// Whether the solution goes on with this choice of sides. What is `given` is not asked.
-    fn verdict(&self, choice: &[Side; MOST], given: u8) -> Result<Verdict, Refusal> {
+    fn verdict(&self, choice: &[Side; MOST], given: usize) -> Result<Verdict, Refusal> {
         let at = match self.outcome(choice) {
             Ok(at) => at,
             Err(Unsolved::Never) => return Ok(Verdict::No),
@@ -334,7 +327,7 @@ impl Problem {
             if inside < -SMALL * scale {
                 return Ok(Verdict::No);
             }
-            near |= u8::from(inside <= SMALL * scale) << i;
+            near |= usize::from(inside <= SMALL * scale) << i;
         }
         Ok(if !self.attracts(choice) {
             Verdict::No
@@ -355,7 +348,8 @@ impl Problem {
         y: &[f64],
     ) -> Result<Sides, Refusal> {
         let were = self.of(from);
-        let mut given = self.held(&were);
+        let moved = matches!(cause, Cause::Moved(_));
+        let mut given = if moved { 0 } else { self.held(&were) };
         let mut target = were;
         if let Cause::Released(surface, side) = cause {
             if !self.attracts(&were) {
@@ -401,8 +395,8 @@ impl Problem {
         let [(choice, bits)] = sure[..] else {
             return Err(if unique { Refusal::NoSolution } else { Refusal::NotUnique });
         };
-        if arrived.is_some() && choice[..self.size] == were[..self.size] {
-            // Whence it came, a state cannot have come.
+        if arrived.is_some() && bits == 0 && choice[..self.size] == were[..self.size] {
+            // A state cannot come from where it goes; in doubt, it has touched the surface.
             return Err(Refusal::NoSolution);
         }
         let mut decided = Sides { unique, ..*from };
@@ -423,15 +417,14 @@ impl Problem {
 
     /// The surfaces that are slid along with multipliers beyond ±1, as in runs with a prescribed
     /// itinerary, which go on so until their exits.
-    fn held(&self, were: &[Side; MOST]) -> u8 {
+    fn held(&self, were: &[Side; MOST]) -> usize {
         let Ok(at) = self.outcome(were) else { return 0 };
-        (0..self.size)
-            .filter(|&i| were[i] == Side::Sliding && at.multipliers[i].abs() > 1.0 + SMALL)
-            .fold(0, |bits, i| bits | 1 << i)
+        let beyond = |&i: &usize| at.multipliers[i].abs() > 1.0 + SMALL;
+        bits((0..self.size).filter(|&i| were[i] == Side::Sliding).filter(beyond))
     }
 
     /// All choices of sides, with those that are `given` as in `target`.
-    fn choices(&self, target: &[Side; MOST], given: u8) -> Vec<[Side; MOST]> {
+    fn choices(&self, target: &[Side; MOST], given: usize) -> Vec<[Side; MOST]> {
         let mut all = vec![*target];
         for i in (0..self.size).filter(|i| given >> i & 1 == 0) {
             let sides = [Side::Above, Side::Below, Side::Sliding];
@@ -457,7 +450,7 @@ impl Problem {
         view: &impl View<f64>,
         from: &Sides,
         choice: &[Side; MOST],
-        (near, given): (u8, u8),
+        (near, given): (usize, usize),
         s: f64,
         y: &[f64],
     ) -> bool {
@@ -475,7 +468,7 @@ impl Problem {
         let time = largest(y) / largest(&slope);
         let later = 1e-4 * if time.is_finite() && time > 0.0 { time } else { 1.0 };
         let moved: Vec<f64> = y.iter().zip(&slope).map(|(y, slope)| y + later * slope).collect();
-        let on = self.on().iter().fold(0, |bits, surface| bits | 1 << surface);
+        let on = bits(self.on().iter().copied());
         let Ok(then) = Self::new(view, from, on, s + later, &moved) else { return false };
         (0..self.size).filter(|i| near >> i & 1 == 1 && given >> i & 1 == 0).all(|i| {
             let mut sliding = *choice;
@@ -498,7 +491,7 @@ impl Problem {
             from.sides[surface] == Side::Sliding || to.sides[surface] == Side::Sliding
         };
         let rows: Vec<usize> = (0..self.size).filter(slides).collect();
-        if rows.is_empty() || self.minor(&rows).abs() <= SMALL {
+        if rows.is_empty() || minor(&self.scaled, bits(rows.iter().copied())).abs() <= SMALL {
             return;
         }
         let values = view.surfaces(s, y);
@@ -517,6 +510,11 @@ impl Problem {
             }
         }
     }
+}
+
+/// The numbers as bits.
+fn bits(numbers: impl Iterator<Item = usize>) -> usize {
+    numbers.fold(0, |bits, number| bits | 1 << number)
 }
 
 /// A with each row and then each column divided by its largest entry.

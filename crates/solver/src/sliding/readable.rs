@@ -8,7 +8,7 @@ use crate::hybrid::{Guard, ReadableSystem};
 use crate::method::State;
 use crate::sensitivity::{Change, Differentiable};
 use crate::sliding::control::{self, Row, View};
-use crate::sliding::decision::{condition, decide};
+use crate::sliding::decision::{Cause, condition, decide};
 use crate::sliding::sides::{Refusal, Side, SlidingMode};
 use crate::sliding::{MOST, cause_of, guards_of, start};
 use stickslip_number::{Dual, Number};
@@ -129,6 +129,28 @@ impl<S, const K: usize, const G: usize> Filippov<S, K, G> {
         start(&Reading::<S, _, N, K, G>(&self.0, own), own, s, y.as_slice(), &sides)
     }
 
+    /// The system's own mode and the state behind a guard that fires, and what it says about the
+    /// surfaces; `None` if an own guard changes nothing.
+    fn moved<const N: usize>(
+        &self,
+        mode: SlidingMode<S::Mode>,
+        guard: usize,
+        s: f64,
+        y: &State<N>,
+    ) -> Option<(S::Mode, State<N>, Cause<'static>)>
+    where
+        S: Switched<N, K, G>,
+    {
+        let before = &y.data.0[0];
+        let cause = cause_of(&mode.surfaces, guard, || row(self.0.surfaces(mode.own, s, before)));
+        if guard < 2 * K {
+            return Some((mode.own, *y, cause));
+        }
+        let after = self.0.reset(mode.own, guard, s, before).into();
+        let own = self.0.next(mode.own, guard, s, y);
+        (own != mode.own || after != *y).then_some((own, after, cause))
+    }
+
     /// The field in a mode, in numbers of any kind.
     fn field_of<T: Number, const N: usize>(
         &self,
@@ -188,6 +210,10 @@ where
         self.guards_in(mode, s, y)
     }
 
+    fn settle(&self, mode: Self::Mode) -> Self::Mode {
+        mode.settled()
+    }
+
     fn transition(
         &self,
         mode: Self::Mode,
@@ -195,24 +221,16 @@ where
         s: f64,
         y: &State<N>,
     ) -> (Self::Mode, State<N>) {
-        let (mut own, mut after) = (mode.own, *y);
-        if guard >= 2 * K {
-            own = self.0.next(mode.own, guard, s, y);
-            after = self.0.reset(mode.own, guard, s, &y.data.0[0]).into();
-        }
-        let cause = cause_of(&mode.surfaces, guard, y.as_slice());
+        let Some((own, mut after, cause)) = self.moved(mode, guard, s, y) else {
+            return (mode, *y);
+        };
         let view = Reading::<S, _, N, K, G>(&self.0, own);
         let surfaces = decide(&view, &mode.surfaces, cause, s, after.as_mut_slice());
         (SlidingMode { own, surfaces }, after)
     }
 
     fn transition_condition(&self, mode: Self::Mode, guard: usize, s: f64, y: &State<N>) -> f64 {
-        let (mut own, mut after) = (mode.own, *y);
-        if guard >= 2 * K {
-            own = self.0.next(mode.own, guard, s, y);
-            after = self.0.reset(mode.own, guard, s, &y.data.0[0]).into();
-        }
-        let cause = cause_of(&mode.surfaces, guard, y.as_slice());
+        let Some((own, after, cause)) = self.moved(mode, guard, s, y) else { return f64::NAN };
         let view = Reading::<S, _, N, K, G>(&self.0, own);
         condition(&view, &mode.surfaces, cause, s, after.as_slice())
     }

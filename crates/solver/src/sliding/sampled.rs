@@ -7,7 +7,7 @@ use crate::dynamic::DynamicSystem;
 use crate::hybrid::{Guard, HybridSystem};
 use crate::method::State;
 use crate::sliding::control::{self, Row, View};
-use crate::sliding::decision::{condition, decide};
+use crate::sliding::decision::{Cause, condition, decide};
 use crate::sliding::sides::{Refusal, Side, SlidingMode};
 use crate::sliding::{MOST, cause_of, guards_of, start};
 
@@ -33,25 +33,44 @@ pub trait SwitchedDynamic {
     /// Writes the rates of the surfaces' functions, where the state changes with this `slope`, to
     /// `rates`: ∂h/∂s + ∇h·slope.
     ///
-    /// The provided version takes differences of fourth order over ±δ and ±2δ, with δ a 256th of
-    /// the time in which the largest component of the state would change by its own size. They are
-    /// exact but for rounding, some 1e-13, where the functions are polynomials of a degree below 5,
-    /// and about as good where they change on no shorter time. Other functions need their own.
+    /// The provided version takes differences of fourth order over shorter and shorter times, and
+    /// of these the one that differs least from the one before. Where the functions are polynomials
+    /// of a degree below 5, also in time, it evaluates them eight times, and else up to 36 times.
     fn rates(&self, mode: Self::Mode, s: f64, y: &[f64], slope: &[f64], rates: &mut [f64]) {
         let largest = |all: &[f64]| all.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-        let time = largest(y) / largest(slope);
-        let reach = if time.is_finite() && time > 0.0 { time } else { 1.0 } / 256.0;
+        // A time in which state or time change by their own size.
+        let time = (largest(y) / largest(slope)).max(s.abs());
+        let mut reach = if time.is_finite() && time > 0.0 { time } else { 1.0 } / 64.0;
         let (mut moved, mut values) = (y.to_vec(), [0.0; MOST]);
-        rates.fill(0.0);
-        for (far, weight) in [(1.0, 8.0), (-1.0, -8.0), (2.0, -1.0), (-2.0, 1.0)] {
-            let by = far * reach;
-            for ((moved, y), slope) in moved.iter_mut().zip(y).zip(slope) {
-                *moved = y + by * slope;
+        let mut before = [f64::INFINITY; MOST];
+        let mut least = [f64::INFINITY; MOST];
+        rates.fill(f64::NAN);
+        for _ in 0..9 {
+            let (mut now, mut terms) = ([0.0; MOST], [0.0_f64; MOST]);
+            for (far, weight) in [(1.0, 8.0), (-1.0, -8.0), (2.0, -1.0), (-2.0, 1.0)] {
+                let by = far * reach;
+                for ((moved, y), slope) in moved.iter_mut().zip(y).zip(slope) {
+                    *moved = y + by * slope;
+                }
+                self.surfaces(mode, s + by, &moved, &mut values[..rates.len()]);
+                for (i, value) in values.iter().enumerate() {
+                    now[i] += weight * value / (12.0 * reach);
+                    terms[i] = terms[i].max(value.abs() / reach);
+                }
             }
-            self.surfaces(mode, s + by, &moved, &mut values[..rates.len()]);
-            for (rate, value) in rates.iter_mut().zip(values) {
-                *rate += weight * value / (12.0 * reach);
+            let mut settled = true;
+            for (i, rate) in rates.iter_mut().enumerate() {
+                let change = (now[i] - before[i]).abs();
+                if change < least[i] {
+                    (*rate, least[i]) = (now[i], change);
+                }
+                settled &= change <= 1e-12 * terms[i];
             }
+            if settled {
+                break;
+            }
+            before = now;
+            reach /= 8.0;
         }
     }
 
@@ -116,9 +135,9 @@ where
 /// A [`SwitchedDynamic`] system as a hybrid system, which slides along its surfaces where they
 /// attract it.
 ///
-/// It is a [`DynamicSystem`], and for a fixed dimension `N` also a [`HybridSystem`], with `G` guards
-/// or less. Guards 2i and 2i + 1 belong to surface i, as in
-/// [`Filippov`](crate::sliding::Filippov), and the system's own guards follow.
+/// It is a [`DynamicSystem`], and for a fixed dimension `N` also a [`HybridSystem`], with at most
+/// `G` guards, which the caller of a run has to name. Guards 2i and 2i + 1 belong to surface i, as
+/// in [`Filippov`](crate::sliding::Filippov), and the system's own guards follow.
 #[derive(Debug)]
 pub struct SampledFilippov<S> {
     /// The switched system.
@@ -218,12 +237,23 @@ impl<S: SwitchedDynamic> SampledFilippov<S> {
         self.system.guard_values(mode.own, s, y, &mut values[2 * count..]);
     }
 
-    /// What follows before it is decided how the surfaces are left.
-    fn after(&self, mode: SlidingMode<S::Mode>, guard: usize, s: f64, y: &mut [f64]) -> S::Mode {
-        match guard.checked_sub(2 * self.system.count()) {
-            Some(own) => self.system.transition(mode.own, own, s, y),
-            None => mode.own,
-        }
+    /// The system's own mode behind a guard that fires, and what it says about the surfaces; `None`
+    /// if an own guard changes nothing.
+    fn moved(
+        &self,
+        mode: SlidingMode<S::Mode>,
+        guard: usize,
+        s: f64,
+        y: &mut [f64],
+    ) -> Option<(S::Mode, Cause<'static>)> {
+        let cause =
+            cause_of(&mode.surfaces, guard, || Sampling(&self.system, mode.own).surfaces(s, y));
+        let Some(guard) = guard.checked_sub(2 * self.system.count()) else {
+            return Some((mode.own, cause));
+        };
+        let before = y.to_vec();
+        let own = self.system.transition(mode.own, guard, s, y);
+        (own != mode.own || before != y).then_some((own, cause))
     }
 
     fn switched(
@@ -233,9 +263,7 @@ impl<S: SwitchedDynamic> SampledFilippov<S> {
         s: f64,
         y: &mut [f64],
     ) -> SlidingMode<S::Mode> {
-        let before = y.to_vec();
-        let own = self.after(mode, guard, s, y);
-        let cause = cause_of(&mode.surfaces, guard, &before);
+        let Some((own, cause)) = self.moved(mode, guard, s, y) else { return mode };
         let surfaces = decide(&Sampling(&self.system, own), &mode.surfaces, cause, s, y);
         SlidingMode { own, surfaces }
     }
@@ -292,6 +320,10 @@ impl<S: SwitchedDynamic, const N: usize, const G: usize> HybridSystem<N, G> for 
         values
     }
 
+    fn settle(&self, mode: Self::Mode) -> Self::Mode {
+        mode.settled()
+    }
+
     fn transition(
         &self,
         mode: Self::Mode,
@@ -306,8 +338,9 @@ impl<S: SwitchedDynamic, const N: usize, const G: usize> HybridSystem<N, G> for 
 
     fn transition_condition(&self, mode: Self::Mode, guard: usize, s: f64, y: &State<N>) -> f64 {
         let mut after = *y;
-        let own = self.after(mode, guard, s, after.as_mut_slice());
-        let cause = cause_of(&mode.surfaces, guard, y.as_slice());
+        let Some((own, cause)) = self.moved(mode, guard, s, after.as_mut_slice()) else {
+            return f64::NAN;
+        };
         condition(&Sampling(&self.system, own), &mode.surfaces, cause, s, after.as_slice())
     }
 }

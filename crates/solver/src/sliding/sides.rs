@@ -65,12 +65,9 @@ pub(crate) struct Sides {
 }
 
 impl Sides {
-    /// These sides, with guards that do not start from zero.
-    pub(super) fn new(sides: &[Side]) -> Self {
-        let count = sides.len();
-        let mut all = [Side::Above; MOST];
-        all[..count].copy_from_slice(sides);
-        Self { count, sides: all, zeros: [[0; 2]; MOST], unique: true, refusal: None }
+    /// These sides of the first `count` surfaces, with guards that do not start from zero.
+    pub(super) fn new(count: usize, sides: [Side; MOST]) -> Self {
+        Self { count, sides, zeros: [[0; 2]; MOST], unique: true, refusal: None }
     }
 
     /// These sides, from where nothing goes on.
@@ -109,6 +106,11 @@ impl<Mode> SlidingMode<Mode> {
     #[must_use]
     pub fn is_unique(&self) -> bool {
         self.surfaces.unique
+    }
+
+    /// This mode after its first step, where its guards have left their zeros.
+    pub(super) fn settled(self) -> Self {
+        Self { surfaces: Sides { zeros: [[0; 2]; MOST], ..self.surfaces }, ..self }
     }
 
     /// Why the solution does not go on. The right-hand side is then NaN, so that a run ends with
