@@ -2,11 +2,13 @@
 //!
 //! A formula that is generic in its [`Number`]s gives values with `f64`. With dual numbers the same
 //! lines give derivatives. With [`Enclosure`]s they bound the formula and its first two derivatives
-//! over an interval of one variable, so that a zero there can be excluded.
+//! over an interval of one variable, so that a zero there can be excluded. [`Dual`] numbers have
+//! parts of any of these kinds.
 //!
 //! `interval` has the arithmetic of intervals, and `four` computes four of them side by side;
 //! `enclosure` is built on both.
 
+mod dual;
 mod enclosure;
 mod four;
 mod interval;
@@ -16,6 +18,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use num_dual::{Dual64, DualNum};
 
+pub use dual::Dual;
 pub use enclosure::Enclosure;
 pub use interval::Interval;
 

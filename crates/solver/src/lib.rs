@@ -83,6 +83,7 @@
 //! | a tolerance for each component | [`Weighted`] |
 //! | a method that is named at run time | [`EmbeddedPair`], [`run_with`] |
 //! | a dimension that is known at run time, many components, any number of guards | [`DynamicSystem`], [`run_dynamic`] |
+//! | a field that jumps on a surface, as dry friction does | [`sliding::Filippov`] |
 //! | how far a run is from another sequence of switches | [`fn@margins`], and the crate `stickslip-tracer` |
 //!
 //! # Defined answers
@@ -121,6 +122,7 @@
 //! | `events` | one step and its guards: which guard fires first, and where |
 //! | [`mod@dynamic`] | systems whose dimension is known at run time: the loop, events and steps on buffers |
 //! | [`method`] | Runge–Kutta pairs, one step, its dense output, step-size control, measured orders |
+//! | [`mod@sliding`] | systems whose field jumps on surfaces, along which they may slide |
 //! | [`mod@margin`] | how near a run came to other switches |
 //! | [`sensitivity`] | derivatives of a run with respect to parameters |
 
@@ -143,6 +145,8 @@ pub mod margin;
 pub mod sensitivity;
 
 pub mod dynamic;
+
+pub mod sliding;
 
 pub use dynamic::{
     DynamicDense, DynamicEvent, DynamicObserver, DynamicRun, DynamicStart, DynamicSwitch,

@@ -15,6 +15,7 @@
 //! | `planted_kinds` | random guards of every kind: steep, fast, kinked, with jumps and poles |
 //! | `fast_guards` | black boxes that go up and down often on one step, and poles on long steps |
 //! | `singular` | guards without bounds or without a value somewhere |
+//! | `sliding` | systems that slide along surfaces |
 //! | `strangers` | systems that nobody here designed for |
 //! | `dynamic` | systems whose dimension is known at run time |
 //! | `erased` | runs along any system as runs along one type, so that they are compiled once |
@@ -43,6 +44,7 @@ mod runs;
 #[cfg(feature = "serde")]
 mod serialization;
 mod singular;
+mod sliding;
 mod smooth_problems;
 mod strangers;
 

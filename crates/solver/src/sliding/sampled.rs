@@ -1,0 +1,346 @@
+//! Sliding systems whose functions cannot be read.
+
+use std::fmt;
+use std::sync::OnceLock;
+
+use crate::dynamic::DynamicSystem;
+use crate::hybrid::{Guard, HybridSystem};
+use crate::method::State;
+use crate::sliding::control::{self, Row, View};
+use crate::sliding::decision::{Cause, condition, decide};
+use crate::sliding::sides::{Refusal, Side, SlidingMode};
+use crate::sliding::{MOST, cause_of, guards_of, start};
+
+/// A system whose field depends on the signs of up to 4 surfaces, and whose functions are black
+/// boxes. Its dimension is the length of its state.
+///
+/// With several surfaces the field has to be affine in the signs: a sum of parts that each depend
+/// on one of them. This is checked wherever the solution reaches a surface.
+pub trait SwitchedDynamic {
+    /// A smooth regime of the system itself, besides its signs.
+    type Mode: Copy + PartialEq + fmt::Debug;
+
+    /// The number of surfaces, at most 4.
+    fn count(&self) -> usize;
+
+    /// Writes the derivative of the state where the surfaces have these `signs`, each of them +1 or
+    /// −1, to `slope`.
+    fn field(&self, mode: Self::Mode, signs: &[f64], s: f64, y: &[f64], slope: &mut [f64]);
+
+    /// Writes the functions whose zeros are the surfaces to `values`.
+    fn surfaces(&self, mode: Self::Mode, s: f64, y: &[f64], values: &mut [f64]);
+
+    /// Writes the rates of the surfaces' functions, where the state changes with this `slope`, to
+    /// `rates`: ∂h/∂s + ∇h·slope.
+    ///
+    /// The provided version takes differences of fourth order over shorter and shorter times, and
+    /// of these the one that differs least from the one before. Where the functions are polynomials
+    /// of a degree below 5, also in time, it evaluates them eight times, and else up to 36 times.
+    fn rates(&self, mode: Self::Mode, s: f64, y: &[f64], slope: &[f64], rates: &mut [f64]) {
+        let largest = |all: &[f64]| all.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        // A time in which state or time change by their own size.
+        let time = (largest(y) / largest(slope)).max(s.abs());
+        let mut reach = if time.is_finite() && time > 0.0 { time } else { 1.0 } / 64.0;
+        let (mut moved, mut values) = (y.to_vec(), [0.0; MOST]);
+        let mut before = [f64::INFINITY; MOST];
+        let mut least = [f64::INFINITY; MOST];
+        rates.fill(f64::NAN);
+        for _ in 0..9 {
+            let (mut now, mut terms) = ([0.0; MOST], [0.0_f64; MOST]);
+            for (far, weight) in [(1.0, 8.0), (-1.0, -8.0), (2.0, -1.0), (-2.0, 1.0)] {
+                let by = far * reach;
+                for ((moved, y), slope) in moved.iter_mut().zip(y).zip(slope) {
+                    *moved = y + by * slope;
+                }
+                self.surfaces(mode, s + by, &moved, &mut values[..rates.len()]);
+                for (i, value) in values.iter().enumerate() {
+                    now[i] += weight * value / (12.0 * reach);
+                    terms[i] = terms[i].max(value.abs() / reach);
+                }
+            }
+            let mut settled = true;
+            for (i, rate) in rates.iter_mut().enumerate() {
+                let change = (now[i] - before[i]).abs();
+                if change < least[i] {
+                    (*rate, least[i]) = (now[i], change);
+                }
+                settled &= change <= 1e-12 * terms[i];
+            }
+            if settled {
+                break;
+            }
+            before = now;
+            reach /= 8.0;
+        }
+    }
+
+    /// The system's own guards.
+    fn guards(&self, _mode: Self::Mode) -> &[Guard] {
+        &[]
+    }
+
+    /// Writes the values of the system's own guards to `values`.
+    fn guard_values(&self, _mode: Self::Mode, _s: f64, _y: &[f64], _values: &mut [f64]) {}
+
+    /// Changes the state `y` to the one that follows when one of the system's own guards fires, and
+    /// returns the mode that follows.
+    fn transition(&self, mode: Self::Mode, _guard: usize, _s: f64, _y: &mut [f64]) -> Self::Mode {
+        mode
+    }
+}
+
+/// Two fields on both sides of a surface, as closures: the field above the surface, the field below
+/// it, and the surface's function.
+///
+/// ```
+/// use stickslip_solver::sliding::{SampledFilippov, TwoFields};
+/// use stickslip_solver::{Dop853, DynamicStart, Options, run_dynamic};
+///
+/// // Relay feedback: x′ = −1 for x > 0 and 1 for x < 0. It is at rest at 0 from then on.
+/// let relay = SampledFilippov::new(TwoFields(
+///     |_time, _x: &[f64], slope: &mut [f64]| slope[0] = -1.0,
+///     |_time, _x: &[f64], slope: &mut [f64]| slope[0] = 1.0,
+///     |_time, x: &[f64]| x[0],
+/// ));
+/// let start = DynamicStart { mode: relay.mode((), 0.0, &[0.75])?, s: 0.0, state: &[0.75] };
+/// let mut switches = Vec::new();
+/// let end = run_dynamic(Dop853, &relay, start, 2.0, &Options::default(), &mut switches)?;
+/// assert_eq!((switches.len(), switches[0].s, end.state[0]), (1, 0.75, 0.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct TwoFields<A, B, H>(pub A, pub B, pub H);
+
+impl<A, B, H> SwitchedDynamic for TwoFields<A, B, H>
+where
+    A: Fn(f64, &[f64], &mut [f64]),
+    B: Fn(f64, &[f64], &mut [f64]),
+    H: Fn(f64, &[f64]) -> f64,
+{
+    type Mode = ();
+
+    fn count(&self) -> usize {
+        1
+    }
+
+    fn field(&self, (): (), signs: &[f64], s: f64, y: &[f64], slope: &mut [f64]) {
+        if signs[0] > 0.0 { self.0(s, y, slope) } else { self.1(s, y, slope) }
+    }
+
+    fn surfaces(&self, (): (), s: f64, y: &[f64], values: &mut [f64]) {
+        values[0] = self.2(s, y);
+    }
+}
+
+/// A [`SwitchedDynamic`] system as a hybrid system, which slides along its surfaces where they
+/// attract it.
+///
+/// It is a [`DynamicSystem`], and for a fixed dimension `N` also a [`HybridSystem`], with at most
+/// `G` guards, which the caller of a run has to name. Guards 2i and 2i + 1 belong to surface i, as
+/// in [`Filippov`](crate::sliding::Filippov), and the system's own guards follow.
+#[derive(Debug)]
+pub struct SampledFilippov<S> {
+    /// The switched system.
+    pub system: S,
+    guards: OnceLock<Box<Guards>>,
+}
+
+/// The guards of some modes, and those of modes that were entered later: modes may be many, but
+/// few lists differ.
+#[derive(Debug)]
+struct Guards {
+    guards: Vec<Guard>,
+    next: OnceLock<Box<Guards>>,
+}
+
+/// A black box in one of its own modes.
+struct Sampling<'a, S: SwitchedDynamic>(&'a S, S::Mode);
+
+impl<S: SwitchedDynamic> View<f64> for Sampling<'_, S> {
+    fn field(&self, signs: &[f64], s: f64, y: &[f64], slope: &mut [f64]) {
+        self.0.field(self.1, signs, s, y, slope);
+    }
+
+    fn surfaces(&self, s: f64, y: &[f64]) -> Row<f64> {
+        let mut values = [0.0; MOST];
+        self.0.surfaces(self.1, s, y, &mut values[..self.0.count()]);
+        values
+    }
+
+    fn rates(&self, s: f64, y: &[f64], slope: &[f64]) -> Row<f64> {
+        let mut rates = [0.0; MOST];
+        self.0.rates(self.1, s, y, slope, &mut rates[..self.0.count()]);
+        rates
+    }
+}
+
+impl<S: SwitchedDynamic> SampledFilippov<S> {
+    /// The hybrid system of a switched system.
+    ///
+    /// # Panics
+    /// If it has more than 4 surfaces.
+    pub fn new(system: S) -> Self {
+        let count = system.count();
+        assert!(count <= MOST, "{count} surfaces are more than {MOST}");
+        Self { system, guards: OnceLock::new() }
+    }
+
+    /// The mode in which a run starts from `y`.
+    ///
+    /// # Errors
+    /// A [`Refusal`] if `y` lies on surfaces from which the solution does not go on, or in several
+    /// ways. Of these, [`Self::mode_from`] takes one.
+    pub fn mode(&self, own: S::Mode, s: f64, y: &[f64]) -> Result<SlidingMode<S::Mode>, Refusal> {
+        start(&Sampling(&self.system, own), own, s, y, &[None; MOST][..self.system.count()])
+    }
+
+    /// As [`Self::mode`], with the sides to which the solution keeps where it could go on in
+    /// several ways; none are given beyond the end of the list.
+    ///
+    /// # Errors
+    /// A [`Refusal`] if the solution does not go on.
+    pub fn mode_from(
+        &self,
+        own: S::Mode,
+        sides: &[Side],
+        s: f64,
+        y: &[f64],
+    ) -> Result<SlidingMode<S::Mode>, Refusal> {
+        let mut given = [None; MOST];
+        given.iter_mut().zip(sides).for_each(|(given, side)| *given = Some(*side));
+        start(&Sampling(&self.system, own), own, s, y, &given[..self.system.count()])
+    }
+
+    fn field_of(&self, mode: SlidingMode<S::Mode>, s: f64, y: &[f64], slope: &mut [f64]) {
+        let sliding = mode.surfaces.sliding().count();
+        let mut fields = vec![0.0; if sliding > 0 { (sliding + 1) * y.len() } else { 0 }];
+        let view = Sampling(&self.system, mode.own);
+        control::field(&view, &mode.surfaces, (s, y), &mut fields, slope);
+    }
+
+    fn guards_of(&self, mode: SlidingMode<S::Mode>) -> Vec<Guard> {
+        let count = self.system.count();
+        let mut guards = guards_of(&mode.surfaces).as_flattened()[..2 * count].to_vec();
+        guards.extend_from_slice(self.system.guards(mode.own));
+        if mode.refusal().is_some() {
+            guards.fill(Guard::OFF);
+        }
+        guards
+    }
+
+    fn values_of(&self, mode: SlidingMode<S::Mode>, s: f64, y: &[f64], values: &mut [f64]) {
+        let count = self.system.count();
+        let mut fields = vec![0.0; (mode.surfaces.sliding().count() + 1) * y.len()];
+        let view = Sampling(&self.system, mode.own);
+        let surfaces = control::guards(&view, &mode.surfaces, (s, y), &mut fields);
+        values[..2 * count].copy_from_slice(&surfaces.as_flattened()[..2 * count]);
+        self.system.guard_values(mode.own, s, y, &mut values[2 * count..]);
+    }
+
+    /// The system's own mode behind a guard that fires, and what it says about the surfaces; `None`
+    /// if an own guard changes nothing.
+    fn moved(
+        &self,
+        mode: SlidingMode<S::Mode>,
+        guard: usize,
+        s: f64,
+        y: &mut [f64],
+    ) -> Option<(S::Mode, Cause<'static>)> {
+        let cause =
+            cause_of(&mode.surfaces, guard, || Sampling(&self.system, mode.own).surfaces(s, y));
+        let Some(guard) = guard.checked_sub(2 * self.system.count()) else {
+            return Some((mode.own, cause));
+        };
+        let before = y.to_vec();
+        let own = self.system.transition(mode.own, guard, s, y);
+        (own != mode.own || before != y).then_some((own, cause))
+    }
+
+    fn switched(
+        &self,
+        mode: SlidingMode<S::Mode>,
+        guard: usize,
+        s: f64,
+        y: &mut [f64],
+    ) -> SlidingMode<S::Mode> {
+        let Some((own, cause)) = self.moved(mode, guard, s, y) else { return mode };
+        let surfaces = decide(&Sampling(&self.system, own), &mode.surfaces, cause, s, y);
+        SlidingMode { own, surfaces }
+    }
+}
+
+impl<S: SwitchedDynamic> DynamicSystem for SampledFilippov<S> {
+    type Mode = SlidingMode<S::Mode>;
+
+    fn field(&self, mode: Self::Mode, s: f64, y: &[f64], slope: &mut [f64]) {
+        self.field_of(mode, s, y, slope);
+    }
+
+    fn guards(&self, mode: Self::Mode) -> &[Guard] {
+        let guards = self.guards_of(mode);
+        let mut place = &self.guards;
+        loop {
+            let new = || Box::new(Guards { guards: guards.clone(), next: OnceLock::new() });
+            let known = place.get_or_init(new);
+            if known.guards == guards {
+                return &known.guards;
+            }
+            place = &known.next;
+        }
+    }
+
+    fn guard_values(&self, mode: Self::Mode, s: f64, y: &[f64], values: &mut [f64]) {
+        self.values_of(mode, s, y, values);
+    }
+
+    fn transition(&self, mode: Self::Mode, guard: usize, s: f64, y: &mut [f64]) -> Self::Mode {
+        self.switched(mode, guard, s, y)
+    }
+}
+
+impl<S: SwitchedDynamic, const N: usize, const G: usize> HybridSystem<N, G> for SampledFilippov<S> {
+    type Mode = SlidingMode<S::Mode>;
+
+    fn field(&self, mode: Self::Mode, s: f64, y: &State<N>) -> State<N> {
+        let mut slope: State<N> = State::zeros();
+        self.field_of(mode, s, y.as_slice(), slope.as_mut_slice());
+        slope
+    }
+
+    fn guards(&self, mode: Self::Mode) -> [Guard; G] {
+        let guards = self.guards_of(mode);
+        assert!(guards.len() <= G, "the system has {} guards", guards.len());
+        std::array::from_fn(|i| guards.get(i).copied().unwrap_or(Guard::OFF))
+    }
+
+    fn guard_values(&self, mode: Self::Mode, s: f64, y: &State<N>) -> [f64; G] {
+        let mut values = [1.0; G];
+        let count = 2 * self.system.count() + self.system.guards(mode.own).len();
+        self.values_of(mode, s, y.as_slice(), &mut values[..count]);
+        values
+    }
+
+    fn settle(&self, mode: Self::Mode) -> Self::Mode {
+        mode.settled()
+    }
+
+    fn transition(
+        &self,
+        mode: Self::Mode,
+        guard: usize,
+        s: f64,
+        y: &State<N>,
+    ) -> (Self::Mode, State<N>) {
+        let mut after = *y;
+        let mode = self.switched(mode, guard, s, after.as_mut_slice());
+        (mode, after)
+    }
+
+    fn transition_condition(&self, mode: Self::Mode, guard: usize, s: f64, y: &State<N>) -> f64 {
+        let mut after = *y;
+        let Some((own, cause)) = self.moved(mode, guard, s, after.as_mut_slice()) else {
+            return f64::NAN;
+        };
+        condition(&Sampling(&self.system, own), &mode.surfaces, cause, s, after.as_slice())
+    }
+}
