@@ -154,7 +154,8 @@ pub use hybrid::{
     Statistics, SwitchEvent, Unfinished,
 };
 pub use margin::{
-    Exit, Followed, Hint, Margin, Margins, NearMiss, Place, Way, follow, margin, margins,
+    Exit, Followed, Hint, Margin, Margins, NearMiss, Place, Way, follow, follow_dynamic, margin,
+    margin_dynamic, margins, margins_dynamic,
 };
 pub use method::{
     Dense, Dop853, Dopri5, EmbeddedPair, Method, Order, State, Step, Tableau, Trial,
