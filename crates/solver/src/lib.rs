@@ -83,7 +83,7 @@
 //! | a tolerance for each component | [`Weighted`] |
 //! | a method that is named at run time | [`EmbeddedPair`], [`run_with`] |
 //! | a dimension that is known at run time, many components, any number of guards | [`DynamicSystem`], [`run_dynamic`] |
-//! | how far a run is from another sequence of switches | [`fn@margins`], and the crate `stickslip-tracer` |
+//! | how far a run is from another sequence of switches | [`fn@margins`], [`margins_dynamic`], and the crate `stickslip-tracer` |
 //!
 //! # Defined answers
 //!

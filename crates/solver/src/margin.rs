@@ -35,6 +35,12 @@
 //! An extremum of a guard is a zero of its rate. It is found like a zero of a black box: the rate
 //! is sampled on every step, also that of a readable system, and steps of the method locate its
 //! zeros.
+//!
+//! Only a rate that cannot be rounding counts: a guard must first move towards zero by a rate that
+//! exceeds its rounding. Otherwise a guard that is flat, as that of a system which leaves rest like
+//! t⁴ or slower, would have extrema without number. The rounding of a rate is bounded by enclosures
+//! if the system is readable. That of a black box is what one rounding of each value makes of a
+//! difference, and its noise, measured where each step starts.
 
 mod free;
 mod name;

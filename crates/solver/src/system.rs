@@ -352,13 +352,7 @@ pub(crate) trait System: Sized {
     /// Bounds of a guard's rate, where time and state are known up to their last digit.
     fn enclose_rate(&self, mode: Self::Mode, s: f64, y: &Self::State, guard: usize) -> Interval;
     /// The number whose sign says which branch a transition takes, NaN if it has none.
-    fn transition_condition(
-        &self,
-        mode: Self::Mode,
-        guard: usize,
-        s: f64,
-        y: &Self::State,
-    ) -> f64;
+    fn transition_condition(&self, mode: Self::Mode, guard: usize, s: f64, y: &Self::State) -> f64;
     fn settle(&self, mode: Self::Mode) -> Self::Mode;
     fn longest_first_step(&self, mode: Self::Mode, s: f64, y: &Self::State) -> f64;
     fn step<M: Method>(

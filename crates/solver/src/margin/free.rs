@@ -182,9 +182,10 @@ impl<M: Method, S: System> Listing<'_, M, S> {
         };
         // Whether the guard has the same value before and after the transition. Its value in a mode
         // without it means nothing.
-        let led_by = phase.led_by.filter(was_on).filter(|event| {
-            values_of(self.system, event.from, s, &event.before)[guard] == value
-        });
+        let led_by = phase
+            .led_by
+            .filter(was_on)
+            .filter(|event| values_of(self.system, event.from, s, &event.before)[guard] == value);
         let stands = led_by.is_some_and(|event| event.guard == guard);
         // It has the same margin already where the phase before ended.
         let known = !stands && led_by.is_some();
@@ -193,8 +194,7 @@ impl<M: Method, S: System> Listing<'_, M, S> {
         let declared = guards_of(self.system, mode)[guard].zero_order();
         let order = declared.max(u32::from(at_zero));
         let (mode, which, place) = ((mode, self.options), (guard, order), (s, state));
-        let value =
-            derivative::<M, S>(self.system, &reach, mode, which, place).unwrap_or(0.0);
+        let value = derivative::<M, S>(self.system, &reach, mode, which, place).unwrap_or(0.0);
         if !known {
             self.add(guard, Place::Start { derivative: order }, Taken { s, value });
         }
@@ -202,12 +202,7 @@ impl<M: Method, S: System> Listing<'_, M, S> {
     }
 
     /// The margins of a guard at its extrema in a phase. Returns the place of the last one.
-    fn extrema(
-        &mut self,
-        phase: &Phase<'_, S>,
-        exited: f64,
-        (guard, own): (usize, Guard),
-    ) -> f64 {
+    fn extrema(&mut self, phase: &Phase<'_, S>, exited: f64, (guard, own): (usize, Guard)) -> f64 {
         // Nothing else need end the run where a terminal guard is watched.
         let until = if phase.last && !own.ends_run() { self.end } else { exited };
         let bounds = own.direction() == Direction::Below;

@@ -7,8 +7,8 @@ use crate::margin::rate::{ROUNDING, Reach, derivative};
 use crate::margin::{guards_of, values_of};
 use crate::method::{Method, StepOf, TrialOf};
 use crate::options::Options;
-use crate::runs::runner::{End, run_any};
 use crate::runs::at_switches::AtSwitches;
+use crate::runs::runner::{End, run_any};
 use crate::system::{List, Note, PerComponent, PerGuard, Shape, System};
 use stickslip_number::{Enclosure, Interval};
 
@@ -251,14 +251,16 @@ impl<S: System> Prescribed<'_, S> {
     ) -> Progress {
         let (rate, rounding) =
             if at.order == 0 { self.rate(at, (subject, kind), (s, y)) } else { (0.0, 0.0) };
-        if at.progress != Progress::Near && rate < 0.0 {
+        let rounds = rounding > 0.0;
+        if at.progress != Progress::Near && rounds && rate < 0.0 {
             return Progress::Near;
         }
         match self.watch {
             Watch::Extrema { enough, .. } if s < enough => {}
             _ => return Progress::Done,
         }
-        if rate > -0.5 * rounding { Progress::Passed } else { Progress::Extremum }
+        let positive = rounds && rate > -0.5 * rounding;
+        if positive { Progress::Passed } else { Progress::Extremum }
     }
 
     /// Records the exits, and the extrema of the guard that is watched.
@@ -359,13 +361,7 @@ impl<S: System> System for Prescribed<'_, S> {
     }
 
     #[inline]
-    fn guard_values(
-        &self,
-        at: Self::Mode,
-        s: f64,
-        y: &S::State,
-        values: &mut PerGuard<S, f64>,
-    ) {
+    fn guard_values(&self, at: Self::Mode, s: f64, y: &S::State, values: &mut PerGuard<S, f64>) {
         let (subject, awaited) = self.subject(&at);
         self.system.guard_values(at.mode, s, y, values);
         // The mode may have fewer guards.
@@ -442,8 +438,7 @@ impl<S: System> System for Prescribed<'_, S> {
             && at.order == 0
             && let (subject, Awaited::Extremum(_)) = self.subject(&at)
         {
-            let place = (trial.s, trial.y, trial.slope);
-            self.reach.measure(self.system, (at.mode, subject), place);
+            self.reach.measure(self.system, (at.mode, subject), trial);
         }
         self.system.step::<M>(at.mode, trial, step);
     }

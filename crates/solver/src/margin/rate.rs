@@ -23,12 +23,16 @@ use crate::system::{Room, System};
 /// rate, and rounding one of some 1e-13.
 const REACH: f64 = 1.0 / 256.0;
 
+/// The length of the row of states along which noise is measured, in tolerances. They are 16 and 4
+/// tolerances apart.
+const TOLERANCES: f64 = 512.0;
+
 /// The rounding of a guard or of its rate, as a part of it; that of time is a sixteenth.
 pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// The reach of the differences that replace unknown rates, and the noise of rates.
 pub(super) struct Reach<S: System> {
-    /// The start of the present step.
+    /// The start of the present step, NaN before the first one.
     start: Cell<f64>,
     /// The distance over which the differences reach.
     distance: Cell<f64>,
@@ -60,7 +64,7 @@ impl<S: System> Reach<S> {
             }
         };
         Self {
-            start: Cell::new(s),
+            start: Cell::new(f64::NAN),
             distance: Cell::new(REACH * first),
             noise: Cell::new(0.0),
             room: RefCell::new(room),
@@ -75,34 +79,39 @@ impl<S: System> Reach<S> {
         if distance >= 2.0 * self.distance.get() {
             self.distance.set(distance);
         }
+        // True of NaN.
         distance != 0.0
     }
 
-    /// Measures the noise of the rate of a guard where a step starts. It only grows, and seldom, so
-    /// that it seldom changes between two steps.
-    pub fn measure(
-        &self,
-        system: &S,
-        at: (S::Mode, usize),
-        (s, y, slope): (f64, &S::State, &S::State),
-    ) {
+    /// Measures the noise of the rate of a guard where the step `trial` starts: along the solution,
+    /// and where each component moves by a few tolerances, since a state at rest does not move and
+    /// rounds nothing. The noise only grows, and seldom, so that it seldom changes between two
+    /// steps.
+    pub fn measure(&self, system: &S, at: (S::Mode, usize), trial: &TrialOf<'_, S::State>) {
+        let &TrialOf { s, y, slope, tolerances: (rtol, atol), .. } = trial;
         if enclosed_rate(system, at, (s, y)).is_some() {
             return;
         }
         let room = &mut *self.room.borrow_mut();
-        let (mut moved, reach) = (room.state(), self.distance.get());
+        let (mut moved, mut tolerance) = (room.state(), room.state());
+        S::State::each(&mut tolerance, [y], |_, [y]| atol + rtol * y.abs());
+        let reach = self.distance.get();
         let knows = !known_rate(system, room, at, (s, y)).is_nan();
-        let mut value = |part: f64| {
-            S::State::shifted(&mut moved, y, slope, part * reach);
-            let s = s + part * reach;
-            if knows {
-                known_rate(system, room, at, (s, &moved))
-            } else {
-                room.value(system, at, s, &moved)
-            }
+        let mut along = |direction: &S::State, by: f64, time: f64| {
+            let value = &mut |part: f64| {
+                S::State::shifted(&mut moved, y, direction, part * by);
+                let s = s + part * time;
+                if knows {
+                    known_rate(system, room, at, (s, &moved))
+                } else {
+                    room.value(system, at, s, &moved)
+                }
+            };
+            noise(value, 0.0, 1.0, [0.0])
         };
-        let measured = noise(&mut value, 0.0, 1.0, [0.0]);
+        let measured = along(slope, reach, reach).max(along(&tolerance, TOLERANCES, 0.0));
         room.give(moved);
+        room.give(tolerance);
         let measured = if knows { measured } else { measured / reach };
         if measured > self.noise.get() {
             self.noise.set(2.0 * measured);
@@ -133,7 +142,7 @@ impl<S: System> Reach<S> {
             h *= 0.25;
         }
         Self {
-            start: Cell::new(s),
+            start: Cell::new(f64::NAN),
             distance: Cell::new(REACH * h),
             noise: Cell::new(0.0),
             room: RefCell::new(Room::new(n)),

@@ -102,8 +102,7 @@ pub(crate) fn noise<const K: usize>(
         let start = low + part * (high - low);
         let [wide, narrow] = [32.0, 128.0].map(|parts| {
             let spacing = (high - low) / parts;
-            let mut row: [f64; ROW] =
-                std::array::from_fn(|i| function(start + i as f64 * spacing));
+            let mut row: [f64; ROW] = std::array::from_fn(|i| function(start + i as f64 * spacing));
             for order in 1..=DIFFERENCES {
                 for i in 0..ROW - order {
                     row[i] = row[i + 1] - row[i];
