@@ -109,7 +109,7 @@ class HybridFamily:
     method is "dop853". max_switches: itineraries are told apart up to so many events. Where events
     accumulate, there are boundaries without end, unless this is a small number.
 
-    Up to 12 components and 12 guards. Guards that have one name in several modes count as one
+    Any number of components and guards. Guards that have one name in several modes count as one
     guard, if the modes list them in one order.
 
     >>> ball = HybridSystem()

@@ -61,8 +61,7 @@
 //!
 //! # What differs
 //!
-//! - No guard is read ([`ReadableSystem`](crate::ReadableSystem)), and there are no margins and no
-//!   sensitivities.
+//! - Guards are read only of a [`ReadableDynamic`], and there are no sensitivities.
 //! - [`DynamicEvent::simultaneous`] is a list, so that it can name any number of guards.
 //! - Up to 8 components, the effect of rounding of the state on a guard is measured component by
 //!   component; beyond that, by moving all components at once, in eight irregular but fixed

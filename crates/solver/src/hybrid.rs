@@ -13,13 +13,14 @@ use std::fmt;
 
 pub use guard::{Direction, Guard};
 pub use readable::ReadableSystem;
+pub(crate) use readable::constant;
 pub use results::{
     Grazing, Observer, Outcome, Pole, Preempted, Rest, Run, Statistics, SwitchEvent, Unfinished,
 };
 pub use schedule::{Schedule, Times};
 
 use crate::method::{Method, State, Step, Trial};
-use stickslip_number::Enclosure;
+use stickslip_number::{Enclosure, Interval};
 
 /// A piecewise-smooth ODE of `N` components with at most `G` guards in a mode.
 ///
@@ -65,6 +66,13 @@ pub trait HybridSystem<const N: usize, const G: usize> {
         _y: &[Enclosure; N],
     ) -> [Enclosure; G] {
         [Enclosure::ENTIRE; G]
+    }
+
+    /// Bounds for the rates of the guards of `mode`, with bounds for time and state. They tell
+    /// margins what of a rate is rounding. A [`ReadableSystem`] provides them by itself; of other
+    /// systems, the noise of rates is measured.
+    fn enclose_rates(&self, _mode: Self::Mode, _s: Interval, _y: &[Interval; N]) -> [Interval; G] {
+        [Interval::ENTIRE; G]
     }
 
     /// The mode in which a phase goes on that has taken a step to the state `y`.

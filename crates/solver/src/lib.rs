@@ -84,7 +84,7 @@
 //! | a method that is named at run time | [`EmbeddedPair`], [`run_with`] |
 //! | a dimension that is known at run time, many components, any number of guards | [`DynamicSystem`], [`run_dynamic`] |
 //! | a field that jumps on a surface, as dry friction does | [`sliding::Filippov`] |
-//! | how far a run is from another sequence of switches | [`fn@margins`], and the crate `stickslip-tracer` |
+//! | how far a run is from another sequence of switches | [`fn@margins`], [`margins_dynamic`], and the crate `stickslip-tracer` |
 //!
 //! # Defined answers
 //!
@@ -158,7 +158,8 @@ pub use hybrid::{
     Run, Schedule, Start, Statistics, SwitchEvent, Times, Unfinished,
 };
 pub use margin::{
-    Exit, Followed, Hint, Margin, Margins, NearMiss, Place, Way, follow, margin, margins,
+    Exit, Followed, Hint, Margin, Margins, NearMiss, Place, Way, follow, follow_dynamic, margin,
+    margin_dynamic, margins, margins_dynamic,
 };
 pub use method::{
     Dense, Dop853, Dopri5, EmbeddedPair, Method, Order, State, Step, Tableau, Trial,

@@ -35,19 +35,27 @@
 //! An extremum of a guard is a zero of its rate. It is found like a zero of a black box: the rate
 //! is sampled on every step, also that of a readable system, and steps of the method locate its
 //! zeros.
+//!
+//! Only a rate that cannot be rounding counts: a guard must first move towards zero by a rate that
+//! exceeds its rounding. Otherwise a guard that is flat, as that of a system which leaves rest like
+//! t⁴ or slower, would have extrema without number. The rounding of a rate is bounded by enclosures
+//! if the system is readable. That of a black box is what one rounding of each value makes of a
+//! difference, and its noise, measured where each step starts.
 
 mod free;
 mod name;
 mod prescribed;
 mod rate;
 
+use crate::dynamic::{DynamicRun, DynamicStart, DynamicSystem};
 use crate::error::RunError;
-use crate::hybrid::{HybridSystem, Outcome, Run, Start};
+use crate::hybrid::{Guard, HybridSystem, Outcome, Run, Start};
 use crate::margin::prescribed::{Kind, Taken, Watch, Watched, watch};
 use crate::method::Method;
 use crate::options::Options;
+use crate::runs::runner::End;
+use crate::system::{Fixed, Free, List, PerGuard, System};
 
-pub use free::margins;
 pub use name::{Exit, Hint, Margin, Place, Way};
 
 /// A margin of a run.
@@ -75,6 +83,50 @@ pub struct Margins {
     pub outcome: Outcome,
 }
 
+/// Runs `system` freely and returns every margin that the run leaves.
+///
+/// The margins of a phase take one run over that phase for each of its guards, two for a guard that
+/// does not bound the domain of its mode, and each extremum takes about two steps more. A guard
+/// that changes by no more than its rounding has no extrema. It has no margins behind a place where
+/// its rate cannot be followed, for instance because it is zero from there on. A run that ends
+/// early has none at all, but one that ends at [`Options::max_switches`] has those of its phases up
+/// to there.
+///
+/// # Errors
+/// Those of [`run`](crate::run).
+pub fn margins<M, S, const N: usize, const G: usize>(
+    _method: M,
+    system: &S,
+    start: Start<S::Mode, N>,
+    end: f64,
+    options: &Options,
+) -> Result<Margins, RunError>
+where
+    M: Method,
+    S: HybridSystem<N, G>,
+{
+    free::margins::<M, _>(&Fixed(system), (start.mode, start.s, &start.state), end, options)
+}
+
+/// As [`fn@margins`], for a system whose dimension is known at run time.
+///
+/// # Errors
+/// Those of [`run_dynamic`](crate::run_dynamic).
+pub fn margins_dynamic<M, S>(
+    _method: M,
+    system: &S,
+    start: DynamicStart<'_, S::Mode>,
+    end: f64,
+    options: &Options,
+) -> Result<Margins, RunError>
+where
+    M: Method,
+    S: DynamicSystem,
+{
+    let (system, from) = (Free::new(system, start.state.len()), start.state.to_vec());
+    free::margins::<M, _>(&system, (start.mode, start.s, &from), end, options)
+}
+
 /// The value of `margin` for `system`, by a run that follows the itinerary in its name.
 ///
 /// The result is `None` if the run cannot follow that itinerary, if there is no such minimum, or if
@@ -83,7 +135,7 @@ pub struct Margins {
 /// # Errors
 /// Those of [`run`](crate::run).
 pub fn margin<M, S, const N: usize, const G: usize>(
-    method: M,
+    _method: M,
     system: &S,
     start: Start<S::Mode, N>,
     end: f64,
@@ -94,15 +146,106 @@ where
     M: Method,
     S: HybridSystem<N, G>,
 {
+    let from = (start.mode, start.s, &start.state);
+    near_miss::<M, _>(&Fixed(system), from, end, options, margin)
+}
+
+/// As [`margin()`], for a system whose dimension is known at run time.
+///
+/// # Errors
+/// Those of [`run_dynamic`](crate::run_dynamic).
+pub fn margin_dynamic<M, S>(
+    _method: M,
+    system: &S,
+    start: DynamicStart<'_, S::Mode>,
+    end: f64,
+    options: &Options,
+    margin: &Margin,
+) -> Result<Option<NearMiss>, RunError>
+where
+    M: Method,
+    S: DynamicSystem,
+{
+    let (system, from) = (Free::new(system, start.state.len()), start.state.to_vec());
+    near_miss::<M, _>(&system, (start.mode, start.s, &from), end, options, margin)
+}
+
+/// A run that has followed an itinerary.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Followed<Run> {
+    /// The exits, whose hints have moved along.
+    pub exits: Vec<Exit>,
+    /// The run.
+    pub run: Run,
+}
+
+/// The run that follows an itinerary.
+///
+/// What a run arrives at has kinks where the itinerary changes. With the itinerary prescribed it is
+/// a smooth function of the parameters. The result is `None` if the run cannot follow the
+/// itinerary, or if the system does not have its guards.
+///
+/// # Errors
+/// Those of [`run`](crate::run).
+pub fn follow<M, S, const N: usize, const G: usize>(
+    _method: M,
+    system: &S,
+    start: Start<S::Mode, N>,
+    end: f64,
+    options: &Options,
+    exits: &[Exit],
+) -> Result<Option<Followed<Run<S::Mode, N>>>, RunError>
+where
+    M: Method,
+    S: HybridSystem<N, G>,
+{
+    let from = (start.mode, start.s, &start.state);
+    let followed = followed::<M, _>(&Fixed(system), from, end, options, exits)?;
+    Ok(followed.map(|(End { outcome, s, mode, state, statistics }, exits)| Followed {
+        exits,
+        run: Run { outcome, s, mode, state, statistics },
+    }))
+}
+
+/// As [`follow`], for a system whose dimension is known at run time.
+///
+/// # Errors
+/// Those of [`run_dynamic`](crate::run_dynamic).
+pub fn follow_dynamic<M, S>(
+    _method: M,
+    system: &S,
+    start: DynamicStart<'_, S::Mode>,
+    end: f64,
+    options: &Options,
+    exits: &[Exit],
+) -> Result<Option<Followed<DynamicRun<S::Mode>>>, RunError>
+where
+    M: Method,
+    S: DynamicSystem,
+{
+    let (system, from) = (Free::new(system, start.state.len()), start.state.to_vec());
+    let from = (start.mode, start.s, &from);
+    let followed = followed::<M, _>(&system, from, end, options, exits)?;
+    Ok(followed.map(|(End { outcome, s, mode, state, statistics }, exits)| Followed {
+        exits,
+        run: DynamicRun { outcome, s, mode, state, statistics },
+    }))
+}
+
+/// The value of `margin`, with its name moved along.
+fn near_miss<M: Method, S: System>(
+    system: &S,
+    start: (S::Mode, f64, &S::State),
+    end: f64,
+    options: &Options,
+    margin: &Margin,
+) -> Result<Option<NearMiss>, RunError> {
     let last = match margin.place {
         Place::Exit(exit) | Place::Branch(exit) => Some(exit),
         _ => None,
     };
     let mut exits = margin.exits.clone();
     exits.extend(last);
-    if margin.guard >= G || exits.iter().any(|exit| exit.guard >= G) {
-        return Ok(None);
-    }
     // The extremum that is nearest to a place is the last one before or the first one after it.
     let what = match margin.place {
         Place::Start { derivative } => Watch::Start { derivative },
@@ -114,12 +257,12 @@ where
     };
     let end = match what {
         // The guard that is watched may be the one that ends the run.
-        Watch::Extrema { enough, .. } if end.is_infinite() => enough + (enough - start.s),
+        Watch::Extrema { enough, .. } if end.is_infinite() => enough + (enough - start.1),
         _ => end,
     };
-    let watched = watch(method, system, start, end, options, &exits, (margin.guard, what));
-    let Some(watched) = watched.map_err(|(error, _)| error)? else { return Ok(None) };
-    move_along(&mut exits, start.s, &watched);
+    let found = watch::<M, S>(system, start, end, options, &exits, (margin.guard, what));
+    let Some((_, watched)) = found.map_err(|(error, _)| error)? else { return Ok(None) };
+    move_along(&mut exits, start.1, &watched);
     let nearest = |near: Hint| {
         let distance = |taken: &&Taken| (taken.s - near.0).abs();
         watched.taken.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
@@ -142,45 +285,19 @@ where
     Ok(Some(NearMiss { margin: moved, s: at.s, value: at.value }))
 }
 
-/// A run that has followed an itinerary.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Followed<Mode, const N: usize> {
-    /// The exits, whose hints have moved along.
-    pub exits: Vec<Exit>,
-    /// The run.
-    pub run: Run<Mode, N>,
-}
-
-/// The run that follows an itinerary.
-///
-/// What a run arrives at has kinks where the itinerary changes. With the itinerary prescribed it is
-/// a smooth function of the parameters. The result is `None` if the run cannot follow the
-/// itinerary, or if the system does not have its guards.
-///
-/// # Errors
-/// Those of [`run`](crate::run).
-pub fn follow<M, S, const N: usize, const G: usize>(
-    method: M,
+/// The end of a run that follows `exits`, and the exits, whose hints have moved along.
+fn followed<M: Method, S: System>(
     system: &S,
-    start: Start<S::Mode, N>,
+    start: (S::Mode, f64, &S::State),
     end: f64,
     options: &Options,
     exits: &[Exit],
-) -> Result<Option<Followed<S::Mode, N>>, RunError>
-where
-    M: Method,
-    S: HybridSystem<N, G>,
-{
-    if exits.iter().any(|exit| exit.guard >= G) {
-        return Ok(None);
-    }
-    let (began, nothing) = (start.s, (0, Watch::Nothing));
-    let followed = prescribed::follow(method, system, start, end, options, exits, nothing);
-    let followed = followed.map_err(|(error, _)| error)?;
-    Ok(followed.map(|(run, watched)| {
+) -> Result<Option<(End<S>, Vec<Exit>)>, RunError> {
+    let found = watch::<M, S>(system, start, end, options, exits, (0, Watch::Nothing));
+    Ok(found.map_err(|(error, _)| error)?.map(|(run, watched)| {
         let mut exits = exits.to_vec();
-        move_along(&mut exits, began, &watched);
-        Followed { exits, run }
+        move_along(&mut exits, start.1, &watched);
+        (run, exits)
     }))
 }
 
@@ -191,4 +308,18 @@ fn move_along(exits: &mut [Exit], start: f64, watched: &Watched) {
         exit.after = Hint(began + exit.part.0 * (s - began));
         began = s;
     }
+}
+
+/// The guards of a mode.
+fn guards_of<S: System>(system: &S, mode: S::Mode) -> PerGuard<S, Guard> {
+    let mut guards = PerGuard::<S, Guard>::of(0, Guard::OFF);
+    system.guards(mode, &mut guards);
+    guards
+}
+
+/// The values of the guards of a mode.
+fn values_of<S: System>(system: &S, mode: S::Mode, s: f64, y: &S::State) -> PerGuard<S, f64> {
+    let mut values = PerGuard::<S, f64>::of(0, f64::NAN);
+    system.guard_values(mode, s, y, &mut values);
+    values
 }

@@ -8,6 +8,7 @@
 //! `unlocated` (runs without event location, for comparison). `finite`, `rejected` and `last_part`
 //! are what several of these need.
 
+pub(crate) mod at_switches;
 pub(crate) mod backwards;
 mod both;
 mod by_name;

@@ -11,7 +11,7 @@ use crate::events::isolate::Beginning;
 use crate::events::one_guard::Status;
 use crate::hybrid::{Guard, HybridSystem};
 use crate::method::{DenseOf, Method, State, StepOf, Store, TrialOf};
-use stickslip_number::Enclosure;
+use stickslip_number::{Enclosure, Interval};
 
 /// A list: an array, or a buffer.
 pub(crate) trait List<T>:
@@ -341,6 +341,18 @@ pub(crate) trait System: Sized {
         guard: usize,
     ) -> Enclosure;
     fn reads(&self, mode: Self::Mode) -> <Self::Components as Shape>::Read;
+    /// The rates of the guards, NaN where they are not known.
+    fn guard_rates(
+        &self,
+        mode: Self::Mode,
+        s: f64,
+        y: &Self::State,
+        rates: &mut PerGuard<Self, f64>,
+    );
+    /// Bounds of a guard's rate, where time and state are known up to their last digit.
+    fn enclose_rate(&self, mode: Self::Mode, s: f64, y: &Self::State, guard: usize) -> Interval;
+    /// The number whose sign says which branch a transition takes, NaN if it has none.
+    fn transition_condition(&self, mode: Self::Mode, guard: usize, s: f64, y: &Self::State) -> f64;
     fn settle(&self, mode: Self::Mode, y: &Self::State) -> Self::Mode;
     fn longest_first_step(&self, mode: Self::Mode, s: f64, y: &Self::State) -> f64;
     /// The mode behind an accumulation of switches at `s`, if the run goes on there.
@@ -392,6 +404,18 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> System for Fixed<'_,
     #[inline(always)]
     fn reads(&self, _: S::Mode) {}
     #[inline(always)]
+    fn guard_rates(&self, mode: S::Mode, s: f64, y: &State<N>, rates: &mut [f64; G]) {
+        *rates = self.0.guard_rates(mode, s, y);
+    }
+    fn enclose_rate(&self, mode: S::Mode, s: f64, y: &State<N>, guard: usize) -> Interval {
+        let y = std::array::from_fn(|i| up_to_last_digit(y[i]));
+        self.0.enclose_rates(mode, up_to_last_digit(s), &y)[guard]
+    }
+    #[inline(always)]
+    fn transition_condition(&self, mode: S::Mode, guard: usize, s: f64, y: &State<N>) -> f64 {
+        self.0.transition_condition(mode, guard, s, y)
+    }
+    #[inline(always)]
     fn settle(&self, mode: S::Mode, y: &State<N>) -> S::Mode {
         self.0.settle(mode, y)
     }
@@ -424,11 +448,23 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> System for Fixed<'_,
     }
 }
 
+/// A number that is known up to its last digit.
+fn up_to_last_digit(x: f64) -> Interval {
+    Interval::around(x, f64::EPSILON * x.abs())
+}
+
 /// A system whose dimension is known at run time.
 pub(crate) struct Free<'a, S>(
     pub(crate) &'a S,
     pub(crate) RefCell<(Vec<Enclosure>, Vec<Enclosure>)>,
 );
+
+impl<'a, S> Free<'a, S> {
+    /// A system of `n` components.
+    pub(crate) fn new(system: &'a S, n: usize) -> Self {
+        Self(system, RefCell::new((vec![Enclosure::ENTIRE; n], Vec::new())))
+    }
+}
 
 impl<S: DynamicSystem> System for Free<'_, S> {
     type Mode = S::Mode;
@@ -465,6 +501,19 @@ impl<S: DynamicSystem> System for Free<'_, S> {
     }
     fn reads(&self, mode: S::Mode) -> SmallVec<[usize; 8]> {
         self.0.reads(mode).into()
+    }
+    fn guard_rates(&self, mode: S::Mode, s: f64, y: &Vec<f64>, rates: &mut Vec<f64>) {
+        rates.resize(self.0.guards(mode).len(), f64::NAN);
+        self.0.guard_rates(mode, s, y, rates);
+    }
+    fn enclose_rate(&self, mode: S::Mode, s: f64, y: &Vec<f64>, guard: usize) -> Interval {
+        let y: Vec<_> = y.iter().copied().map(up_to_last_digit).collect();
+        let mut rates = vec![Interval::ENTIRE; self.0.guards(mode).len()];
+        self.0.enclose_rates(mode, up_to_last_digit(s), &y, &mut rates);
+        rates[guard]
+    }
+    fn transition_condition(&self, mode: S::Mode, guard: usize, s: f64, y: &Vec<f64>) -> f64 {
+        self.0.transition_condition(mode, guard, s, y)
     }
     fn settle(&self, mode: S::Mode, _: &Vec<f64>) -> S::Mode {
         mode

@@ -1,8 +1,9 @@
 //! Hybrid systems with two parameters as families of runs.
 
 use stickslip_solver::{
-    HybridSystem, Margin, Method, NearMiss, Observer, Options, Outcome, Place, RunError, Start,
-    SwitchEvent, margin, margins, run,
+    DynamicEvent, DynamicObserver, DynamicStart, DynamicSystem, HybridSystem, Margin, Margins,
+    Method, NearMiss, Observer, Options, Outcome, Place, RunError, Start, SwitchEvent, margin,
+    margin_dynamic, margins, margins_dynamic, run, run_dynamic,
 };
 
 use crate::family::{Family, FreeRun};
@@ -34,6 +35,19 @@ where
 /// The mode of a problem's system.
 pub type ModeOf<P, const N: usize, const G: usize> =
     <<P as Problem<N, G>>::System as HybridSystem<N, G>>::Mode;
+
+/// A hybrid system whose dimension is known at run time, and that depends on two parameters.
+pub trait DynamicProblem {
+    /// The hybrid system.
+    type System: DynamicSystem;
+
+    /// The system at `point`, and the mode, the place and the state at the start of its run.
+    fn at(&self, point: &Point) -> (Self::System, DynamicBeginning<Self>);
+}
+
+/// The mode, the place and the state at the start of a run.
+pub type DynamicBeginning<P> =
+    (<<P as DynamicProblem>::System as DynamicSystem>::Mode, f64, Vec<f64>);
 
 /// What a run of a [`HybridFamily`] does.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -115,16 +129,61 @@ where
         let (system, start) = self.problem.at(point);
         let mut fired = Fired(Vec::new());
         let run = run(self.method, &system, start, self.end, &self.options, &mut fired)?;
-        if let Outcome::EndedByGuard { .. } = run.outcome {
-            fired.0.pop();
-        }
-        Ok((run.outcome, fired.0))
+        Ok((run.outcome, fired.before(run.outcome)))
     }
 
-    fn near_miss(&self, point: &Point, which: &Margin) -> Result<Option<NearMiss>, FamilyError> {
+    fn near_miss(&self, point: &Point, which: &Margin) -> Result<Option<NearMiss>, RunError> {
         let (system, start) = self.problem.at(point);
-        let found = margin(self.method, &system, start, self.end, &self.options, which);
-        Ok(value_of(point, found)?.flatten())
+        margin(self.method, &system, start, self.end, &self.options, which)
+    }
+
+    fn margins(&self, point: &Point) -> Result<Margins, RunError> {
+        let (system, start) = self.problem.at(point);
+        margins(self.method, &system, start, self.end, &self.options)
+    }
+}
+
+/// The runs of a problem whose dimension is known at run time. It is as a [`HybridFamily`].
+#[derive(Clone, Copy, Debug)]
+pub struct DynamicFamily<P, M> {
+    /// The system and the start of its run, at every point.
+    pub problem: P,
+    /// The Runge–Kutta method of every run.
+    pub method: M,
+    /// The options of every run. They also determine the accuracy of margins.
+    pub options: Options,
+    /// The end of every run, if no terminal guard ends it before.
+    pub end: f64,
+}
+
+impl<P: DynamicProblem, M: Method> DynamicFamily<P, M> {
+    /// How the run at `point` ends.
+    ///
+    /// # Errors
+    /// The error of a run that fails.
+    pub fn outcome(&self, point: &Point) -> Result<Outcome, RunError> {
+        self.run(point).map(|(outcome, _)| outcome)
+    }
+
+    /// The outcome of the run at `point`, and the guards that fire.
+    fn run(&self, point: &Point) -> Result<(Outcome, Vec<usize>), RunError> {
+        let (system, (mode, s, state)) = self.problem.at(point);
+        let start = DynamicStart { mode, s, state: &state };
+        let mut fired = Fired(Vec::new());
+        let run = run_dynamic(self.method, &system, start, self.end, &self.options, &mut fired)?;
+        Ok((run.outcome, fired.before(run.outcome)))
+    }
+
+    fn near_miss(&self, point: &Point, which: &Margin) -> Result<Option<NearMiss>, RunError> {
+        let (system, (mode, s, state)) = self.problem.at(point);
+        let start = DynamicStart { mode, s, state: &state };
+        margin_dynamic(self.method, &system, start, self.end, &self.options, which)
+    }
+
+    fn margins(&self, point: &Point) -> Result<Margins, RunError> {
+        let (system, (mode, s, state)) = self.problem.at(point);
+        let start = DynamicStart { mode, s, state: &state };
+        margins_dynamic(self.method, &system, start, self.end, &self.options)
     }
 }
 
@@ -138,41 +197,86 @@ where
     type Error = FamilyError;
 
     fn label(&self, point: &Point) -> Result<Itinerary, FamilyError> {
-        match self.run(point) {
-            Err(RunError::Cycle { .. }) => Ok(Itinerary::Accumulates),
-            run => Ok(value_of(point, run)?
-                .map_or(Itinerary::Fails, |(outcome, fired)| itinerary(outcome, fired))),
-        }
+        label(point, self.run(point))
     }
 
     fn margin(&self, point: &Point, which: &Margin) -> Result<Option<f64>, FamilyError> {
-        self.near_miss(point, which).map(|found| found.map(|miss| miss.value))
+        Ok(value_of(point, self.near_miss(point, which))?.flatten().map(|miss| miss.value))
     }
 
     fn moved(&self, point: &Point, which: &Margin) -> Result<Margin, FamilyError> {
-        self.near_miss(point, which)
-            .map(|found| found.map_or_else(|| which.clone(), |miss| miss.margin))
+        let found = value_of(point, self.near_miss(point, which))?.flatten();
+        Ok(found.map_or_else(|| which.clone(), |miss| miss.margin))
     }
 
-    /// Where a phase starts or ends, the order of events may change without a change of the
-    /// itinerary: a guard that is negative from the start on fires as it would soon after.
     fn is_sure(&self, margin: &Margin) -> bool {
-        matches!(margin.place, Place::Minimum { .. } | Place::Maximum { .. } | Place::End)
+        is_sure(margin)
     }
 
     fn free_run(&self, point: &Point) -> Result<FreeRun<Itinerary, Margin>, FamilyError> {
-        let (system, start) = self.problem.at(point);
-        let found = margins(self.method, &system, start, self.end, &self.options);
-        if let Err(RunError::Cycle { .. }) = found {
-            return Ok(FreeRun { label: Itinerary::Accumulates, margins: Vec::new() });
-        }
-        let Some(found) = value_of(point, found)? else {
-            return Ok(FreeRun { label: Itinerary::Fails, margins: Vec::new() });
-        };
-        let margins = found.near_misses.into_iter().map(|miss| (miss.margin, miss.value));
-        let label = itinerary(found.outcome, found.fired);
-        Ok(FreeRun { label, margins: margins.collect() })
+        free_run(point, self.margins(point))
     }
+}
+
+impl<P: DynamicProblem, M: Method> Family for DynamicFamily<P, M> {
+    type Label = Itinerary;
+    type Margin = Margin;
+    type Error = FamilyError;
+
+    fn label(&self, point: &Point) -> Result<Itinerary, FamilyError> {
+        label(point, self.run(point))
+    }
+
+    fn margin(&self, point: &Point, which: &Margin) -> Result<Option<f64>, FamilyError> {
+        Ok(value_of(point, self.near_miss(point, which))?.flatten().map(|miss| miss.value))
+    }
+
+    fn moved(&self, point: &Point, which: &Margin) -> Result<Margin, FamilyError> {
+        let found = value_of(point, self.near_miss(point, which))?.flatten();
+        Ok(found.map_or_else(|| which.clone(), |miss| miss.margin))
+    }
+
+    fn is_sure(&self, margin: &Margin) -> bool {
+        is_sure(margin)
+    }
+
+    fn free_run(&self, point: &Point) -> Result<FreeRun<Itinerary, Margin>, FamilyError> {
+        free_run(point, self.margins(point))
+    }
+}
+
+/// The label of a run.
+fn label(
+    point: &Point,
+    run: Result<(Outcome, Vec<usize>), RunError>,
+) -> Result<Itinerary, FamilyError> {
+    if let Err(RunError::Cycle { .. }) = run {
+        return Ok(Itinerary::Accumulates);
+    }
+    let run = value_of(point, run)?;
+    Ok(run.map_or(Itinerary::Fails, |(outcome, fired)| itinerary(outcome, fired)))
+}
+
+/// Where a phase starts or ends, the order of events may change without a change of the itinerary:
+/// a guard that is negative from the start on fires as it would soon after.
+fn is_sure(margin: &Margin) -> bool {
+    matches!(margin.place, Place::Minimum { .. } | Place::Maximum { .. } | Place::End)
+}
+
+/// A free run from its margins.
+fn free_run(
+    point: &Point,
+    found: Result<Margins, RunError>,
+) -> Result<FreeRun<Itinerary, Margin>, FamilyError> {
+    if let Err(RunError::Cycle { .. }) = found {
+        return Ok(FreeRun { label: Itinerary::Accumulates, margins: Vec::new() });
+    }
+    let Some(found) = value_of(point, found)? else {
+        return Ok(FreeRun { label: Itinerary::Fails, margins: Vec::new() });
+    };
+    let margins = found.near_misses.into_iter().map(|miss| (miss.margin, miss.value));
+    let label = itinerary(found.outcome, found.fired);
+    Ok(FreeRun { label, margins: margins.collect() })
 }
 
 /// The result of a run, `None` if it failed. What is wrong with all runs is an error.
@@ -197,6 +301,22 @@ fn itinerary(outcome: Outcome, fired: Vec<usize>) -> Itinerary {
 
 /// Records the guards that fire.
 struct Fired(Vec<usize>);
+
+impl Fired {
+    /// The guards that fire before a run ends.
+    fn before(mut self, outcome: Outcome) -> Vec<usize> {
+        if let Outcome::EndedByGuard { .. } = outcome {
+            self.0.pop();
+        }
+        self.0
+    }
+}
+
+impl<Mode> DynamicObserver<Mode> for Fired {
+    fn on_switch(&mut self, event: &DynamicEvent<'_, Mode>) {
+        self.0.push(event.guard);
+    }
+}
 
 impl<Mode, const N: usize> Observer<Mode, N> for Fired {
     fn on_switch(&mut self, event: &SwitchEvent<Mode, N>) {

@@ -4,7 +4,7 @@
 //! A [`Family`] says what is traced. At each point of the plane its run has a label, the sequence
 //! of its switches, and margins. On a boundary, where the label changes, a margin vanishes. A
 //! [`HybridFamily`] is the family of a hybrid system of `stickslip_solver` that depends on two
-//! parameters.
+//! parameters; a [`DynamicFamily`] is the same for a dimension that is known at run time.
 //!
 //! - [`trace`] finds the boundaries in a [`Window`] and follows them from vertex to vertex.
 //! - A [`Subdivision`] holds the regions between the curves and answers in which region a point
@@ -119,7 +119,10 @@ pub use curve::{Curve, Node, Vertex, VertexKind};
 pub use document::{Document, DocumentError, SCHEMA};
 pub use executor::{Executor, FreeRunOf, LabelOf, Serial};
 pub use family::{Family, FreeRun};
-pub use hybrid::{FamilyError, HybridFamily, Itinerary, ModeOf, Problem};
+pub use hybrid::{
+    DynamicBeginning, DynamicFamily, DynamicProblem, FamilyError, HybridFamily, Itinerary, ModeOf,
+    Problem,
+};
 pub use options::{InvalidTraceOption, TraceError, TraceOptions};
 pub use regions::finding::{Euler, Finding, SubdivisionError};
 pub use regions::locate::Location;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
-use stickslip_solver::Options;
+use stickslip_solver::{Guard, Options};
 
 use crate::failure::bad_input;
 use crate::hybrid::arguments::{ChangeArguments, ModeArguments, Settings, Start};
@@ -18,8 +18,8 @@ pub struct Blueprint {
     modes: Arc<Vec<Mode>>,
     /// For each mode, the place of each of its guards among those of the family.
     pub places: Vec<Vec<usize>>,
-    /// The number of places.
-    pub guards: usize,
+    /// For each mode, the guards of the family, of which those that the mode does not list are off.
+    pub guards: Vec<Vec<Guard>>,
     /// What follows the two parameters as arguments of Python functions.
     args: Vec<Py<PyAny>>,
     /// The parameters of compiled functions, with room for those of the point, which come first in
@@ -66,7 +66,15 @@ impl Blueprint {
         if !fits {
             return Err(bad_input("guards and places differ"));
         }
-        let guards = places.iter().flatten().map(|place| place + 1).max().unwrap_or(0);
+        let count = places.iter().flatten().map(|place| place + 1).max().unwrap_or(0);
+        let placed = |(mode, own): (&Mode, &Vec<usize>)| {
+            let mut guards = vec![Guard::OFF; count];
+            for (&place, guard) in own.iter().zip(&mode.guards) {
+                guards[place] = *guard;
+            }
+            guards
+        };
+        let guards = modes.iter().zip(&places).map(placed).collect();
         Ok(Self {
             modes: Arc::new(modes),
             places,
@@ -85,11 +93,6 @@ impl Blueprint {
     pub fn is_compiled(&self) -> bool {
         self.modes.iter().all(Mode::is_compiled)
             && self.first.function().is_none_or(Function::is_compiled)
-    }
-
-    /// The number of components of the state.
-    pub fn dimension(&self) -> usize {
-        self.start.2.len()
     }
 
     /// The system at a point.

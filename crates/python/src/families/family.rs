@@ -13,7 +13,6 @@ use crate::families::atlas::{Description, FamilyAtlas, Label, followed, label, p
 use crate::families::blueprint::Blueprint;
 use crate::families::failure::of_trace;
 use crate::families::runner::Runner;
-use crate::families::sizes;
 use crate::families::survey::{Callbacks, survey};
 use crate::hybrid::Level;
 use crate::hybrid::arguments::{ChangeArguments, ModeArguments, Settings, Start};
@@ -45,7 +44,6 @@ impl HybridFamily {
         description: Description,
     ) -> PyResult<Self> {
         let blueprint = Blueprint::new(py, modes, &args, start, end, &settings)?;
-        sizes::check(&blueprint)?;
         Ok(Self { blueprint: Arc::new(blueprint), description })
     }
 

@@ -4,15 +4,18 @@ use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 use pyo3::prelude::*;
-use stickslip_solver::Margin;
-use stickslip_tracer::{Family, FreeRun, Itinerary, Point};
+use stickslip_solver::{Dop853, Margin};
+use stickslip_tracer::{DynamicFamily, Family, FreeRun, Itinerary, Point};
 
 use crate::failure::bad_input;
 use crate::families::blueprint::Blueprint;
 use crate::families::failure::UserError;
-use crate::families::sizes::{self, Runs};
+use crate::families::member::Members;
 use crate::hybrid::system::PAUSE;
 use crate::hybrid::trouble::{Trouble, lock};
+
+/// The runs of a family, as the tracer knows them.
+type Runs = DynamicFamily<Members, Dop853>;
 
 /// The runs of a family, for one call of Python.
 pub struct Runner {
@@ -26,7 +29,9 @@ impl Runner {
     /// The runs of the family that Python passes. It `looks` for Ctrl-C if they are on the thread
     /// that has to do it.
     pub fn new(blueprint: &Arc<Blueprint>, trouble: Arc<Trouble>, looks: bool) -> Self {
-        let runs = sizes::runs(blueprint, &trouble);
+        let problem = Members { blueprint: blueprint.clone(), trouble: trouble.clone() };
+        let (options, end) = (blueprint.options, blueprint.end);
+        let runs = DynamicFamily { problem, method: Dop853, options, end };
         Self { runs, trouble, looked: looks.then(|| Mutex::new(Instant::now())) }
     }
 

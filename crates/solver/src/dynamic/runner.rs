@@ -36,8 +36,7 @@ where
 {
     let mut told = Told { observer, simultaneous: Vec::new(), coefficients: Vec::new() };
     let from = (start.mode, start.s, &start.state.to_vec());
-    let bounds = (vec![stickslip_number::Enclosure::ENTIRE; start.state.len()], Vec::new());
-    let system = Free(system, std::cell::RefCell::new(bounds));
+    let system = Free::new(system, start.state.len());
     let run = run_any::<M, _, _>(&system, from, end, options, &mut told)?;
     let End { outcome, s, mode, state, decided, statistics } = run;
     Ok(DynamicRun { outcome, s, mode, state, decided, statistics })

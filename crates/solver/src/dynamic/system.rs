@@ -2,8 +2,10 @@
 
 use std::fmt;
 
-use crate::hybrid::{Guard, Schedule};
-use stickslip_number::{Enclosure, Number};
+use num_dual::Dual64;
+
+use crate::hybrid::{Guard, Schedule, constant};
+use stickslip_number::{Enclosure, Interval, Number};
 
 /// A piecewise-smooth ODE whose number of components is known at run time only.
 ///
@@ -67,6 +69,31 @@ pub trait DynamicSystem {
         None
     }
 
+    /// Writes the rates at which the guards of `mode` change along the solution through `y` to
+    /// `rates`, as [`HybridSystem::guard_rates`](crate::HybridSystem::guard_rates) returns them. The
+    /// provided version writes NaN, so that they are replaced by differences. Only margins use them.
+    fn guard_rates(&self, _mode: Self::Mode, _s: f64, _y: &[f64], rates: &mut [f64]) {
+        rates.fill(f64::NAN);
+    }
+
+    /// Writes bounds for the rates of the guards of `mode` to `rates`, whose bounds are infinite
+    /// before, as [`HybridSystem::enclose_rates`](crate::HybridSystem::enclose_rates).
+    fn enclose_rates(
+        &self,
+        _mode: Self::Mode,
+        _s: Interval,
+        _y: &[Interval],
+        _rates: &mut [Interval],
+    ) {
+    }
+
+    /// A number whose sign says which branch the transition takes, or NaN, as
+    /// [`HybridSystem::transition_condition`](crate::HybridSystem::transition_condition). Only
+    /// margins use it.
+    fn transition_condition(&self, _mode: Self::Mode, _guard: usize, _s: f64, _y: &[f64]) -> f64 {
+        f64::NAN
+    }
+
     /// Changes the state `y` on `guard` of `mode` to the one that follows when the guard fires, and
     /// returns the mode that follows.
     ///
@@ -111,6 +138,11 @@ pub trait ReadableDynamic {
         None
     }
 
+    /// As [`DynamicSystem::transition_condition`].
+    fn transition_condition(&self, _mode: Self::Mode, _guard: usize, _s: f64, _y: &[f64]) -> f64 {
+        f64::NAN
+    }
+
     /// As [`DynamicSystem::transition`].
     fn transition(&self, mode: Self::Mode, _guard: usize, _s: f64, _y: &mut [f64]) -> Self::Mode {
         mode
@@ -147,6 +179,33 @@ impl<S: ReadableDynamic> DynamicSystem for S {
     }
     fn rest(&self, mode: S::Mode, guard: usize, s: f64, y: &mut [f64]) -> Option<S::Mode> {
         ReadableDynamic::rest(self, mode, guard, s, y)
+    }
+    fn guard_rates(&self, mode: S::Mode, s: f64, y: &[f64], rates: &mut [f64]) {
+        let mut slope = vec![0.0; y.len()];
+        ReadableDynamic::field(self, mode, s, y, &mut slope);
+        let along = y.iter().zip(slope).map(|(&y, slope)| Dual64::new(y, slope));
+        let along: Vec<_> = along.collect();
+        let mut values = vec![Dual64::from(f64::NAN); rates.len()];
+        ReadableDynamic::guard_values(self, mode, Dual64::new(s, 1.0), &along, &mut values);
+        for (rate, value) in rates.iter_mut().zip(values) {
+            *rate = value.eps;
+        }
+    }
+    fn enclose_rates(&self, mode: S::Mode, s: Interval, y: &[Interval], rates: &mut [Interval]) {
+        let mut along: Vec<_> = y.iter().copied().map(constant).collect();
+        let mut slope = vec![Enclosure::ENTIRE; y.len()];
+        ReadableDynamic::field(self, mode, constant(s), &along, &mut slope);
+        for (along, slope) in along.iter_mut().zip(slope) {
+            along.slope = slope.value;
+        }
+        let mut values = vec![Enclosure::ENTIRE; rates.len()];
+        ReadableDynamic::guard_values(self, mode, Enclosure::variable(s), &along, &mut values);
+        for (rate, value) in rates.iter_mut().zip(values) {
+            *rate = value.slope;
+        }
+    }
+    fn transition_condition(&self, mode: S::Mode, guard: usize, s: f64, y: &[f64]) -> f64 {
+        ReadableDynamic::transition_condition(self, mode, guard, s, y)
     }
     fn transition(&self, mode: S::Mode, guard: usize, s: f64, y: &mut [f64]) -> S::Mode {
         ReadableDynamic::transition(self, mode, guard, s, y)

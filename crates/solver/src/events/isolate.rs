@@ -24,7 +24,7 @@ use crate::error::RunError;
 use crate::events::isolate::curve::{Accuracy, NARROWEST, Quotient, power};
 use crate::events::isolate::panel::{Panel, Points};
 
-pub(crate) use curve::Curve;
+pub(crate) use curve::{Curve, noise};
 pub(crate) use enclosed::{Enclosed, first_enclosed_crossing, last_enclosed_sign};
 pub(crate) use notice::{Notice, Touch};
 pub(crate) use root::narrow;

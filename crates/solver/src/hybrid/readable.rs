@@ -6,7 +6,7 @@ use num_dual::Dual64;
 
 use crate::hybrid::{Guard, HybridSystem, Schedule};
 use crate::method::{Method, State, Step, Trial};
-use stickslip_number::{Enclosure, Number};
+use stickslip_number::{Enclosure, Interval, Number};
 
 /// A piecewise-smooth ODE of `N` components with at most `G` guards in a mode, whose formulas the
 /// solver can read.
@@ -62,6 +62,14 @@ pub trait ReadableSystem<const N: usize, const G: usize> {
         let slope = self.field(mode, s, array(y));
         let along = std::array::from_fn(|i| Dual64::new(y[i], slope[i]));
         self.guard_values(mode, Dual64::new(s, 1.0), &along).map(|value| value.eps)
+    }
+
+    /// As [`HybridSystem::enclose_rates`]. A system that multiplies its rates by something
+    /// multiplies these bounds by it too.
+    fn enclose_rates(&self, mode: Self::Mode, s: Interval, y: &[Interval; N]) -> [Interval; G] {
+        let slope = self.field(mode, constant(s), &y.map(constant));
+        let along = std::array::from_fn(|i| Enclosure { slope: slope[i].value, ..constant(y[i]) });
+        self.guard_values(mode, Enclosure::variable(s), &along).map(|value| value.slope)
     }
 
     /// As [`HybridSystem::longest_first_step`].
@@ -121,6 +129,11 @@ pub trait ReadableSystem<const N: usize, const G: usize> {
     }
 }
 
+/// Bounds for a number, as an enclosure of a function whose derivatives are not of interest.
+pub(crate) fn constant(value: Interval) -> Enclosure {
+    Enclosure { value, ..Enclosure::from(0.0) }
+}
+
 /// The components of a state.
 #[inline(always)]
 fn array<const N: usize>(y: &State<N>) -> &[f64; N] {
@@ -153,6 +166,10 @@ impl<S: ReadableSystem<N, G>, const N: usize, const G: usize> HybridSystem<N, G>
 
     fn guard_rates(&self, mode: S::Mode, s: f64, y: &State<N>) -> [f64; G] {
         ReadableSystem::guard_rates(self, mode, s, y)
+    }
+
+    fn enclose_rates(&self, mode: S::Mode, s: Interval, y: &[Interval; N]) -> [Interval; G] {
+        ReadableSystem::enclose_rates(self, mode, s, y)
     }
 
     #[inline]

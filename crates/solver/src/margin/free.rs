@@ -1,44 +1,40 @@
 //! The margins of a free run.
 
+use std::marker::PhantomData;
+
 use crate::error::RunError;
-use crate::hybrid::{Direction, Guard, HybridSystem, Observer, Outcome, Start, SwitchEvent};
+use crate::hybrid::{Direction, Guard, Outcome};
 use crate::margin::name::{Exit, Hint, Margin, Place, Way};
 use crate::margin::prescribed::{Kind, Taken, Watch, branch, sense, watch};
-use crate::margin::rate::{Reach, derivative, stands};
-use crate::margin::{Margins, NearMiss};
+use crate::margin::rate::{Reach, derivative};
+use crate::margin::{Margins, NearMiss, guards_of, values_of};
 use crate::method::Method;
 use crate::options::Options;
-use crate::runs::run;
+use crate::runs::at_switches::AtSwitches;
+use crate::runs::runner::run_any;
+use crate::system::{List, Note, PerGuard, System};
 
 /// If the last phase is shorter than this part of the run, it may be about to vanish. Boundaries
 /// get their names from runs 1e-9 beside them, where a vanishing phase is shorter than this. If the
 /// phase does not vanish, the only cost is a longer run.
 const SHORT: f64 = 1e-6;
 
-/// Runs `system` freely and returns every margin that the run leaves.
-///
-/// The margins of a phase take one run over that phase for each of its guards, two for a guard that
-/// does not bound the domain of its mode, and each extremum takes about one step more. A guard has
-/// no margins behind a place where its rate cannot be followed, for instance because it is zero
-/// from there on. A run that ends early has none at all, but
-/// one that ends at [`Options::max_switches`] has those of its phases up to there.
-///
-/// # Errors
-/// Those of [`run`].
-pub fn margins<M, S, const N: usize, const G: usize>(
-    method: M,
+/// The margins of a free run from a mode, a place and a state.
+pub(super) fn margins<M: Method, S: System>(
     system: &S,
-    start: Start<S::Mode, N>,
+    (mode, s, state): (S::Mode, f64, &S::State),
     end: f64,
     options: &Options,
-) -> Result<Margins, RunError>
-where
-    M: Method,
-    S: HybridSystem<N, G>,
-{
-    let mut switches = Switches(Vec::new());
-    let free = run(method, system, start, end, options, &mut switches)?;
-    let Switches(switches) = switches;
+) -> Result<Margins, RunError> {
+    let mut switches = Vec::new();
+    let mut watcher = AtSwitches::new::<S>(false, |event| {
+        let &Note { s, guard, from, to, ref before, ref after, .. } = event;
+        let (before, after) = (before.clone(), after.clone());
+        switches.push(Switch { s, guard, from, to, before, after });
+        false
+    });
+    let free = run_any::<M, S, _>(system, (mode, s, state), end, options, &mut watcher)?;
+    let start = Start { mode, s, state: state.clone() };
     let ended_by = match free.outcome {
         Outcome::EndedByGuard { guard } => Some(guard),
         _ => None,
@@ -57,8 +53,8 @@ where
             _ => return Ok(found),
         };
     let short = SHORT * (free.s - start.s);
-    let mut listing =
-        Listing { method, system, options, end, exits: Vec::new(), misses: Vec::new() };
+    let (exits, misses, method) = (Vec::new(), Vec::new(), PhantomData::<M>);
+    let mut listing = Listing { system, options, end, exits, misses, method };
     let mut phase = Phase { start, led_by: None, last: false };
     for k in 0..phases {
         let switch = switches.get(k);
@@ -68,7 +64,7 @@ where
         phase.last = switch.is_none() || vanishes;
         listing.phase(&phase, switch, exited, ended_by);
         if let Some(event) = switch {
-            let start = Start { mode: event.to, s: event.s, state: event.after };
+            let start = Start { mode: event.to, s: event.s, state: event.after.clone() };
             phase = Phase { start, led_by: Some(event), last: false };
         }
     }
@@ -76,27 +72,34 @@ where
     Ok(found)
 }
 
-/// Records the switches of a run.
-struct Switches<Mode, const N: usize>(Vec<SwitchEvent<Mode, N>>);
+/// A switch of the free run.
+struct Switch<S: System> {
+    s: f64,
+    guard: usize,
+    from: S::Mode,
+    to: S::Mode,
+    before: S::State,
+    after: S::State,
+}
 
-impl<Mode: Copy, const N: usize> Observer<Mode, N> for Switches<Mode, N> {
-    fn on_switch(&mut self, event: &SwitchEvent<Mode, N>) {
-        self.0.push(*event);
-    }
+/// Where a phase starts.
+struct Start<S: System> {
+    mode: S::Mode,
+    s: f64,
+    state: S::State,
 }
 
 /// A phase of the free run.
-struct Phase<'a, Mode, const N: usize> {
-    start: Start<Mode, N>,
+struct Phase<'a, S: System> {
+    start: Start<S>,
     /// The switch that led here.
-    led_by: Option<&'a SwitchEvent<Mode, N>>,
+    led_by: Option<&'a Switch<S>>,
     /// Whether the phase lasts to the end of the run, or nearly.
     last: bool,
 }
 
 /// Collects the margins of a free run, phase by phase.
 struct Listing<'a, M, S> {
-    method: M,
     system: &'a S,
     options: &'a Options,
     /// The end of the span.
@@ -104,25 +107,24 @@ struct Listing<'a, M, S> {
     /// The exits of the phases so far.
     exits: Vec<Exit>,
     misses: Vec<NearMiss>,
+    method: PhantomData<M>,
 }
 
-impl<M: Method, S> Listing<'_, M, S> {
+impl<M: Method, S: System> Listing<'_, M, S> {
     /// Lists the margins of a phase that ends at `exited`, with a `switch` if not with the run.
-    fn phase<const N: usize, const G: usize>(
+    fn phase(
         &mut self,
-        phase: &Phase<'_, S::Mode, N>,
-        switch: Option<&SwitchEvent<S::Mode, N>>,
+        phase: &Phase<'_, S>,
+        switch: Option<&Switch<S>>,
         exited: f64,
         ended_by: Option<usize>,
-    ) where
-        S: HybridSystem<N, G>,
-    {
-        let start = phase.start;
+    ) {
+        let start = &phase.start;
         let guards = self.guards(start.mode);
         let fires = switch.map(|event| event.guard);
         // The last extremum of the guard that fires, and its side of zero.
         let (mut passed, mut side) = (start.s, 0.0);
-        for (guard, own) in guards.into_iter().enumerate() {
+        for (guard, &own) in guards.parts().iter().enumerate() {
             if own.direction() == Direction::Off {
                 continue;
             }
@@ -152,49 +154,47 @@ impl<M: Method, S> Listing<'_, M, S> {
                 after: Hint(after),
                 part: Hint(part),
             };
-            self.at_exit(&guards, event, exit);
+            self.at_exit(guards.parts(), event, exit);
             self.exits.push(exit);
         }
     }
 
     /// The guards of a mode, after those of the exits have fired.
-    fn guards<const N: usize, const G: usize>(&self, mode: S::Mode) -> [Guard; G]
-    where
-        S: HybridSystem<N, G>,
-    {
-        let mut guards = self.system.guards(mode);
+    fn guards(&self, mode: S::Mode) -> PerGuard<S, Guard> {
+        let mut guards = guards_of(self.system, mode);
         for exit in &self.exits {
-            guards[exit.guard] = guards[exit.guard].fired(1);
+            // The mode may have fewer guards.
+            if let Some(guard) = guards.parts_mut().get_mut(exit.guard) {
+                *guard = guard.fired(1);
+            }
         }
         guards
     }
 
     /// The margin of a guard at the start of a phase, 0 if it has none.
-    fn at_start<const N: usize, const G: usize>(
-        &mut self,
-        phase: &Phase<'_, S::Mode, N>,
-        guard: usize,
-    ) -> f64
-    where
-        S: HybridSystem<N, G>,
-    {
-        let Start { mode, s, state } = phase.start;
-        let led_by = phase.led_by.filter(|event| {
-            let from = (event.from, &event.before);
-            stands(self.system, guard, s, from, (mode, &state))
-        });
-        let stands = led_by.is_some_and(|event| event.guard == guard);
-        let was_on = |event: &SwitchEvent<S::Mode, N>| {
-            self.system.guards(event.from)[guard].direction() != Direction::Off
+    fn at_start(&mut self, phase: &Phase<'_, S>, guard: usize) -> f64 {
+        let &Start { mode, s, ref state } = &phase.start;
+        let place = (mode, s, state);
+        let value = values_of(self.system, mode, s, state)[guard];
+        let was_on = |event: &&Switch<S>| {
+            let before = guards_of(self.system, event.from);
+            before.parts().get(guard).is_some_and(|guard| guard.direction() != Direction::Off)
         };
+        // Whether the guard has the same value before and after the transition. Its value in a mode
+        // without it means nothing.
+        let led_by = phase
+            .led_by
+            .filter(was_on)
+            .filter(|event| values_of(self.system, event.from, s, &event.before)[guard] == value);
+        let stands = led_by.is_some_and(|event| event.guard == guard);
         // It has the same margin already where the phase before ended.
-        let known = !stands && led_by.is_some_and(was_on);
-        let reach = Reach::new::<M, S, N, G>(self.system, &phase.start, self.end, self.options);
-        let at_zero = stands || self.system.guard_values(mode, s, &state)[guard] == 0.0;
-        let order = self.system.guards(mode)[guard].zero_order().max(u32::from(at_zero));
-        let (mode, which, place) = ((mode, self.options), (guard, order), (s, &state));
-        let value =
-            derivative::<M, S, N, G>(self.system, &reach, mode, which, place).unwrap_or(0.0);
+        let known = !stands && led_by.is_some();
+        let reach = Reach::new::<M>(self.system, place, self.end, self.options);
+        let at_zero = stands || value == 0.0;
+        let declared = guards_of(self.system, mode)[guard].zero_order();
+        let order = declared.max(u32::from(at_zero));
+        let (mode, which, place) = ((mode, self.options), (guard, order), (s, state));
+        let value = derivative::<M, S>(self.system, &reach, mode, which, place).unwrap_or(0.0);
         if !known {
             self.add(guard, Place::Start { derivative: order }, Taken { s, value });
         }
@@ -202,15 +202,7 @@ impl<M: Method, S> Listing<'_, M, S> {
     }
 
     /// The margins of a guard at its extrema in a phase. Returns the place of the last one.
-    fn extrema<const N: usize, const G: usize>(
-        &mut self,
-        phase: &Phase<'_, S::Mode, N>,
-        exited: f64,
-        (guard, own): (usize, Guard),
-    ) -> f64
-    where
-        S: HybridSystem<N, G>,
-    {
+    fn extrema(&mut self, phase: &Phase<'_, S>, exited: f64, (guard, own): (usize, Guard)) -> f64 {
         // Nothing else need end the run where a terminal guard is watched.
         let until = if phase.last && !own.ends_run() { self.end } else { exited };
         let bounds = own.direction() == Direction::Below;
@@ -237,17 +229,10 @@ impl<M: Method, S> Listing<'_, M, S> {
     }
 
     /// The margins of the other guards where a phase ends, and of the transition there.
-    fn at_exit<const N: usize, const G: usize>(
-        &mut self,
-        guards: &[Guard; G],
-        event: &SwitchEvent<S::Mode, N>,
-        exit: Exit,
-    ) where
-        S: HybridSystem<N, G>,
-    {
-        let SwitchEvent { s, guard: fires, from, before, .. } = *event;
-        let values = self.system.guard_values(from, s, &before);
-        for guard in (0..G).filter(|&guard| guard != fires) {
+    fn at_exit(&mut self, guards: &[Guard], event: &Switch<S>, exit: Exit) {
+        let &Switch { s, guard: fires, from, ref before, .. } = event;
+        let values = values_of(self.system, from, s, before);
+        for guard in (0..guards.len()).filter(|&guard| guard != fires) {
             // A terminal guard would have ended the run, where the margin of the others is that at
             // the end.
             if guards[guard].direction() != Direction::Off && !guards[guard].ends_run() {
@@ -255,24 +240,18 @@ impl<M: Method, S> Listing<'_, M, S> {
                 self.add(guard, Place::Exit(exit), Taken { s, value });
             }
         }
-        let value = self.system.transition_condition(from, fires, s, &before);
+        let value = self.system.transition_condition(from, fires, s, before);
         self.add(fires, Place::Branch(exit), Taken { s, value });
     }
 
     /// What is found from the start of a phase up to `until`; if the run fails, what it found
     /// before.
-    fn watch<const N: usize, const G: usize>(
-        &self,
-        phase: &Phase<'_, S::Mode, N>,
-        until: f64,
-        what: (usize, Watch),
-    ) -> Vec<Taken>
-    where
-        S: HybridSystem<N, G>,
-    {
-        watch(self.method, self.system, phase.start, until, self.options, &[], what)
-            .unwrap_or_else(|(_, seen)| Some(seen))
-            .map_or_else(Vec::new, |seen| seen.taken)
+    fn watch(&self, phase: &Phase<'_, S>, until: f64, what: (usize, Watch)) -> Vec<Taken> {
+        let &Start { mode, s, ref state } = &phase.start;
+        match watch::<M, S>(self.system, (mode, s, state), until, self.options, &[], what) {
+            Ok(None) => Vec::new(),
+            Ok(Some((_, seen))) | Err((_, seen)) => seen.taken,
+        }
     }
 
     /// Adds a margin, unless it is not a number, or zero whatever the parameters are.

@@ -1,15 +1,16 @@
 //! Runs with a prescribed itinerary, which watch a guard in their last phase.
 
 use crate::error::RunError;
-use crate::hybrid::{Direction, Guard, HybridSystem, Observer, Outcome, Run, Start, SwitchEvent};
+use crate::hybrid::{Direction, Guard, Outcome};
 use crate::margin::name::{Exit, Way};
-use crate::margin::rate::{Reach, derivative};
-use crate::method::{Method, State, Step, Trial};
+use crate::margin::rate::{ROUNDING, Reach, derivative};
+use crate::margin::{guards_of, values_of};
+use crate::method::{Method, StepOf, TrialOf};
 use crate::options::Options;
-use crate::runs::run;
-
-/// The rounding of a guard or of its rate, as a part of it; that of time is a sixteenth.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
+use crate::runs::at_switches::AtSwitches;
+use crate::runs::runner::{End, run_any};
+use crate::system::{List, Note, PerComponent, PerGuard, Shape, System};
+use stickslip_number::{Enclosure, Interval};
 
 /// What a run watches in the phase after its last exit.
 #[derive(Clone, Copy, PartialEq)]
@@ -52,57 +53,31 @@ pub(super) struct Watched {
     pub taken: Vec<Taken>,
 }
 
-/// A run that has followed its exits, and what it found.
-type Ended<Mode, const N: usize> = (Run<Mode, N>, Watched);
-
 /// Follows `exits` and then watches `guard`. The result is `None` if the run cannot follow all
 /// exits. If the run fails while it looks for extrema, those before are the second result.
-pub(super) fn watch<M, S, const N: usize, const G: usize>(
-    method: M,
+pub(super) fn watch<M: Method, S: System>(
     system: &S,
-    start: Start<S::Mode, N>,
-    end: f64,
-    options: &Options,
-    exits: &[Exit],
-    what: (usize, Watch),
-) -> Result<Option<Watched>, (RunError, Watched)>
-where
-    M: Method,
-    S: HybridSystem<N, G>,
-{
-    let followed = follow(method, system, start, end, options, exits, what)?;
-    Ok(followed.map(|(_, watched)| watched))
-}
-
-/// As [`watch`], with the run itself.
-pub(super) fn follow<M, S, const N: usize, const G: usize>(
-    method: M,
-    system: &S,
-    start: Start<S::Mode, N>,
+    (mode, s, y): (S::Mode, f64, &S::State),
     end: f64,
     options: &Options,
     exits: &[Exit],
     (guard, watch): (usize, Watch),
-) -> Result<Option<Ended<S::Mode, N>>, (RunError, Watched)>
-where
-    M: Method,
-    S: HybridSystem<N, G>,
-{
-    let reach = Reach::new::<M, S, N, G>(system, &start, end, options);
+) -> Result<Option<(End<S>, Watched)>, (RunError, Watched)> {
+    let reach = Reach::new::<M>(system, (mode, s, y), end, options);
     let prescribed = Prescribed { system, exits, watched: guard, watch, reach };
     // In a prescribed run, switches may be as close together as they like, and there are more of
     // them: places and extrema count too.
     let limits = (usize::MAX, usize::MAX);
     let (max_switches, max_at_one_instant) = limits;
     let options = Options { zeno: 0.0, max_switches, max_at_one_instant, ..*options };
-    let mut watching = Watching::<S, G> {
-        prescribed: &prescribed,
-        seen: Watched { exits: Vec::with_capacity(exits.len()), taken: Vec::new() },
-    };
-    let mode = prescribed.enter(start.mode, 0, start.s);
-    let start = Start { mode, s: start.s, state: start.state };
-    let ended = run(method, &prescribed, start, end, &options, &mut watching);
-    let mut seen = watching.seen;
+    let mut seen = Watched { exits: Vec::with_capacity(exits.len()), taken: Vec::new() };
+    let mode = prescribed.enter(mode, 0, s);
+    let lost = mode.progress == Progress::Lost;
+    let mut watcher = AtSwitches::new::<Prescribed<'_, S>>(lost, |event| {
+        prescribed.record(event, &mut seen);
+        event.to.progress == Progress::Lost
+    });
+    let ended = run_any::<M, _, _>(&prescribed, (mode, s, y), end, &options, &mut watcher);
     let run = match ended {
         Ok(run) => run,
         Err(error) => return Err((error, seen)),
@@ -110,24 +85,21 @@ where
     if run.mode.progress == Progress::Lost || seen.exits.len() < exits.len() {
         return Ok(None);
     }
-    seen.taken.extend(prescribed.at_last::<M, N, G>(&run, &options));
+    seen.taken.extend(prescribed.at_last::<M>(&run, &options));
     if let Some(&Taken { s, .. }) = seen.taken.iter().find(|taken| taken.value.is_nan()) {
         return Err((RunError::GuardNotANumber { guard, s }, seen));
     }
-    let Run { outcome, s, mode, state, statistics } = run;
-    Ok(Some((Run { outcome, s, mode: mode.mode, state, statistics }, seen)))
+    let End { outcome, s, mode, state, statistics } = run;
+    Ok(Some((End { outcome, s, mode: mode.mode, state, statistics }, seen)))
 }
 
 /// Whether the condition of a transition is positive; `None` if it has none.
-pub(super) fn branch<S, const N: usize, const G: usize>(
+pub(super) fn branch<S: System>(
     system: &S,
     mode: S::Mode,
     guard: usize,
-    (s, y): (f64, &State<N>),
-) -> Option<bool>
-where
-    S: HybridSystem<N, G>,
-{
+    (s, y): (f64, &S::State),
+) -> Option<bool> {
     let condition = system.transition_condition(mode, guard, s, y);
     (!condition.is_nan()).then_some(condition > 0.0)
 }
@@ -139,13 +111,13 @@ pub(super) fn sense(guard: Guard) -> f64 {
 
 /// A system whose guards fire only as prescribed. The value of one guard, the subject, is replaced
 /// by what the run waits for: a place, the guard itself, or its rate.
-struct Prescribed<'a, S> {
+struct Prescribed<'a, S: System> {
     system: &'a S,
     exits: &'a [Exit],
     /// The guard to watch after all exits.
     watched: usize,
     watch: Watch,
-    reach: Reach,
+    reach: Reach<S>,
 }
 
 /// A mode of the system and the progress of the prescribed run.
@@ -159,6 +131,8 @@ struct PhaseMode<Mode> {
     began: f64,
     /// The order of the zero from which the subject starts there.
     order: u32,
+    /// Whether the subject fires where it rises.
+    rises: bool,
 }
 
 /// The progress within a phase.
@@ -168,8 +142,14 @@ enum Progress {
     Start,
     /// The run has passed the place after which the guard of the exit may fire.
     Armed,
-    /// The run has passed an extremum of the guard that it watches.
+    /// The guard that is watched has approached zero by more than rounding, and does so no more:
+    /// its next extremum is near.
+    Near,
+    /// The run has passed an extremum of the guard that it watches, where its rate, with what may
+    /// be rounding, is zero.
     Extremum,
+    /// The run has passed an extremum, and the rate with what may be rounding is positive there.
+    Passed,
     /// The run has passed the last extremum that it has to find.
     Done,
     /// The run cannot follow the exits.
@@ -191,7 +171,7 @@ enum Awaited {
     Nothing,
 }
 
-impl<S> Prescribed<'_, S> {
+impl<S: System> Prescribed<'_, S> {
     /// Whether the guard is watched in this phase.
     fn is_last(&self, phase: usize) -> bool {
         let at_exit = matches!(self.watch, Watch::Exit | Watch::Branch);
@@ -199,7 +179,7 @@ impl<S> Prescribed<'_, S> {
     }
 
     /// The subject, which is the guard that counts, and what the run waits for.
-    fn subject<Mode>(&self, at: &PhaseMode<Mode>) -> (usize, Awaited) {
+    fn subject(&self, at: &PhaseMode<S::Mode>) -> (usize, Awaited) {
         let stopped = matches!(at.progress, Progress::Done | Progress::Lost);
         let awaited = match (self.exits.get(at.phase), self.watch) {
             (Some(exit), _) if !stopped => {
@@ -216,88 +196,133 @@ impl<S> Prescribed<'_, S> {
 
     /// The beginning of a phase in `mode`. The run is lost if the guard that counts is not part of
     /// the mode.
-    fn enter<const N: usize, const G: usize>(
-        &self,
-        mode: S::Mode,
-        phase: usize,
-        began: f64,
-    ) -> PhaseMode<S::Mode>
-    where
-        S: HybridSystem<N, G>,
-    {
-        let at = PhaseMode { mode, phase, progress: Progress::Start, began, order: 0 };
-        let (subject, guards) = (self.subject(&at).0, self.system.guards(mode));
-        let off = |guard: usize| guards[guard].direction() == Direction::Off;
+    fn enter(&self, mode: S::Mode, phase: usize, began: f64) -> PhaseMode<S::Mode> {
+        let progress = Progress::Start;
+        let at = PhaseMode { mode, phase, progress, began, order: 0, rises: false };
+        let (subject, guards) = (self.subject(&at).0, guards_of(self.system, mode));
+        let own = |guard: usize| guards.parts().get(guard).copied().unwrap_or(Guard::OFF);
+        let off = |guard: usize| own(guard).direction() == Direction::Off;
         let watches = self.is_last(phase) && self.watch != Watch::Nothing;
         let waits = watches || phase < self.exits.len();
         let lost = (waits && off(subject)) || (watches && off(self.watched));
         let progress = if lost { Progress::Lost } else { Progress::Start };
-        PhaseMode { progress, order: guards[subject].zero_order(), ..at }
+        let rises = own(subject).direction() == Direction::Rising;
+        PhaseMode { progress, order: own(subject).zero_order(), rises, ..at }
+    }
+
+    /// The rate of the subject, positive where it moves away from an extremum, and the part of it
+    /// that may be rounding.
+    fn rate(
+        &self,
+        at: &PhaseMode<S::Mode>,
+        (subject, kind): (usize, Kind),
+        place: (f64, &S::State),
+    ) -> (f64, f64) {
+        let (system, guard) = (self.system, (at.mode, subject));
+        // Where a zero is divided out, that rounds more.
+        let (rate, rounding) = match at.order {
+            0 => self.reach.rate_and_rounding(system, guard, place),
+            _ => (self.reach.rate(system, guard, place), 0.0),
+        };
+        (if at.rises == (kind == Kind::Minimum) { -rate } else { rate }, rounding)
     }
 
     /// What is left of the guard that is watched, or of its extremum, where the zero from which it
     /// starts is divided out.
-    fn divided<Mode>(at: &PhaseMode<Mode>, s: f64, value: f64) -> f64 {
+    fn divided(at: &PhaseMode<S::Mode>, s: f64, value: f64) -> f64 {
         #[expect(clippy::cast_possible_wrap, reason = "an order is a small number")]
         let power = (s - at.began).powi(at.order as i32);
         if at.order == 0 { value } else { value / power }
     }
 
     /// The value of the guard that is watched, positive where it does not fire.
-    fn value<const N: usize, const G: usize>(&self, mode: S::Mode, (s, y): (f64, &State<N>)) -> f64
-    where
-        S: HybridSystem<N, G>,
-    {
-        let sign = sense(self.system.guards(mode)[self.watched]);
-        sign * self.system.guard_values(mode, s, y)[self.watched]
+    fn value(&self, mode: S::Mode, s: f64, y: &S::State) -> f64 {
+        let sign = sense(guards_of(self.system, mode)[self.watched]);
+        sign * values_of(self.system, mode, s, y)[self.watched]
+    }
+
+    /// What follows the zero of the rate of `subject`, with what may be rounding, or of the rate
+    /// itself.
+    fn after_zero(
+        &self,
+        at: &PhaseMode<S::Mode>,
+        (subject, kind): (usize, Kind),
+        (s, y): (f64, &S::State),
+    ) -> Progress {
+        let (rate, rounding) =
+            if at.order == 0 { self.rate(at, (subject, kind), (s, y)) } else { (0.0, 0.0) };
+        let rounds = rounding > 0.0;
+        if at.progress != Progress::Near && rounds && rate < 0.0 {
+            return Progress::Near;
+        }
+        match self.watch {
+            Watch::Extrema { enough, .. } if s < enough => {}
+            _ => return Progress::Done,
+        }
+        let positive = rounds && rate > -0.5 * rounding;
+        if positive { Progress::Passed } else { Progress::Extremum }
+    }
+
+    /// Records the exits, and the extrema of the guard that is watched.
+    fn record(&self, event: &Note<Self>, seen: &mut Watched) {
+        let at = &event.from;
+        let (guard, awaited) = self.subject(at);
+        if event.guard != guard {
+            return;
+        }
+        match awaited {
+            Awaited::Place(_) | Awaited::End | Awaited::Nothing => {}
+            Awaited::Guard(_) => seen.exits.push(event.s),
+            Awaited::Extremum(_) if event.to.progress == Progress::Near => {}
+            Awaited::Extremum(kind) => {
+                let value = self.value(at.mode, event.s, &event.before);
+                let value = Self::divided(at, event.s, value);
+                let value = if kind == Kind::Minimum { value } else { -value };
+                seen.taken.push(Taken { s: event.s, value });
+            }
+        }
     }
 
     /// What is watched where the run has ended, if it is watched there.
-    fn at_last<M: Method, const N: usize, const G: usize>(
-        &self,
-        run: &Run<PhaseMode<S::Mode>, N>,
-        options: &Options,
-    ) -> Option<Taken>
-    where
-        S: HybridSystem<N, G>,
-    {
-        let (mode, s) = (run.mode.mode, run.s);
-        let place = (s, &run.state);
+    fn at_last<M: Method>(&self, run: &End<Self>, options: &Options) -> Option<Taken> {
+        let (mode, s, y) = (run.mode.mode, run.s, &run.state);
         let regular = matches!(run.outcome, Outcome::EndedByGuard { .. } | Outcome::ReachedEnd);
         let value = match self.watch {
             Watch::Start { derivative: which } => {
                 let (mode, which) = ((mode, options), (self.watched, which));
-                derivative::<M, S, N, G>(self.system, &self.reach, mode, which, place)?
+                derivative::<M, S>(self.system, &self.reach, mode, which, (s, y))?
             }
-            Watch::Exit => self.value(mode, place),
-            Watch::Branch => self.system.transition_condition(mode, self.watched, s, &run.state),
-            Watch::End if regular => self.value(mode, place),
+            Watch::Exit => self.value(mode, s, y),
+            Watch::Branch => self.system.transition_condition(mode, self.watched, s, y),
+            Watch::End if regular => self.value(mode, s, y),
             Watch::End | Watch::Extrema { .. } | Watch::Nothing => return None,
         };
         Some(Taken { s, value })
     }
 }
 
-impl<S, const N: usize, const G: usize> HybridSystem<N, G> for Prescribed<'_, S>
-where
-    S: HybridSystem<N, G>,
-{
+impl<S: System> System for Prescribed<'_, S> {
     type Mode = PhaseMode<S::Mode>;
+    type State = S::State;
+    type Components = S::Components;
+    type Guards = S::Guards;
+    const READABLE: bool = false;
 
     #[inline]
-    fn field(&self, at: Self::Mode, s: f64, y: &State<N>) -> State<N> {
-        self.system.field(at.mode, s, y)
+    fn field(&self, at: Self::Mode, s: f64, y: &S::State, slope: &mut S::State) {
+        self.system.field(at.mode, s, y, slope);
     }
 
-    fn guards(&self, at: Self::Mode) -> [Guard; G] {
+    fn guards(&self, at: Self::Mode, guards: &mut PerGuard<S, Guard>) {
         let (subject, awaited) = self.subject(&at);
-        let mut system = self.system.guards(at.mode);
+        self.system.guards(at.mode, guards);
         for exit in &self.exits[..at.phase.min(self.exits.len())] {
-            system[exit.guard] = system[exit.guard].fired(1);
+            if let Some(guard) = guards.parts_mut().get_mut(exit.guard) {
+                *guard = guard.fired(1);
+            }
         }
         let last = self.is_last(at.phase);
-        let guard_of = |guard: usize| {
-            let own = system[guard];
+        let guard_of = |guard: usize, own: &Guard| {
             // A zero at the start of the phase matters only there.
             let order = if at.progress == Progress::Start { own.zero_order() } else { 0 };
             let watched = self.watch != Watch::Nothing && guard == self.watched;
@@ -329,41 +354,72 @@ where
                 Awaited::Nothing => Guard::new(Direction::Below).terminal(),
             }
         };
-        // Place and rate of a smooth guard are smooth too.
-        std::array::from_fn(|guard| guard_of(guard).as_smooth_as(&system[guard]))
+        for (guard, own) in guards.parts_mut().iter_mut().enumerate() {
+            // Place and rate of a smooth guard are smooth too.
+            *own = guard_of(guard, own).as_smooth_as(own);
+        }
     }
 
     #[inline]
-    fn guard_values(&self, at: Self::Mode, s: f64, y: &State<N>) -> [f64; G] {
+    fn guard_values(&self, at: Self::Mode, s: f64, y: &S::State, values: &mut PerGuard<S, f64>) {
         let (subject, awaited) = self.subject(&at);
-        let mut values = self.system.guard_values(at.mode, s, y);
-        values[subject] = match awaited {
+        self.system.guard_values(at.mode, s, y, values);
+        // The mode may have fewer guards.
+        let Some(value) = values.parts_mut().get_mut(subject) else { return };
+        *value = match awaited {
             Awaited::Place(place) => place - s,
-            Awaited::Guard(Way::Falling) | Awaited::End => values[subject],
-            Awaited::Guard(Way::Rising) => -values[subject],
+            Awaited::Guard(Way::Falling) | Awaited::End => *value,
+            Awaited::Guard(Way::Rising) => -*value,
             Awaited::Extremum(kind) => {
-                let rate = self.reach.rate(self.system, at.mode, subject, (s, y));
+                let (rate, rounding) = self.rate(&at, (subject, kind), (s, y));
                 let (rate, rounding) = match at.order {
-                    0 => (rate, 0.0),
+                    0 if at.progress == Progress::Near => (rate, 0.0),
+                    // Only what cannot be rounding counts as an approach to zero.
+                    0 => (rate, rounding),
                     // The zero is divided out. Both terms are nearly equal soon after it.
                     order => {
-                        let (since, due) = (s - at.began, values[subject] * f64::from(order));
+                        let (since, due) = (s - at.began, *value * f64::from(order));
+                        let due = if at.rises == (kind == Kind::Minimum) { -due } else { due };
                         let terms = rate.abs() * (since + s.abs() / 16.0) + due.abs();
                         (rate * since - due, ROUNDING * terms)
                     }
                 };
-                let rises = self.system.guards(at.mode)[subject].direction() == Direction::Rising;
-                let rate = if rises == (kind == Kind::Minimum) { -rate } else { rate };
                 // A guard that does not change, or by less than its rounding, has passed its
                 // extremum.
-                if rate == 0.0 { f64::MIN_POSITIVE } else { rate + rounding }
+                let rate = rate + rounding;
+                if rate == 0.0 { f64::MIN_POSITIVE } else { rate }
             }
             Awaited::Guard(Way::AtOnce) | Awaited::Nothing => -1.0,
         };
-        values
     }
 
-    fn longest_first_step(&self, at: Self::Mode, s: f64, y: &State<N>) -> f64 {
+    fn enclose(
+        &self,
+        _: Self::Mode,
+        _: Enclosure,
+        _: &PerComponent<S, Enclosure>,
+        _: usize,
+    ) -> Enclosure {
+        Enclosure::ENTIRE
+    }
+
+    fn reads(&self, at: Self::Mode) -> <S::Components as Shape>::Read {
+        self.system.reads(at.mode)
+    }
+
+    fn guard_rates(&self, _: Self::Mode, _: f64, _: &S::State, rates: &mut PerGuard<S, f64>) {
+        rates.parts_mut().fill(f64::NAN);
+    }
+
+    fn enclose_rate(&self, _: Self::Mode, _: f64, _: &S::State, _: usize) -> Interval {
+        Interval::ENTIRE
+    }
+
+    fn transition_condition(&self, _: Self::Mode, _: usize, _: f64, _: &S::State) -> f64 {
+        f64::NAN
+    }
+
+    fn longest_first_step(&self, at: Self::Mode, s: f64, y: &S::State) -> f64 {
         self.system.longest_first_step(at.mode, s, y)
     }
 
@@ -371,63 +427,38 @@ where
         PhaseMode { mode: self.system.settle(at.mode, y), ..at }
     }
 
-    fn step<M: Method>(&self, at: Self::Mode, trial: &Trial<'_, N>, step: &mut Step<N>) {
-        self.reach.follow(trial.s);
+    fn step<M: Method>(
+        &self,
+        at: Self::Mode,
+        trial: &TrialOf<'_, S::State>,
+        step: &mut StepOf<S::State>,
+    ) {
+        let moved = self.reach.follow(trial.s);
+        if moved
+            && at.order == 0
+            && let (subject, Awaited::Extremum(_)) = self.subject(&at)
+        {
+            self.reach.measure(self.system, (at.mode, subject), trial);
+        }
         self.system.step::<M>(at.mode, trial, step);
     }
 
-    fn transition(
-        &self,
-        at: Self::Mode,
-        guard: usize,
-        s: f64,
-        y: &State<N>,
-    ) -> (Self::Mode, State<N>) {
-        let progress = match self.subject(&at).1 {
+    fn transition(&self, at: Self::Mode, guard: usize, s: f64, y: &mut S::State) -> Self::Mode {
+        let (subject, awaited) = self.subject(&at);
+        let progress = match awaited {
             Awaited::Guard(_)
                 if self.exits[at.phase].branch != branch(self.system, at.mode, guard, (s, y)) =>
             {
                 Progress::Lost
             }
             Awaited::Guard(_) => {
-                let (mode, after) = self.system.transition(at.mode, guard, s, y);
-                return (self.enter(mode, at.phase + 1, s), after);
+                let mode = self.system.transition(at.mode, guard, s, y);
+                return self.enter(mode, at.phase + 1, s);
             }
             Awaited::Place(_) => Progress::Armed,
-            Awaited::Extremum(_) if matches!(self.watch, Watch::Extrema { enough, .. } if s < enough) => {
-                Progress::Extremum
-            }
-            Awaited::Extremum(_) | Awaited::End | Awaited::Nothing => Progress::Done,
+            Awaited::Extremum(kind) => self.after_zero(&at, (subject, kind), (s, y)),
+            Awaited::End | Awaited::Nothing => Progress::Done,
         };
-        (PhaseMode { progress, ..at }, *y)
-    }
-}
-
-/// Records the exits, and the extrema of the guard that is watched.
-struct Watching<'a, S, const G: usize> {
-    prescribed: &'a Prescribed<'a, S>,
-    seen: Watched,
-}
-
-impl<S, const N: usize, const G: usize> Observer<PhaseMode<S::Mode>, N> for Watching<'_, S, G>
-where
-    S: HybridSystem<N, G>,
-{
-    fn on_switch(&mut self, event: &SwitchEvent<PhaseMode<S::Mode>, N>) {
-        let (guard, awaited) = self.prescribed.subject(&event.from);
-        if event.guard != guard {
-            return;
-        }
-        match awaited {
-            Awaited::Place(_) | Awaited::End | Awaited::Nothing => {}
-            Awaited::Guard(_) => self.seen.exits.push(event.s),
-            Awaited::Extremum(kind) => {
-                let at = &event.from;
-                let value = self.prescribed.value(at.mode, (event.s, &event.before));
-                let value = Prescribed::<S>::divided(at, event.s, value);
-                let value = if kind == Kind::Minimum { value } else { -value };
-                self.seen.taken.push(Taken { s: event.s, value });
-            }
-        }
+        PhaseMode { progress, ..at }
     }
 }

@@ -1,173 +1,261 @@
-//! How fast a guard changes, known or by differences.
+//! How fast a guard changes, known or by differences, and what of that is rounding.
 //!
 //! If a system does not know its rates, they are replaced by differences. The reach of these
 //! differences is a small part of the longest step so far. Error control knows the scale on which
-//! the solution changes, so this works in any unit of time. The rounding of the differences is
-//! measured if a decision depends on it.
+//! the solution changes, so this works in any unit of time.
+//!
+//! A rate that rounding may have given its sign says nothing. For a readable system the rate is
+//! enclosed, with a state and a time that are known up to their last digit, so that this is
+//! decided. A black box has no bounds: the effect of one rounding of each value is known, and noise
+//! beyond that is measured where a step starts.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 
-use crate::hybrid::{HybridSystem, Start};
-use crate::method::control::first_step;
-use crate::method::{Method, State, Step, Trial};
+use stickslip_number::Interval;
+
+use crate::events::isolate::noise;
+use crate::method::control::first_step_of;
+use crate::method::{Method, StepOf, Store, TrialOf};
 use crate::options::{Options, StepSize};
+use crate::system::{Room, System};
 
 /// The part of a step over which differences reach. Its fourth power makes an error of 1e-11 of a
 /// rate, and rounding one of some 1e-13.
 const REACH: f64 = 1.0 / 256.0;
 
-/// The reach of the differences that replace unknown rates.
-pub(super) struct Reach {
-    /// The start of the present step.
+/// The length of the row of states along which noise is measured, in tolerances. They are 16 and 4
+/// tolerances apart.
+const TOLERANCES: f64 = 512.0;
+
+/// The rounding of a guard or of its rate, as a part of it; that of time is a sixteenth.
+pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// The reach of the differences that replace unknown rates, and the noise of rates.
+pub(super) struct Reach<S: System> {
+    /// The start of the present step, NaN before the first one.
     start: Cell<f64>,
     /// The distance over which the differences reach.
     distance: Cell<f64>,
+    /// The largest noise of the rate that was measured.
+    noise: Cell<f64>,
+    room: RefCell<Room<S>>,
 }
 
-impl Reach {
+impl<S: System> Reach<S> {
     /// The reach for the first step of a run.
-    pub fn new<M, S, const N: usize, const G: usize>(
+    pub fn new<M: Method>(
         system: &S,
-        start: &Start<S::Mode, N>,
+        (mode, s, y): (S::Mode, f64, &S::State),
         end: f64,
         options: &Options,
-    ) -> Self
-    where
-        M: Method,
-        S: HybridSystem<N, G>,
-    {
-        let Start { mode, s, state } = *start;
+    ) -> Self {
+        let mut room = Room::new(y.size());
         let longest = (end - s).min(options.max_step);
         let first = match (options.step_size, options.first_step) {
             (StepSize::Fixed(h), _) | (_, Some(h)) => h.min(longest),
             _ => {
-                let mut field = |s: f64, y: &State<N>| system.field(mode, s, y);
-                let slope = field(s, &state);
+                let mut field =
+                    |s: f64, y: &S::State, slope: &mut S::State| system.field(mode, s, y, slope);
+                let [mut slope, mut moved, mut other] = [(); 3].map(|()| room.state());
+                field(s, y, &mut slope);
                 let tolerances = (options.rtol, options.atol);
-                first_step::<M, N>(&mut field, s, &state, &slope, tolerances, longest)
+                let rooms = (&mut moved, &mut other);
+                first_step_of::<M, _>(&mut field, (s, y, &slope), tolerances, longest, rooms)
             }
         };
-        Self { start: Cell::new(s), distance: Cell::new(REACH * first) }
+        Self {
+            start: Cell::new(f64::NAN),
+            distance: Cell::new(REACH * first),
+            noise: Cell::new(0.0),
+            room: RefCell::new(room),
+        }
     }
 
     /// Adapts the reach to the step before, which was accepted up to `s`, where a step now starts.
-    pub fn follow(&self, s: f64) {
+    /// Returns whether that is a new place.
+    pub fn follow(&self, s: f64) -> bool {
         let distance = REACH * (s - self.start.replace(s));
         // It changes seldom, so that rates seldom change between two steps.
         if distance >= 2.0 * self.distance.get() {
             self.distance.set(distance);
         }
+        // True of NaN.
+        distance != 0.0
+    }
+
+    /// Measures the noise of the rate of a guard where the step `trial` starts: along the solution,
+    /// and where each component moves by a few tolerances, since a state at rest does not move and
+    /// rounds nothing. The noise only grows, and seldom, so that it seldom changes between two
+    /// steps.
+    pub fn measure(&self, system: &S, at: (S::Mode, usize), trial: &TrialOf<'_, S::State>) {
+        let &TrialOf { s, y, slope, tolerances: (rtol, atol), .. } = trial;
+        if enclosed_rate(system, at, (s, y)).is_some() {
+            return;
+        }
+        let room = &mut *self.room.borrow_mut();
+        let (mut moved, mut tolerance) = (room.state(), room.state());
+        S::State::each(&mut tolerance, [y], |_, [y]| atol + rtol * y.abs());
+        let reach = self.distance.get();
+        let knows = !known_rate(system, room, at, (s, y)).is_nan();
+        let mut along = |direction: &S::State, by: f64, time: f64| {
+            let value = &mut |part: f64| {
+                S::State::shifted(&mut moved, y, direction, part * by);
+                let s = s + part * time;
+                if knows {
+                    known_rate(system, room, at, (s, &moved))
+                } else {
+                    room.value(system, at, s, &moved)
+                }
+            };
+            noise(value, 0.0, 1.0, [0.0])
+        };
+        let measured = along(slope, reach, reach).max(along(&tolerance, TOLERANCES, 0.0));
+        room.give(moved);
+        room.give(tolerance);
+        let measured = if knows { measured } else { measured / reach };
+        if measured > self.noise.get() {
+            self.noise.set(2.0 * measured);
+        }
     }
 
     /// A reach that is small for the solution through `y`: there, a step of its length is good
     /// enough.
-    fn shortened<M, S, const N: usize, const G: usize>(
+    fn shortened<M: Method>(
         &self,
         system: &S,
         (mode, options): (S::Mode, &Options),
-        (s, y): (f64, &State<N>),
-    ) -> Self
-    where
-        M: Method,
-        S: HybridSystem<N, G>,
-    {
-        let slope = system.field(mode, s, y);
+        (s, y): (f64, &S::State),
+    ) -> Self {
+        let n = y.size();
+        let (rest, mut slope) = (S::State::room(n), S::State::room(n));
+        system.field(mode, s, y, &mut slope);
         let tolerances = (options.rtol, options.atol);
-        let mut step = Step::blank();
+        let mut step = StepOf::new(n);
         let mut h = self.distance.get() / REACH;
         // More would be below the rounding of any time.
         for _ in 0..50 {
-            let trial = Trial { s, y, rest: Trial::NO_REST, slope: &slope, h, tolerances };
+            let trial = TrialOf { s, y, rest: &rest, slope: &slope, h, tolerances };
             system.step::<M>(mode, &trial, &mut step);
             if step.error < 1.0 {
                 break;
             }
             h *= 0.25;
         }
-        Self { start: Cell::new(s), distance: Cell::new(REACH * h) }
-    }
-
-    /// The rate of `guard`, by differences if it is not known.
-    pub fn rate<S, const N: usize, const G: usize>(
-        &self,
-        system: &S,
-        mode: S::Mode,
-        guard: usize,
-        (s, y): (f64, &State<N>),
-    ) -> f64
-    where
-        S: HybridSystem<N, G>,
-    {
-        let rate = system.guard_rates(mode, s, y)[guard];
-        if !rate.is_nan() {
-            return rate;
+        Self {
+            start: Cell::new(f64::NAN),
+            distance: Cell::new(REACH * h),
+            noise: Cell::new(0.0),
+            room: RefCell::new(Room::new(n)),
         }
-        let (slope, reach) = (system.field(mode, s, y), self.distance.get());
-        let at = |reach: f64| system.guard_values(mode, s + reach, &(y + slope * reach))[guard];
-        fourth_order(at, reach)
     }
 
-    /// The derivative of the rate of `guard`, by differences along steps of the method.
-    pub fn bend<M, S, const N: usize, const G: usize>(
+    /// The rate of a guard, by differences if it is not known.
+    pub fn rate(&self, system: &S, at: (S::Mode, usize), place: (f64, &S::State)) -> f64 {
+        self.rate_and(system, at, place, |_| 0.0).0
+    }
+
+    /// The rate of a guard, and the part of it that may be rounding.
+    pub fn rate_and_rounding(
         &self,
         system: &S,
-        mode: S::Mode,
-        guard: usize,
-        (s, y): (f64, &State<N>),
-    ) -> f64
-    where
-        M: Method,
-        S: HybridSystem<N, G>,
-    {
-        let slope = system.field(mode, s, y);
-        let mut step = Step::blank();
-        let at = |h: f64| {
-            let (rest, tolerances) = (Trial::NO_REST, (1.0, 1.0));
-            let trial = Trial { s, y, rest, slope: &slope, h, tolerances };
-            system.step::<M>(mode, &trial, &mut step);
-            self.rate(system, mode, guard, (s + h, &step.y1))
+        at: (S::Mode, usize),
+        place: (f64, &S::State),
+    ) -> (f64, f64) {
+        self.rate_and(system, at, place, |known| {
+            let bounds = enclosed_rate(system, at, place);
+            let most = |bounds: Interval| (bounds.upper() - known).max(known - bounds.lower());
+            bounds.map_or_else(|| self.noise.get(), most)
+        })
+    }
+
+    /// The rate of a guard, and the part of it that may be rounding, which a function returns for a
+    /// rate that is known.
+    fn rate_and(
+        &self,
+        system: &S,
+        at: (S::Mode, usize),
+        (s, y): (f64, &S::State),
+        rounding: impl Fn(f64) -> f64,
+    ) -> (f64, f64) {
+        let room = &mut *self.room.borrow_mut();
+        let known = known_rate(system, room, at, (s, y));
+        if !known.is_nan() {
+            return (known, rounding(known));
+        }
+        let reach = self.distance.get();
+        let (mut slope, mut moved) = (room.state(), room.state());
+        system.field(at.0, s, y, &mut slope);
+        let mut largest = 0.0_f64;
+        let value = |reach: f64| {
+            S::State::shifted(&mut moved, y, &slope, reach);
+            let value = room.value(system, at, s + reach, &moved);
+            largest = largest.max(value.abs());
+            value
+        };
+        let rate = fourth_order(value, reach);
+        room.give(slope);
+        room.give(moved);
+        (rate, (ROUNDING * largest / reach).max(self.noise.get()))
+    }
+
+    /// The derivative of the rate of a guard, by differences along steps of the method.
+    fn bend<M: Method>(&self, system: &S, at: (S::Mode, usize), (s, y): (f64, &S::State)) -> f64 {
+        let n = y.size();
+        let (rest, mut slope) = (S::State::room(n), S::State::room(n));
+        system.field(at.0, s, y, &mut slope);
+        let mut step = StepOf::new(n);
+        let rate = |h: f64| {
+            let tolerances = (1.0, 1.0);
+            let trial = TrialOf { s, y, rest: &rest, slope: &slope, h, tolerances };
+            system.step::<M>(at.0, &trial, &mut step);
+            self.rate(system, at, (s + h, &step.y1))
         };
         // Of the differences of differences, rounding is the greater part of the error.
-        fourth_order(at, 8.0 * self.distance.get())
+        fourth_order(rate, 8.0 * self.distance.get())
     }
+}
+
+/// Bounds of the rate of a guard whose system is readable, except at jumps.
+fn enclosed_rate<S: System>(
+    system: &S,
+    (mode, guard): (S::Mode, usize),
+    (s, y): (f64, &S::State),
+) -> Option<Interval> {
+    let bounds = S::READABLE.then(|| system.enclose_rate(mode, s, y, guard));
+    bounds.filter(|bounds| bounds.is_bounded())
+}
+
+/// The rate of a guard, NaN if the system does not know it.
+fn known_rate<S: System>(
+    system: &S,
+    room: &mut Room<S>,
+    (mode, guard): (S::Mode, usize),
+    (s, y): (f64, &S::State),
+) -> f64 {
+    let mut rates = room.row();
+    system.guard_rates(mode, s, y, &mut rates);
+    let rate = rates[guard];
+    room.give_row(rates);
+    rate
 }
 
 /// A derivative of a guard along the solution, up to a positive factor; `None` for the third one
 /// and higher ones.
-pub(super) fn derivative<M, S, const N: usize, const G: usize>(
+pub(super) fn derivative<M: Method, S: System>(
     system: &S,
-    reach: &Reach,
+    reach: &Reach<S>,
     (mode, options): (S::Mode, &Options),
     (guard, derivative): (usize, u32),
-    (s, y): (f64, &State<N>),
-) -> Option<f64>
-where
-    M: Method,
-    S: HybridSystem<N, G>,
-{
-    let good = || reach.shortened::<M, S, N, G>(system, (mode, options), (s, y));
+    place: (f64, &S::State),
+) -> Option<f64> {
+    let at = (mode, guard);
+    let good = || reach.shortened::<M>(system, (mode, options), place);
     match derivative {
-        0 => Some(system.guard_values(mode, s, y)[guard]),
-        1 => Some(good().rate(system, mode, guard, (s, y))),
-        2 => Some(good().bend::<M, S, N, G>(system, mode, guard, (s, y))),
+        0 => Some(reach.room.borrow_mut().value(system, at, place.0, place.1)),
+        1 => Some(good().rate(system, at, place)),
+        2 => Some(good().bend::<M>(system, at, place)),
         _ => None,
     }
-}
-
-/// Whether `guard` of the mode `from`, where it has just fired, has the same value in the mode `to`
-/// after the transition.
-pub(super) fn stands<S, const N: usize, const G: usize>(
-    system: &S,
-    guard: usize,
-    s: f64,
-    (from, before): (S::Mode, &State<N>),
-    (to, after): (S::Mode, &State<N>),
-) -> bool
-where
-    S: HybridSystem<N, G>,
-{
-    let value = |mode, y| system.guard_values(mode, s, y)[guard];
-    value(from, before) == value(to, after)
 }
 
 /// The derivative of `at` at 0, by a difference of fourth order.

@@ -3,7 +3,6 @@
 //! It repeats the step sequences of the codes DOPRI5 and DOP853. Source: Hairer, Nørsett and
 //! Wanner, *Solving Ordinary Differential Equations I*, sections II.4 and IV.2.
 
-use crate::method::state::State;
 use crate::method::store::Store;
 use crate::method::tableau::Method;
 
@@ -108,21 +107,7 @@ fn exponent<M: Method>() -> f64 {
 }
 
 /// A size for the first step, from the sizes of the state, of its derivative `f0` and of its second
-/// derivative.
-pub(crate) fn first_step<M: Method, const N: usize>(
-    field: &mut impl FnMut(f64, &State<N>) -> State<N>,
-    s: f64,
-    y0: &State<N>,
-    f0: &State<N>,
-    tolerances: (f64, f64),
-    longest: f64,
-) -> f64 {
-    let room = (&mut State::zeros(), &mut State::zeros());
-    let mut field = |s: f64, y: &State<N>, slope: &mut State<N>| *slope = field(s, y);
-    first_step_of::<M, _>(&mut field, (s, y0, f0), tolerances, longest, room)
-}
-
-/// The same, whatever states are stored in. `moved` and `f1` are room.
+/// derivative. `moved` and `f1` are room.
 pub(crate) fn first_step_of<M: Method, V: Store>(
     field: &mut impl FnMut(f64, &V, &mut V),
     (s, y0, f0): (f64, &V, &V),

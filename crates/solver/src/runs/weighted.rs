@@ -3,7 +3,7 @@
 use crate::hybrid::{Guard, HybridSystem, Schedule};
 use crate::method::{Method, State, Step, Trial};
 use crate::options::InvalidOption;
-use stickslip_number::Enclosure;
+use stickslip_number::{Enclosure, Interval};
 
 /// A system with a relative and an absolute tolerance for each component of the state.
 ///
@@ -83,6 +83,10 @@ where
 
     fn enclose_guards(&self, mode: S::Mode, s: Enclosure, y: &[Enclosure; N]) -> [Enclosure; G] {
         self.system.enclose_guards(mode, s, y)
+    }
+
+    fn enclose_rates(&self, mode: S::Mode, s: Interval, y: &[Interval; N]) -> [Interval; G] {
+        self.system.enclose_rates(mode, s, y)
     }
 
     fn longest_first_step(&self, mode: S::Mode, s: f64, y: &State<N>) -> f64 {

@@ -1,7 +1,12 @@
 //! Margins with a closed form.
 
-use stickslip_solver::{Direction, Dop853, Guard, HybridSystem, Options, Place, Start, State};
+use stickslip_solver::{
+    Direction, Dop853, DynamicStart, DynamicSystem, Exit, Guard, HybridSystem, Margins, Number,
+    Options, Outcome, Place, ReadableDynamic, ReadableSystem, Start, State, follow, follow_dynamic,
+    margin_dynamic, margins_dynamic,
+};
 
+use crate::black_box::BlackBox;
 use crate::erased::{margin, margins};
 
 /// A body that is dropped, with g = 1.
@@ -101,4 +106,180 @@ fn the_zero_at_the_start_of_a_phase_is_divided_out() {
         let errors = [miss.value - p, miss.s - 1.0];
         assert!(errors[0].abs() < 1e-13 && errors[1].abs() < 1e-9, "{p}: {errors:?}");
     }
+}
+
+/// Two masses between springs, the first of which is forced by sin 0.7t. Both start at rest, so that
+/// the second one moves like t⁵. The guard is the distance of the second one from a limit, computed
+/// with rounding of the size of `offset`.
+#[derive(Clone, Copy)]
+struct Chain {
+    limit: f64,
+    offset: f64,
+}
+
+impl Chain {
+    fn slope<T: Number>(t: T, y: [T; 4]) -> [T; 4] {
+        let force = (t * 0.7).sin();
+        [y[1], y[2] - y[0] - y[0] + force, y[3], y[0] - y[2] - y[2]]
+    }
+
+    fn distance<T: Number>(&self, y: T) -> T {
+        -(y + self.offset) + (self.limit + self.offset)
+    }
+
+    /// What margins of a run over 20 have to be: the maxima of the second displacement, which is the
+    /// sum of two oscillations, and the start and the end.
+    fn check(&self, found: &Margins, name: &str) {
+        let expected = [4.055, 11.189, 18.452];
+        let places = found.near_misses.iter().map(|miss| (miss.margin.place, miss.s));
+        let minima: Vec<f64> = places
+            .clone()
+            .filter(|(place, _)| matches!(place, Place::Minimum { .. }))
+            .map(|(_, s)| s)
+            .collect();
+        let near =
+            minima.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-3);
+        assert!(minima.len() == 3 && near, "{name}: {minima:?}");
+        assert_eq!(places.count(), 5, "{name}");
+    }
+}
+
+impl ReadableSystem<4, 1> for Chain {
+    type Mode = ();
+    fn field<T: Number>(&self, (): (), t: T, y: &[T; 4]) -> [T; 4] {
+        Self::slope(t, *y)
+    }
+    fn guards(&self, (): ()) -> [Guard; 1] {
+        [Guard::new(Direction::Falling)]
+    }
+    fn guard_values<T: Number>(&self, (): (), _: T, y: &[T; 4]) -> [T; 1] {
+        [self.distance(y[2])]
+    }
+}
+
+/// The same with a dimension that is known at run time.
+struct FreeChain(Chain);
+
+impl ReadableDynamic for FreeChain {
+    type Mode = ();
+    fn field<T: Number>(&self, (): (), t: T, y: &[T], slope: &mut [T]) {
+        slope.copy_from_slice(&Chain::slope(t, [y[0], y[1], y[2], y[3]]));
+    }
+    fn guards(&self, (): ()) -> &[Guard] {
+        const { &[Guard::new(Direction::Falling)] }
+    }
+    fn guard_values<T: Number>(&self, (): (), _: T, y: &[T], values: &mut [T]) {
+        values[0] = self.0.distance(y[2]);
+    }
+    fn reads(&self, (): ()) -> &[usize] {
+        &[2]
+    }
+}
+
+/// The same as a black box.
+struct DarkChain(Chain);
+
+impl DynamicSystem for DarkChain {
+    type Mode = ();
+    fn field(&self, (): (), t: f64, y: &[f64], slope: &mut [f64]) {
+        slope.copy_from_slice(&Chain::slope(t, [y[0], y[1], y[2], y[3]]));
+    }
+    fn guards(&self, (): ()) -> &[Guard] {
+        const { &[Guard::new(Direction::Falling)] }
+    }
+    fn guard_values(&self, (): (), _: f64, y: &[f64], values: &mut [f64]) {
+        values[0] = self.0.distance(y[2]);
+    }
+}
+
+/// Where a guard is flat to rounding, it has no extrema: readable, as a black box, and with a
+/// dimension that is known at run time, which changes no bit of a black box.
+#[test]
+fn a_guard_that_leaves_rest_slowly_has_no_margins_of_rounding() {
+    let at_rest = || Start { mode: (), s: 0.0, state: State::from([0.0; 4]) };
+    let free_rest = || DynamicStart { mode: (), s: 0.0, state: &[0.0; 4] };
+    for tolerance in [1e-6, 1e-9, 1e-13] {
+        let options = Options::with_tolerance(tolerance);
+        for (limit, offset) in [(2.0, 0.0), (3.0, 0.5), (10.0, 0.0), (2.0, 1000.0)] {
+            let chain = Chain { limit, offset };
+            let name = format!("{tolerance:e} {limit} {offset}");
+            let readable = margins(Dop853, &chain, at_rest(), 20.0, &options).unwrap();
+            chain.check(&readable, &name);
+            let dark = margins(Dop853, &BlackBox(&chain), at_rest(), 20.0, &options).unwrap();
+            chain.check(&dark, &name);
+            let found = margins_dynamic(Dop853, &FreeChain(chain), free_rest(), 20.0, &options);
+            chain.check(&found.unwrap(), &name);
+            let found = margins_dynamic(Dop853, &DarkChain(chain), free_rest(), 20.0, &options);
+            assert_eq!(found.as_ref(), Ok(&dark), "{name}");
+            for miss in &dark.near_misses {
+                let (start, which) = (free_rest(), &miss.margin);
+                let found = margin_dynamic(Dop853, &DarkChain(chain), start, 20.0, &options, which);
+                let found = found.unwrap().expect("a margin");
+                assert_eq!(found.margin, miss.margin);
+                assert!((found.value - miss.value).abs() < 1e-9, "{name}: {found:?} {miss:?}");
+            }
+        }
+    }
+}
+
+/// The run that passes the limit once, of fixed dimension and of one that is known at run time.
+#[test]
+fn a_run_of_any_dimension_follows_an_itinerary() {
+    let options = Options::with_tolerance(1e-12);
+    let chain = Chain { limit: 0.5, offset: 0.0 };
+    let start = Start { mode: (), s: 0.0, state: State::from([0.0; 4]) };
+    let fixed = follow(Dop853, &BlackBox(&chain), start, 20.0, &options, &[Exit::falling(0, 0.0)]);
+    let fixed = fixed.unwrap().expect("a run");
+    let start = DynamicStart { mode: (), s: 0.0, state: &[0.0; 4] };
+    let exits = [Exit::falling(0, 0.0)];
+    let free = follow_dynamic(Dop853, &DarkChain(chain), start, 20.0, &options, &exits);
+    let free = free.unwrap().expect("a run");
+    assert_eq!(free.run.outcome, Outcome::ReachedEnd);
+    assert_eq!(free.run.state, fixed.run.state.as_slice());
+    // A guard that the mode does not have.
+    let exits = [Exit::falling(3, 0.0)];
+    let free = follow_dynamic(Dop853, &DarkChain(chain), start, 20.0, &options, &exits);
+    assert_eq!(free, Ok(None));
+}
+
+/// A mode with two guards leads to one with a single guard. What the second guard would do there
+/// has no margin, and a margin of it cannot be followed.
+struct FewerGuards;
+
+impl DynamicSystem for FewerGuards {
+    type Mode = bool;
+    fn field(&self, _: bool, _: f64, _: &[f64], slope: &mut [f64]) {
+        slope[0] = 1.0;
+    }
+    fn guards(&self, late: bool) -> &[Guard] {
+        const GUARDS: [Guard; 2] = [Guard::new(Direction::Below); 2];
+        if late { &GUARDS[..1] } else { &GUARDS }
+    }
+    fn guard_values(&self, late: bool, _: f64, y: &[f64], values: &mut [f64]) {
+        values[0] = if late { 3.0 + (2.0 * y[0]).cos() } else { 5.0 };
+        if let Some(value) = values.get_mut(1) {
+            *value = 1.0 - y[0];
+        }
+    }
+    fn transition(&self, _: bool, _: usize, _: f64, _: &mut [f64]) -> bool {
+        true
+    }
+}
+
+#[test]
+fn modes_may_have_different_numbers_of_guards() {
+    let start = DynamicStart { mode: false, s: 0.0, state: &[0.0] };
+    let options = Options::with_tolerance(1e-13);
+    let found = margins_dynamic(Dop853, &FewerGuards, start, 3.0, &options).unwrap();
+    assert_eq!(found.fired, [1]);
+    let mut last = found.near_misses.last().expect("margins").clone();
+    let minimum = found.near_misses.iter().find(|miss| {
+        miss.margin.exits.len() == 1 && matches!(miss.margin.place, Place::Minimum { .. })
+    });
+    let minimum = minimum.expect("a minimum");
+    assert!((minimum.s - std::f64::consts::FRAC_PI_2).abs() < 1e-9);
+    assert!((minimum.value - 2.0).abs() < 1e-12);
+    last.margin.guard = 1;
+    let lost = margin_dynamic(Dop853, &FewerGuards, start, 3.0, &options, &last.margin);
+    assert_eq!(lost, Ok(None));
 }

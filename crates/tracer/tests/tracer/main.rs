@@ -9,6 +9,7 @@ mod errors;
 mod every_change;
 mod extrema;
 mod following;
+mod from_rest;
 mod guards;
 mod inside;
 mod known_curves;

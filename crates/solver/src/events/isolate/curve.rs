@@ -80,33 +80,42 @@ impl Quotient<'_> {
     }
 
     /// The noise of the curve's values between two step fractions. Larger values have a sign.
-    ///
-    /// Noise is estimated from differences of high order of successive values (Moré and Wild, SIAM
-    /// J. Sci. Comput. 33 (2011) 1292). A smooth function hardly contributes to them if the values
-    /// are close together, and a jump contributes in one place only. Therefore both of two spacings
-    /// must show the noise, the smaller estimate counts, and the middle one of those at three
-    /// places.
     pub(super) fn noise(&mut self, low: f64, high: f64) -> f64 {
-        let mut at = [0.0, 1.0 / 3.0, 2.0 / 3.0].map(|place| {
-            let start = low + place * (high - low);
-            let [wide, narrow] = [32.0, 128.0].map(|parts| {
-                let spacing = (high - low) / parts;
-                let mut row: [f64; ROW] =
-                    std::array::from_fn(|i| self.curve.dense(start + i as f64 * spacing));
-                for order in 1..=DIFFERENCES {
-                    for i in 0..ROW - order {
-                        row[i] = row[i + 1] - row[i];
-                    }
-                }
-                let left = &row[..ROW - DIFFERENCES];
-                let square = left.iter().map(|d| d * d).sum::<f64>() / left.len() as f64;
-                square.sqrt() / DIFFERENCED
-            });
-            if narrow * SHRINKS < wide { 0.0 } else { wide.min(narrow) }
-        });
-        at.sort_unstable_by(f64::total_cmp);
-        if at[2].is_finite() { BEYOND_NOISE * at[1] } else { 0.0 }
+        noise(&mut |theta| self.curve.dense(theta), low, high, [0.0, 1.0 / 3.0, 2.0 / 3.0])
     }
+}
+
+/// The noise of a function between two places. Larger values have a sign.
+///
+/// Noise is estimated from differences of high order of successive values (Moré and Wild, SIAM J.
+/// Sci. Comput. 33 (2011) 1292). A smooth function hardly contributes to them if the values are
+/// close together, and a jump contributes in one place only. Therefore both of two spacings must
+/// show the noise, the smaller estimate counts, and the middle one of those at several `parts` of
+/// the way from `low` to `high`.
+pub(crate) fn noise<const K: usize>(
+    function: &mut dyn FnMut(f64) -> f64,
+    low: f64,
+    high: f64,
+    parts: [f64; K],
+) -> f64 {
+    let mut at = parts.map(|part| {
+        let start = low + part * (high - low);
+        let [wide, narrow] = [32.0, 128.0].map(|parts| {
+            let spacing = (high - low) / parts;
+            let mut row: [f64; ROW] = std::array::from_fn(|i| function(start + i as f64 * spacing));
+            for order in 1..=DIFFERENCES {
+                for i in 0..ROW - order {
+                    row[i] = row[i + 1] - row[i];
+                }
+            }
+            let left = &row[..ROW - DIFFERENCES];
+            let square = left.iter().map(|d| d * d).sum::<f64>() / left.len() as f64;
+            square.sqrt() / DIFFERENCED
+        });
+        if narrow * SHRINKS < wide { 0.0 } else { wide.min(narrow) }
+    });
+    at.sort_unstable_by(f64::total_cmp);
+    if at[K - 1].is_finite() { BEYOND_NOISE * at[K / 2] } else { 0.0 }
 }
 
 /// The errors of a quotient along the dense output.

@@ -1,0 +1,37 @@
+//! A function that is called at every switch.
+
+use crate::hybrid::{Grazing, Pole};
+use crate::method::DenseOf;
+use crate::runs::runner::Watcher;
+use crate::system::{Note, System};
+
+/// Calls a function at every switch. The function says whether the run stops there.
+pub(crate) struct AtSwitches<F> {
+    stops: bool,
+    at_switch: F,
+}
+
+impl<F> AtSwitches<F> {
+    /// A run that `stops` does so after its first step.
+    pub(crate) fn new<S: System>(stops: bool, at_switch: F) -> Self
+    where
+        F: FnMut(&Note<S>) -> bool,
+    {
+        Self { stops, at_switch }
+    }
+}
+
+impl<S: System, F: FnMut(&Note<S>) -> bool> Watcher<S> for AtSwitches<F> {
+    const WANTS_SEGMENTS: bool = false;
+
+    fn on_switch(&mut self, event: &Note<S>) {
+        self.stops |= (self.at_switch)(event);
+    }
+    fn on_grazing(&mut self, _: &Grazing<S::Mode>) {}
+    fn on_pole(&mut self, _: &Pole<S::Mode>) {}
+    fn stops(&self) -> bool {
+        self.stops
+    }
+    fn on_segment(&mut self, _: S::Mode, _: &DenseOf<S::State>) {}
+    fn on_end(&mut self, _: S::Mode, _: f64, _: &S::State) {}
+}
