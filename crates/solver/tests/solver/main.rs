@@ -16,6 +16,8 @@
 //! | `fast_guards` | black boxes that go up and down often on one step, and poles on long steps |
 //! | `singular` | guards without bounds or without a value somewhere |
 //! | `sliding` | systems that slide along surfaces |
+//! | `instants` | random systems whose events coincide, exactly or nearly |
+//! | `reports` | systems from public reports about the events of other tools |
 //! | `strangers` | systems that nobody here designed for |
 //! | `dynamic` | systems whose dimension is known at run time |
 //! | `erased` | runs along any system as runs along one type, so that they are compiled once |
@@ -34,12 +36,14 @@ mod fast_guards;
 mod fitted_orders;
 mod guard_rounding;
 mod inside;
+mod instants;
 mod margins;
 mod methods;
 mod planted_kinds;
 mod planted_roots;
 mod plateaus;
 mod properties;
+mod reports;
 mod runs;
 #[cfg(feature = "serde")]
 mod serialization;
