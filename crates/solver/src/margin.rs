@@ -318,8 +318,19 @@ fn guards_of<S: System>(system: &S, mode: S::Mode) -> PerGuard<S, Guard> {
 }
 
 /// The values of the guards of a mode.
-fn values_of<S: System>(system: &S, mode: S::Mode, s: f64, y: &S::State) -> PerGuard<S, f64> {
+fn values_of<S: System>(
+    system: &S,
+    mode: S::Mode,
+    since: f64,
+    (s, y): (f64, &S::State),
+) -> PerGuard<S, f64> {
     let mut values = PerGuard::<S, f64>::of(0, f64::NAN);
     system.guard_values(mode, s, y, &mut values);
+    let guards = guards_of(system, mode);
+    for (guard, of) in guards.parts().iter().enumerate() {
+        if of.direction() == Direction::Clock {
+            values[guard] = system.next_time(mode, guard, since) - s;
+        }
+    }
     values
 }

@@ -98,6 +98,13 @@ struct Phase<'a, S: System> {
     last: bool,
 }
 
+impl<S: System> Phase<'_, S> {
+    /// The time after which clocks fire in the phase: what is due at the start of the run is too.
+    fn since(&self) -> f64 {
+        if self.led_by.is_none() { self.start.s.next_down() } else { self.start.s }
+    }
+}
+
 /// Collects the margins of a free run, phase by phase.
 struct Listing<'a, M, S> {
     system: &'a S,
@@ -135,7 +142,8 @@ impl<M: Method, S: System> Listing<'_, M, S> {
             if exited <= start.s {
                 continue;
             }
-            let last = self.extrema(phase, exited, (guard, own));
+            let is_clock = own.direction() == Direction::Clock;
+            let last = if is_clock { start.s } else { self.extrema(phase, exited, (guard, own)) };
             if fires == Some(guard) {
                 passed = last;
             } else if phase.last && ended_by != Some(guard) {
@@ -154,7 +162,7 @@ impl<M: Method, S: System> Listing<'_, M, S> {
                 after: Hint(after),
                 part: Hint(part),
             };
-            self.at_exit(guards.parts(), event, exit);
+            self.at_exit(guards.parts(), event, phase.since(), exit);
             self.exits.push(exit);
         }
     }
@@ -175,17 +183,17 @@ impl<M: Method, S: System> Listing<'_, M, S> {
     fn at_start(&mut self, phase: &Phase<'_, S>, guard: usize) -> f64 {
         let &Start { mode, s, ref state } = &phase.start;
         let place = (mode, s, state);
-        let value = values_of(self.system, mode, s, state)[guard];
+        let value = values_of(self.system, mode, phase.since(), (s, state))[guard];
         let was_on = |event: &&Switch<S>| {
             let before = guards_of(self.system, event.from);
             before.parts().get(guard).is_some_and(|guard| guard.direction() != Direction::Off)
         };
         // Whether the guard has the same value before and after the transition. Its value in a mode
         // without it means nothing.
-        let led_by = phase
-            .led_by
-            .filter(was_on)
-            .filter(|event| values_of(self.system, event.from, s, &event.before)[guard] == value);
+        let led_by = phase.led_by.filter(was_on).filter(|event| {
+            let since = phase.since();
+            values_of(self.system, event.from, since, (s, &event.before))[guard] == value
+        });
         let stands = led_by.is_some_and(|event| event.guard == guard);
         // It has the same margin already where the phase before ended.
         let known = !stands && led_by.is_some();
@@ -193,8 +201,14 @@ impl<M: Method, S: System> Listing<'_, M, S> {
         let at_zero = stands || value == 0.0;
         let declared = guards_of(self.system, mode)[guard].zero_order();
         let order = declared.max(u32::from(at_zero));
+        let is_clock = guards_of(self.system, mode)[guard].direction() == Direction::Clock;
         let (mode, which, place) = ((mode, self.options), (guard, order), (s, state));
-        let value = derivative::<M, S>(self.system, &reach, mode, which, place).unwrap_or(0.0);
+        let value = if is_clock {
+            Some(value)
+        } else {
+            derivative::<M, S>(self.system, &reach, mode, which, place)
+        };
+        let value = value.unwrap_or(0.0);
         if !known {
             self.add(guard, Place::Start { derivative: order }, Taken { s, value });
         }
@@ -229,9 +243,9 @@ impl<M: Method, S: System> Listing<'_, M, S> {
     }
 
     /// The margins of the other guards where a phase ends, and of the transition there.
-    fn at_exit(&mut self, guards: &[Guard], event: &Switch<S>, exit: Exit) {
+    fn at_exit(&mut self, guards: &[Guard], event: &Switch<S>, since: f64, exit: Exit) {
         let &Switch { s, guard: fires, from, ref before, .. } = event;
-        let values = values_of(self.system, from, s, before);
+        let values = values_of(self.system, from, since, (s, before));
         for guard in (0..guards.len()).filter(|&guard| guard != fires) {
             // A terminal guard would have ended the run, where the margin of the others is that at
             // the end.

@@ -89,8 +89,8 @@ pub(super) fn watch<M: Method, S: System>(
     if let Some(&Taken { s, .. }) = seen.taken.iter().find(|taken| taken.value.is_nan()) {
         return Err((RunError::GuardNotANumber { guard, s }, seen));
     }
-    let End { outcome, s, mode, state, statistics } = run;
-    Ok(Some((End { outcome, s, mode: mode.mode, state, statistics }, seen)))
+    let End { outcome, s, mode, state, decided, statistics } = run;
+    Ok(Some((End { outcome, s, mode: mode.mode, state, decided, statistics }, seen)))
 }
 
 /// Whether the condition of a transition is positive; `None` if it has none.
@@ -171,7 +171,22 @@ enum Awaited {
     Nothing,
 }
 
+impl<Mode> PhaseMode<Mode> {
+    /// The time after which clocks fire in this phase: what is due at the start of a run is too.
+    fn since(&self) -> f64 {
+        if self.phase == 0 { self.began.next_down() } else { self.began }
+    }
+}
+
 impl<S: System> Prescribed<'_, S> {
+    /// The time of a clock in this phase, if the guard is one.
+    fn due(&self, at: &PhaseMode<S::Mode>, guard: usize) -> Option<f64> {
+        let guards = guards_of(self.system, at.mode);
+        let is_clock =
+            guards.parts().get(guard).is_some_and(|guard| guard.direction() == Direction::Clock);
+        is_clock.then(|| self.system.next_time(at.mode, guard, at.since()))
+    }
+
     /// Whether the guard is watched in this phase.
     fn is_last(&self, phase: usize) -> bool {
         let at_exit = matches!(self.watch, Watch::Exit | Watch::Branch);
@@ -236,9 +251,10 @@ impl<S: System> Prescribed<'_, S> {
     }
 
     /// The value of the guard that is watched, positive where it does not fire.
-    fn value(&self, mode: S::Mode, s: f64, y: &S::State) -> f64 {
+    fn value(&self, at: &PhaseMode<S::Mode>, s: f64, y: &S::State) -> f64 {
+        let (mode, since) = (at.mode, at.since());
         let sign = sense(guards_of(self.system, mode)[self.watched]);
-        sign * values_of(self.system, mode, s, y)[self.watched]
+        sign * values_of(self.system, mode, since, (s, y))[self.watched]
     }
 
     /// What follows the zero of the rate of `subject`, with what may be rounding, or of the rate
@@ -275,7 +291,7 @@ impl<S: System> Prescribed<'_, S> {
             Awaited::Guard(_) => seen.exits.push(event.s),
             Awaited::Extremum(_) if event.to.progress == Progress::Near => {}
             Awaited::Extremum(kind) => {
-                let value = self.value(at.mode, event.s, &event.before);
+                let value = self.value(at, event.s, &event.before);
                 let value = Self::divided(at, event.s, value);
                 let value = if kind == Kind::Minimum { value } else { -value };
                 seen.taken.push(Taken { s: event.s, value });
@@ -285,16 +301,17 @@ impl<S: System> Prescribed<'_, S> {
 
     /// What is watched where the run has ended, if it is watched there.
     fn at_last<M: Method>(&self, run: &End<Self>, options: &Options) -> Option<Taken> {
-        let (mode, s, y) = (run.mode.mode, run.s, &run.state);
+        let (at, mode, s, y) = (&run.mode, run.mode.mode, run.s, &run.state);
         let regular = matches!(run.outcome, Outcome::EndedByGuard { .. } | Outcome::ReachedEnd);
         let value = match self.watch {
+            Watch::Start { .. } if self.due(at, self.watched).is_some() => self.value(at, s, y),
             Watch::Start { derivative: which } => {
                 let (mode, which) = ((mode, options), (self.watched, which));
                 derivative::<M, S>(self.system, &self.reach, mode, which, (s, y))?
             }
-            Watch::Exit => self.value(mode, s, y),
+            Watch::Exit => self.value(at, s, y),
             Watch::Branch => self.system.transition_condition(mode, self.watched, s, y),
-            Watch::End if regular => self.value(mode, s, y),
+            Watch::End if regular => self.value(at, s, y),
             Watch::End | Watch::Extrema { .. } | Watch::Nothing => return None,
         };
         Some(Taken { s, value })
@@ -366,6 +383,9 @@ impl<S: System> System for Prescribed<'_, S> {
         self.system.guard_values(at.mode, s, y, values);
         // The mode may have fewer guards.
         let Some(value) = values.parts_mut().get_mut(subject) else { return };
+        if let Some(due) = self.due(&at, subject) {
+            *value = due - s;
+        }
         *value = match awaited {
             Awaited::Place(place) => place - s,
             Awaited::Guard(Way::Falling) | Awaited::End => *value,
@@ -423,7 +443,15 @@ impl<S: System> System for Prescribed<'_, S> {
         self.system.longest_first_step(at.mode, s, y)
     }
 
-    fn settle(&self, at: Self::Mode, y: &State<N>) -> Self::Mode {
+    fn rest(&self, _: Self::Mode, _: usize, _: f64, _: &mut S::State) -> Option<Self::Mode> {
+        None
+    }
+
+    fn next_time(&self, at: Self::Mode, guard: usize, s: f64) -> f64 {
+        self.system.next_time(at.mode, guard, s)
+    }
+
+    fn settle(&self, at: Self::Mode, y: &S::State) -> Self::Mode {
         PhaseMode { mode: self.system.settle(at.mode, y), ..at }
     }
 
@@ -453,7 +481,9 @@ impl<S: System> System for Prescribed<'_, S> {
             }
             Awaited::Guard(_) => {
                 let mode = self.system.transition(at.mode, guard, s, y);
-                return self.enter(mode, at.phase + 1, s);
+                // A clock knows its time exactly.
+                let began = self.due(&at, guard).unwrap_or(s);
+                return self.enter(mode, at.phase + 1, began);
             }
             Awaited::Place(_) => Progress::Armed,
             Awaited::Extremum(kind) => self.after_zero(&at, (subject, kind), (s, y)),

@@ -1,6 +1,6 @@
 //! A function that is called at every switch.
 
-use crate::hybrid::{Grazing, Pole};
+use crate::hybrid::{Grazing, Pole, Preempted, Rest};
 use crate::method::DenseOf;
 use crate::runs::runner::Watcher;
 use crate::system::{Note, System};
@@ -29,6 +29,9 @@ impl<S: System, F: FnMut(&Note<S>) -> bool> Watcher<S> for AtSwitches<F> {
     }
     fn on_grazing(&mut self, _: &Grazing<S::Mode>) {}
     fn on_pole(&mut self, _: &Pole<S::Mode>) {}
+    fn on_preempted(&mut self, _: &Preempted<S::Mode>) {}
+    fn on_rest(&mut self, _: &Rest<S::Mode>) {}
+    fn forget(&mut self, _: usize) {}
     fn stops(&self) -> bool {
         self.stops
     }

@@ -142,8 +142,7 @@ pub(super) fn guards<T: Number>(
 ) -> [[T; 2]; MOST] {
     let values = view.surfaces(s, y);
     let mut sliding = sides.sliding().peekable();
-    let shares =
-        sliding.peek().is_some().then(|| shares(view, sides, (s, y), fields).shares);
+    let shares = sliding.peek().is_some().then(|| shares(view, sides, (s, y), fields).shares);
     let mut next = 0;
     std::array::from_fn(|i| match (sides.sides[i], &shares) {
         (Side::Sliding, Some(shares)) => {

@@ -204,7 +204,8 @@ impl Problem {
             size += 1;
         }
         let n = y.len();
-        let (mut a, mut b, mut fields) = ([[0.0; MOST]; MOST], [0.0; MOST], vec![0.0; (size + 1) * n]);
+        let (mut a, mut b, mut fields) =
+            ([[0.0; MOST]; MOST], [0.0; MOST], vec![0.0; (size + 1) * n]);
         if size == 0 {
             return Ok(Self { on, size, b, a, scaled: a, fields });
         }
@@ -229,7 +230,10 @@ impl Problem {
                 b[i] += a[i][j];
             }
         }
-        if b[..size].iter().chain(a[..size].iter().flat_map(|row| &row[..size])).any(|x| !x.is_finite())
+        if b[..size]
+            .iter()
+            .chain(a[..size].iter().flat_map(|row| &row[..size]))
+            .any(|x| !x.is_finite())
         {
             return Err(Refusal::NotFinite);
         }
@@ -274,8 +278,7 @@ impl Problem {
     /// Multipliers and rates for a choice of sides.
     fn outcome(&self, choice: &[Side; MOST]) -> Result<Outcome, Unsolved> {
         let mut multipliers = choice.map(Side::sign);
-        let sliding: Vec<usize> =
-            (0..self.size).filter(|&i| choice[i] == Side::Sliding).collect();
+        let sliding: Vec<usize> = (0..self.size).filter(|&i| choice[i] == Side::Sliding).collect();
         let rate = |i: usize, multipliers: &Row<f64>| {
             (0..self.size).fold(self.b[i], |sum, j| sum + self.a[i][j] * multipliers[j])
         };

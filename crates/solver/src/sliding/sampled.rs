@@ -320,7 +320,7 @@ impl<S: SwitchedDynamic, const N: usize, const G: usize> HybridSystem<N, G> for 
         values
     }
 
-    fn settle(&self, mode: Self::Mode) -> Self::Mode {
+    fn settle(&self, mode: Self::Mode, _y: &State<N>) -> Self::Mode {
         mode.settled()
     }
 
