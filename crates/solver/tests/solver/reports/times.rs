@@ -36,7 +36,7 @@ fn doses_at_the_start_and_at_the_end_are_given_once() {
     }
 }
 
-/// y′ = y, and a count at a time.
+/// A slow decay, and a count at a time.
 struct Once;
 
 impl Report for Once {
@@ -152,7 +152,7 @@ impl Report for Controller {
 #[test]
 fn a_sampled_controller_keeps_its_samples() {
     let (h, count) = ((-0.1_f64).exp(), 50);
-    let (mut y, mut u) = (1.0, 0.0);
+    let (mut y, mut u) = (1.0_f64, 0.0);
     let mut crossing = None;
     for k in 0..count {
         u = -3.0 * y;
