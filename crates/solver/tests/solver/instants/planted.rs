@@ -367,13 +367,6 @@ impl Planted {
         Some(after)
     }
 
-    /// The first time of a clock after a time, as a run asks for it.
-    pub fn next_time(&self, guard: usize, after: f64) -> f64 {
-        let times = self.kinds[guard].clock.iter().flatten();
-        let mut times = times.map(|time| double(*time) * self.scales.time);
-        times.find(|time| *time > after).unwrap_or(f64::INFINITY)
-    }
-
     pub fn state(&self, y: &[Exact; LINEAR]) -> [f64; N] {
         let linear = |i: usize| double(y[i]) * self.scales.state;
         std::array::from_fn(|i| if i < LINEAR { linear(i) } else { 0.0 })
