@@ -207,7 +207,8 @@ pub fn all<const N: usize>(
     start: (u8, f64, [f64; N]),
     end: f64,
 ) -> Vec<Ended> {
-    let ended = runs(system, start, end, &Options::with_tolerance(1e-12)).into_iter();
+    let options = Options { max_switches: 2000, ..Options::with_tolerance(1e-12) };
+    let ended = runs(system, start, end, &options).into_iter();
     ended.map(|(name, run)| run.unwrap_or_else(|error| panic!("{name}: {error}"))).collect()
 }
 

@@ -98,7 +98,7 @@ impl Report for Section {
         ]
     }
     fn guards(&self, _: u8) -> [Guard; 3] {
-        [EITHER, OFF, OFF]
+        [RISING, OFF, OFF]
     }
     fn values<T: Number>(&self, _: u8, s: T, y: [T; 4]) -> [T; 3] {
         [y[2], s, s]
