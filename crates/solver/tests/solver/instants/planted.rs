@@ -367,6 +367,13 @@ impl Planted {
         Some(after)
     }
 
+    /// The first time of a clock after a time, as a run asks for it.
+    pub fn next_time(&self, guard: usize, after: f64) -> f64 {
+        let times = self.kinds[guard].clock.iter().flatten();
+        let mut times = times.map(|time| double(*time) * self.scales.time);
+        times.find(|time| *time > after).unwrap_or(f64::INFINITY)
+    }
+
     pub fn state(&self, y: &[Exact; LINEAR]) -> [f64; N] {
         let linear = |i: usize| double(y[i]) * self.scales.state;
         std::array::from_fn(|i| if i < LINEAR { linear(i) } else { 0.0 })
@@ -433,6 +440,10 @@ impl ReadableSystem<N, G> for Fixed<'_> {
         values
     }
 
+    fn next_time(&self, _mode: usize, guard: usize, after: f64) -> f64 {
+        self.0.next_time(guard, after)
+    }
+
     fn transition(&self, mode: usize, guard: usize, _: f64, y: &State<N>) -> (usize, State<N>) {
         let mut after = *y;
         (self.0.apply(mode, guard, after.as_mut_slice()), after)
@@ -455,6 +466,10 @@ impl HybridSystem<N, G> for FixedBox<'_> {
 
     fn guard_values(&self, mode: usize, s: f64, y: &State<N>) -> [f64; G] {
         HybridSystem::guard_values(&Fixed(self.0), mode, s, y)
+    }
+
+    fn next_time(&self, _mode: usize, guard: usize, after: f64) -> f64 {
+        self.0.next_time(guard, after)
     }
 
     fn transition(&self, mode: usize, guard: usize, s: f64, y: &State<N>) -> (usize, State<N>) {
@@ -484,6 +499,10 @@ impl ReadableDynamic for Any<'_> {
         &[0, 1, 2]
     }
 
+    fn next_time(&self, _mode: usize, guard: usize, after: f64) -> f64 {
+        self.0.next_time(guard, after)
+    }
+
     fn transition(&self, mode: usize, guard: usize, _: f64, y: &mut [f64]) -> usize {
         self.0.apply(mode, guard, y)
     }
@@ -505,6 +524,10 @@ impl DynamicSystem for AnyBox<'_> {
 
     fn guard_values(&self, mode: usize, s: f64, y: &[f64], values: &mut [f64]) {
         self.0.values_of(mode, s, y, values);
+    }
+
+    fn next_time(&self, _mode: usize, guard: usize, after: f64) -> f64 {
+        self.0.next_time(guard, after)
     }
 
     fn transition(&self, mode: usize, guard: usize, _: f64, y: &mut [f64]) -> usize {
