@@ -9,7 +9,9 @@ mod order;
 mod sides;
 mod times;
 
-use stickslip_solver::{Direction, Guard, Outcome};
+use stickslip_solver::{Direction, Guard, RunError};
+
+use forms::Ended;
 
 const FALLING: Guard = Guard::new(Direction::Falling);
 const RISING: Guard = Guard::new(Direction::Rising);
@@ -19,13 +21,13 @@ const OFF: Guard = Guard::OFF;
 
 /// A guard that acts after the others of its instant.
 const fn last(guard: Guard) -> Guard {
-    guard.yielding()
+    guard.priority(-1)
 }
 
-/// Asserts that a run is refused because its transitions go on for ever at one instant.
-fn is_endless(ended: &forms::Ended, s: f64) {
-    match ended.outcome {
-        Outcome::InstantLimit { s: found } => assert!((found - s).abs() < 1e-12, "{ended:?}"),
-        _ => panic!("{ended:?}"),
+/// Asserts that a run does not go on, because its transitions follow each other for ever.
+fn is_endless(name: &str, run: &Result<Ended, RunError>, s: f64) {
+    match run {
+        Err(RunError::Cycle { s: found, .. }) => assert!((found - s).abs() < 1e-12, "{name}"),
+        _ => panic!("{name}: {run:?}"),
     }
 }

@@ -1,16 +1,16 @@
-//! What the solver offers for order. Priorities other than 0 and −1, guards that see jumps and
-//! guards with given times are not part of it yet.
+//! The guards of planted systems.
 
 use stickslip_solver::Guard;
 
 use super::planted::Kind;
 
-pub const PRIORITIES: &[i8] = &[-1];
-pub const HAS_JUMPS: bool = false;
-pub const HAS_CLOCKS: bool = false;
+pub const PRIORITIES: &[i8] = &[-128, -1, 1, 2, 127];
+pub const HAS_JUMPS: bool = true;
+pub const HAS_CLOCKS: bool = true;
 
 pub fn guard(kind: &Kind) -> Guard {
-    let guard = Guard::new(kind.direction);
-    let guard = if kind.priority < 0 { guard.yielding() } else { guard };
+    let guard = if kind.clock.is_some() { Guard::clock() } else { Guard::new(kind.direction) };
+    let guard = guard.priority(kind.priority);
+    let guard = if kind.sees_jumps { guard.sees_jumps() } else { guard };
     if kind.terminal { guard.terminal() } else { guard }
 }

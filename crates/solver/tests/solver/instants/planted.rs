@@ -440,6 +440,10 @@ impl ReadableSystem<N, G> for Fixed<'_> {
         values
     }
 
+    fn next_time(&self, _mode: usize, guard: usize, after: f64) -> f64 {
+        self.0.next_time(guard, after)
+    }
+
     fn transition(&self, mode: usize, guard: usize, _: f64, y: &State<N>) -> (usize, State<N>) {
         let mut after = *y;
         (self.0.apply(mode, guard, after.as_mut_slice()), after)
@@ -462,6 +466,10 @@ impl HybridSystem<N, G> for FixedBox<'_> {
 
     fn guard_values(&self, mode: usize, s: f64, y: &State<N>) -> [f64; G] {
         HybridSystem::guard_values(&Fixed(self.0), mode, s, y)
+    }
+
+    fn next_time(&self, _mode: usize, guard: usize, after: f64) -> f64 {
+        self.0.next_time(guard, after)
     }
 
     fn transition(&self, mode: usize, guard: usize, s: f64, y: &State<N>) -> (usize, State<N>) {
@@ -491,6 +499,10 @@ impl ReadableDynamic for Any<'_> {
         &[0, 1, 2]
     }
 
+    fn next_time(&self, _mode: usize, guard: usize, after: f64) -> f64 {
+        self.0.next_time(guard, after)
+    }
+
     fn transition(&self, mode: usize, guard: usize, _: f64, y: &mut [f64]) -> usize {
         self.0.apply(mode, guard, y)
     }
@@ -512,6 +524,10 @@ impl DynamicSystem for AnyBox<'_> {
 
     fn guard_values(&self, mode: usize, s: f64, y: &[f64], values: &mut [f64]) {
         self.0.values_of(mode, s, y, values);
+    }
+
+    fn next_time(&self, _mode: usize, guard: usize, after: f64) -> f64 {
+        self.0.next_time(guard, after)
     }
 
     fn transition(&self, mode: usize, guard: usize, _: f64, y: &mut [f64]) -> usize {

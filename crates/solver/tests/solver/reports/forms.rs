@@ -19,6 +19,14 @@ pub trait Report {
     fn act(&self, mode: u8, _guard: usize, _s: f64, _y: &mut [f64; 4]) -> u8 {
         mode
     }
+
+    fn next(&self, _mode: u8, _guard: usize, _after: f64) -> f64 {
+        f64::INFINITY
+    }
+
+    fn rest(&self, _mode: u8, _guard: usize, _y: [f64; 4]) -> Option<(u8, [f64; 4])> {
+        None
+    }
 }
 
 /// A system without generic functions, so that runs are compiled once for all systems.
@@ -28,6 +36,8 @@ trait Parts {
     fn values(&self, mode: u8, s: f64, y: [f64; 4]) -> [f64; 3];
     fn enclose(&self, mode: u8, s: Enclosure, y: [Enclosure; 4]) -> [Enclosure; 3];
     fn act(&self, mode: u8, guard: usize, s: f64, y: &mut [f64; 4]) -> u8;
+    fn next(&self, mode: u8, guard: usize, after: f64) -> f64;
+    fn rest(&self, mode: u8, guard: usize, y: [f64; 4]) -> Option<(u8, [f64; 4])>;
 }
 
 impl<R: Report> Parts for R {
@@ -45,6 +55,12 @@ impl<R: Report> Parts for R {
     }
     fn act(&self, mode: u8, guard: usize, s: f64, y: &mut [f64; 4]) -> u8 {
         Report::act(self, mode, guard, s, y)
+    }
+    fn next(&self, mode: u8, guard: usize, after: f64) -> f64 {
+        Report::next(self, mode, guard, after)
+    }
+    fn rest(&self, mode: u8, guard: usize, y: [f64; 4]) -> Option<(u8, [f64; 4])> {
+        Report::rest(self, mode, guard, y)
     }
 }
 
@@ -88,6 +104,12 @@ impl<const READABLE: bool> HybridSystem<4, 3> for Form<'_, READABLE> {
         let mut after = four(y.as_slice());
         (self.0.act(mode, guard, s, &mut after), after.into())
     }
+    fn next_time(&self, mode: u8, guard: usize, after: f64) -> f64 {
+        self.0.next(mode, guard, after)
+    }
+    fn rest(&self, mode: u8, guard: usize, _s: f64, y: &State<4>) -> Option<(u8, State<4>)> {
+        self.0.rest(mode, guard, four(y.as_slice())).map(|(mode, y)| (mode, y.into()))
+    }
 }
 
 impl<const READABLE: bool> DynamicSystem for Form<'_, READABLE> {
@@ -114,6 +136,9 @@ impl<const READABLE: bool> DynamicSystem for Form<'_, READABLE> {
         let to = self.0.act(mode, guard, s, &mut after);
         y.copy_from_slice(&after);
         to
+    }
+    fn next_time(&self, mode: u8, guard: usize, after: f64) -> f64 {
+        self.0.next(mode, guard, after)
     }
 }
 
@@ -207,7 +232,8 @@ pub fn all<const N: usize>(
     start: (u8, f64, [f64; N]),
     end: f64,
 ) -> Vec<Ended> {
-    let ended = runs(system, start, end, &Options::with_tolerance(1e-12)).into_iter();
+    let options = Options { max_switches: 2000, ..Options::with_tolerance(1e-12) };
+    let ended = runs(system, start, end, &options).into_iter();
     ended.map(|(name, run)| run.unwrap_or_else(|error| panic!("{name}: {error}"))).collect()
 }
 

@@ -1,6 +1,6 @@
 //! Events at given times: at the start, at the end, periodic ones.
 
-use stickslip_solver::{Guard, Number, Options, StepSize};
+use stickslip_solver::{Guard, Number, Options, Schedule, StepSize};
 
 use super::forms::{Report, all, runs};
 use super::{FALLING, OFF, RISING};
@@ -36,7 +36,7 @@ fn doses_at_the_start_and_at_the_end_are_given_once() {
     }
 }
 
-/// y′ = y, and a count at a time.
+/// A slow decay, and a count at a time.
 struct Once;
 
 impl Report for Once {
@@ -152,7 +152,7 @@ impl Report for Controller {
 #[test]
 fn a_sampled_controller_keeps_its_samples() {
     let (h, count) = ((-0.1_f64).exp(), 50);
-    let (mut y, mut u) = (1.0, 0.0);
+    let (mut y, mut u) = (1.0_f64, 0.0);
     let mut crossing = None;
     for k in 0..count {
         u = -3.0 * y;
@@ -167,5 +167,51 @@ fn a_sampled_controller_keeps_its_samples() {
         ended.acts_at(1, &crossing.into_iter().collect::<Vec<_>>(), 1e-11);
         let early = (0.01_f64).exp();
         ended.is_at(&[u + (y - u) * early, u, 1.0], 1e-11);
+    }
+}
+
+/// A dose table beside a period, and a state that is counted where it falls to 1.
+struct Table(Schedule, Schedule);
+
+impl Report for Table {
+    fn field<T: Number>(&self, _: u8, _: T, y: [T; 4]) -> [T; 4] {
+        [-y[0], T::from(0.0), T::from(0.0), T::from(0.0)]
+    }
+    fn guards(&self, _: u8) -> [Guard; 3] {
+        [Guard::clock(), Guard::clock(), FALLING]
+    }
+    fn values<T: Number>(&self, _: u8, s: T, y: [T; 4]) -> [T; 3] {
+        [s, s, y[0] - 1.0]
+    }
+    fn act(&self, mode: u8, guard: usize, _: f64, y: &mut [f64; 4]) -> u8 {
+        if guard == 0 {
+            y[0] += 2.0;
+        }
+        y[1 + guard] += 1.0;
+        mode
+    }
+    fn next(&self, _: u8, guard: usize, after: f64) -> f64 {
+        [&self.0, &self.1][guard].next_after(after)
+    }
+}
+
+/// A dose that comes exactly as a state event is due, and a period that meets both.
+#[test]
+fn clocks_act_at_their_times_beside_events_of_the_state() {
+    let (start, due) = (1.0_f64.exp(), 1.0);
+    let table = Table(Schedule::times(vec![0.5, due, 2.0]), Schedule::every(0.25, 0.0));
+    // 2 more at 1/2; the state falls to 1 at ln(e + 2√e).
+    let first = (start + 2.0 * 0.5_f64.exp()).ln();
+    for ended in all(&table, (0, 0.0, [start, 0.0, 0.0, 0.0]), 1.5) {
+        ended.acts_at(0, &[0.5, 1.0], 0.0);
+        ended.acts_at(1, &[0.25, 0.5, 0.75, 1.0, 1.25, 1.5], 0.0);
+        ended.acts_at(2, &[], 0.0);
+        assert!(first > 1.5);
+    }
+    let table = Table(Schedule::times(vec![due]), Schedule::every(0.25, 0.0));
+    for ended in all(&table, (0, 0.0, [start, 0.0, 0.0, 0.0]), 1.1) {
+        // The state is 1 exactly when the dose comes: its crossing is a fact.
+        ended.acts_at(2, &[due], 1e-11);
+        assert_eq!(ended.events.guards(), [1, 1, 1, 0, 1, 2], "{}", ended.name);
     }
 }
