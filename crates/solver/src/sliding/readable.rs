@@ -185,8 +185,7 @@ impl<S, const K: usize, const G: usize> Filippov<S, K, G> {
     }
 }
 
-impl<S, const N: usize, const K: usize, const G: usize> ReadableSystem<N, G>
-    for Filippov<S, K, G>
+impl<S, const N: usize, const K: usize, const G: usize> ReadableSystem<N, G> for Filippov<S, K, G>
 where
     S: Switched<N, K, G>,
 {
@@ -241,8 +240,8 @@ where
 ///
 /// While the state slides, its changes stay tangential to the surface: those across it vanish where
 /// it begins to slide.
-impl<S, const N: usize, const K: usize, const G: usize, const P: usize>
-    Differentiable<N, G, P> for Filippov<S, K, G>
+impl<S, const N: usize, const K: usize, const G: usize, const P: usize> Differentiable<N, G, P>
+    for Filippov<S, K, G>
 where
     S: Switched<N, K, G>,
 {

@@ -56,7 +56,9 @@ impl<const N: usize, const K: usize, const G: usize> Switched<N, K, G> for Relay
     fn field<T: Number>(&self, (): (), signs: &[T; K], s: T, y: &[T; N]) -> [T; N] {
         let wave = (s * self.frequency).cos();
         std::array::from_fn(|i| {
-            dot(&self.matrix[i], y) + dot(&self.relays[i], signs) + wave * self.drive[i]
+            dot(&self.matrix[i], y)
+                + dot(&self.relays[i], signs)
+                + wave * self.drive[i]
                 + self.constant[i]
         })
     }

@@ -6,9 +6,7 @@
 
 use super::Relays;
 use stickslip_solver::sliding::{Filippov, Refusal, SampledFilippov, Side, SlidingMode};
-use stickslip_solver::{
-    Dop853, HybridSystem, Options, Outcome, Recorder, RunError, Start, State,
-};
+use stickslip_solver::{Dop853, HybridSystem, Options, Outcome, Recorder, RunError, Start, State};
 
 use crate::erased::run;
 
@@ -89,9 +87,8 @@ fn follow<S, const N: usize, const K: usize, const G: usize>(
         }
         Err(error) => panic!("{error:?} {:?}", events.last()),
     };
-    let together = |mode: SlidingMode<()>| {
-        mode.sides().iter().filter(|side| **side == Side::Sliding).count()
-    };
+    let together =
+        |mode: SlidingMode<()>| mode.sides().iter().filter(|side| **side == Side::Sliding).count();
     seen.together += events.iter().filter(|event| together(event.to) > 1).count();
     for _ in 0..200 {
         let s = end * random.f64();
@@ -127,7 +124,11 @@ fn follow<S, const N: usize, const K: usize, const G: usize>(
                 let k = usize::from(S::READABLE);
                 seen.off[k] = seen.off[k].max(h.abs());
             }
-            assert!(error < 1e-4, "surface {j} at {s}: h = {h:e}, λ = {lambda} {events:?}");
+            // Some of the systems grow without bound.
+            assert!(
+                error < 1e-4 + 1e-8 * slope.amax(),
+                "surface {j} at {s}: h = {h:e}, λ = {lambda} {events:?}"
+            );
         }
     }
 }

@@ -1,9 +1,9 @@
 //! Several surfaces at once.
 
 use super::{Relays, ran, refused, switches, zero};
+use Side::{Above, Below, Sliding};
 use stickslip_solver::sliding::{Filippov, Refusal, Side, Switched};
 use stickslip_solver::{Number, State};
-use Side::{Above, Below, Sliding};
 
 /// Two masses on a belt, each on a spring to a wall, with a spring between them. Both stick; one
 /// is released after the other.
@@ -25,8 +25,8 @@ fn two_masses_on_a_belt() {
     let start = [0.1, -0.2];
     let (found, _) = switches::<4, 2, 4>(&system, [start[0], start[1], belt, belt], 5.0);
     // Both move with the belt: k₁x₁ − c (x₂ − x₁) = F₁ where the first one is released.
-    let first = (frictions[0] + between * (start[1] - start[0]) - walls[0] * start[0])
-        / (walls[0] * belt);
+    let first =
+        (frictions[0] + between * (start[1] - start[0]) - walls[0] * start[0]) / (walls[0] * belt);
     assert!((found[0].0 - first).abs() < 1e-12, "{found:?} {first}");
     assert_eq!(found[0].1, [Below, Sliding]);
     // The first one swings: x″ + ω²x = c x₂(t) + F₁.
@@ -36,9 +36,8 @@ fn two_masses_on_a_belt() {
     let rest = |t: f64| (between * second_at(t) + frictions[0]) / square;
     let (x, v) = (start[0] + belt * first - rest(0.0), belt - between * belt / square);
     let first_at = |t: f64| rest(t) + x * (omega * t).cos() + v / omega * (omega * t).sin();
-    let pull = |t: f64| {
-        -walls[1] * second_at(t) + between * (first_at(t) - second_at(t)) + frictions[1]
-    };
+    let pull =
+        |t: f64| -walls[1] * second_at(t) + between * (first_at(t) - second_at(t)) + frictions[1];
     let second = zero(pull, 0.0, 4.4);
     assert!((found[1].0 - first - second).abs() < 1e-11, "{found:?} {}", first + second);
     assert_eq!(found[1].1, [Below, Below]);
