@@ -112,7 +112,7 @@ fn cause_of(surfaces: &Sides, guard: usize, values: impl Fn() -> Row<f64>) -> Ca
     } else if surfaces.sides[surface] != Side::Sliding {
         Cause::Arrived(surface)
     } else {
-        Cause::Released(surface, if guard % 2 == 0 { Side::Above } else { Side::Below })
+        Cause::Released(surface, if guard.is_multiple_of(2) { Side::Above } else { Side::Below })
     }
 }
 

@@ -59,7 +59,7 @@ pub(super) fn solved<T: Number>(a: &Square<T>, b: &Row<T>, size: usize) -> Row<T
 }
 
 /// The shares of the fields above sliding surfaces.
-struct Shares<T> {
+struct Controlled<T> {
     /// The share of the field above each sliding surface, in order: (1 + λ)/2.
     shares: Row<T>,
     count: usize,
@@ -76,7 +76,7 @@ fn shares<T: Number>(
     sides: &Sides,
     (s, y): (T, &[T]),
     fields: &mut [T],
-) -> Shares<T> {
+) -> Controlled<T> {
     let n = y.len();
     let (below, above) = fields.split_at_mut(n);
     let mut signs: Row<T> =
@@ -98,7 +98,7 @@ fn shares<T: Number>(
         count = j + 1;
     }
     let shares = if count == 0 { b } else { solved(&a, &b, count) };
-    Shares { shares, count, rates: a }
+    Controlled { shares, count, rates: a }
 }
 
 /// Writes the field of a mode to `slope`. `fields` is room as in [`shares`]. The field is NaN where
@@ -119,7 +119,7 @@ pub(super) fn field<T: Number>(
         view.field(&signs[..sides.count], s, y, slope);
         return;
     }
-    let Shares { shares, count, rates } = shares(view, sides, (s, y), fields);
+    let Controlled { shares, count, rates } = shares(view, sides, (s, y), fields);
     let n = y.len();
     for (k, slope) in slope.iter_mut().enumerate() {
         let below = fields[k];
@@ -128,7 +128,9 @@ pub(super) fn field<T: Number>(
     }
     for rows in 1..1 << count {
         let attracts = minor(&rates, rows);
-        slope.iter_mut().for_each(|slope| *slope = attracts.select(*slope, T::from(f64::NAN)));
+        for slope in slope.iter_mut() {
+            *slope = attracts.select(*slope, T::from(f64::NAN));
+        }
     }
 }
 

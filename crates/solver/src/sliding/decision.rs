@@ -82,7 +82,7 @@ pub(super) fn condition(
             let mut behind = problem.of(&from);
             behind[i] = if was == Side::Below { Side::Above } else { Side::Below };
             positive ^= is != Side::Sliding;
-            problem.outcome(&behind).map_or(f64::NAN, |at| was.sign() * at.rates[i])
+            problem.outcome(behind).map_or(f64::NAN, |at| was.sign() * at.rates[i])
         } else {
             positive ^= is != was;
             let mut sliding = problem.of(&decided);
@@ -91,7 +91,7 @@ pub(super) fn condition(
             if !slides {
                 continue;
             }
-            problem.outcome(&sliding).map_or(f64::NAN, |at| 1.0 - at.multipliers[i].abs())
+            problem.outcome(sliding).map_or(f64::NAN, |at| 1.0 - at.multipliers[i].abs())
         };
         least = if distance.abs() >= least { least } else { distance.abs() };
     }
@@ -276,7 +276,7 @@ impl Problem {
     }
 
     /// Multipliers and rates for a choice of sides.
-    fn outcome(&self, choice: &[Side; MOST]) -> Result<Outcome, Unsolved> {
+    fn outcome(&self, choice: [Side; MOST]) -> Result<Outcome, Unsolved> {
         let mut multipliers = choice.map(Side::sign);
         let sliding: Vec<usize> = (0..self.size).filter(|&i| choice[i] == Side::Sliding).collect();
         let rate = |i: usize, multipliers: &Row<f64>| {
@@ -306,13 +306,13 @@ impl Problem {
     }
 
     /// Whether the solution is attracted to the surfaces that are slid along.
-    fn attracts(&self, choice: &[Side; MOST]) -> bool {
+    fn attracts(&self, choice: [Side; MOST]) -> bool {
         let slides = bits((0..self.size).filter(|&i| choice[i] == Side::Sliding));
         (1..1 << self.size).all(|rows| rows & !slides != 0 || minor(&self.scaled, rows) > SMALL)
     }
 
     /// Whether the solution goes on with this choice of sides. What is `given` is not asked.
-    fn verdict(&self, choice: &[Side; MOST], given: usize) -> Result<Verdict, Refusal> {
+    fn verdict(&self, choice: [Side; MOST], given: usize) -> Result<Verdict, Refusal> {
         let at = match self.outcome(choice) {
             Ok(at) => at,
             Err(Unsolved::Never) => return Ok(Verdict::No),
@@ -352,10 +352,10 @@ impl Problem {
     ) -> Result<Sides, Refusal> {
         let were = self.of(from);
         let moved = matches!(cause, Cause::Moved(_));
-        let mut given = if moved { 0 } else { self.held(&were) };
+        let mut given = if moved { 0 } else { self.held(were) };
         let mut target = were;
         if let Cause::Released(surface, side) = cause {
-            if !self.attracts(&were) {
+            if !self.attracts(were) {
                 return Err(Refusal::NotUnique);
             }
             for (i, _) in self.on().iter().enumerate().filter(|(_, on)| **on == surface) {
@@ -365,8 +365,8 @@ impl Problem {
         }
         let (mut sure, mut near) = (Vec::new(), Vec::new());
         let mut singular = None;
-        for choice in self.choices(&target, given) {
-            match self.verdict(&choice, given) {
+        for choice in self.choices(target, given) {
+            match self.verdict(choice, given) {
                 Ok(Verdict::Yes) => sure.push((choice, 0)),
                 Ok(Verdict::Nearly(bits)) => near.push((choice, bits)),
                 Ok(Verdict::No) => {}
@@ -377,7 +377,7 @@ impl Problem {
             return Err(refusal);
         }
         if sure.is_empty() {
-            near.retain(|(choice, bits)| self.goes_on(view, from, choice, (*bits, given), s, y));
+            near.retain(|(choice, bits)| self.goes_on(view, from, *choice, (*bits, given), s, y));
             sure = near;
         }
         let arrived = match cause {
@@ -385,7 +385,7 @@ impl Problem {
             _ => None,
         };
         // The solution keeps the sides that it has, but for the surface that it has arrived at.
-        let kept = |choice: &[Side; MOST]| {
+        let kept = |choice: [Side; MOST]| {
             (0..self.size).all(|i| match cause {
                 Cause::Start(given) => given[self.on[i]] == Some(choice[i]),
                 _ => choice[i] == target[i] || arrived == Some(self.on[i]),
@@ -393,7 +393,7 @@ impl Problem {
         };
         let unique = sure.len() < 2;
         if !unique {
-            sure.retain(|(choice, _)| kept(choice));
+            sure.retain(|(choice, _)| kept(*choice));
         }
         let [(choice, bits)] = sure[..] else {
             return Err(if unique { Refusal::NoSolution } else { Refusal::NotUnique });
@@ -408,7 +408,7 @@ impl Problem {
             decided.sides[surface] = choice[i];
             decided.zeros[surface] = match choice[i] {
                 Side::Sliding => {
-                    let at = self.outcome(&choice).map_or(0.0, |at| at.multipliers[i]);
+                    let at = self.outcome(choice).map_or(0.0, |at| at.multipliers[i]);
                     [u8::from(near && at > 0.0), u8::from(near && at < 0.0)]
                 }
                 // The function starts with a double zero where its rate does.
@@ -420,15 +420,15 @@ impl Problem {
 
     /// The surfaces that are slid along with multipliers beyond ±1, as in runs with a prescribed
     /// itinerary, which go on so until their exits.
-    fn held(&self, were: &[Side; MOST]) -> usize {
+    fn held(&self, were: [Side; MOST]) -> usize {
         let Ok(at) = self.outcome(were) else { return 0 };
         let beyond = |&i: &usize| at.multipliers[i].abs() > 1.0 + SMALL;
         bits((0..self.size).filter(|&i| were[i] == Side::Sliding).filter(beyond))
     }
 
     /// All choices of sides, with those that are `given` as in `target`.
-    fn choices(&self, target: &[Side; MOST], given: usize) -> Vec<[Side; MOST]> {
-        let mut all = vec![*target];
+    fn choices(&self, target: [Side; MOST], given: usize) -> Vec<[Side; MOST]> {
+        let mut all = vec![target];
         for i in (0..self.size).filter(|i| given >> i & 1 == 0) {
             let sides = [Side::Above, Side::Below, Side::Sliding];
             all = all
@@ -452,7 +452,7 @@ impl Problem {
         &self,
         view: &impl View<f64>,
         from: &Sides,
-        choice: &[Side; MOST],
+        choice: [Side; MOST],
         (near, given): (usize, usize),
         s: f64,
         y: &[f64],
@@ -474,9 +474,9 @@ impl Problem {
         let on = bits(self.on().iter().copied());
         let Ok(then) = Self::new(view, from, on, s + later, &moved) else { return false };
         (0..self.size).filter(|i| near >> i & 1 == 1 && given >> i & 1 == 0).all(|i| {
-            let mut sliding = *choice;
+            let mut sliding = choice;
             sliding[i] = Side::Sliding;
-            let (Ok(now), Ok(then)) = (self.outcome(&sliding), then.outcome(&sliding)) else {
+            let (Ok(now), Ok(then)) = (self.outcome(sliding), then.outcome(sliding)) else {
                 return false;
             };
             let (now, then) = (now.multipliers[i], then.multipliers[i]);
@@ -525,7 +525,9 @@ fn scaled(a: &Square<f64>, size: usize) -> Square<f64> {
     let mut scaled = *a;
     for row in &mut scaled[..size] {
         let most = row.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-        row.iter_mut().for_each(|x| *x /= if most > 0.0 { most } else { 1.0 });
+        for x in row.iter_mut() {
+            *x /= if most > 0.0 { most } else { 1.0 };
+        }
     }
     for j in 0..size {
         let most = scaled[..size].iter().fold(0.0_f64, |most, row| most.max(row[j].abs()));

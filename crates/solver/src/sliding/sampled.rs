@@ -34,8 +34,9 @@ pub trait SwitchedDynamic {
     /// `rates`: ∂h/∂s + ∇h·slope.
     ///
     /// The provided version takes differences of fourth order over shorter and shorter times, and
-    /// of these the one that differs least from the one before. Where the functions are polynomials
-    /// of a degree below 5, also in time, it evaluates them eight times, and else up to 36 times.
+    /// of these the one that differs least from the one before, as far as rounding allows. Where the
+    /// functions are polynomials of a degree below 5, also in time, it evaluates them eight times,
+    /// and else up to 36 times. With terms of size 1, the error is below 1e-10.
     fn rates(&self, mode: Self::Mode, s: f64, y: &[f64], slope: &[f64], rates: &mut [f64]) {
         let largest = |all: &[f64]| all.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
         // A time in which state or time change by their own size.
@@ -43,7 +44,7 @@ pub trait SwitchedDynamic {
         let mut reach = if time.is_finite() && time > 0.0 { time } else { 1.0 } / 64.0;
         let (mut moved, mut values) = (y.to_vec(), [0.0; MOST]);
         let mut before = [f64::INFINITY; MOST];
-        let mut least = [f64::INFINITY; MOST];
+        let (mut least, mut most) = ([f64::INFINITY; MOST], [0.0_f64; MOST]);
         rates.fill(f64::NAN);
         for _ in 0..9 {
             let (mut now, mut terms) = ([0.0; MOST], [0.0_f64; MOST]);
@@ -56,15 +57,18 @@ pub trait SwitchedDynamic {
                 for (i, value) in values.iter().enumerate() {
                     now[i] += weight * value / (12.0 * reach);
                     terms[i] = terms[i].max(value.abs() / reach);
+                    most[i] = most[i].max(value.abs());
                 }
             }
             let mut settled = true;
             for (i, rate) in rates.iter_mut().enumerate() {
+                // Two differences that are rounded alike may agree by chance.
+                let noise = 64.0 * f64::EPSILON * most[i] / reach;
                 let change = (now[i] - before[i]).abs();
-                if change < least[i] {
-                    (*rate, least[i]) = (now[i], change);
+                settled &= change <= 1e-12 * terms[i] || noise >= least[i];
+                if change < least[i] && noise < least[i] {
+                    (*rate, least[i]) = (now[i], change.max(noise));
                 }
-                settled &= change <= 1e-12 * terms[i];
             }
             if settled {
                 break;
@@ -105,7 +109,8 @@ pub trait SwitchedDynamic {
 /// let start = DynamicStart { mode: relay.mode((), 0.0, &[0.75])?, s: 0.0, state: &[0.75] };
 /// let mut switches = Vec::new();
 /// let end = run_dynamic(Dop853, &relay, start, 2.0, &Options::default(), &mut switches)?;
-/// assert_eq!((switches.len(), switches[0].s, end.state[0]), (1, 0.75, 0.0));
+/// assert!(switches.len() == 1 && (switches[0].s - 0.75).abs() < 1e-14);
+/// assert!(end.state[0].abs() < 1e-14);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug)]

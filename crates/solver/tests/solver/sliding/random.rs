@@ -51,7 +51,6 @@ struct Seen {
     accumulations: usize,
     refusals: Vec<Refusal>,
     worst: f64,
-    off: [f64; 2],
 }
 
 /// Follows a system and checks λ at many places.
@@ -120,11 +119,11 @@ fn follow<S, const N: usize, const K: usize, const G: usize>(
                 (lambda[j].abs() - 1.0).max(0.0)
             };
             seen.worst = seen.worst.max(error);
-            if h.abs() <= 1e-7 {
-                let k = usize::from(S::READABLE);
-                seen.off[k] = seen.off[k].max(h.abs());
-            }
-            assert!(error < 1e-4, "surface {j} at {s}: h = {h:e}, λ = {lambda} {events:?}");
+            // Some of the systems grow without bound.
+            assert!(
+                error < 1e-4 + 1e-8 * slope.amax(),
+                "surface {j} at {s}: h = {h:e}, λ = {lambda} {events:?}"
+            );
         }
     }
 }
@@ -145,7 +144,6 @@ fn random_systems<const N: usize, const K: usize, const G: usize>(
         let sampled = SampledFilippov::new(relays.clone());
         follow::<_, N, K, G>(&relays, &sampled, start, &mut random, &mut seen);
     }
-    println!("{N} {K}: {seen:?}");
     seen
 }
 
