@@ -49,7 +49,7 @@ mod rate;
 
 use crate::dynamic::{DynamicRun, DynamicStart, DynamicSystem};
 use crate::error::RunError;
-use crate::hybrid::{Guard, HybridSystem, Outcome, Run, Start};
+use crate::hybrid::{Direction, Guard, HybridSystem, Outcome, Run, Start};
 use crate::margin::prescribed::{Kind, Taken, Watch, Watched, watch};
 use crate::method::Method;
 use crate::options::Options;
@@ -201,9 +201,9 @@ where
 {
     let from = (start.mode, start.s, &start.state);
     let followed = followed::<M, _>(&Fixed(system), from, end, options, exits)?;
-    Ok(followed.map(|(End { outcome, s, mode, state, statistics }, exits)| Followed {
+    Ok(followed.map(|(End { outcome, s, mode, state, decided, statistics }, exits)| Followed {
         exits,
-        run: Run { outcome, s, mode, state, statistics },
+        run: Run { outcome, s, mode, state, decided, statistics },
     }))
 }
 
@@ -226,9 +226,9 @@ where
     let (system, from) = (Free::new(system, start.state.len()), start.state.to_vec());
     let from = (start.mode, start.s, &from);
     let followed = followed::<M, _>(&system, from, end, options, exits)?;
-    Ok(followed.map(|(End { outcome, s, mode, state, statistics }, exits)| Followed {
+    Ok(followed.map(|(End { outcome, s, mode, state, decided, statistics }, exits)| Followed {
         exits,
-        run: DynamicRun { outcome, s, mode, state, statistics },
+        run: DynamicRun { outcome, s, mode, state, decided, statistics },
     }))
 }
 

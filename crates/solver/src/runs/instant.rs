@@ -70,7 +70,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         check_finite(self.clock.s, event.state.parts())?;
         self.state.set(&event.state);
         self.rest.parts_mut().fill(0.0);
-        let Instant { pending, acted } = &mut self.instant;
+        let Instant { pending, acted, .. } = &mut self.instant;
         pending.set(&event.crossed);
         acted.fit(self.phase.count(), false);
         if self.clock.phase > 0.0 {

@@ -147,7 +147,8 @@ where
         }
     };
     observer.on_end(mode, clock.s, &state);
-    Ok(Run { outcome, s: clock.s, mode, state, statistics })
+    // Guards are looked at only at the ends of steps.
+    Ok(Run { outcome, s: clock.s, mode, state, decided: G == 0, statistics })
 }
 
 /// Whether a guard has fired that changed from `before` to `now`.

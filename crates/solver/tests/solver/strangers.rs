@@ -68,7 +68,9 @@ fn sign_changes<M: Method>(method: M, system: &Observed, tolerance: f64) {
         run(method, system, start, 20.0, &options, &mut read),
         run(method, &BlackBox(system), start, 20.0, &options, &mut sampled),
     ];
-    assert!(ends.iter().all(|end| end.is_ok_and(|end| end.outcome == Outcome::ReachedEnd)));
+    assert!(
+        ends.iter().all(|end| end.as_ref().is_ok_and(|end| end.outcome == Outcome::ReachedEnd))
+    );
     assert_eq!(check(read, "readable"), check(sampled, "black box"), "{tolerance:e}");
 }
 
@@ -121,7 +123,11 @@ fn finitely_many_transitions_at_one_instant_are_not_an_accumulation() {
         let mut switches = Vec::new();
         let error = run(Dop853, &Chain(2000), start, 2.0, &options, &mut switches).unwrap_err();
         let RunError::Cycle { s, count: 1000, cycle } = error else { panic!("{error:?}") };
-        assert!((s - 1.0).abs() < 1e-14 && cycle.last() == Some(&(0, "999".to_owned())));
+        assert!(
+            (s - 1.0).abs() < 1e-14
+                && cycle.len() == 8
+                && cycle.iter().all(|(guard, _)| *guard == 0)
+        );
         assert!(switches.is_empty());
     }
 }
@@ -213,7 +219,7 @@ fn a_ball_whose_apex_is_noted_comes_to_rest() {
             run(Dopri5, &BlackBox(&ball), start, f64::INFINITY, &options, &mut ()),
         ];
         for end in ends {
-            let Outcome::Zeno { accumulation } = end.unwrap().outcome else {
+            let Outcome::Zeno { accumulation } = end.as_ref().unwrap().outcome else {
                 panic!("{restitution}: {end:?}")
             };
             assert!((accumulation / rest - 1.0).abs() < 1e-11, "{restitution}: {accumulation}");

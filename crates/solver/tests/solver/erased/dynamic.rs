@@ -21,8 +21,8 @@ macro_rules! with_numbers {
             $run($method, system, start, $end, $options, &mut Watching::<false>(told))
         };
         run.map(|run| {
-            let DynamicRun { outcome, s, mode, state, statistics } = run;
-            DynamicRun { outcome, s, mode: modes.mode(mode), state, statistics }
+            let DynamicRun { outcome, s, mode, state, decided, statistics } = run;
+            DynamicRun { outcome, s, mode: modes.mode(mode), state, decided, statistics }
         })
     }};
 }
@@ -119,6 +119,7 @@ trait Sees {
     fn on_switch(&mut self, event: &DynamicEvent<'_, usize>);
     fn on_grazing(&mut self, grazing: &Grazing<usize>);
     fn on_pole(&mut self, pole: &Pole<usize>);
+    fn forget(&mut self, switches: usize);
     fn stops(&self) -> bool;
     fn on_segment(&mut self, mode: usize, dense: &DynamicDense<'_>);
     fn on_end(&mut self, mode: usize, s: f64, state: &[f64]);
@@ -156,6 +157,10 @@ impl<O: DynamicObserver<Mode>, Mode: Copy + PartialEq> Sees for Told<'_, O, Mode
         self.observer.on_pole(&self.modes.pole(pole));
     }
 
+    fn forget(&mut self, switches: usize) {
+        self.observer.forget(switches);
+    }
+
     fn stops(&self) -> bool {
         self.observer.stops()
     }
@@ -185,6 +190,10 @@ impl<const WANTS_SEGMENTS: bool> DynamicObserver<usize> for Watching<'_, WANTS_S
 
     fn on_pole(&mut self, pole: &Pole<usize>) {
         self.0.on_pole(pole);
+    }
+
+    fn forget(&mut self, switches: usize) {
+        self.0.forget(switches);
     }
 
     fn stops(&self) -> bool {

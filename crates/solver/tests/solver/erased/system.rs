@@ -120,6 +120,7 @@ pub trait Sees<const N: usize> {
     fn on_switch(&mut self, event: &SwitchEvent<usize, N>);
     fn on_grazing(&mut self, grazing: &Grazing<usize>);
     fn on_pole(&mut self, pole: &Pole<usize>);
+    fn forget(&mut self, switches: usize);
     fn stops(&self) -> bool;
     fn on_segment(&mut self, mode: usize, dense: &Dense<N>);
     fn on_end(&mut self, mode: usize, s: f64, state: &State<N>);
@@ -157,6 +158,10 @@ impl<O: Observer<Mode, N>, Mode: Copy + PartialEq, const N: usize> Sees<N> for T
         self.observer.on_pole(&self.modes.pole(pole));
     }
 
+    fn forget(&mut self, switches: usize) {
+        self.observer.forget(switches);
+    }
+
     fn stops(&self) -> bool {
         self.observer.stops()
     }
@@ -190,6 +195,10 @@ impl<const N: usize, const WANTS_SEGMENTS: bool> Observer<usize, N>
         self.0.on_pole(pole);
     }
 
+    fn forget(&mut self, switches: usize) {
+        self.0.forget(switches);
+    }
+
     fn stops(&self) -> bool {
         self.0.stops()
     }
@@ -212,7 +221,7 @@ impl<Mode: Copy + PartialEq> Modes<Mode> {
 
     /// The end of a run.
     pub fn end<const N: usize>(&self, run: Run<usize, N>) -> Run<Mode, N> {
-        let Run { outcome, s, mode, state, statistics } = run;
-        Run { outcome, s, mode: self.mode(mode), state, statistics }
+        let Run { outcome, s, mode, state, decided, statistics } = run;
+        Run { outcome, s, mode: self.mode(mode), state, decided, statistics }
     }
 }

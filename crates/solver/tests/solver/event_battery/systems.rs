@@ -147,7 +147,7 @@ fn chattering_ends() {
                 // No time passes between the switches.
                 Err(RunError::Cycle { s, cycle, .. }) => {
                     let modes: BTreeSet<&str> = cycle.iter().map(|(_, mode)| &mode[..]).collect();
-                    assert_eq!(modes, BTreeSet::from(["false", "true"]));
+                    assert!(modes.len() == 2 && cycle.len() == 2, "{cycle:?}");
                     s
                 }
                 other => panic!("{other:?} {options:?}"),

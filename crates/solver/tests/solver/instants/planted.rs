@@ -4,7 +4,8 @@
 //! multiples of [`UNIT`]⁻¹ with exact arithmetic. So it is known which events coincide.
 
 use stickslip_solver::{
-    Direction, DynamicSystem, Guard, HybridSystem, Number, ReadableDynamic, ReadableSystem, State,
+    Direction, DynamicSystem, Guard, HybridSystem, Number, ReadableDynamic, ReadableSystem,
+    Schedule, State, Times,
 };
 
 /// A number in multiples of 1/[`UNIT`].
@@ -154,6 +155,8 @@ pub struct Planted {
     pub start: (Exact, usize, [Exact; LINEAR]),
     /// The guards of each mode.
     guards: Vec<[Guard; G]>,
+    /// The times of each clock.
+    times: Vec<Times>,
 }
 
 /// A multiple of 1/2, at most `most` in magnitude.
@@ -252,7 +255,7 @@ impl Planted {
         let mut kinds: Vec<Kind> = kinds.collect();
         for kind in &mut kinds {
             if super::api::HAS_CLOCKS && random.f64() < 0.15 {
-                let first = s + UNIT / 2 * random.i128(0..6);
+                let first = s + UNIT / 2 * random.i128(1..7);
                 let period = UNIT / 2 * random.i128(1..6);
                 kind.direction = Direction::Rising;
                 kind.sees_jumps = false;
@@ -284,8 +287,23 @@ impl Planted {
         let waves = choose(random, &[0.0, 1.0]);
         let start = (s, first, start);
         let guards = Vec::new();
-        let mut planted =
-            Self { scales, waves, slopes, functions, kinds, uses, transitions, start, guards };
+        let times = kinds.iter().map(|kind| {
+            let times = kind.clock.iter().flatten().map(|time| double(*time) * scales.time);
+            Times::new(times.collect()).expect("ascending times")
+        });
+        let times = times.collect();
+        let mut planted = Self {
+            scales,
+            waves,
+            slopes,
+            functions,
+            kinds,
+            uses,
+            transitions,
+            start,
+            guards,
+            times,
+        };
         for mode in 0..modes {
             planted.guards.push(std::array::from_fn(|guard| planted.guard(mode, guard)));
         }
@@ -367,13 +385,6 @@ impl Planted {
         Some(after)
     }
 
-    /// The first time of a clock after a time, as a run asks for it.
-    pub fn next_time(&self, guard: usize, after: f64) -> f64 {
-        let times = self.kinds[guard].clock.iter().flatten();
-        let mut times = times.map(|time| double(*time) * self.scales.time);
-        times.find(|time| *time > after).unwrap_or(f64::INFINITY)
-    }
-
     pub fn state(&self, y: &[Exact; LINEAR]) -> [f64; N] {
         let linear = |i: usize| double(y[i]) * self.scales.state;
         std::array::from_fn(|i| if i < LINEAR { linear(i) } else { 0.0 })
@@ -440,8 +451,8 @@ impl ReadableSystem<N, G> for Fixed<'_> {
         values
     }
 
-    fn next_time(&self, _mode: usize, guard: usize, after: f64) -> f64 {
-        self.0.next_time(guard, after)
+    fn schedule(&self, _: usize, guard: usize) -> Schedule<'_> {
+        Schedule::at(&self.0.times[guard])
     }
 
     fn transition(&self, mode: usize, guard: usize, _: f64, y: &State<N>) -> (usize, State<N>) {
@@ -468,8 +479,8 @@ impl HybridSystem<N, G> for FixedBox<'_> {
         HybridSystem::guard_values(&Fixed(self.0), mode, s, y)
     }
 
-    fn next_time(&self, _mode: usize, guard: usize, after: f64) -> f64 {
-        self.0.next_time(guard, after)
+    fn schedule(&self, _: usize, guard: usize) -> Schedule<'_> {
+        Schedule::at(&self.0.times[guard])
     }
 
     fn transition(&self, mode: usize, guard: usize, s: f64, y: &State<N>) -> (usize, State<N>) {
@@ -499,8 +510,8 @@ impl ReadableDynamic for Any<'_> {
         &[0, 1, 2]
     }
 
-    fn next_time(&self, _mode: usize, guard: usize, after: f64) -> f64 {
-        self.0.next_time(guard, after)
+    fn schedule(&self, _: usize, guard: usize) -> Schedule<'_> {
+        Schedule::at(&self.0.times[guard])
     }
 
     fn transition(&self, mode: usize, guard: usize, _: f64, y: &mut [f64]) -> usize {
@@ -526,8 +537,8 @@ impl DynamicSystem for AnyBox<'_> {
         self.0.values_of(mode, s, y, values);
     }
 
-    fn next_time(&self, _mode: usize, guard: usize, after: f64) -> f64 {
-        self.0.next_time(guard, after)
+    fn schedule(&self, _: usize, guard: usize) -> Schedule<'_> {
+        Schedule::at(&self.0.times[guard])
     }
 
     fn transition(&self, mode: usize, guard: usize, _: f64, y: &mut [f64]) -> usize {

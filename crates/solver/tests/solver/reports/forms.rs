@@ -4,8 +4,8 @@ use std::cell::OnceCell;
 
 use stickslip_solver::{
     Dop853, Dopri5, DynamicEvent, DynamicObserver, DynamicStart, DynamicSystem, Enclosure, Guard,
-    HybridSystem, Method, Number, Observer, Options, Outcome, RunError, Start, State, SwitchEvent,
-    run, run_dynamic,
+    HybridSystem, Method, Number, Observer, Options, Outcome, RunError, Schedule, Start, State,
+    SwitchEvent, run, run_dynamic,
 };
 
 /// A system of up to four components, three guards and some modes.
@@ -20,8 +20,8 @@ pub trait Report {
         mode
     }
 
-    fn next(&self, _mode: u8, _guard: usize, _after: f64) -> f64 {
-        f64::INFINITY
+    fn schedule(&self, _guard: usize) -> Schedule<'_> {
+        Schedule::NEVER
     }
 
     fn rest(&self, _mode: u8, _guard: usize, _y: [f64; 4]) -> Option<(u8, [f64; 4])> {
@@ -36,7 +36,7 @@ trait Parts {
     fn values(&self, mode: u8, s: f64, y: [f64; 4]) -> [f64; 3];
     fn enclose(&self, mode: u8, s: Enclosure, y: [Enclosure; 4]) -> [Enclosure; 3];
     fn act(&self, mode: u8, guard: usize, s: f64, y: &mut [f64; 4]) -> u8;
-    fn next(&self, mode: u8, guard: usize, after: f64) -> f64;
+    fn schedule(&self, guard: usize) -> Schedule<'_>;
     fn rest(&self, mode: u8, guard: usize, y: [f64; 4]) -> Option<(u8, [f64; 4])>;
 }
 
@@ -56,8 +56,8 @@ impl<R: Report> Parts for R {
     fn act(&self, mode: u8, guard: usize, s: f64, y: &mut [f64; 4]) -> u8 {
         Report::act(self, mode, guard, s, y)
     }
-    fn next(&self, mode: u8, guard: usize, after: f64) -> f64 {
-        Report::next(self, mode, guard, after)
+    fn schedule(&self, guard: usize) -> Schedule<'_> {
+        Report::schedule(self, guard)
     }
     fn rest(&self, mode: u8, guard: usize, y: [f64; 4]) -> Option<(u8, [f64; 4])> {
         Report::rest(self, mode, guard, y)
@@ -104,8 +104,8 @@ impl<const READABLE: bool> HybridSystem<4, 3> for Form<'_, READABLE> {
         let mut after = four(y.as_slice());
         (self.0.act(mode, guard, s, &mut after), after.into())
     }
-    fn next_time(&self, mode: u8, guard: usize, after: f64) -> f64 {
-        self.0.next(mode, guard, after)
+    fn schedule(&self, _: u8, guard: usize) -> Schedule<'_> {
+        self.0.schedule(guard)
     }
     fn rest(&self, mode: u8, guard: usize, _s: f64, y: &State<4>) -> Option<(u8, State<4>)> {
         self.0.rest(mode, guard, four(y.as_slice())).map(|(mode, y)| (mode, y.into()))
@@ -137,8 +137,8 @@ impl<const READABLE: bool> DynamicSystem for Form<'_, READABLE> {
         y.copy_from_slice(&after);
         to
     }
-    fn next_time(&self, mode: u8, guard: usize, after: f64) -> f64 {
-        self.0.next(mode, guard, after)
+    fn schedule(&self, _: u8, guard: usize) -> Schedule<'_> {
+        self.0.schedule(guard)
     }
 }
 

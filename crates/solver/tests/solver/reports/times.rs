@@ -1,6 +1,6 @@
 //! Events at given times: at the start, at the end, periodic ones.
 
-use stickslip_solver::{Guard, Number, Options, Schedule, StepSize};
+use stickslip_solver::{Guard, Number, Options, Schedule, StepSize, Times};
 
 use super::forms::{Report, all, runs};
 use super::{FALLING, OFF, RISING};
@@ -171,7 +171,7 @@ fn a_sampled_controller_keeps_its_samples() {
 }
 
 /// A dose table beside a period, and a state that is counted where it falls to 1.
-struct Table(Schedule, Schedule);
+struct Table(Times, f64);
 
 impl Report for Table {
     fn field<T: Number>(&self, _: u8, _: T, y: [T; 4]) -> [T; 4] {
@@ -190,8 +190,8 @@ impl Report for Table {
         y[1 + guard] += 1.0;
         mode
     }
-    fn next(&self, _: u8, guard: usize, after: f64) -> f64 {
-        [&self.0, &self.1][guard].next_after(after)
+    fn schedule(&self, guard: usize) -> Schedule<'_> {
+        if guard == 0 { Schedule::at(&self.0) } else { Schedule::every(self.1, 0.0) }
     }
 }
 
@@ -199,19 +199,19 @@ impl Report for Table {
 #[test]
 fn clocks_act_at_their_times_beside_events_of_the_state() {
     let (start, due) = (1.0_f64.exp(), 1.0);
-    let table = Table(Schedule::times(vec![0.5, due, 2.0]), Schedule::every(0.25, 0.0));
+    let table = Table(Times::new(vec![0.5, due, 2.0]).unwrap(), 0.25);
     // 2 more at 1/2; the state falls to 1 at ln(e + 2√e).
     let first = (start + 2.0 * 0.5_f64.exp()).ln();
     for ended in all(&table, (0, 0.0, [start, 0.0, 0.0, 0.0]), 1.5) {
         ended.acts_at(0, &[0.5, 1.0], 0.0);
-        ended.acts_at(1, &[0.25, 0.5, 0.75, 1.0, 1.25, 1.5], 0.0);
+        ended.acts_at(1, &[0.0, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5], 0.0);
         ended.acts_at(2, &[], 0.0);
         assert!(first > 1.5);
     }
-    let table = Table(Schedule::times(vec![due]), Schedule::every(0.25, 0.0));
+    let table = Table(Times::new(vec![due]).unwrap(), 0.25);
     for ended in all(&table, (0, 0.0, [start, 0.0, 0.0, 0.0]), 1.1) {
         // The state is 1 exactly when the dose comes: its crossing is a fact.
         ended.acts_at(2, &[due], 1e-11);
-        assert_eq!(ended.events.guards(), [1, 1, 1, 0, 1, 2], "{}", ended.name);
+        assert_eq!(ended.events.guards(), [1, 1, 1, 1, 0, 1, 2], "{}", ended.name);
     }
 }
