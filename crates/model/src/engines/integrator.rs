@@ -4,7 +4,7 @@ use stickslip_contact::domain::OutOfDomain;
 use stickslip_contact::phase::{END, Phase};
 use stickslip_contact::regularized::Regularized;
 use stickslip_contact::regularized::components::{DAMPING, STATE, T, U};
-use stickslip_contact::{Collision, Contact, EnergyLedger, OtherLaw};
+use stickslip_contact::{Collision, Contact, EnergyLedger, OtherLaw, Regime};
 use stickslip_solver::{
     EmbeddedPair, HybridSystem, Observer, Options, Outcome, RunError, Start, Statistics, run_with,
 };
@@ -255,7 +255,7 @@ impl Collider {
             damping: run.state[DAMPING],
             compression_left: 0.4 * compression,
         };
-        if self.digits && flatness > FLAT {
+        if self.digits && flatness > FLAT && run.mode.regime == Regime::Slip {
             refine::refine(self.pair, options, collision);
         }
         Ok(run.statistics)

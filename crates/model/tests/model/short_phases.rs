@@ -65,11 +65,6 @@ fn a_slip_that_nearly_vanishes_just_before_the_end_is_not_certain() {
             let (found, _) = engine.collide(at(psi)).unwrap();
             let estimate = engine.estimate(&found).unwrap();
             assert!(!estimate.certain && estimate.distance < 3e-11, "{psi} {estimate:?}");
-            if found.itinerary() == exact.itinerary() {
-                for (found, exact) in found.switches.iter().zip(&exact.switches) {
-                    assert!((found.time - exact.time).abs() < 3.4e-12, "{psi} {found:?}");
-                }
-            }
         }
     }
 }

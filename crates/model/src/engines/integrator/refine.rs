@@ -20,7 +20,7 @@ const TOLERANCE: f64 = 1e-22;
 
 /// Number of phases up to which nothing is allocated.
 const PHASES: usize = FEW_SWITCHES + 1;
-/// Phases with the places s at which they end.
+/// Phases with their lengths in s.
 type Phases = SmallVec<[(Phase, f64); PHASES]>;
 
 /// Replaces times, states, restitution and energies of `collision`, except the energy taken by
@@ -34,17 +34,9 @@ pub(crate) fn refine(pair: EmbeddedPair, options: &Options, collision: &mut Coll
     let mut state = FineState::start(contact);
     let mut sliding = ZERO;
     let mut ends = SmallVec::<[FineState; PHASES]>::new();
-    // The places where a phase begins, as the integrator found it and as it is.
-    let mut begins = [0.0; 2];
-    for (index, (phase, place)) in phases.iter().enumerate() {
+    for (index, (phase, length)) in phases.iter().enumerate() {
         let exit = phases.get(index + 1).map(|(next, _)| *next);
-        // A phase may be shorter than the rounding of its ends.
-        let slack = 4.0 * f64::EPSILON * place;
-        let followed = begins.into_iter().find_map(|begin| {
-            state.follow(contact, *phase, exit, ((place - begin).max(slack), slack))
-        });
-        let Some((length, end)) = followed else { return false };
-        begins = [*place, begins[1] + length];
+        let Some(end) = state.follow(contact, *phase, exit, *length) else { return false };
         if phase.regime == Regime::Slip {
             sliding = sliding.plus(state.slid(&end, contact, phase.side));
         }
@@ -65,9 +57,6 @@ pub(crate) fn refine(pair: EmbeddedPair, options: &Options, collision: &mut Coll
         switch.velocity = end.w.nearest();
     }
     collision.contact_time = time.plus(last.t).nearest();
-    for switch in collision.switches.iter_mut().skip(switched.len()) {
-        switch.time = collision.contact_time - switch.time_left;
-    }
     let mut left = last.t;
     let ended = collision.switches.iter_mut().zip(switched).zip(&phases);
     for ((switch, end), (phase, _)) in ended.rev() {
@@ -88,14 +77,16 @@ pub(crate) fn refine(pair: EmbeddedPair, options: &Options, collision: &mut Coll
     true
 }
 
-/// The phases that the integrator finds, with the places s at which they end.
+/// The phases that the integrator finds, with their lengths in s.
 fn phases(pair: EmbeddedPair, options: &Options, contact: Contact) -> Option<Phases> {
+    /// Records phases with their lengths, and where the last one ended.
     #[derive(Default)]
-    struct Itinerary(Phases);
+    struct Itinerary(Phases, f64);
 
     impl Observer<Phase, STATE> for Itinerary {
         fn on_switch(&mut self, event: &SwitchEvent<Phase, STATE>) {
-            self.0.push((event.from, event.s));
+            self.0.push((event.from, event.s - self.1));
+            self.1 = event.s;
         }
     }
 
@@ -191,22 +182,20 @@ impl FineState {
         Self { y, t: ZERO, ..*self }
     }
 
-    /// Follows `phase` from here to its end, which is about `length` away, and by an error of up to
-    /// `slack` more or less. Returns how far it is.
+    /// Follows `phase` from here to its end, which is about `length` away.
     fn follow(
         &self,
         contact: Contact,
         phase: Phase,
         exit: Option<Phase>,
-        (length, slack): (f64, f64),
-    ) -> Option<(f64, Self)> {
+        length: f64,
+    ) -> Option<Self> {
         let mut series = Series::new(contact, phase, self);
         let mut left = length;
         loop {
             let h = series.reach();
             if left <= h {
-                let (last, end) = series.guard_zero(contact, phase, exit, (left, slack))?;
-                return Some((length - left + last, end));
+                return series.guard_zero(contact, phase, exit, left);
             }
             let next = series.at(h);
             left -= h;
@@ -277,27 +266,26 @@ impl Series {
         FineState { u, v, w, y, t: self.start.t.plus(t) }
     }
 
-    /// Where the guard vanishes, by Newton's method from `first`, and the state there.
+    /// The state where the guard vanishes, by Newton's method from `h`.
     fn guard_zero(
         &self,
         contact: Contact,
         phase: Phase,
         exit: Option<Phase>,
-        (first, slack): (f64, f64),
-    ) -> Option<(f64, FineState)> {
+        mut h: f64,
+    ) -> Option<FineState> {
         let guard = |h: f64| self.at(h).guard(contact, phase, exit);
-        let mut h = first;
+        let first = h;
         let mut moved = f64::INFINITY;
         for _ in 0..20 {
-            let reach = 1e-10 * h;
+            let reach = 1e-4 * h;
             let rise = guard(h + reach).minus(guard(h - reach)).nearest();
             let slope = rise / ((h + reach) - (h - reach));
             let shift = -guard(h).nearest() / slope;
             h += shift;
             // When the shifts stop shrinking, only the rounding of h is left.
             if shift.abs() <= f64::EPSILON * h || shift.abs() >= moved && moved < 1e-12 * h {
-                let near = h >= 0.0 && (h - first).abs() <= 0.3 * first + slack;
-                return near.then(|| (h, self.at(h)));
+                return ((h - first).abs() <= 0.3 * first).then(|| self.at(h));
             }
             moved = shift.abs();
         }
