@@ -397,7 +397,7 @@ impl ReadableSystem<STATE, GUARDS> for GeneralContact {
     #[inline(always)]
     fn settle(&self, mode: Mode, y: &State<STATE>) -> Mode {
         let opens = mode.regime == Regime::Slip
-            || mode.progress != Progress::Settled && Equations::is_open(array(y));
+            || mode.progress != Progress::Settled && self.equations.is_open(mode, array(y));
         if opens { Mode { progress: Progress::Settled, ..mode } } else { mode }
     }
 

@@ -116,12 +116,13 @@ impl Phase {
     }
 }
 
-/// Whether the `gap` between the spring and its `limit` may be computed as a difference from now
-/// on. As long as it is a smaller part of the limit, errors of steps and rounding may exceed it.
+/// Whether the `gap` between the spring and its limit may be computed as a difference from now on.
+/// As long as it is a smaller part of the `terms` of the limit, errors of steps and rounding may
+/// exceed it.
 #[inline(always)]
-pub(crate) fn is_open(gap: f64, limit: f64) -> bool {
+pub(crate) fn is_open(gap: f64, terms: f64) -> bool {
     const OPEN: f64 = 1e-3;
-    gap > OPEN * limit
+    gap > OPEN * terms
 }
 
 /// The longest first step of a phase, by the guard that ends the contact and its rate. Near its end

@@ -30,7 +30,7 @@ pub mod equations;
 
 use crate::contact::Contact;
 pub use crate::phase::{END, GUARDS, OTHER_SIDE, Phase, Progress, SAME_SIDE};
-use crate::phase::{Regime, Side, is_open, longest_first_step};
+use crate::phase::{Regime, Side, longest_first_step};
 use components::array;
 pub use components::{DAMPING, GAP, RATE, SPRING, STATE, T, U, V, W};
 use equations::{Equations, Force};
@@ -237,8 +237,11 @@ impl ReadableSystem<STATE, GUARDS> for Regularized {
         if phase.regime == Regime::Slip || phase.progress == Progress::Settled {
             return phase;
         }
-        let settles = is_open(self.equations.scale * y[GAP], self.normal_force(y));
-        if settles { Phase { progress: Progress::Settled, ..phase } } else { phase }
+        if self.equations.is_open(array(y)) {
+            Phase { progress: Progress::Settled, ..phase }
+        } else {
+            phase
+        }
     }
 
     fn transition(

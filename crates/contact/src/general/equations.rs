@@ -444,10 +444,13 @@ impl Equations {
         }
     }
 
-    /// Whether the gaps of a stick phase are [open](crate::phase::is_open).
-    pub fn is_open(y: &[f64; STATE]) -> bool {
-        let [near, far] = [y[GAP], y[FAR_GAP]];
-        is_open(near.min(far), 0.5 * (near + far))
+    /// Whether the gaps of a stick phase are open: see [`is_open`].
+    pub fn is_open(&self, mode: Mode, y: &[f64; STATE]) -> bool {
+        let e = self.exponents;
+        let u = &powers(y[U]);
+        let [damping, dashpot] = [y[V] * self.force_by_v, y[W] * self.dashpot].map(f64::abs);
+        let terms = u[e.bend] * self.force_by_u + damping + dashpot;
+        is_open(self.scale * y[GAP].min(y[FAR_GAP]), u[e.d - e.of(mode.stage).shared] * terms)
     }
 
     /// Whether the gap on the side of a stick phase, in its first step, grows from within

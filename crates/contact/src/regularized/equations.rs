@@ -5,7 +5,7 @@ use stickslip_solver::Number;
 
 use super::components::{GAP, RATE, SPRING, STATE, T as TIME, U, V, W};
 use crate::contact::Contact;
-use crate::phase::{GUARDS, Phase, Progress, Regime, Side};
+use crate::phase::{GUARDS, Phase, Progress, Regime, Side, is_open};
 
 /// The equations with the parameters of one contact.
 #[derive(Clone, Copy, Debug)]
@@ -148,6 +148,14 @@ impl Equations<f64> {
             spring_force: like_root(self.spring_force),
             velocity_unit: self.velocity_unit,
         }
+    }
+
+    /// Whether the gap of a stick phase is [open](crate::phase::Progress::Settled).
+    #[inline(always)]
+    pub(crate) fn is_open(&self, y: &[f64; STATE]) -> bool {
+        let Rate { force_by_v, force_by_uu, .. } = self.rate;
+        let terms = y[U] * (y[U] * y[U] * force_by_uu + (force_by_v * y[V]).abs());
+        is_open(self.scale * y[GAP], terms)
     }
 
     /// The state at the start of contact.

@@ -6,6 +6,8 @@
 mod checks;
 #[path = "../../../../tests/common/mod.rs"]
 mod common;
+#[path = "../../../../tests/checks/itinerary.rs"]
+mod itinerary;
 #[path = "../../../../tests/common/lammps.rs"]
 mod lammps;
 
@@ -24,5 +26,6 @@ mod reference;
 mod sensitivities;
 #[cfg(feature = "serde")]
 mod serialization;
+mod short_phases;
 mod spheres;
 mod whole_range;

@@ -278,7 +278,7 @@ impl Series {
         let first = h;
         let mut moved = f64::INFINITY;
         for _ in 0..20 {
-            let reach = 1e-10 * h;
+            let reach = 1e-4 * h;
             let rise = guard(h + reach).minus(guard(h - reach)).nearest();
             let slope = rise / ((h + reach) - (h - reach));
             let shift = -guard(h).nearest() / slope;

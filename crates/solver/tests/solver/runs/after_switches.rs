@@ -134,3 +134,46 @@ fn a_longest_first_step_that_is_none_is_ignored() {
     assert!([0.0, -1.0, f64::NAN].iter().all(|none| steps(*none) == free));
     assert!(steps(1e-3) > free);
 }
+
+/// Phases that end at these places.
+struct Phases([f64; 4]);
+
+impl HybridSystem<1, 1> for Phases {
+    type Mode = usize;
+
+    fn field(&self, mode: usize, s: f64, _y: &State<1>) -> State<1> {
+        State::from([if mode % 2 == 0 { s.sin() } else { s.cos() }])
+    }
+
+    fn guards(&self, mode: usize) -> [Guard; 1] {
+        [if mode < 4 { Guard::new(Direction::Below) } else { Guard::OFF }]
+    }
+
+    fn guard_values(&self, mode: usize, s: f64, _y: &State<1>) -> [f64; 1] {
+        [self.0.get(mode).map_or(1.0, |end| end - s)]
+    }
+
+    fn transition(&self, mode: usize, _: usize, _s: f64, y: &State<1>) -> (usize, State<1>) {
+        (mode + 1, *y)
+    }
+}
+
+#[test]
+fn a_short_phase_sets_no_step() {
+    for pair in EmbeddedPair::ALL {
+        let steps = |first: f64| {
+            let options =
+                Options { first_step: Some(4.0 * first), ..Options::with_tolerance(1e-10) };
+            let start = Start { mode: 0, s: 0.0, state: State::zeros() };
+            let system = Phases([first, 1.0, 2.0, 3.0]);
+            let run = run_with(pair, &system, start, 4.0, &options, &mut ()).unwrap();
+            assert_eq!((run.outcome, run.mode), (Outcome::ReachedEnd, 4));
+            run.statistics.accepted
+        };
+        // The second phase has no other step than that of the first one, the third one has.
+        let growth = if pair == EmbeddedPair::Dopri5 { 10.0_f64 } else { 6.0 };
+        let grown = (1e-2_f64 / 1e-18).log(growth);
+        let more = steps(1e-18) as f64 - steps(1e-2) as f64;
+        assert!(more < grown + 8.0, "{pair}: {more}");
+    }
+}

@@ -1,0 +1,146 @@
+//! Whether collisions have the right switches, with every contact law. A test and an example share
+//! this file.
+
+use stickslip_model::{Contact, Damping, Engine, Law, Tolerances, exact, linear, presets};
+
+/// Both pairs, as the command line uses them.
+pub const ENGINES: [Engine; 2] =
+    [Engine::Dop853(Tolerances::DOP853), Engine::Dopri5(Tolerances::DOPRI5)];
+
+/// What the itinerary of an engine is worth.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// Another opinion has the same one.
+    Right,
+    /// It is that of a contact so near that the tolerances do not tell the two apart.
+    Near,
+    /// The engine has no result, for this reason.
+    Refused(String),
+    /// It is not right.
+    Wrong(String),
+}
+
+/// The laws of the presets that differ, and the names of the first ones that have them.
+pub fn laws() -> Vec<(String, Law)> {
+    let mut laws = Vec::<(String, Law)>::new();
+    for limited in ["", "+limit_damping"] {
+        for preset in presets::ALL {
+            let name = format!("{}{limited}", preset.name);
+            let law = presets::find(&name).expect("a preset").law;
+            if laws.iter().all(|(_, other)| *other != law) && (limited.is_empty() || limits(law)) {
+                laws.push((name, law));
+            }
+        }
+    }
+    laws
+}
+
+/// Whether the normal force would attract if it were not limited.
+fn limits(law: Law) -> bool {
+    law.endless_from().is_finite() || law.damping != Damping::None && law != Law::PAPER
+}
+
+/// A random contact. Every second one is beside a boundary, where phases are short.
+///
+/// κ is log-uniform from 1 to `stiffest`, ψ from 1e-3 to 3, the damping from 1e-10 to 10 (or to that
+/// with which contacts never end), and in one of eight contacts 0. Every second damped contact has a
+/// tangential damping from 0 to 2.
+pub fn random(law: Law, stiffest: f64, random: &mut fastrand::Rng) -> Contact {
+    let contact = anywhere(law, stiffest, random);
+    if random.bool() { contact } else { beside_boundary(contact, random) }
+}
+
+/// A contact with another ψ, up to 1e-12 to 0.1 of it from the nearest change of the itinerary that
+/// a bisection finds; the same contact if it finds none.
+fn beside_boundary(contact: Contact, random: &mut fastrand::Rng) -> Contact {
+    let engine = if has_exact(&contact) { Engine::Exact } else { ENGINES[0] };
+    let with = |psi: f64| {
+        let other = Contact::new(contact.kappa(), psi, contact.damping());
+        other.and_then(|it| it.with_law(contact.law(), contact.tangential_damping()))
+    };
+    let itinerary = |psi: f64| Some(engine.collide(with(psi).ok()?).ok()?.0.itinerary());
+    let here = itinerary(contact.psi());
+    let (mut same, mut other) = (contact.psi(), contact.psi() * 4.0_f64.powf(random.f64() - 0.5));
+    if itinerary(other) == here {
+        return contact;
+    }
+    for _ in 0..50 {
+        let middle = 0.5 * (same + other);
+        *(if itinerary(middle) == here { &mut same } else { &mut other }) = middle;
+    }
+    let away = 10.0_f64.powf(-1.0 - 11.0 * random.f64());
+    with(same * if random.bool() { 1.0 + away } else { 1.0 - away }).unwrap_or(contact)
+}
+
+/// Whether there is an exact solution.
+fn has_exact(contact: &Contact) -> bool {
+    contact.obeys_paper() || linear::solves(contact)
+}
+
+fn anywhere(law: Law, stiffest: f64, random: &mut fastrand::Rng) -> Contact {
+    let mut between = |low: f64, high: f64| low * (high / low).powf(random.f64());
+    let (kappa, psi) = (between(1.0, stiffest), between(1e-3, 3.0));
+    let damping = between(1e-10, (0.99 * law.endless_from()).min(10.0));
+    let none = law.damping == Damping::None || random.u8(..) < 32;
+    let damping = if none { 0.0 } else { damping };
+    let even = law == Law::PAPER || random.bool();
+    let tangential_damping = if even { 0.0 } else { 2.0 * random.f64() };
+    Contact::new(kappa, psi, damping)
+        .and_then(|contact| contact.with_law(law, tangential_damping))
+        .expect("parameters in range")
+}
+
+/// Judges the itinerary of `contact` by `engine`.
+///
+/// The second opinion is an exact solution if there is one. Otherwise it is the other pair, which
+/// takes other steps.
+pub fn judged(engine: Engine, contact: Contact) -> Verdict {
+    let found = match engine.collide(contact) {
+        Ok((collision, _)) => collision.itinerary(),
+        Err(error) => return Verdict::Refused(error.to_string()),
+    };
+    let second = if has_exact(&contact) {
+        Engine::Exact
+    } else if matches!(engine, Engine::Dop853(_)) {
+        Engine::Dopri5(Tolerances { rtol: 1e-12, atol: 1e-12 })
+    } else {
+        ENGINES[0]
+    };
+    let opinion = |contact| second.collide(contact).map(|(collision, _)| collision.itinerary());
+    let expected = match opinion(contact) {
+        Ok(expected) => expected,
+        Err(error) => {
+            return Verdict::Wrong(format!("{found}, and for {}: {error}", second.name()));
+        }
+    };
+    if found == expected {
+        return Verdict::Right;
+    }
+    let coarsest = [engine, second].into_iter().filter_map(|it| it.tolerances());
+    let tolerance = coarsest.fold(0.0, |largest: f64, it| largest.max(it.atol));
+    let near = if contact.obeys_paper() {
+        exact::distance(&contact).is_ok_and(|distance| distance < 100.0 * tolerance)
+    } else {
+        // A change of a parameter may move the nearest boundary less than an error within the run.
+        // Contacts beside are asked of the second opinion alone: the engine may be wrong at random.
+        let has_found = |beside| opinion(beside).is_ok_and(|other| other == found);
+        beside(contact, 1e4 * tolerance).any(has_found)
+    };
+    if near { Verdict::Near } else { Verdict::Wrong(format!("{found}, not {expected}")) }
+}
+
+/// Contacts that differ in one parameter, by up to `most` of it.
+fn beside(contact: Contact, most: f64) -> impl Iterator<Item = Contact> {
+    let changes = (0..).map(|k| 1e-15 * 10.0_f64.powi(k)).take_while(move |change| *change <= most);
+    let which = (0..4).flat_map(|which| [(which, 1.0), (which, -1.0)]);
+    changes.flat_map(move |change| which.clone().map(move |it| (it, change))).filter_map(
+        move |((which, sign), change)| {
+            let part = |of: i32| if of == which { 1.0 + sign * change } else { 1.0 };
+            let (kappa, psi) = (contact.kappa() * part(0), contact.psi() * part(1));
+            let damping = contact.damping() * part(2);
+            let tangential = contact.tangential_damping() * part(3);
+            let beside = Contact::new(kappa, psi, damping);
+            beside.and_then(|beside| beside.with_law(contact.law(), tangential)).ok()
+        },
+    )
+}
