@@ -201,9 +201,9 @@ where
 {
     let from = (start.mode, start.s, &start.state);
     let followed = followed::<M, _>(&Fixed(system), from, end, options, exits)?;
-    Ok(followed.map(|(End { outcome, s, mode, state, decided, statistics }, exits)| Followed {
-        exits,
-        run: Run { outcome, s, mode, state, decided, statistics },
+    Ok(followed.map(|Followed { exits, run }| {
+        let End { outcome, s, mode, state, decided, statistics } = run;
+        Followed { exits, run: Run { outcome, s, mode, state, decided, statistics } }
     }))
 }
 
@@ -226,9 +226,9 @@ where
     let (system, from) = (Free::new(system, start.state.len()), start.state.to_vec());
     let from = (start.mode, start.s, &from);
     let followed = followed::<M, _>(&system, from, end, options, exits)?;
-    Ok(followed.map(|(End { outcome, s, mode, state, decided, statistics }, exits)| Followed {
-        exits,
-        run: DynamicRun { outcome, s, mode, state, decided, statistics },
+    Ok(followed.map(|Followed { exits, run }| {
+        let End { outcome, s, mode, state, decided, statistics } = run;
+        Followed { exits, run: DynamicRun { outcome, s, mode, state, decided, statistics } }
     }))
 }
 
@@ -285,19 +285,19 @@ fn near_miss<M: Method, S: System>(
     Ok(Some(NearMiss { margin: moved, s: at.s, value: at.value }))
 }
 
-/// The end of a run that follows `exits`, and the exits, whose hints have moved along.
+/// The run that follows `exits`.
 fn followed<M: Method, S: System>(
     system: &S,
     start: (S::Mode, f64, &S::State),
     end: f64,
     options: &Options,
     exits: &[Exit],
-) -> Result<Option<(End<S>, Vec<Exit>)>, RunError> {
+) -> Result<Option<Followed<End<S>>>, RunError> {
     let found = watch::<M, S>(system, start, end, options, exits, (0, Watch::Nothing));
     Ok(found.map_err(|(error, _)| error)?.map(|(run, watched)| {
         let mut exits = exits.to_vec();
         move_along(&mut exits, start.1, &watched);
-        (run, exits)
+        Followed { exits, run }
     }))
 }
 

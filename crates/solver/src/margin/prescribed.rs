@@ -53,6 +53,9 @@ pub(super) struct Watched {
     pub taken: Vec<Taken>,
 }
 
+/// A run that has followed its exits, and what it found.
+type Ended<S> = (End<S>, Watched);
+
 /// Follows `exits` and then watches `guard`. The result is `None` if the run cannot follow all
 /// exits. If the run fails while it looks for extrema, those before are the second result.
 pub(super) fn watch<M: Method, S: System>(
@@ -62,7 +65,7 @@ pub(super) fn watch<M: Method, S: System>(
     options: &Options,
     exits: &[Exit],
     (guard, watch): (usize, Watch),
-) -> Result<Option<(End<S>, Watched)>, (RunError, Watched)> {
+) -> Result<Option<Ended<S>>, (RunError, Watched)> {
     let reach = Reach::new::<M>(system, (mode, s, y), end, options);
     let prescribed = Prescribed { system, exits, watched: guard, watch, reach };
     // In a prescribed run, switches may be as close together as they like, and there are more of

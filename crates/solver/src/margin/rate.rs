@@ -97,8 +97,10 @@ impl<S: System> Reach<S> {
         S::State::each(&mut tolerance, [y], |_, [y]| atol + rtol * y.abs());
         let reach = self.distance.get();
         let knows = !known_rate(system, room, at, (s, y)).is_nan();
+        let unit = if knows { 1.0 } else { reach };
+        let known = self.noise.get();
         let mut along = |direction: &S::State, by: f64, time: f64| {
-            let value = &mut |part: f64| {
+            let mut value = |part: f64| {
                 S::State::shifted(&mut moved, y, direction, part * by);
                 let s = s + part * time;
                 if knows {
@@ -107,13 +109,18 @@ impl<S: System> Reach<S> {
                     room.value(system, at, s, &moved)
                 }
             };
-            noise(value, 0.0, 1.0, [0.0])
+            let measured = noise(&mut value, 0.0, 1.0, [0.0]) / unit;
+            // A kink passes for noise at one place, but not at another one.
+            if measured > known {
+                measured.min(noise(&mut value, 0.0, 1.0, [0.5]) / unit)
+            } else {
+                0.0
+            }
         };
         let measured = along(slope, reach, reach).max(along(&tolerance, TOLERANCES, 0.0));
         room.give(moved);
         room.give(tolerance);
-        let measured = if knows { measured } else { measured / reach };
-        if measured > self.noise.get() {
+        if measured > known {
             self.noise.set(2.0 * measured);
         }
     }
