@@ -54,7 +54,7 @@ pub struct Tolerances {
 }
 
 /// The reason why an engine has no result.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EngineError {
     /// The integration failed.
     #[error(transparent)]

@@ -74,7 +74,7 @@ pub enum CollisionFamily {
 }
 
 /// A collision of a family cannot be computed.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CollisionFamilyError {
     /// The exact solution failed.
     #[error(transparent)]

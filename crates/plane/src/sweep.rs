@@ -9,7 +9,7 @@ use crate::grid::{Grid, Quantity};
 use crate::tile::{NO_COUNT, NO_EPS_T, Tile};
 
 /// The reason why a point of a grid has no result.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PointError {
     /// No collision has these parameters.
     #[error(transparent)]
@@ -34,7 +34,7 @@ pub enum PointError {
 }
 
 /// The points of a map that have no result.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("kappa = {kappa:?}, psi = {psi:?}: {error}")]
 pub struct Failed {
     /// The number of points without a result.

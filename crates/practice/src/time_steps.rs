@@ -112,7 +112,7 @@ impl TimeSteps {
 }
 
 /// Why there are no errors of time steps.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TimeStepsError {
     /// Settings are out of range.
     #[error(transparent)]
@@ -123,7 +123,7 @@ pub enum TimeStepsError {
 }
 
 /// An impact cannot be computed without steps.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error(
     "kappa = {:?}, psi = {:?}, damping = {:?}: {source}",
     contact.kappa(), contact.psi(), contact.damping()

@@ -24,7 +24,7 @@ pub fn failed(error: impl ToString) -> PyErr {
 }
 
 /// The reason why a contact has no result.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub enum Failure {
     /// No collision has these parameters.
     Parameter(InvalidParameter),

@@ -155,7 +155,7 @@ pub use dynamic::{
 pub use error::RunError;
 pub use hybrid::{
     Direction, Grazing, Guard, HybridSystem, Observer, Outcome, Pole, Preempted, ReadableSystem,
-    Run, Schedule, Start, Statistics, SwitchEvent, Times, Unfinished,
+    Rest, Run, Schedule, Start, Statistics, SwitchEvent, Times, Unfinished,
 };
 pub use margin::{
     Exit, Followed, Hint, Margin, Margins, NearMiss, Place, Way, follow, follow_dynamic, margin,

@@ -131,7 +131,7 @@ pub enum StiffError {
 }
 
 /// A collision cannot be computed.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("kappa = {kappa:?}, psi = {psi:?}, damping = {damping:?}: {source}")]
 pub struct CollisionFailure {
     /// Scaled stiffness of the contact.

@@ -101,7 +101,7 @@ pub struct HybridFamily<P, M, const N: usize, const G: usize> {
 }
 
 /// The options of the runs are invalid, or their end is not behind their start.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("at ({}, {}): {error}", .point.x, .point.y)]
 pub struct FamilyError {
     /// The point of the parameter plane.

@@ -346,7 +346,7 @@ impl Collider {
 }
 
 /// The reason why a collision could not be integrated.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CollisionError {
     /// The contact is out of the integrator's range.
     #[error(transparent)]

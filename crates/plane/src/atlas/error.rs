@@ -55,7 +55,7 @@ pub enum AtlasError {
 }
 
 /// The collision at a place of the window cannot be computed.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LabelError {
     /// No collision has these parameters.
     #[error(transparent)]

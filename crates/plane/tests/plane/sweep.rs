@@ -72,7 +72,7 @@ fn points_without_a_result_are_counted_and_the_first_has_its_reason() {
     let failed = failures.failed(&grid, engine).unwrap();
     assert_eq!(failed.points, 42);
     assert_eq!((failed.kappa, failed.psi), (grid.columns.centre(6), grid.rows.centre(0)));
-    assert_eq!(Err(failed.error), point(&grid, engine, 6));
+    assert_eq!(Err(failed.error.clone()), point(&grid, engine, 6));
     assert!(matches!(failed.error, PointError::Engine(_)), "{failed}");
     assert!(failed.to_string().starts_with("kappa = 1.08"), "{failed}");
 }

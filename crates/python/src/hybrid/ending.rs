@@ -94,7 +94,10 @@ fn reason(system: &System, error: &RunError) -> String {
         RunError::Cycle { s, count, ref cycle } => {
             // The modes are numbers here.
             let label = |(guard, mode): &(usize, String)| {
-                mode.parse().map_or_else(|_| mode.clone(), |mode| system.guard_label(mode, *guard))
+                mode.parse().map_or_else(
+                    |_| mode.clone(),
+                    |mode| system.guard_label(mode, *guard).to_owned(),
+                )
             };
             format!(
                 "At t = {s:?}, {count} transitions follow each other and no time passes: {}, again \

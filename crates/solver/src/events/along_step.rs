@@ -59,6 +59,16 @@ pub(crate) fn rounding<S: System>(
     (if change.is_finite() { 4.0 * f64::EPSILON / SLIGHT * change } else { 0.0 }, count)
 }
 
+/// The sizes of time and state whose rounding counts at a place (`s`, `y`) of `step`: the largest on
+/// the step, since sums of such terms lead there.
+pub(crate) fn scales<V: Store>(step: &StepOf<V>, s: f64, y: &V, scale: &mut V) -> f64 {
+    let [a, b, c, d] = &step.interior;
+    V::each(scale, [y, &step.y0, a, b, c, d], |_, values| {
+        values.into_iter().fold(0.0, |most: f64, value| most.max(value.abs()))
+    });
+    s.abs().max(step.s.abs())
+}
+
 /// Writes the dense output over a step taken in `mode`.
 ///
 /// All callers share this one function, because what it compiles to is large.

@@ -89,19 +89,26 @@ impl<S: System> Examination<'_, S> {
             return None;
         }
         let hidden = self.hidden_at(guard, step, elapsed, y);
-        let reach = REACH * elapsed;
         let room = &mut *self.room;
         let (mut slope, mut moved) = (room.state(), room.state());
         system.field(mode, s, y, &mut slope);
-        S::State::shifted(&mut moved, y, &slope, -reach);
-        let behind = room.value(system, (mode, guard), s - reach, &moved);
-        S::State::shifted(&mut moved, y, &slope, reach);
-        let ahead = room.value(system, (mode, guard), s + reach, &moved);
+        self.statistics.field += 1;
+        // On a step that was cut very short, rounding hides what the guard does.
+        let mut reach = REACH * elapsed;
+        let (behind, ahead, shows) = loop {
+            S::State::shifted(&mut moved, y, &slope, -reach);
+            let behind = room.value(system, (mode, guard), s - reach, &moved);
+            S::State::shifted(&mut moved, y, &slope, reach);
+            let ahead = room.value(system, (mode, guard), s + reach, &moved);
+            self.statistics.guards += 2;
+            let shows = behind.abs() > 4.0 * hidden && ahead.abs() > 4.0 * hidden;
+            if shows || 16.0 * reach > REACH * self.usual {
+                break (behind, ahead, shows);
+            }
+            reach *= 16.0;
+        };
         room.give(slope);
         room.give(moved);
-        self.statistics.field += 1;
-        self.statistics.guards += 2;
-        let shows = behind.abs() > 4.0 * hidden && ahead.abs() > 4.0 * hidden;
         let crosses = shows && (behind < 0.0) != (ahead < 0.0);
         let fires = there.abs() <= hidden && crosses && direction.fires_from(behind);
         let slope = ((ahead - behind) / (2.0 * reach)).abs();

@@ -3,7 +3,7 @@
 use smallvec::SmallVec;
 
 use crate::error::RunError;
-use crate::events::along_step::rounding;
+use crate::events::along_step::{rounding, scales};
 use crate::events::event::{Crossed, Event, Found};
 use crate::events::examination::{Examination, column, confirmed};
 use crate::events::isolate::{Beginning, Bracket};
@@ -360,8 +360,8 @@ impl<S: System> Examination<'_, S> {
     ) -> f64 {
         let s = step.s + elapsed;
         let mut scale = self.room.state();
-        S::State::each(&mut scale, [y, &step.y0], |_, [a, b]| a.abs().max(b.abs()));
-        let scales = (s.abs().max(step.s.abs()), &scale);
+        let s_scale = scales(step, s, y, &mut scale);
+        let scales = (s_scale, &scale);
         let at = (self.phase.mode, guard);
         let (hidden, count) = rounding(self.system, at, (s, y), scales, self.room);
         self.statistics.guards += count;

@@ -240,6 +240,20 @@ impl<V: Store> StepOf<V> {
         TrialOf { s: self.s, y, rest, slope: &self.slope0, h, tolerances: (1.0, 1.0) }
     }
 
+    /// Makes this the step of size 0 from the start of `trial`.
+    pub(crate) fn stand(&mut self, trial: &TrialOf<'_, V>) {
+        (self.s, self.h, self.error, self.finished) = (trial.s, 0.0, 0.0, true);
+        for y in [&mut self.y0, &mut self.y1].into_iter().chain(&mut self.interior) {
+            y.set(trial.y);
+        }
+        for rest in [&mut self.rest, &mut self.rest0] {
+            rest.set(trial.rest);
+        }
+        for slope in [&mut self.slope0, &mut self.slope1] {
+            slope.set(trial.slope);
+        }
+    }
+
     /// The step of size 0 from the same start.
     pub(crate) fn shrunk_to_start(&self) -> Self {
         let y = || self.y0.clone();

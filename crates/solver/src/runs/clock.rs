@@ -4,6 +4,8 @@ use crate::options::Options;
 
 /// The last step may be longer than it should by this part of itself.
 const SLIGHTLY: f64 = 1e-3;
+/// Rounding is asked only about phases that are shorter than this part of the run.
+const BRIEF: f64 = 1e-6;
 
 /// The independent variable as a sum with compensation, so that many short steps add up.
 #[derive(Clone, Copy, Debug)]
@@ -58,6 +60,8 @@ pub(crate) struct Zeno {
     /// The last gaps of positive length between switches, as a ring.
     gaps: [f64; 2 * Self::HALF],
     count: usize,
+    /// How many of the last phases in a row hide how far the guards went in them.
+    hidden: usize,
     /// The place of the last switch, and how many switches came there.
     instant: (f64, usize),
 }
@@ -67,7 +71,7 @@ impl Zeno {
     const HALF: usize = 6;
 
     pub(crate) fn new(s: f64) -> Self {
-        Self { start: s, gaps: [0.0; 2 * Self::HALF], count: 0, instant: (s, 0) }
+        Self { start: s, gaps: [0.0; 2 * Self::HALF], count: 0, hidden: 0, instant: (s, 0) }
     }
 
     /// Counts a switch at `s`. Returns how many came there.
@@ -81,21 +85,32 @@ impl Zeno {
         options.max_at_one_instant - self.instant.1.min(options.max_at_one_instant)
     }
 
-    /// Records a switch at `s` that ends a phase of length `phase`. Returns the place where the
-    /// switches accumulate, if they do, with its error.
+    /// Whether a phase is short compared with the run up to `s`.
+    pub(crate) fn is_brief(&self, phase: f64, s: f64) -> bool {
+        phase <= BRIEF * (s - self.start)
+    }
+
+    /// Records a switch at `s` that ends a phase of length `phase`, in which rounding may hide how
+    /// far the guard went. Returns the place where the switches accumulate, if they do, with its
+    /// error.
     pub(crate) fn after_switch(
         &mut self,
         s: f64,
-        phase: f64,
+        (phase, hides): (f64, bool),
         options: &Options,
     ) -> Option<Accumulation> {
         if phase <= 0.0 || options.zeno == 0.0 {
             return None;
         }
+        self.hidden = if hides { self.hidden + 1 } else { 0 };
         self.gaps[self.count % self.gaps.len()] = phase;
         self.count += 1;
         if self.count < self.gaps.len() {
             return None;
+        }
+        if self.hidden >= self.gaps.len() {
+            // What rounding hides goes on as it did before.
+            return Some(Accumulation { s, error: self.gaps.iter().sum() });
         }
         let sum = |first: usize, count: usize| -> f64 {
             (0..count).map(|i| self.gaps[(self.count + first + i) % self.gaps.len()]).sum()

@@ -7,22 +7,30 @@
 //! ([`Direction::Below`]) is asked again.
 
 use crate::error::RunError;
-use crate::events::along_step::rounding;
+use crate::events::along_step::{rounding, scales};
+use crate::events::first_guard::TOGETHER;
 use crate::events::phase::NEAR_ZERO;
 use crate::events::{Crossed, Event};
-use crate::hybrid::{Direction, Outcome, Preempted, Rest};
+use crate::hybrid::{Direction, Guard, Outcome, Preempted, Rest};
 use crate::method::Store;
 use crate::runs::clock::{Accumulation, Zeno};
 use crate::runs::finite::check_finite;
 use crate::runs::runner::{Runner, Watcher};
 use crate::system::{List, Note, PerGuard, System};
 
-/// What is known about the guards at one instant.
+/// A guard has crossed zero in a mode, and has not acted yet.
+#[derive(Clone, Copy, Debug)]
+struct Pending<Mode> {
+    crossed: Crossed,
+    mode: Mode,
+    guard: Guard,
+}
+
+/// What is known about the guards at one instant, by their places.
 pub(super) struct Instant<S: System> {
-    /// The guards that have crossed zero and have not acted yet.
-    pending: PerGuard<S, Option<Crossed>>,
-    /// The guards that have acted.
-    acted: PerGuard<S, bool>,
+    pending: PerGuard<S, Option<Pending<S::Mode>>>,
+    /// The modes in which guards have acted.
+    acted: PerGuard<S, Option<S::Mode>>,
     /// The last modes and guards of a chain that comes close to the limit.
     chain: Vec<(S::Mode, usize)>,
 }
@@ -32,7 +40,7 @@ const LONGEST_CYCLE: usize = 8;
 
 impl<S: System> Instant<S> {
     pub(super) fn new() -> Self {
-        Self { pending: List::of(0, None), acted: List::of(0, false), chain: Vec::new() }
+        Self { pending: List::of(0, None), acted: List::of(0, None), chain: Vec::new() }
     }
 
     /// Remembers the last events of a chain, of which `left` more are allowed.
@@ -70,11 +78,23 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         check_finite(self.clock.s, event.state.parts())?;
         self.state.set(&event.state);
         self.rest.parts_mut().fill(0.0);
+        let (mode, count) = (self.phase.mode, self.phase.count());
         let Instant { pending, acted, .. } = &mut self.instant;
-        pending.set(&event.crossed);
-        acted.fit(self.phase.count(), false);
+        pending.fit(count, None);
+        acted.fit(count, None);
         if self.clock.phase > 0.0 {
-            acted.parts_mut().fill(false);
+            acted.parts_mut().fill(None);
+            // What has just been noted on this step is of this instant too.
+            let since = self.clock.s - TOGETHER * event.step.h;
+            for note in self.notes.iter().filter(|note| note.s >= since) {
+                let noted = |guard: &usize| *guard == note.guard || note.simultaneous[*guard];
+                (0..count).filter(noted).for_each(|guard| acted[guard] = Some(mode));
+            }
+        }
+        for guard in 0..count {
+            let of = self.phase.guards[guard];
+            pending[guard] =
+                event.crossed[guard].map(|crossed| Pending { crossed, mode, guard: of });
         }
         let mut guard = event.guard;
         loop {
@@ -96,15 +116,21 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
     /// Reports a switch and enters its mode, or ends the run.
     fn act(&mut self, event: &Event<S>, guard: usize) -> Result<Option<Outcome>, RunError> {
         let (s, from) = (self.clock.s, self.phase.mode);
-        let crossed = self.instant.pending[guard].take().unwrap_or(Crossed::AT_ONCE);
+        let pending = self.instant.pending[guard].take();
+        let crossed = pending.map_or(Crossed::AT_ONCE, |pending| pending.crossed);
         let ends = self.phase.guards[guard].ends_run();
+        let hides = self.hides(event, guard, crossed);
         let before = self.state.clone();
         let to = if ends { from } else { self.system.transition(from, guard, s, &mut self.state) };
         self.fired[guard] += 1;
         self.statistics.switches += usize::from(!ends);
-        let first = !self.instant.acted.parts().contains(&true);
+        let first = self.instant.acted.parts().iter().all(Option::is_none);
+        // Those that a row without a change names would have fired with it.
+        let changes = to != from || self.state != before;
         let pending = &self.instant.pending;
-        let others = |other: usize| pending[other].is_some() || first && event.simultaneous[other];
+        let others = |other: usize| {
+            changes && (pending[other].is_some() || first && event.simultaneous[other])
+        };
         self.observer.on_switch(&Note {
             s,
             guard,
@@ -119,14 +145,6 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         if ends {
             return Ok(Some(Outcome::EndedByGuard { guard }));
         }
-        if to != from {
-            // Whether the state is in the domain of the new mode is asked anew.
-            for (pending, guard) in
-                self.instant.pending.parts_mut().iter_mut().zip(self.phase.guards.parts())
-            {
-                *pending = pending.filter(|_| guard.direction() != Direction::Below);
-            }
-        }
         self.phase.mode = to;
         if self.statistics.switches >= self.options.max_switches {
             return Ok(Some(Outcome::SwitchLimit));
@@ -135,7 +153,9 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             return Err(self.cycle(from, guard));
         }
         self.instant.remember(self.zeno.left_at_instant(self.options), (from, guard));
-        if let Some(accumulation) = self.zeno.after_switch(s, self.clock.phase, self.options) {
+        if let Some(accumulation) =
+            self.zeno.after_switch(s, (self.clock.phase, hides), self.options)
+        {
             return self.rest(guard, accumulation);
         }
         self.clock.phase = 0.0;
@@ -143,8 +163,12 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         self.phase.enter(self.system, to, (s, &self.state), &mut self.fired)?;
         self.room.guards = self.phase.count();
         self.statistics.guards += 1;
+        self.instant.acted[guard] = Some(from);
+        let count = self.phase.count().max(self.instant.pending.parts().len());
+        self.instant.pending.fit(count, None);
+        self.instant.acted.fit(count, None);
         let act = Act { guard, from, before, largest, crossed };
-        self.carry_over(event, &act);
+        self.see_jumps(event, &act);
         self.forgive(event, &act);
         Ok(None)
     }
@@ -178,88 +202,79 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         self.room.guards = self.phase.count();
         self.statistics.guards += 1;
         self.instant.pending = List::of(self.phase.count(), None);
-        self.instant.acted = List::of(self.phase.count(), false);
+        self.instant.acted = List::of(self.phase.count(), None);
         Ok(None)
     }
 
-    /// Keeps what is known about the guards that the new mode has too, and reports those that it
-    /// does not have.
-    fn carry_over(&mut self, event: &Event<S>, act: &Act<S>) {
-        let count = self.phase.count();
-        let mut pending = std::mem::replace(&mut self.instant.pending, List::of(0, None));
-        if act.from == self.phase.mode {
-            self.instant.acted[act.guard] = true;
-        } else {
-            self.instant.acted.fit(count, false);
-            for guard in 0..count {
-                let acted =
-                    self.instant.acted[guard] || guard == act.guard && self.is_near(event, act);
-                self.instant.acted[guard] = acted && self.sense(event, act, guard) != 0.0;
-            }
-            for guard in 0..pending.parts().len() {
-                let Some(crossed) = pending[guard] else { continue };
-                let sign =
-                    if guard < count { crossed.sign * self.sense(event, act, guard) } else { 0.0 };
-                if sign != 0.0 && self.phase.guards[guard].direction().acts_from(sign) {
-                    pending[guard] = Some(Crossed { sign, ..crossed });
-                } else {
-                    pending[guard] = None;
-                    let (s, mode) = (self.clock.s, act.from);
-                    self.observer.on_preempted(&Preempted { s, mode, guard });
-                }
-            }
-            pending.fit(count, None);
-        }
-        for guard in 0..count {
-            if self.phase.guards[guard].watches_jumps() && guard != act.guard {
-                pending[guard] = pending[guard].or_else(|| self.jump(event, act, guard));
+    /// Whether the phase is so short that rounding hides how far the guard went in it.
+    fn hides(&mut self, event: &Event<S>, guard: usize, crossed: Crossed) -> bool {
+        let phase = self.clock.phase;
+        let brief = phase > 0.0 && self.zeno.is_brief(phase, self.clock.s);
+        brief && crossed.slope * phase <= self.hidden(event, guard)
+    }
+
+    /// Finds the guards that a transition carries across zero, of those that see it.
+    fn see_jumps(&mut self, event: &Event<S>, act: &Act<S>) {
+        for guard in 0..self.phase.count() {
+            let of = self.phase.guards[guard];
+            if of.watches_jumps() && guard != act.guard && self.instant.pending[guard].is_none() {
+                let mode = self.phase.mode;
+                self.instant.pending[guard] = self.jump(event, act, guard).map(|crossed| Pending {
+                    crossed,
+                    mode,
+                    guard: of,
+                });
             }
         }
-        self.instant.pending = pending;
     }
 
     /// Whether the guard that has acted is so close to its zero that it stands there.
     fn is_near(&self, event: &Event<S>, act: &Act<S>) -> bool {
         let size = act.largest.max(act.crossed.slope * event.step.h);
-        self.phase.values[act.guard].abs() <= NEAR_ZERO * size
+        !act.crossed.jump && self.phase.values[act.guard].abs() <= NEAR_ZERO * size
     }
 
-    /// The sign with which a guard of the new mode is one of the mode before, 0 if it is another
+    /// The sign with which a guard of the active mode is one of the mode `from`, 0 if it is another
     /// one. They are the same if their values are, or the negatives, where the step of the event
-    /// starts, and before and after the transition.
-    fn sense(&mut self, event: &Event<S>, act: &Act<S>, guard: usize) -> f64 {
+    /// starts, where it ends, and in the state as it is.
+    fn sense(&mut self, event: &Event<S>, from: S::Mode, guard: usize) -> f64 {
         let (system, s, to) = (self.system, self.clock.s, self.phase.mode);
-        if self.phase.guards[guard].direction() == Direction::Clock {
+        let direction = match self.phase.guards.parts().get(guard) {
+            Some(_) if from == to => return 1.0,
+            Some(guard) => guard.direction(),
+            None => return 0.0,
+        };
+        if direction == Direction::Clock {
             return f64::from(u8::from(system.next_time(to, guard, s.next_down()) == s));
         }
-        if !self.phase.guards[guard].direction().has_values() {
+        if !direction.has_values() {
             return 0.0;
         }
         let (mut old, mut new) = (self.room.row(), self.room.row());
-        let mut sense = 1.0;
-        let places = [(event.step.s, &event.step.y0), (s, &act.before), (s, &self.state)];
-        for (s, y) in places {
-            system.guard_values(act.from, s, y, &mut old);
+        // It is not known before a value differs from zero.
+        let mut sense = f64::NAN;
+        for (s, y) in [(event.step.s, &event.step.y0), (s, &event.state), (s, &self.state)] {
+            system.guard_values(from, s, y, &mut old);
             system.guard_values(to, s, y, &mut new);
             self.statistics.guards += 2;
-            let known = old.parts().get(guard).copied().unwrap_or(f64::NAN);
-            if s == event.step.s && known == -new[guard] {
-                sense = -1.0;
+            let (known, new) = (old.parts().get(guard).copied().unwrap_or(f64::NAN), new[guard]);
+            if sense.is_nan() && known != 0.0 {
+                sense = if known == -new { -1.0 } else { 1.0 };
             }
-            // NaN is not the same.
-            if !(known == sense * new[guard]) {
+            let same = known == sense * new || known == 0.0 && new == 0.0;
+            if !same {
                 sense = 0.0;
                 break;
             }
         }
         self.room.give_row(old);
         self.room.give_row(new);
-        sense
+        if sense.is_nan() { 1.0 } else { sense }
     }
 
     /// How a transition carries a guard across zero, if it does so in the guard's direction.
     fn jump(&mut self, event: &Event<S>, act: &Act<S>, guard: usize) -> Option<Crossed> {
-        let sense = if act.from == self.phase.mode { 1.0 } else { self.sense(event, act, guard) };
+        let sense = self.sense(event, act.from, guard);
         let mut before = self.room.row();
         self.system.guard_values(act.from, self.clock.s, &act.before, &mut before);
         self.statistics.guards += 1;
@@ -278,19 +293,19 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         for guard in 0..self.phase.count() {
             let (value, direction) =
                 (self.phase.values[guard], self.phase.guards[guard].direction());
-            let may_be_zero = match direction {
-                // On the right side, a bound of the domain needs no pardon.
-                Direction::Below => value < 0.0,
-                _ => direction.is_edge() && self.instant.acted[guard],
-            };
-            if !may_be_zero || self.phase.zero_orders[guard] > 0 {
+            let acted = self.instant.acted[guard].filter(|_| direction.is_edge());
+            // On the right side, a bound of the domain needs no pardon.
+            let below = direction == Direction::Below && value < 0.0;
+            if self.phase.zero_orders[guard] > 0 || !below && acted.is_none() {
+                continue;
+            }
+            if acted.is_some_and(|mode| self.sense(event, mode, guard) == 0.0) {
                 continue;
             }
             // A guard that has acted stands on its zero where the state goes on, also exactly, and
             // whatever its rounding is.
-            let stands = direction.is_edge()
-                && unchanged
-                && (guard != act.guard || self.is_near(event, act));
+            let stands =
+                acted.is_some() && unchanged && (guard != act.guard || self.is_near(event, act));
             if stands || value.abs() <= self.hidden(event, guard) {
                 self.phase.forgive(guard);
             }
@@ -300,10 +315,9 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
     /// The value that a guard may have by rounding where it is zero at this instant.
     fn hidden(&mut self, event: &Event<S>, guard: usize) -> f64 {
         let (s, y) = (self.clock.s, &self.state);
-        let s_scale = s.abs().max(event.step.s.abs());
         let mut scale = self.room.state();
-        let of = [&event.state, &event.step.y0, y];
-        S::State::each(&mut scale, of, |_, [a, b, c]| a.abs().max(b.abs()).max(c.abs()));
+        let s_scale = scales(&event.step, s, &event.state, &mut scale);
+        S::State::each(&mut scale, [y], |scale, [y]| scale.max(y.abs()));
         let at = (self.phase.mode, guard);
         let (hidden, count) = rounding(self.system, at, (s, y), (s_scale, &scale), &mut self.room);
         self.statistics.guards += count;
@@ -311,30 +325,50 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         if guard == event.guard { hidden.max(event.residual) } else { hidden }
     }
 
-    /// The guard that acts next at this instant. Only guards that have crossed zero are looked for;
-    /// where there are any, those that bound the domain take their turn between them.
+    /// The guard that acts next at this instant: one that has crossed zero, or one that bounds the
+    /// domain and is beyond zero. A guard that has crossed zero and that the mode does not have when
+    /// its turn comes is reported, and does not act.
     fn next_to_act(&mut self, event: &Event<S>) -> Option<usize> {
-        if self.instant.pending.parts().iter().all(Option::is_none) {
-            return None;
-        }
-        let mut next: Option<usize> = None;
-        for guard in 0..self.phase.count() {
-            let crossed = self.instant.pending[guard].is_some();
-            let acts = match self.phase.guards[guard].direction() {
-                Direction::Off => false,
-                Direction::Below => {
-                    let value = self.phase.values[guard];
-                    let below = value < 0.0 && self.phase.zero_orders[guard] == 0;
-                    below || crossed && value.abs() <= self.hidden(event, guard)
-                }
-                _ => crossed,
-            };
-            if !acts {
-                self.instant.pending[guard] = None;
-            } else if next.is_none_or(|other| self.phase.precedes(guard, other)) {
-                next = Some(guard);
+        loop {
+            let mut next: Option<(i16, usize)> = None;
+            for guard in 0..self.instant.pending.parts().len() {
+                let pending = self.instant.pending[guard];
+                let edge = pending.filter(|pending| pending.guard.direction() != Direction::Below);
+                let rank = match (edge, self.phase.guards.parts().get(guard).copied()) {
+                    (Some(pending), _) => pending.guard.rank(),
+                    (None, Some(of)) if self.is_violated(event, guard) => of.rank(),
+                    _ => continue,
+                };
+                let rank = (-i16::from(rank), guard);
+                next = Some(next.map_or(rank, |next| next.min(rank)));
             }
+            let (_, guard) = next?;
+            let Some(Pending { crossed, mode, guard: of }) = self.instant.pending[guard] else {
+                return Some(guard);
+            };
+            if of.direction() == Direction::Below {
+                return Some(guard);
+            }
+            let sense = self.sense(event, mode, guard);
+            let acts = sense != 0.0
+                && self.phase.guards[guard].direction().acts_from(sense * crossed.sign);
+            if acts {
+                return Some(guard);
+            }
+            self.instant.pending[guard] = None;
+            self.observer.on_preempted(&Preempted { s: self.clock.s, mode, guard });
         }
-        next
+    }
+
+    /// Whether a guard bounds the domain of the mode and is beyond zero: clearly, or where it has
+    /// just crossed zero.
+    fn is_violated(&mut self, event: &Event<S>, guard: usize) -> bool {
+        let value = self.phase.values[guard];
+        if self.phase.guards[guard].direction() != Direction::Below {
+            return false;
+        }
+        let crossed = self.instant.pending[guard].is_some_and(|p| p.mode == self.phase.mode);
+        value < 0.0 && self.phase.zero_orders[guard] == 0
+            || crossed && value.abs() <= self.hidden(event, guard)
     }
 }

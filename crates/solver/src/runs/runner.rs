@@ -220,7 +220,7 @@ pub(super) struct Runner<'a, S: System, O> {
     /// How often each guard has fired.
     pub(super) fired: PerGuard<S, u32>,
     /// The events on the present step that change nothing.
-    notes: Vec<Note<S>>,
+    pub(super) notes: Vec<Note<S>>,
     /// The touches and poles on the present step.
     notices: Notices<S::Mode>,
     pub(super) statistics: Statistics,
@@ -273,6 +273,10 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         let (system, mode) = (self.system, self.phase.mode);
         let count = self.phase.count();
         self.room.guards = count;
+        if self.clock.until(self.due) <= 0.0 {
+            self.tick_at_once(step, event);
+            return Ok(None);
+        }
         let mut cuts = 0;
         loop {
             if self.statistics.tried() >= self.options.max_steps {
@@ -413,6 +417,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             system: self.system,
             phase: &self.phase,
             trial: &trial,
+            usual: self.h,
             guard_scale: self.options.scale_of_guards(),
             notes: &mut self.notes,
             statistics: &mut self.statistics,
@@ -438,6 +443,30 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             self.room.give_row(at_end);
         }
         Ok(None)
+    }
+
+    /// Lets the clocks fire that are due where the run stands, which happens at its start.
+    #[cold]
+    fn tick_at_once(&mut self, step: &mut StepOf<S::State>, event: &mut Option<Event<S>>) {
+        self.notes.clear();
+        self.notices.clear();
+        let (s, tolerances) = (self.clock.s, (self.options.rtol, self.options.atol));
+        let (y, rest, slope) = (&self.state, &self.rest, &self.slope);
+        let trial = TrialOf { s, y, rest, slope, h: 0.0, tolerances };
+        step.stand(&trial);
+        let mut examination = Examination {
+            system: self.system,
+            phase: &self.phase,
+            trial: &trial,
+            usual: self.h,
+            guard_scale: self.options.scale_of_guards(),
+            notes: &mut self.notes,
+            statistics: &mut self.statistics,
+            wants_segments: O::WANTS_SEGMENTS,
+            notices: &mut self.notices,
+            room: &mut self.room,
+        };
+        examination.tick(step, self.due, event);
     }
 
     /// Shows an accepted step to the observer, if it wants to see steps.

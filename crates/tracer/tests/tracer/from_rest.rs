@@ -67,7 +67,7 @@ fn a_family_from_rest_is_traced() {
     let options = AtlasOptions { trace, verify, ..AtlasOptions::default() };
     let atlas = Atlas::of(&family, &window, &options).unwrap();
     assert_eq!((&atlas.unresolved[..], atlas.objection()), (&[][..], None));
-    let [curve] = &atlas.plane.curves()[..] else { panic!("{}", atlas.plane.curves().len()) };
+    let [curve] = atlas.plane.curves() else { panic!("{}", atlas.plane.curves().len()) };
     let off = curve.nodes.iter().map(|node| (node.point.y - slope * node.point.x).abs());
     let off = off.fold(0.0, f64::max);
     assert!(off < 1e-12, "{off:e}");

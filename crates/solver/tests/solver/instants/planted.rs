@@ -378,6 +378,8 @@ impl Planted {
                 Reset::Keep => y[i],
                 Reset::Set(value) => value,
                 Reset::Add(value) => y[i] + value,
+                // A component that is 0 goes on unchanged here alone, and not in a run that rounds.
+                Reset::Halves(_) if y[i] == 0 => return None,
                 Reset::Halves(halves) => times(y[i], 2 * i128::from(halves))?,
                 Reset::Take(other) => y[other],
             };

@@ -175,7 +175,7 @@ struct Table(Times, f64);
 
 impl Report for Table {
     fn field<T: Number>(&self, _: u8, _: T, y: [T; 4]) -> [T; 4] {
-        [-y[0], T::from(0.0), T::from(0.0), T::from(0.0)]
+        [T::from(-1.0), T::from(0.0), T::from(0.0), T::from(0.0)]
     }
     fn guards(&self, _: u8) -> [Guard; 3] {
         [Guard::clock(), Guard::clock(), FALLING]
@@ -198,15 +198,12 @@ impl Report for Table {
 /// A dose that comes exactly as a state event is due, and a period that meets both.
 #[test]
 fn clocks_act_at_their_times_beside_events_of_the_state() {
-    let (start, due) = (1.0_f64.exp(), 1.0);
+    let (start, due) = (2.0, 1.0);
     let table = Table(Times::new(vec![0.5, due, 2.0]).unwrap(), 0.25);
-    // 2 more at 1/2; the state falls to 1 at ln(e + 2√e).
-    let first = (start + 2.0 * 0.5_f64.exp()).ln();
     for ended in all(&table, (0, 0.0, [start, 0.0, 0.0, 0.0]), 1.5) {
         ended.acts_at(0, &[0.5, 1.0], 0.0);
         ended.acts_at(1, &[0.0, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5], 0.0);
         ended.acts_at(2, &[], 0.0);
-        assert!(first > 1.5);
     }
     let table = Table(Times::new(vec![due]).unwrap(), 0.25);
     for ended in all(&table, (0, 0.0, [start, 0.0, 0.0, 0.0]), 1.1) {
