@@ -13,19 +13,23 @@ use crate::hybrid::{Guard, HybridSystem};
 use crate::method::{DenseOf, Method, State, StepOf, Store, TrialOf};
 use stickslip_number::{Enclosure, Interval};
 
-/// A list: an array, or a buffer.
+/// A list: an array, or a buffer, which are lent as [`Store`]s are.
 pub(crate) trait List<T>:
     Clone + Debug + Index<usize, Output = T> + IndexMut<usize>
 {
+    /// `n` equal values.
     fn of(n: usize, value: T) -> Self;
+    /// `n` values by their places.
     fn made(n: usize, value: impl FnMut(usize) -> T) -> Self;
     fn parts(&self) -> &[T];
     fn parts_mut(&mut self) -> &mut [T];
+    /// Makes this the same list.
     fn set(&mut self, other: &Self);
     /// Makes room for `n` values.
     fn fit(&mut self, n: usize, value: T);
     /// Lends the list, whose values are lost.
     fn lend(&mut self, value: T) -> Self;
+    /// Gives it back.
     fn back(&mut self, lent: Self);
 }
 
@@ -39,9 +43,10 @@ impl<T: Copy + Debug, const N: usize> List<T> for [T; N] {
         if N == 0 {
             return std::array::from_fn(value);
         }
+        // `from_fn` is not always compiled into its caller.
         let mut all = [value(0); N];
-        for i in 1..N {
-            all[i] = value(i);
+        for (i, entry) in all.iter_mut().enumerate().skip(1) {
+            *entry = value(i);
         }
         all
     }
@@ -121,17 +126,22 @@ impl<T: Copy + Debug> List<T> for SmallVec<[T; 8]> {
     }
 }
 
-/// Lists of one length.
+/// The length of lists, known when they are compiled or not.
 pub(crate) trait Shape: Copy + Debug {
+    /// A list of this length.
     type Of<T: Copy + Debug>: List<T>;
     /// Which components are bounded: all, or those that guards read.
     type Read: Clone;
+    /// How many of `n` components are bounded.
     fn count(read: &Self::Read, n: usize) -> usize;
+    /// The place of the one that is bounded as number `i`.
     fn place(read: &Self::Read, i: usize) -> usize;
 }
 
+/// A length that is known when it is compiled.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FixedShape<const N: usize>;
+/// Any length.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AnyShape;
 
@@ -157,6 +167,7 @@ impl Shape for AnyShape {
         i
     }
 }
+/// The number of components that guards read.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ReadShape;
 impl Shape for ReadShape {

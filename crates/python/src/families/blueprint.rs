@@ -67,14 +67,14 @@ impl Blueprint {
             return Err(bad_input("guards and places differ"));
         }
         let count = places.iter().flatten().map(|place| place + 1).max().unwrap_or(0);
-        let placed = |(mode, own): (&Mode, &Vec<usize>)| {
+        let with_gaps = |(mode, own): (&Mode, &Vec<usize>)| {
             let mut guards = vec![Guard::OFF; count];
             for (&place, guard) in own.iter().zip(&mode.guards) {
                 guards[place] = *guard;
             }
             guards
         };
-        let guards = modes.iter().zip(&places).map(placed).collect();
+        let guards = modes.iter().zip(&places).map(with_gaps).collect();
         Ok(Self {
             modes: Arc::new(modes),
             places,

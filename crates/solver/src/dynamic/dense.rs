@@ -136,12 +136,6 @@ impl<'a> DynamicDense<'a> {
         })
     }
 
-    /// Writes the state without the last term of the polynomial. The size of that term bounds the
-    /// error of [`Self::write`].
-    pub(super) fn write_coarse(&self, theta: f64, state: &mut [f64]) {
-        self.truncated(theta, self.degree - 1, state);
-    }
-
     /// The same states, as a step in −s.
     pub(super) fn reversed(&self) -> Self {
         Self { s: 0.0 - self.s, h: -self.h, ..*self }

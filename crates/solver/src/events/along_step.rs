@@ -7,7 +7,7 @@ use crate::events::aside::{Aside, resolution};
 use crate::events::isolate::{Curve, Enclosed};
 use crate::events::path::Path;
 use crate::hybrid::Statistics;
-use crate::method::{DenseOf, Method, StepOf, Store, TrialOf};
+use crate::method::{DenseOf, Field, Method, StepOf, Store, TrialOf};
 use crate::system::{List, PerComponent, Room, Shape, System};
 use stickslip_number::{Enclosure, Interval};
 
@@ -80,8 +80,7 @@ pub(crate) fn dense_output<S: System, M: Method>(
     dense: &mut DenseOf<S::State>,
 ) {
     // Dispatched at run time, so that it is compiled once for each method and dimension.
-    let mut field: &mut dyn FnMut(f64, &S::State, &mut S::State) =
-        &mut |s, y, slope| system.field(mode, s, y, slope);
+    let mut field: &mut Field<'_, S::State> = &mut |s, y, slope| system.field(mode, s, y, slope);
     step.dense_in_place::<M>(&mut field, dense);
 }
 

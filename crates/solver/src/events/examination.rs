@@ -75,7 +75,7 @@ pub(crate) fn values_on<S: System>(
 /// Whether the values of each guard between the [`NODES`] are those that the values at the nodes
 /// predict. This is asked of black boxes only, and not of guards that are declared to be smooth.
 #[inline(always)]
-#[allow(clippy::too_many_arguments)]
+#[expect(clippy::too_many_arguments, reason = "in a struct, the compiler keeps them in memory")]
 pub(crate) fn confirmed<S: System>(
     system: &S,
     phase: &Phase<S>,

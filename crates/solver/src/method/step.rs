@@ -7,6 +7,9 @@ use crate::method::state::State;
 use crate::method::store::Store;
 use crate::method::tableau::{INTERIOR_NODES, MAX_STAGES, Method, Tableau};
 
+/// A right-hand side that is dispatched at run time. It writes the slope at a time and a state.
+pub(crate) type Field<'a, V> = dyn FnMut(f64, &V, &mut V) + 'a;
+
 /// A step to be tried.
 pub type Trial<'a, const N: usize> = TrialOf<'a, State<N>>;
 
@@ -134,7 +137,7 @@ impl StepOf<Vec<f64>> {
     #[inline(never)]
     pub(crate) fn take_buffers<M: Method>(
         &mut self,
-        mut field: &mut dyn FnMut(f64, &Vec<f64>, &mut Vec<f64>),
+        mut field: &mut Field<'_, Vec<f64>>,
         trial: &TrialOf<'_, Vec<f64>>,
     ) {
         self.take_in_place::<M>(&mut field, trial, |_| trial.tolerances);

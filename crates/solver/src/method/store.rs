@@ -21,7 +21,11 @@ pub struct Stages<V> {
 /// The weights of stages.
 type Weights = [f64; MAX_STAGES];
 
-/// A state.
+/// A state, as steps and events compute with it. It is implemented for states of fixed dimension and
+/// for buffers, and not meant for other types.
+///
+/// What lives during one call is lent and given back: an array is lent as a new one, which the
+/// compiler dissolves, and a buffer is moved, so that nothing is allocated on a step.
 pub trait Store: Clone + Debug + PartialEq + Index<usize, Output = f64> + IndexMut<usize> {
     /// What a step keeps of its stages: nothing, or all of them.
     type Kept: Clone + Debug;
@@ -31,27 +35,36 @@ pub trait Store: Clone + Debug + PartialEq + Index<usize, Output = f64> + IndexM
     const FEW: usize;
 
     /// Room for a state of dimension `n`.
+    #[must_use]
     fn room(n: usize) -> Self;
+    /// The dimension.
     fn size(&self) -> usize;
+    /// The components.
     fn parts(&self) -> &[f64];
+    /// The components.
     fn parts_mut(&mut self) -> &mut [f64];
     /// Makes this the same state.
     fn set(&mut self, other: &Self);
 
     /// Lends a state, whose value is lost.
+    #[must_use]
     fn lend(&mut self) -> Self;
     /// Gives it back.
     fn back(&mut self, lent: Self);
 
+    /// Room for the stages of a step of dimension `n`.
     fn keep(n: usize) -> Self::Kept;
     /// Lends the stages, each of which must be written before it is read.
     fn lend_stages(kept: &mut Self::Kept) -> [Self; MAX_STAGES];
+    /// Gives the stages back.
     fn stages_back(kept: &mut Self::Kept, stages: [Self; MAX_STAGES]);
     /// Lends one of three states.
     fn lend_room(kept: &mut Self::Kept, which: usize) -> Self;
+    /// Gives one of three states back.
     fn room_back(kept: &mut Self::Kept, which: usize, lent: Self);
     /// Lends coefficients of a dense output.
     fn lend_dense(kept: &mut Self::Kept) -> [Self; 8];
+    /// Gives the coefficients of a dense output back.
     fn dense_back(kept: &mut Self::Kept, lent: [Self; 8]);
 
     /// The sum of the first `count` stages, each times its weight.

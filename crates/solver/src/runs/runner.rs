@@ -295,11 +295,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             };
             system.step::<M>(mode, &trial, step);
             self.statistics.field += M::STAGES - 1 + usize::from(M::ERROR_USES_END);
-            let error = match self.options.step_size {
-                StepSize::Adaptive => step.error,
-                StepSize::Fixed(_) if is_finite(step.y1.parts()) => 0.0,
-                StepSize::Fixed(_) => f64::NAN,
-            };
+            let error = self.error_of(step);
             // NaN is not good.
             if !matches!(error.partial_cmp(&1.0), Some(Ordering::Less)) {
                 let finite = is_finite(step.y1.parts());
@@ -372,30 +368,53 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
                 }
                 return Ok(None);
             }
-            self.tell_until(f64::INFINITY);
-            self.show::<M>(mode, step);
-            self.state.set(&step.y1);
-            self.rest.set(&step.rest);
-            let mut field =
-                |s: f64, y: &S::State, slope: &mut S::State| system.field(mode, s, y, slope);
-            self.slope.set(step.end_slope(&mut field));
-            self.statistics.field += usize::from(!M::ERROR_USES_END);
-            self.clock.advance(h);
-            if last {
-                self.clock.arrive(stop);
-            }
-            let settled = system.settle(mode, &self.state);
-            if settled != mode {
-                let largest = self.phase.largest.clone();
-                let place = (self.clock.s, &self.state);
-                self.phase.enter(system, settled, place, &mut self.fired)?;
-                self.phase.forget_zeros();
-                self.phase.largest = largest;
-                self.statistics.guards += 1;
-                self.refresh_slope()?;
-            }
+            self.accept::<M>(step, last.then_some(stop))?;
             return Ok(None);
         }
+    }
+
+    /// The error of a step, which does not matter if all steps have one size.
+    #[inline(always)]
+    fn error_of(&self, step: &StepOf<S::State>) -> f64 {
+        match self.options.step_size {
+            StepSize::Adaptive => step.error,
+            StepSize::Fixed(_) if is_finite(step.y1.parts()) => 0.0,
+            StepSize::Fixed(_) => f64::NAN,
+        }
+    }
+
+    /// Goes on at the end of a step, which has arrived at a place that is known exactly, if there is
+    /// one.
+    #[inline(always)]
+    fn accept<M: Method>(
+        &mut self,
+        step: &mut StepOf<S::State>,
+        arrived: Option<f64>,
+    ) -> Result<(), RunError> {
+        let (system, mode) = (self.system, self.phase.mode);
+        self.tell_until(f64::INFINITY);
+        self.show::<M>(mode, step);
+        self.state.set(&step.y1);
+        self.rest.set(&step.rest);
+        let mut field =
+            |s: f64, y: &S::State, slope: &mut S::State| system.field(mode, s, y, slope);
+        self.slope.set(step.end_slope(&mut field));
+        self.statistics.field += usize::from(!M::ERROR_USES_END);
+        self.clock.advance(step.h);
+        if let Some(place) = arrived {
+            self.clock.arrive(place);
+        }
+        let settled = system.settle(mode, &self.state);
+        if settled != mode {
+            let largest = self.phase.largest.clone();
+            let place = (self.clock.s, &self.state);
+            self.phase.enter(system, settled, place, &mut self.fired)?;
+            self.phase.forget_zeros();
+            self.phase.largest = largest;
+            self.statistics.guards += 1;
+            self.refresh_slope()?;
+        }
+        Ok(())
     }
 
     /// Examines a `step` of size `h` whose guards have these `values` at its nodes. Returns the

@@ -53,6 +53,7 @@ pub enum Refusal {
 }
 
 /// The sides of all surfaces, and how the guards of the mode start.
+#[expect(clippy::struct_field_names, reason = "the sides are one of the fields")]
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Sides {
     pub(super) count: usize,

@@ -6,6 +6,15 @@
 //! | `oracle` | what happens in them, by exact arithmetic |
 //! | `api` | guards with priorities |
 
+#![allow(
+    clippy::cast_possible_truncation,
+    clippy::format_push_string,
+    clippy::needless_range_loop,
+    clippy::too_many_lines,
+    clippy::trivially_copy_pass_by_ref,
+    reason = "an oracle is written as it is checked by hand"
+)]
+
 #[path = "instants/api.rs"]
 mod api;
 #[path = "instants/oracle.rs"]

@@ -22,7 +22,6 @@
 //! | `dynamic` | systems whose dimension is known at run time |
 //! | `erased` | runs along any system as runs along one type, so that they are compiled once |
 //! | `black_box` | systems that can be read as black boxes |
-//! | `inside` | private modules, whose tests stand in them |
 //! | `runs` | what surrounds a run: closures, runs backwards, samples, ends, defined answers |
 //! | `serialization` | the JSON of results |
 
@@ -35,7 +34,6 @@ mod event_battery;
 mod fast_guards;
 mod fitted_orders;
 mod guard_rounding;
-mod inside;
 mod instants;
 mod margins;
 mod methods;
@@ -51,6 +49,3 @@ mod singular;
 mod sliding;
 mod smooth_problems;
 mod strangers;
-
-// Where modules of the crate find each other.
-use inside::{events, hybrid};

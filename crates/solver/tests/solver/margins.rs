@@ -129,7 +129,7 @@ impl Chain {
 
     /// What margins of a run over 20 have to be: the maxima of the second displacement, which is the
     /// sum of two oscillations, and the start and the end.
-    fn check(&self, found: &Margins, name: &str) {
+    fn check(found: &Margins, name: &str) {
         let expected = [4.055, 11.189, 18.452];
         let places = found.near_misses.iter().map(|miss| (miss.margin.place, miss.s));
         let minima: Vec<f64> = places
@@ -204,11 +204,11 @@ fn a_guard_that_leaves_rest_slowly_has_no_margins_of_rounding() {
             let chain = Chain { limit, offset };
             let name = format!("{tolerance:e} {limit} {offset}");
             let readable = margins(Dop853, &chain, at_rest(), 20.0, &options).unwrap();
-            chain.check(&readable, &name);
+            Chain::check(&readable, &name);
             let dark = margins(Dop853, &BlackBox(&chain), at_rest(), 20.0, &options).unwrap();
-            chain.check(&dark, &name);
+            Chain::check(&dark, &name);
             let found = margins_dynamic(Dop853, &FreeChain(chain), free_rest(), 20.0, &options);
-            chain.check(&found.unwrap(), &name);
+            Chain::check(&found.unwrap(), &name);
             let found = margins_dynamic(Dop853, &DarkChain(chain), free_rest(), 20.0, &options);
             assert_eq!(found.as_ref(), Ok(&dark), "{name}");
             for miss in &dark.near_misses {

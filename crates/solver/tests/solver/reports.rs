@@ -3,6 +3,8 @@
 //! Each system runs as a readable one and as a black box, of fixed and of any dimension, by both
 //! methods (`forms`). The number behind a tool's name is that of the report.
 
+#![allow(clippy::maybe_infinite_iter, reason = "bounces are taken while they are early enough")]
+
 mod collisions;
 mod forms;
 mod order;

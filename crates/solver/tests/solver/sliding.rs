@@ -21,6 +21,7 @@ use crate::erased::run;
 
 /// y′ = M y + b + d cos ωt + R λ, with the signs λ of the surfaces n·y + c + w sin t.
 #[derive(Clone, Debug)]
+#[expect(clippy::struct_field_names, reason = "its field has relays")]
 pub struct Relays<const N: usize, const K: usize> {
     pub matrix: [[f64; N]; N],
     pub constant: [f64; N],

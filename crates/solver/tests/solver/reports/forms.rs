@@ -237,7 +237,7 @@ pub fn all<const N: usize>(
     ended.map(|(name, run)| run.unwrap_or_else(|error| panic!("{name}: {error}"))).collect()
 }
 
-fn one<M: Method, const READABLE: bool>(
+fn one<M: Method + Copy, const READABLE: bool>(
     method: M,
     method_name: &str,
     parts: &dyn Parts,
@@ -245,9 +245,7 @@ fn one<M: Method, const READABLE: bool>(
     end: f64,
     options: &Options,
     ended: &mut Vec<(String, Result<Ended, RunError>)>,
-) where
-    M: Copy,
-{
+) {
     let kind = if READABLE { "readable" } else { "black box" };
     let form = &Form::<READABLE>(parts, Listed::default());
     let mut events = Events::default();

@@ -8,6 +8,7 @@ use super::forms::{Report, all, runs};
 use super::{BELOW, EITHER, FALLING, OFF, RISING, is_endless};
 
 /// A body thrown up from a floor, y″ = −g.
+#[expect(clippy::struct_field_names, reason = "the level of the floor")]
 struct Floor {
     guard: Guard,
     floor: f64,

@@ -163,7 +163,7 @@ fn a_sampled_controller_keeps_its_samples() {
         y = next;
     }
     for ended in all(&Controller, (0, 0.0, [1.0, 0.0, 0.0]), 4.99) {
-        assert_eq!(ended.events.times(0).len(), count as usize, "{}", ended.name);
+        assert_eq!(ended.events.times(0).len(), usize::try_from(count).unwrap(), "{}", ended.name);
         ended.acts_at(1, &crossing.into_iter().collect::<Vec<_>>(), 1e-11);
         let early = (0.01_f64).exp();
         ended.is_at(&[u + (y - u) * early, u, 1.0], 1e-11);
@@ -174,7 +174,7 @@ fn a_sampled_controller_keeps_its_samples() {
 struct Table(Times, f64);
 
 impl Report for Table {
-    fn field<T: Number>(&self, _: u8, _: T, y: [T; 4]) -> [T; 4] {
+    fn field<T: Number>(&self, _: u8, _: T, _: [T; 4]) -> [T; 4] {
         [T::from(-1.0), T::from(0.0), T::from(0.0), T::from(0.0)]
     }
     fn guards(&self, _: u8) -> [Guard; 3] {

@@ -142,7 +142,7 @@ impl HybridSystem<1, 1> for Phases {
     type Mode = usize;
 
     fn field(&self, mode: usize, s: f64, _y: &State<1>) -> State<1> {
-        State::from([if mode % 2 == 0 { s.sin() } else { s.cos() }])
+        State::from([if mode.is_multiple_of(2) { s.sin() } else { s.cos() }])
     }
 
     fn guards(&self, mode: usize) -> [Guard; 1] {
