@@ -52,16 +52,13 @@
 //!
 //! # What is the same
 //!
-//! Methods, [`Options`](crate::Options), step-size control, outcomes, errors, and the answers of
-//! the front page's table. The steps of a run without events are those of [`run`](crate::run), bit
-//! for bit. Every guard is a black box: it is sampled, like those of a
-//! [`HybridSystem`](crate::HybridSystem), and one that varies faster than the solution needs
-//! [`Options::guard_scale`](crate::Options::guard_scale). Events are located by steps of the
-//! method, so that they are as accurate as other places of the run.
+//! The engine: a run is that of [`run`](crate::run) on buffers, bit for bit up to 8 components. The
+//! guards of a [`DynamicSystem`] are black boxes. Those of a [`ReadableDynamic`], whose formulas are
+//! generic in their numbers, are decided.
 //!
 //! # What differs
 //!
-//! - Guards are read only of a [`ReadableDynamic`], and there are no sensitivities.
+//! - There are no sensitivities.
 //! - [`DynamicEvent::simultaneous`] is a list, so that it can name any number of guards.
 //! - Up to 8 components, the effect of rounding of the state on a guard is measured component by
 //!   component; beyond that, by moving all components at once, in eight irregular but fixed
@@ -71,8 +68,6 @@
 //! - The observers [`Recorder`](crate::Recorder), [`Samples`](crate::Samples), tuples, and
 //!   [`Weighted`](crate::Weighted) tolerances exist for fixed dimensions only, and so does
 //!   [`HybridSystem::settle`](crate::HybridSystem::settle).
-//! - Where a guard is not resolved on a step, and another one fires on it, the step is first cut at
-//!   that event. Steps behind it start from there.
 //!
 //! # Cost
 //!
@@ -80,7 +75,8 @@
 //! [smooth](crate::Guard::smooth). On a step on which a guard comes near zero or crosses it in a
 //! way that these values do not settle, that guard is isolated by itself: some fifty evaluations of
 //! all guards and as many states of the dense output, and more the faster it varies. An event takes
-//! a few steps of the method. The largest number of guards that has been tried is 100.
+//! a few steps of the method, whatever the number of guards: 37 right-hand sides each with 500
+//! thermostats as with 2.
 
 mod backwards;
 mod by_name;

@@ -71,7 +71,9 @@
 //! | a guard that ends the run | [`Guard::terminal`], [`Outcome::EndedByGuard`] |
 //! | a guard that starts from zero and must not fire there | nothing if it is exactly 0 and rises; else [`Guard::from_zero`] |
 //! | a crossing that is reported and changes nothing | [`Direction::Falling`], [`Rising`](Direction::Rising) or [`Either`](Direction::Either), and the provided transition |
-//! | switches that accumulate, as when a ball comes to rest | [`Outcome::Zeno`] |
+//! | switches that accumulate, as when a ball comes to rest | [`Outcome::Zeno`], or [`HybridSystem::rest`] to go on behind them |
+//! | events at given times | [`Guard::clock`] and [`HybridSystem::schedule`] |
+//! | values that only events change | fields of the mode |
 //! | a quick problem with one mode | [`Closures`] |
 //! | the state at any time | [`Recorder`] as the observer |
 //! | the state at given times | [`Samples`] as the observer |
@@ -94,7 +96,12 @@
 //! | a guard touches zero | It does not fire. Where the dense output cannot tell a touch from a crossing, a step of the method decides, and [`Observer::on_grazing`] reports it, once and not before what comes first. |
 //! | a guard has a pole | It does not fire, and [`Observer::on_pole`] reports it. Where a guard is [`Below`](Direction::Below), the domain ends there, and it fires. |
 //! | a guard has no value (NaN) | An error, unless the run ends before. |
-//! | several guards at one place | The guard that is listed first decides the transition, unless it yields ([`Guard::yielding`]). [`SwitchEvent::simultaneous`] names the others, up to guard 63. |
+//! | several guards at one instant | Times that the errors of their location do not tell apart are one instant. All guards act there, each once: those of higher [priority](Guard::priority) first, and then in the order of the list. |
+//! | … and the first one changes the state or the mode | A guard that has crossed zero acts on the state as it is then. If the mode does not have it when its turn comes, it is reported ([`Observer::on_preempted`]). A [`Below`](Direction::Below) guard is asked again. |
+//! | … and a transition leaves a guard on its own zero | It does not fire again at that instant. |
+//! | a transition carries a guard across zero | That is no crossing, unless the guard [sees jumps](Guard::sees_jumps). |
+//! | transitions at one instant without an end | An error that names the cycle ([`RunError::Cycle`]); observers do not keep them. |
+//! | a clock and the start of the run | A time that is the start counts. |
 //! | a guard crosses zero at the end of the span | It fires. The outcome is [`Outcome::EndedByGuard`] if it is terminal, and else [`Outcome::ReachedEnd`]. |
 //! | the state at an event | It always comes with the event: [`SwitchEvent::before`] lies on the guard, and [`SwitchEvent::after`] follows from the transition. |
 //! | [`Guard::terminal_after`] k events | The k-th firing ends the run at its place, without a transition, also if several lie on one step. |
@@ -103,7 +110,8 @@
 //! | tolerances | Scalars in [`Options`]. [`Weighted`] has a relative and an absolute one for each component. |
 //! | the method | A type, compiled into the run. [`run_with`] chooses it at run time, with the same results bit for bit. |
 //! | backwards | [`run_backwards`]: s decreases, directions of guards hold in the direction of integration, and every reported s is the original one. |
-//! | a [`DynamicSystem`] | The same answers. Its guards are black boxes, and [`DynamicEvent::simultaneous`] names any number of them. |
+//! | a [`DynamicSystem`] | The same answers; [`DynamicEvent::simultaneous`] names any number of guards. |
+//! | were all guards decided? | [`Run::decided`] |
 //!
 //! The repository's `examples` have fewer than 80 lines each and check themselves against a closed
 //! form or an independent value: `bouncing_ball` (switches that accumulate), `friction_belt`
@@ -119,8 +127,9 @@
 //! | [`hybrid`] | what a user writes (a system with guards), and the results of a run |
 //! | `options`, `error` | settings of a run, and why it can fail |
 //! | `runs` | the loop from switch to switch; smooth problems, trajectories, runs without event location |
-//! | `events` | one step and its guards: which guard fires first, and where |
-//! | [`mod@dynamic`] | systems whose dimension is known at run time: the loop, events and steps on buffers |
+//! | `system` | a system as the loop and the events see it, of fixed or of any dimension |
+//! | `events` | one step and its guards: which guards fire first, and where |
+//! | [`mod@dynamic`] | systems whose dimension is known at run time |
 //! | [`method`] | Runge–Kutta pairs, one step, its dense output, step-size control, measured orders |
 //! | [`mod@sliding`] | systems whose field jumps on surfaces, along which they may slide |
 //! | [`mod@margin`] | how near a run came to other switches |

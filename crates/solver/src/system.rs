@@ -503,15 +503,19 @@ impl<S: DynamicSystem> System for Free<'_, S> {
         guard: usize,
     ) -> Enclosure {
         let (all, values) = &mut *self.1.borrow_mut();
-        for (&place, &y) in self.0.reads(mode).iter().zip(y) {
-            all[place] = y;
+        match self.0.reads(mode) {
+            [] => all.copy_from_slice(y),
+            reads => reads.iter().zip(y).for_each(|(&place, &y)| all[place] = y),
         }
         values.resize(self.0.guards(mode).len(), Enclosure::ENTIRE);
         self.0.enclose_guards(mode, s, all, values);
         values[guard]
     }
     fn reads(&self, mode: S::Mode) -> SmallVec<[usize; 8]> {
-        self.0.reads(mode).into()
+        match self.0.reads(mode) {
+            [] => (0..self.1.borrow().0.len()).collect(),
+            reads => reads.into(),
+        }
     }
     fn guard_rates(&self, mode: S::Mode, s: f64, y: &Vec<f64>, rates: &mut Vec<f64>) {
         rates.resize(self.0.guards(mode).len(), f64::NAN);

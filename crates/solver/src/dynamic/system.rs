@@ -33,10 +33,10 @@ pub trait DynamicSystem {
     /// [`Self::guards`]. Values of guards that are [off](Guard::OFF) are ignored.
     fn guard_values(&self, mode: Self::Mode, s: f64, y: &[f64], values: &mut [f64]);
 
-    /// Whether [`Self::enclose_guard`] bounds the guards.
+    /// Whether [`Self::enclose_guards`] bounds the guards.
     const READABLE: bool = false;
 
-    /// The components that the guards read.
+    /// The components that the guards read, in any order; none means all.
     fn reads(&self, _mode: Self::Mode) -> &[usize] {
         &[]
     }
@@ -119,8 +119,11 @@ pub trait ReadableDynamic {
     /// Writes the values of the guards of `mode` to `values`.
     fn guard_values<T: Number>(&self, mode: Self::Mode, s: T, y: &[T], values: &mut [T]);
 
-    /// The components that the guards read. (To be found by the solver.)
-    fn reads(&self, mode: Self::Mode) -> &[usize];
+    /// The components that the guards read, in any order; none means all. Only these are bounded,
+    /// which saves time if they are few of many.
+    fn reads(&self, _mode: Self::Mode) -> &[usize] {
+        &[]
+    }
 
     /// As [`HybridSystem::schedule`](crate::HybridSystem::schedule).
     fn schedule(&self, _mode: Self::Mode, _guard: usize) -> Schedule<'_> {
