@@ -365,6 +365,110 @@ def test_guards_together():
     assert found.status == 1 and abs(found.t[-1] - 3) < 1e-12
 
 
+def test_events_of_one_instant_all_act_in_order():
+    for gap in (0.0, 1e-13, 1e-12):
+        system = HybridSystem()
+        mode = system.mode("a", lambda t, y: [1.0, 0.0, 0.0])
+        for index in (1, 2):
+            late = gap if index == 1 else 0.0
+
+            def reset(t, y, index=index):
+                y[index] = y[1] + y[2] + 1
+                return y
+
+            def value(t, y, late=late):
+                return y[0] - 1 - late
+
+            mode.guard(f"g{index}", value, direction="rising", reset=reset, priority=index)
+        found = solve(system, (0, 2), [0.0, 0.0, 0.0])
+        # The second one is earlier, and of higher priority at one instant.
+        assert list(found.events["guard"]) == ["g2", "g1"], gap
+        assert list(found.y[1:, -1]) == [2.0, 1.0]
+    assert not found.decided
+
+
+def test_guards_that_are_preempted_are_reported():
+    system = HybridSystem()
+    mode = system.mode("a", lambda t, y: [1.0])
+    mode.guard("first", lambda t, y: 1 - y[0], direction="falling", to="b")
+    mode.guard("other", lambda t, y: 2 - 2 * y[0], direction="falling", to="c")
+    system.mode("b", lambda t, y: [0.0])
+    system.mode("c", lambda t, y: [0.0])
+    found = solve(system, (0, 2), [0.0], "a")
+    assert list(found.events["guard"]) == ["first"]
+    assert found.preempted["guard"].tolist() == ["other"]
+    assert found.preempted["mode"].tolist() == ["a"] and abs(found.preempted["time"][0] - 1) < 1e-14
+
+
+def test_clocks():
+    system = HybridSystem()
+    mode = system.mode("tank", lambda t, y: -y)
+    mode.at("dose", [0.0, 1.0, 1.0, 2.5], reset=lambda t, y: y + 1)
+    mode.every("sample", 0.5, phase=0.25)
+    found = solve(system, (0, 3), [0.0])
+    assert found.t_events[0].tolist() == [0.0, 1.0, 2.5]
+    assert found.t_events[1].tolist() == [0.25, 0.75, 1.25, 1.75, 2.25, 2.75]
+    expected = sum(math.exp(-(3 - dose)) for dose in (0, 1, 2.5))
+    assert abs(found.y[0, -1] - expected) < 1e-10
+    many = HybridSystem()
+    many.mode("m", lambda t, y: [0.0]).at("tick", np.arange(5000) / 1000, reset=lambda t, y: y + 1)
+    assert solve(many, (0, 5), [0.0]).y[0, -1] == 5000
+    stop = HybridSystem()
+    stop.mode("m", lambda t, y: [1.0]).at("end", 1.5, terminal=True)
+    ended = solve(stop, (0, np.inf), [0.0])
+    assert ended.status == 1 and ended.t[-1] == 1.5
+    with pytest.raises(ValueError, match="out of order"):
+        unsorted = HybridSystem()
+        unsorted.mode("m", lambda t, y: [1.0]).at("x", [1.0, 0.0, 2.0])
+        solve(unsorted, (0, 1), [0.0])
+    with pytest.raises(ValueError, match="period"):
+        HybridSystem().mode("m", lambda t, y: [1.0]).every("x", 0.0)
+
+
+def test_jumps_are_seen_on_request():
+    for sees in (False, True):
+        system = HybridSystem()
+        mode = system.mode("a", lambda t, y: [1.0, 0.0])
+        mode.guard("jump", lambda t, y: y[0] - 1, direction="rising", reset=lambda t, y: [3.0, y[1]])
+
+        def count(t, y):
+            return [y[0], y[1] + 1]
+
+        mode.guard(
+            "two", lambda t, y: y[0] - 2, direction="rising", reset=count, sees_jumps=sees
+        )
+        found = solve(system, (0, 1.5), [0.0, 0.0])
+        assert found.y[1, -1] == sees
+
+
+def test_a_run_goes_on_at_rest():
+    system = HybridSystem()
+    fly = system.mode("fly", lambda t, y: [y[1], -G])
+    fly.guard(
+        "floor",
+        lambda t, y: y[0],
+        reset=lambda t, y: [0.0, -0.5 * y[1]],
+        rest=lambda t, y: ("lie", [0.0, 0.0]),
+    )
+    system.mode("lie", lambda t, y: [0.0, 0.0])
+    found = solve(system, (0, 10), [1.0, 0.0], "fly")
+    assert found.success and found.mode[-1] == "lie" and found.y[:, -1].tolist() == [0.0, 0.0]
+    rest = found.rests[0]
+    expected = 3 * math.sqrt(2 / G)
+    assert abs(rest["time"] - expected) < 1e-9 and rest["guard"] == "floor" and rest["error"] < 1e-9
+
+
+def test_a_chain_without_end_names_its_cycle():
+    system = HybridSystem()
+    system.mode("up", lambda t, y: [1.0]).guard("top", lambda t, y: 1 - y[0], to="down")
+    system.mode("down", lambda t, y: [1.0]).guard("bottom", lambda t, y: y[0] - 2, to="up")
+    found = solve(system, (0, 5), [0.0], "up")
+    assert found.outcome == "instant_limit" and found.status == -1
+    assert "top" in found.message and "bottom" in found.message
+    # The chain is no part of the run.
+    assert found.events.size == 0 and abs(found.t[-1] - 1) < 1e-12
+
+
 def test_terminal_counts_each_guard():
     system = HybridSystem()
     system.mode("up", lambda t, y: [1.0]).guard("top", lambda t, y: 1 - y[0], to="down")
