@@ -42,9 +42,9 @@ fn limits(law: Law) -> bool {
 
 /// A random contact. Every second one is beside a boundary, where phases are short.
 ///
-/// κ is log-uniform from 1 to `stiffest`, ψ from 1e-3 to 3, the damping from 1e-10 to 10 (or to that
-/// with which contacts never end), and in one of eight contacts 0. Every second damped contact has a
-/// tangential damping from 0 to 2.
+/// κ is log-uniform from 1 to `stiffest`, ψ from 1e-3 to 3, the damping from 1e-10 to 10 (or to
+/// that with which contacts never end), and in one of eight contacts 0. Every second damped contact
+/// has a tangential damping from 0 to 2.
 pub fn random(law: Law, stiffest: f64, random: &mut fastrand::Rng) -> Contact {
     let contact = anywhere(law, stiffest, random);
     if random.bool() { contact } else { beside_boundary(contact, random) }

@@ -1,8 +1,8 @@
 //! Families: systems of one's own that depend on two parameters.
 //!
-//! In reading order: `blueprint` (what Python passes), `member` (one system of the family), `runner`
-//! (what the tracer sees), `survey` (threads, progress, Ctrl-C), `atlas` (what is found), `family`
-//! (what Python calls), `stack` (a third parameter), `failure` (why nothing is found).
+//! In reading order: `blueprint` (what Python passes), `member` (one system of the family),
+//! `runner` (what the tracer sees), `survey` (threads, progress, Ctrl-C), `atlas` (what is found),
+//! `family` (what Python calls), `stack` (a third parameter), `failure` (why nothing is found).
 
 mod atlas;
 mod blueprint;

@@ -53,8 +53,8 @@
 //! # What is the same
 //!
 //! The engine: a run is that of [`run`](crate::run) on buffers, bit for bit up to 8 components. The
-//! guards of a [`DynamicSystem`] are black boxes. Those of a [`ReadableDynamic`], whose formulas are
-//! generic in their numbers, are decided.
+//! guards of a [`DynamicSystem`] are black boxes. Those of a [`ReadableDynamic`], whose formulas
+//! are generic in their numbers, are decided.
 //!
 //! # What differs
 //!

@@ -69,8 +69,8 @@ pub enum RunError {
         /// Where the step started.
         s: f64,
     },
-    /// The schedule of a clock is not valid: its period is not a finite number above 0, or its phase
-    /// or a time is not a number.
+    /// The schedule of a clock is not valid: its period is not a finite number above 0, or its
+    /// phase or a time is not a number.
     #[error(
         "the schedule of a clock has no time after s = {s}; expected a period above 0 and times that \
          are numbers"

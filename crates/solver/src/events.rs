@@ -33,6 +33,7 @@ pub(crate) mod one_guard;
 mod path;
 pub(crate) mod phase;
 pub(crate) mod quick;
+pub(crate) mod status;
 
 pub(crate) use along_step::{dense_output, repeated_step};
 pub(crate) use event::{Crossed, Event, Found};

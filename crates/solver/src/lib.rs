@@ -143,6 +143,8 @@ mod error;
 
 mod runs;
 
+mod lists;
+
 mod system;
 
 mod events;

@@ -50,11 +50,12 @@ mod rate;
 use crate::dynamic::{DynamicRun, DynamicStart, DynamicSystem};
 use crate::error::RunError;
 use crate::hybrid::{Direction, Guard, HybridSystem, Outcome, Run, Start};
+use crate::lists::List;
 use crate::margin::prescribed::{Kind, Taken, Watch, Watched, watch};
 use crate::method::Method;
 use crate::options::Options;
 use crate::runs::runner::End;
-use crate::system::{Fixed, Free, List, PerGuard, System};
+use crate::system::{Fixed, Free, PerGuard, System};
 
 pub use name::{Exit, Hint, Margin, Place, Way};
 

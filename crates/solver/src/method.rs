@@ -1,9 +1,9 @@
 //! Runge–Kutta pairs: coefficients, one step, the size of the next step, and measured orders.
 //!
 //! Start reading in `tableau` (a pair as data) and `step` (one step as a pure function). Then come
-//! `store` (how states are stored), `dense` (the state inside a step), `dopri5` and `dop853` (the two pairs), `control` (the step
-//! size), `order` (orders of convergence, from measured errors) and `pair` (a pair that is chosen
-//! at run time).
+//! `store` (how states are stored), `dense` (the state inside a step), `dopri5` and `dop853` (the
+//! two pairs), `control` (the step size), `order` (orders of convergence, from measured errors) and
+//! `pair` (a pair that is chosen at run time).
 
 pub(crate) mod control;
 mod dense;

@@ -1,12 +1,11 @@
 //! Runs from switch to switch, and observers that record them.
 //!
-//! Start reading in `runner` (the loop), `instant` (the events of one instant, in order) and `clock`
-//! (the independent variable). Then come `smooth`
-//! (problems without guards), `closures` (systems of one mode), `trajectory` (recorded runs),
-//! `samples` (output at given times), `both` (two observers), `backwards` (runs that go backwards),
-//! `by_name` (pairs that are chosen at run time), `weighted` (tolerances of components) and
-//! `unlocated` (runs without event location, for comparison). `finite`, `rejected` and `last_part`
-//! are what several of these need.
+//! Start reading in `runner` (the loop), `instant` (the events of one instant, in order) and
+//! `clock` (the independent variable). Then come `smooth` (problems without guards), `closures`
+//! (systems of one mode), `trajectory` (recorded runs), `samples` (output at given times), `both`
+//! (two observers), `backwards` (runs that go backwards), `by_name` (pairs that are chosen at run
+//! time), `weighted` (tolerances of components) and `unlocated` (runs without event location, for
+//! comparison). `finite`, `rejected` and `last_part` are what several of these need.
 
 pub(crate) mod at_switches;
 pub(crate) mod backwards;
@@ -15,8 +14,6 @@ mod by_name;
 pub(crate) mod clock;
 mod closures;
 pub(crate) mod finite;
-mod instant;
-mod last_part;
 pub(crate) mod rejected;
 pub(crate) mod runner;
 mod samples;

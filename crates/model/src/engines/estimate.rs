@@ -21,8 +21,8 @@ pub struct Estimate {
     /// above, this holds to its order of magnitude only.
     pub distance: f64,
     /// Whether the itinerary is certain: the second opinion has the same one, and the distance is
-    /// above the larger of `eps_t_error` and 100 tolerances, since errors of w may be larger at some
-    /// moment than what is left at the end.
+    /// above the larger of `eps_t_error` and 100 tolerances, since errors of w may be larger at
+    /// some moment than what is left at the end.
     pub certain: bool,
 }
 

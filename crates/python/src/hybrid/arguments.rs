@@ -55,9 +55,9 @@ impl Clock {
 }
 
 /// A guard: what messages call it, direction, order of the zero from which it starts (`None` if
-/// that is to be found out), count after which it ends the run, priority, whether it is smooth, what
-/// follows, the condition of a transition that branches, whether it sees jumps, what follows an
-/// accumulation, and the times of a clock.
+/// that is to be found out), count after which it ends the run, priority, whether it is smooth,
+/// what follows, the condition of a transition that branches, whether it sees jumps, what follows
+/// an accumulation, and the times of a clock.
 #[derive(FromPyObject)]
 pub struct GuardArguments(
     pub String,

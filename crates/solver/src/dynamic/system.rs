@@ -56,9 +56,9 @@ pub trait DynamicSystem {
         Schedule::NEVER
     }
 
-    /// The mode in which the run goes on behind the place `s` at which its switches accumulate, if it
-    /// does. The state `y` after the last switch, of `guard` into `mode`, is changed to that from
-    /// which it goes on. The provided version lets the run end there.
+    /// The mode in which the run goes on behind the place `s` at which its switches accumulate, if
+    /// it does. The state `y` after the last switch, of `guard` into `mode`, is changed to that
+    /// from which it goes on. The provided version lets the run end there.
     fn rest(
         &self,
         _mode: Self::Mode,
@@ -70,8 +70,9 @@ pub trait DynamicSystem {
     }
 
     /// Writes the rates at which the guards of `mode` change along the solution through `y` to
-    /// `rates`, as [`HybridSystem::guard_rates`](crate::HybridSystem::guard_rates) returns them. The
-    /// provided version writes NaN, so that they are replaced by differences. Only margins use them.
+    /// `rates`, as [`HybridSystem::guard_rates`](crate::HybridSystem::guard_rates) returns them.
+    /// The provided version writes NaN, so that they are replaced by differences. Only margins use
+    /// them.
     fn guard_rates(&self, _mode: Self::Mode, _s: f64, _y: &[f64], rates: &mut [f64]) {
         rates.fill(f64::NAN);
     }

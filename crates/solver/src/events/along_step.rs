@@ -7,8 +7,9 @@ use crate::events::aside::{Aside, resolution};
 use crate::events::isolate::{Curve, Enclosed};
 use crate::events::path::Path;
 use crate::hybrid::Statistics;
+use crate::lists::{List, Shape};
 use crate::method::{DenseOf, Field, Method, StepOf, Store, TrialOf};
-use crate::system::{List, PerComponent, Room, Shape, System};
+use crate::system::{PerComponent, Room, System};
 use stickslip_number::{Enclosure, Interval};
 
 /// The relative change of state and time with which a guard's sensitivity to them is measured.
@@ -59,8 +60,8 @@ pub(crate) fn rounding<S: System>(
     (if change.is_finite() { 4.0 * f64::EPSILON / SLIGHT * change } else { 0.0 }, count)
 }
 
-/// The sizes of time and state whose rounding counts at a place (`s`, `y`) of `step`: the largest on
-/// the step, since sums of such terms lead there.
+/// The sizes of time and state whose rounding counts at a place (`s`, `y`) of `step`: the largest
+/// on the step, since sums of such terms lead there.
 pub(crate) fn scales<V: Store>(step: &StepOf<V>, s: f64, y: &V, scale: &mut V) -> f64 {
     let [a, b, c, d] = &step.interior;
     V::each(scale, [y, &step.y0, a, b, c, d], |_, values| {

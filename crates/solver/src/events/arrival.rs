@@ -4,8 +4,9 @@
 use crate::events::event::{Crossed, Event, only};
 use crate::events::examination::Examination;
 use crate::events::phase::NEAR_ZERO;
+use crate::lists::List;
 use crate::method::{StepOf, Store};
-use crate::system::{List, System};
+use crate::system::System;
 
 /// The part of the step over which a guard is differenced, on both sides of the end.
 const REACH: f64 = 1e-3;
@@ -35,7 +36,8 @@ impl<S: System> Examination<'_, S> {
         }
     }
 
-    /// Adds the clocks that are `due` at the end of `step` to the event, if it does not come before.
+    /// Adds the clocks that are `due` at the end of `step` to the event, if it does not come
+    /// before.
     pub(crate) fn tick(&mut self, step: &StepOf<S::State>, due: f64, event: &mut Option<Event<S>>) {
         if let Some(first) = event {
             let rounding = 4.0 * f64::EPSILON * due.abs().max(step.s.abs());

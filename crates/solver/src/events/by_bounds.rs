@@ -1,9 +1,9 @@
 //! What one guard of a readable system does on a step, by bounds along the quick path.
 
 use crate::events::examination::Examination;
-use crate::events::one_guard::{Crossing, Status};
 use crate::events::path::Path;
 use crate::events::quick;
+use crate::events::status::{Crossing, Status};
 use crate::hybrid::Direction;
 use crate::method::Method;
 use crate::system::{PerComponent, System};

@@ -1,7 +1,8 @@
 //! The result of examining a step: the guards that fire at one instant, or none.
 
+use crate::lists::List;
 use crate::method::StepOf;
-use crate::system::{List, PerGuard, System};
+use crate::system::{PerGuard, System};
 
 /// How a guard crosses zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,7 +16,8 @@ pub(crate) struct Crossed {
 }
 
 impl Crossed {
-    /// A guard that is beyond zero where it is looked at. It has not been located, and hides nothing.
+    /// A guard that is beyond zero where it is looked at. It has not been located, and hides
+    /// nothing.
     pub(crate) const AT_ONCE: Self = Self { slope: f64::INFINITY, jump: false, sign: 1.0 };
 }
 

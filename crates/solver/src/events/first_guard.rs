@@ -7,12 +7,13 @@ use crate::events::along_step::{rounding, scales};
 use crate::events::event::{Crossed, Event, Found};
 use crate::events::examination::{Examination, column, confirmed};
 use crate::events::isolate::{Beginning, Bracket};
-use crate::events::one_guard::{Crossing, Status};
 use crate::events::phase::{NEAR_ZERO, Phase};
 use crate::events::quick::{self, NODES};
+use crate::events::status::{Crossing, Status};
 use crate::hybrid::{Direction, Statistics};
+use crate::lists::List;
 use crate::method::{Method, StepOf, Store};
-use crate::system::{List, Note, PerGuard, Room, System};
+use crate::system::{Note, PerGuard, Room, System};
 
 /// A guard is zero at an event if its value there is below this part of its values before.
 pub(crate) const TOGETHER: f64 = 1e-12;

@@ -9,9 +9,10 @@ use crate::events::aside::{Aside, resolution};
 use crate::events::event::{Crossed, Event, only};
 use crate::events::examination::Examination;
 use crate::events::isolate::{Bracket, narrow};
-use crate::events::one_guard::Crossing;
+use crate::events::status::Crossing;
+use crate::lists::List;
 use crate::method::{Method, StepOf, Store};
-use crate::system::{List, Room, System};
+use crate::system::{Room, System};
 
 /// The largest distance from the end of a repeated step to the switch, as a part of the step, that
 /// the midpoint rule bridges. Its error is the cube of this part, which is below rounding.

@@ -7,8 +7,8 @@
 //! size of rounding.
 
 use crate::events::quick::{NODES, each, expand};
+use crate::lists::{List, Shape};
 use crate::method::{DenseOf, StepOf, Store};
-use crate::system::{List, Shape};
 use stickslip_number::{Enclosure, Interval};
 
 /// The largest number of terms.

@@ -2,7 +2,8 @@
 
 use crate::error::RunError;
 use crate::hybrid::{Direction, Guard};
-use crate::system::{List, PerGuard, System};
+use crate::lists::List;
+use crate::system::{PerGuard, System};
 
 /// The part of its largest value that a guard may have where it has just fired.
 pub(crate) const NEAR_ZERO: f64 = 1e-6;

@@ -5,7 +5,7 @@
 //! not declared to be smooth, three more are compared with them. All other cases go to
 //! [`crate::events::isolate`].
 
-use crate::system::{List, Shape};
+use crate::lists::{List, Shape};
 
 mod tables;
 

@@ -129,8 +129,9 @@ impl Guard {
         Self { smooth: true, ..self }
     }
 
-    /// The priority of the guard, 0 unless it is given. Of guards that fire at one instant, those of
-    /// higher priority act first, and those of one priority in the order in which they are listed.
+    /// The priority of the guard, 0 unless it is given. Of guards that fire at one instant, those
+    /// of higher priority act first, and those of one priority in the order in which they are
+    /// listed.
     #[must_use]
     pub const fn priority(self, priority: i8) -> Self {
         Self { priority, ..self }

@@ -13,8 +13,8 @@ pub struct SwitchEvent<Mode, const N: usize> {
     /// than 64 guards, the first 64 are named.
     ///
     /// Those that cross zero here act next, with an event of their own at the same place. If mode
-    /// and state go on unchanged, these are the guards that cross here in their direction and change
-    /// nothing either: they have fired with this event and do not fire again.
+    /// and state go on unchanged, these are the guards that cross here in their direction and
+    /// change nothing either: they have fired with this event and do not fire again.
     pub simultaneous: u64,
     /// The guard's largest value in the phase divided by its slope here, in units of s. An error
     /// of the guard, relative to its largest value, moves the switch by the error times this

@@ -2,6 +2,7 @@
 
 use crate::error::RunError;
 use crate::hybrid::{Direction, Guard, Outcome};
+use crate::lists::{List, Shape};
 use crate::margin::name::{Exit, Way};
 use crate::margin::rate::{ROUNDING, Reach, derivative};
 use crate::margin::{guards_of, values_of};
@@ -9,7 +10,7 @@ use crate::method::{Method, StepOf, TrialOf};
 use crate::options::Options;
 use crate::runs::at_switches::AtSwitches;
 use crate::runs::runner::{End, run_any};
-use crate::system::{List, Note, PerComponent, PerGuard, Shape, System};
+use crate::system::{Note, PerComponent, PerGuard, System};
 use stickslip_number::{Enclosure, Interval};
 
 /// What a run watches in the phase after its last exit.

@@ -21,8 +21,8 @@ pub struct Stages<V> {
 /// The weights of stages.
 type Weights = [f64; MAX_STAGES];
 
-/// A state, as steps and events compute with it. It is implemented for states of fixed dimension and
-/// for buffers, and not meant for other types.
+/// A state, as steps and events compute with it. It is implemented for states of fixed dimension
+/// and for buffers, and not meant for other types.
 ///
 /// What lives during one call is lent and given back: an array is lent as a new one, which the
 /// compiler dissolves, and a buffer is moved, so that nothing is allocated on a step.

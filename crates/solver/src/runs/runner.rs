@@ -3,6 +3,9 @@
 //! `advance` takes one accepted step. The module `events` finds out whether the step contains a
 //! switch.
 
+mod instant;
+mod last_part;
+
 use std::cmp::Ordering;
 
 use crate::error::RunError;
@@ -13,15 +16,16 @@ use crate::hybrid::{
     Grazing, HybridSystem, Observer, Outcome, Pole, Preempted, Rest, Run, Start, Statistics,
     SwitchEvent,
 };
+use crate::lists::List;
 use crate::method::control::{Controller, first_step_of};
 use crate::method::{DenseOf, Method, State, StepOf, Store, TrialOf};
 use crate::options::{Options, StepSize};
 use crate::runs::clock::{Clock, Zeno};
 use crate::runs::finite::{check_finite, is_finite};
-use crate::runs::instant::Instant;
-use crate::runs::last_part::last_part;
 use crate::runs::rejected::after_rejection;
-use crate::system::{Fixed, List, Note, PerGuard, Room, System};
+use crate::runs::runner::instant::Instant;
+use crate::runs::runner::last_part::last_part;
+use crate::system::{Fixed, Note, PerGuard, Room, System};
 
 /// Integrates `system` from `start` to `end`, through every switch on the way.
 ///
@@ -229,7 +233,7 @@ pub(super) struct Runner<'a, S: System, O> {
     nodes: [PerGuard<S, f64>; 6],
     /// Whether a quick look at the values of a guard is sure.
     sure: PerGuard<S, bool>,
-    pub(super) instant: Instant<S>,
+    instant: Instant<S>,
 }
 
 impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
@@ -383,8 +387,8 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         }
     }
 
-    /// Goes on at the end of a step, which has arrived at a place that is known exactly, if there is
-    /// one.
+    /// Goes on at the end of a step, which has arrived at a place that is known exactly, if there
+    /// is one.
     #[inline(always)]
     fn accept<M: Method>(
         &mut self,

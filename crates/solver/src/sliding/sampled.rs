@@ -34,9 +34,9 @@ pub trait SwitchedDynamic {
     /// `rates`: ∂h/∂s + ∇h·slope.
     ///
     /// The provided version takes differences of fourth order over shorter and shorter times, and
-    /// of these the one that differs least from the one before, as far as rounding allows. Where the
-    /// functions are polynomials of a degree below 5, also in time, it evaluates them eight times,
-    /// and else up to 36 times. With terms of size 1, the error is below 1e-10.
+    /// of these the one that differs least from the one before, as far as rounding allows. Where
+    /// the functions are polynomials of a degree below 5, also in time, it evaluates them eight
+    /// times, and else up to 36 times. With terms of size 1, the error is below 1e-10.
     fn rates(&self, mode: Self::Mode, s: f64, y: &[f64], slope: &[f64], rates: &mut [f64]) {
         let largest = |all: &[f64]| all.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
         // A time in which state or time change by their own size.

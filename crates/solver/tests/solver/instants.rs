@@ -327,8 +327,8 @@ impl Case {
     }
 }
 
-/// Cases in which a run still takes another order, refuses, or reports an idle crossing elsewhere. All
-/// have an event within rounding of the end of a step or of the run, or just before a clock.
+/// Cases in which a run still takes another order, refuses, or reports an idle crossing elsewhere.
+/// All have an event within rounding of the end of a step or of the run, or just before a clock.
 const OPEN: [u64; 12] = [44, 57, 63, 70, 92, 126, 151, 155, 203, 285, 295, 340];
 
 #[test]

@@ -108,9 +108,9 @@ fn the_zero_at_the_start_of_a_phase_is_divided_out() {
     }
 }
 
-/// Two masses between springs, the first of which is forced by sin 0.7t. Both start at rest, so that
-/// the second one moves like t⁵. The guard is the distance of the second one from a limit, computed
-/// with rounding of the size of `offset`.
+/// Two masses between springs, the first of which is forced by sin 0.7t. Both start at rest, so
+/// that the second one moves like t⁵. The guard is the distance of the second one from a limit,
+/// computed with rounding of the size of `offset`.
 #[derive(Clone, Copy)]
 struct Chain {
     limit: f64,
@@ -127,8 +127,8 @@ impl Chain {
         -(y + self.offset) + (self.limit + self.offset)
     }
 
-    /// What margins of a run over 20 have to be: the maxima of the second displacement, which is the
-    /// sum of two oscillations, and the start and the end.
+    /// What margins of a run over 20 have to be: the maxima of the second displacement, which is
+    /// the sum of two oscillations, and the start and the end.
     fn check(found: &Margins, name: &str) {
         let expected = [4.055, 11.189, 18.452];
         let places = found.near_misses.iter().map(|miss| (miss.margin.place, miss.s));

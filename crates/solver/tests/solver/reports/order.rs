@@ -183,7 +183,8 @@ impl Report for Counters {
     }
 }
 
-/// ModelingToolkit.jl 2745: of two updates at one time, that on which the other depends comes first.
+/// ModelingToolkit.jl 2745: of two updates at one time, that on which the other depends comes
+/// first.
 #[test]
 fn updates_that_depend_on_each_other_have_an_order() {
     for ended in all(&Counters, (1, 0.5, [0.0, 0.0]), 5.5) {
@@ -211,7 +212,8 @@ impl Report for Periods {
     }
 }
 
-/// ModelingToolkit.jl 3819: of events of different periods, only the first acted where both are due.
+/// ModelingToolkit.jl 3819: of events of different periods, only the first acted where both are
+/// due.
 #[test]
 fn periodic_guards_act_together_where_they_meet() {
     for ended in all(&Periods, (0, 0.25, [0.0, 0.0]), 10.5) {

@@ -24,8 +24,8 @@ impl Report for Daily {
     }
 }
 
-/// ModelingToolkit.jl 2528, DifferentialEquations.jl 1022, AMICI 55: the dose at the start was lost,
-/// and the last one was given twice.
+/// ModelingToolkit.jl 2528, DifferentialEquations.jl 1022, AMICI 55: the dose at the start was
+/// lost, and the last one was given twice.
 #[test]
 fn doses_at_the_start_and_at_the_end_are_given_once() {
     for ended in all(&Daily, (0, 0.0, [10.0]), 72.0) {

@@ -1,10 +1,10 @@
 //! The events of one instant, in order.
 //!
 //! Guards that cross zero at one place, as far as rounding tells, are of one instant. All of them
-//! act, each once: those of higher priority first, and then in the order in which they are listed. A
-//! guard that has crossed zero does so whatever the others did before, if the mode then active has
-//! this guard; otherwise it is reported as preempted. A guard that bounds the domain of its mode
-//! ([`Direction::Below`]) is asked again.
+//! act, each once: those of higher priority first, and then in the order in which they are listed.
+//! A guard that has crossed zero does so whatever the others did before, if the mode then active
+//! has this guard; otherwise it is reported as preempted. A guard that bounds the domain of its
+//! mode ([`Direction::Below`]) is asked again.
 
 use crate::error::RunError;
 use crate::events::along_step::{rounding, scales};
@@ -12,11 +12,12 @@ use crate::events::first_guard::TOGETHER;
 use crate::events::phase::NEAR_ZERO;
 use crate::events::{Crossed, Event};
 use crate::hybrid::{Direction, Guard, Outcome, Preempted, Rest};
+use crate::lists::List;
 use crate::method::Store;
 use crate::runs::clock::{Accumulation, Zeno};
 use crate::runs::finite::check_finite;
 use crate::runs::runner::{Runner, Watcher};
-use crate::system::{List, Note, PerGuard, System};
+use crate::system::{Note, PerGuard, System};
 
 /// A guard has crossed zero in a mode, and has not acted yet.
 #[derive(Clone, Copy, Debug)]
@@ -326,8 +327,8 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
     }
 
     /// The guard that acts next at this instant: one that has crossed zero, or one that bounds the
-    /// domain and is beyond zero. A guard that has crossed zero and that the mode does not have when
-    /// its turn comes is reported, and does not act.
+    /// domain and is beyond zero. A guard that has crossed zero and that the mode does not have
+    /// when its turn comes is reported, and does not act.
     fn next_to_act(&mut self, event: &Event<S>) -> Option<usize> {
         loop {
             let mut next: Option<(i16, usize)> = None;
