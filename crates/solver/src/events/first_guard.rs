@@ -294,7 +294,8 @@ impl<S: System> Examination<'_, S> {
             Status::Fires(crossing) => {
                 self.locate::<M>(&found.step, guard, &crossing, true)?.map(Some).ok_or(Unresolved)
             }
-            _ if found.elapsed > 0.0 => {
+            // At the start it may have been noted on the step before.
+            _ if !may_wait => {
                 let Event { step, elapsed, state, .. } = &*found;
                 let crossed = self.arrival(guard, step, *elapsed, state);
                 Ok(crossed.map(|crossed| self.at_end(guard, crossed, &found.step)))

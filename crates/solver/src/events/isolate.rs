@@ -50,6 +50,8 @@ const SHORT: f64 = 0.01;
 const PLATEAU: f64 = 1e-6;
 /// The part of the step on which a quotient is expanded to find its value at the start.
 const OPENING: f64 = 0.25;
+/// A value has a sign if it exceeds the effect of rounding of the state by this factor.
+const HIDDEN: f64 = 4.0;
 
 /// The step fractions between which a curve crosses from ≥ 0 to < 0, and a guess in between.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -153,6 +155,7 @@ pub(crate) fn first_crossing(
     if before.is_some_and(|(_, value)| value < 0.0) && (task.domain || falls_from_zero) {
         return Ok(if task.domain { Verdict::StartsBelow } else { at_start });
     }
+    let hidden = HIDDEN * accuracy.state.0 + accuracy.noise;
     let walked =
         walk(&mut quotient, &mut accuracy, task, notice, |quotient, (theta, value), notice| {
             match before {
@@ -174,10 +177,12 @@ pub(crate) fn first_crossing(
                     }));
                 }
                 // The first sign that can be told is that with which the curve leaves its zero.
-                None if value < 0.0 && task.domain => {
-                    return ControlFlow::Break(Verdict::StartsBelow);
-                }
-                None if value < 0.0 && falls_from_zero => return ControlFlow::Break(at_start),
+                None if value < 0.0 => match hump(quotient, (theta, value), hidden) {
+                    Some(bracket) => return ControlFlow::Break(Verdict::Crossing(bracket)),
+                    None if task.domain => return ControlFlow::Break(Verdict::StartsBelow),
+                    None if falls_from_zero => return ControlFlow::Break(at_start),
+                    None => before = Some((theta, value)),
+                },
                 _ => before = Some((theta, value)),
             }
             ControlFlow::Continue(())
@@ -187,6 +192,29 @@ pub(crate) fn first_crossing(
         Some(ControlFlow::Continue(())) => Verdict::None,
         None => Verdict::TooCoarse,
     })
+}
+
+/// The crossing of a curve that rises from its zero at the start, so slightly that the sign of the
+/// quotient does not show there, and is negative at `end`. The curve is looked at closer and closer
+/// to the start, as long as it is larger than what is `hidden` by rounding.
+fn hump(quotient: &mut Quotient<'_>, end: (f64, f64), hidden: f64) -> Option<Bracket> {
+    let (mut above, mut below) = (None, end);
+    let mut theta = 0.5 * end.0;
+    while theta > f64::EPSILON {
+        let value = quotient.at(theta);
+        if (value * power(theta, quotient.order)).abs() <= hidden || !value.is_finite() {
+            break;
+        }
+        if value < 0.0 {
+            (above, below) = (None, (theta, value));
+        } else if above.is_none() {
+            above = Some((theta, value));
+        }
+        theta *= 0.5;
+    }
+    let (low, high) = (above?, below);
+    let guess = root(|theta| quotient.at(theta), low, high);
+    Some(Bracket { low: low.0, high: high.0, guess })
 }
 
 /// Whether a curve is exactly zero from the start of the step on, for longer than rounding of the

@@ -105,12 +105,27 @@ impl Zeno {
         self.hidden = if hides { self.hidden + 1 } else { 0 };
         self.gaps[self.count % self.gaps.len()] = phase;
         self.count += 1;
-        if self.count < self.gaps.len() {
-            return None;
-        }
         if self.hidden >= self.gaps.len() {
             // What rounding hides goes on as it did before.
             return Some(Accumulation { s, error: self.gaps.iter().sum() });
+        }
+        let (left, error) = self.left()?;
+        let soon = left <= options.zeno * (s - self.start);
+        soon.then_some(Accumulation { s: s + left, error: error + f64::EPSILON * s.abs() })
+    }
+
+    /// The place where brief phases accumulate that have become shorter and shorter until rounding
+    /// hid them: the last switch was one of a chain at one instant `s`.
+    pub(crate) fn behind_chain(&self, s: f64) -> Option<Accumulation> {
+        let last = self.gaps[(self.count + self.gaps.len() - 1) % self.gaps.len()];
+        let (left, error) = self.left().filter(|_| self.is_brief(last, s))?;
+        Some(Accumulation { s: s + left, error: error + left })
+    }
+
+    /// The time that is left until the gaps end, extrapolated geometrically, with its error.
+    fn left(&self) -> Option<(f64, f64)> {
+        if self.count < self.gaps.len() {
+            return None;
         }
         let sum = |first: usize, count: usize| -> f64 {
             (0..count).map(|i| self.gaps[(self.count + first + i) % self.gaps.len()]).sum()
@@ -122,11 +137,8 @@ impl Zeno {
         let ratios = [last / before, lately * lately];
         let [one, other] = ratios.map(|ratio| last * ratio / (1.0 - ratio));
         let ratio = ratios[0].max(ratios[1]);
-        let left = last * ratio / (1.0 - ratio);
-        let soon = ratio < 1.0 && left <= options.zeno * (s - self.start);
         // Two extrapolations differ by as much as the ratio changes from gap to gap.
-        let error = (one - other).abs() + f64::EPSILON * s.abs();
-        soon.then_some(Accumulation { s: s + left, error })
+        (ratio < 1.0).then_some((last * ratio / (1.0 - ratio), (one - other).abs()))
     }
 }
 

@@ -58,6 +58,10 @@ impl<const N: usize> Observer<(), N> for Log<N> {
         self.poles.push(pole.s);
     }
 
+    fn forget(&mut self, switches: usize) {
+        self.switches.truncate(self.switches.len() - switches);
+    }
+
     fn stops(&self) -> bool {
         self.stop_after > 0 && self.switches.len() >= self.stop_after
     }

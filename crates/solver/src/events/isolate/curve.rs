@@ -128,7 +128,7 @@ pub(super) struct Accuracy {
     /// largest on the step.
     pub(super) state: (f64, f64),
     /// The noise of the guard's values beyond that, if it was measured.
-    noise: f64,
+    pub(super) noise: f64,
     /// The same, relative to the values around it. Noise is as large as the smaller of both says:
     /// values near a pole are noisy in proportion, and values that are differences of larger ones
     /// are equally noisy everywhere.

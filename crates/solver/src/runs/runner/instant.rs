@@ -127,7 +127,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         self.statistics.switches += usize::from(!ends);
         let first = self.instant.acted.parts().iter().all(Option::is_none);
         // Those that a row without a change names would have fired with it.
-        let changes = to != from || self.state != before;
+        let changes = ends || to != from || self.state != before;
         let pending = &self.instant.pending;
         let others = |other: usize| {
             changes && (pending[other].is_some() || first && event.simultaneous[other])
@@ -150,7 +150,13 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         if self.statistics.switches >= self.options.max_switches {
             return Ok(Some(Outcome::SwitchLimit));
         }
-        if self.zeno.count_at(s) >= self.options.max_at_one_instant {
+        let most = self.options.max_at_one_instant;
+        if self.zeno.count_at(s) >= most {
+            let alone = to == from && self.instant.cycle().iter().all(|it| *it == (from, guard));
+            if let Some(accumulation) = self.zeno.behind_chain(s).filter(|_| alone) {
+                self.observer.forget(most - 1);
+                return self.rest(guard, accumulation);
+            }
             return Err(self.cycle(from, guard));
         }
         self.instant.remember(self.zeno.left_at_instant(self.options), (from, guard));
