@@ -294,10 +294,12 @@ impl<S: System> Examination<'_, S> {
             Status::Fires(crossing) => {
                 self.locate::<M>(&found.step, guard, &crossing, true)?.map(Some).ok_or(Unresolved)
             }
-            // At the start it may have been noted on the step before.
-            _ if !may_wait => {
+            _ if found.elapsed > 0.0 && self.notes_of(guard).next().is_none() => {
                 let Event { step, elapsed, state, .. } = &*found;
-                let crossed = self.arrival(guard, step, *elapsed, state);
+                // At the start of the step, it may have been noted on the step before.
+                let crossed = self
+                    .arrival(guard, step, *elapsed, state)
+                    .filter(|crossed| !may_wait || crossed.sign * self.phase.values[guard] >= 0.0);
                 Ok(crossed.map(|crossed| self.at_end(guard, crossed, &found.step)))
             }
             _ => Ok(None),
