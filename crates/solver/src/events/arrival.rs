@@ -96,7 +96,7 @@ impl<S: System> Examination<'_, S> {
         system.field(mode, s, y, &mut slope);
         self.statistics.field += 1;
         // On a step that was cut very short, rounding hides what the guard does.
-        let mut reach = REACH * elapsed;
+        let mut reach = REACH * elapsed.max(f64::EPSILON * self.usual);
         let (behind, ahead, shows) = loop {
             S::State::shifted(&mut moved, y, &slope, -reach);
             let behind = room.value(system, (mode, guard), s - reach, &moved);

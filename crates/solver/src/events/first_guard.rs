@@ -294,12 +294,14 @@ impl<S: System> Examination<'_, S> {
             Status::Fires(crossing) => {
                 self.locate::<M>(&found.step, guard, &crossing, true)?.map(Some).ok_or(Unresolved)
             }
-            _ if found.elapsed > 0.0 && self.notes_of(guard).next().is_none() => {
+            _ if self.notes_of(guard).next().is_none() => {
                 let Event { step, elapsed, state, .. } = &*found;
                 // At the start of the step, it may have been noted on the step before.
-                let crossed = self
-                    .arrival(guard, step, *elapsed, state)
-                    .filter(|crossed| !may_wait || crossed.sign * self.phase.values[guard] >= 0.0);
+                let crossed = self.arrival(guard, step, *elapsed, state).filter(|crossed| {
+                    !may_wait
+                        || self.phase.zero_orders[guard] == 0
+                            && crossed.sign * self.phase.values[guard] > 0.0
+                });
                 Ok(crossed.map(|crossed| self.at_end(guard, crossed, &found.step)))
             }
             _ => Ok(None),
