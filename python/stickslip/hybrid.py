@@ -197,13 +197,12 @@ class _Table:
         elif guard.transition is not None:
             what = f"the transition of {about}"
             change = (None, (what, self.transition(guard.transition, what)), True)
-        clock = isinstance(guard, _Clock)
         condition: Any = None
         if self.conditions and guard.condition is not None:
             condition = (f"the condition of {about}", _callee(guard.condition))
         return (
             label,
-            "clock" if clock else guard.direction,
+            "clock" if isinstance(guard, _Clock) else guard.direction,
             None if self.plain and not guard.from_zero else guard.from_zero,
             int(guard.terminal),
             operator.index(guard.priority),
@@ -212,7 +211,7 @@ class _Table:
             condition,
             guard.sees_jumps,
             self.rest(guard, about),
-            guard.times if clock else None,
+            guard.times if isinstance(guard, _Clock) else None,
         )
 
     def target(self, mode: str | Mode | None, about: str) -> int | None:
@@ -264,8 +263,10 @@ class _Table:
         text = f"U{max(map(len, [*self.names, *self.event_names, ' ']))}"
         place = [("time", "f8"), ("guard", text), ("mode", text)]
         touches = [(t, self.places[mode][g], names[mode], m) for t, mode, g, m in found["touches"]]
-        where = lambda rows: [(t, self.places[mode][guard], names[mode]) for t, mode, guard in rows]
-        poles, preempted = where(found["poles"]), where(found["preempted"])
+        poles, preempted = (
+            [(t, self.places[mode][guard], names[mode]) for t, mode, guard in found[kind]]
+            for kind in ("poles", "preempted")
+        )
         rests = [
             (t, error, self.places[left][guard], names[left], names[to])
             for t, error, guard, left, to in found["rests"]
