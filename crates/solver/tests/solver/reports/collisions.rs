@@ -81,7 +81,8 @@ fn a_ball_with_restitution_comes_to_rest() {
     let rest = 3.0 * (4.0 / 9.8_f64).sqrt();
     for ended in all(&Comes, (0, 0.0, [1.0, 0.0]), 5.0) {
         match ended.outcome {
-            // Rounding of y + 1 hides the last bounces of a black box, of some 1e-7 (measured: 3e-8).
+            // Rounding of y + 1 hides the last bounces of a black box, of some 1e-7 (measured:
+            // 3e-8).
             Outcome::Zeno { accumulation } => {
                 assert!((accumulation - rest).abs() < 1e-7, "{:e}", accumulation - rest);
             }
