@@ -11,7 +11,7 @@ use crate::system::System;
 /// The part of the step over which a guard is differenced, on both sides of the end.
 const REACH: f64 = 1e-3;
 /// An event this close to the end of its step is the one at the end.
-const SAME: f64 = 1e-6;
+pub(crate) const SAME: f64 = 1e-6;
 
 impl<S: System> Examination<'_, S> {
     /// Finds guards that are zero at the end of `step`, to within rounding, and cross there in

@@ -82,11 +82,12 @@ impl<S: System> Examination<'_, S> {
             next.elapsed = next.elapsed.max(last.as_ref().map_or(0.0, |last| last.elapsed));
             self.note(next, together);
             // Whether the guard crosses again is not known beyond the bracket of this crossing.
-            let theta = next.beyond / step.h;
-            beginnings[guard] = Beginning { theta, value: -next.own().sign, zero_order: 0 };
-            statuses[guard] = if theta < 1.0 { Status::Unclear } else { Status::Clear };
-            let sign = next.own().sign;
-            if theta >= 1.0 && end_values[guard] * sign >= 0.0 {
+            let (theta, sign) = (next.beyond / step.h, next.own().sign);
+            beginnings[guard] = Beginning { theta, value: -sign, zero_order: 0 };
+            let end = end_values[guard];
+            let at_end = theta >= 1.0 || self.is_noise::<M>(guard, step, theta, end);
+            statuses[guard] = if at_end { Status::Clear } else { Status::Unclear };
+            if at_end && end * sign >= 0.0 {
                 // It has crossed within rounding of the end of the step.
                 end_values[guard] = -f64::MIN_POSITIVE.copysign(sign);
             }

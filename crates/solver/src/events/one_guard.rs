@@ -6,11 +6,12 @@ use smallvec::SmallVec;
 
 use crate::error::RunError;
 use crate::events::along_step::{AlongStep, EnclosedAlongStep, dense_output, repeated_step};
+use crate::events::arrival::SAME;
 use crate::events::aside::resolution;
 use crate::events::examination::{Examination, column};
 use crate::events::isolate::{
     Beginning, Notice, Task, Verdict, first_crossing, first_enclosed_crossing, last_enclosed_sign,
-    last_sign,
+    last_sign, noise,
 };
 use crate::events::notices::{FEW, Noticed};
 use crate::events::path::Path;
@@ -232,6 +233,34 @@ impl<S: System> Examination<'_, S> {
             }
         }
         ends
+    }
+
+    /// Whether a guard that crosses zero before `theta`, close to the end of `step`, has a value
+    /// there that may be noise.
+    pub(crate) fn is_noise<M: Method>(
+        &mut self,
+        guard: usize,
+        step: &mut StepOf<S::State>,
+        theta: f64,
+        end: f64,
+    ) -> bool {
+        if theta < 1.0 - SAME {
+            return false;
+        }
+        let (system, mode) = (self.system, self.phase.mode);
+        let mut dense = self.room.dense();
+        dense_output::<_, M>(system, mode, step, &mut dense);
+        self.statistics.field += M::DENSE_STAGES - 1;
+        let mut y = self.room.state();
+        let mut value = |theta: f64| {
+            dense.write(theta, &mut y);
+            self.statistics.guards += 1;
+            self.room.value(system, (mode, guard), step.s + theta * step.h, &y)
+        };
+        let noise = noise(&mut value, 1.0 - SAME, 1.0, [0.0, 1.0 / 3.0, 2.0 / 3.0]);
+        self.room.give(y);
+        self.room.give_dense(dense);
+        end.abs() <= noise
     }
 
     /// The smallest number with the sign that a guard had last, if it is zero where the step ends.
