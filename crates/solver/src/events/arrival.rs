@@ -3,6 +3,7 @@
 
 use crate::events::event::{Crossed, Event, only};
 use crate::events::examination::Examination;
+use crate::events::isolate::noise;
 use crate::events::phase::NEAR_ZERO;
 use crate::lists::List;
 use crate::method::{StepOf, Store};
@@ -90,19 +91,23 @@ impl<S: System> Examination<'_, S> {
         if largest > 0.0 && there.abs() > NEAR_ZERO * largest {
             return None;
         }
-        let hidden = self.hidden_at(guard, step, elapsed, y);
+        let mut hidden = self.hidden_at(guard, step, elapsed, y);
         let room = &mut *self.room;
         let (mut slope, mut moved) = (room.state(), room.state());
         system.field(mode, s, y, &mut slope);
         self.statistics.field += 1;
+        let statistics = &mut *self.statistics;
+        let mut value = |reach: f64| {
+            S::State::shifted(&mut moved, y, &slope, reach);
+            statistics.guards += 1;
+            room.value(system, (mode, guard), s + reach, &moved)
+        };
+        let close = (SAME * self.usual).max(256.0 * f64::EPSILON * s.abs());
+        hidden = hidden.max(noise(&mut value, -close, close, [0.0]));
         // On a step that was cut very short, rounding hides what the guard does.
         let mut reach = REACH * elapsed.max(f64::EPSILON * self.usual);
         let (behind, ahead, shows) = loop {
-            S::State::shifted(&mut moved, y, &slope, -reach);
-            let behind = room.value(system, (mode, guard), s - reach, &moved);
-            S::State::shifted(&mut moved, y, &slope, reach);
-            let ahead = room.value(system, (mode, guard), s + reach, &moved);
-            self.statistics.guards += 2;
+            let (behind, ahead) = (value(-reach), value(reach));
             let shows = behind.abs() > 4.0 * hidden && ahead.abs() > 4.0 * hidden;
             if shows || 16.0 * reach > REACH * self.usual {
                 break (behind, ahead, shows);

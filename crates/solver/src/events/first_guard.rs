@@ -17,6 +17,8 @@ use crate::system::{Note, PerGuard, Room, System};
 
 /// A guard is zero at an event if its value there is below this part of its values before.
 pub(crate) const TOGETHER: f64 = 1e-12;
+/// A step shows nothing about guards if it is shorter than this many units of rounding of time.
+const UNSEEN: f64 = 16.0;
 
 impl<S: System> Examination<'_, S> {
     /// Finds the first guard that fires on `step` and changes something, and writes it to `event`,
@@ -82,12 +84,12 @@ impl<S: System> Examination<'_, S> {
             next.elapsed = next.elapsed.max(last.as_ref().map_or(0.0, |last| last.elapsed));
             self.note(next, together);
             // Whether the guard crosses again is not known beyond the bracket of this crossing.
-            let (theta, sign) = (next.beyond / step.h, next.own().sign);
+            let (place, sign) = (next.elapsed / step.h, next.own().sign);
+            let (beyond, end) = (next.beyond / step.h, end_values[guard]);
+            let theta = self.past_noise::<M>(guard, step, (place, beyond), end);
             beginnings[guard] = Beginning { theta, value: -sign, zero_order: 0 };
-            let end = end_values[guard];
-            let at_end = theta >= 1.0 || self.is_noise::<M>(guard, step, theta, end);
-            statuses[guard] = if at_end { Status::Clear } else { Status::Unclear };
-            if at_end && end * sign >= 0.0 {
+            statuses[guard] = if theta < 1.0 { Status::Unclear } else { Status::Clear };
+            if theta >= 1.0 && end * sign >= 0.0 {
                 // It has crossed within rounding of the end of the step.
                 end_values[guard] = -f64::MIN_POSITIVE.copysign(sign);
             }
@@ -277,8 +279,12 @@ impl<S: System> Examination<'_, S> {
         }
         // Whether it fires together with an event at the start shows after the event.
         let may_wait = found.step.h <= TOGETHER * self.trial.h;
+        // On a step that time hardly resolves, signs are those of rounding.
+        let unseen = found.step.h <= UNSEEN * f64::EPSILON * found.step.s.abs();
         // A quick look would find again what a guard has already been noted for.
-        let mut status = if self.notes_of(guard).next().is_some() {
+        let mut status = if unseen {
+            Status::Clear
+        } else if self.notes_of(guard).next().is_some() {
             Status::Unclear
         } else {
             self.glance_at::<M>(guard, &found.step, &search.nodes, &mut None)

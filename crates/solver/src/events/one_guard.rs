@@ -235,17 +235,19 @@ impl<S: System> Examination<'_, S> {
         ends
     }
 
-    /// Whether a guard that crosses zero before `theta`, close to the end of `step`, has a value
-    /// there that may be noise.
-    pub(crate) fn is_noise<M: Method>(
+    /// Where on `step` a guard that crosses zero at `place`, and surely before `theta`, has left the
+    /// noise of its values: at `theta`, if the two are not very close, or behind it. The result is 1
+    /// if that does not happen.
+    pub(crate) fn past_noise<M: Method>(
         &mut self,
         guard: usize,
         step: &mut StepOf<S::State>,
-        theta: f64,
+        (place, mut theta): (f64, f64),
         end: f64,
-    ) -> bool {
-        if theta < 1.0 - SAME {
-            return false;
+    ) -> f64 {
+        let is_near = |theta: f64| theta - place <= SAME || theta >= 1.0 - SAME;
+        if !is_near(theta) || theta >= 1.0 {
+            return theta;
         }
         let (system, mode) = (self.system, self.phase.mode);
         let mut dense = self.room.dense();
@@ -257,10 +259,24 @@ impl<S: System> Examination<'_, S> {
             self.statistics.guards += 1;
             self.room.value(system, (mode, guard), step.s + theta * step.h, &y)
         };
-        let noise = noise(&mut value, 1.0 - SAME, 1.0, [0.0, 1.0 / 3.0, 2.0 / 3.0]);
+        let mut reach = SAME;
+        loop {
+            let at_end = theta >= 1.0 - SAME;
+            let low = if at_end { 1.0 - SAME } else { theta };
+            let noise = noise(&mut value, low, low + SAME, [0.0, 1.0 / 3.0, 2.0 / 3.0]);
+            let there = if at_end { end } else { value(theta) };
+            if there.abs() > noise {
+                break;
+            }
+            theta = if at_end { 1.0 } else { (theta + reach).min(1.0 - SAME) };
+            if at_end {
+                break;
+            }
+            reach *= 2.0;
+        }
         self.room.give(y);
         self.room.give_dense(dense);
-        end.abs() <= noise
+        theta
     }
 
     /// The smallest number with the sign that a guard had last, if it is zero where the step ends.
