@@ -53,7 +53,7 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Watcher<Free<'_, S>> for Tol
     const WANTS_SEGMENTS: bool = O::WANTS_SEGMENTS;
 
     fn on_switch(&mut self, note: &Note<Free<'_, S>>) {
-        let &Note { s, guard, flatness, jump, from, to, .. } = note;
+        let &Note { s, guard, flatness, from, to, .. } = note;
         self.simultaneous.clear();
         self.simultaneous
             .extend((0..note.simultaneous.len()).filter(|&other| note.simultaneous[other]));
@@ -62,7 +62,7 @@ impl<S: DynamicSystem, O: DynamicObserver<S::Mode>> Watcher<Free<'_, S>> for Tol
             guard,
             simultaneous: &self.simultaneous,
             flatness,
-            jump,
+            jump: note.jump(),
             from,
             to,
             before: &note.before,

@@ -60,6 +60,44 @@ pub(crate) fn rounding<S: System>(
     (if change.is_finite() { 4.0 * f64::EPSILON / SLIGHT * change } else { 0.0 }, count)
 }
 
+/// The sign of a guard's rate at the start of `step`, by the field, or 0 if rounding hides it.
+pub(crate) fn start_rate<S: System>(
+    system: &S,
+    (mode, guard): (S::Mode, usize),
+    step: &StepOf<S::State>,
+    statistics: &mut Statistics,
+    room: &mut Room<S>,
+) -> f64 {
+    let (s, y) = (step.s, &step.y0);
+    let (hidden, count) = rounding(system, (mode, guard), (s, y), (s, y), room);
+    let (mut slope, mut moved) = (room.state(), room.state());
+    system.field(mode, s, y, &mut slope);
+    let start = room.value(system, (mode, guard), s, y);
+    statistics.field += 1;
+    statistics.guards += count + 1;
+    let mut change = |ahead: f64| {
+        S::State::shifted(&mut moved, y, &slope, ahead);
+        statistics.guards += 1;
+        room.value(system, (mode, guard), s + ahead, &moved) - start
+    };
+    let mut reach = step.h;
+    let rate = loop {
+        let (far, near) = (change(reach), change(0.5 * reach));
+        // NaN is hidden too.
+        let shows = near.abs() > 4.0 * hidden;
+        if !shows {
+            break 0.0;
+        }
+        if (far - 2.0 * near).abs() <= 0.1 * far.abs() {
+            break near.signum();
+        }
+        reach *= 0.125;
+    };
+    room.give(slope);
+    room.give(moved);
+    rate
+}
+
 /// The sizes of time and state whose rounding counts at a place (`s`, `y`) of `step`: the largest
 /// on the step, since sums of such terms lead there.
 pub(crate) fn scales<V: Store>(step: &StepOf<V>, s: f64, y: &V, scale: &mut V) -> f64 {
@@ -184,6 +222,11 @@ impl<S: System, M: Method> Curve for AlongStep<'_, S, M> {
             effect
         });
         (start, start.max(middle).max(end))
+    }
+
+    fn start_rate(&mut self) -> f64 {
+        let at = (self.mode, self.guard);
+        self.sign * start_rate(self.system, at, self.step, self.statistics, self.room)
     }
 
     fn truth(&mut self, theta: f64) -> Result<f64, RunError> {

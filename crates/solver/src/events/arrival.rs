@@ -3,7 +3,6 @@
 
 use crate::events::event::{Crossed, Event, only};
 use crate::events::examination::Examination;
-use crate::events::isolate::noise;
 use crate::events::phase::NEAR_ZERO;
 use crate::lists::List;
 use crate::method::{StepOf, Store};
@@ -11,6 +10,9 @@ use crate::system::System;
 
 /// The part of the step over which a guard is differenced, on both sides of the end.
 const REACH: f64 = 1e-3;
+/// The roundings within which a guard is zero where the run must not go on without it. They add up
+/// from event to event.
+const ARRIVES: f64 = 16.0;
 /// An event this close to the end of its step is the one at the end.
 pub(crate) const SAME: f64 = 1e-6;
 
@@ -23,7 +25,8 @@ impl<S: System> Examination<'_, S> {
             if self.notes_of(guard).any(|note| note.s >= s - SAME * step.h) {
                 continue;
             }
-            let Some(crossed) = self.arrival(guard, step, step.h, &step.y1) else { continue };
+            let arrival = self.arrival(guard, step, (step.h, ARRIVES), &step.y1);
+            let Some(crossed) = arrival else { continue };
             let found = self.at_end(guard, crossed, step);
             if self.is_noted(&found) {
                 let together = self.notes.last().is_some_and(|last| last.s == s);
@@ -66,18 +69,18 @@ impl<S: System> Examination<'_, S> {
     pub(crate) fn merged(&self, one: Event<S>, other: Event<S>) -> Event<S> {
         let precedes = self.precedes(one.guard, other.guard);
         let (mut first, second) = if precedes { (one, other) } else { (other, one) };
-        first.take_in(&second);
+        first.take_in(&second.crossed);
         first.simultaneous[first.guard] = false;
         first
     }
 
     /// How a guard crosses zero at a place of `step`, if it does so in its direction and is zero
-    /// there to within rounding.
+    /// there to within so many roundings.
     pub(crate) fn arrival(
         &mut self,
         guard: usize,
         step: &StepOf<S::State>,
-        elapsed: f64,
+        (elapsed, roundings): (f64, f64),
         y: &S::State,
     ) -> Option<Crossed> {
         let direction = self.phase.guards[guard].direction();
@@ -88,27 +91,25 @@ impl<S: System> Examination<'_, S> {
         let there = self.room.value(system, (mode, guard), s, y);
         self.statistics.guards += 1;
         let largest = self.phase.largest[guard];
-        if largest > 0.0 && there.abs() > NEAR_ZERO * largest {
+        // In a phase that is hardly longer than rounding of time, it hides more.
+        let near = NEAR_ZERO.max(16.0 * f64::EPSILON * (s.abs() + self.age) / elapsed);
+        if largest > 0.0 && there.abs() > near * largest {
             return None;
         }
-        let mut hidden = self.hidden_at(guard, step, elapsed, y);
+        let hidden = self.hidden_at(guard, step, elapsed, y);
         let room = &mut *self.room;
         let (mut slope, mut moved) = (room.state(), room.state());
         system.field(mode, s, y, &mut slope);
         self.statistics.field += 1;
-        let statistics = &mut *self.statistics;
-        let mut value = |reach: f64| {
-            S::State::shifted(&mut moved, y, &slope, reach);
-            statistics.guards += 1;
-            room.value(system, (mode, guard), s + reach, &moved)
-        };
-        let close = (SAME * self.usual).max(256.0 * f64::EPSILON * s.abs());
-        hidden = hidden.max(noise(&mut value, -close, close, [0.0]));
         // On a step that was cut very short, rounding hides what the guard does.
         let mut reach = REACH * elapsed.max(f64::EPSILON * self.usual);
         let (behind, ahead, shows) = loop {
-            let (behind, ahead) = (value(-reach), value(reach));
-            let shows = behind.abs() > 4.0 * hidden && ahead.abs() > 4.0 * hidden;
+            S::State::shifted(&mut moved, y, &slope, -reach);
+            let behind = room.value(system, (mode, guard), s - reach, &moved);
+            S::State::shifted(&mut moved, y, &slope, reach);
+            let ahead = room.value(system, (mode, guard), s + reach, &moved);
+            self.statistics.guards += 2;
+            let shows = behind.abs().min(ahead.abs()) > 4.0 * roundings * hidden;
             if shows || 16.0 * reach > REACH * self.usual {
                 break (behind, ahead, shows);
             }
@@ -117,8 +118,9 @@ impl<S: System> Examination<'_, S> {
         room.give(slope);
         room.give(moved);
         let crosses = shows && (behind < 0.0) != (ahead < 0.0);
-        let fires = there.abs() <= hidden && crosses && direction.fires_from(behind);
         let slope = ((ahead - behind) / (2.0 * reach)).abs();
+        let zero = there.abs() <= roundings * (hidden + slope * self.drift(elapsed));
+        let fires = zero && crosses && direction.fires_from(behind);
         fires.then_some(Crossed { slope, jump: false, sign: behind.signum() })
     }
 

@@ -49,9 +49,9 @@ impl<S: System> Event<S> {
         self.crossed[self.guard].unwrap_or(Crossed::AT_ONCE)
     }
 
-    /// Takes the guards of another event of the same instant, which act after this one's.
-    pub(crate) fn take_in(&mut self, other: &Self) {
-        let crossed = self.crossed.parts_mut().iter_mut().zip(other.crossed.parts());
+    /// Takes further guards of the same instant, which act after this one's.
+    pub(crate) fn take_in(&mut self, others: &PerGuard<S, Option<Crossed>>) {
+        let crossed = self.crossed.parts_mut().iter_mut().zip(others.parts());
         for (own, crossed) in crossed {
             *own = own.or(*crossed);
         }

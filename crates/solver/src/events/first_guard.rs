@@ -4,9 +4,9 @@ use smallvec::SmallVec;
 
 use crate::error::RunError;
 use crate::events::along_step::{rounding, scales};
-use crate::events::event::{Crossed, Event, Found};
+use crate::events::event::{Crossed, Event, Found, only};
 use crate::events::examination::{Examination, column, confirmed};
-use crate::events::isolate::{Beginning, Bracket};
+use crate::events::isolate::{Beginning, Bracket, noise};
 use crate::events::phase::{NEAR_ZERO, Phase};
 use crate::events::quick::{self, NODES};
 use crate::events::status::{Crossing, Status};
@@ -19,6 +19,10 @@ use crate::system::{Note, PerGuard, Room, System};
 pub(crate) const TOGETHER: f64 = 1e-12;
 /// A step shows nothing about guards if it is shorter than this many units of rounding of time.
 const UNSEEN: f64 = 16.0;
+/// The part of a step on which the noise of a guard is measured.
+const CLOSE: f64 = 1e-6;
+/// The part of what surely exceeds noise that it may well be.
+const PART: f64 = 0.25;
 
 impl<S: System> Examination<'_, S> {
     /// Finds the first guard that fires on `step` and changes something, and writes it to `event`,
@@ -126,19 +130,38 @@ impl<S: System> Examination<'_, S> {
             && !last.simultaneous[event.guard]
         {
             last.simultaneous[event.guard] = true;
+            last.crossed[event.guard] = event.crossed[event.guard];
             return;
         }
-        let Crossed { slope, jump, .. } = event.own();
+        let crossed = event.own();
         self.notes.push(Note {
             s: self.trial.s + event.elapsed,
             guard: event.guard,
             simultaneous: List::of(self.phase.count(), false),
-            flatness: self.phase.flatness(event.guard, slope),
-            jump,
+            flatness: self.phase.flatness(event.guard, crossed.slope),
+            crossed: only(self.phase.count(), event.guard, crossed),
             from: self.phase.mode,
             to: self.phase.mode,
             before: event.state.clone(),
             after: event.state.clone(),
+        });
+    }
+
+    /// Lets guards that were noted at the instant of `event`, and whose turn is only behind its
+    /// guard, wait for their turn: what acts before may change what they do.
+    pub(crate) fn take_back(&mut self, event: &mut Event<S>) {
+        if self.notes.is_empty() {
+            return;
+        }
+        let s = self.trial.s + event.elapsed;
+        let since = s - 2.0 * self.error_of(event) - 8.0 * f64::EPSILON * s.abs();
+        let phase = self.phase;
+        self.notes.retain(|note| {
+            let stays = note.s < since || phase.precedes(note.guard, event.guard);
+            if !stays {
+                event.take_in(&note.crossed);
+            }
+            stays
         });
     }
 
@@ -208,9 +231,19 @@ impl<S: System> Examination<'_, S> {
             }
         }
         if let Some(event) = event {
-            if let Some(&own) = search.located.iter().find(|located| located.guard == event.guard) {
-                let others = search.located.iter().filter(|other| own.is_together_with(other));
-                others.for_each(|other| event.crossed[other.guard] = Some(other.crossed));
+            // Places of which errors do not tell the next are of one instant, from one to the other.
+            let mut reached: SmallVec<[Located; 2]> =
+                search.located.iter().filter(|it| it.guard == event.guard).copied().collect();
+            while let Some(one) = reached.pop() {
+                for &other in search.located.iter().filter(|other| one.is_together_with(other)) {
+                    if event.crossed[other.guard].is_none() {
+                        event.crossed[other.guard] = Some(other.crossed);
+                        reached.push(other);
+                    }
+                    if self.precedes(other.guard, event.guard) {
+                        event.guard = other.guard;
+                    }
+                }
             }
             self.arrive_with(event, &search.there, values, step.h);
             self.name_simultaneous(event, &search.there, values, step.h);
@@ -304,7 +337,7 @@ impl<S: System> Examination<'_, S> {
             _ if self.notes_of(guard).next().is_none() => {
                 let Event { step, elapsed, state, .. } = &*found;
                 // At the start of the step, it may have been noted on the step before.
-                let crossed = self.arrival(guard, step, *elapsed, state).filter(|crossed| {
+                let crossed = self.arrival(guard, step, (*elapsed, 1.0), state).filter(|crossed| {
                     !may_wait
                         || self.phase.zero_orders[guard] == 0
                             && crossed.sign * self.phase.values[guard] > 0.0
@@ -351,15 +384,22 @@ impl<S: System> Examination<'_, S> {
     /// is left of the guard, move its zero.
     pub(crate) fn error_of(&mut self, event: &Event<S>) -> f64 {
         let Crossed { slope, jump, .. } = event.own();
+        let drift = self.drift(event.elapsed);
         if event.elapsed == 0.0 || jump {
-            return 0.0;
+            return drift;
         }
         let hidden = self.hidden_at(event.guard, &event.step, event.elapsed, &event.state);
         let error = (hidden + event.residual) / slope;
-        4.0 * f64::EPSILON * event.elapsed + if error.is_finite() { error } else { 0.0 }
+        drift + if error.is_finite() { error } else { 0.0 }
     }
 
-    /// The effect of rounding on a guard at a place of `step`.
+    /// The effect on a time of rounding of the state since the start of the phase.
+    pub(crate) fn drift(&self, elapsed: f64) -> f64 {
+        4.0 * f64::EPSILON * (self.age + elapsed)
+    }
+
+    /// The effect of rounding on a guard at a place of `step`: of time and state, and within the
+    /// guard.
     pub(crate) fn hidden_at(
         &mut self,
         guard: usize,
@@ -367,15 +407,24 @@ impl<S: System> Examination<'_, S> {
         elapsed: f64,
         y: &S::State,
     ) -> f64 {
-        let s = step.s + elapsed;
-        let mut scale = self.room.state();
+        let (system, at, s) = (self.system, (self.phase.mode, guard), step.s + elapsed);
+        let (mut scale, mut slope) = (self.room.state(), self.room.state());
         let s_scale = scales(step, s, y, &mut scale);
-        let scales = (s_scale, &scale);
-        let at = (self.phase.mode, guard);
-        let (hidden, count) = rounding(self.system, at, (s, y), scales, self.room);
+        let (hidden, count) = rounding(system, at, (s, y), (s_scale, &scale), self.room);
         self.statistics.guards += count;
+        system.field(at.0, s, y, &mut slope);
+        self.statistics.field += 1;
+        let (room, statistics, moved) = (&mut *self.room, &mut *self.statistics, &mut scale);
+        let mut value = |ahead: f64| {
+            S::State::shifted(moved, y, &slope, ahead);
+            statistics.guards += 1;
+            room.value(system, at, s + ahead, moved)
+        };
+        let reach = (CLOSE * self.usual).max(256.0 * f64::EPSILON * s.abs());
+        let noise = PART * noise(&mut value, -reach, reach, [0.0]);
         self.room.give(scale);
-        hidden
+        self.room.give(slope);
+        hidden.max(noise)
     }
 
     /// Adds the guards that cross zero behind the end of a step of size `h`, but within rounding of
@@ -395,7 +444,8 @@ impl<S: System> Examination<'_, S> {
             if near
                 && event.crossed[guard].is_none()
                 && self.notes_of(guard).next().is_none()
-                && let Some(crossed) = self.arrival(guard, &event.step, event.elapsed, &event.state)
+                && let Some(crossed) =
+                    self.arrival(guard, &event.step, (event.elapsed, 1.0), &event.state)
             {
                 event.crossed[guard] = Some(crossed);
                 if self.precedes(guard, event.guard) {

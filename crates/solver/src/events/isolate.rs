@@ -181,6 +181,10 @@ pub(crate) fn first_crossing(
                     Some(bracket) => return ControlFlow::Break(Verdict::Crossing(bracket)),
                     None if task.domain => return ControlFlow::Break(Verdict::StartsBelow),
                     None if falls_from_zero => return ControlFlow::Break(at_start),
+                    // Rounding hides how far it rises.
+                    None if quotient.curve.start_rate() > 0.0 => {
+                        return ControlFlow::Break(at_start);
+                    }
                     None => before = Some((theta, value)),
                 },
                 _ => before = Some((theta, value)),

@@ -5,7 +5,9 @@ use std::marker::PhantomData;
 use smallvec::SmallVec;
 
 use crate::error::RunError;
-use crate::events::along_step::{AlongStep, EnclosedAlongStep, dense_output, repeated_step};
+use crate::events::along_step::{
+    AlongStep, EnclosedAlongStep, dense_output, repeated_step, start_rate,
+};
 use crate::events::arrival::SAME;
 use crate::events::aside::resolution;
 use crate::events::examination::{Examination, column};
@@ -117,12 +119,20 @@ impl<S: System> Examination<'_, S> {
         beginning: Beginning,
     ) -> Result<Option<Status>, RunError> {
         let found = self.isolate_from::<M>(guard, step, values, beginning)?;
-        if found.is_none() && self.phase.forgiven[guard] && beginning.zero_order > 0 {
+        let forgiven = self.phase.forgiven[guard] && beginning.zero_order > 0;
+        if found.is_none() && forgiven && !self.leaves(guard, step) {
             // It is not a zero that can be divided out, so its sign counts.
             let beginning = Beginning { zero_order: 0, ..beginning };
             return self.isolate_from::<M>(guard, step, values, beginning);
         }
         Ok(found)
+    }
+
+    /// Whether a guard leaves its value at the start of `step` with a rate that rounding does not
+    /// hide.
+    fn leaves(&mut self, guard: usize, step: &StepOf<S::State>) -> bool {
+        let at = (self.phase.mode, guard);
+        start_rate(self.system, at, step, self.statistics, self.room) != 0.0
     }
 
     /// Decides about a guard whose zero at the start is certain, if it is said to have one.

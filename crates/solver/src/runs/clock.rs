@@ -5,7 +5,7 @@ use crate::options::Options;
 /// The last step may be longer than it should by this part of itself.
 const SLIGHTLY: f64 = 1e-3;
 /// Rounding is asked only about phases that are shorter than this part of the run.
-const BRIEF: f64 = 1e-6;
+const BRIEF: f64 = 1e-4;
 
 /// The independent variable as a sum with compensation, so that many short steps add up.
 #[derive(Clone, Copy, Debug)]
@@ -42,9 +42,13 @@ impl Clock {
     /// would remain behind it within rounding belongs to it.
     pub(crate) fn step_towards(&self, end: f64, h: f64) -> (f64, bool) {
         let left = self.until(end);
-        let rounding = || 4.0 * f64::EPSILON * self.s.abs().max(end.abs());
-        let remains = left > h + h || left - h > rounding().min(SLIGHTLY * h);
+        let remains = left > h + h || left - h > self.rounding(end).min(SLIGHTLY * h);
         if remains { (h, false) } else { (left, true) }
+    }
+
+    /// The rounding of times between here and `end`.
+    pub(crate) fn rounding(&self, end: f64) -> f64 {
+        4.0 * f64::EPSILON * self.s.abs().max(end.abs())
     }
 
     /// The time that remains until `end`.
@@ -57,27 +61,49 @@ impl Clock {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Zeno {
     start: f64,
-    /// The last gaps of positive length between switches, as a ring.
+    /// The last phases, as a ring, but for those that hide how far the guards went.
     gaps: [f64; 2 * Self::HALF],
     count: usize,
-    /// How many of the last phases in a row hide how far the guards went in them.
-    hidden: usize,
+    /// The place where the last of them ended.
+    shown: f64,
+    /// How many phases since then hide how far the guards went in them, and how long they are.
+    hidden: (usize, f64),
     /// The place of the last switch, and how many switches came there.
     instant: (f64, usize),
+    /// The guard of the last switch, and how many switches at that place it has had in a row.
+    alone: (usize, usize),
 }
 
 impl Zeno {
     /// The number of gaps in either half of those that are compared.
     const HALF: usize = 6;
+    /// The number of gaps that are compared where there are not so many.
+    const FEW: usize = 4;
 
     pub(crate) fn new(s: f64) -> Self {
-        Self { start: s, gaps: [0.0; 2 * Self::HALF], count: 0, hidden: 0, instant: (s, 0) }
+        Self {
+            start: s,
+            gaps: [0.0; 2 * Self::HALF],
+            count: 0,
+            shown: s,
+            hidden: (0, 0.0),
+            instant: (s, 0),
+            alone: (0, 0),
+        }
     }
 
-    /// Counts a switch at `s`. Returns how many came there.
-    pub(crate) fn count_at(&mut self, s: f64) -> usize {
-        self.instant = if s == self.instant.0 { (s, self.instant.1 + 1) } else { (s, 1) };
+    /// Counts a switch of `guard` at `s`. Returns how many came there.
+    pub(crate) fn count_at(&mut self, s: f64, guard: usize) -> usize {
+        let here = s == self.instant.0;
+        self.instant = (s, if here { self.instant.1 + 1 } else { 1 });
+        let again = here && guard == self.alone.0;
+        self.alone = (guard, if again { self.alone.1 + 1 } else { 1 });
         self.instant.1
+    }
+
+    /// How many switches at the place of the last one its guard has had in a row.
+    pub(crate) fn alone(&self) -> usize {
+        self.alone.1
     }
 
     /// How many more switches are allowed at the instant of the last one.
@@ -102,35 +128,50 @@ impl Zeno {
         if phase <= 0.0 || options.zeno == 0.0 {
             return None;
         }
-        self.hidden = if hides { self.hidden + 1 } else { 0 };
+        if hides {
+            self.hidden = (self.hidden.0 + 1, self.hidden.1 + phase);
+            let goes_on = (self.hidden.0 >= Self::HALF).then(|| self.behind_hidden(s)).flatten();
+            // Without a rule, what rounding hides goes on as it did before.
+            let stays = Accumulation { s, error: self.hidden.1 };
+            return goes_on.or((self.hidden.0 >= self.gaps.len()).then_some(stays));
+        }
+        (self.shown, self.hidden) = (s, (0, 0.0));
         self.gaps[self.count % self.gaps.len()] = phase;
         self.count += 1;
-        if self.hidden >= self.gaps.len() {
-            // What rounding hides goes on as it did before.
-            return Some(Accumulation { s, error: self.gaps.iter().sum() });
-        }
-        let (left, error) = self.left()?;
+        let (left, error) = self.left(self.gaps.len())?;
         let soon = left <= options.zeno * (s - self.start);
         soon.then_some(Accumulation { s: s + left, error: error + f64::EPSILON * s.abs() })
     }
 
-    /// The place where brief phases accumulate that have become shorter and shorter until rounding
-    /// hid them: the last switch was one of a chain at one instant `s`.
+    /// The place where switches accumulate whose phases have become shorter and shorter until
+    /// rounding hid them, where the last switch was one of a chain at one instant `s`.
     pub(crate) fn behind_chain(&self, s: f64) -> Option<Accumulation> {
-        let last = self.gaps[(self.count + self.gaps.len() - 1) % self.gaps.len()];
-        let (left, error) = self.left().filter(|_| self.is_brief(last, s))?;
-        Some(Accumulation { s: s + left, error: error + left })
+        (self.alone.1 >= Self::HALF).then(|| self.behind_hidden(s)).flatten()
     }
 
-    /// The time that is left until the gaps end, extrapolated geometrically, with its error.
-    fn left(&self) -> Option<(f64, f64)> {
-        if self.count < self.gaps.len() {
+    /// The place where brief phases accumulate that rounding does not show any more at `s`.
+    fn behind_hidden(&self, s: f64) -> Option<Accumulation> {
+        let last = self.gaps[(self.count + self.gaps.len() - 1) % self.gaps.len()];
+        // The first phase was another one.
+        let few = if self.count > Self::FEW { Self::FEW } else { 2 };
+        let count = if self.count >= self.gaps.len() { self.gaps.len() } else { few };
+        let (left, error) = self.left(count).filter(|_| self.is_brief(last, s))?;
+        let found = s.max(self.shown + left);
+        Some(Accumulation { s: found, error: error + left + (found - self.shown - left) })
+    }
+
+    /// The time that is left until the gaps end, extrapolated geometrically from the last
+    /// `count`, with its error.
+    fn left(&self, count: usize) -> Option<(f64, f64)> {
+        if self.count < count || self.count <= 2 {
             return None;
         }
+        let (begin, length) = (self.count + self.gaps.len() - count, self.gaps.len());
         let sum = |first: usize, count: usize| -> f64 {
-            (0..count).map(|i| self.gaps[(self.count + first + i) % self.gaps.len()]).sum()
+            (0..count).map(|i| self.gaps[(begin + first + i) % length]).sum()
         };
-        let (half, quarter) = (Self::HALF, Self::HALF / 2);
+        let half = count / 2;
+        let quarter = half.div_ceil(2);
         let (before, last) = (sum(0, half), sum(half, half));
         // Gaps that only follow a long rest are not shorter and shorter.
         let lately = sum(half + quarter, quarter) / sum(half, quarter);

@@ -98,7 +98,7 @@ where
             guard: note.guard,
             simultaneous: mask(&note.simultaneous),
             flatness: note.flatness,
-            jump: note.jump,
+            jump: note.jump(),
             from: note.from,
             to: note.to,
             before: note.before,
@@ -253,7 +253,10 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             {
                 return Ok(outcome);
             }
-            if self.clock.until(self.end) <= 0.0 {
+            // Behind an event, no step shows what remains within rounding.
+            let left = self.clock.until(self.end);
+            if left <= 0.0 || event.is_some() && left <= self.clock.rounding(self.end) {
+                self.clock.arrive(self.end);
                 check_finite(self.clock.s, self.state.parts())?;
                 return Ok(Outcome::ReachedEnd);
             }
@@ -440,6 +443,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             system: self.system,
             phase: &self.phase,
             trial: &trial,
+            age: self.clock.phase,
             usual: self.h,
             guard_scale: self.options.scale_of_guards(),
             notes: &mut self.notes,
@@ -458,6 +462,9 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         }
         if last && self.due <= self.end {
             examination.tick(step, self.due, event);
+        }
+        if let Some(event) = event {
+            examination.take_back(event);
         }
         if let Some(at_end) = at_end {
             if event.is_none() {
@@ -481,6 +488,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             system: self.system,
             phase: &self.phase,
             trial: &trial,
+            age: self.clock.phase,
             usual: self.h,
             guard_scale: self.options.scale_of_guards(),
             notes: &mut self.notes,

@@ -118,7 +118,7 @@ impl Case {
                 let parts = [0.3, 1.0, 7.0][random.usize(0..3)];
                 let max_step = if length > 0.0 { length / parts } else { f64::INFINITY };
                 let limits = Options {
-                    max_steps: 5000,
+                    max_steps: 100_000,
                     max_switches: 100,
                     max_at_one_instant: 50,
                     ..Options::default()
@@ -188,7 +188,13 @@ impl Case {
             let acts = self.plan.acts.iter().filter(move |act| act.then.is_some());
             acts.filter(move |act| act.idle == idle)
         };
-        let is_idle = |seen: &&Seen| seen.from == seen.to && seen.before == seen.after;
+        // A reset to the value that a component has already may move it by its rounding.
+        let is_same = |(one, other): (&f64, &f64)| {
+            let size = self.planted.scales.state + one.abs();
+            (one - other).abs() <= 1e-13 * size
+        };
+        let is_idle =
+            |seen: &&Seen| seen.from == seen.to && seen.before.iter().zip(&seen.after).all(is_same);
         // A guard that ends the run changes nothing either.
         let last = self.plan.terminal.and(self.plan.acts.last());
         let ends = |index: usize| last.is_some() && index + 1 == seen.len();
@@ -327,13 +333,12 @@ impl Case {
     }
 }
 
-/// Cases in which a run still takes another order, refuses, or reports an idle crossing elsewhere.
-/// All have an event within rounding of the end of a step or of the run, or just before a clock.
-const OPEN: [u64; 12] = [44, 57, 63, 70, 92, 126, 151, 155, 203, 285, 295, 340];
+/// Cases in which a run still takes another order.
+const OPEN: [u64; 1] = [92];
 
 #[test]
 fn everything_that_happens_at_one_instant_acts_in_order() {
-    for seed in (0..300).filter(|seed| !OPEN.contains(seed)) {
+    for seed in (0..500).filter(|seed| !OPEN.contains(seed)) {
         let case = Case::new(seed);
         let faults = case.faults();
         assert!(faults.is_empty(), "seed {seed}\n{}\n{faults:#?}", case.describe());

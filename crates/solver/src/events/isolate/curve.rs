@@ -30,6 +30,8 @@ pub(crate) trait Curve {
     /// The effect of rounding of state and time on a value: at the start of the step, and the
     /// largest on the step.
     fn rounding(&mut self) -> (f64, f64);
+    /// The sign of the curve's rate at the start, by the field, or 0 if rounding hides it.
+    fn start_rate(&mut self) -> f64;
     /// The value by a step of the method to `theta`.
     fn truth(&mut self, theta: f64) -> Result<f64, RunError>;
 }

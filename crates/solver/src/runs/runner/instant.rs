@@ -10,7 +10,7 @@ use crate::error::RunError;
 use crate::events::along_step::{rounding, scales};
 use crate::events::first_guard::TOGETHER;
 use crate::events::phase::NEAR_ZERO;
-use crate::events::{Crossed, Event};
+use crate::events::{Crossed, Event, only};
 use crate::hybrid::{Direction, Guard, Outcome, Preempted, Rest};
 use crate::lists::List;
 use crate::method::Store;
@@ -137,7 +137,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             guard,
             simultaneous: List::made(self.phase.count(), others),
             flatness: self.phase.flatness(guard, crossed.slope),
-            jump: crossed.jump,
+            crossed: only(self.phase.count(), guard, crossed),
             from,
             to,
             before: before.clone(),
@@ -151,12 +151,12 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             return Ok(Some(Outcome::SwitchLimit));
         }
         let most = self.options.max_at_one_instant;
-        if self.zeno.count_at(s) >= most {
-            let alone = to == from && self.instant.cycle().iter().all(|it| *it == (from, guard));
-            if let Some(accumulation) = self.zeno.behind_chain(s).filter(|_| alone) {
-                self.observer.forget(most - 1);
-                return self.rest(guard, accumulation);
-            }
+        let count = self.zeno.count_at(s, guard);
+        if let Some(accumulation) = self.zeno.behind_chain(s).filter(|_| to == from) {
+            self.observer.forget(self.zeno.alone() - 1);
+            return self.rest(guard, accumulation);
+        }
+        if count >= most {
             return Err(self.cycle(from, guard));
         }
         self.instant.remember(self.zeno.left_at_instant(self.options), (from, guard));
@@ -235,12 +235,6 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         }
     }
 
-    /// Whether the guard that has acted is so close to its zero that it stands there.
-    fn is_near(&self, event: &Event<S>, act: &Act<S>) -> bool {
-        let size = act.largest.max(act.crossed.slope * event.step.h);
-        !act.crossed.jump && self.phase.values[act.guard].abs() <= NEAR_ZERO * size
-    }
-
     /// The sign with which a guard of the active mode is one of the mode `from`, 0 if it is another
     /// one. They are the same if their values are, or the negatives, where the step of the event
     /// starts, where it ends, and in the state as it is.
@@ -296,7 +290,6 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
     /// Takes values of guards that may be due to rounding of the state, or that are left where a
     /// guard has acted, for zeros.
     fn forgive(&mut self, event: &Event<S>, act: &Act<S>) {
-        let unchanged = self.state == act.before;
         for guard in 0..self.phase.count() {
             let (value, direction) =
                 (self.phase.values[guard], self.phase.guards[guard].direction());
@@ -306,17 +299,26 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             if self.phase.zero_orders[guard] > 0 || !below && acted.is_none() {
                 continue;
             }
-            if acted.is_some_and(|mode| self.sense(event, mode, guard) == 0.0) {
-                continue;
-            }
-            // A guard that has acted stands on its zero where the state goes on, also exactly, and
-            // whatever its rounding is.
-            let stands =
-                acted.is_some() && unchanged && (guard != act.guard || self.is_near(event, act));
-            if stands || value.abs() <= self.hidden(event, guard) {
+            // A guard that has acted stands on its zero, whatever its rounding is, while nothing
+            // changes its value.
+            let left = acted.map_or(0.0, |mode| self.left(event, act, mode, guard));
+            if (value - left).abs() <= self.hidden(event, guard) {
                 self.phase.forgive(guard);
             }
         }
+    }
+
+    /// The value that is left where a guard has crossed zero in `mode`: 0 if it is not a guard of
+    /// the active mode, or has jumped.
+    fn left(&mut self, event: &Event<S>, act: &Act<S>, mode: S::Mode, guard: usize) -> f64 {
+        let sense = self.sense(event, mode, guard);
+        let left = self.room.value(self.system, (mode, guard), self.clock.s, &event.state);
+        self.statistics.guards += 1;
+        // The guard that has acted stands on its zero only if it was close to it.
+        let size = act.largest.max(act.crossed.slope * event.step.h);
+        let is_near = !act.crossed.jump && left.abs() <= NEAR_ZERO * size;
+        let jumps = guard == act.guard && !is_near;
+        if sense == 0.0 || jumps { 0.0 } else { sense * left }
     }
 
     /// The value that a guard may have by rounding where it is zero at this instant.
