@@ -46,9 +46,14 @@ impl Clock {
         if remains { (h, false) } else { (left, true) }
     }
 
-    /// The rounding of times between here and `end`.
+    /// The rounding of times between here and `end`, which is near.
     pub(crate) fn rounding(&self, end: f64) -> f64 {
         4.0 * f64::EPSILON * self.s.abs().max(end.abs())
+    }
+
+    /// Whether nothing but rounding remains until `end`.
+    pub(crate) fn is_at(&self, end: f64) -> bool {
+        end.is_finite() && self.until(end) <= self.rounding(end)
     }
 
     /// The time that remains until `end`.

@@ -254,8 +254,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
                 return Ok(outcome);
             }
             // Behind an event, no step shows what remains within rounding.
-            let left = self.clock.until(self.end);
-            if left <= 0.0 || event.is_some() && left <= self.clock.rounding(self.end) {
+            if self.clock.until(self.end) <= 0.0 || event.is_some() && self.clock.is_at(self.end) {
                 self.clock.arrive(self.end);
                 check_finite(self.clock.s, self.state.parts())?;
                 return Ok(Outcome::ReachedEnd);
