@@ -300,25 +300,28 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
                 continue;
             }
             // A guard that has acted stands on its zero, whatever its rounding is, while nothing
-            // changes its value.
-            let left = acted.map_or(0.0, |mode| self.left(event, act, mode, guard));
+            // changes its value. That of another mode does not.
+            let left = match acted.map(|mode| self.left(event, act, mode, guard)) {
+                Some(None) => continue,
+                left => left.flatten().unwrap_or(0.0),
+            };
             if (value - left).abs() <= self.hidden(event, guard) {
                 self.phase.forgive(guard);
             }
         }
     }
 
-    /// The value that is left where a guard has crossed zero in `mode`: 0 if it is not a guard of
-    /// the active mode, or has jumped.
-    fn left(&mut self, event: &Event<S>, act: &Act<S>, mode: S::Mode, guard: usize) -> f64 {
+    /// The value that is left where a guard has crossed zero in `mode`, 0 if it has jumped. The
+    /// result is `None` if it is not the guard of the active mode.
+    fn left(&mut self, event: &Event<S>, act: &Act<S>, mode: S::Mode, guard: usize) -> Option<f64> {
         let sense = self.sense(event, mode, guard);
         let left = self.room.value(self.system, (mode, guard), self.clock.s, &event.state);
         self.statistics.guards += 1;
         // The guard that has acted stands on its zero only if it was close to it.
         let size = act.largest.max(act.crossed.slope * event.step.h);
         let is_near = !act.crossed.jump && left.abs() <= NEAR_ZERO * size;
-        let jumps = guard == act.guard && !is_near;
-        if sense == 0.0 || jumps { 0.0 } else { sense * left }
+        let stands = guard != act.guard || is_near;
+        (sense != 0.0).then_some(if stands { sense * left } else { 0.0 })
     }
 
     /// The value that a guard may have by rounding where it is zero at this instant.

@@ -438,7 +438,11 @@ impl Walk<'_> {
             if value != 0 {
                 continue;
             }
-            let acted = acts[begin..].iter().any(|act| act.guard == guard && act.then.is_some());
+            let function = planted.uses[self.mode][guard];
+            let acted = acts[begin..].iter().any(|act| {
+                let same = planted.uses[act.from][guard] == function;
+                act.guard == guard && act.then.is_some() && same
+            });
             let defined = if kinds[guard].is_edge() {
                 !self.leaves(guard, slope) || (acted && zeros[guard])
             } else {
