@@ -36,7 +36,7 @@ pub(crate) mod quick;
 pub(crate) mod status;
 
 pub(crate) use along_step::{dense_output, repeated_step};
-pub(crate) use event::{Crossed, Event, Found, only};
+pub(crate) use event::{Crossed, Event, Found, Note, only};
 pub(crate) use examination::{Examination, values_on};
 pub(crate) use first_guard::all_clearly_away;
 pub(crate) use notices::{Noticed, Notices};

@@ -4,11 +4,12 @@ use crate::dynamic::dense::DynamicDense;
 use crate::dynamic::results::{DynamicEvent, DynamicObserver, DynamicRun};
 use crate::dynamic::system::{DynamicStart, DynamicSystem};
 use crate::error::RunError;
+use crate::events::Note;
 use crate::hybrid::{Grazing, Pole, Preempted, Rest};
 use crate::method::{DenseOf, Method};
 use crate::options::Options;
 use crate::runs::runner::{End, Watcher, run_any};
-use crate::system::{Free, Note};
+use crate::system::Free;
 
 /// Integrates `system` from `start` to `end`, through every switch on the way.
 ///

@@ -75,3 +75,24 @@ pub(crate) enum Found<S: System> {
     /// This guard is not resolved, so that a shorter step is needed.
     TooCoarse(usize),
 }
+
+/// An event that changes nothing, or a switch.
+pub(crate) struct Note<S: System> {
+    pub(crate) s: f64,
+    pub(crate) guard: usize,
+    pub(crate) simultaneous: PerGuard<S, bool>,
+    pub(crate) flatness: f64,
+    /// How the guard, and those that were noted with it, cross zero.
+    pub(crate) crossed: PerGuard<S, Option<Crossed>>,
+    pub(crate) from: S::Mode,
+    pub(crate) to: S::Mode,
+    pub(crate) before: S::State,
+    pub(crate) after: S::State,
+}
+
+impl<S: System> Note<S> {
+    /// Whether the guard jumps over zero.
+    pub(crate) fn jump(&self) -> bool {
+        self.crossed[self.guard].is_some_and(|crossed| crossed.jump)
+    }
+}

@@ -1,12 +1,13 @@
 //! What the examination of a step needs, and the values of its guards.
 
+use crate::events::event::Note;
 use crate::events::notices::Notices;
 use crate::events::phase::Phase;
 use crate::events::quick::{BETWEEN, NODES, between};
 use crate::hybrid::Statistics;
 use crate::lists::List;
 use crate::method::{StepOf, Store, TrialOf};
-use crate::system::{Note, PerGuard, Room, System};
+use crate::system::{PerGuard, Room, System};
 
 /// The data that the examination of a step needs.
 pub(crate) struct Examination<'a, S: System> {

@@ -4,7 +4,7 @@ use smallvec::SmallVec;
 
 use crate::error::RunError;
 use crate::events::along_step::{rounding, scales};
-use crate::events::event::{Crossed, Event, Found, only};
+use crate::events::event::{Crossed, Event, Found, Note, only};
 use crate::events::examination::{Examination, column, confirmed};
 use crate::events::isolate::{Beginning, Bracket, noise};
 use crate::events::phase::{NEAR_ZERO, Phase};
@@ -13,7 +13,7 @@ use crate::events::status::{Crossing, Status};
 use crate::hybrid::{Direction, Statistics};
 use crate::lists::List;
 use crate::method::{Method, StepOf, Store};
-use crate::system::{Note, PerGuard, Room, System};
+use crate::system::{PerGuard, Room, System};
 
 /// A guard is zero at an event if its value there is below this part of its values before.
 pub(crate) const TOGETHER: f64 = 1e-12;
@@ -231,7 +231,7 @@ impl<S: System> Examination<'_, S> {
             }
         }
         if let Some(event) = event {
-            // Places of which errors do not tell the next are of one instant, from one to the other.
+            // Places whose errors do not tell them apart are of one instant, from one to the next.
             let mut reached: SmallVec<[Located; 2]> =
                 search.located.iter().filter(|it| it.guard == event.guard).copied().collect();
             while let Some(one) = reached.pop() {

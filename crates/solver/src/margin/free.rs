@@ -3,6 +3,7 @@
 use std::marker::PhantomData;
 
 use crate::error::RunError;
+use crate::events::Note;
 use crate::hybrid::{Direction, Guard, Outcome};
 use crate::lists::List;
 use crate::margin::name::{Exit, Hint, Margin, Place, Way};
@@ -13,7 +14,7 @@ use crate::method::Method;
 use crate::options::Options;
 use crate::runs::at_switches::AtSwitches;
 use crate::runs::runner::run_any;
-use crate::system::{Note, PerGuard, System};
+use crate::system::{PerGuard, System};
 
 /// If the last phase is shorter than this part of the run, it may be about to vanish. Boundaries
 /// get their names from runs 1e-9 beside them, where a vanishing phase is shorter than this. If the

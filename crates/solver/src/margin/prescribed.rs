@@ -1,6 +1,7 @@
 //! Runs with a prescribed itinerary, which watch a guard in their last phase.
 
 use crate::error::RunError;
+use crate::events::Note;
 use crate::hybrid::{Direction, Guard, Outcome};
 use crate::lists::{List, Shape};
 use crate::margin::name::{Exit, Way};
@@ -10,7 +11,7 @@ use crate::method::{Method, StepOf, TrialOf};
 use crate::options::Options;
 use crate::runs::at_switches::AtSwitches;
 use crate::runs::runner::{End, run_any};
-use crate::system::{Note, PerComponent, PerGuard, System};
+use crate::system::{PerComponent, PerGuard, System};
 use stickslip_number::{Enclosure, Interval};
 
 /// What a run watches in the phase after its last exit.

@@ -1,9 +1,10 @@
 //! A function that is called at every switch.
 
+use crate::events::Note;
 use crate::hybrid::{Grazing, Pole, Preempted, Rest};
 use crate::method::DenseOf;
 use crate::runs::runner::Watcher;
-use crate::system::{Note, System};
+use crate::system::System;
 
 /// Calls a function at every switch. The function says whether the run stops there.
 pub(crate) struct AtSwitches<F> {

@@ -10,7 +10,8 @@ use std::cmp::Ordering;
 
 use crate::error::RunError;
 use crate::events::{
-    Event, Examination, Found, Noticed, Notices, Phase, all_clearly_away, dense_output, values_on,
+    Event, Examination, Found, Note, Noticed, Notices, Phase, all_clearly_away, dense_output,
+    values_on,
 };
 use crate::hybrid::{
     Grazing, HybridSystem, Observer, Outcome, Pole, Preempted, Rest, Run, Start, Statistics,
@@ -25,7 +26,7 @@ use crate::runs::finite::{check_finite, is_finite};
 use crate::runs::rejected::after_rejection;
 use crate::runs::runner::instant::Instant;
 use crate::runs::runner::last_part::last_part;
-use crate::system::{Fixed, Note, PerGuard, Room, System};
+use crate::system::{Fixed, PerGuard, Room, System};
 
 /// Integrates `system` from `start` to `end`, through every switch on the way.
 ///

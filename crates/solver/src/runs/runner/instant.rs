@@ -10,14 +10,14 @@ use crate::error::RunError;
 use crate::events::along_step::{rounding, scales};
 use crate::events::first_guard::TOGETHER;
 use crate::events::phase::NEAR_ZERO;
-use crate::events::{Crossed, Event, only};
+use crate::events::{Crossed, Event, Note, only};
 use crate::hybrid::{Direction, Guard, Outcome, Preempted, Rest};
 use crate::lists::List;
 use crate::method::Store;
 use crate::runs::clock::{Accumulation, Zeno};
 use crate::runs::finite::check_finite;
 use crate::runs::runner::{Runner, Watcher};
-use crate::system::{Note, PerGuard, System};
+use crate::system::{PerGuard, System};
 
 /// A guard has crossed zero in a mode, and has not acted yet.
 #[derive(Clone, Copy, Debug)]
