@@ -88,7 +88,7 @@ pub enum Progress {
     Touched,
     /// A switch has just happened.
     Switched,
-    /// The gap between the spring and its limit has become [`open`](is_open).
+    /// The gap between the spring and its limit has become open.
     Settled,
 }
 
