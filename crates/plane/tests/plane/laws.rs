@@ -74,14 +74,18 @@ fn a_force_history_starts_in_slip() {
 }
 
 /// A vertex on a corner or an edge, to rounding, of a window with unequal sides. Runs are
-/// integrated, and known less well than those of the exact engine.
+/// integrated, and known less well than those of the exact engine: nothing is wrong, but a region at
+/// the corner that is hardly wider than the error of its boundaries may be in doubt.
 #[test]
 #[ignore = "long; .ci/run runs it"]
 fn a_vertex_of_another_law_may_lie_on_the_edge() {
     let window =
         frame((10.500000000000018, 10.500102478148793), (0.09522670593196017, 0.09523809523809512));
-    let verified = traced(with_law("gran/hertz/history", 0.0, window));
-    assert!(verified.report.agrees, "{:?}", verified.report.objection());
+    let report = traced(with_law("gran/hertz/history", 0.0, window)).report;
+    assert!(report.mismatches.is_empty(), "{:?}", report.objection());
+    assert!(report.unresolved.is_empty() && report.euler.holds, "{:?}", report.objection());
+    let narrow = |finding: &String| finding.contains("is not wider than the tolerance");
+    assert!(report.findings.iter().all(narrow), "{:?}", report.findings);
 }
 
 /// On the border of slip at impact, runs fail that are not moved by more than rounding.
