@@ -74,8 +74,8 @@ fn a_force_history_starts_in_slip() {
 }
 
 /// A vertex on a corner or an edge, to rounding, of a window with unequal sides. Runs are
-/// integrated, and known less well than those of the exact engine: nothing is wrong, but a region at
-/// the corner that is hardly wider than the error of its boundaries may be in doubt.
+/// integrated, and known less well than those of the exact engine: nothing is wrong, but a region
+/// at the corner that is hardly wider than the error of its boundaries may be in doubt.
 #[test]
 #[ignore = "long; .ci/run runs it"]
 fn a_vertex_of_another_law_may_lie_on_the_edge() {

@@ -245,9 +245,9 @@ impl<S: System> Examination<'_, S> {
         ends
     }
 
-    /// Where on `step` a guard that crosses zero at `place`, and surely before `theta`, has left the
-    /// noise of its values: at `theta`, if the two are not very close, or behind it. The result is 1
-    /// if that does not happen.
+    /// Where on `step` a guard that crosses zero at `place`, and surely before `theta`, has left
+    /// the noise of its values: at `theta`, if the two are not very close, or behind it. The result
+    /// is 1 if that does not happen.
     pub(crate) fn past_noise<M: Method>(
         &mut self,
         guard: usize,
