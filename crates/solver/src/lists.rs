@@ -64,59 +64,40 @@ impl<T: Copy + Debug, const N: usize> List<T> for [T; N] {
     fn back(&mut self, _: Self) {}
 }
 
-impl<T: Copy + Debug> List<T> for Vec<T> {
-    fn of(n: usize, value: T) -> Self {
-        vec![value; n]
-    }
-    fn made(n: usize, value: impl FnMut(usize) -> T) -> Self {
-        (0..n).map(value).collect()
-    }
-    fn parts(&self) -> &[T] {
-        self
-    }
-    fn parts_mut(&mut self) -> &mut [T] {
-        self
-    }
-    fn set(&mut self, other: &Self) {
-        self.clone_from(other);
-    }
-    fn fit(&mut self, n: usize, value: T) {
-        self.resize(n, value);
-    }
-    fn lend(&mut self, _: T) -> Self {
-        std::mem::take(self)
-    }
-    fn back(&mut self, lent: Self) {
-        *self = lent;
-    }
+/// Makes a type that grows a list, which is lent by moving it.
+macro_rules! growing_list {
+    ($list:ty) => {
+        impl<T: Copy + Debug> List<T> for $list {
+            fn of(n: usize, value: T) -> Self {
+                std::iter::repeat_n(value, n).collect()
+            }
+            fn made(n: usize, value: impl FnMut(usize) -> T) -> Self {
+                (0..n).map(value).collect()
+            }
+            fn parts(&self) -> &[T] {
+                self
+            }
+            fn parts_mut(&mut self) -> &mut [T] {
+                self
+            }
+            fn set(&mut self, other: &Self) {
+                self.clone_from(other);
+            }
+            fn fit(&mut self, n: usize, value: T) {
+                self.resize(n, value);
+            }
+            fn lend(&mut self, _: T) -> Self {
+                std::mem::take(self)
+            }
+            fn back(&mut self, lent: Self) {
+                *self = lent;
+            }
+        }
+    };
 }
 
-impl<T: Copy + Debug> List<T> for SmallVec<[T; 8]> {
-    fn of(n: usize, value: T) -> Self {
-        smallvec::smallvec![value; n]
-    }
-    fn made(n: usize, value: impl FnMut(usize) -> T) -> Self {
-        (0..n).map(value).collect()
-    }
-    fn parts(&self) -> &[T] {
-        self
-    }
-    fn parts_mut(&mut self) -> &mut [T] {
-        self
-    }
-    fn set(&mut self, other: &Self) {
-        self.clone_from(other);
-    }
-    fn fit(&mut self, n: usize, value: T) {
-        self.resize(n, value);
-    }
-    fn lend(&mut self, _: T) -> Self {
-        std::mem::take(self)
-    }
-    fn back(&mut self, lent: Self) {
-        *self = lent;
-    }
-}
+growing_list!(Vec<T>);
+growing_list!(SmallVec<[T; 8]>);
 
 /// The length of lists, known when they are compiled or not.
 pub(crate) trait Shape: Copy + Debug {

@@ -255,8 +255,8 @@ impl<S: System> Examination<'_, S> {
         (place, mut theta): (f64, f64),
         end: f64,
     ) -> f64 {
-        let is_near = |theta: f64| theta - place <= SAME || theta >= 1.0 - SAME;
-        if !is_near(theta) || theta >= 1.0 {
+        let is_near = theta - place <= SAME || theta >= 1.0 - SAME;
+        if !is_near || theta >= 1.0 {
             return theta;
         }
         let (system, mode) = (self.system, self.phase.mode);
@@ -270,23 +270,23 @@ impl<S: System> Examination<'_, S> {
             self.room.value(system, (mode, guard), step.s + theta * step.h, &y)
         };
         let mut reach = SAME;
-        loop {
+        let left = loop {
             let at_end = theta >= 1.0 - SAME;
             let low = if at_end { 1.0 - SAME } else { theta };
             let noise = noise(&mut value, low, low + SAME, [0.0, 1.0 / 3.0, 2.0 / 3.0]);
             let there = if at_end { end } else { value(theta) };
             if there.abs() > noise {
-                break;
+                break theta;
             }
-            theta = if at_end { 1.0 } else { (theta + reach).min(1.0 - SAME) };
             if at_end {
-                break;
+                break 1.0;
             }
+            theta = (theta + reach).min(1.0 - SAME);
             reach *= 2.0;
-        }
+        };
         self.room.give(y);
         self.room.give_dense(dense);
-        theta
+        left
     }
 
     /// The smallest number with the sign that a guard had last, if it is zero where the step ends.
