@@ -5,6 +5,7 @@
 
 mod instant;
 mod last_part;
+mod watcher;
 
 use std::cmp::Ordering;
 
@@ -13,20 +14,20 @@ use crate::events::{
     Event, Examination, Found, Note, Noticed, Notices, Phase, all_clearly_away, dense_output,
     values_on,
 };
-use crate::hybrid::{
-    Grazing, HybridSystem, Observer, Outcome, Pole, Preempted, Rest, Run, Start, Statistics,
-    SwitchEvent,
-};
+use crate::hybrid::{HybridSystem, Observer, Outcome, Run, Start, Statistics};
 use crate::lists::List;
 use crate::method::control::{Controller, first_step_of};
-use crate::method::{DenseOf, Method, State, StepOf, Store, TrialOf};
+use crate::method::{Method, StepOf, Store, TrialOf};
 use crate::options::{Options, StepSize};
 use crate::runs::clock::{Clock, Zeno};
 use crate::runs::finite::{check_finite, is_finite};
 use crate::runs::rejected::after_rejection;
 use crate::runs::runner::instant::Instant;
 use crate::runs::runner::last_part::last_part;
+use crate::runs::runner::watcher::Told;
 use crate::system::{Fixed, PerGuard, Room, System};
+
+pub(crate) use crate::runs::runner::watcher::Watcher;
 
 /// Integrates `system` from `start` to `end`, through every switch on the way.
 ///
@@ -67,83 +68,6 @@ pub(crate) struct End<S: System> {
     pub(crate) state: S::State,
     pub(crate) decided: bool,
     pub(crate) statistics: Statistics,
-}
-
-/// Receives what a run finds.
-pub(crate) trait Watcher<S: System> {
-    const WANTS_SEGMENTS: bool;
-    fn on_switch(&mut self, event: &Note<S>);
-    fn on_grazing(&mut self, grazing: &Grazing<S::Mode>);
-    fn on_pole(&mut self, pole: &Pole<S::Mode>);
-    fn on_preempted(&mut self, preempted: &Preempted<S::Mode>);
-    fn on_rest(&mut self, rest: &Rest<S::Mode>);
-    fn forget(&mut self, switches: usize);
-    fn stops(&self) -> bool;
-    fn on_segment(&mut self, mode: S::Mode, dense: &DenseOf<S::State>);
-    fn on_end(&mut self, mode: S::Mode, s: f64, state: &S::State);
-}
-
-/// An observer of a run of fixed dimension.
-struct Told<'a, O>(&'a mut O);
-
-impl<S, O, const N: usize, const G: usize> Watcher<Fixed<'_, S, N, G>> for Told<'_, O>
-where
-    S: HybridSystem<N, G>,
-    O: Observer<S::Mode, N>,
-{
-    const WANTS_SEGMENTS: bool = O::WANTS_SEGMENTS;
-    #[inline(always)]
-    fn on_switch(&mut self, note: &Note<Fixed<'_, S, N, G>>) {
-        self.0.on_switch(&SwitchEvent {
-            s: note.s,
-            guard: note.guard,
-            simultaneous: mask(&note.simultaneous),
-            flatness: note.flatness,
-            jump: note.jump(),
-            from: note.from,
-            to: note.to,
-            before: note.before,
-            after: note.after,
-        });
-    }
-    #[inline(always)]
-    fn on_grazing(&mut self, grazing: &Grazing<S::Mode>) {
-        self.0.on_grazing(grazing);
-    }
-    #[inline(always)]
-    fn on_pole(&mut self, pole: &Pole<S::Mode>) {
-        self.0.on_pole(pole);
-    }
-    #[inline(always)]
-    fn on_preempted(&mut self, preempted: &Preempted<S::Mode>) {
-        self.0.on_preempted(preempted);
-    }
-    #[inline(always)]
-    fn on_rest(&mut self, rest: &Rest<S::Mode>) {
-        self.0.on_rest(rest);
-    }
-    #[inline(always)]
-    fn forget(&mut self, switches: usize) {
-        self.0.forget(switches);
-    }
-    #[inline(always)]
-    fn stops(&self) -> bool {
-        self.0.stops()
-    }
-    #[inline(always)]
-    fn on_segment(&mut self, mode: S::Mode, dense: &DenseOf<State<N>>) {
-        self.0.on_segment(mode, dense);
-    }
-    #[inline(always)]
-    fn on_end(&mut self, mode: S::Mode, s: f64, state: &State<N>) {
-        self.0.on_end(mode, s, state);
-    }
-}
-
-/// The guards of a set among the first 64, one bit each.
-fn mask(guards: &[bool]) -> u64 {
-    let first = guards.iter().take(64).enumerate();
-    first.fold(0, |bits, (guard, &one)| bits | u64::from(one) << guard)
 }
 
 #[inline]
