@@ -13,6 +13,10 @@ const REACH: f64 = 1e-3;
 /// The roundings within which a guard is zero where the run must not go on without it. They add up
 /// from event to event.
 const ARRIVES: f64 = 16.0;
+/// The roundings of time that may hide what a guard does.
+const HIDES: f64 = 65536.0;
+/// A guard that acts is not asked again within so many roundings of time.
+const UNSEEN: f64 = 256.0;
 /// An event this close to the end of its step is the one at the end.
 pub(crate) const SAME: f64 = 1e-6;
 
@@ -22,6 +26,11 @@ impl<S: System> Examination<'_, S> {
     pub(crate) fn arrive(&mut self, step: &StepOf<S::State>, event: &mut Option<Event<S>>) {
         for guard in 0..self.phase.count() {
             let s = step.s + step.h;
+            // It has acted within rounding of this place.
+            let here = self.age + step.h <= UNSEEN * f64::EPSILON * s.abs();
+            if here && self.phase.forgiven[guard] {
+                continue;
+            }
             if self.notes_of(guard).any(|note| note.s >= s - SAME * step.h) {
                 continue;
             }
@@ -103,6 +112,7 @@ impl<S: System> Examination<'_, S> {
         self.statistics.field += 1;
         // On a step that was cut very short, rounding hides what the guard does.
         let mut reach = REACH * elapsed.max(f64::EPSILON * self.usual);
+        let longest = (REACH * self.usual).max(HIDES * f64::EPSILON * s.abs());
         let (behind, ahead, shows) = loop {
             S::State::shifted(&mut moved, y, &slope, -reach);
             let behind = room.value(system, (mode, guard), s - reach, &moved);
@@ -110,7 +120,7 @@ impl<S: System> Examination<'_, S> {
             let ahead = room.value(system, (mode, guard), s + reach, &moved);
             self.statistics.guards += 2;
             let shows = behind.abs().min(ahead.abs()) > 4.0 * roundings * hidden;
-            if shows || 16.0 * reach > REACH * self.usual {
+            if shows || 16.0 * reach > longest {
                 break (behind, ahead, shows);
             }
             reach *= 16.0;

@@ -379,8 +379,16 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         if self.phase.guards[guard].direction() != Direction::Below {
             return false;
         }
-        let crossed = self.instant.pending[guard].is_some_and(|p| p.mode == self.phase.mode);
-        value < 0.0 && self.phase.zero_orders[guard] == 0
-            || crossed && value.abs() <= self.hidden(event, guard)
+        if value < 0.0 && self.phase.zero_orders[guard] == 0 {
+            return true;
+        }
+        // It has crossed zero where it is now, whatever its rounding is.
+        let mode = self.phase.mode;
+        self.instant.pending[guard].is_some_and(|pending| pending.mode == mode) && {
+            let at = (mode, guard);
+            let there = self.room.value(self.system, at, self.clock.s, &event.state);
+            self.statistics.guards += 1;
+            (value - there).abs() <= self.hidden(event, guard)
+        }
     }
 }

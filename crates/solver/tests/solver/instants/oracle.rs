@@ -327,7 +327,8 @@ impl Walk<'_> {
                     return Err(Stop::Here);
                 }
                 if value < 0 || (value == 0 && slope < 0) {
-                    if done.contains(&guard) {
+                    // What a reset puts exactly on the limit acts now or a rounding later.
+                    if done.contains(&guard) || value == 0 && !conditions.contains(&guard) {
                         return Err(Stop::Here);
                     }
                     candidates.push(guard);
