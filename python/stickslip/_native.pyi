@@ -93,9 +93,9 @@ _Calls: TypeAlias = tuple[Callable[[int, int], object] | None, Callable[[], obje
 class HybridFamily:
     def __new__(
         cls,
-        modes: tuple[list[Any], list[list[int]]],
+        system: tuple[list[Any], list[Any], tuple[Any, Any]],
         args: tuple[Any, ...],
-        start: tuple[tuple[int, float, _Floats], Any],
+        start: tuple[tuple[int, float, _Floats, list[int]], Any],
         end: float,
         settings: dict[str, Any],
         description: tuple[str, list[str], list[str]],
@@ -247,9 +247,9 @@ def contact_laws(
 def reproduction_parts() -> list[str]: ...
 def reproduce(part: int, cells: int, threads: int) -> dict[str, Any]: ...
 def run_hybrid(
-    modes: list[Any],
+    system: tuple[list[Any], list[Any], tuple[Any, Any]],
     args: tuple[Any, ...],
-    start: tuple[int, float, _Floats],
+    start: tuple[int, float, _Floats, list[int]],
     end: float,
     settings: dict[str, Any],
     output: tuple[_Floats | None, bool],

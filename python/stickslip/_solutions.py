@@ -26,10 +26,10 @@ class DenseOutput:
     At an event it is the state after it. Outside the run it is NaN.
     """
 
-    def __init__(self, found: dict[str, Any], names: list[str], start: float) -> None:
+    def __init__(self, found: dict[str, Any], names: NDArray[np.str_], start: float) -> None:
         self._segments = (found["starts"], found["sizes"], found["coefficients"])
         self._modes = np.append(found["segment_modes"].astype(np.intp), found["end_mode"])
-        self._names = np.array(names)
+        self._names = names
         self._end = (found["end_time"], found["end_state"])
         #: The first and the last time of the run.
         self.t_min, self.t_max = sorted((start, found["end_time"]))
@@ -66,6 +66,11 @@ class Solution:
     y: Floats
     #: The mode at each time, shape (k,).
     mode: NDArray[np.str_]
+    #: The variables at each time by their names, shape (k,), or (k, ...) for arrays.
+    variables: dict[str, NDArray[np.float64]]
+    #: The sides of surfaces at each time by their names, shape (k,): 1 and -1, the signs, or 0
+    #: where the state slides.
+    sides: dict[str, NDArray[np.int8]]
     #: The state at any time, if it was asked for.
     sol: DenseOutput | None
     #: The times of the events of each name of `event_names`.
@@ -79,7 +84,8 @@ class Solution:
     #: `after` (shape (n,)), flatness, jump and simultaneous. An error of the guard, relative to its
     #: largest value, moves the event by the error times `flatness`. `jump`: the guard jumps over
     #: zero. `simultaneous`: guards that vanish there too, a tuple of names; if nothing changes,
-    #: they have fired with this one.
+    #: they have fired with this one. `variables`: those after it. `sides_from` and `sides_to`, by
+    #: names of surfaces, and `unique`: whether the solution could go on in this way only.
     events: NDArray[np.void]
     #: Where a guard came so close to zero that a step had to decide: time, guard, mode and the
     #: guard's value there, the margin.

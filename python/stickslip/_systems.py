@@ -1,7 +1,7 @@
 """Systems of modes, with what ends them and what follows."""
 
 import operator
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias, get_args
 
@@ -9,9 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip._compiled import Compiled, Function, _number
+from stickslip._names import Named, check_sets
 
 Floats: TypeAlias = NDArray[np.float64]
 Direction: TypeAlias = Literal["below", "falling", "rising", "either"]
+#: Variables that an event sets: a mapping of names to numbers, or a function that returns one.
+Sets: TypeAlias = Mapping[str, Any] | Callable[..., Mapping[str, Any]]
 
 
 @dataclass(frozen=True)
@@ -30,6 +33,7 @@ class Guard:
     condition: Function | None = None
     sees_jumps: bool = False
     rest: "str | Mode | Callable[..., Any] | None" = None
+    sets: Sets | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str):
@@ -60,18 +64,21 @@ class Guard:
         for name, function in functions.items():
             if function is not None:
                 _check_function(function, f"{name} of {about}")
+        if self.sets is not None:
+            check_sets(self.sets, about)
         if isinstance(self.rest, Compiled):
             raise TypeError(f"{about}: rest is compiled; expected a mode or a callable")
         if self.direction == "below" and not self.changes and self.terminal != 1:
             raise ValueError(
                 f"{about} would fire for ever, because it stays below zero: expected to, reset, "
-                'transition or terminal=True, or direction = "falling"'
+                'sets, transition or terminal=True, or direction = "falling"'
             )
 
     @property
     def changes(self) -> bool:
         """Whether anything follows when it fires."""
-        return not (self.to is None and self.reset is None and self.transition is None)
+        followers = (self.to, self.reset, self.transition, self.sets)
+        return any(one is not None for one in followers)
 
 
 @dataclass(frozen=True)
@@ -119,6 +126,7 @@ class Mode:
         condition: Function | None = None,
         sees_jumps: bool = False,
         rest: "str | Mode | Callable[..., Any] | None" = None,
+        sets: Sets | None = None,
     ) -> "Mode":
         """Adds a guard, and returns the mode.
 
@@ -128,13 +136,16 @@ class Mode:
 
         to: the mode that follows; without it the mode stays. reset(t, y): the state that follows;
         without it the state stays. transition(t, y): both in one, (mode, state), or one of both.
-        These functions may be called more than once for an event.
+        sets: variables of the system and their values after, as a mapping or as a function sets(t,
+        y, variables) that returns one. These functions see what was before the event, and may be
+        called more than once for it.
 
         terminal: True ends the run, and a number k ends it when the guard fires for the k-th time.
         from_zero: the order of the zero from which the guard starts whenever the mode begins; only
         needed if rounding may hide that it is 0 there, or if it is a double zero. smooth: the guard
-        varies as slowly as the state, so that fewer values are enough. condition(t, y): a number that is positive where the transition takes one branch, and
-        negative where it takes another one; only a `HybridFamily` uses it.
+        varies as slowly as the state, so that fewer values are enough. condition(t, y): a number
+        that is positive where the transition takes one branch, and negative where it takes another
+        one; only a `HybridFamily` uses it.
 
         priority: of guards that fire at one instant all act, each once, those of higher priority
         first, and else in the order in which they were added. sees_jumps: it fires, too, where a
@@ -155,6 +166,7 @@ class Mode:
             condition,
             sees_jumps,
             rest,
+            sets,
         )
         return self._add(function, f"guard {name!r} of mode {self.name!r}", (guard,))
 
@@ -174,6 +186,7 @@ class Mode:
         transition: Callable[..., Any] | None = None,
         terminal: bool | int = False,
         priority: int = 0,
+        sets: Sets | None = None,
     ) -> "Mode":
         """Adds events at times, and returns the mode. Steps end there exactly, without a search.
 
@@ -188,7 +201,7 @@ class Mode:
         0.503214724408
         """
         listed = np.atleast_1d(np.asarray(times, dtype=np.float64)).tolist()
-        return self._clock(name, listed, to, reset, transition, terminal, priority)
+        return self._clock(name, listed, to, reset, transition, terminal, priority, sets)
 
     def every(
         self,
@@ -201,12 +214,13 @@ class Mode:
         transition: Callable[..., Any] | None = None,
         terminal: bool | int = False,
         priority: int = 0,
+        sets: Sets | None = None,
     ) -> "Mode":
         """Adds events at the times phase + k period, as `at` does, and returns the mode."""
         times = (_number(period, "period"), _number(phase, "phase"))
         if not (0.0 < times[0] < np.inf and np.isfinite(times[1])):
             raise ValueError(f"period, phase = {times}; expected a period above 0, both finite")
-        return self._clock(name, times, to, reset, transition, terminal, priority)
+        return self._clock(name, times, to, reset, transition, terminal, priority, sets)
 
     def _clock(
         self,
@@ -217,9 +231,18 @@ class Mode:
         transition: Callable[..., Any] | None,
         terminal: bool | int,
         priority: int,
+        sets: Sets | None,
     ) -> "Mode":
         guard = _Clock(
-            name, "falling", to, reset, transition, terminal, priority=priority, times=times
+            name,
+            "falling",
+            to,
+            reset,
+            transition,
+            terminal,
+            priority=priority,
+            sets=sets,
+            times=times,
         )
         return self._add(None, f"clock {name!r} of mode {self.name!r}", (guard,))
 
@@ -248,10 +271,46 @@ class HybridSystem:
     >>> found = solve(ball, (0.0, 2.5), [4.905, 0.0])
     >>> found.t_events[0].round(12)
     array([1., 2.])
+
+    variables: numbers or arrays that only events change (`sets` of a guard), with their values at
+    the start. All functions get them after time and state, as a named tuple.
+
+    >>> heater = HybridSystem(variables={"on": 1.0})
+    >>> room = heater.mode("room", lambda t, y, now: 3.0 * now.on - y)
+    >>> room.guard("warm", lambda t, y, now: 2.0 - y, direction="falling", sets={"on": 0.0})
+    Mode('room', guards: 'warm')
+    >>> found = solve(heater, (0.0, 2.0), [0.0])
+    >>> float(found.t_events[0][0].round(12)), found.variables["on"][-1]
+    (1.098612288668, np.float64(0.0))
+
+    sliding: up to 4 surfaces, each a function h(t, y) whose zero it is. Right-hand sides get the
+    signs of these functions, each +1 or -1, as a named tuple after time, state and variables. The
+    solution crosses a surface, or slides along it where the fields on both sides lead to it
+    (Filippov). With several surfaces a right-hand side is affine in the signs.
+
+    >>> belt = HybridSystem(sliding={"belt": lambda t, y: y[1] - 0.5})
+    >>> mass = belt.mode("mass", lambda t, y, sign: [y[1], -y[0] - 0.8 * sign.belt])
+    >>> found = solve(belt, (0.0, 3.0), [-0.3, 0.5])
+    >>> found.t_events[0].round(12), found.sides["belt"][[0, -1]]
+    (array([2.2]), array([ 0, -1], dtype=int8))
+
+    For a compiled function, the variables and the signs follow the state in `y`.
     """
 
-    def __init__(self) -> None:
+    def __init__(
+        self,
+        *,
+        variables: Mapping[str, ArrayLike] | None = None,
+        sliding: Mapping[str, Function] | None = None,
+    ) -> None:
         self._modes: dict[str, Mode] = {}
+        self._variables = Named("variables", variables or {})
+        self._sliding = dict(sliding or {})
+        self._signs = Named("signs", dict.fromkeys(self._sliding, 0.0))
+        if len(self._sliding) > 4:
+            raise ValueError(f"sliding has {len(self._sliding)} surfaces; expected 4 at most")
+        for name, surface in self._sliding.items():
+            _check_function(surface, f"surface {name!r}")
 
     @property
     def modes(self) -> tuple[Mode, ...]:

@@ -95,8 +95,10 @@ class Followed:
 class HybridFamily:
     """A `HybridSystem` that depends on two parameters x and y.
 
-    system: its functions get the parameters after time and state: f(t, y, p, q, *args). A compiled
-    function gets them as its first two parameters, before those that `Compiled` was given. The
+    system: its functions get the parameters after time and state (and variables and signs, if it
+    has such): f(t, y, p, q, *args). A surface of it counts as two guards: its name where it is
+    reached, and where it is left upwards, and its name with a minus where it is left downwards. A
+    compiled function gets them as its first two parameters, before those that `Compiled` was given. The
     functions must be functions of their arguments alone, smooth a little beyond the guards' zeros
     and a hundredth of the window beyond its edges.
 
@@ -151,12 +153,12 @@ class HybridFamily:
         table.apart, table.conditions = False, True
         if np.isinf(end) and not table.may_end:
             raise ValueError("t_span is infinite, and no guard is terminal")
-        first: tuple[None, Any, bool] = (None, None, False)
+        first: tuple[None, Any, bool, None] = (None, None, False, None)
         if start is not None:
             _check_function(start, "start")
             _check_parameters(start, "start")
             callee = start if isinstance(start, Compiled) else table.transition(start, "start")
-            first = (None, ("start", _callee(callee)), not isinstance(start, Compiled))
+            first = (None, ("start", _callee(callee)), not isinstance(start, Compiled), None)
         for one in system.modes:
             _check_parameters(one.right_hand_side, f"the right-hand side of mode {one.name!r}")
             for source in one._sources:
@@ -180,12 +182,14 @@ class HybridFamily:
         #: The names of the two parameters.
         self.axes = (_text(axes[0], "axes[0]"), _text(axes[1], "axes[1]"))
         places, names = _places(system)
+        # A surface has two guards: where it is reached or left upwards, and where downwards.
+        names = [part for name in table.surfaces for part in (name, f"{name}-")] + names
         #: The names of the guards, in the order in which files count them.
         self.guards = tuple(names)
         self._native = _native.HybridFamily(
-            (table.modes(), places),
+            table.system(places),
             table.args,
-            ((table.index_of(mode), begin, state), first),
+            ((table.index_of(mode), begin, state, []), first),
             end,
             settings,
             (self.name, list(self.axes), names),
@@ -249,13 +253,15 @@ class HybridFamily:
         if found is None:
             return None
         sides = [_label(one, self.guards) for one in found["sides"]]
+        points = found["points"].reshape(-1, 2)
+        values = np.array(found["values"], dtype=np.float64).reshape(len(functions), len(points))
         return Followed(
             margin=_margin(found["margin"], self.guards),
             sides=(sides[0], sides[1]),
-            points=found["points"].reshape(-1, 2),
+            points=points,
             tangents=found["tangents"].reshape(-1, 2),
             ends=found["ends"],
-            values=np.array(found["values"], dtype=np.float64).reshape(len(functions), -1),
+            values=values,
             zeros=tuple(MonitorZero(*zero) for zero in found["zeros"]),
         )
 

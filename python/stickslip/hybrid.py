@@ -5,7 +5,7 @@ switch. A plain function with events, as for SciPy's `solve_ivp`, needs no syste
 """
 
 import operator
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from itertools import count
 from typing import Any, TypeAlias
 
@@ -39,6 +39,7 @@ def solve(
     max_switches: int = 10_000_000,
     guard_scale: float | None = None,
     args: tuple[Any, ...] = (),
+    sides: Mapping[str, int] | None = None,
 ) -> Solution:
     """Runs a system from t_span[0] to t_span[1], through every switch.
 
@@ -58,7 +59,8 @@ def solve(
 
     guard_scale: the shortest time on which guards and events change, if they change faster than the
     state. max_switches: a run that has so many events stops. args: further arguments of all Python
-    functions, after t and y.
+    functions, after t and y (and after variables and signs, if the system has such). sides: the
+    sides of surfaces, 1, -1 or 0, on which a run starts where it could go on in several ways.
 
     Functions get a state of their own, which they may keep and change. Their exceptions stop the
     run and come out as they are. TypeError and ValueError name the function that returned something
@@ -87,8 +89,9 @@ def solve(
         raise ValueError("t_span is infinite, and no guard or event is terminal")
     if end < start:
         table.refuse_changes()
+    begin = (first, start, state, table.sides(sides or {}))
     found = _native.run_hybrid(
-        table.modes(), table.args, (first, start, state), end, settings, (times, bool(dense_output))
+        table.system(), table.args, begin, end, settings, (times, bool(dense_output))
     )
     return table.solution(found, state.size, start, bool(dense_output))
 
@@ -105,21 +108,25 @@ class _Table:
         self.events = [_event(event, name) for event, name in _named(events)]
         self.plain = not isinstance(system, HybridSystem)
         if isinstance(system, HybridSystem):
+            owner = system
             self.system_modes = system.modes
             if not self.system_modes:
                 raise ValueError("the system has no modes")
         else:
             _check_function(system, "the right-hand side")
             self.system_modes = (Mode("", system),)
+            owner = HybridSystem()
+        self.variables, self.signs, self.surfaces = owner._variables, owner._signs, owner._sliding
         self.names = [mode.name for mode in self.system_modes]
         # Guards are counted by their place. If one ends the run when it fires again, all guards of
         # all modes have places of their own.
         guards = [guard for mode in self.system_modes for guard in mode.guard_list]
         self.apart = len(self.names) > 1 and any(int(guard.terminal) > 1 for guard in guards)
-        self.event_names = [event.guards[0].name for event in self.events]
+        self.event_names = [event.guards[0].name for event in self.events] + [*self.surfaces]
         for guard in guards:
-            if guard.name in self.event_names[: len(self.events)]:
-                raise ValueError(f"a guard and an event are called {guard.name!r}")
+            if guard.name in self.event_names[: len(self.events) + len(self.surfaces)]:
+                what = "a surface" if guard.name in self.surfaces else "an event"
+                raise ValueError(f"a guard and {what} are called {guard.name!r}")
             if guard.name not in self.event_names:
                 self.event_names.append(guard.name)
         #: The name of each guard of each mode, by its place.
@@ -154,36 +161,56 @@ class _Table:
                         "right-hand sides have the other sign"
                     )
 
-    def modes(self) -> list[Any]:
+    def sides(self, given: Mapping[str, int]) -> list[int]:
+        """The sides on which a run starts where it could go on in several ways."""
+        if not given:
+            return []
+        if set(given) != set(self.surfaces) or not set(given.values()) <= {-1, 0, 1}:
+            raise ValueError(f"sides = {given!r}; expected -1, 0 or 1 for each of {self.signs.names}")
+        return [given[name] for name in self.surfaces]
+
+    def system(self, places: list[list[int]] | None = None) -> Any:
+        """The system for the native module. Of a family, the guards of each mode have `places`."""
+        surfaces = [
+            (f"surface {name!r}", _callee(surface)) for name, surface in self.surfaces.items()
+        ]
+        variables = (self.variables.named, self.variables.flat.tolist()) if self.variables else None
+        signs = self.signs.named if self.signs else None
+        return self.modes(places), surfaces, (variables, signs)
+
+    def modes(self, places: list[list[int]] | None) -> list[Any]:
         """The modes for the native module."""
         offset = 0
         self.places.clear()
         rows = []
-        for mode in self.system_modes:
-            sources = [*self.events]
-            skipped = offset if self.apart else 0
-            guards: list[Any] = []
+        width = 1 + max((place for row in places or [] for place in row), default=-1)
+        for number, mode in enumerate(self.system_modes):
+            own = len(mode.guard_list)
+            if places is not None:
+                numbers = places[number]
+            else:
+                first = len(self.events) + (offset if self.apart else 0)
+                numbers = [*range(len(self.events)), *range(first, first + own)]
+            offset += own
+            count = max(width, 1 + max(numbers, default=-1))
+            off = ("", "off", 0, 0, 0, False, (None, None, False, None), None, False, None, None)
+            guards: list[Any] = [off] * count
+            names = [""] * count
             native_sources: list[Any] = []
-            names: list[str] = []
-            for number, source in enumerate([*sources, *mode._sources]):
-                if number == len(self.events):
-                    change = (None, None, False)
-                    off = ("", "off", 0, 0, 0, False, change, None, False, None, None)
-                    guards += [off] * skipped
-                    names += [""] * skipped
+            rest = iter(numbers)
+            for source in [*self.events, *mode._sources]:
+                these = [next(rest) for _ in source.guards]
                 if source.function is not None:
-                    native = (source.label, _callee(source.function))
-                    native_sources.append((native, len(guards), len(source.guards)))
-                guards += [self.guard(guard, mode, source) for guard in source.guards]
-                names += [guard.name for guard in source.guards]
-            offset += len(mode.guard_list)
+                    native_sources.append(((source.label, _callee(source.function)), these))
+                for place, guard in zip(these, source.guards, strict=True):
+                    guards[place], names[place] = self.guard(guard, mode, source), guard.name
             label = (
                 "the right-hand side"
                 if self.plain
                 else f"the right-hand side of mode {mode.name!r}"
             )
             rows.append(((label, _callee(mode.right_hand_side)), guards, native_sources))
-            self.places.append(names)
+            self.places.append([name for name in self.surfaces for _ in range(2)] + names)
         return rows
 
     def guard(self, guard: Guard, mode: Mode, source: _Source) -> Any:
@@ -191,12 +218,18 @@ class _Table:
         about = f"guard {guard.name!r} of mode {mode.name!r}"
         label = source.label if source in self.events else about
         to = self.target(guard.to, about)
-        change: tuple[int | None, Any, bool] = (to, None, False)
+        after: tuple[int | None, Any, bool] = (to, None, False)
         if guard.reset is not None:
-            change = (to, (f"the reset of {about}", _callee(guard.reset)), False)
+            after = (to, (f"the reset of {about}", _callee(guard.reset)), False)
         elif guard.transition is not None:
             what = f"the transition of {about}"
-            change = (None, (what, self.transition(guard.transition, what)), True)
+            after = (None, (what, self.transition(guard.transition, what)), True)
+        sets: Any = None
+        if guard.sets is not None:
+            if not self.variables:
+                raise ValueError(f"{about} sets variables, and the system has none")
+            what = f"sets of {about}"
+            sets = (what, self.variables.setter(guard.sets, what))
         condition: Any = None
         if self.conditions and guard.condition is not None:
             condition = (f"the condition of {about}", _callee(guard.condition))
@@ -207,7 +240,7 @@ class _Table:
             int(guard.terminal),
             operator.index(guard.priority),
             guard.smooth,
-            change,
+            (*after, sets),
             condition,
             guard.sees_jumps,
             self.rest(guard, about),
@@ -226,9 +259,9 @@ class _Table:
         if guard.rest is None:
             return None
         if isinstance(guard.rest, str | Mode):
-            return (self.target(guard.rest, about), None, False)
+            return (self.target(guard.rest, about), None, False, None)
         what = f"the rest of {about}"
-        return (None, (what, self.transition(guard.rest, what)), True)
+        return (None, (what, self.transition(guard.rest, what)), True, None)
 
     def transition(self, transition: Callable[..., Any], what: str) -> Callable[..., Any]:
         """A transition that returns the index of the mode or None, and the state or None."""
@@ -259,25 +292,33 @@ class _Table:
         self, found: dict[str, Any], dimension: int, start: float, dense: bool
     ) -> Solution:
         """The result that Python sees."""
-        names = np.array(self.names)
+        # The native module counts modes with their variables and sides.
+        names = np.array(self.names)[found["seen_modes"]]
+        guards = [self.places[mode] for mode in found["seen_modes"]]
         text = f"U{max(map(len, [*self.names, *self.event_names, ' ']))}"
         place = [("time", "f8"), ("guard", text), ("mode", text)]
-        touches = [(t, self.places[mode][g], names[mode], m) for t, mode, g, m in found["touches"]]
+        touches = [(t, guards[mode][g], names[mode], m) for t, mode, g, m in found["touches"]]
         poles, preempted = (
-            [(t, self.places[mode][guard], names[mode]) for t, mode, guard in found[kind]]
+            [(t, guards[mode][guard], names[mode]) for t, mode, guard in found[kind]]
             for kind in ("poles", "preempted")
         )
         rests = [
-            (t, error, self.places[left][guard], names[left], names[to])
+            (t, error, guards[left][guard], names[left], names[to])
             for t, error, guard, left, to in found["rests"]
         ]
-        events = self.event_array(found, dimension, text)
-        rows = self.rows(events, found["status"] == 1)
+        seen = len(names)
+        variables = self.variables.columns(found["seen_variables"].reshape(seen, -1))
+        sides = self.signs.columns(found["seen_sides"].reshape(seen, -1))
+        events = self.event_array(found, dimension, text, (names, guards))
+        modes = (found["event_from"], found["event_to"])
+        rows = self.rows(events, modes, found["status"] == 1)
         return Solution(
             t=found["t"],
             y=found["y"].reshape(found["t"].size, dimension).T,
             mode=names[found["modes"]],
-            sol=DenseOutput(found, self.names, start) if dense else None,
+            variables={name: values[found["modes"]] for name, values in variables.items()},
+            sides={name: values[found["modes"]] for name, values in sides.items()},
+            sol=DenseOutput(found, names, start) if dense else None,
             t_events=[events["time"][one] for one in rows],
             y_events=[events["before"][one] for one in rows],
             event_names=self.event_names,
@@ -297,36 +338,61 @@ class _Table:
             statistics=found["statistics"],
         )
 
-    def event_array(self, found: dict[str, Any], dimension: int, text: str) -> NDArray[Any]:
-        """Everything that fired, in order."""
+    def event_array(
+        self,
+        found: dict[str, Any],
+        dimension: int,
+        text: str,
+        seen: tuple[NDArray[np.str_], list[list[str]]],
+    ) -> NDArray[Any]:
+        """Everything that fired, in order. `seen` are names and guards by the numbers of modes."""
         state = ("f8", (dimension,))
-        dtype = [("time", "f8"), ("guard", text), ("from", text), ("to", text)]
-        dtype += [("before", *state), ("after", *state)]  # type: ignore[list-item]
+        dtype: list[Any] = [("time", "f8"), ("guard", text), ("from", text), ("to", text)]
+        dtype += [("before", *state), ("after", *state)]
         dtype += [("flatness", "f8"), ("jump", "?"), ("simultaneous", "O")]
+        if self.variables:
+            shapes = self.variables.shapes.items()
+            dtype += [("variables", [(name, "f8", shape) for name, shape in shapes])]
+        if self.signs:
+            sides = [(name, "i1") for name in self.signs.names]
+            dtype += [("sides_from", sides), ("sides_to", sides), ("unique", "?")]
         size = found["event_times"].size
         events: NDArray[Any] = np.empty(size, dtype=dtype)
-        names, modes = np.array(self.names), found["event_from"]
+        names, guards = seen
+        modes, to = found["event_from"], found["event_to"]
         places = list(zip(modes.tolist(), found["event_guards"].tolist(), strict=True))
         events["time"] = found["event_times"]
-        events["guard"] = [self.places[mode][guard] for mode, guard in places]
+        events["guard"] = [guards[mode][guard] for mode, guard in places]
         events["from"] = names[modes]
-        events["to"] = names[found["event_to"]]
+        events["to"] = names[to]
         events["before"] = found["event_before"].reshape(size, dimension)
         events["after"] = found["event_after"].reshape(size, dimension)
         events["flatness"] = found["event_flatness"]
         events["jump"] = found["event_jump"]
+        rows = found["seen_variables"].reshape(len(names), -1)
+        for name, values in self.variables.columns(rows).items():
+            events["variables"][name] = values[to]
+        rows = found["seen_sides"].reshape(len(names), -1)
+        for name, signs in self.signs.columns(rows).items():
+            events["sides_from"][name] = signs[modes]
+            events["sides_to"][name] = signs[to]
+        if self.signs:
+            events["unique"] = found["seen_unique"][to]
         together = events["simultaneous"]
         for row, others in enumerate(found["event_simultaneous"]):
             mode = places[row][0]
-            together[row] = tuple(self.places[mode][guard] for guard in others) if others else ()
+            together[row] = tuple(guards[mode][guard] for guard in others) if others else ()
         return events
 
-    def rows(self, events: NDArray[Any], ended: bool) -> list[NDArray[np.intp]]:
-        """The rows of `events` in which each name of `event_names` fired."""
+    def rows(
+        self, events: NDArray[Any], modes: tuple[NDArray[Any], NDArray[Any]], ended: bool
+    ) -> list[NDArray[np.intp]]:
+        """The rows of `events`, which lead from `modes` to others, in which each name of
+        `event_names` fired."""
         rows = [np.flatnonzero(events["guard"] == name) for name in self.event_names]
         for row in [row for row, others in enumerate(events["simultaneous"]) if others]:
             one = events[row]
-            same = one["from"] == one["to"] and np.array_equal(one["before"], one["after"])
+            same = modes[0][row] == modes[1][row] and np.array_equal(one["before"], one["after"])
             if same and not (ended and row == events.size - 1):
                 for name in one["simultaneous"]:
                     index = self.event_names.index(name)

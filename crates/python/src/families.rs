@@ -1,6 +1,6 @@
 //! Families: systems of one's own that depend on two parameters.
 //!
-//! In reading order: `blueprint` (what Python passes), `member` (one system of the family),
+//! In reading order: `blueprint` (what Python passes, and the systems of the family),
 //! `runner` (what the tracer sees), `survey` (threads, progress, Ctrl-C), `atlas` (what is found),
 //! `family` (what Python calls), `stack` (a third parameter), `failure` (why nothing is found).
 
@@ -8,7 +8,6 @@ mod atlas;
 mod blueprint;
 mod failure;
 mod family;
-mod member;
 mod runner;
 mod stack;
 mod survey;

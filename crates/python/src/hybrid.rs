@@ -1,7 +1,7 @@
 //! Systems of one's own: modes, guards and transitions as functions of Python or of C.
 //!
 //! In reading order: `arguments` (what Python passes), `modes` (what becomes of it), `system` (what
-//! the solver sees), `function` (a call), `numbers` (what comes back) and `trouble` (what goes
+//! the solver sees) and `regimes` (what it takes for modes), `function` (a call), `numbers` (what comes back) and `trouble` (what goes
 //! wrong), `record` (what a run finds), `segments` (dense output that is kept), `ending` (how a run
 //! ended).
 
@@ -11,6 +11,7 @@ pub mod function;
 pub mod modes;
 mod numbers;
 mod record;
+mod regimes;
 mod segments;
 pub mod system;
 pub mod trouble;
@@ -21,19 +22,23 @@ use std::sync::Arc;
 use pyo3::exceptions::PyRecursionError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
+use stickslip_solver::sliding::{Refusal, SlidingMode};
 use stickslip_solver::{
     Dop853, Dopri5, DynamicObserver, DynamicRun, DynamicStart, EmbeddedPair, Options, Outcome,
     RunError, Statistics, run_dynamic_backwards, run_dynamic_with,
 };
 
 use crate::failure::bad_input;
-use arguments::{ModeArguments, Output, Settings, Start};
+use arguments::{Output, Settings, Start, StartArguments, SystemArguments};
 use ending::Ending;
 use function::Caller;
-use modes::Mode;
+use modes::Parts;
 use record::Record;
 pub use segments::evaluate_dense;
-use system::System;
+use system::{Sliding, System};
+
+/// What the solver takes for a mode: a regime, and the sides of surfaces.
+type Regime = SlidingMode<usize>;
 
 /// Runs inside each other, at most: their stack is that of the thread, which may be small.
 const DEEPEST: usize = 16;
@@ -63,24 +68,24 @@ impl Drop for Level {
     }
 }
 
-/// Runs the system of `modes` from `start` to `end`. Returns what the run found, as columns.
+/// Runs a system from `start` to `end`. Returns what the run found, as columns.
 ///
 /// The interpreter's lock is released if all functions are compiled.
 #[pyfunction]
 pub fn run_hybrid<'py>(
     py: Python<'py>,
-    modes: Vec<ModeArguments>,
+    system: SystemArguments,
     args: Bound<'py, PyTuple>,
-    start: Start<'py>,
+    start: StartArguments<'py>,
     end: f64,
     settings: Settings,
     output: Output<'py>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let _level = Level::enter()?;
     let (pair, options) = settings.checked()?;
-    let modes = modes.into_iter().map(Mode::new).collect::<PyResult<Vec<_>>>()?;
+    let parts = Arc::new(Parts::new(system)?);
     let caller = Caller::new(args.iter().map(Bound::unbind).collect());
-    let system = System::new(Arc::new(modes), caller, Arc::default(), None);
+    let system = Sliding::new(System::new(parts, caller, Arc::default(), None));
     let (times, dense) = output.owned();
     let job = Job { system, pair, options, start: start.owned(), end };
     // Dense output costs three evaluations a step, so it is made only if anybody reads it.
@@ -95,22 +100,28 @@ pub fn run_hybrid<'py>(
 
 /// A run that is to be done.
 struct Job {
-    system: System,
+    system: Sliding,
     pair: EmbeddedPair,
     options: Options,
-    /// The mode, the time and the state at the start.
-    start: (usize, f64, Vec<f64>),
+    start: Start,
     end: f64,
+}
+
+/// Why a run has no result.
+enum Failure {
+    Run(RunError),
+    /// It does not start.
+    Start(Refusal),
 }
 
 impl Job {
     fn forwards(&self) -> bool {
-        self.end > self.start.1
+        self.end > self.start.s
     }
 
     /// Whether the run ends where it starts.
     fn is_empty(&self) -> bool {
-        !self.forwards() && self.end >= self.start.1
+        !self.forwards() && self.end >= self.start.s
     }
 
     /// Runs the system. If a guard starts from a zero whose order is not known, the orders are
@@ -118,24 +129,32 @@ impl Job {
     fn run<const SEGMENTS: bool>(
         &mut self,
         record: &mut Record<SEGMENTS>,
-    ) -> Result<DynamicRun<usize>, RunError> {
-        let (mode, s, ref state) = self.start;
-        self.system.find_zeros(mode, s, state);
+    ) -> Result<DynamicRun<Regime>, Failure> {
+        let Start { mode, s, ref state, ref sides } = self.start;
+        self.system.system.find_zeros(mode, s, state);
+        let first = self.system.system.first(mode);
+        let mode_at_start = self.system.mode_from(first, sides, s, state);
+        let mode_at_start = match mode_at_start {
+            Err(_) if self.system.system.trouble().has_failed() => SlidingMode::refused(first),
+            found => found.map_err(Failure::Start)?,
+        };
+        record.begin(mode_at_start);
         loop {
-            let run = self.run_once(record);
+            let run = self.run_once(mode_at_start, record);
             match run {
                 Err(RunError::GuardUnresolved { guard, .. })
-                    if record.is_empty() && self.system.raise_zero(mode, guard) => {}
-                run => return run,
+                    if record.is_empty() && self.system.system.raise_zero(mode, guard) => {}
+                run => return run.map_err(Failure::Run),
             }
         }
     }
 
     fn run_once<const SEGMENTS: bool>(
         &self,
+        mode: Regime,
         record: &mut Record<SEGMENTS>,
-    ) -> Result<DynamicRun<usize>, RunError> {
-        let (mode, s, ref state) = self.start;
+    ) -> Result<DynamicRun<Regime>, RunError> {
+        let Start { s, ref state, .. } = self.start;
         let start = DynamicStart { mode, s, state };
         let (system, options, end) = (&self.system, &self.options, self.end);
         if self.is_empty() {
@@ -164,22 +183,30 @@ fn finish<const SEGMENTS: bool>(
     mut job: Job,
     mut record: Record<SEGMENTS>,
 ) -> PyResult<Bound<'_, PyDict>> {
-    let compiled = job.system.is_compiled();
+    let compiled = job.system.system.is_compiled();
     let work = move || {
         let run = job.run(&mut record);
         (job, record, run)
     };
     let (job, mut record, run) = if compiled { py.detach(work) } else { work() };
-    if let Some(error) = job.system.trouble().take_failure() {
+    let system = &job.system.system;
+    if let Some(error) = system.trouble().take_failure() {
         return Err(error);
     }
-    let ending = Ending::new(&job.system, &run);
+    let run = match run {
+        Err(Failure::Start(refusal)) => {
+            return Err(bad_input(format!("the run does not start on its surfaces: {refusal}")));
+        }
+        Err(Failure::Run(error)) => Err(error),
+        Ok(run) => Ok(run),
+    };
+    let ending = Ending::new(system, &run, record.refusal());
     if run.is_err() && record.is_empty() {
         return Err(bad_input(ending.message));
     }
     record.close();
-    let columns = record.columns(py)?;
+    let columns = record.columns(py, system)?;
     ending.describe(&columns, &run)?;
-    columns.set_item("nfev", job.system.calls())?;
+    columns.set_item("nfev", system.calls())?;
     Ok(columns)
 }

@@ -15,7 +15,7 @@ use crate::families::failure::of_trace;
 use crate::families::runner::Runner;
 use crate::families::survey::{Callbacks, survey};
 use crate::hybrid::Level;
-use crate::hybrid::arguments::{ChangeArguments, ModeArguments, Settings, Start};
+use crate::hybrid::arguments::{ChangeArguments, Settings, StartArguments, SystemArguments};
 use crate::hybrid::trouble::Trouble;
 use crate::parallel::Threads;
 
@@ -31,19 +31,19 @@ pub struct HybridFamily {
 
 #[pymethods]
 impl HybridFamily {
-    /// A family with the places of the guards of each mode, the start and what changes it, the end,
-    /// and what files say about it.
+    /// A family with a system whose modes all have the guards of the family, the start and what
+    /// changes it, the end, and what files say about it.
     #[new]
     fn new(
         py: Python<'_>,
-        modes: (Vec<ModeArguments>, Vec<Vec<usize>>),
+        system: SystemArguments,
         args: Bound<'_, PyTuple>,
-        start: (Start<'_>, ChangeArguments),
+        start: (StartArguments<'_>, ChangeArguments),
         end: f64,
         settings: Settings,
         description: Description,
     ) -> PyResult<Self> {
-        let blueprint = Blueprint::new(py, modes, &args, start, end, &settings)?;
+        let blueprint = Blueprint::new(py, system, &args, start, end, &settings)?;
         Ok(Self { blueprint: Arc::new(blueprint), description })
     }
 

@@ -8,9 +8,8 @@ use stickslip_solver::{Dop853, Margin};
 use stickslip_tracer::{DynamicFamily, Family, FreeRun, Itinerary, Point};
 
 use crate::failure::bad_input;
-use crate::families::blueprint::Blueprint;
+use crate::families::blueprint::{Blueprint, Members};
 use crate::families::failure::UserError;
-use crate::families::member::Members;
 use crate::hybrid::system::PAUSE;
 use crate::hybrid::trouble::{Trouble, lock};
 

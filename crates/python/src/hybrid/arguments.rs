@@ -2,6 +2,7 @@
 
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
+use stickslip_solver::sliding::Side;
 use stickslip_solver::{
     Direction, EmbeddedPair, Guard, InvalidOption, Options, Schedule, Times, UnknownEmbeddedPair,
 };
@@ -21,9 +22,15 @@ pub enum Callee {
 pub struct FunctionArguments(pub String, pub Callee);
 
 /// What follows when a guard fires: a mode, if it is known before; the function that returns the
-/// state after, or the mode and the state; and which of both.
+/// state after, or the mode and the state; which of both; and the function that returns the
+/// variables after.
 #[derive(FromPyObject)]
-pub struct ChangeArguments(pub Option<usize>, pub Option<FunctionArguments>, pub bool);
+pub struct ChangeArguments(
+    pub Option<usize>,
+    pub Option<FunctionArguments>,
+    pub bool,
+    pub Option<FunctionArguments>,
+);
 
 /// The times of a clock: its period and its phase, or a list.
 #[derive(FromPyObject)]
@@ -73,13 +80,22 @@ pub struct GuardArguments(
     pub Option<ClockArguments>,
 );
 
-/// A function that returns the values of successive guards, the first of them, and their number.
+/// A function that returns the values of guards, and their places.
 #[derive(FromPyObject)]
-pub struct SourceArguments(pub FunctionArguments, pub usize, pub usize);
+pub struct SourceArguments(pub FunctionArguments, pub Vec<usize>);
 
 /// A mode: right-hand side, guards, and where their values come from.
 #[derive(FromPyObject)]
 pub struct ModeArguments(pub FunctionArguments, pub Vec<GuardArguments>, pub Vec<SourceArguments>);
+
+/// What callables get besides time and state, if anything: a callable that names the values of
+/// variables, and those at the start; and one that names signs of surfaces.
+#[derive(FromPyObject)]
+pub struct NamesArguments(pub Option<(Py<PyAny>, Vec<f64>)>, pub Option<Py<PyAny>>);
+
+/// A system: its modes, the functions whose zeros are surfaces, and names.
+#[derive(FromPyObject)]
+pub struct SystemArguments(pub Vec<ModeArguments>, pub Vec<FunctionArguments>, pub NamesArguments);
 
 impl GuardArguments {
     /// The guard that the solver knows.
@@ -102,13 +118,28 @@ impl GuardArguments {
     }
 }
 
-/// The mode, the time and the state at the start.
+/// The mode, the time and the state at the start, and the signs of surfaces on which the run stays
+/// where it could go on in several ways.
 #[derive(FromPyObject)]
-pub struct Start<'py>(usize, f64, PyReadonlyArray1<'py, f64>);
+pub struct StartArguments<'py>(usize, f64, PyReadonlyArray1<'py, f64>, Vec<i8>);
 
-impl Start<'_> {
-    pub fn owned(&self) -> (usize, f64, Vec<f64>) {
-        (self.0, self.1, self.2.as_array().to_vec())
+/// Where a run starts.
+pub struct Start {
+    pub mode: usize,
+    pub s: f64,
+    pub state: Vec<f64>,
+    pub sides: Vec<Side>,
+}
+
+impl StartArguments<'_> {
+    pub fn owned(&self) -> Start {
+        let side = |sign: &i8| match sign {
+            0 => Side::Sliding,
+            1.. => Side::Above,
+            _ => Side::Below,
+        };
+        let sides = self.3.iter().map(side).collect();
+        Start { mode: self.0, s: self.1, state: self.2.as_array().to_vec(), sides }
     }
 }
 

@@ -2,8 +2,10 @@
 
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods};
+use stickslip_solver::sliding::Refusal;
 use stickslip_solver::{DynamicRun, Outcome, RunError};
 
+use crate::hybrid::Regime;
 use crate::hybrid::system::System;
 
 /// How a run ended, in words.
@@ -18,7 +20,12 @@ pub struct Ending {
 }
 
 impl Ending {
-    pub fn new(system: &System, run: &Result<DynamicRun<usize>, RunError>) -> Self {
+    /// The ending of a run, which may have led to where the solution does not go on.
+    pub fn new(
+        system: &System,
+        run: &Result<DynamicRun<Regime>, RunError>,
+        refusal: Option<(f64, Refusal)>,
+    ) -> Self {
         let ending = |outcome, status, message: String| Self {
             outcome,
             status,
@@ -30,13 +37,17 @@ impl Ending {
             Err(error @ RunError::Cycle { .. }) => {
                 return ending("instant_limit", -1, reason(system, error));
             }
+            Err(RunError::Field { .. }) if let Some((s, refusal)) = refusal => {
+                return ending("failed", -1, format!("At t = {s:?}, {refusal}."));
+            }
             Err(error) => return ending("failed", -1, reason(system, error)),
         };
         let s = run.s;
         match run.outcome {
             Outcome::ReachedEnd => ending("reached_end", 0, "The end was reached.".into()),
             Outcome::EndedByGuard { guard } => {
-                let guard = system.guard_label(run.mode, guard);
+                let (mode, _) = system.regime(run.mode.own);
+                let guard = system.guard_label(mode, guard);
                 ending("ended_by_guard", 1, format!("At t = {s:?}, {guard} ended the run."))
             }
             Outcome::StepLimit => {
@@ -63,7 +74,7 @@ impl Ending {
     pub fn describe(
         self,
         columns: &Bound<'_, PyDict>,
-        run: &Result<DynamicRun<usize>, RunError>,
+        run: &Result<DynamicRun<Regime>, RunError>,
     ) -> PyResult<()> {
         columns.set_item("outcome", self.outcome)?;
         columns.set_item("status", self.status)?;
@@ -92,11 +103,12 @@ fn reason(system: &System, error: &RunError) -> String {
     let field = system.field_label(mode);
     match *error {
         RunError::Cycle { s, count, ref cycle } => {
-            // The modes are numbers here.
-            let label = |(guard, mode): &(usize, String)| {
-                mode.parse().map_or_else(
-                    |_| mode.clone(),
-                    |mode| system.guard_label(mode, *guard).to_owned(),
+            // Regimes are numbers here, before the sides of surfaces.
+            let label = |(guard, regime): &(usize, String)| {
+                let number = regime.split(' ').next().and_then(|number| number.parse().ok());
+                number.map_or_else(
+                    || regime.clone(),
+                    |regime| system.guard_label(system.regime(regime).0, *guard).to_owned(),
                 )
             };
             format!(

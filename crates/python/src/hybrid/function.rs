@@ -62,7 +62,8 @@ impl Compiled {
         Ok(own.map_or_else(Vec::new, |own| own.as_array().to_vec()))
     }
 
-    /// Calls the function, with its own parameters or with those of a family.
+    /// Calls the function, with its own parameters or with those of a family. `y` is the state, and
+    /// behind it the variables and the signs, where a system has such.
     #[expect(unsafe_code, reason = "code that Python names by its address can only be trusted")]
     pub fn call(&self, t: f64, y: &[f64], out: &mut [f64], family: Option<&[f64]>) {
         let family = family.map(|parameters| parameters[self.first..].as_ptr());
@@ -82,17 +83,39 @@ impl Compiled {
     }
 }
 
+/// Callables that make named tuples of numbers, where a system has such.
+pub struct Names {
+    pub variables: Option<Py<PyAny>>,
+    pub signs: Option<Py<PyAny>>,
+}
+
+/// What a function is called with.
+#[derive(Clone, Copy)]
+pub struct Input<'a> {
+    pub t: f64,
+    pub y: &'a [f64],
+    /// The values of the variables, and the number of the regime that has them.
+    pub variables: (usize, &'a [f64]),
+    /// The signs of surfaces, if the function is a right-hand side.
+    pub signs: &'a [f64],
+}
+
 /// Calls callables of Python with a time and a state.
 pub struct Caller {
-    /// What follows time and state.
+    /// What follows time, state, variables and signs.
     args: Vec<Py<PyAny>>,
     /// The array of the last call, if nobody else has kept it.
     spare: RefCell<Option<Py<PyArray1<f64>>>>,
+    /// The variables of the last call, with the number of their regime.
+    variables: RefCell<Option<(usize, Py<PyAny>)>>,
+    /// The signs of calls, by the bits of those that are positive.
+    signs: RefCell<[Option<Py<PyAny>>; 16]>,
 }
 
 impl Caller {
     pub fn new(args: Vec<Py<PyAny>>) -> Self {
-        Self { args, spare: RefCell::new(None) }
+        let (spare, variables, signs) = Default::default();
+        Self { args, spare, variables, signs }
     }
 
     /// Calls `callable`, and gives what it returns to `read`.
@@ -101,19 +124,20 @@ impl Caller {
     pub fn call<T, E: From<PyErr>>(
         &self,
         callable: &Bound<'_, PyAny>,
-        t: f64,
-        y: &[f64],
+        names: &Names,
+        input: Input<'_>,
         read: impl FnOnce(&Bound<'_, PyAny>) -> Result<T, E>,
     ) -> Result<T, E> {
         let py = callable.py();
-        let array = self.array(py, y);
+        let array = self.array(py, input.y);
         let data = array.data();
-        let result = if self.args.is_empty() {
-            callable.call1((t, &array))?
+        let (variables, signs) = (self.variables(py, names, input)?, self.signs(py, names, input)?);
+        let result = if self.args.is_empty() && variables.is_none() && signs.is_none() {
+            callable.call1((input.t, &array))?
         } else {
-            let first = [PyFloat::new(py, t).into_any(), array.clone().into_any()];
+            let first = [PyFloat::new(py, input.t).into_any(), array.clone().into_any()];
             let rest = self.args.iter().map(|one| one.bind(py).clone());
-            let all: Vec<_> = first.into_iter().chain(rest).collect();
+            let all: Vec<_> = first.into_iter().chain(variables).chain(signs).chain(rest).collect();
             callable.call1(PyTuple::new(py, all)?)?
         };
         let found = read(&result);
@@ -124,6 +148,46 @@ impl Caller {
             *self.spare.borrow_mut() = Some(array.unbind());
         }
         found
+    }
+
+    /// The variables as callables get them, if there are any.
+    fn variables<'py>(
+        &self,
+        py: Python<'py>,
+        names: &Names,
+        input: Input<'_>,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let Some(name) = &names.variables else { return Ok(None) };
+        let (regime, values) = input.variables;
+        let known =
+            self.variables.borrow().as_ref().map(|(known, made)| (*known, made.clone_ref(py)));
+        if let Some((known, made)) = known
+            && known == regime
+        {
+            return Ok(Some(made.into_bound(py)));
+        }
+        let made = name.bind(py).call1((PyArray1::from_slice(py, values),))?;
+        *self.variables.borrow_mut() = Some((regime, made.clone().unbind()));
+        Ok(Some(made))
+    }
+
+    /// The signs as right-hand sides get them, if there are any.
+    fn signs<'py>(
+        &self,
+        py: Python<'py>,
+        names: &Names,
+        input: Input<'_>,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let (Some(name), false) = (&names.signs, input.signs.is_empty()) else { return Ok(None) };
+        let positive = |sum, &sign: &f64| 2 * sum + usize::from(sign > 0.0);
+        let place = input.signs.iter().fold(0, positive);
+        let known = self.signs.borrow()[place].as_ref().map(|made| made.clone_ref(py));
+        if let Some(made) = known {
+            return Ok(Some(made.into_bound(py)));
+        }
+        let made = name.bind(py).call1((PyTuple::new(py, input.signs)?,))?;
+        self.signs.borrow_mut()[place] = Some(made.clone().unbind());
+        Ok(Some(made))
     }
 
     /// An array of its own with the values of `y`.

@@ -1,10 +1,46 @@
-//! The modes of a system: functions, and what they are for.
+//! What a system consists of: functions, and what they are for.
 
 use pyo3::prelude::*;
 use stickslip_solver::{Direction, Guard};
 
-use crate::hybrid::arguments::{ChangeArguments, Clock, ModeArguments, SourceArguments};
-use crate::hybrid::function::Function;
+use crate::hybrid::arguments::{
+    ChangeArguments, Clock, ModeArguments, SourceArguments, SystemArguments,
+};
+use crate::hybrid::function::{Function, Names};
+
+/// The parts of a system.
+pub struct Parts {
+    pub modes: Vec<Mode>,
+    /// The functions whose zeros are the surfaces.
+    pub surfaces: Vec<Function>,
+    pub names: Names,
+    /// The values of the variables at the start.
+    pub variables: Vec<f64>,
+}
+
+impl Parts {
+    pub fn new(SystemArguments(modes, surfaces, names): SystemArguments) -> PyResult<Self> {
+        let (variables, signs) = (names.0, names.1);
+        let (variables, values) =
+            variables.map_or((None, Vec::new()), |(name, values)| (Some(name), values));
+        Ok(Self {
+            modes: modes.into_iter().map(Mode::new).collect::<PyResult<_>>()?,
+            surfaces: surfaces.into_iter().map(Function::new).collect::<PyResult<_>>()?,
+            names: Names { variables, signs },
+            variables: values,
+        })
+    }
+
+    /// Whether no function needs the interpreter.
+    pub fn is_compiled(&self) -> bool {
+        self.surfaces.iter().all(Function::is_compiled) && self.modes.iter().all(Mode::is_compiled)
+    }
+
+    /// All functions.
+    pub fn functions_mut(&mut self) -> impl Iterator<Item = &mut Function> {
+        self.modes.iter_mut().flat_map(Mode::functions_mut).chain(&mut self.surfaces)
+    }
+}
 
 pub struct Mode {
     pub field: Function,
@@ -24,15 +60,21 @@ pub struct Mode {
     pub gaps: bool,
 }
 
-/// A function that returns the values of `count` guards from `first` on.
+/// A function that returns the values of the guards with these places.
 pub struct Source {
     pub function: Function,
-    pub first: usize,
-    pub count: usize,
+    pub places: Vec<usize>,
 }
 
 /// What follows when a guard fires.
-pub enum Change {
+pub struct Change {
+    pub after: After,
+    /// The function that returns the variables after.
+    pub sets: Option<Function>,
+}
+
+/// The mode and the state after.
+pub enum After {
     /// The state goes on, in this mode or in another one.
     Mode(Option<usize>),
     /// The function returns the state after.
@@ -68,8 +110,8 @@ impl Mode {
             mode.rests.push(arguments.9.map(Change::new).transpose()?);
             mode.clocks.push(arguments.10.map(Clock::new).transpose()?);
         }
-        for SourceArguments(function, first, count) in sources {
-            mode.sources.push(Source { function: Function::new(function)?, first, count });
+        for SourceArguments(function, places) in sources {
+            mode.sources.push(Source { function: Function::new(function)?, places });
         }
         Ok(mode)
     }
@@ -77,7 +119,7 @@ impl Mode {
     /// Whether no function needs the interpreter.
     pub fn is_compiled(&self) -> bool {
         let changes = self.changes.iter().chain(self.rests.iter().flatten());
-        let changes = changes.filter_map(Change::function);
+        let changes = changes.flat_map(Change::functions);
         let conditions = self.conditions.iter().flatten();
         let sources = self.sources.iter().map(|source| &source.function);
         changes.chain(conditions).chain(sources).chain([&self.field]).all(Function::is_compiled)
@@ -86,7 +128,7 @@ impl Mode {
     /// All functions.
     pub fn functions_mut(&mut self) -> impl Iterator<Item = &mut Function> {
         let changes = self.changes.iter_mut().chain(self.rests.iter_mut().flatten());
-        let changes = changes.filter_map(Change::function_mut);
+        let changes = changes.flat_map(Change::functions_mut);
         let conditions = self.conditions.iter_mut().flatten();
         let sources = self.sources.iter_mut().map(|source| &mut source.function);
         changes.chain(conditions).chain(sources).chain([&mut self.field])
@@ -94,25 +136,28 @@ impl Mode {
 }
 
 impl Change {
-    pub fn new(ChangeArguments(to, function, both): ChangeArguments) -> PyResult<Self> {
-        Ok(match function {
-            None => Self::Mode(to),
-            Some(function) if both => Self::Both(Function::new(function)?),
-            Some(function) => Self::Reset(Function::new(function)?, to),
-        })
+    pub fn new(ChangeArguments(to, function, both, sets): ChangeArguments) -> PyResult<Self> {
+        let after = match function {
+            None => After::Mode(to),
+            Some(function) if both => After::Both(Function::new(function)?),
+            Some(function) => After::Reset(Function::new(function)?, to),
+        };
+        Ok(Self { after, sets: sets.map(Function::new).transpose()? })
     }
 
-    pub fn function(&self) -> Option<&Function> {
-        match self {
-            Self::Mode(_) => None,
-            Self::Reset(function, _) | Self::Both(function) => Some(function),
-        }
+    pub fn functions(&self) -> impl Iterator<Item = &Function> {
+        let after = match &self.after {
+            After::Mode(_) => None,
+            After::Reset(function, _) | After::Both(function) => Some(function),
+        };
+        after.into_iter().chain(&self.sets)
     }
 
-    pub fn function_mut(&mut self) -> Option<&mut Function> {
-        match self {
-            Self::Mode(_) => None,
-            Self::Reset(function, _) | Self::Both(function) => Some(function),
-        }
+    pub fn functions_mut(&mut self) -> impl Iterator<Item = &mut Function> {
+        let after = match &mut self.after {
+            After::Mode(_) => None,
+            After::Reset(function, _) | After::Both(function) => Some(function),
+        };
+        after.into_iter().chain(&mut self.sets)
     }
 }

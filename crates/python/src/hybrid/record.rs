@@ -1,17 +1,20 @@
 //! What a run finds, as columns.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods};
+use stickslip_solver::sliding::{Refusal, Side};
 use stickslip_solver::{
     DynamicDense, DynamicEvent, DynamicObserver, Grazing, Pole, Preempted, Rest,
 };
 
-use crate::hybrid::Job;
 use crate::hybrid::segments::{Segments, fraction};
+use crate::hybrid::system::System;
 use crate::hybrid::trouble::Trouble;
+use crate::hybrid::{Job, Regime};
 
 /// Keeps what a run finds. With `SEGMENTS` it also receives dense output.
 pub struct Record<const SEGMENTS: bool> {
@@ -31,6 +34,11 @@ pub struct Record<const SEGMENTS: bool> {
     /// All segments if they are kept, and else the last one.
     segments: Segments,
     dense: bool,
+    /// The modes so far; their places are the numbers by which they go here.
+    seen: Vec<Regime>,
+    numbers: HashMap<(usize, [i8; 4], bool), usize>,
+    /// Where the run has led to where the solution does not go on.
+    refusal: Option<(f64, Refusal)>,
     /// The mode, the time and the state at which the run has arrived for certain.
     last: (usize, f64, Vec<f64>),
     /// Whether a segment begins there or later.
@@ -75,11 +83,34 @@ impl<const SEGMENTS: bool> Record<SEGMENTS> {
             rests: Vec::new(),
             segments: Segments::default(),
             dense,
-            last: job.start.clone(),
+            seen: Vec::new(),
+            numbers: HashMap::new(),
+            refusal: None,
+            last: (0, job.start.s, job.start.state.clone()),
             moved: false,
             ended: false,
-            trouble: job.system.trouble().clone(),
+            trouble: job.system.system.trouble().clone(),
         }
+    }
+
+    /// Begins with the mode at the start.
+    pub fn begin(&mut self, mode: Regime) {
+        self.last.0 = self.number(&mode);
+    }
+
+    /// Why the solution does not go on from where the run has ended, if it does not.
+    pub fn refusal(&self) -> Option<(f64, Refusal)> {
+        self.refusal
+    }
+
+    /// The number of a mode.
+    fn number(&mut self, mode: &Regime) -> usize {
+        let mut sides = [0; 4];
+        sides.iter_mut().zip(mode.sides()).for_each(|(sign, &side)| *sign = sign_of(side));
+        *self.numbers.entry((mode.own, sides, mode.is_unique())).or_insert_with(|| {
+            self.seen.push(*mode);
+            self.seen.len() - 1
+        })
     }
 
     /// Whether nothing has been found.
@@ -99,7 +130,26 @@ impl<const SEGMENTS: bool> Record<SEGMENTS> {
             self.last = (mode, dense.start() + dense.size(), dense.at(1.0));
         }
         let (mode, s, state) = self.last.clone();
-        self.on_end(mode, s, &state);
+        self.end_at(mode, s, &state);
+    }
+
+    /// Ends the record.
+    fn end_at(&mut self, mode: usize, s: f64, state: &[f64]) {
+        self.sample_until(s);
+        if let Some((times, done)) = &mut self.times {
+            while times.get(*done) == Some(&s) {
+                *done += 1;
+                self.points.push(mode, s, state);
+            }
+        }
+        // A run that ends early ends with a point, whatever times are wanted.
+        let early = (self.end - s) * self.direction > 0.0;
+        let wanted = self.times.as_ref().is_none_or(|(times, _)| early && !times.is_empty());
+        if wanted && !self.points.ends_at(mode, s, state) {
+            self.points.push(mode, s, state);
+        }
+        self.last = (mode, s, state.to_vec());
+        self.ended = true;
     }
 
     /// Samples the times before `s` from the last segment.
@@ -116,8 +166,17 @@ impl<const SEGMENTS: bool> Record<SEGMENTS> {
     }
 
     /// The columns, of which those of states are one state after another.
-    pub fn columns(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    pub fn columns<'py>(self, py: Python<'py>, system: &System) -> PyResult<Bound<'py, PyDict>> {
         let columns = PyDict::new(py);
+        let regimes = self.seen.iter().map(|seen| system.regime(seen.own));
+        let (modes, variables): (Vec<_>, Vec<_>) = regimes.unzip();
+        let sides = self.seen.iter().flat_map(Regime::sides);
+        let sides: Vec<i8> = sides.copied().map(sign_of).collect();
+        let unique: Vec<bool> = self.seen.iter().map(Regime::is_unique).collect();
+        columns.set_item("seen_modes", modes.into_pyarray(py))?;
+        columns.set_item("seen_variables", variables.concat().into_pyarray(py))?;
+        columns.set_item("seen_sides", sides.into_pyarray(py))?;
+        columns.set_item("seen_unique", unique.into_pyarray(py))?;
         let Points { times, modes, states } = self.points;
         columns.set_item("t", times.into_pyarray(py))?;
         columns.set_item("modes", modes.into_pyarray(py))?;
@@ -146,35 +205,43 @@ impl<const SEGMENTS: bool> Record<SEGMENTS> {
     }
 }
 
-impl<const SEGMENTS: bool> DynamicObserver<usize> for Record<SEGMENTS> {
+impl<const SEGMENTS: bool> DynamicObserver<Regime> for Record<SEGMENTS> {
     const WANTS_SEGMENTS: bool = SEGMENTS;
 
-    fn on_switch(&mut self, event: &DynamicEvent<'_, usize>) {
-        self.events.push(event);
+    fn on_switch(&mut self, event: &DynamicEvent<'_, Regime>) {
+        let (from, to) = (self.number(&event.from), self.number(&event.to));
+        self.events.push(event, from, to);
+        if let Some(refusal) = event.to.refusal() {
+            self.refusal = Some((event.s, refusal));
+        }
         let changes = event.from != event.to || event.before != event.after;
         if changes {
             if self.times.is_none() && event.before != event.after {
-                self.points.push(event.from, event.s, event.before);
+                self.points.push(from, event.s, event.before);
             }
-            self.last = (event.to, event.s, event.after.to_vec());
+            self.last = (to, event.s, event.after.to_vec());
             self.moved = false;
         }
     }
 
-    fn on_grazing(&mut self, touch: &Grazing<usize>) {
-        self.touches.push((touch.s, touch.mode, touch.guard, touch.margin));
+    fn on_grazing(&mut self, touch: &Grazing<Regime>) {
+        let mode = self.number(&touch.mode);
+        self.touches.push((touch.s, mode, touch.guard, touch.margin));
     }
 
-    fn on_pole(&mut self, pole: &Pole<usize>) {
-        self.poles.push((pole.s, pole.mode, pole.guard));
+    fn on_pole(&mut self, pole: &Pole<Regime>) {
+        let mode = self.number(&pole.mode);
+        self.poles.push((pole.s, mode, pole.guard));
     }
 
-    fn on_preempted(&mut self, preempted: &Preempted<usize>) {
-        self.preempted.push((preempted.s, preempted.mode, preempted.guard));
+    fn on_preempted(&mut self, preempted: &Preempted<Regime>) {
+        let mode = self.number(&preempted.mode);
+        self.preempted.push((preempted.s, mode, preempted.guard));
     }
 
-    fn on_rest(&mut self, rest: &Rest<usize>) {
-        self.rests.push((rest.s, rest.error, rest.guard, rest.from, rest.to));
+    fn on_rest(&mut self, rest: &Rest<Regime>) {
+        let (from, to) = (self.number(&rest.from), self.number(&rest.to));
+        self.rests.push((rest.s, rest.error, rest.guard, from, to));
     }
 
     fn forget(&mut self, switches: usize) {
@@ -194,7 +261,8 @@ impl<const SEGMENTS: bool> DynamicObserver<usize> for Record<SEGMENTS> {
         self.trouble.has_failed()
     }
 
-    fn on_segment(&mut self, mode: usize, dense: &DynamicDense<'_>) {
+    fn on_segment(&mut self, mode: Regime, dense: &DynamicDense<'_>) {
+        let mode = self.number(&mode);
         if self.times.is_some() {
             self.sample_until(dense.start());
         } else {
@@ -208,22 +276,18 @@ impl<const SEGMENTS: bool> DynamicObserver<usize> for Record<SEGMENTS> {
         self.moved = true;
     }
 
-    fn on_end(&mut self, mode: usize, s: f64, state: &[f64]) {
-        self.sample_until(s);
-        if let Some((times, done)) = &mut self.times {
-            while times.get(*done) == Some(&s) {
-                *done += 1;
-                self.points.push(mode, s, state);
-            }
-        }
-        // A run that ends early ends with a point, whatever times are wanted.
-        let early = (self.end - s) * self.direction > 0.0;
-        let wanted = self.times.as_ref().is_none_or(|(times, _)| early && !times.is_empty());
-        if wanted && !self.points.ends_at(mode, s, state) {
-            self.points.push(mode, s, state);
-        }
-        self.last = (mode, s, state.to_vec());
-        self.ended = true;
+    fn on_end(&mut self, mode: Regime, s: f64, state: &[f64]) {
+        let mode = self.number(&mode);
+        self.end_at(mode, s, state);
+    }
+}
+
+/// The sign by which a side goes in Python.
+fn sign_of(side: Side) -> i8 {
+    match side {
+        Side::Above => 1,
+        Side::Below => -1,
+        Side::Sliding => 0,
     }
 }
 
@@ -248,11 +312,11 @@ impl Points {
 }
 
 impl Events {
-    fn push(&mut self, event: &DynamicEvent<'_, usize>) {
+    fn push(&mut self, event: &DynamicEvent<'_, Regime>, from: usize, to: usize) {
         self.times.push(event.s);
         self.guards.push(event.guard);
-        self.from.push(event.from);
-        self.to.push(event.to);
+        self.from.push(from);
+        self.to.push(to);
         self.flatness.push(event.flatness);
         self.jump.push(event.jump);
         self.simultaneous.push(event.simultaneous.to_vec());

@@ -1,17 +1,19 @@
 //! What the solver sees: modes as numbers, and functions that cannot fail.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use stickslip_solver::{DynamicSystem, Guard, Schedule};
+use stickslip_solver::sliding::{SampledFilippov, SwitchedDynamic};
+use stickslip_solver::{Guard, Schedule};
 
 use crate::hybrid::arguments::Clock;
-use crate::hybrid::function::{Caller, Code, Function};
-use crate::hybrid::modes::{Change, Mode, Source};
+use crate::hybrid::function::{Caller, Code, Function, Input};
+use crate::hybrid::modes::{After, Change, Mode, Parts, Source};
 use crate::hybrid::numbers::{Problem, read};
+use crate::hybrid::regimes::Regimes;
 use crate::hybrid::trouble::Trouble;
 
 /// Calls after which the clock is looked at.
@@ -22,9 +24,14 @@ pub const PAUSE: Duration = Duration::from_millis(50);
 /// The highest order of a zero that is looked for.
 const HIGHEST_ORDER: u32 = 6;
 
+/// What the solver runs: without surfaces, it is the system itself.
+pub type Sliding = SampledFilippov<System>;
+
 /// A system of functions that may fail.
 pub struct System {
-    modes: Arc<Vec<Mode>>,
+    parts: Arc<Parts>,
+    /// What the solver takes for modes.
+    regimes: RefCell<Regimes>,
     caller: Caller,
     trouble: Arc<Trouble>,
     /// Where the system is one of a family.
@@ -46,14 +53,11 @@ pub struct At {
 }
 
 impl System {
-    pub fn new(
-        modes: Arc<Vec<Mode>>,
-        caller: Caller,
-        trouble: Arc<Trouble>,
-        at: Option<At>,
-    ) -> Self {
+    pub fn new(parts: Arc<Parts>, caller: Caller, trouble: Arc<Trouble>, at: Option<At>) -> Self {
+        let regimes = RefCell::new(Regimes::new(parts.variables.len()));
         Self {
-            modes,
+            parts,
+            regimes,
             caller,
             trouble,
             at,
@@ -63,16 +67,32 @@ impl System {
         }
     }
 
+    /// The regime at the start of a run in `mode`.
+    pub fn first(&self, mode: usize) -> usize {
+        self.regimes.borrow_mut().number(mode, &self.parts.variables)
+    }
+
+    /// The mode of a regime, and the values of its variables.
+    pub fn regime(&self, regime: usize) -> (usize, Vec<f64>) {
+        let regimes = self.regimes.borrow();
+        (regimes.mode(regime), regimes.values(regime).to_vec())
+    }
+
+    /// The mode of a regime.
+    fn mode_of(&self, regime: usize) -> &Mode {
+        &self.parts.modes[self.regimes.borrow().mode(regime)]
+    }
+
     /// Takes guards that are exactly 0 at the start, and whose zero is to be found out, for simple
     /// zeros. The modes must be those of this system alone.
     pub fn find_zeros(&mut self, mode: usize, t: f64, y: &[f64]) {
-        if self.modes[mode].undeclared.is_empty() {
+        if self.parts.modes[mode].undeclared.is_empty() {
             return;
         }
-        let mut values = vec![0.0; self.modes[mode].guards.len()];
-        self.guard_values(mode, t, y, &mut values);
-        let Some(modes) = Arc::get_mut(&mut self.modes) else { return };
-        let Mode { guards, undeclared, .. } = &mut modes[mode];
+        let mut values = vec![0.0; self.parts.modes[mode].guards.len()];
+        self.guard_values(self.first(mode), t, y, &mut values);
+        let Some(parts) = Arc::get_mut(&mut self.parts) else { return };
+        let Mode { guards, undeclared, .. } = &mut parts.modes[mode];
         undeclared.retain(|&guard| values[guard] == 0.0);
         for &guard in &*undeclared {
             guards[guard] = guards[guard].from_zero(1);
@@ -81,8 +101,8 @@ impl System {
 
     /// Takes the zero of a guard at the start for one of the next order. Returns whether it may be.
     pub fn raise_zero(&mut self, mode: usize, guard: usize) -> bool {
-        let Some(modes) = Arc::get_mut(&mut self.modes) else { return false };
-        let Mode { guards, undeclared, .. } = &mut modes[mode];
+        let Some(parts) = Arc::get_mut(&mut self.parts) else { return false };
+        let Mode { guards, undeclared, .. } = &mut parts.modes[mode];
         let order = guards[guard].zero_order() + 1;
         let may_be = undeclared.contains(&guard) && order <= HIGHEST_ORDER;
         if may_be {
@@ -93,7 +113,7 @@ impl System {
 
     /// Whether no function needs the interpreter.
     pub fn is_compiled(&self) -> bool {
-        self.modes.iter().all(Mode::is_compiled)
+        self.parts.is_compiled()
     }
 
     /// The mode in which a function was called last.
@@ -108,12 +128,17 @@ impl System {
 
     /// What messages call the right-hand side of a mode.
     pub fn field_label(&self, mode: usize) -> &str {
-        &self.modes[mode].field.label
+        &self.parts.modes[mode].field.label
     }
 
-    /// What messages call a guard of a mode.
+    /// What messages call a guard of a mode, where those of surfaces come first.
     pub fn guard_label(&self, mode: usize, guard: usize) -> &str {
-        self.modes[mode].labels.get(guard).map_or("a guard", |label| label)
+        let surfaces = &self.parts.surfaces;
+        let label = match guard.checked_sub(2 * surfaces.len()) {
+            Some(guard) => self.parts.modes[mode].labels.get(guard),
+            None => Some(&surfaces[guard / 2].label),
+        };
+        label.map_or("a guard", |label| label)
     }
 
     /// What has gone wrong so far, and what will.
@@ -133,17 +158,45 @@ impl System {
         self.trouble.fail(error);
     }
 
-    /// Writes what `function` returns to `out`; NaN if it fails.
-    fn evaluate(&self, function: &Function, t: f64, y: &[f64], out: &mut [f64], signed: bool) {
+    /// Writes what `function` returns in a regime to `out`; NaN if it fails.
+    fn evaluate(
+        &self,
+        function: &Function,
+        regime: usize,
+        (t, y): (f64, &[f64]),
+        out: &mut [f64],
+        signed: bool,
+    ) {
+        self.evaluate_with(function, regime, &[], (t, y), out, signed);
+    }
+
+    /// As [`Self::evaluate`], with signs of surfaces.
+    fn evaluate_with(
+        &self,
+        function: &Function,
+        regime: usize,
+        signs: &[f64],
+        (t, y): (f64, &[f64]),
+        out: &mut [f64],
+        signed: bool,
+    ) {
         self.look_for_signals(t);
         if !self.trouble.has_failed() {
             match &function.code {
                 Code::Compiled(compiled) => {
                     let parameters = self.at.as_ref().map(|at| &at.parameters[..]);
-                    return compiled.call(t, y, out, parameters);
+                    let regimes = self.regimes.borrow();
+                    let variables = regimes.values(regime);
+                    if variables.is_empty() && signs.is_empty() {
+                        compiled.call(t, y, out, parameters);
+                    } else {
+                        compiled.call(t, &[y, variables, signs].concat(), out, parameters);
+                    }
+                    return;
                 }
                 Code::Python(callable) => {
-                    self.call(function, callable, t, y, |result| read(result, out, signed));
+                    let at = (regime, signs, t, y);
+                    self.call(function, callable, at, |result| read(result, out, signed));
                 }
             }
         }
@@ -158,13 +211,20 @@ impl System {
         &self,
         function: &Function,
         callable: &Py<PyAny>,
-        t: f64,
-        y: &[f64],
+        (regime, signs, t, y): (usize, &[f64], f64, &[f64]),
         mut read: impl FnMut(&Bound<'_, PyAny>) -> Result<T, Problem>,
     ) -> Option<T> {
+        // A callable may run this system again, so that nothing stays borrowed.
+        let variables = match self.parts.names.variables {
+            Some(_) => self.regimes.borrow().values(regime).to_vec(),
+            None => Vec::new(),
+        };
+        let input = Input { t, y, variables: (regime, &variables), signs };
         Python::attach(|py| {
             loop {
-                let problem = match self.caller.call(callable.bind(py), t, y, &mut read) {
+                let called =
+                    self.caller.call(callable.bind(py), &self.parts.names, input, &mut read);
+                let problem = match called {
                     Ok(found) => return Some(found),
                     Err(Problem::Raised(error)) => {
                         let Some(error) = self.trouble.postpone(error) else { continue };
@@ -197,94 +257,142 @@ impl System {
         }
     }
 
-    /// The mode after `change` in `mode`, with the state written to `y`.
-    pub fn change(&self, mode: usize, change: &Change, t: f64, y: &mut [f64]) -> usize {
-        let (function, to) = match change {
-            Change::Mode(to) => return to.unwrap_or(mode),
-            Change::Reset(function, to) => {
-                let before = y.to_vec();
-                self.evaluate(function, t, &before, y, false);
-                (function, to.unwrap_or(mode))
+    /// The regime after `change` in `regime`, with the state written to `y`.
+    pub fn change(&self, regime: usize, change: &Change, t: f64, y: &mut [f64]) -> usize {
+        let mode = self.regimes.borrow().mode(regime);
+        let before = y.to_vec();
+        let mut variables = self.regimes.borrow().values(regime).to_vec();
+        if let Some(sets) = &change.sets {
+            self.evaluate(sets, regime, (t, &before), &mut variables, false);
+            self.expect_finite(sets, t, ("variables", &variables));
+        }
+        let to = match &change.after {
+            After::Mode(to) => to.unwrap_or(mode),
+            After::Reset(function, to) => {
+                self.evaluate(function, regime, (t, &before), y, false);
+                self.expect_finite(function, t, ("state", y));
+                to.unwrap_or(mode)
             }
-            Change::Both(function) => (function, self.call_transition(function, mode, t, y)),
+            After::Both(function) => {
+                let to = self.call_transition(function, (regime, mode), t, y);
+                self.expect_finite(function, t, ("state", y));
+                to
+            }
         };
-        // A run of a family fails there, and others go on.
+        if self.trouble.has_failed() {
+            y.fill(f64::NAN);
+            return regime;
+        }
+        self.regimes.borrow_mut().number(to, &variables)
+    }
+
+    /// Fails if a number that a transition has returned is not finite. A run of a family fails
+    /// there, and others go on.
+    fn expect_finite(&self, function: &Function, t: f64, (what, values): (&str, &[f64])) {
         if self.at.is_none()
             && !self.trouble.has_failed()
-            && let Some(component) = y.iter().position(|value| !value.is_finite())
+            && let Some(component) = values.iter().position(|value| !value.is_finite())
         {
             let error = PyValueError::new_err(format!(
-                "{}, at t = {t:?}: component {component} of the state after is {:?}; expected a \
+                "{}, at t = {t:?}: component {component} of the {what} after is {:?}; expected a \
                  finite number",
-                function.label, y[component]
+                function.label, values[component]
             ));
             self.fail(error, t);
         }
-        if self.trouble.has_failed() {
-            y.fill(f64::NAN);
-            return mode;
-        }
-        to
     }
 
-    fn call_transition(&self, function: &Function, mode: usize, t: f64, y: &mut [f64]) -> usize {
+    fn call_transition(
+        &self,
+        function: &Function,
+        (regime, mode): (usize, usize),
+        t: f64,
+        y: &mut [f64],
+    ) -> usize {
         let Code::Python(callable) = &function.code else { return mode };
         if self.trouble.has_failed() {
             return mode;
         }
         let before = y.to_vec();
-        let found = self.call(function, callable, t, &before, |result| {
+        let found = self.call(function, callable, (regime, &[], t, &before), |result| {
             let (to, after): (Option<usize>, Option<Bound<'_, PyAny>>) = result.extract()?;
             after.map_or(Ok(()), |after| read(&after, y, false))?;
             Ok(to)
         });
         found.flatten().unwrap_or(mode)
     }
-
-    /// The condition of the transition at a guard; NaN if it has none.
-    pub fn condition(&self, mode: usize, guard: usize, t: f64, y: &[f64]) -> f64 {
-        let mut value = [f64::NAN];
-        if let Some(function) = &self.modes[mode].conditions[guard] {
-            self.evaluate(function, t, y, &mut value, true);
-        }
-        value[0]
-    }
 }
 
-impl DynamicSystem for System {
+impl SwitchedDynamic for System {
+    /// A regime.
     type Mode = usize;
 
-    fn field(&self, mode: usize, t: f64, y: &[f64], slope: &mut [f64]) {
+    fn count(&self) -> usize {
+        self.parts.surfaces.len()
+    }
+
+    fn field(&self, regime: usize, signs: &[f64], t: f64, y: &[f64], slope: &mut [f64]) {
         self.calls.0.set(self.calls.0.get() + 1);
-        self.mode.set(mode);
-        self.evaluate(&self.modes[mode].field, t, y, slope, false);
+        self.mode.set(self.regimes.borrow().mode(regime));
+        let field = &self.mode_of(regime).field;
+        self.evaluate_with(field, regime, signs, (t, y), slope, false);
     }
 
-    fn guards(&self, mode: usize) -> &[Guard] {
-        &self.modes[mode].guards
+    fn surfaces(&self, regime: usize, t: f64, y: &[f64], values: &mut [f64]) {
+        for (surface, value) in self.parts.surfaces.iter().zip(values.chunks_exact_mut(1)) {
+            self.evaluate(surface, regime, (t, y), value, true);
+        }
     }
 
-    fn guard_values(&self, mode: usize, t: f64, y: &[f64], values: &mut [f64]) {
-        self.mode.set(mode);
-        let mode = &self.modes[mode];
+    fn guards(&self, regime: usize) -> &[Guard] {
+        &self.mode_of(regime).guards
+    }
+
+    fn guard_values(&self, regime: usize, t: f64, y: &[f64], values: &mut [f64]) {
+        self.mode.set(self.regimes.borrow().mode(regime));
+        let mode = self.mode_of(regime);
         if mode.gaps {
             values.fill(1.0);
         }
-        for Source { function, first, count } in &mode.sources {
-            self.evaluate(function, t, y, &mut values[*first..first + count], true);
+        for Source { function, places } in &mode.sources {
+            match places[..] {
+                // The usual case needs no copy.
+                [first, .., last] if last + 1 == first + places.len() => {
+                    self.evaluate(function, regime, (t, y), &mut values[first..=last], true);
+                }
+                [place] => {
+                    self.evaluate(function, regime, (t, y), &mut values[place..=place], true);
+                }
+                _ => {
+                    let mut found = vec![1.0; places.len()];
+                    self.evaluate(function, regime, (t, y), &mut found, true);
+                    for (&place, value) in places.iter().zip(found) {
+                        values[place] = value;
+                    }
+                }
+            }
         }
     }
 
-    fn schedule(&self, mode: usize, guard: usize) -> Schedule<'_> {
-        self.modes[mode].clocks[guard].as_ref().map_or(Schedule::NEVER, Clock::schedule)
+    fn schedule(&self, regime: usize, guard: usize) -> Schedule<'_> {
+        self.mode_of(regime).clocks[guard].as_ref().map_or(Schedule::NEVER, Clock::schedule)
     }
 
-    fn rest(&self, mode: usize, guard: usize, t: f64, y: &mut [f64]) -> Option<usize> {
-        let change = self.modes[mode].rests[guard].as_ref()?;
-        Some(self.change(mode, change, t, y))
+    fn rest(&self, regime: usize, guard: usize, t: f64, y: &mut [f64]) -> Option<usize> {
+        let change = self.mode_of(regime).rests[guard].as_ref()?;
+        Some(self.change(regime, change, t, y))
     }
 
-    fn transition(&self, mode: usize, guard: usize, t: f64, y: &mut [f64]) -> usize {
-        self.change(mode, &self.modes[mode].changes[guard], t, y)
+    fn transition(&self, regime: usize, guard: usize, t: f64, y: &mut [f64]) -> usize {
+        self.change(regime, &self.mode_of(regime).changes[guard], t, y)
+    }
+
+    /// The condition of the transition at a guard; NaN if it has none.
+    fn transition_condition(&self, regime: usize, guard: usize, t: f64, y: &[f64]) -> f64 {
+        let mut value = [f64::NAN];
+        if let Some(function) = &self.mode_of(regime).conditions[guard] {
+            self.evaluate(function, regime, (t, y), &mut value, true);
+        }
+        value[0]
     }
 }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use num_dual::Dual64;
 
-use crate::hybrid::{Guard, ReadableSystem};
+use crate::hybrid::{Guard, ReadableSystem, Schedule};
 use crate::method::State;
 use crate::sensitivity::{Change, Differentiable};
 use crate::sliding::control::{self, Row, View};
@@ -48,6 +48,23 @@ pub trait Switched<const N: usize, const K: usize, const G: usize> {
     /// The state that follows when one of the system's own guards fires.
     fn reset<T: Number>(&self, _mode: Self::Mode, _guard: usize, _s: T, y: &[T; N]) -> [T; N] {
         *y
+    }
+
+    /// The times at which a [clock](Guard::clock) among the system's own guards fires.
+    fn schedule(&self, _mode: Self::Mode, _guard: usize) -> Schedule<'_> {
+        Schedule::NEVER
+    }
+
+    /// As [`HybridSystem::rest`](crate::HybridSystem::rest), where the switches of one of the
+    /// system's own guards accumulate.
+    fn rest(
+        &self,
+        _mode: Self::Mode,
+        _guard: usize,
+        _s: f64,
+        _y: &State<N>,
+    ) -> Option<(Self::Mode, State<N>)> {
+        None
     }
 }
 
@@ -151,6 +168,21 @@ impl<S, const K: usize, const G: usize> Filippov<S, K, G> {
         (own != mode.own || after != *y).then_some((own, after, cause))
     }
 
+    /// How the solution goes on in the system's own mode from a state.
+    fn decided<const N: usize>(
+        &self,
+        mode: SlidingMode<S::Mode>,
+        s: f64,
+        (own, mut after, cause): (S::Mode, State<N>, Cause<'static>),
+    ) -> (SlidingMode<S::Mode>, State<N>)
+    where
+        S: Switched<N, K, G>,
+    {
+        let view = Reading::<S, _, N, K, G>(&self.0, own);
+        let surfaces = decide(&view, &mode.surfaces, cause, s, after.as_mut_slice());
+        (SlidingMode { own, surfaces }, after)
+    }
+
     /// The field in a mode, in numbers of any kind.
     fn field_of<T: Number, const N: usize>(
         &self,
@@ -220,12 +252,25 @@ where
         s: f64,
         y: &State<N>,
     ) -> (Self::Mode, State<N>) {
-        let Some((own, mut after, cause)) = self.moved(mode, guard, s, y) else {
-            return (mode, *y);
-        };
-        let view = Reading::<S, _, N, K, G>(&self.0, own);
-        let surfaces = decide(&view, &mode.surfaces, cause, s, after.as_mut_slice());
-        (SlidingMode { own, surfaces }, after)
+        let moved = self.moved(mode, guard, s, y);
+        moved.map_or((mode, *y), |moved| self.decided(mode, s, moved))
+    }
+
+    fn schedule(&self, mode: Self::Mode, guard: usize) -> Schedule<'_> {
+        if guard < 2 * K { Schedule::NEVER } else { self.0.schedule(mode.own, guard) }
+    }
+
+    fn rest(
+        &self,
+        mode: Self::Mode,
+        guard: usize,
+        s: f64,
+        y: &State<N>,
+    ) -> Option<(Self::Mode, State<N>)> {
+        let own = (guard >= 2 * K).then(|| self.0.rest(mode.own, guard, s, y));
+        let (own, after) = own.flatten()?;
+        let cause = Cause::Moved(row(self.0.surfaces(mode.own, s, &y.data.0[0])));
+        Some(self.decided(mode, s, (own, after, cause)))
     }
 
     fn transition_condition(&self, mode: Self::Mode, guard: usize, s: f64, y: &State<N>) -> f64 {

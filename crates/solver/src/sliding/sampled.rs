@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::OnceLock;
 
 use crate::dynamic::DynamicSystem;
-use crate::hybrid::{Guard, HybridSystem};
+use crate::hybrid::{Guard, HybridSystem, Schedule};
 use crate::method::State;
 use crate::sliding::control::{self, Row, View};
 use crate::sliding::decision::{Cause, condition, decide};
@@ -90,6 +90,27 @@ pub trait SwitchedDynamic {
     /// returns the mode that follows.
     fn transition(&self, mode: Self::Mode, _guard: usize, _s: f64, _y: &mut [f64]) -> Self::Mode {
         mode
+    }
+
+    /// The times at which a [clock](Guard::clock) among the system's own guards fires.
+    fn schedule(&self, _mode: Self::Mode, _guard: usize) -> Schedule<'_> {
+        Schedule::NEVER
+    }
+
+    /// As [`DynamicSystem::rest`], where the switches of one of the system's own guards accumulate.
+    fn rest(
+        &self,
+        _mode: Self::Mode,
+        _guard: usize,
+        _s: f64,
+        _y: &mut [f64],
+    ) -> Option<Self::Mode> {
+        None
+    }
+
+    /// As [`DynamicSystem::transition_condition`], for one of the system's own guards.
+    fn transition_condition(&self, _mode: Self::Mode, _guard: usize, _s: f64, _y: &[f64]) -> f64 {
+        f64::NAN
     }
 }
 
@@ -216,6 +237,11 @@ impl<S: SwitchedDynamic> SampledFilippov<S> {
         start(&Sampling(&self.system, own), own, s, y, &given[..self.system.count()])
     }
 
+    /// The place of a guard among the system's own ones, if it is one.
+    fn own_guard(&self, guard: usize) -> Option<usize> {
+        guard.checked_sub(2 * self.system.count())
+    }
+
     fn field_of(&self, mode: SlidingMode<S::Mode>, s: f64, y: &[f64], slope: &mut [f64]) {
         let sliding = mode.surfaces.sliding().count();
         let mut fields = vec![0.0; if sliding > 0 { (sliding + 1) * y.len() } else { 0 }];
@@ -235,6 +261,9 @@ impl<S: SwitchedDynamic> SampledFilippov<S> {
 
     fn values_of(&self, mode: SlidingMode<S::Mode>, s: f64, y: &[f64], values: &mut [f64]) {
         let count = self.system.count();
+        if count == 0 {
+            return self.system.guard_values(mode.own, s, y, values);
+        }
         let mut fields = vec![0.0; (mode.surfaces.sliding().count() + 1) * y.len()];
         let view = Sampling(&self.system, mode.own);
         let surfaces = control::guards(&view, &mode.surfaces, (s, y), &mut fields);
@@ -253,7 +282,7 @@ impl<S: SwitchedDynamic> SampledFilippov<S> {
     ) -> Option<(S::Mode, Cause<'static>)> {
         let cause =
             cause_of(&mode.surfaces, guard, || Sampling(&self.system, mode.own).surfaces(s, y));
-        let Some(guard) = guard.checked_sub(2 * self.system.count()) else {
+        let Some(guard) = self.own_guard(guard) else {
             return Some((mode.own, cause));
         };
         let before = y.to_vec();
@@ -268,9 +297,58 @@ impl<S: SwitchedDynamic> SampledFilippov<S> {
         s: f64,
         y: &mut [f64],
     ) -> SlidingMode<S::Mode> {
-        let Some((own, cause)) = self.moved(mode, guard, s, y) else { return mode };
-        let surfaces = decide(&Sampling(&self.system, own), &mode.surfaces, cause, s, y);
+        match self.moved(mode, guard, s, y) {
+            Some(moved) => self.decided(mode, s, y, moved),
+            None => mode,
+        }
+    }
+
+    /// How the solution goes on in the system's own mode.
+    fn decided(
+        &self,
+        mode: SlidingMode<S::Mode>,
+        s: f64,
+        y: &mut [f64],
+        (own, cause): (S::Mode, Cause<'static>),
+    ) -> SlidingMode<S::Mode> {
+        let surfaces = match self.system.count() {
+            0 => mode.surfaces,
+            _ => decide(&Sampling(&self.system, own), &mode.surfaces, cause, s, y),
+        };
         SlidingMode { own, surfaces }
+    }
+
+    fn rested(
+        &self,
+        mode: SlidingMode<S::Mode>,
+        guard: usize,
+        s: f64,
+        y: &mut [f64],
+    ) -> Option<SlidingMode<S::Mode>> {
+        let guard = self.own_guard(guard)?;
+        let cause = Cause::Moved(Sampling(&self.system, mode.own).surfaces(s, y));
+        let own = self.system.rest(mode.own, guard, s, y)?;
+        Some(self.decided(mode, s, y, (own, cause)))
+    }
+
+    fn condition_of(&self, mode: SlidingMode<S::Mode>, guard: usize, s: f64, y: &[f64]) -> f64 {
+        if let Some(guard) = self.own_guard(guard) {
+            let own = self.system.transition_condition(mode.own, guard, s, y);
+            if !own.is_nan() {
+                return own;
+            }
+        }
+        let mut after = y.to_vec();
+        match self.moved(mode, guard, s, &mut after) {
+            Some((own, cause)) if self.system.count() > 0 => {
+                condition(&Sampling(&self.system, own), &mode.surfaces, cause, s, &after)
+            }
+            _ => f64::NAN,
+        }
+    }
+
+    fn schedule_of(&self, mode: SlidingMode<S::Mode>, guard: usize) -> Schedule<'_> {
+        self.own_guard(guard).map_or(Schedule::NEVER, |own| self.system.schedule(mode.own, own))
     }
 }
 
@@ -282,6 +360,9 @@ impl<S: SwitchedDynamic> DynamicSystem for SampledFilippov<S> {
     }
 
     fn guards(&self, mode: Self::Mode) -> &[Guard] {
+        if self.system.count() == 0 {
+            return self.system.guards(mode.own);
+        }
         let guards = self.guards_of(mode);
         let mut place = &self.guards;
         loop {
@@ -300,6 +381,18 @@ impl<S: SwitchedDynamic> DynamicSystem for SampledFilippov<S> {
 
     fn transition(&self, mode: Self::Mode, guard: usize, s: f64, y: &mut [f64]) -> Self::Mode {
         self.switched(mode, guard, s, y)
+    }
+
+    fn schedule(&self, mode: Self::Mode, guard: usize) -> Schedule<'_> {
+        self.schedule_of(mode, guard)
+    }
+
+    fn rest(&self, mode: Self::Mode, guard: usize, s: f64, y: &mut [f64]) -> Option<Self::Mode> {
+        self.rested(mode, guard, s, y)
+    }
+
+    fn transition_condition(&self, mode: Self::Mode, guard: usize, s: f64, y: &[f64]) -> f64 {
+        self.condition_of(mode, guard, s, y)
     }
 }
 
@@ -342,10 +435,22 @@ impl<S: SwitchedDynamic, const N: usize, const G: usize> HybridSystem<N, G> for 
     }
 
     fn transition_condition(&self, mode: Self::Mode, guard: usize, s: f64, y: &State<N>) -> f64 {
+        self.condition_of(mode, guard, s, y.as_slice())
+    }
+
+    fn schedule(&self, mode: Self::Mode, guard: usize) -> Schedule<'_> {
+        self.schedule_of(mode, guard)
+    }
+
+    fn rest(
+        &self,
+        mode: Self::Mode,
+        guard: usize,
+        s: f64,
+        y: &State<N>,
+    ) -> Option<(Self::Mode, State<N>)> {
         let mut after = *y;
-        let Some((own, cause)) = self.moved(mode, guard, s, after.as_mut_slice()) else {
-            return f64::NAN;
-        };
-        condition(&Sampling(&self.system, own), &mode.surfaces, cause, s, after.as_slice())
+        let mode = self.rested(mode, guard, s, after.as_mut_slice())?;
+        Some((mode, after))
     }
 }

@@ -109,6 +109,13 @@ impl<Mode> SlidingMode<Mode> {
         self.surfaces.unique
     }
 
+    /// A mode from which nothing goes on, since functions of the system fail: the right-hand side is
+    /// NaN.
+    pub fn refused(own: Mode) -> Self {
+        let surfaces = Sides::new(0, [Side::Above; MOST]).refused(Refusal::NotFinite);
+        Self { own, surfaces }
+    }
+
     /// This mode after its first step, where its guards have left their zeros.
     pub(super) fn settled(self) -> Self {
         Self { surfaces: Sides { zeros: [[0; 2]; MOST], ..self.surfaces }, ..self }
