@@ -50,14 +50,15 @@ def build_sdist(sdist_directory: str, config_settings: Any = None) -> str:
 def both_builds() -> Iterator[None]:
     """Builds the faster module; then maturin builds the one for any processor.
 
-    With STICKSLIP_PROFILE, a profile of cargo, there is only one, for tests.
+    With STICKSLIP_PROFILE, a profile of cargo, there is only one, for tests. Its dependencies are
+    those that tests of the workspace have compiled.
     """
     if platform.machine().lower() not in ("x86_64", "amd64"):
         yield
         return
     if profile := os.environ.get("STICKSLIP_PROFILE"):
         # One build, with the flags of .cargo/config.toml.
-        os.environ["MATURIN_PEP517_ARGS"] = f"--profile {profile}"
+        os.environ["MATURIN_PEP517_ARGS"] = f"--profile {profile} --features as-tested"
         yield
         return
     settings = tomllib.loads((HERE / "pyproject.toml").read_text())["tool"]["maturin"]

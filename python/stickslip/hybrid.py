@@ -152,6 +152,11 @@ class _Table:
 
     def refuse_changes(self) -> None:
         """Refuses a run backwards through transitions."""
+        if self.surfaces:
+            raise ValueError(
+                "t_span goes backwards, but how long a solution has slid is not known; expected an "
+                "end after the start"
+            )
         for mode in self.system_modes:
             for guard in mode.guard_list:
                 if guard.changes:

@@ -108,7 +108,7 @@ fn both_engines_trace_the_same_window() {
 }
 
 #[test]
-#[ignore = "long; .ci/run runs it"]
+#[ignore = "long; .ci/run --long runs it"]
 fn both_engines_trace_the_same_atlas() {
     assert_engines_agree(&undamped(), &ATLAS);
 }

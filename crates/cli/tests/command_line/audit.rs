@@ -171,7 +171,7 @@ fn bounds_and_courses() {
 /// first and the last regime, and the energy keep their verdicts. Those about the switches, the
 /// limit of pure sliding and the size of ε_t do not.
 #[test]
-#[ignore = "long; .ci/run runs it"]
+#[ignore = "long; .ci/run --long runs it"]
 fn another_model_has_other_verdicts() {
     let changed: Vec<_> = RESET
         .iter()

@@ -48,7 +48,7 @@ pub static USUAL: LazyLock<(Workspace, Ran)> = LazyLock::new(|| {
 });
 
 #[test]
-#[ignore = "long; .ci/run runs it"]
+#[ignore = "long; .ci/run --long runs it"]
 fn the_usual_collisions_have_the_orders_of_the_methods() {
     let (workspace, ran) = &*USUAL;
     assert_eq!(workspace.names_in("new/study"), FILES);

@@ -188,7 +188,7 @@ fn maps_and_atlases_know_their_law() {
 }
 
 #[test]
-#[ignore = "long; .ci/run runs it"]
+#[ignore = "long; .ci/run --long runs it"]
 fn lines_on_which_a_law_begins_to_gain_are_written() {
     let directory = Workspace::new();
     let window = "trace --kappa 1.2:1.3 --psi 0.85:1 --out atlas.json --gaining gaining.json";

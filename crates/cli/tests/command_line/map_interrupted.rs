@@ -90,7 +90,7 @@ fn finish(workspace: &Workspace, message: &str) {
 }
 
 #[test]
-#[ignore = "long; .ci/run runs it"]
+#[ignore = "long; .ci/run --long runs it"]
 fn ten_kills_leave_no_trace() {
     let workspace = Workspace::new();
     let mut kept = BTreeMap::new();

@@ -219,7 +219,7 @@ fn a_command_makes_the_boundaries() {
 }
 
 #[test]
-#[ignore = "long; .ci/run runs it"]
+#[ignore = "long; .ci/run --long runs it"]
 fn a_command_makes_the_study_of_convergence() {
     Remade::new("convergence").check();
 }

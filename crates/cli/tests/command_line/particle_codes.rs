@@ -38,7 +38,7 @@ fn quick_commands_of_the_page_run() {
 }
 
 #[test]
-#[ignore = "long; .ci/run runs it"]
+#[ignore = "long; .ci/run --long runs it"]
 fn every_command_of_the_page_runs() {
     let workspace = run(|_| true);
     // The gases have lost energy, the one with the constant more.

@@ -59,7 +59,7 @@ fn a_map_of_two_bodies_in_parts() {
 }
 
 #[test]
-#[ignore = "long; .ci/run runs it"]
+#[ignore = "long; .ci/run --long runs it"]
 fn a_larger_map_of_two_bodies_in_parts() {
     two_bodies_in_parts("13x29");
 }

@@ -336,7 +336,7 @@ fn data_are_what_the_other_commands_make() {
 }
 
 #[test]
-#[ignore = "long; .ci/run runs it"]
+#[ignore = "long; .ci/run --long runs it"]
 fn the_same_bytes_with_one_thread() {
     let one_thread = whole("new/out", 1);
     assert_eq!(one_thread.names_in("new/out"), expected_names());

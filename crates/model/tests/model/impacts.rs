@@ -205,7 +205,7 @@ fn momentum_angular_momentum_and_energy_are_conserved() {
 }
 
 #[test]
-#[ignore = "long; .ci/run runs it"]
+#[ignore = "long; .ci/run --long runs it"]
 fn a_hundred_thousand_impacts_conserve_momentum_angular_momentum_and_energy() {
     conserved(100_000);
 }
@@ -264,7 +264,7 @@ fn orientation_frame_and_order_do_not_matter() {
 }
 
 #[test]
-#[ignore = "long; .ci/run runs it"]
+#[ignore = "long; .ci/run --long runs it"]
 fn orientation_frame_and_order_do_not_matter_to_twenty_thousand_impacts() {
     turned_boosted_and_exchanged(20_000);
 }

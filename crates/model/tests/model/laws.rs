@@ -389,7 +389,7 @@ fn contacts_on_the_verge_of_slip_are_resolved() {
 /// Force and limit start alike: κψ = 1 without damping (2/3 of it with a history of force), and bψ
 /// = 1 with it. Such a contact starts in stick, and has the ε_t of its neighbours.
 #[test]
-#[ignore = "long; .ci/run runs it"]
+#[ignore = "long; .ci/run --long runs it"]
 fn contacts_on_the_border_of_slip_stick() {
     let mut checked = Vec::new();
     for preset in presets::ALL {

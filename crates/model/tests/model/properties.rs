@@ -41,7 +41,7 @@ fn collisions_over_the_whole_range() {
 }
 
 #[test]
-#[ignore = "long; .ci/run runs it"]
+#[ignore = "long; .ci/run --long runs it"]
 fn more_collisions_over_the_whole_range() {
     hold(4000, &contacts(-12.0..5.0), checks::every_engine);
 }

@@ -77,7 +77,7 @@ fn a_force_history_starts_in_slip() {
 /// integrated, and known less well than those of the exact engine: nothing is wrong, but a region
 /// at the corner that is hardly wider than the error of its boundaries may be in doubt.
 #[test]
-#[ignore = "long; .ci/run runs it"]
+#[ignore = "long; .ci/run --long runs it"]
 fn a_vertex_of_another_law_may_lie_on_the_edge() {
     let window =
         frame((10.500000000000018, 10.500102478148793), (0.09522670593196017, 0.09523809523809512));
@@ -99,7 +99,7 @@ fn a_narrow_window_of_another_law_may_have_runs_that_fail() {
 
 /// Where attraction is limited, damped contacts are divided completely too.
 #[test]
-#[ignore = "long; .ci/run runs it"]
+#[ignore = "long; .ci/run --long runs it"]
 fn a_limited_contact_is_traced_with_damping() {
     let name = "granular/hertz/viscoelastic/linear_history+limit_damping";
     let window = Frame { tangential_damping: 0.5, ..frame((1.0, 8.0), (0.2, 1.5)) };
@@ -160,7 +160,7 @@ fn boundaries_that_meet_just_beyond_the_edge_are_told_apart() {
 /// A graze touches an upright boundary where two others end. Its margin and that of the upright one
 /// tell the place of the vertex only to half the digits.
 #[test]
-#[ignore = "long; .ci/run runs it"]
+#[ignore = "long; .ci/run --long runs it"]
 fn a_vertex_with_a_touch_stays_where_the_other_boundaries_meet() {
     let window = Frame { tangential_damping: 0.5, ..frame((1.0, 10.0), (0.1, 3.0)) };
     let verified = traced(with_law("gran/hooke/history", 0.2, window));

@@ -9,7 +9,7 @@ use crate::windows::frame;
 /// Nearly all boundaries of this window lie in one corner, in a twentieth of its area in traced
 /// coordinates, where each place of an even grid has other switches.
 #[test]
-#[ignore = "long; .ci/run runs it"]
+#[ignore = "long; .ci/run --long runs it"]
 fn a_window_from_soft_to_stiff_springs_is_refused() {
     let frame = frame((1e-4, 3e4), (0.01, 1e3));
     let refused = trace(frame, frame.tolerances().usual, SILENT).unwrap_err();

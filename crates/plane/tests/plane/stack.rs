@@ -105,7 +105,7 @@ fn a_region_dies_in_a_swallowtail() -> Result<(), InvalidParameter> {
 }
 
 #[test]
-#[ignore = "long; .ci/run runs it"]
+#[ignore = "long; .ci/run --long runs it"]
 fn a_region_dies_in_a_swallowtail_of_a_wider_window() -> Result<(), InvalidParameter> {
     dies_in_a_swallowtail((0.8, 12.0), (0.2, 1.5))
 }
@@ -146,7 +146,7 @@ fn dies_in_a_swallowtail(kappa: (f64, f64), psi: (f64, f64)) -> Result<(), Inval
 /// Another meeting of the same boundaries is a ten-thousandth of the damping beside this one, where
 /// a graze leaves through an end and through the edge of the window.
 #[test]
-#[ignore = "long; .ci/run runs it"]
+#[ignore = "long; .ci/run --long runs it"]
 fn a_meeting_beside_a_change_is_not_its_cause() {
     let window = frame((0.5, 30.0), (0.05, 2.0));
     let tolerance = window.tolerances().usual;

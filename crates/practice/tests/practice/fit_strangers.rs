@@ -162,7 +162,7 @@ fn intervals_hold_the_truth() {
 
 /// 48 of 60 are expected, with a standard deviation of 3.1.
 #[test]
-#[ignore = "long; .ci/run runs it"]
+#[ignore = "long; .ci/run --long runs it"]
 fn intervals_hold_the_truth_as_often_as_they_say() {
     let held = held(60);
     assert!(held.iter().all(|held| (38..=58).contains(held)), "{held:?}");

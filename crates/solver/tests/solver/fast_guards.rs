@@ -98,7 +98,7 @@ fn zeros_of_a_fast_guard_on_long_steps_are_no_poles() {
 }
 
 #[test]
-#[ignore = "long; .ci/run runs it"]
+#[ignore = "long; .ci/run --long runs it"]
 fn zeros_of_random_fast_guards_on_long_steps_are_no_poles() {
     let mut rng = Rng::with_seed(17);
     for case in 0..50 {

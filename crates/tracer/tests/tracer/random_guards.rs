@@ -120,7 +120,7 @@ fn a_random_family_is_right_where_it_is_sure() {
 /// more. Many of them are in doubt for the greater part, since their guards often fire at one
 /// instant.
 #[test]
-#[ignore = "long; .ci/run runs it"]
+#[ignore = "long; .ci/run --long runs it"]
 fn random_families_are_right_where_they_are_sure() {
     let families = env::var("FAMILIES");
     let chosen = families.is_ok();

@@ -1,0 +1,166 @@
+"""Variables that only events change."""
+
+import math
+
+import numpy as np
+import pytest
+from numba import cfunc, types
+
+from stickslip import Compiled, Guard, HybridFamily, HybridSystem, solve
+
+POINTER = types.CPointer(types.float64)
+SIGNATURE = types.void(types.float64, POINTER, POINTER, POINTER)
+
+
+def heater(right_hand_side=lambda t, y, now: 3.0 * now.on - y):
+    """A room that is heated to 3 until it has 2, and cools to 0 until it has 1."""
+    system = HybridSystem(variables={"on": 1.0, "count": 0})
+    room = system.mode("room", right_hand_side)
+    room.guard("warm", lambda t, y, now: 2.0 - y, direction="falling", sets={"on": 0.0})
+    room.guard(
+        "cold",
+        lambda t, y, now: y - 1.0,
+        direction="falling",
+        sets=lambda t, y, now: {"on": 1.0, "count": now.count + 1.0},
+    )
+    return system
+
+
+def test_a_heater_switches_at_its_times():
+    found = solve(heater(), (0.0, 10.0), [0.0], rtol=1e-13)
+    times = math.log(3.0) + math.log(2.0) * np.arange(13)
+    assert np.abs(found.events["time"] - times).max() < 1e-11
+    assert list(found.events["guard"]) == ["warm", "cold"] * 6 + ["warm"]
+    assert list(found.events["variables"]["on"]) == [0.0, 1.0] * 6 + [0.0]
+    assert found.variables["count"][-1] == 6.0 and found.variables["on"][0] == 1.0
+    assert found.sides == {} and set(found.mode) == {"room"}
+
+
+def test_units_need_no_modes_of_their_own():
+    n = 40
+    rates = 1.0 + np.arange(n) / n
+    system = HybridSystem(variables={"on": np.ones(n)})
+    units = system.mode("units", lambda t, y, now: rates * (3.0 * now.on - y))
+
+    def to(unit, value):
+        def sets(t, y, now):
+            on = now.on.copy()
+            on[unit] = value
+            return {"on": on}
+
+        return sets
+
+    warm = [Guard(f"warm {i}", "falling", sets=to(i, 0.0)) for i in range(n)]
+    cold = [Guard(f"cold {i}", "falling", sets=to(i, 1.0)) for i in range(n)]
+    units.guards(lambda t, y, now: np.concatenate([2.0 - y, y - 1.0]), *warm, *cold)
+    found = solve(system, (0.0, 4.0), np.zeros(n), t_eval=[], rtol=1e-12)
+    for unit, rate in enumerate(rates):
+        names = [f"warm {unit}", f"cold {unit}"]
+        times = found.events["time"][np.isin(found.events["guard"], names)]
+        exact = (math.log(3.0) + math.log(2.0) * np.arange(99)) / rate
+        assert times.size == (exact < 4.0).sum()
+        assert np.abs(times - exact[: times.size]).max() < 1e-10
+
+
+def test_what_follows_sees_what_was_before():
+    system = HybridSystem(variables={"kicks": 0, "last": [0.0, 0.0]})
+    first = system.mode("first", lambda t, y, now: [1.0, 0.0])
+    system.mode("second", lambda t, y, now: [now.kicks, now.last[0]])
+    first.every(
+        "kick",
+        1.0,
+        phase=0.5,
+        reset=lambda t, y, now: y + [0.0, 10.0 * (1.0 + now.kicks)],
+        sets=lambda t, y, now: {"kicks": now.kicks + 1, "last": y},
+    )
+    first.guard("enough", lambda t, y, now: 2.0 - y[0] + 0.0 * now.kicks, to="second")
+    found = solve(system, (0.0, 3.5), [0.0, 0.0], "first")
+    assert list(found.events["guard"]) == ["kick", "kick", "enough"]
+    assert np.abs(found.events["after"][1] - [1.5, 30.0]).max() < 1e-13
+    assert found.variables["last"].shape == (found.t.size, 2)
+    assert np.array_equal(found.variables["last"][-1], found.events["before"][1])
+    assert np.abs(found.y[:, -1] - [2.0 + 2.0 * 1.5, 30.0 + 1.5 * 1.5]).max() < 1e-12
+
+
+def test_a_guard_is_armed_by_another_one():
+    """It fires when the sine falls, but only after it has been below -0.5."""
+    system = HybridSystem(variables={"armed": 0.0})
+    wave = system.mode("wave", lambda t, y, now: [0.0])
+    wave.guard("arms", lambda t, y, now: np.sin(t) + 0.5, direction="falling", sets={"armed": 1.0})
+    wave.guard("fires", lambda t, y, now: np.sin(t) if now.armed else 1.0, terminal=True)
+    wave.guard("rises", lambda t, y, now: np.sin(t), direction="rising", sets={"armed": 0.0})
+    found = solve(system, (0.5, 20.0), [0.0])
+    # It is negative where it is armed.
+    assert found.status == 1 and list(found.events["guard"]) == ["arms", "fires"]
+    assert abs(found.t[-1] - math.pi * 7.0 / 6.0) < 1e-10
+
+
+def test_compiled_functions_find_variables_behind_the_state():
+    @cfunc(SIGNATURE)
+    def field(t, y, out, parameters):
+        out[0] = 3.0 * y[1] - y[0]
+
+    compiled = solve(heater(Compiled(field)), (0.0, 10.0), [0.0])
+    assert np.array_equal(compiled.y, solve(heater(), (0.0, 10.0), [0.0]).y)
+
+
+def test_families_have_variables():
+    system = HybridSystem(variables={"left": 2.0})
+    ball = system.mode("ball", lambda t, y, now, height, _: [y[1], -1.0])
+    ball.guard(
+        "floor",
+        lambda t, y, now, height, _: y[0] if now.left else 1.0,
+        reset=lambda t, y, now, height, _: [0.0, -0.5 * y[1]],
+        sets=lambda t, y, now, height, _: {"left": now.left - 1.0},
+    )
+    family = HybridFamily(
+        system, (0.0, 3.0), [1.0, 0.0], start=lambda t, y, now, height, _: [height, 0.0]
+    )
+    # Of a height h it bounces at √(2 h) and at twice that time, and not a third time.
+    assert [len(family.label(height, 0.0).guards) for height in (5.0, 2.0, 1.0, 0.1)] == [0, 1, 2, 2]
+
+
+@pytest.mark.parametrize(
+    ("sets", "error", "message"),
+    [
+        ({"off": 1.0}, ValueError, "'off' is no variable; expected some of \\('on', 'pair'\\)"),
+        (lambda t, y, now: {"off": 1.0}, ValueError, "at t = .*: 'off' is no variable"),
+        (lambda t, y, now: 3.0, TypeError, "3.0; expected a mapping"),
+        ({"pair": 1.0}, ValueError, "'pair' has shape \\(\\); expected \\(2,\\)"),
+        (lambda t, y, now: {"on": math.nan}, ValueError, "component 0 of the variables after"),
+        (lambda t, y, now: {"on": 1j}, TypeError, "complex"),
+    ],
+)
+def test_what_sets_something_else_is_refused(sets, error, message):
+    system = HybridSystem(variables={"on": 1.0, "pair": [0.0, 1.0]})
+    mode = system.mode("mode", lambda t, y, now: [1.0])
+    mode.guard("guard", lambda t, y, now: 1.0 - y, direction="falling", sets=sets)
+    with pytest.raises(error, match=message):
+        solve(system, (0.0, 2.0), [0.0])
+
+
+def test_wrong_variables_are_refused():
+    with pytest.raises(ValueError, match="'1a' is not a name"):
+        HybridSystem(variables={"1a": 1.0})
+    with pytest.raises(ValueError, match="finite"):
+        HybridSystem(variables={"a": math.inf})
+    system = HybridSystem()
+    mode = system.mode("mode", lambda t, y: [1.0])
+    mode.guard("guard", lambda t, y: 1.0 - y, direction="falling", sets={"on": 1.0})
+    with pytest.raises(ValueError, match="sets variables, and the system has none"):
+        solve(system, (0.0, 2.0), [0.0])
+    with pytest.raises(TypeError, match="sets = 3.0"):
+        mode.guard("other", lambda t, y: 1.0 - y, direction="falling", sets=3.0)
+    with pytest.raises(ValueError, match="backwards"):
+        solve(heater(), (1.0, 0.0), [0.0])
+
+
+def test_functions_cannot_change_variables():
+    def right_hand_side(t, y, now):
+        now.pair[0] = 1.0
+        return [1.0]
+
+    system = HybridSystem(variables={"pair": [0.0, 1.0]})
+    system.mode("mode", right_hand_side)
+    with pytest.raises(ValueError, match="read-only"):
+        solve(system, (0.0, 2.0), [0.0])
