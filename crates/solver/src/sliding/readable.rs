@@ -66,6 +66,18 @@ pub trait Switched<const N: usize, const K: usize, const G: usize> {
     ) -> Option<(Self::Mode, State<N>)> {
         None
     }
+
+    /// As [`HybridSystem::transition_condition`](crate::HybridSystem::transition_condition), for
+    /// one of the system's own guards.
+    fn transition_condition(
+        &self,
+        _mode: Self::Mode,
+        _guard: usize,
+        _s: f64,
+        _y: &State<N>,
+    ) -> f64 {
+        f64::NAN
+    }
 }
 
 /// A [`Switched`] system as a hybrid system, which slides along its surfaces where they attract it.
@@ -274,6 +286,12 @@ where
     }
 
     fn transition_condition(&self, mode: Self::Mode, guard: usize, s: f64, y: &State<N>) -> f64 {
+        if guard >= 2 * K {
+            let branches = self.0.transition_condition(mode.own, guard, s, y);
+            if !branches.is_nan() {
+                return branches;
+            }
+        }
         let Some((own, after, cause)) = self.moved(mode, guard, s, y) else { return f64::NAN };
         let view = Reading::<S, _, N, K, G>(&self.0, own);
         condition(&view, &mode.surfaces, cause, s, after.as_slice())

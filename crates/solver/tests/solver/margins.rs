@@ -176,19 +176,40 @@ impl ReadableDynamic for FreeChain {
     }
 }
 
-/// The same as a black box.
-struct DarkChain(Chain);
+/// Black boxes with a dimension that is known at run time.
+enum Dark {
+    /// The same.
+    Chain(Chain),
+    /// A mode with two guards leads to one with a single guard. What the second guard would do
+    /// there has no margin, and a margin of it cannot be followed.
+    FewerGuards,
+}
 
-impl DynamicSystem for DarkChain {
-    type Mode = ();
-    fn field(&self, (): (), t: f64, y: &[f64], slope: &mut [f64]) {
-        slope.copy_from_slice(&Chain::slope(t, [y[0], y[1], y[2], y[3]]));
+impl DynamicSystem for Dark {
+    type Mode = bool;
+    fn field(&self, _: bool, t: f64, y: &[f64], slope: &mut [f64]) {
+        match self {
+            Self::Chain(_) => slope.copy_from_slice(&Chain::slope(t, [y[0], y[1], y[2], y[3]])),
+            Self::FewerGuards => slope[0] = 1.0,
+        }
     }
-    fn guards(&self, (): ()) -> &[Guard] {
-        const { &[Guard::new(Direction::Falling)] }
+    fn guards(&self, late: bool) -> &[Guard] {
+        const BOUNDS: [Guard; 2] = [Guard::new(Direction::Below); 2];
+        match self {
+            Self::Chain(_) => const { &[Guard::new(Direction::Falling)] },
+            Self::FewerGuards if late => &BOUNDS[..1],
+            Self::FewerGuards => &BOUNDS,
+        }
     }
-    fn guard_values(&self, (): (), _: f64, y: &[f64], values: &mut [f64]) {
-        values[0] = self.0.distance(y[2]);
+    fn guard_values(&self, late: bool, _: f64, y: &[f64], values: &mut [f64]) {
+        match self {
+            Self::Chain(chain) => values[0] = chain.distance(y[2]),
+            Self::FewerGuards if late => values[0] = 3.0 + (2.0 * y[0]).cos(),
+            Self::FewerGuards => values.copy_from_slice(&[5.0, 1.0 - y[0]]),
+        }
+    }
+    fn transition(&self, late: bool, _: usize, _: f64, _: &mut [f64]) -> bool {
+        late || matches!(self, Self::FewerGuards)
     }
 }
 
@@ -197,7 +218,8 @@ impl DynamicSystem for DarkChain {
 #[test]
 fn a_guard_that_leaves_rest_slowly_has_no_margins_of_rounding() {
     let at_rest = || Start { mode: (), s: 0.0, state: State::from([0.0; 4]) };
-    let free_rest = || DynamicStart { mode: (), s: 0.0, state: &[0.0; 4] };
+    let readable_rest = || DynamicStart { mode: (), s: 0.0, state: &[0.0; 4] };
+    let free_rest = || DynamicStart { mode: false, s: 0.0, state: &[0.0; 4] };
     for tolerance in [1e-6, 1e-9, 1e-13] {
         let options = Options::with_tolerance(tolerance);
         for (limit, offset) in [(2.0, 0.0), (3.0, 0.5), (10.0, 0.0), (2.0, 1000.0)] {
@@ -207,13 +229,14 @@ fn a_guard_that_leaves_rest_slowly_has_no_margins_of_rounding() {
             Chain::check(&readable, &name);
             let dark = margins(Dop853, &BlackBox(&chain), at_rest(), 20.0, &options).unwrap();
             Chain::check(&dark, &name);
-            let found = margins_dynamic(Dop853, &FreeChain(chain), free_rest(), 20.0, &options);
+            let found = margins_dynamic(Dop853, &FreeChain(chain), readable_rest(), 20.0, &options);
             Chain::check(&found.unwrap(), &name);
-            let found = margins_dynamic(Dop853, &DarkChain(chain), free_rest(), 20.0, &options);
+            let found = margins_dynamic(Dop853, &Dark::Chain(chain), free_rest(), 20.0, &options);
             assert_eq!(found.as_ref(), Ok(&dark), "{name}");
             for miss in &dark.near_misses {
                 let (start, which) = (free_rest(), &miss.margin);
-                let found = margin_dynamic(Dop853, &DarkChain(chain), start, 20.0, &options, which);
+                let found =
+                    margin_dynamic(Dop853, &Dark::Chain(chain), start, 20.0, &options, which);
                 let found = found.unwrap().expect("a margin");
                 assert_eq!(found.margin, miss.margin);
                 assert!((found.value - miss.value).abs() < 1e-9, "{name}: {found:?} {miss:?}");
@@ -230,47 +253,23 @@ fn a_run_of_any_dimension_follows_an_itinerary() {
     let start = Start { mode: (), s: 0.0, state: State::from([0.0; 4]) };
     let fixed = follow(Dop853, &BlackBox(&chain), start, 20.0, &options, &[Exit::falling(0, 0.0)]);
     let fixed = fixed.unwrap().expect("a run");
-    let start = DynamicStart { mode: (), s: 0.0, state: &[0.0; 4] };
+    let start = DynamicStart { mode: false, s: 0.0, state: &[0.0; 4] };
     let exits = [Exit::falling(0, 0.0)];
-    let free = follow_dynamic(Dop853, &DarkChain(chain), start, 20.0, &options, &exits);
+    let free = follow_dynamic(Dop853, &Dark::Chain(chain), start, 20.0, &options, &exits);
     let free = free.unwrap().expect("a run");
     assert_eq!(free.run.outcome, Outcome::ReachedEnd);
     assert_eq!(free.run.state, fixed.run.state.as_slice());
     // A guard that the mode does not have.
     let exits = [Exit::falling(3, 0.0)];
-    let free = follow_dynamic(Dop853, &DarkChain(chain), start, 20.0, &options, &exits);
+    let free = follow_dynamic(Dop853, &Dark::Chain(chain), start, 20.0, &options, &exits);
     assert_eq!(free, Ok(None));
-}
-
-/// A mode with two guards leads to one with a single guard. What the second guard would do there
-/// has no margin, and a margin of it cannot be followed.
-struct FewerGuards;
-
-impl DynamicSystem for FewerGuards {
-    type Mode = bool;
-    fn field(&self, _: bool, _: f64, _: &[f64], slope: &mut [f64]) {
-        slope[0] = 1.0;
-    }
-    fn guards(&self, late: bool) -> &[Guard] {
-        const GUARDS: [Guard; 2] = [Guard::new(Direction::Below); 2];
-        if late { &GUARDS[..1] } else { &GUARDS }
-    }
-    fn guard_values(&self, late: bool, _: f64, y: &[f64], values: &mut [f64]) {
-        values[0] = if late { 3.0 + (2.0 * y[0]).cos() } else { 5.0 };
-        if let Some(value) = values.get_mut(1) {
-            *value = 1.0 - y[0];
-        }
-    }
-    fn transition(&self, _: bool, _: usize, _: f64, _: &mut [f64]) -> bool {
-        true
-    }
 }
 
 #[test]
 fn modes_may_have_different_numbers_of_guards() {
     let start = DynamicStart { mode: false, s: 0.0, state: &[0.0] };
     let options = Options::with_tolerance(1e-13);
-    let found = margins_dynamic(Dop853, &FewerGuards, start, 3.0, &options).unwrap();
+    let found = margins_dynamic(Dop853, &Dark::FewerGuards, start, 3.0, &options).unwrap();
     assert_eq!(found.fired, [1]);
     let mut last = found.near_misses.last().expect("margins").clone();
     let minimum = found.near_misses.iter().find(|miss| {
@@ -280,6 +279,6 @@ fn modes_may_have_different_numbers_of_guards() {
     assert!((minimum.s - std::f64::consts::FRAC_PI_2).abs() < 1e-9);
     assert!((minimum.value - 2.0).abs() < 1e-12);
     last.margin.guard = 1;
-    let lost = margin_dynamic(Dop853, &FewerGuards, start, 3.0, &options, &last.margin);
+    let lost = margin_dynamic(Dop853, &Dark::FewerGuards, start, 3.0, &options, &last.margin);
     assert_eq!(lost, Ok(None));
 }

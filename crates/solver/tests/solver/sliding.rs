@@ -5,10 +5,12 @@
 //! | `one_surface` | relays, dry friction, surfaces that move, starts on a surface |
 //! | `several_surfaces` | masses on a belt, three and four surfaces, what is refused |
 //! | `grazing` | the onset of sliding of an oscillator, by margins and by multipliers |
+//! | `own_events` | clocks and rest of a system that slides |
 //! | `random` | random piecewise-linear systems, against their exact inclusion |
 
 mod grazing;
 mod one_surface;
+mod own_events;
 mod random;
 mod several_surfaces;
 
