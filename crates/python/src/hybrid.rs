@@ -1,9 +1,9 @@
 //! Systems of one's own: modes, guards and transitions as functions of Python or of C.
 //!
 //! In reading order: `arguments` (what Python passes), `modes` (what becomes of it), `system` (what
-//! the solver sees) and `regimes` (what it takes for modes), `function` (a call), `numbers` (what comes back) and `trouble` (what goes
-//! wrong), `record` (what a run finds), `segments` (dense output that is kept), `ending` (how a run
-//! ended).
+//! the solver sees) and `regimes` (what it takes for modes), `function` (a call), `numbers` (what
+//! comes back) and `trouble` (what goes wrong), `record` (what a run finds), `segments` (dense output
+//! that is kept), `ending` (how a run ended).
 
 pub mod arguments;
 mod ending;
