@@ -2,8 +2,8 @@
 //!
 //! In reading order: `arguments` (what Python passes), `modes` (what becomes of it), `system` (what
 //! the solver sees) and `regimes` (what it takes for modes), `function` (a call), `numbers` (what
-//! comes back) and `trouble` (what goes wrong), `record` (what a run finds), `segments` (dense output
-//! that is kept), `ending` (how a run ended).
+//! comes back) and `trouble` (what goes wrong), `record` (what a run finds), `segments` (dense
+//! output that is kept), `ending` (how a run ended).
 
 pub mod arguments;
 mod ending;

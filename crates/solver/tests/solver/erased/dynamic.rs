@@ -2,7 +2,7 @@
 
 use stickslip_solver::{
     DynamicDense, DynamicEvent, DynamicObserver, DynamicRun, DynamicStart, DynamicSystem, Grazing,
-    Guard, Method, Options, Pole, RunError,
+    Guard, Method, Options, Pole, RunError, Schedule,
 };
 
 use super::modes::Modes;
@@ -65,6 +65,8 @@ trait Parts {
     fn guards(&self, mode: usize) -> &[Guard];
     fn guard_values(&self, mode: usize, s: f64, y: &[f64], values: &mut [f64]);
     fn transition(&self, mode: usize, guard: usize, s: f64, y: &mut [f64]) -> usize;
+    fn schedule(&self, mode: usize, guard: usize) -> Schedule<'_>;
+    fn rest(&self, mode: usize, guard: usize, s: f64, y: &mut [f64]) -> Option<usize>;
 }
 
 /// A system whose modes have numbers.
@@ -89,6 +91,14 @@ impl<S: DynamicSystem> Parts for Numbered<'_, S> {
     fn transition(&self, mode: usize, guard: usize, s: f64, y: &mut [f64]) -> usize {
         self.modes.number(self.system.transition(self.modes.mode(mode), guard, s, y))
     }
+
+    fn schedule(&self, mode: usize, guard: usize) -> Schedule<'_> {
+        self.system.schedule(self.modes.mode(mode), guard)
+    }
+
+    fn rest(&self, mode: usize, guard: usize, s: f64, y: &mut [f64]) -> Option<usize> {
+        self.system.rest(self.modes.mode(mode), guard, s, y).map(|mode| self.modes.number(mode))
+    }
 }
 
 /// Any system.
@@ -111,6 +121,14 @@ impl DynamicSystem for Erased<'_> {
 
     fn transition(&self, mode: usize, guard: usize, s: f64, y: &mut [f64]) -> usize {
         self.0.transition(mode, guard, s, y)
+    }
+
+    fn schedule(&self, mode: usize, guard: usize) -> Schedule<'_> {
+        self.0.schedule(mode, guard)
+    }
+
+    fn rest(&self, mode: usize, guard: usize, s: f64, y: &mut [f64]) -> Option<usize> {
+        self.0.rest(mode, guard, s, y)
     }
 }
 

@@ -1,7 +1,8 @@
 //! Systems and observers of fixed dimension.
 
 use stickslip_solver::{
-    Dense, Enclosure, Grazing, Guard, HybridSystem, Observer, Pole, Run, Start, State, SwitchEvent,
+    Dense, Enclosure, Grazing, Guard, HybridSystem, Observer, Pole, Run, Schedule, Start, State,
+    SwitchEvent,
 };
 
 use super::modes::Modes;
@@ -17,6 +18,8 @@ pub trait Parts<const N: usize, const G: usize> {
     fn longest_first_step(&self, mode: usize, s: f64, y: &State<N>) -> f64;
     fn transition(&self, mode: usize, guard: usize, s: f64, y: &State<N>) -> (usize, State<N>);
     fn transition_condition(&self, mode: usize, guard: usize, s: f64, y: &State<N>) -> f64;
+    fn schedule(&self, mode: usize, guard: usize) -> Schedule<'_>;
+    fn rest(&self, mode: usize, guard: usize, s: f64, y: &State<N>) -> Option<(usize, State<N>)>;
 }
 
 /// A system whose modes have numbers.
@@ -63,6 +66,15 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> Parts<N, G>
 
     fn transition_condition(&self, mode: usize, guard: usize, s: f64, y: &State<N>) -> f64 {
         self.system.transition_condition(self.modes.mode(mode), guard, s, y)
+    }
+
+    fn schedule(&self, mode: usize, guard: usize) -> Schedule<'_> {
+        self.system.schedule(self.modes.mode(mode), guard)
+    }
+
+    fn rest(&self, mode: usize, guard: usize, s: f64, y: &State<N>) -> Option<(usize, State<N>)> {
+        let (mode, y) = self.system.rest(self.modes.mode(mode), guard, s, y)?;
+        Some((self.modes.number(mode), y))
     }
 }
 
@@ -112,6 +124,14 @@ impl<const N: usize, const G: usize, const READABLE: bool> HybridSystem<N, G>
 
     fn transition_condition(&self, mode: usize, guard: usize, s: f64, y: &State<N>) -> f64 {
         self.0.transition_condition(mode, guard, s, y)
+    }
+
+    fn schedule(&self, mode: usize, guard: usize) -> Schedule<'_> {
+        self.0.schedule(mode, guard)
+    }
+
+    fn rest(&self, mode: usize, guard: usize, s: f64, y: &State<N>) -> Option<(usize, State<N>)> {
+        self.0.rest(mode, guard, s, y)
     }
 }
 
