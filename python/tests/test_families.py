@@ -820,3 +820,34 @@ def test_pictures(atlas: FamilyAtlas) -> None:
     assert svg.startswith("<svg") and svg.rstrip().endswith("</svg>") and "restitution" in svg
     assert atlas._repr_html_() == svg
     matplotlib.pyplot.close("all")
+
+
+def test_clocks_and_jumps_are_of_families():
+    """A dose at 1 lifts the level to 2 where dose = 2 - exp(-rate)."""
+    tank = HybridSystem()
+    empties = tank.mode("empties", lambda t, y, rate, dose: -rate * y)
+    empties.at("dose", [1.0], reset=lambda t, y, rate, dose: y + dose)
+    empties.guard("high", lambda t, y, rate, dose: y - 2.0, direction="rising", sees_jumps=True)
+    family = HybridFamily(tank, (0.0, 3.0), [1.0])
+    assert str(family.label(1.0, 1.5)) == "dose"
+    assert str(family.label(1.0, 1.7)) == "dose, high"
+    found = family.follow((0.5, 1.5), (1.2, 2.0), [(1.0, 1.5), (1.0, 1.7)])
+    rate, dose = found.points.T
+    assert len(rate) > 3 and np.abs(dose - 2.0 + np.exp(-rate)).max() < 1e-11
+
+
+def test_families_rest():
+    ball = HybridSystem()
+    fly = ball.mode("fly", lambda t, y, restitution, g: [y[1], -g])
+    fly.guard(
+        "floor",
+        lambda t, y, restitution, g: y[0],
+        reset=lambda t, y, restitution, g: [0.0, -restitution * y[1]],
+        rest=lambda t, y, restitution, g: ("lie", [0.0, 0.0]),
+    )
+    lie = ball.mode("lie", lambda t, y, restitution, g: [0.0, 0.0])
+    lie.at("kick", [4.0], to="fly", reset=lambda t, y, restitution, g: [0.0, g])
+    family = HybridFamily(ball, (0.0, 5.0), [1.0, 0.0], "fly")
+    # It lies from 3 on, is kicked at 4, and is in the air then.
+    found = family.label(0.5, 2.0)
+    assert found.kind == "fires" and found.guards[-2:] == ("floor", "kick")
