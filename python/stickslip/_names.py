@@ -29,7 +29,12 @@ class Named:
         self.flat = self._flat(arrays)
         if not np.isfinite(self.flat).all():
             raise ValueError(f"{kind} = {dict(values)!r}; expected finite numbers")
+        self._made_from = (kind, arrays)
         self._tuple: Any = namedtuple(kind.capitalize(), self.names)  # type: ignore[misc]
+
+    def __reduce__(self) -> Any:
+        # The class of the tuples is not found by its name.
+        return Named, self._made_from
 
     def __bool__(self) -> bool:
         return bool(self.names)

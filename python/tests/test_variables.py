@@ -1,6 +1,7 @@
 """Variables that only events change."""
 
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -164,3 +165,25 @@ def test_functions_cannot_change_variables():
     system.mode("mode", right_hand_side)
     with pytest.raises(ValueError, match="read-only"):
         solve(system, (0.0, 2.0), [0.0])
+
+
+def decay(t, y, now):
+    return -now.rates * y
+
+
+def test_systems_with_variables_are_copied_and_pickled():
+    system = HybridSystem(variables={"rates": [1.0, 2.0]})
+    system.mode("decay", decay)
+    found = solve(pickle.loads(pickle.dumps(system)), (0.0, 1.0), [1.0, 1.0])
+    assert np.abs(found.y[:, -1] - np.exp([-1.0, -2.0])).max() < 1e-10
+    again = pickle.loads(pickle.dumps(found))
+    assert again.variables["rates"].shape == (found.t.size, 2)
+
+
+def test_events_and_arguments_follow_variables():
+    system = HybridSystem(variables={"on": 1.0})
+    system.mode("mode", lambda t, y, now, a: [a * now.on])
+    found = solve(
+        system, (0.0, 2.0), [0.0], events=lambda t, y, now, a: y[0] - now.on - a, args=(2.0,)
+    )
+    assert abs(found.t_events[0][0] - 1.5) < 1e-12
