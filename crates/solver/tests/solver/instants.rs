@@ -332,15 +332,3 @@ impl Case {
         )
     }
 }
-
-/// Cases in which a run still takes another order.
-const OPEN: [u64; 1] = [92];
-
-#[test]
-fn everything_that_happens_at_one_instant_acts_in_order() {
-    for seed in (0..500).filter(|seed| !OPEN.contains(seed)) {
-        let case = Case::new(seed);
-        let faults = case.faults();
-        assert!(faults.is_empty(), "seed {seed}\n{}\n{faults:#?}", case.describe());
-    }
-}

@@ -16,7 +16,7 @@
 //! | `fast_guards` | black boxes that go up and down often on one step, and poles on long steps |
 //! | `singular` | guards without bounds or without a value somewhere |
 //! | `sliding` | systems that slide along surfaces |
-//! | `instants` | random systems whose events coincide, exactly or nearly |
+//! | `instants`, `planted_instants` | random systems whose events coincide, exactly or nearly |
 //! | `reports` | systems from public reports about the events of other tools |
 //! | `strangers` | systems that nobody here designed for |
 //! | `dynamic` | systems whose dimension is known at run time |
@@ -37,6 +37,7 @@ mod guard_rounding;
 mod instants;
 mod margins;
 mod methods;
+mod planted_instants;
 mod planted_kinds;
 mod planted_roots;
 mod plateaus;
