@@ -133,9 +133,10 @@ impl Job {
         let Start { mode, s, ref state, ref sides } = self.start;
         self.system.system.find_zeros(mode, s, state);
         let first = self.system.system.first(mode);
-        let mode_at_start = self.system.mode_from(first, sides, s, state);
-        let mode_at_start = match mode_at_start {
-            Err(_) if self.system.system.trouble().has_failed() => SlidingMode::refused(first),
+        let mode_at_start = match self.system.mode_from(first, sides, s, state) {
+            Err(refusal) if self.system.system.trouble().has_failed() => {
+                SlidingMode::refused(first, refusal)
+            }
             found => found.map_err(Failure::Start)?,
         };
         record.begin(mode_at_start);

@@ -109,7 +109,7 @@ impl DynamicProblem for Members {
         let system = Sliding::new(system);
         let mode = system.mode_from(regime, &start.sides, start.s, &state);
         // A run from where the solution does not go on fails.
-        let mode = mode.unwrap_or_else(|_| SlidingMode::refused(regime));
+        let mode = mode.unwrap_or_else(|refusal| SlidingMode::refused(regime, refusal));
         (system, (mode, start.s, state))
     }
 }

@@ -109,10 +109,9 @@ impl<Mode> SlidingMode<Mode> {
         self.surfaces.unique
     }
 
-    /// A mode from which nothing goes on, since functions of the system fail: the right-hand side
-    /// is NaN.
-    pub fn refused(own: Mode) -> Self {
-        let surfaces = Sides::new(0, [Side::Above; MOST]).refused(Refusal::NotFinite);
+    /// A mode from which nothing goes on: the right-hand side is NaN.
+    pub fn refused(own: Mode, refusal: Refusal) -> Self {
+        let surfaces = Sides::new(0, [Side::Above; MOST]).refused(refusal);
         Self { own, surfaces }
     }
 
