@@ -9,6 +9,7 @@
 //! the number of contacts for each law, ten times as many with the paper's; 100 000 without an
 //! argument.
 
+use std::collections::BTreeMap;
 use std::error::Error;
 use std::process::ExitCode;
 
@@ -60,6 +61,16 @@ fn report(title: &str, found: &[(Contact, Verdict)]) -> usize {
     }
     let [right, near, refused, wrong] = counts;
     println!("{title}: {right}, {near}, {refused}, {wrong}");
+    let mut reasons = BTreeMap::<String, usize>::new();
+    for (_, verdict) in found {
+        if let Verdict::Refused(reason) = verdict {
+            let words = reason.split_whitespace().filter(|it| !it.contains(char::is_numeric));
+            *reasons.entry(words.collect::<Vec<_>>().join(" ")).or_default() += 1;
+        }
+    }
+    for (reason, times) in reasons {
+        println!("    {times} refused: {reason}");
+    }
     for (contact, verdict) in found {
         if let Verdict::Wrong(reason) = verdict {
             println!(
