@@ -1,5 +1,6 @@
 //! Dual numbers: a value with its derivative along one direction, in numbers of any kind.
 
+use std::f64::consts::FRAC_2_SQRT_PI;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::Number;
@@ -202,6 +203,33 @@ impl<T: Number> Number for Dual<T> {
         let slope = self.slope / (self.value * self.value + 1.0);
         Self { value: self.value.atan(), slope }
     }
+    fn atan2(self, x: Self) -> Self {
+        let turned = x.value * self.slope - self.value * x.slope;
+        let slope = turned / (x.value * x.value + self.value * self.value);
+        Self { value: self.value.atan2(x.value), slope }
+    }
+    fn asinh(self) -> Self {
+        let slope = self.slope / (self.value * self.value + 1.0).sqrt();
+        Self { value: self.value.asinh(), slope }
+    }
+    fn acosh(self) -> Self {
+        let slope = self.slope / (self.value * self.value - 1.0).sqrt();
+        Self { value: self.value.acosh(), slope }
+    }
+    fn atanh(self) -> Self {
+        let slope = self.slope / (-(self.value * self.value) + 1.0);
+        Self { value: self.value.atanh(), slope }
+    }
+    fn exp_m1(self) -> Self {
+        self.chain(self.value.exp_m1(), self.value.exp())
+    }
+    fn ln_1p(self) -> Self {
+        Self { value: self.value.ln_1p(), slope: self.slope / (self.value + 1.0) }
+    }
+    fn erf(self) -> Self {
+        let bell = (-(self.value * self.value)).exp() * FRAC_2_SQRT_PI;
+        self.chain(self.value.erf(), bell)
+    }
 }
 
 #[cfg(test)]
@@ -218,14 +246,16 @@ mod tests {
             3 => (x * 0.4).tan() + x.sinh() * x.cosh() - (x + 5.0).powf(1.7),
             4 => (x * 2.0).cos().max(x).min(T::from(0.7)) / 3.0,
             5 => (x - 0.3).abs() * x + (x * 4.0).floor() + x.powi(0) - x.powi(1) + x.powi(-2),
-            _ => (x - 0.2).select(x * x, -x) - 0.1,
+            6 => (x - 0.2).select(x * x, -x) - 0.1,
+            7 => x.atan2(x * x - 0.3) + x.asinh() - (x * x + 1.5).acosh() * x,
+            _ => (x * 0.9).atanh() * x.exp_m1() + (x * 0.5).ln_1p() - (x * 2.0).erf(),
         }
     }
 
     /// Derivatives are those of another implementation, also the second ones.
     #[test]
     fn derivatives_are_those_of_dual64() {
-        for kind in 0..7 {
+        for kind in 0..9 {
             for x in [-0.77, -0.11, 0.31, 0.85] {
                 let one = formula(Dual { value: x, slope: 1.0 }, kind);
                 let other = formula(Dual64::new(x, 1.0), kind);

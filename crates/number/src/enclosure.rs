@@ -1,5 +1,6 @@
 //! Enclosures: a function of one variable over an interval, with its first two derivatives.
 
+use std::f64::consts::FRAC_2_SQRT_PI;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::four::{Four, product_rule};
@@ -341,5 +342,68 @@ impl Number for Enclosure {
         let first = Interval::point(1.0).plus(self.value.powi(2)).inverse();
         let second = self.value.times(first.powi(2)).scaled(-2.0);
         self.chain(self.value.atan(), first, second)
+    }
+
+    fn atan2(self, x: Self) -> Self {
+        let value = self.value.atan2(x.value);
+        let square = x.value.powi(2).plus(self.value.powi(2)).inverse();
+        let jumps = self.value.lower() <= 0.0 && self.value.upper() >= 0.0;
+        if jumps && x.value.lower() <= 0.0 || !square.is_bounded() {
+            return Self { value, slope: Interval::ENTIRE, bend: Interval::ENTIRE };
+        }
+        // θ′ = (x y′ − y x′)/r² and θ″ = ((x y″ − y x″) − 2 (x x′ + y y′) θ′)/r².
+        let cross = |a: Interval, b: Interval| {
+            x.value.times(a).plus(self.value.times(b).negated())
+        };
+        let slope = cross(self.slope, x.slope).times(square);
+        let grows = x.value.times(x.slope).plus(self.value.times(self.slope)).scaled(-2.0);
+        let bend = cross(self.bend, x.bend).plus(grows.times(slope)).times(square);
+        Self { value, slope, bend }
+    }
+
+    fn asinh(self) -> Self {
+        let first = Interval::point(1.0).plus(self.value.powi(2)).sqrt().inverse();
+        let second = self.value.times(first.powi(3)).negated();
+        self.chain(self.value.asinh(), first, second)
+    }
+
+    fn acosh(self) -> Self {
+        let value = self.value.acosh();
+        let outside = Interval::point(-1.0).plus(self.value.powi(2));
+        if outside.lower() <= 0.0 || self.value.lower() <= 1.0 {
+            return self.chain(value, Interval::ENTIRE, Interval::ENTIRE);
+        }
+        let first = outside.sqrt().inverse();
+        self.chain(value, first, self.value.times(first.powi(3)).negated())
+    }
+
+    fn atanh(self) -> Self {
+        let value = self.value.atanh();
+        let inside = Interval::point(1.0).plus(self.value.powi(2).negated());
+        if inside.lower() <= 0.0 {
+            return self.chain(value, Interval::ENTIRE, Interval::ENTIRE);
+        }
+        let first = inside.inverse();
+        self.chain(value, first, self.value.times(first.powi(2)).scaled(2.0))
+    }
+
+    fn exp_m1(self) -> Self {
+        let slope = self.value.exp();
+        self.chain(self.value.exp_m1(), slope, slope)
+    }
+
+    fn ln_1p(self) -> Self {
+        let inside = self.value.plus(Interval::point(1.0));
+        if inside.lower() <= 0.0 {
+            return self.chain(self.value.ln_1p(), Interval::ENTIRE, Interval::ENTIRE);
+        }
+        let first = inside.inverse();
+        self.chain(self.value.ln_1p(), first, first.powi(2).negated())
+    }
+
+    fn erf(self) -> Self {
+        let factor = Interval::around(FRAC_2_SQRT_PI, f64::EPSILON);
+        let first = self.value.powi(2).negated().exp().times(factor);
+        self.chain(self.value.erf(), first, self.value.times(first).scaled(-2.0))
     }
 }

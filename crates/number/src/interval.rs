@@ -376,6 +376,68 @@ impl Interval {
         Self::new(self.lower.max(-1.0), self.upper.min(1.0)).rising(f64::asin)
     }
 
+    /// The inverse hyperbolic sine.
+    #[must_use]
+    pub fn asinh(self) -> Self {
+        self.rising(f64::asinh)
+    }
+
+    /// The inverse hyperbolic cosines of the numbers that have one.
+    #[must_use]
+    pub fn acosh(self) -> Self {
+        if self.upper < 1.0 {
+            return Self::ENTIRE;
+        }
+        let values = Self::new(self.lower.max(1.0), self.upper).rising(f64::acosh);
+        Self::new(values.lower.max(0.0), values.upper)
+    }
+
+    /// The inverse hyperbolic tangents of the numbers that have one.
+    #[must_use]
+    pub fn atanh(self) -> Self {
+        if self.upper < -1.0 || self.lower > 1.0 {
+            return Self::ENTIRE;
+        }
+        Self::new(self.lower.max(-1.0), self.upper.min(1.0)).rising(f64::atanh)
+    }
+
+    /// exp(x) − 1.
+    #[must_use]
+    pub fn exp_m1(self) -> Self {
+        let values = self.rising(f64::exp_m1);
+        Self::new(values.lower.max(-1.0), values.upper)
+    }
+
+    /// ln(1 + x) of the numbers that have one.
+    #[must_use]
+    pub fn ln_1p(self) -> Self {
+        if self.upper <= -1.0 {
+            return Self::ENTIRE;
+        }
+        Self::new(self.lower.max(-1.0), self.upper).rising(f64::ln_1p)
+    }
+
+    /// The error function.
+    #[must_use]
+    pub fn erf(self) -> Self {
+        self.rising(libm::erf).meet(Self::new(-1.0, 1.0))
+    }
+
+    /// The angles of the points whose second coordinates are these numbers and whose first ones
+    /// are `x`, from −π to π.
+    #[must_use]
+    pub fn atan2(self, x: Self) -> Self {
+        let turn = Self::around(0.0, PI * (1.0 + f64::EPSILON));
+        if self.lower <= 0.0 && self.upper >= 0.0 && x.lower <= 0.0 {
+            // The origin, or points on both sides of the jump.
+            return turn;
+        }
+        // The extreme angles of a rectangle without the origin are those of corners.
+        let corners = [(self.lower, x.lower), (self.lower, x.upper), (self.upper, x.lower)];
+        let at = |(y, x): (f64, f64)| Self::point(x).rising(|x| y.atan2(x));
+        corners.into_iter().map(at).fold(at((self.upper, x.upper)), Self::hull).meet(turn)
+    }
+
     /// The absolute values.
     #[must_use]
     #[inline]
@@ -399,7 +461,7 @@ mod tests {
     fn values_are_enclosed() {
         type Functions = (fn(Interval) -> Interval, fn(f64) -> f64);
         let mut random = fastrand::Rng::with_seed(1);
-        let functions: [Functions; 15] = [
+        let functions: [Functions; 21] = [
             (Interval::sqrt, f64::sqrt),
             (Interval::exp, f64::exp),
             (Interval::ln, f64::ln),
@@ -412,6 +474,12 @@ mod tests {
             (Interval::atan, f64::atan),
             (Interval::asin, f64::asin),
             (Interval::abs, f64::abs),
+            (Interval::asinh, f64::asinh),
+            (Interval::acosh, f64::acosh),
+            (Interval::atanh, f64::atanh),
+            (Interval::exp_m1, f64::exp_m1),
+            (Interval::ln_1p, f64::ln_1p),
+            (Interval::erf, libm::erf),
             (|x| x.powi(3), |x| x.powi(3)),
             (|x| x.powi(-2), |x| x.powi(-2)),
             (|x| x.powf(1.5), |x| x.powf(1.5)),
@@ -432,6 +500,7 @@ mod tests {
             for (a, b) in [(x.lower, other.lower), (x.upper, other.lower), (middle, other.upper)] {
                 assert!(x.plus(other).contains(a + b) && x.times(other).contains(a * b));
                 assert!(x.times(other.inverse()).contains(a / b));
+                assert!(x.atan2(other).contains(a.atan2(b)) && other.atan2(x).contains(b.atan2(a)));
             }
         }
     }

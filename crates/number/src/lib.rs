@@ -13,6 +13,7 @@ mod enclosure;
 mod four;
 mod interval;
 
+use std::f64::consts::FRAC_2_SQRT_PI;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -110,6 +111,27 @@ pub trait Number:
     /// The arc tangent in radians.
     #[must_use]
     fn atan(self) -> Self;
+    /// The angle of the point (`x`, self) in radians, from −π to π.
+    #[must_use]
+    fn atan2(self, x: Self) -> Self;
+    /// The inverse hyperbolic sine.
+    #[must_use]
+    fn asinh(self) -> Self;
+    /// The inverse hyperbolic cosine of a number ≥ 1.
+    #[must_use]
+    fn acosh(self) -> Self;
+    /// The inverse hyperbolic tangent of a number between −1 and 1.
+    #[must_use]
+    fn atanh(self) -> Self;
+    /// exp(x) − 1, accurate where it is small.
+    #[must_use]
+    fn exp_m1(self) -> Self;
+    /// ln(1 + x), accurate where it is small.
+    #[must_use]
+    fn ln_1p(self) -> Self;
+    /// The error function.
+    #[must_use]
+    fn erf(self) -> Self;
 }
 
 /// Functions that a type has under the same name.
@@ -150,7 +172,16 @@ impl Number for f64 {
     fn powf(self, exponent: f64) -> Self {
         f64::powf(self, exponent)
     }
-    same!(floor abs sqrt exp ln sin cos tan sinh cosh tanh asin acos atan);
+    same!(floor abs sqrt exp ln sin cos tan sinh cosh tanh asin acos atan asinh acosh atanh);
+    same!(exp_m1 ln_1p);
+    #[inline]
+    fn atan2(self, x: Self) -> Self {
+        f64::atan2(self, x)
+    }
+    #[inline]
+    fn erf(self) -> Self {
+        libm::erf(self)
+    }
 }
 
 /// Functions that `DualNum` has under the same name.
@@ -200,7 +231,16 @@ impl Number for Dual64 {
     fn powf(self, exponent: f64) -> Self {
         DualNum::powf(&self, exponent)
     }
-    dual!(sqrt exp ln sin cos tan sinh cosh tanh asin acos atan);
+    #[inline]
+    fn atan2(self, x: Self) -> Self {
+        DualNum::atan2(&self, x)
+    }
+    #[inline]
+    fn erf(self) -> Self {
+        let slope = FRAC_2_SQRT_PI * (-self.re * self.re).exp();
+        Self::new(libm::erf(self.re), slope * self.eps)
+    }
+    dual!(sqrt exp ln sin cos tan sinh cosh tanh asin acos atan asinh acosh atanh exp_m1 ln_1p);
 }
 
 #[doc = include_str!("../README.md")]

@@ -13,7 +13,7 @@ use crate::root;
 const LAYERS: [&[&str]; 11] = [
     &["stickslip-number"],
     &["stickslip-solver"],
-    &["stickslip-contact", "stickslip-tracer"],
+    &["stickslip-contact", "stickslip-expression", "stickslip-tracer"],
     &["stickslip-exact"],
     &["stickslip-model"],
     &["stickslip-plane"],

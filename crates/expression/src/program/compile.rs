@@ -1,0 +1,294 @@
+//! From a graph to instructions: products join sums, constants become immediate, and registers are
+//! used again.
+
+use std::collections::HashMap;
+
+use super::{Code, Inputs, Instruction, Op, Program};
+use crate::graph::{Binary, Formula, Graph, Node, Variable};
+
+/// What an instruction reads.
+#[derive(Clone, Copy, PartialEq)]
+enum Operand {
+    None,
+    /// The value of a node.
+    Value(usize),
+    /// An entry of the pool.
+    Pool(u32),
+}
+
+/// An instruction before registers are chosen: the node that it computes, and its operands.
+struct Draft {
+    op: Op,
+    node: usize,
+    operands: [Operand; 3],
+}
+
+struct Compiler<'a> {
+    graph: &'a Graph,
+    inputs: Inputs,
+    /// Whether a node is a product that belongs to the sum which uses it.
+    joined: Vec<bool>,
+    pool: Vec<f64>,
+    pooled: HashMap<u64, u32>,
+    drafts: Vec<Draft>,
+}
+
+impl Program {
+    /// Compiles formulas of `graph`. Fixed parameters are 0 until [`Self::with`] sets them.
+    ///
+    /// # Panics
+    /// If a formula reads a component or a parameter beyond `inputs`.
+    #[must_use]
+    pub fn compile(graph: &Graph, formulas: &[Formula], inputs: Inputs) -> Self {
+        let needed = graph.needed(formulas);
+        let mut compiler = Compiler {
+            graph,
+            inputs,
+            joined: joined(graph, formulas, &needed),
+            pool: Vec::new(),
+            pooled: HashMap::new(),
+            drafts: Vec::new(),
+        };
+        for index in (0..needed.len()).filter(|&index| needed[index]) {
+            if let Node::Constant(bits) = node(graph, index) {
+                compiler.pooled(f64::from_bits(bits));
+            } else if let Node::Power(_, n) = node(graph, index) {
+                compiler.pooled(f64::from(n));
+            } else if let Node::RealPower(_, n) = node(graph, index) {
+                compiler.pooled(f64::from_bits(n));
+            } else if let Node::Binary(Binary::Sub, _, b) = node(graph, index)
+                && let Some(x) = graph.value(b)
+            {
+                compiler.pooled(-x);
+            }
+        }
+        // Parameters change, so that each has a place of its own.
+        let parameters = compiler.pool.len();
+        compiler.pool.resize(parameters + if inputs.fixed { inputs.parameters } else { 0 }, 0.0);
+        for index in (0..needed.len()).filter(|&index| needed[index]) {
+            if !compiler.joined[index] {
+                compiler.draft(index);
+            }
+        }
+        compiler.finish(formulas, &needed, parameters)
+    }
+}
+
+fn node(graph: &Graph, index: usize) -> Node {
+    graph.nodes()[index]
+}
+
+/// Products that are used once, by a sum or a difference.
+fn joined(graph: &Graph, formulas: &[Formula], needed: &[bool]) -> Vec<bool> {
+    let mut uses = vec![0_u32; needed.len()];
+    for formula in formulas {
+        uses[formula.index()] += 2;
+    }
+    let indices = || (0..needed.len()).filter(|&index| needed[index]);
+    for operand in indices().flat_map(|index| node(graph, index).operands()) {
+        uses[operand.index()] = uses[operand.index()].saturating_add(1);
+    }
+    let constant = |formula: Formula| {
+        matches!(graph.node(formula), Node::Constant(_) | Node::Variable(Variable::Parameter(_)))
+    };
+    let mut joined = vec![false; needed.len()];
+    for index in indices() {
+        let Node::Binary(sum @ (Binary::Add | Binary::Sub), a, b) = node(graph, index) else {
+            continue;
+        };
+        let fits = |product: Formula, other: Formula| {
+            let Node::Binary(Binary::Mul, p, q) = graph.node(product) else { return false };
+            let scaled = constant(p) || constant(q);
+            uses[product.index()] == 1 && !constant(other) && !(scaled && sum == Binary::Sub)
+        };
+        if fits(a, b) {
+            joined[a.index()] = true;
+        } else if fits(b, a) {
+            joined[b.index()] = true;
+        }
+    }
+    joined
+}
+
+impl Compiler<'_> {
+    /// The place of a constant in the pool.
+    fn pooled(&mut self, x: f64) -> u32 {
+        let next = index(self.pool.len());
+        let place = *self.pooled.entry(x.to_bits()).or_insert(next);
+        if place == next {
+            self.pool.push(x);
+        }
+        place
+    }
+
+    /// The place of a formula in the pool, if it is a constant or a fixed parameter.
+    fn place(&self, formula: Formula) -> Option<u32> {
+        match self.graph.node(formula) {
+            Node::Constant(bits) => self.pooled.get(&bits).copied(),
+            Node::Variable(Variable::Parameter(parameter)) if self.inputs.fixed => {
+                Some(index(self.pool.len() - self.inputs.parameters) + parameter)
+            }
+            _ => None,
+        }
+    }
+
+    fn push(&mut self, op: Op, node: usize, operands: [Operand; 3]) {
+        self.drafts.push(Draft { op, node, operands });
+    }
+
+    /// Drafts the instruction for a node.
+    fn draft(&mut self, index: usize) {
+        use Operand::{None, Pool};
+        let value = |formula: Formula| Operand::Value(formula.index());
+        match node(self.graph, index) {
+            Node::Constant(_) | Node::Variable(_) => {}
+            Node::Unary(function, a) => self.push(function.into(), index, [value(a), None, None]),
+            Node::Power(a, n) => {
+                let n = self.pooled(f64::from(n));
+                self.push(Op::Power, index, [value(a), Pool(n), None]);
+            }
+            Node::RealPower(a, n) => {
+                let n = self.pooled(f64::from_bits(n));
+                self.push(Op::RealPower, index, [value(a), Pool(n), None]);
+            }
+            Node::Select(a, b, c) => self.push(Op::Select, index, [value(a), value(b), value(c)]),
+            Node::Binary(function, a, b) => self.draft_binary(index, function, a, b),
+        }
+    }
+
+    fn draft_binary(&mut self, index: usize, function: Binary, a: Formula, b: Formula) {
+        use Binary::{Add, Div, Mul, Sub};
+        use Operand::{None, Pool};
+        let value = |formula: Formula| Operand::Value(formula.index());
+        if let (Add | Sub, Some((p, q, rest, first))) = (function, self.product_in(a, b)) {
+            let (op, operands) = match (function, self.place(p), self.place(q)) {
+                (Add, Some(k), _) => (Op::MulKAdd, [value(q), Pool(k), value(rest)]),
+                (Add, _, Some(k)) => (Op::MulKAdd, [value(p), Pool(k), value(rest)]),
+                (Add, ..) => (Op::MulAdd, [value(p), value(q), value(rest)]),
+                _ if first => (Op::MulSub, [value(p), value(q), value(rest)]),
+                _ => (Op::SubMul, [value(p), value(q), value(rest)]),
+            };
+            return self.push(op, index, operands);
+        }
+        // A difference with a constant is a sum, to the last bit.
+        let negated = self.graph.value(b).and_then(|x| self.pooled.get(&(-x).to_bits()).copied());
+        if let (Sub, Some(k)) = (function, negated) {
+            return self.push(Op::AddK, index, [value(a), Pool(k), None]);
+        }
+        let (op, operands) = match (function, self.place(a), self.place(b)) {
+            (Add, _, Some(k)) => (Op::AddK, [value(a), Pool(k), None]),
+            (Add, Some(k), _) => (Op::AddK, [value(b), Pool(k), None]),
+            (Sub, Some(k), _) => (Op::KSub, [value(b), Pool(k), None]),
+            (Mul, _, Some(k)) => (Op::MulK, [value(a), Pool(k), None]),
+            (Mul, Some(k), _) => (Op::MulK, [value(b), Pool(k), None]),
+            (Div, _, Some(k)) => (Op::DivK, [value(a), Pool(k), None]),
+            (Div, Some(k), _) => (Op::KDiv, [value(b), Pool(k), None]),
+            _ => (function.into(), [value(a), value(b), None]),
+        };
+        self.push(op, index, operands);
+    }
+
+    /// The factors of a product that was joined to a sum or difference of `a` and `b`, the other
+    /// operand, and whether the product is `a`.
+    fn product_in(&self, a: Formula, b: Formula) -> Option<(Formula, Formula, Formula, bool)> {
+        [(a, b, true), (b, a, false)].into_iter().find_map(|(product, rest, first)| {
+            match self.graph.node(product) {
+                Node::Binary(Binary::Mul, p, q) if self.joined[product.index()] => {
+                    Some((p, q, rest, first))
+                }
+                _ => None,
+            }
+        })
+    }
+
+    /// Chooses registers: a value keeps its register until the last instruction that reads it.
+    fn finish(mut self, formulas: &[Formula], needed: &[bool], parameters: usize) -> Program {
+        let Inputs { components, fixed, .. } = self.inputs;
+        let inputs = components + if fixed { 0 } else { self.inputs.parameters };
+        let mut register = vec![u32::MAX; needed.len()];
+        for node in (0..needed.len()).filter(|&node| needed[node]) {
+            let Node::Variable(variable) = self.graph.nodes()[node] else { continue };
+            register[node] = match variable {
+                Variable::Time => index(inputs),
+                Variable::Component(i) if (i as usize) < components => i,
+                Variable::Parameter(i) if (i as usize) < self.inputs.parameters => {
+                    if fixed {
+                        continue;
+                    }
+                    index(components) + i
+                }
+                variable => panic!("{variable:?} is out of range"),
+            };
+        }
+        let mut next = index(inputs) + 1;
+        let mut loads = Vec::new();
+        let read = self.drafts.iter().flat_map(|draft| draft.operands).filter_map(|operand| {
+            if let Operand::Value(node) = operand { Some(node) } else { None }
+        });
+        let read: Vec<usize> = read.chain(formulas.iter().map(|it| it.index())).collect();
+        for node in read {
+            if register[node] == u32::MAX
+                && let Some(place) = self.place(Formula(index(node)))
+            {
+                register[node] = next;
+                loads.push((next, place));
+                next += 1;
+            }
+        }
+        let loaded = next;
+        let mut last = vec![usize::MAX; needed.len()];
+        for (place, draft) in self.drafts.iter().enumerate() {
+            for operand in draft.operands {
+                if let Operand::Value(node) = operand {
+                    last[node] = place;
+                }
+            }
+        }
+        for formula in formulas {
+            last[formula.index()] = usize::MAX;
+        }
+        let mut free = Vec::new();
+        let mut code = Vec::with_capacity(self.drafts.len());
+        for (place, draft) in std::mem::take(&mut self.drafts).into_iter().enumerate() {
+            let [a, b, c] = draft.operands.map(|operand| match operand {
+                Operand::None => 0,
+                Operand::Value(node) => register[node],
+                Operand::Pool(place) => place,
+            });
+            for (nth, operand) in draft.operands.iter().enumerate() {
+                if let &Operand::Value(node) = operand
+                    && last[node] == place
+                    && register[node] >= loaded
+                    && !draft.operands[..nth].contains(operand)
+                {
+                    free.push(register[node]);
+                }
+            }
+            let to = free.pop().unwrap_or_else(|| {
+                next += 1;
+                next - 1
+            });
+            register[draft.node] = to;
+            code.push(Instruction { op: draft.op, to, a, b, c });
+        }
+        let outputs = formulas.iter().map(|formula| register[formula.index()]).collect();
+        let registers = next as usize;
+        let code = match code.iter().map(short).collect() {
+            Some(short) if registers <= 256 => Code::Short(short),
+            _ => Code::Wide(code),
+        };
+        Program { code, pool: self.pool, parameters, loads, outputs, inputs, registers }
+    }
+}
+
+/// The instruction with small indices, if they are small.
+fn short(long: &Instruction<u32>) -> Option<Instruction<u8>> {
+    let small = |index: u32| u8::try_from(index).ok();
+    let (to, a) = (small(long.to)?, small(long.a)?);
+    Some(Instruction { op: long.op, to, a, b: small(long.b)?, c: small(long.c)? })
+}
+
+/// A place as it is kept. A graph has fewer than 2³² nodes.
+fn index(place: usize) -> u32 {
+    u32::try_from(place).unwrap_or(u32::MAX)
+}

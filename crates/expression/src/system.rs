@@ -1,0 +1,105 @@
+//! What a hybrid system consists of.
+
+use stickslip_solver::Direction;
+
+use crate::graph::{Formula, Graph};
+
+/// A hybrid system: formulas for what changes, and rules for what happens when.
+#[derive(Clone, Debug, Default)]
+pub struct System {
+    /// All formulas.
+    pub graph: Graph,
+    /// The parameters, which formulas read by their places.
+    pub parameters: Vec<Parameter>,
+    /// The components of the state, those that only rules change among them.
+    pub components: Vec<Component>,
+    /// Names of formulas, for readers.
+    pub names: Vec<(String, Formula)>,
+    /// The modes.
+    pub modes: Vec<Mode>,
+    /// The first mode.
+    pub first: usize,
+    /// The time at the start.
+    pub start: Option<Formula>,
+    /// The time at the end.
+    pub end: Option<Formula>,
+}
+
+/// A number that is the same during a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// Its name.
+    pub name: String,
+    /// Its value unless another one is given.
+    pub value: f64,
+    /// The values of interest, from the lower to the upper one.
+    pub range: Option<(f64, f64)>,
+}
+
+/// A component of the state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Component {
+    /// Its name.
+    pub name: String,
+    /// Its value at the start, made of parameters.
+    pub start: Formula,
+    /// Whether only rules change it.
+    pub discrete: bool,
+}
+
+/// A smooth regime.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mode {
+    /// Its name.
+    pub name: String,
+    /// The derivative of each component.
+    pub slopes: Vec<Formula>,
+    /// What happens when.
+    pub rules: Vec<Rule>,
+}
+
+/// What happens at an event.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rule {
+    /// When it happens.
+    pub trigger: Trigger,
+    /// What it is called.
+    pub label: Option<String>,
+    /// Of rules at one instant, those of higher priority act first.
+    pub priority: i8,
+    /// Whether it also acts where another rule carries its guard across zero.
+    pub sees_jumps: bool,
+    /// New values of components, made of the state before the event.
+    pub changes: Vec<(usize, Formula)>,
+    /// Where the run goes on.
+    pub next: Next,
+}
+
+/// When a rule acts.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Trigger {
+    /// Where a formula becomes negative or crosses zero.
+    When(Formula, Direction),
+    /// At these times, made of parameters.
+    At(Vec<Formula>),
+    /// At phase + k·period for all integers k, made of parameters.
+    Every {
+        /// The period.
+        period: Formula,
+        /// The phase.
+        phase: Formula,
+    },
+}
+
+/// Where a run goes on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Next {
+    /// In the same mode.
+    Stay,
+    /// In this mode.
+    Mode(usize),
+    /// Nowhere: the run ends.
+    End,
+    /// In the second mode where the formula is ≥ 0, and in the third where it is negative.
+    Branch(Formula, usize, usize),
+}

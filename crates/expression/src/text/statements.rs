@@ -1,0 +1,707 @@
+//! Statements: what a system declares, its modes and their rules.
+
+use std::collections::{HashMap, HashSet};
+use std::ops::Range;
+
+use stickslip_solver::Direction;
+
+use super::formula::{RESERVED, is_function};
+use super::tokens::{Spanned, Token, tokens};
+use super::{TextError, names};
+use crate::graph::{Binary, Formula, Variable};
+use crate::system::{Component, Mode, Next, Parameter, Rule, System, Trigger};
+
+/// The slopes of all modes together have at most as many entries.
+const MOST_SLOPES: usize = 10_000_000;
+
+/// The tokens of a statement, without the end of its line.
+type Statement = Range<usize>;
+
+/// Reads a system from its text.
+pub(super) struct Reader<'a> {
+    text: &'a str,
+    tokens: Vec<Spanned<'a>>,
+    /// The next token.
+    pub(super) next: usize,
+    /// How deep the formula that is read is nested.
+    pub(super) depth: usize,
+    pub(super) system: System,
+    /// What names stand for here.
+    pub(super) formulas: HashMap<&'a str, Formula>,
+    /// The derivatives of components, in the mode that is read.
+    pub(super) slopes: Vec<Option<Formula>>,
+    /// Formulas above the modes that have another value in each, because they contain derivatives
+    /// along the flow.
+    by_mode: HashMap<&'a str, Statement>,
+    components: HashMap<&'a str, usize>,
+    modes: HashMap<&'a str, usize>,
+    /// Where each name is defined, to name it where it is used too early.
+    defined: HashMap<&'a str, usize>,
+}
+
+/// The statements of a mode.
+struct Section<'a> {
+    name: &'a str,
+    statements: Vec<Statement>,
+}
+
+/// What a statement of a mode, or above the modes, is.
+enum Kind<'a> {
+    /// The derivative of a component.
+    Slope(&'a str),
+    /// A name for a formula.
+    Name(&'a str),
+    /// What happens when, and the changes that follow.
+    Rule,
+    /// A new value, which belongs to the rule above.
+    Change,
+}
+
+impl System {
+    /// Reads a system from its text. `docs/systems.md` describes the language.
+    ///
+    /// # Errors
+    /// [`TextError`] with the place of the first mistake.
+    pub fn parse(text: &str) -> Result<Self, TextError> {
+        let tokens = tokens(text)?;
+        let reader = Reader {
+            text,
+            tokens,
+            next: 0,
+            depth: 0,
+            system: Self::default(),
+            formulas: HashMap::new(),
+            slopes: Vec::new(),
+            by_mode: HashMap::new(),
+            components: HashMap::new(),
+            modes: HashMap::new(),
+            defined: HashMap::new(),
+        };
+        reader.read()
+    }
+}
+
+impl<'a> Reader<'a> {
+    pub(super) fn peek(&self) -> &Token<'a> {
+        &self.tokens[self.next.min(self.tokens.len() - 1)].token
+    }
+
+    /// An error at a token.
+    pub(super) fn error_at(&self, token: usize, message: String) -> TextError {
+        TextError::at(self.text, self.tokens[token.min(self.tokens.len() - 1)].offset, message)
+    }
+
+    /// An error at the next token.
+    pub(super) fn error(&self, message: String) -> TextError {
+        let Spanned { token, offset, length } = &self.tokens[self.next.min(self.tokens.len() - 1)];
+        let found = match token {
+            Token::End => "the line ends here".to_owned(),
+            _ => {
+                let found: String = self.text[*offset..offset + length].chars().take(30).collect();
+                format!("`{found}` is out of place")
+            }
+        };
+        let message =
+            if message.starts_with("expected") { format!("{found}; {message}") } else { message };
+        TextError::at(self.text, *offset, message)
+    }
+
+    pub(super) fn takes(&mut self, sign: &str) -> bool {
+        let takes = matches!(self.peek(), Token::Sign(it) if *it == sign);
+        self.next += usize::from(takes);
+        takes
+    }
+
+    pub(super) fn takes_one(&mut self, signs: &[&'static str]) -> Option<&'static str> {
+        signs.iter().copied().find(|sign| self.takes(sign))
+    }
+
+    pub(super) fn takes_word(&mut self, word: &str) -> bool {
+        let takes = matches!(self.peek(), Token::Name(it) if *it == word);
+        self.next += usize::from(takes);
+        takes
+    }
+
+    pub(super) fn expect(&mut self, sign: &str) -> Result<(), TextError> {
+        if self.takes(sign) { Ok(()) } else { Err(self.error(format!("expected {sign}"))) }
+    }
+
+    pub(super) fn expect_word(&mut self, word: &str) -> Result<(), TextError> {
+        if self.takes_word(word) { Ok(()) } else { Err(self.error(format!("expected `{word}`"))) }
+    }
+
+    fn expect_name(&mut self, what: &str) -> Result<&'a str, TextError> {
+        match *self.peek() {
+            Token::Name(name) if !RESERVED.contains(&name) => {
+                self.next += 1;
+                Ok(name)
+            }
+            Token::Name(name) => {
+                let message = format!("`{name}` has a meaning of its own; expected {what}");
+                Err(self.error(message))
+            }
+            _ => Err(self.error(format!("expected {what}"))),
+        }
+    }
+
+    fn expect_end(&self) -> Result<(), TextError> {
+        match self.peek() {
+            Token::End => Ok(()),
+            _ => Err(self.error("expected the end of the line".to_owned())),
+        }
+    }
+
+    fn line_of(&self, token: usize) -> usize {
+        self.text[..self.tokens[token].offset].matches('\n').count() + 1
+    }
+
+    /// The line of a definition that comes after a token.
+    pub(super) fn defined_below(&self, name: &str, token: usize) -> Option<usize> {
+        let place = *self.defined.get(name)?;
+        (place > token).then(|| self.line_of(place))
+    }
+
+    /// The statements of the text.
+    fn statements(&self) -> Vec<Statement> {
+        let mut statements = Vec::new();
+        let mut from = 0;
+        for (place, token) in self.tokens.iter().enumerate() {
+            if token.token == Token::End {
+                if place > from {
+                    statements.push(from..place);
+                }
+                from = place + 1;
+            }
+        }
+        statements
+    }
+
+    fn read(mut self) -> Result<System, TextError> {
+        let mut sections = vec![Section { name: "", statements: Vec::new() }];
+        let mut ends = Vec::new();
+        for statement in self.statements() {
+            self.next = statement.start;
+            let (first, second) = (self.peek().clone(), self.second());
+            let sign = |signs: &[&str]| matches!(second, Token::Sign(it) if signs.contains(&it));
+            if sign(&["=", ":=", "'"]) {
+                if let (Token::Name(name), true) = (&first, sign(&["="])) {
+                    self.defined.entry(name).or_insert(statement.start);
+                }
+                if first == Token::Name("end") {
+                    ends.push(statement);
+                    continue;
+                }
+                let last = sections.len() - 1;
+                sections[last].statements.push(statement);
+                continue;
+            }
+            match first {
+                Token::Name("parameter" | "state" | "discrete") => self.declarations()?,
+                Token::Name("mode") => {
+                    self.next += 1;
+                    let at = self.next;
+                    let name = self.expect_name("the name of a mode")?;
+                    self.expect_end()?;
+                    if self.modes.insert(name, sections.len() - 1).is_some() {
+                        return Err(self.error_at(at, format!("there are two modes `{name}`")));
+                    }
+                    sections.push(Section { name, statements: Vec::new() });
+                }
+                Token::Name("start") => ends.push(statement),
+                Token::Name("when" | "at" | "every") => {
+                    let last = sections.len() - 1;
+                    sections[last].statements.push(statement);
+                }
+                Token::Name(name) => {
+                    let words = ["parameter", "state", "discrete", "mode", "start", "when", "at"];
+                    let words = words.into_iter().chain(["every", "end"]);
+                    let hint = names::hint(name, words);
+                    let message = format!(
+                        "`{name}` begins no statement{hint}; expected a word such as `state` or \
+                         `when`, or a name with = or ' or := behind it"
+                    );
+                    return Err(self.error(message));
+                }
+                _ => return Err(self.error("expected a statement".to_owned())),
+            }
+        }
+        self.sections(sections)?;
+        for statement in ends {
+            self.next = statement.start;
+            self.bound()?;
+        }
+        Ok(self.system)
+    }
+
+    fn second(&self) -> Token<'a> {
+        self.tokens.get(self.next + 1).map_or(Token::End, |it| it.token.clone())
+    }
+
+    /// `parameter a = 1 in 0:2, b = 3`, `state x = a`, `discrete n = 0`.
+    fn declarations(&mut self) -> Result<(), TextError> {
+        let Token::Name(kind) = self.peek().clone() else { return Ok(()) };
+        self.next += 1;
+        loop {
+            let at = self.next;
+            let name = self.expect_name("a name")?;
+            self.free(name, at)?;
+            self.expect("=")?;
+            let from = self.next;
+            let formula = self.number()?;
+            let variable = if kind == "parameter" {
+                let value = self.constant(formula, from)?;
+                let range = self.range(value)?;
+                let index = short(self.system.parameters.len());
+                self.system.parameters.push(Parameter { name: name.to_owned(), value, range });
+                Variable::Parameter(index)
+            } else {
+                self.parameters_alone(formula, from)?;
+                let index = self.system.components.len();
+                let discrete = kind == "discrete";
+                let component = Component { name: name.to_owned(), start: formula, discrete };
+                self.system.components.push(component);
+                let zero = self.system.graph.constant(0.0);
+                self.slopes.push(discrete.then_some(zero));
+                self.components.insert(name, index);
+                Variable::Component(short(index))
+            };
+            let variable = self.system.graph.variable(variable);
+            self.formulas.insert(name, variable);
+            if !self.takes(",") {
+                return self.expect_end();
+            }
+        }
+    }
+
+    fn range(&mut self, value: f64) -> Result<Option<(f64, f64)>, TextError> {
+        if !self.takes_word("in") {
+            return Ok(None);
+        }
+        let at = self.next;
+        let low = self.number()?;
+        let low = self.constant(low, at)?;
+        self.expect(":")?;
+        let from = self.next;
+        let high = self.number()?;
+        let high = self.constant(high, from)?;
+        if low < high && (low..=high).contains(&value) {
+            return Ok(Some((low, high)));
+        }
+        let message = format!("the range {low}:{high} does not contain {value}; expected low:high");
+        Err(self.error_at(at, message))
+    }
+
+    /// The number that a formula is.
+    fn constant(&self, formula: Formula, at: usize) -> Result<f64, TextError> {
+        match self.system.graph.value(formula) {
+            Some(value) if value.is_finite() => Ok(value),
+            Some(value) => {
+                Err(self.error_at(at, format!("this is {value}; expected a finite number")))
+            }
+            None => Err(self.error_at(at, "this depends on a name; expected a number".to_owned())),
+        }
+    }
+
+    /// Refuses what depends on more than parameters.
+    fn parameters_alone(&self, formula: Formula, at: usize) -> Result<(), TextError> {
+        let read = self.system.graph.reads(&[formula]);
+        if read.iter().all(|variable| matches!(variable, Variable::Parameter(_))) {
+            return Ok(());
+        }
+        let message = "this changes during a run; expected numbers and parameters alone";
+        Err(self.error_at(at, message.to_owned()))
+    }
+
+    /// Refuses a name that already has a meaning.
+    fn free(&self, name: &str, at: usize) -> Result<(), TextError> {
+        let message = if is_function(name) {
+            format!("`{name}` is a function; expected another name")
+        } else if self.formulas.contains_key(name) || self.by_mode.contains_key(name) {
+            format!("`{name}` is already defined")
+        } else {
+            return Ok(());
+        };
+        Err(self.error_at(at, message))
+    }
+
+    fn kind(&mut self, statement: &Statement) -> Result<Kind<'a>, TextError> {
+        self.next = statement.start;
+        let (first, second) = (self.peek().clone(), self.second());
+        match (first, second) {
+            (Token::Name(name), Token::Sign("'")) => Ok(Kind::Slope(name)),
+            (Token::Name(name), Token::Sign("=")) if RESERVED.contains(&name) => Err(self.error(
+                format!("`{name}` has a meaning of its own; expected another name"),
+            )),
+            (Token::Name(name), Token::Sign("=")) => Ok(Kind::Name(name)),
+            (Token::Name(_), Token::Sign(":=")) => Ok(Kind::Change),
+            (Token::Name(_), _) => Ok(Kind::Rule),
+            _ => Err(self.error("expected a name".to_owned())),
+        }
+    }
+
+    /// Whether a statement contains a derivative along the flow.
+    fn depends_on_mode(&self, statement: &Statement) -> bool {
+        let tokens = &self.tokens[statement.start + 2..statement.end];
+        tokens.iter().any(|it| match it.token {
+            Token::Sign("'") => true,
+            Token::Name(name) => self.by_mode.contains_key(name),
+            _ => false,
+        })
+    }
+
+    /// Reads the statements above the modes, and the modes.
+    fn sections(&mut self, mut sections: Vec<Section<'a>>) -> Result<(), TextError> {
+        let shared = std::mem::take(&mut sections[0].statements);
+        if sections.len() == 1 {
+            sections.push(Section { name: "main", statements: Vec::new() });
+            self.modes.insert("main", 0);
+        }
+        if (sections.len() - 1).saturating_mul(self.slopes.len()) > MOST_SLOPES {
+            let message = format!("modes times components are more than {MOST_SLOPES}");
+            return Err(TextError::at(self.text, 0, message));
+        }
+        // What is the same in all modes is read once.
+        let (mut equations, mut rules, mut after_rule) = (Vec::new(), Vec::new(), false);
+        for statement in shared {
+            match self.kind(&statement)? {
+                Kind::Name(name) if self.depends_on_mode(&statement) => {
+                    self.free(name, statement.start)?;
+                    self.by_mode.insert(name, statement);
+                }
+                Kind::Slope(_) if self.depends_on_mode(&statement) => equations.push(statement),
+                Kind::Change if !after_rule => {
+                    return Err(self.error("expected a rule (`when`, `at`) above this".to_owned()));
+                }
+                Kind::Rule | Kind::Change => {
+                    rules.push(statement);
+                    after_rule = true;
+                    continue;
+                }
+                Kind::Name(name) => self.name(name)?,
+                Kind::Slope(name) => {
+                    self.slope(name)?;
+                }
+            }
+            after_rule = false;
+        }
+        let common = self.slopes.clone();
+        for section in sections.drain(1..) {
+            self.slopes.clone_from(&common);
+            self.mode(&section, &equations, &rules)?;
+        }
+        Ok(())
+    }
+
+    /// `name = …`
+    fn name(&mut self, name: &'a str) -> Result<(), TextError> {
+        self.free(name, self.next)?;
+        self.next += 2;
+        let formula = self.number()?;
+        self.expect_end()?;
+        self.formulas.insert(name, formula);
+        self.system.names.push((name.to_owned(), formula));
+        Ok(())
+    }
+
+    /// `name' = …`
+    fn slope(&mut self, name: &str) -> Result<usize, TextError> {
+        let component = self.component(name)?;
+        if self.system.components[component].discrete {
+            let message = format!("`{name}` is discrete: only rules change it");
+            return Err(self.error(message));
+        }
+        self.next += 2;
+        self.expect("=")?;
+        let formula = self.number()?;
+        self.expect_end()?;
+        self.slopes[component] = Some(formula);
+        Ok(component)
+    }
+
+    /// The component that is the next token.
+    fn component(&self, name: &str) -> Result<usize, TextError> {
+        self.components.get(name).copied().ok_or_else(|| {
+            let hint = names::hint(name, self.components.keys().copied());
+            self.error(format!("`{name}` is no state{hint}; expected a name after `state`"))
+        })
+    }
+
+    fn mode(
+        &mut self,
+        section: &Section<'a>,
+        equations: &[Statement],
+        shared: &[Statement],
+    ) -> Result<(), TextError> {
+        let mut own = HashSet::new();
+        let (mut local, mut rules) = (Vec::new(), shared.to_vec());
+        let mut after_rule = false;
+        for statement in &section.statements {
+            match self.kind(statement)? {
+                Kind::Name(name) => {
+                    self.name(name)?;
+                    local.push(name);
+                }
+                Kind::Slope(name) => {
+                    let at = self.next;
+                    if !own.insert(self.slope(name)?) {
+                        let message = format!("`{name}` has two equations in this mode");
+                        return Err(self.error_at(at, message));
+                    }
+                }
+                Kind::Change if !after_rule => {
+                    return Err(self.error("expected a rule (`when`, `at`) above this".to_owned()));
+                }
+                Kind::Change | Kind::Rule => {
+                    after_rule = true;
+                    rules.push(statement.clone());
+                    continue;
+                }
+            }
+            after_rule = false;
+        }
+        for statement in equations {
+            if let Kind::Slope(name) = self.kind(statement)?
+                && !own.contains(&self.component(name)?)
+            {
+                self.slope(name)?;
+            }
+        }
+        let mut read = Vec::new();
+        for statement in rules {
+            self.next = statement.start;
+            if let Token::Name("when" | "at" | "every") = self.peek() {
+                read.push(self.rule()?);
+            } else if let Some(rule) = read.last_mut() {
+                self.change(rule)?;
+            }
+        }
+        if self.system.modes.is_empty() {
+            // Mistakes in formulas that no mode uses.
+            let formulas: Vec<_> = self.by_mode.iter().map(|(name, it)| (*name, it.start)).collect();
+            for (name, at) in formulas {
+                self.in_mode(name, at)?;
+            }
+        }
+        let missing = self.slopes.iter().position(Option::is_none);
+        if let Some(missing) = missing {
+            let (mode, name) = (section.name, &self.system.components[missing].name);
+            let message = format!("mode `{mode}` has no equation for `{name}`; expected {name}' = …");
+            let place = self.tokens.iter().position(|it| it.token == Token::Name(mode));
+            return Err(self.error_at(place.unwrap_or(self.tokens.len() - 1), message));
+        }
+        let slopes = self.slopes.iter().copied().flatten().collect();
+        self.system.modes.push(Mode { name: section.name.to_owned(), slopes, rules: read });
+        for name in local.into_iter().chain(self.by_mode.keys().copied()) {
+            self.formulas.remove(name);
+        }
+        Ok(())
+    }
+
+    /// A formula that differs from mode to mode, in the mode that is read.
+    pub(super) fn in_mode(&mut self, name: &str, at: usize) -> Result<Option<Formula>, TextError> {
+        let Some((&name, statement)) = self.by_mode.get_key_value(name) else { return Ok(None) };
+        if let Some(formula) = self.formulas.get(name) {
+            return Ok(Some(*formula));
+        }
+        if statement.start > at {
+            return Ok(None);
+        }
+        let (place, start) = (self.next, statement.start);
+        self.next = start + 2;
+        let formula = self.number()?;
+        self.expect_end()?;
+        self.next = place;
+        self.formulas.insert(name, formula);
+        Ok(Some(formula))
+    }
+
+    /// `when …`, `at …` or `every …`, up to the end of its line.
+    fn rule(&mut self) -> Result<Rule, TextError> {
+        let at = self.next;
+        let trigger = if self.takes_word("when") {
+            self.condition()?
+        } else if self.takes_word("at") {
+            let mut times = Vec::new();
+            loop {
+                let at = self.next;
+                let time = self.number()?;
+                self.parameters_alone(time, at)?;
+                times.push(time);
+                if !self.takes(",") {
+                    break Trigger::At(times);
+                }
+            }
+        } else {
+            self.next += 1;
+            let at = self.next;
+            let period = self.number()?;
+            self.parameters_alone(period, at)?;
+            let at = self.next;
+            let phase = if self.takes_word("from") {
+                let phase = self.number()?;
+                self.parameters_alone(phase, at)?;
+                phase
+            } else {
+                self.system.graph.constant(0.0)
+            };
+            Trigger::Every { period, phase }
+        };
+        if let Trigger::When(guard, _) = trigger {
+            let read = self.system.graph.reads(&[guard]);
+            if read.iter().all(|it| matches!(it, Variable::Parameter(_))) {
+                let message = "the condition never changes; expected one with a state or t";
+                return Err(self.error_at(at + 1, message.to_owned()));
+            }
+        }
+        let mut rule = Rule {
+            trigger,
+            label: None,
+            priority: 0,
+            sees_jumps: false,
+            changes: Vec::new(),
+            next: Next::Stay,
+        };
+        loop {
+            match self.peek().clone() {
+                Token::Label(label) => {
+                    self.next += 1;
+                    rule.label = Some(label.to_owned());
+                }
+                Token::Name("priority") => {
+                    self.next += 1;
+                    let at = self.next;
+                    let formula = self.number()?;
+                    let value = self.constant(formula, at)?;
+                    if value.fract() != 0.0 || !(-128.0..=127.0).contains(&value) {
+                        let message = format!("the priority is {value}; expected −128 to 127");
+                        return Err(self.error_at(at, message));
+                    }
+                    // The value is an integer in range.
+                    #[expect(clippy::cast_possible_truncation)]
+                    let priority = value as i8;
+                    rule.priority = priority;
+                }
+                Token::Name("jumps") => {
+                    self.next += 1;
+                    rule.sees_jumps = true;
+                }
+                Token::Sign("->") => {
+                    self.next += 1;
+                    rule.next = if self.takes_word("end") {
+                        Next::End
+                    } else {
+                        Next::Mode(self.target()?)
+                    };
+                }
+                Token::Name("if") => {
+                    self.next += 1;
+                    rule.next = self.branch()?;
+                }
+                Token::End => return Ok(rule),
+                _ => {
+                    let message = "expected a label, `priority`, `jumps`, `if`, -> or the end of \
+                                   the line";
+                    return Err(self.error(message.to_owned()));
+                }
+            }
+        }
+    }
+
+    /// `x < 1`, `x rises through 1`, `x falls through 1`, `x crosses 1`.
+    fn condition(&mut self) -> Result<Trigger, TextError> {
+        let edges = [
+            ("rises", Direction::Rising),
+            ("falls", Direction::Falling),
+            ("crosses", Direction::Either),
+        ];
+        let from = self.next;
+        let is_edge = |token: &Token<'_>| {
+            matches!(token, Token::Name(name) if edges.iter().any(|(word, _)| word == name))
+        };
+        let line = self.tokens[from..].iter().take_while(|it| it.token != Token::End);
+        if !line.clone().any(|it| is_edge(&it.token)) {
+            let truth = self.truth()?;
+            return Ok(Trigger::When(self.guard_of(truth), Direction::Below));
+        }
+        let left = self.number()?;
+        let edge = edges.into_iter().find(|(word, _)| self.takes_word(word));
+        let Some((word, direction)) = edge else {
+            return Err(self.error("expected `rises`, `falls` or `crosses`".to_owned()));
+        };
+        if word != "crosses" {
+            self.expect_word("through")?;
+        }
+        let right = self.number()?;
+        let guard = self.system.graph.binary(Binary::Sub, left, right);
+        Ok(Trigger::When(guard, direction))
+    }
+
+    fn target(&mut self) -> Result<usize, TextError> {
+        let at = self.next;
+        let name = self.expect_name("the name of a mode")?;
+        self.modes.get(name).copied().ok_or_else(|| {
+            let hint = names::hint(name, self.modes.keys().copied());
+            self.error_at(at, format!("there is no mode `{name}`{hint}"))
+        })
+    }
+
+    /// `if … -> a else -> b`
+    fn branch(&mut self) -> Result<Next, TextError> {
+        use super::formula::Truth;
+        let truth = self.truth()?;
+        self.expect("->")?;
+        let yes = self.target()?;
+        self.expect_word("else")?;
+        self.expect("->")?;
+        let no = self.target()?;
+        Ok(match truth {
+            Truth::NotNegative(formula) => Next::Branch(formula, yes, no),
+            Truth::Negative(formula) => {
+                // The sign of zero does not matter: −0 counts as 0.
+                Next::Branch(formula, no, yes)
+            }
+        })
+    }
+
+    /// `x := …`
+    fn change(&mut self, rule: &mut Rule) -> Result<(), TextError> {
+        let Token::Name(name) = self.peek().clone() else { return Ok(()) };
+        let component = self.component(name)?;
+        if rule.changes.iter().any(|(other, _)| *other == component) {
+            return Err(self.error(format!("`{name}` gets two values at one event")));
+        }
+        self.next += 2;
+        let formula = self.number()?;
+        self.expect_end()?;
+        rule.changes.push((component, formula));
+        Ok(())
+    }
+
+    /// `start in mode at 0`, `end = 10`.
+    fn bound(&mut self) -> Result<(), TextError> {
+        if self.takes_word("end") {
+            self.expect("=")?;
+            let at = self.next;
+            let end = self.number()?;
+            self.parameters_alone(end, at)?;
+            self.system.end = Some(end);
+        } else {
+            self.next += 1;
+            if self.takes_word("in") {
+                self.system.first = self.target()?;
+            }
+            if self.takes_word("at") {
+                let at = self.next;
+                let start = self.number()?;
+                self.parameters_alone(start, at)?;
+                self.system.start = Some(start);
+            }
+        }
+        self.expect_end()
+    }
+}
+
+/// A place as formulas have it. There are fewer than 2³² components.
+fn short(place: usize) -> u32 {
+    u32::try_from(place).unwrap_or(u32::MAX)
+}

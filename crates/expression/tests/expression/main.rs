@@ -1,0 +1,5 @@
+//! Tests of formulas and systems as data.
+
+mod formulas;
+mod mistakes;
+mod systems;

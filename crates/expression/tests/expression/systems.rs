@@ -1,0 +1,143 @@
+//! Systems from text against closed forms.
+
+use stickslip_expression::{Runnable, System};
+use stickslip_solver::{
+    Dop853, DynamicRun, DynamicSwitch, Options, run_dynamic,
+};
+
+fn run(runnable: &Runnable) -> (DynamicRun<usize>, Vec<DynamicSwitch<usize>>) {
+    let mut switches = Vec::new();
+    let (start, options) = (runnable.start(), Options::default());
+    let end = run_dynamic(Dop853, runnable, start, runnable.end(), &options, &mut switches);
+    (end.expect("a run"), switches)
+}
+
+fn parsed(text: &str) -> System {
+    System::parse(text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn runs(text: &str) -> (DynamicRun<usize>, Vec<DynamicSwitch<usize>>) {
+    let system = parsed(text);
+    let found = run(&system.with(&system.values()).expect("parameters"));
+    // As text that was written, the run is the same bit for bit.
+    let again = parsed(&system.text());
+    let other = run(&again.with(&again.values()).expect("parameters"));
+    assert_eq!(found, other, "{}", system.text());
+    let formatted = stickslip_expression::format(text).expect("a text");
+    assert_eq!(stickslip_expression::format(&formatted).expect("a text"), formatted);
+    assert_eq!(parsed(&formatted).text(), system.text(), "{formatted}");
+    found
+}
+
+const BELT: &str = "
+parameter belt = 0.5, static = 1, kinetic = 0.6   # friction forces
+state x = 0, v = belt
+
+mode stick
+  x' = v
+  v' = 0
+  when x > static \"breaks away\" -> slip
+mode slip
+  x' = v
+  v' = kinetic - x
+  when v > belt \"stops\" -> stick
+    v := belt
+
+start in stick
+end = 100
+";
+
+/// Sticks until x = 1 at 2; slides as x = 0.6 + 0.4·cos s + 0.5·sin s until v = 0.5 again.
+#[test]
+fn a_block_on_a_belt() {
+    let (end, switches) = runs(BELT);
+    assert!(end.decided && end.s == 100.0);
+    assert!((switches[0].s - 2.0).abs() < 1e-13);
+    let slide = 2.0 * (std::f64::consts::PI - (0.4_f64 / 0.5).atan());
+    assert!((switches[1].s - switches[0].s - slide).abs() < 1e-9, "{}", switches[1].s - slide);
+}
+
+#[test]
+fn parameters_are_given_when_it_runs() {
+    let system = parsed(BELT);
+    let slow = system.with(&[0.25, 1.0, 0.6]).expect("parameters");
+    assert!((run(&slow).1[0].s - 4.0).abs() < 1e-12);
+    let error = |values: &[f64]| system.with(values).unwrap_err().to_string();
+    assert_eq!(error(&[1.0]), "there are 1 parameters; expected 3: belt, static, kinetic");
+    assert_eq!(error(&[1.0, f64::NAN, 1.0]), "static = NaN; expected a finite number");
+}
+
+/// What is common to modes stands above them; a prime is the derivative along the flow. Guards that
+/// start from zeros, also double ones, need no declaration.
+#[test]
+fn the_collision_of_spheres() {
+    let (end, switches) = runs(include_str!("../../../../tests/data/systems/collision.slip"));
+    let names: Vec<usize> = switches.iter().map(|switch| switch.to).collect();
+    assert!(end.decided, "{end:?}");
+    assert_eq!(names.len(), switches.len());
+    println!("{end:?} {names:?}");
+}
+
+#[test]
+fn clocks_discrete_variables_and_branches() {
+    let (end, switches) = runs("
+parameter dose = 2 in 0:10
+state amount = 0
+discrete count = 0, last = -1
+amount' = -amount
+every 1 from 0.5 \"dose\" priority 3
+  amount := amount + dose
+  count := count + 1
+  last := t
+at 2.25, 0.75 \"wash\" if count >= 2 and not amount < 0 -> late else -> early
+  amount := 0
+mode early
+mode late
+  when amount falls through 1 \"half\" -> end
+start in early at 0
+end = 10
+");
+    // Washed at 0.75 (after one dose) and at 2.25 (after two).
+    let at: Vec<f64> = switches.iter().map(|switch| switch.s).collect();
+    assert_eq!(&at[..5], [0.5, 0.75, 1.5, 2.25, 2.5]);
+    assert_eq!((switches[1].to, switches[3].to), (0, 1));
+    assert!((end.s - (2.5 + 2.0_f64.ln())).abs() < 1e-12, "{end:?}");
+    assert_eq!(end.state[1..], [3.0, 2.5]);
+}
+
+/// Narrow dips, jumps and kinks are decided.
+#[test]
+fn guards_are_decided() {
+    let (end, switches) = runs("
+state x = 0
+x' = 1
+when 0.5 - exp(-((t - 7.123)/0.003)^2) crosses 0
+when sign(sin(1000*t) - 0.99999) > 0 \"peak\" -> over
+mode main
+mode over
+x' = 1
+start in main
+end = 10
+".replace("mode main\n", "mode main\n").as_str());
+    assert!(end.decided);
+    let first = switches[0].s;
+    assert!((first - 1e-3 * 0.99999_f64.asin()).abs() < 1e-12, "{first}");
+}
+
+#[test]
+fn one_thousand_narrow_dips_are_found() {
+    let mut numbers = fastrand::Rng::with_seed(4);
+    for _ in 0..1000 {
+        let width = 10.0_f64.powf(-3.0 + 2.0 * numbers.f64());
+        let place = 1.0 + 8.0 * numbers.f64();
+        let text = format!(
+            "state x = 0\nx' = 1\nwhen 0.5 - exp(-((t - {place:?})/{width:?})^2) crosses 0\nend = 10"
+        );
+        let system = parsed(&text);
+        let (end, switches) = run(&system.with(&[]).expect("no parameters"));
+        let half = width * 2.0_f64.ln().sqrt();
+        let found: Vec<f64> = switches.iter().map(|switch| switch.s).collect();
+        assert!(end.decided && found.len() == 2, "{text}: {found:?}");
+        assert!((found[0] - (place - half)).abs() < 1e-12 && (found[1] - (place + half)).abs() < 1e-12);
+    }
+}
