@@ -115,6 +115,7 @@ pub enum Node {
 
 impl Node {
     /// The formulas that a node refers to.
+    #[must_use = "an iterator does nothing by itself"]
     pub fn operands(self) -> impl DoubleEndedIterator<Item = Formula> {
         let operands = match self {
             Self::Constant(_) | Self::Variable(_) => [None; 3],

@@ -352,9 +352,7 @@ impl Number for Enclosure {
             return Self { value, slope: Interval::ENTIRE, bend: Interval::ENTIRE };
         }
         // θ′ = (x y′ − y x′)/r² and θ″ = ((x y″ − y x″) − 2 (x x′ + y y′) θ′)/r².
-        let cross = |a: Interval, b: Interval| {
-            x.value.times(a).plus(self.value.times(b).negated())
-        };
+        let cross = |a: Interval, b: Interval| x.value.times(a).plus(self.value.times(b).negated());
         let slope = cross(self.slope, x.slope).times(square);
         let grows = x.value.times(x.slope).plus(self.value.times(self.slope)).scaled(-2.0);
         let bend = cross(self.bend, x.bend).plus(grows.times(slope)).times(square);

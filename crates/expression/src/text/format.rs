@@ -87,9 +87,8 @@ fn words_of(text: &str, words: &[&Spanned<'_>], formatted: &mut String) {
         let is_call = *token == Token::Sign("(")
             && matches!(before, Some(Token::Name(name)) if super::formula::is_function(name));
         let tight_after = match before {
-            None | Some(Token::Sign("(" | "^" | "*" | "/" | ":")) => true,
             // A sign that leads belongs to what follows.
-            Some(Token::Sign("leads")) => true,
+            None | Some(Token::Sign("(" | "^" | "*" | "/" | ":" | "leads")) => true,
             _ => false,
         };
         if !(tight_before || is_call || tight_after) {
@@ -104,9 +103,10 @@ fn words_of(text: &str, words: &[&Spanned<'_>], formatted: &mut String) {
         before = Some(if is_sign && leads { &Token::Sign("leads") } else { token });
         leads = match token {
             Token::Sign(")" | "'") | Token::Number(_) | Token::Label(_) => false,
-            Token::Sign(_) => true,
-            Token::Name(name) => super::formula::RESERVED.contains(name) && !matches!(*name, "t" | "pi"),
-            Token::End => true,
+            Token::Sign(_) | Token::End => true,
+            Token::Name(name) => {
+                super::formula::RESERVED.contains(name) && !matches!(*name, "t" | "pi")
+            }
         };
     }
 }

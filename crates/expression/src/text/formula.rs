@@ -9,7 +9,10 @@ use crate::graph::{Binary, Formula, Unary, Variable};
 const DEEPEST: usize = 200;
 
 /// How many nodes a system may have.
-const MOST_NODES: usize = 4_000_000;
+const MOST_NODES: usize = 1_000_000;
+
+/// How many derivatives of one thing may be taken: each is larger than the one before.
+const MOST_PRIMES: usize = 10;
 
 /// A number, or what is true or not.
 #[derive(Clone, Copy)]
@@ -159,17 +162,12 @@ impl Reader<'_> {
 
     /// Where both conditions hold, or one of them.
     fn joint(&mut self, one: Truth, other: Truth, function: Binary) -> Truth {
-        let graph = &mut self.system.graph;
-        match (one, other) {
-            (Truth::NotNegative(a), Truth::NotNegative(b)) => {
-                let opposite = if function == Binary::Max { Binary::Min } else { Binary::Max };
-                Truth::NotNegative(graph.binary(opposite, a, b))
-            }
-            _ => {
-                let (a, b) = (self.negative(one), self.negative(other));
-                Truth::Negative(self.system.graph.binary(function, a, b))
-            }
+        if let (Truth::NotNegative(a), Truth::NotNegative(b)) = (one, other) {
+            let opposite = if function == Binary::Max { Binary::Min } else { Binary::Max };
+            return Truth::NotNegative(self.system.graph.binary(opposite, a, b));
         }
+        let (a, b) = (self.negative(one), self.negative(other));
+        Truth::Negative(self.system.graph.binary(function, a, b))
     }
 
     /// A number that is negative where the condition holds, and only there.
@@ -331,7 +329,12 @@ impl Reader<'_> {
     fn primed(&mut self) -> Result<Value, TextError> {
         let from = self.next;
         let mut value = self.primary()?;
+        let first = self.next;
         while self.takes("'") {
+            if self.next > first + MOST_PRIMES {
+                let message = format!("expected at most {MOST_PRIMES} derivatives");
+                return Err(self.error_at(self.next - 1, message));
+            }
             let formula = self.number_of(value, from)?;
             value = Value::Number(self.along_flow(formula, self.next - 1)?);
         }
@@ -420,7 +423,8 @@ impl Reader<'_> {
         let others = OTHERS.iter().find(|(it, ..)| *it == name);
         let (least, most) = others.map_or((1, 1), |&(_, least, most)| (least, most));
         if arguments.len() < least || arguments.len() > most {
-            let number = if least == most { format!("{least}") } else { format!("{least} or more") };
+            let number =
+                if least == most { format!("{least}") } else { format!("{least} or more") };
             let found = arguments.len();
             return Err(
                 self.error_at(at, format!("`{name}` has {found} arguments; expected {number}"))

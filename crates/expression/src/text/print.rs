@@ -280,8 +280,7 @@ impl<'a> Printer<'a> {
             }
         }
         if let Some(label) = &rule.label {
-            let label: String =
-                label.chars().filter(|c| !c.is_control() && *c != '"').collect();
+            let label: String = label.chars().filter(|c| !c.is_control() && *c != '"').collect();
             write!(text, " \"{label}\"")?;
         }
         if rule.priority != 0 {

@@ -94,12 +94,11 @@ impl<'a> Reader<'a> {
     /// An error at the next token.
     pub(super) fn error(&self, message: String) -> TextError {
         let Spanned { token, offset, length } = &self.tokens[self.next.min(self.tokens.len() - 1)];
-        let found = match token {
-            Token::End => "the line ends here".to_owned(),
-            _ => {
-                let found: String = self.text[*offset..offset + length].chars().take(30).collect();
-                format!("`{found}` is out of place")
-            }
+        let found = if *token == Token::End {
+            "the line ends here".to_owned()
+        } else {
+            let found: String = self.text[*offset..offset + length].chars().take(30).collect();
+            format!("`{found}` is out of place")
         };
         let message =
             if message.starts_with("expected") { format!("{found}; {message}") } else { message };
@@ -329,9 +328,9 @@ impl<'a> Reader<'a> {
         let (first, second) = (self.peek().clone(), self.second());
         match (first, second) {
             (Token::Name(name), Token::Sign("'")) => Ok(Kind::Slope(name)),
-            (Token::Name(name), Token::Sign("=")) if RESERVED.contains(&name) => Err(self.error(
-                format!("`{name}` has a meaning of its own; expected another name"),
-            )),
+            (Token::Name(name), Token::Sign("=")) if RESERVED.contains(&name) => {
+                Err(self.error(format!("`{name}` has a meaning of its own; expected another name")))
+            }
             (Token::Name(name), Token::Sign("=")) => Ok(Kind::Name(name)),
             (Token::Name(_), Token::Sign(":=")) => Ok(Kind::Change),
             (Token::Name(_), _) => Ok(Kind::Rule),
@@ -477,7 +476,8 @@ impl<'a> Reader<'a> {
         }
         if self.system.modes.is_empty() {
             // Mistakes in formulas that no mode uses.
-            let formulas: Vec<_> = self.by_mode.iter().map(|(name, it)| (*name, it.start)).collect();
+            let formulas: Vec<_> =
+                self.by_mode.iter().map(|(name, it)| (*name, it.start)).collect();
             for (name, at) in formulas {
                 self.in_mode(name, at)?;
             }
@@ -485,7 +485,8 @@ impl<'a> Reader<'a> {
         let missing = self.slopes.iter().position(Option::is_none);
         if let Some(missing) = missing {
             let (mode, name) = (section.name, &self.system.components[missing].name);
-            let message = format!("mode `{mode}` has no equation for `{name}`; expected {name}' = …");
+            let message =
+                format!("mode `{mode}` has no equation for `{name}`; expected {name}' = …");
             let place = self.tokens.iter().position(|it| it.token == Token::Name(mode));
             return Err(self.error_at(place.unwrap_or(self.tokens.len() - 1), message));
         }
@@ -587,11 +588,8 @@ impl<'a> Reader<'a> {
                 }
                 Token::Sign("->") => {
                     self.next += 1;
-                    rule.next = if self.takes_word("end") {
-                        Next::End
-                    } else {
-                        Next::Mode(self.target()?)
-                    };
+                    rule.next =
+                        if self.takes_word("end") { Next::End } else { Next::Mode(self.target()?) };
                 }
                 Token::Name("if") => {
                     self.next += 1;
@@ -615,9 +613,7 @@ impl<'a> Reader<'a> {
             ("crosses", Direction::Either),
         ];
         let from = self.next;
-        let is_edge = |token: &Token<'_>| {
-            matches!(token, Token::Name(name) if edges.iter().any(|(word, _)| word == name))
-        };
+        let is_edge = |token: &Token<'_>| matches!(token, Token::Name(name) if edges.iter().any(|(word, _)| word == name));
         let line = self.tokens[from..].iter().take_while(|it| it.token != Token::End);
         if !line.clone().any(|it| is_edge(&it.token)) {
             let truth = self.truth()?;

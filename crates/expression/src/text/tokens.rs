@@ -24,8 +24,8 @@ pub(super) struct Spanned<'a> {
 
 /// The longer ones first.
 const SIGNS: [&str; 24] = [
-    ":=", "->", "<=", ">=", "==", "!=", "**", "+", "-", "*", "/", "^", "(", ")", ",", ":", "=", "'",
-    "<", ">", "%", "−", "·", "′",
+    ":=", "->", "<=", ">=", "==", "!=", "**", "+", "-", "*", "/", "^", "(", ")", ",", ":", "=",
+    "'", "<", ">", "%", "−", "·", "′",
 ];
 
 /// Divides a text into tokens. Comments are left out, and lines do not end inside parentheses.
@@ -58,13 +58,13 @@ pub(super) fn tokens(text: &str) -> Result<Vec<Spanned<'_>>, TextError> {
                 let length = rest.find(|c| !within(c)).unwrap_or(rest.len());
                 (Token::Name(&rest[..length]), length)
             }
-            _ => match SIGNS.iter().find(|sign| rest.starts_with(**sign)) {
-                Some(sign) => (Token::Sign(plain(sign)), sign.len()),
-                None => {
+            _ => {
+                let Some(sign) = SIGNS.iter().find(|sign| rest.starts_with(**sign)) else {
                     let message = format!("the character {first:?} has no meaning here");
                     return Err(TextError::at(text, offset, message));
-                }
-            },
+                };
+                (Token::Sign(plain(sign)), sign.len())
+            }
         };
         match token {
             Token::Sign("(") => depth += 1,
@@ -114,7 +114,8 @@ fn number(text: &str, offset: usize) -> Result<(Token<'_>, usize), TextError> {
     let written = &text[offset..offset + length];
     let joined = text[offset + length..].chars().next();
     if joined.is_some_and(|c| c.is_alphanumeric() || c == '_' || c == '.') {
-        let message = format!("`{written}` is followed by a letter; expected an operator, as in 2*x");
+        let message =
+            format!("`{written}` is followed by a letter; expected an operator, as in 2*x");
         return Err(TextError::at(text, offset, message));
     }
     match written.parse::<f64>() {
@@ -123,8 +124,6 @@ fn number(text: &str, offset: usize) -> Result<(Token<'_>, usize), TextError> {
             let message = format!("{written} is too large; expected a number up to 1.7e308");
             Err(TextError::at(text, offset, message))
         }
-        Err(_) => {
-            Err(TextError::at(text, offset, format!("`{written}` is not a number")))
-        }
+        Err(_) => Err(TextError::at(text, offset, format!("`{written}` is not a number"))),
     }
 }

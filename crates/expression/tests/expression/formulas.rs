@@ -13,15 +13,8 @@ const UNARY: [Unary; 22] = [
     Unary::Atan, Unary::Sinh, Unary::Cosh, Unary::Tanh, Unary::Asinh, Unary::Acosh, Unary::Atanh,
     Unary::Erf,
 ];
-const BINARY: [Binary; 7] = [
-    Binary::Add,
-    Binary::Sub,
-    Binary::Mul,
-    Binary::Div,
-    Binary::Min,
-    Binary::Max,
-    Binary::Atan2,
-];
+const BINARY: [Binary; 7] =
+    [Binary::Add, Binary::Sub, Binary::Mul, Binary::Div, Binary::Min, Binary::Max, Binary::Atan2];
 
 /// A graph of random formulas of three components, two parameters and the time.
 fn random(numbers: &mut fastrand::Rng, size: usize) -> (Graph, Vec<Formula>) {
@@ -105,14 +98,17 @@ fn programs_compute_what_the_nodes_say() {
                 assert!(same(other[nth], expected), "{round}: {} {expected}", other[nth]);
             }
             // Bounds over a small box hold the values in it.
-            let around = |x: f64| Enclosure::from(0.0) + Enclosure {
-                value: Interval::around(x, 1e-3),
-                ..Enclosure::from(0.0)
+            let around = |x: f64| {
+                Enclosure::from(0.0)
+                    + Enclosure { value: Interval::around(x, 1e-3), ..Enclosure::from(0.0) }
             };
             let mut bounds = [Enclosure::ENTIRE; 5];
             program.run(around(t), &[a, b, c].map(around), &mut bounds);
             for (bound, value) in bounds.iter().zip(found) {
-                assert!(value.is_nan() || bound.value.contains(value), "{round}: {bound:?} {value}");
+                assert!(
+                    value.is_nan() || bound.value.contains(value),
+                    "{round}: {bound:?} {value}"
+                );
             }
         }
     }
@@ -174,9 +170,8 @@ fn text_of_random_formulas_reads_the_same() {
         }
         let text = system.text();
         let again = System::parse(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-        let compile = |system: &System| {
-            Program::compile(&system.graph, &system.modes[0].slopes, INPUTS)
-        };
+        let compile =
+            |system: &System| Program::compile(&system.graph, &system.modes[0].slopes, INPUTS);
         let (one, other) = (compile(&system), compile(&again));
         for _ in 0..4 {
             let [t, a, b, c, p, q] = [(); 6].map(|()| 4.0 * numbers.f64() - 2.0);

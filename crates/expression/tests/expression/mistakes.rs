@@ -17,7 +17,7 @@ fn places_and_hints() {
     let ball = "parameter gravity = 9.81\nstate height = 1, speed = 0\nheight' = speed\n";
     let with = |rest: &str| format!("{ball}{rest}");
     refused(&with("speed' = -gravty"), 4, 11, "`gravty` is not known; did you mean `gravity`?");
-    refused(&with(""), 3, 17, "mode `main` has no equation for `speed`");
+    refused(&with(""), 4, 1, "mode `main` has no equation for `speed`");
     refused(&with("speed' = -gravity height"), 4, 19, "expected the end of the line");
     refused(&with("speed' = -gravity*(1 + 2"), 4, 25, "expected )");
     refused(&with("speed' = 2gravity"), 4, 10, "followed by a letter");
@@ -25,7 +25,12 @@ fn places_and_hints() {
     refused(&with("speed' = 1 $ 2"), 4, 12, "no meaning");
     refused(&with("speed' = 1\nwhen hight < 0"), 5, 6, "did you mean `height`?");
     refused(&with("speed' = 1\nwhen gravity < 0"), 5, 6, "never changes");
-    refused(&with("speed' = 1\nwhen height < 0 -> flor\nmode floor"), 5, 20, "did you mean `floor`?");
+    refused(
+        &with("speed' = 1\nwhen height < 0 -> flor\nmode floor"),
+        5,
+        20,
+        "did you mean `floor`?",
+    );
     refused(&with("speed' = 1\nwhen height"), 5, 6, "expected a condition");
     refused(&with("speed' = height < 0"), 4, 10, "expected a number");
     refused(&with("speed' = 1\nspeed := 2"), 5, 1, "expected a rule");
@@ -70,12 +75,15 @@ fn nothing_is_too_deep_or_too_long() {
     let sum = format!("state x = 0\nx' = 0{}", " + x".repeat(100_000));
     let system = System::parse(&sum).expect("a long sum");
     assert_eq!(System::parse(&system.text()).expect("its text").text(), system.text());
-    let lines: String = (0..100_000).map(|k| format!("a{k} = {k} + t\n")).collect();
+    let lines: Vec<String> = (0..100_000).map(|k| format!("a{k} = {k} + t\n")).collect();
+    let lines = lines.concat();
     assert!(System::parse(&format!("state x = 0\n{lines}x' = a7")).is_ok());
-    let modes: String = (0..50_000).map(|k| format!("mode m{k}\nx' = {k}\n")).collect();
+    let modes: Vec<String> = (0..50_000).map(|k| format!("mode m{k}\nx' = {k}\n")).collect();
+    let modes = modes.concat();
     assert!(System::parse(&format!("state x = 0\n{modes}")).is_ok());
-    let primes = format!("state x = 1\nx' = sin(x*t)\nr = (x*t){}\nwhen r < 0", "'".repeat(60));
-    assert!(System::parse(&primes).unwrap_err().message.contains("more than"));
+    let primes = "'".repeat(11);
+    let primes = format!("state x = 1\nx' = sin(x*t)\nr = exp(x*t){primes}\nwhen r < 0");
+    assert!(System::parse(&primes).unwrap_err().message.contains("at most 10"));
 }
 
 /// Random texts of words and signs of the language, and systems with random damage.
@@ -83,10 +91,61 @@ fn nothing_is_too_deep_or_too_long() {
 fn no_text_panics() {
     let mut numbers = fastrand::Rng::with_seed(5);
     let words = [
-        "parameter", "state", "discrete", "mode", "when", "at", "every", "from", "start", "in", "end",
-        "if", "then", "else", "and", "or", "not", "rises", "falls", "crosses", "through", "priority",
-        "jumps", "t", "pi", "x", "y", "a", "sin(", "max(", "(", ")", "=", "'", ":=", "->", "<", ">",
-        "==", "+", "-", "*", "/", "^", "%", ",", ":", "1", "0", "2.5e3", "\"b\"", "\n", "\n", "\n", "#",
+        "parameter",
+        "state",
+        "discrete",
+        "mode",
+        "when",
+        "at",
+        "every",
+        "from",
+        "start",
+        "in",
+        "end",
+        "if",
+        "then",
+        "else",
+        "and",
+        "or",
+        "not",
+        "rises",
+        "falls",
+        "crosses",
+        "through",
+        "priority",
+        "jumps",
+        "t",
+        "pi",
+        "x",
+        "y",
+        "a",
+        "sin(",
+        "max(",
+        "(",
+        ")",
+        "=",
+        "'",
+        ":=",
+        "->",
+        "<",
+        ">",
+        "==",
+        "+",
+        "-",
+        "*",
+        "/",
+        "^",
+        "%",
+        ",",
+        ":",
+        "1",
+        "0",
+        "2.5e3",
+        "\"b\"",
+        "\n",
+        "\n",
+        "\n",
+        "#",
     ];
     let belt = "parameter a = 1\nstate x = 0, y = a\nx' = y\ny' = -x\nwhen x' < a \"b\" -> m\n  x := 1\n\
                 at 1, 2 if x < y -> m else -> n\nmode m\nmode n\nstart in m\nend = 3\n";
@@ -101,7 +160,7 @@ fn no_text_panics() {
         } else {
             let pieces: Vec<&str> = belt.split_inclusive([' ', '\n']).collect();
             for piece in pieces {
-                match numbers.u8(..30) {
+                match numbers.u8(..150) {
                     0 => {}
                     1 => text += words[numbers.usize(..words.len())],
                     2 => text = text + piece + piece,
