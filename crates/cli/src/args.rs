@@ -19,6 +19,7 @@ mod man;
 mod map;
 mod method;
 mod reproduce;
+mod run;
 mod shared;
 mod stack;
 mod table;
@@ -45,6 +46,7 @@ pub use man::ManArguments;
 pub use map::MapArguments;
 pub use method::{Method, MethodArguments};
 pub use reproduce::{AuditFormat, ReproduceArguments};
+pub use run::{RunArguments, SystemArguments};
 pub use shared::{CollisionArguments, Format};
 pub use stack::StackArguments;
 pub use table::TableArguments;
@@ -79,6 +81,12 @@ pub enum Command {
     /// Join the parts of a map
     #[command(long_about = join::ABOUT, after_long_help = join::EXAMPLES)]
     Join(JoinArguments),
+    /// Integrate a system of your own through every event
+    #[command(long_about = run::ABOUT, after_long_help = run::EXAMPLES)]
+    Run(RunArguments),
+    /// Read a system of your own, and print what it consists of
+    #[command(long_about = run::SYSTEM_ABOUT, after_long_help = run::SYSTEM_EXAMPLES)]
+    System(SystemArguments),
     /// Trace every boundary in a window on which the switches change
     #[command(long_about = trace::ABOUT, after_long_help = trace::EXAMPLES)]
     Trace(TraceArguments),

@@ -13,6 +13,7 @@ pub mod locate;
 pub mod man;
 pub mod map;
 pub mod reproduce;
+pub mod run;
 pub mod stack;
 pub mod statements;
 pub mod studies;

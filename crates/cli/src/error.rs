@@ -58,6 +58,17 @@ pub enum Failure {
     /// A study has no result.
     #[error(transparent)]
     Study(#[from] StudyError),
+    /// A text is no system.
+    #[error("{}: {error}", path.display())]
+    Text {
+        /// The file.
+        path: PathBuf,
+        /// Where it is wrong, and how.
+        error: stickslip_expression::TextError,
+    },
+    /// A run of a system failed.
+    #[error("the run failed: {0}")]
+    Run(#[from] stickslip_solver::RunError),
     /// Errors of time steps cannot be measured.
     #[error(transparent)]
     TimeSteps(#[from] TimeStepsError),
@@ -125,7 +136,8 @@ impl Failure {
     #[must_use]
     pub fn code(&self) -> u8 {
         match self {
-            Self::Usage(_) | Self::File(FileError::Option(_) | FileError::Input { .. }) => 2,
+            Self::Usage(_) | Self::Text { .. } => 2,
+            Self::File(FileError::Option(_) | FileError::Input { .. }) => 2,
             _ => 1,
         }
     }

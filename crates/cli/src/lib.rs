@@ -31,8 +31,8 @@ use args::{Arguments, Command};
 pub use error::Failure;
 use output::console::say;
 use plan::{
-    CollidePlan, FitPlan, ImpactPlan, JoinPlan, LocatePlan, MapPlan, ReproducePlan, StackPlan,
-    StudyPlan, TablePlan, TimestepPlan, TracePlan,
+    CollidePlan, FitPlan, ImpactPlan, JoinPlan, LocatePlan, MapPlan, ReproducePlan, RunPlan,
+    StackPlan, StudyPlan, TablePlan, TimestepPlan, TracePlan,
 };
 pub use stickslip_files::FileError;
 use version::NAME;
@@ -100,6 +100,8 @@ fn carry_out(arguments: &Arguments) -> Result<(), Failure> {
         Command::Laws(arguments) => commands::laws::run(arguments),
         Command::Map(arguments) => commands::map::run(&MapPlan::new(arguments)?),
         Command::Join(arguments) => commands::join::run(&JoinPlan::new(arguments)?),
+        Command::Run(arguments) => commands::run::run(&RunPlan::new(arguments)?),
+        Command::System(arguments) => commands::run::describe(arguments),
         Command::Trace(arguments) => commands::trace::run(&TracePlan::new(arguments)?),
         Command::Stack(arguments) => commands::stack::run(&StackPlan::new(arguments)?),
         Command::Locate(arguments) => commands::locate::run(&LocatePlan::new(arguments)?),

@@ -10,8 +10,11 @@ use stickslip_studies::{contact_laws, convergence, stiff_springs};
 /// The layout of the report that `reproduce` writes.
 pub const REPORT: &str = "stickslip.report/1";
 
+/// The layout of a run of a system of a user's own.
+pub const RUN: &str = "stickslip.run/1";
+
 /// All layouts, those of the libraries included.
-pub const ALL: [&str; 13] = [
+pub const ALL: [&str; 14] = [
     document::COLLISION,
     document::IMPACT,
     atlas::SCHEMA,
@@ -25,4 +28,5 @@ pub const ALL: [&str; 13] = [
     time_steps::SCHEMA,
     fit::SCHEMA,
     REPORT,
+    RUN,
 ];

@@ -36,16 +36,18 @@
 //!
 //! The modules in reading order: `graph` has formulas and their derivatives, `program` compiles and
 //! computes them, `system` is what a hybrid system consists of, `run` what the solver sees of it,
-//! and `text` reads and writes it. `docs/systems.md` in the repository describes the language.
+//! `recording` a run with its events, and `text` reads and writes it. `docs/systems.md` in the repository describes the language.
 
 mod graph;
 mod program;
+mod recording;
 mod run;
 mod system;
 mod text;
 
 pub use graph::{Binary, Formula, Graph, Node, Unary, Variable};
 pub use program::{Inputs, Program};
+pub use recording::{Recording, Stay};
 pub use run::{InvalidParameters, Runnable};
 pub use system::{Component, Mode, Next, Parameter, Rule, System, Trigger};
 pub use text::{TextError, format};

@@ -88,6 +88,12 @@ impl System {
         self.parameters.iter().map(|parameter| parameter.value).collect()
     }
 
+    /// Whether a rule ends runs.
+    #[must_use]
+    pub fn ends_itself(&self) -> bool {
+        self.modes.iter().flat_map(|mode| &mode.rules).any(|rule| rule.next == Next::End)
+    }
+
     /// The system with numbers for its parameters.
     ///
     /// # Errors

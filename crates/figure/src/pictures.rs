@@ -13,4 +13,5 @@ pub mod gallery;
 pub mod grid;
 pub mod map;
 mod regions;
+pub mod run;
 pub mod stack;

@@ -46,12 +46,12 @@ fn tolerance_help(name: &str, range: &str, tolerance: fn(&Tolerances) -> f64) ->
 }
 
 /// Reads a relative tolerance.
-fn rtol(text: &str) -> Result<f64, String> {
+pub(super) fn rtol(text: &str) -> Result<f64, String> {
     parse(text, |rtol| Options { rtol, ..Options::default() })
 }
 
 /// Reads an absolute tolerance.
-fn atol(text: &str) -> Result<f64, String> {
+pub(super) fn atol(text: &str) -> Result<f64, String> {
     parse(text, |atol| Options { atol, ..Options::default() })
 }
 

@@ -1,0 +1,174 @@
+//! A run of a system with everything that happened.
+
+use stickslip_solver::{
+    DynamicDense, DynamicEvent, DynamicObserver, DynamicRun, DynamicSwitch, EmbeddedPair, Options,
+    RunError, run_dynamic_with,
+};
+
+use crate::run::Runnable;
+
+/// A run: how it ended, its events, and its state at every time.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    /// How the run ended.
+    pub run: DynamicRun<usize>,
+    /// What happened, in order. Events at the end of a run change nothing.
+    pub events: Vec<DynamicSwitch<usize>>,
+    start: f64,
+    state: Vec<f64>,
+    mode: usize,
+    steps: Vec<StoredStep>,
+}
+
+#[derive(Clone, Debug)]
+struct StoredStep {
+    s: f64,
+    h: f64,
+    coefficients: Vec<f64>,
+}
+
+/// A time in which a run was in one mode.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stay {
+    /// The mode.
+    pub mode: usize,
+    /// When it began.
+    pub from: f64,
+    /// When it ended.
+    pub to: f64,
+}
+
+#[derive(Default)]
+struct Recorder {
+    events: Vec<DynamicSwitch<usize>>,
+    steps: Vec<StoredStep>,
+}
+
+impl DynamicObserver<usize> for Recorder {
+    const WANTS_SEGMENTS: bool = true;
+
+    fn on_switch(&mut self, event: &DynamicEvent<'_, usize>) {
+        self.events.push(event.to_switch());
+    }
+    fn forget(&mut self, switches: usize) {
+        self.events.truncate(self.events.len().saturating_sub(switches));
+    }
+    fn on_segment(&mut self, _mode: usize, dense: &DynamicDense<'_>) {
+        let (s, h, coefficients) = (dense.start(), dense.size(), dense.coefficients().to_vec());
+        self.steps.push(StoredStep { s, h, coefficients });
+    }
+}
+
+impl Runnable {
+    /// Runs the system from its start to `end`, and records everything.
+    ///
+    /// ```
+    /// use stickslip_expression::System;
+    /// use stickslip_solver::{EmbeddedPair, Options};
+    ///
+    /// let system = System::parse("state x = 1\nx' = -x\nwhen x falls through 0.5 \"half\"")?;
+    /// let decay = system.with(&[])?;
+    /// let found = decay.record(EmbeddedPair::Dop853, 2.0, &Options::default())?;
+    /// assert!((found.events[0].s - 2.0_f64.ln()).abs() < 1e-10);
+    /// assert!((found.at(1.5).expect("within the run")[0] - (-1.5_f64).exp()).abs() < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`RunError`], as of a run of any system.
+    pub fn record(
+        &self,
+        method: EmbeddedPair,
+        end: f64,
+        options: &Options,
+    ) -> Result<Recording, RunError> {
+        let mut recorder = Recorder::default();
+        let start = self.start();
+        let run = run_dynamic_with(method, self, start, end, options, &mut recorder)?;
+        let Recorder { events, steps } = recorder;
+        let (state, mode) = (start.state.to_vec(), start.mode);
+        Ok(Recording { run, events, start: start.s, state, mode, steps })
+    }
+}
+
+impl Recording {
+    /// Where the run started.
+    #[must_use]
+    pub fn start(&self) -> f64 {
+        self.start
+    }
+
+    /// The state at a time of the run, and at an event the state behind it; `None` outside the run.
+    #[must_use]
+    pub fn at(&self, s: f64) -> Option<Vec<f64>> {
+        if s == self.run.s {
+            return Some(self.run.state.clone());
+        }
+        if !(self.start..self.run.s).contains(&s) {
+            return None;
+        }
+        let behind = self.events.partition_point(|event| event.s <= s);
+        let place = self.steps.partition_point(|step| step.s <= s);
+        // A step may begin at an event, or somewhat before it: what it knows is the newer.
+        let last = behind.checked_sub(1).map(|last| &self.events[last]).filter(|it| it.s == s);
+        match (last, place.checked_sub(1)) {
+            (Some(event), _) => Some(event.after.clone()),
+            (None, None) => Some(self.state.clone()),
+            (None, Some(last)) => Some(self.steps[last].at(s, self.state.len())),
+        }
+    }
+
+    /// The modes of the run, in order. A mode that an event enters anew is another stay only if it
+    /// is another mode.
+    #[must_use]
+    pub fn stays(&self) -> Vec<Stay> {
+        let mut stays = vec![Stay { mode: self.mode, from: self.start, to: self.run.s }];
+        for event in &self.events {
+            let last = stays.len() - 1;
+            if event.to != stays[last].mode {
+                stays[last].to = event.s;
+                stays.push(Stay { mode: event.to, from: event.s, to: self.run.s });
+            }
+        }
+        stays
+    }
+
+    /// Times and states for a smooth curve: each step in so many parts, and both sides of events.
+    #[must_use]
+    pub fn curve(&self, parts: usize) -> Vec<(f64, Vec<f64>)> {
+        let mut curve = vec![(self.start, self.state.clone())];
+        let mut events = self.events.iter().peekable();
+        let parts = parts.max(1);
+        for step in &self.steps {
+            while let Some(event) = events.next_if(|event| event.s <= step.s) {
+                curve.push((event.s, event.before.clone()));
+                curve.push((event.s, event.after.clone()));
+            }
+            for part in 1..=parts {
+                let s = step.s + step.h * part as f64 / parts as f64;
+                curve.push((s, step.at(s, self.state.len())));
+            }
+        }
+        for event in events {
+            curve.push((event.s, event.before.clone()));
+            curve.push((event.s, event.after.clone()));
+        }
+        curve.push((self.run.s, self.run.state.clone()));
+        curve
+    }
+
+    /// The mode at a time of the run, and at an event the mode behind it.
+    #[must_use]
+    pub fn mode_at(&self, s: f64) -> usize {
+        let behind = self.events.partition_point(|event| event.s <= s);
+        behind.checked_sub(1).map_or(self.mode, |last| self.events[last].to)
+    }
+}
+
+impl StoredStep {
+    fn at(&self, s: f64, n: usize) -> Vec<f64> {
+        let dense = DynamicDense::from_coefficients(self.s, self.h, n, &self.coefficients);
+        // The coefficients are those of a step with n components.
+        dense.map_or_else(|| vec![f64::NAN; n], |dense| dense.at((s - self.s) / self.h))
+    }
+}
