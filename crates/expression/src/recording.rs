@@ -144,8 +144,10 @@ impl Recording {
                 curve.push((event.s, event.before.clone()));
                 curve.push((event.s, event.after.clone()));
             }
+            // A step ends at the next event, but for rounding.
+            let most = events.peek().map_or(self.run.s, |event| event.s);
             for part in 1..=parts {
-                let s = step.s + step.h * part as f64 / parts as f64;
+                let s = (step.s + step.h * part as f64 / parts as f64).min(most);
                 curve.push((s, step.at(s, self.state.len())));
             }
         }

@@ -33,8 +33,8 @@ mod parts_failures;
 #[cfg(unix)]
 mod parts_interrupted;
 mod pictures;
-
 mod reproduce;
+mod run;
 mod stack;
 #[cfg(unix)]
 mod streams;

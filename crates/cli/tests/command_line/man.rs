@@ -17,6 +17,7 @@ const PAGES: [&str; 17] = [
     "stickslip-man.1",
     "stickslip-map.1",
     "stickslip-reproduce.1",
+    "stickslip-run.1",
     "stickslip-stack.1",
     "stickslip-table.1",
     "stickslip-timestep.1",

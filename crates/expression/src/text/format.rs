@@ -1,5 +1,7 @@
 //! A text in its usual form: blanks and indentation, and nothing else.
 
+use std::fmt::Write;
+
 use super::TextError;
 use super::tokens::{Spanned, Token, tokens};
 
@@ -20,7 +22,7 @@ use super::tokens::{Spanned, Token, tokens};
 /// [`TextError`] if the text contains what is no word or sign of the language.
 pub fn format(text: &str) -> Result<String, TextError> {
     let tokens = tokens(text)?;
-    let mut formatted = String::new();
+    let mut lines: Vec<(String, Option<&str>)> = Vec::new();
     let (mut in_mode, mut in_rule, mut rest) = (false, false, &tokens[..]);
     let (mut from, mut empty) = (0, 0);
     for line in text.split_inclusive('\n') {
@@ -36,8 +38,8 @@ pub fn format(text: &str) -> Result<String, TextError> {
             continue;
         }
         // Several empty lines are one.
-        if empty > 0 && !formatted.is_empty() {
-            formatted.push('\n');
+        if empty > 0 && !lines.is_empty() {
+            lines.push((String::new(), None));
         }
         empty = 0;
         let first = words.first().map(|it| &it.token);
@@ -57,16 +59,35 @@ pub fn format(text: &str) -> Result<String, TextError> {
         let is_rule = matches!(first, Some(Token::Name("when" | "at" | "every")));
         let is_mode = matches!(first, Some(Token::Name("mode")));
         let depth = usize::from(in_mode && !is_mode) + usize::from(in_rule && !is_rule);
-        formatted.push_str(&"  ".repeat(depth));
-        words_of(text, &words, &mut formatted);
-        if let Some(comment) = comment {
-            formatted.push_str(if words.is_empty() { "" } else { "  " });
-            formatted.push_str(comment);
-        }
-        formatted.push('\n');
+        let mut code = "  ".repeat(depth);
+        words_of(text, &words, &mut code);
+        lines.push((code, comment));
         from = to;
     }
-    Ok(formatted)
+    Ok(aligned(&lines))
+}
+
+/// The lines of a text. Comments of neighbouring lines begin in one column.
+fn aligned(lines: &[(String, Option<&str>)]) -> String {
+    let mut text = String::new();
+    let beside = |line: &(String, Option<&str>)| line.1.is_some() && !line.0.trim().is_empty();
+    for block in lines.chunk_by(|one, other| beside(one) && beside(other)) {
+        let width = block.iter().map(|(code, _)| code.chars().count()).max().unwrap_or(0);
+        for line in block {
+            match line {
+                (code, Some(comment)) if beside(line) => {
+                    // Writing to a string does not fail.
+                    let _ = write!(text, "{code:width$}  {comment}");
+                }
+                (code, comment) => {
+                    text.push_str(code);
+                    text.push_str(comment.unwrap_or(""));
+                }
+            }
+            text.push('\n');
+        }
+    }
+    text
 }
 
 /// The comment of a line, which begins behind its last word.

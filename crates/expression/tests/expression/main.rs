@@ -1,5 +1,6 @@
 //! Tests of formulas and systems as data.
 
+mod examples;
 mod formulas;
 mod mistakes;
 mod systems;

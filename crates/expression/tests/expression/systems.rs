@@ -1,13 +1,12 @@
 //! Systems from text against closed forms.
 
 use stickslip_expression::{Runnable, System};
-use stickslip_solver::{Dop853, DynamicRun, DynamicSwitch, Options, run_dynamic};
+use stickslip_solver::{DynamicRun, DynamicSwitch, EmbeddedPair, Options};
 
 fn run(runnable: &Runnable) -> (DynamicRun<usize>, Vec<DynamicSwitch<usize>>) {
-    let mut switches = Vec::new();
-    let (start, options) = (runnable.start(), Options::default());
-    let end = run_dynamic(Dop853, runnable, start, runnable.end(), &options, &mut switches);
-    (end.expect("a run"), switches)
+    let found = runnable.record(EmbeddedPair::Dop853, runnable.end(), &Options::default());
+    let found = found.expect("a run");
+    (found.run, found.events)
 }
 
 fn parsed(text: &str) -> System {
@@ -69,7 +68,7 @@ fn parameters_are_given_when_it_runs() {
 /// start from zeros, also double ones, need no declaration.
 #[test]
 fn the_collision_of_spheres() {
-    let (end, switches) = runs(include_str!("../../../../tests/data/systems/collision.slip"));
+    let (end, switches) = runs(include_str!("../../../../examples/systems/collision.slip"));
     let names: Vec<usize> = switches.iter().map(|switch| switch.to).collect();
     assert!(end.decided, "{end:?}");
     // touch, then o+o-o+, as the model has them; its coefficients follow from the end.
