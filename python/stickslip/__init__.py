@@ -51,6 +51,7 @@ from stickslip.family_stacks import (
     stack_family,
 )
 from stickslip.fits import Fit, fit
+from stickslip.formulas import FormulaSystem, read, system
 from stickslip.gaining import GainingLine, GainingLines, gaining_lines
 from stickslip.hybrid import solve
 from stickslip.impacts import (
@@ -110,6 +111,7 @@ __all__ = [
     "FamilyVertex",
     "Fit",
     "Followed",
+    "FormulaSystem",
     "GainingLine",
     "GainingLines",
     "Guard",
@@ -158,12 +160,14 @@ __all__ = [
     "load_table",
     "map",
     "psi_of_ratio",
+    "read",
     "reproduce",
     "reproduction_parts",
     "solve",
     "stack",
     "stack_family",
     "sweep",
+    "system",
     "table",
     "table_of_velocities",
     "timestep",

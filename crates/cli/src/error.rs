@@ -136,8 +136,9 @@ impl Failure {
     #[must_use]
     pub fn code(&self) -> u8 {
         match self {
-            Self::Usage(_) | Self::Text { .. } => 2,
-            Self::File(FileError::Option(_) | FileError::Input { .. }) => 2,
+            Self::Usage(_)
+            | Self::Text { .. }
+            | Self::File(FileError::Option(_) | FileError::Input { .. }) => 2,
             _ => 1,
         }
     }

@@ -12,7 +12,7 @@
 //!
 //! let system = System::parse(
 //!     r#"
-//! # A ball that falls on a floor
+//! ## A ball that falls on a floor
 //! parameter g = 9.81, e = 0.5
 //! state x = 4.905, v = 0
 //!
@@ -36,7 +36,8 @@
 //!
 //! The modules in reading order: `graph` has formulas and their derivatives, `program` compiles and
 //! computes them, `system` is what a hybrid system consists of, `run` what the solver sees of it,
-//! `recording` a run with its events, and `text` reads and writes it. `docs/systems.md` in the repository describes the language.
+//! `recording` a run with its events, and `text` reads and writes it. `docs/systems.md` in the
+//! repository describes the language.
 
 mod graph;
 mod program;
@@ -47,7 +48,11 @@ mod text;
 
 pub use graph::{Binary, Formula, Graph, Node, Unary, Variable};
 pub use program::{Inputs, Program};
-pub use recording::{Recording, Stay};
+pub use recording::{Recording, Stay, StoredStep};
 pub use run::{InvalidParameters, Runnable};
 pub use system::{Component, Mode, Next, Parameter, Rule, System, Trigger};
 pub use text::{TextError, format};
+
+#[doc = include_str!("../README.md")]
+#[cfg(doctest)]
+pub struct Readme;

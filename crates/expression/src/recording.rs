@@ -1,8 +1,8 @@
 //! A run of a system with everything that happened.
 
 use stickslip_solver::{
-    DynamicDense, DynamicEvent, DynamicObserver, DynamicRun, DynamicSwitch, EmbeddedPair, Options,
-    RunError, run_dynamic_with,
+    DynamicDense, DynamicEvent, DynamicObserver, DynamicRun, DynamicSwitch, EmbeddedPair, Grazing,
+    Options, Pole, Preempted, RunError, run_dynamic_with,
 };
 
 use crate::run::Runnable;
@@ -14,17 +14,29 @@ pub struct Recording {
     pub run: DynamicRun<usize>,
     /// What happened, in order. Events at the end of a run change nothing.
     pub events: Vec<DynamicSwitch<usize>>,
+    /// Where guards touched zero, or nearly.
+    pub touches: Vec<Grazing<usize>>,
+    /// Where guards changed their sign at a pole.
+    pub poles: Vec<Pole<usize>>,
+    /// Rules that did not act, because another one had left their mode.
+    pub preempted: Vec<Preempted<usize>>,
     start: f64,
     state: Vec<f64>,
     mode: usize,
     steps: Vec<StoredStep>,
 }
 
-#[derive(Clone, Debug)]
-struct StoredStep {
-    s: f64,
-    h: f64,
-    coefficients: Vec<f64>,
+/// A step with its dense output.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StoredStep {
+    /// The mode.
+    pub mode: usize,
+    /// Where the step begins.
+    pub s: f64,
+    /// Its size.
+    pub h: f64,
+    /// [`DynamicDense::coefficients`].
+    pub coefficients: Vec<f64>,
 }
 
 /// A time in which a run was in one mode.
@@ -41,6 +53,9 @@ pub struct Stay {
 #[derive(Default)]
 struct Recorder {
     events: Vec<DynamicSwitch<usize>>,
+    touches: Vec<Grazing<usize>>,
+    poles: Vec<Pole<usize>>,
+    preempted: Vec<Preempted<usize>>,
     steps: Vec<StoredStep>,
 }
 
@@ -50,12 +65,21 @@ impl DynamicObserver<usize> for Recorder {
     fn on_switch(&mut self, event: &DynamicEvent<'_, usize>) {
         self.events.push(event.to_switch());
     }
+    fn on_grazing(&mut self, touch: &Grazing<usize>) {
+        self.touches.push(*touch);
+    }
+    fn on_pole(&mut self, pole: &Pole<usize>) {
+        self.poles.push(*pole);
+    }
+    fn on_preempted(&mut self, preempted: &Preempted<usize>) {
+        self.preempted.push(*preempted);
+    }
     fn forget(&mut self, switches: usize) {
         self.events.truncate(self.events.len().saturating_sub(switches));
     }
-    fn on_segment(&mut self, _mode: usize, dense: &DynamicDense<'_>) {
+    fn on_segment(&mut self, mode: usize, dense: &DynamicDense<'_>) {
         let (s, h, coefficients) = (dense.start(), dense.size(), dense.coefficients().to_vec());
-        self.steps.push(StoredStep { s, h, coefficients });
+        self.steps.push(StoredStep { mode, s, h, coefficients });
     }
 }
 
@@ -85,9 +109,9 @@ impl Runnable {
         let mut recorder = Recorder::default();
         let start = self.start();
         let run = run_dynamic_with(method, self, start, end, options, &mut recorder)?;
-        let Recorder { events, steps } = recorder;
-        let (state, mode) = (start.state.to_vec(), start.mode);
-        Ok(Recording { run, events, start: start.s, state, mode, steps })
+        let Recorder { events, touches, poles, preempted, steps } = recorder;
+        let (state, mode, start) = (start.state.to_vec(), start.mode, start.s);
+        Ok(Recording { run, events, touches, poles, preempted, start, state, mode, steps })
     }
 }
 
@@ -96,6 +120,12 @@ impl Recording {
     #[must_use]
     pub fn start(&self) -> f64 {
         self.start
+    }
+
+    /// The steps of the run.
+    #[must_use]
+    pub fn steps(&self) -> &[StoredStep] {
+        &self.steps
     }
 
     /// The state at a time of the run, and at an event the state behind it; `None` outside the run.

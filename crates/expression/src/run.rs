@@ -70,7 +70,7 @@ pub enum InvalidParameters {
         value: f64,
     },
     /// What parameters make is not a number.
-    #[error("{what} is {value} with these parameters; expected {expected}")]
+    #[error("{what} is {value}; expected {expected}")]
     Value {
         /// What is computed from them.
         what: String,
@@ -242,6 +242,47 @@ impl Runnable {
     #[must_use]
     pub fn start(&self) -> DynamicStart<'_, usize> {
         DynamicStart { mode: self.first, s: self.start, state: &self.state }
+    }
+
+    /// The same system with another start, where one is given: mode, time and state.
+    ///
+    /// # Errors
+    /// [`InvalidParameters`] if there is no such mode, or if the state has another length or is not
+    /// finite.
+    pub fn starting(
+        mut self,
+        mode: Option<usize>,
+        s: Option<f64>,
+        state: Option<&[f64]>,
+    ) -> Result<Self, InvalidParameters> {
+        let wrong = |what: &str, value: f64, expected| InvalidParameters::Value {
+            what: what.to_owned(),
+            value,
+            expected,
+        };
+        if let Some(mode) = mode {
+            if mode >= self.modes.len() {
+                return Err(wrong("the first mode", mode as f64, "a mode of the system"));
+            }
+            self.first = mode;
+        }
+        if let Some(s) = s {
+            if !s.is_finite() {
+                return Err(wrong("the start", s, "a finite number"));
+            }
+            self.start = s;
+        }
+        if let Some(state) = state {
+            if state.len() != self.state.len() {
+                let length = state.len() as f64;
+                return Err(wrong("the number of components", length, "that of the system"));
+            }
+            if let Some(&value) = state.iter().find(|value| !value.is_finite()) {
+                return Err(wrong("a component of the state", value, "a finite number"));
+            }
+            self.state = state.to_vec();
+        }
+        Ok(self)
     }
 
     /// Where a run ends; infinite if the system does not say.

@@ -1,12 +1,13 @@
 //! Systems as text: read, written and formatted.
 //!
-//! `tokens` divides a text into words and signs, `formula` reads formulas, `statements` reads the
-//! rest, and `print` writes a system.
+//! `tokens` divides a text into words and signs, and `reader` goes through them. `formula` reads
+//! formulas, `statements` the rest. `print` writes a system, and `format` a text in its usual form.
 
 mod format;
 mod formula;
 mod names;
 mod print;
+mod reader;
 mod statements;
 mod tokens;
 

@@ -5,9 +5,8 @@
 //! Python functions that call these, in `python/stickslip`.
 //!
 //! Start reading in `arrays`; then `collision`, `impacts`, `planes`, `stacks`, `steps`, `fits`,
-//! `tables`, `studies` (results), `hybrid` (systems of one's own), `families` (and what they depend
-//! on), `engines`, `parallel` and
-//! `failure` (what they share).
+//! `tables`, `studies` (results), `hybrid` and `formulas` (systems of one's own), `families` (and
+//! what they depend on), `engines`, `parallel` and `failure` (what they share).
 
 mod arrays;
 mod collision;
@@ -15,6 +14,7 @@ mod engines;
 mod failure;
 mod families;
 mod fits;
+mod formulas;
 mod hybrid;
 mod impacts;
 mod parallel;
@@ -39,6 +39,8 @@ mod _native {
     use super::families::{FamilyAtlas, HybridFamily, stack_family};
     #[pymodule_export]
     use super::fits::Fit;
+    #[pymodule_export]
+    use super::formulas::FormulaSystem;
     #[pymodule_export]
     use super::hybrid::{evaluate_dense, run_hybrid};
     #[pymodule_export]

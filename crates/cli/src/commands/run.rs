@@ -125,7 +125,9 @@ fn write_course(
             Some(event) => rows.count(event),
             None => rows.field(""),
         }
-        state.iter().for_each(|&value| rows.number(value));
+        for &value in state {
+            rows.number(value);
+        }
         rows.end();
         written += 1;
         if written % ROWS_AT_ONCE == 0 {
@@ -182,7 +184,8 @@ fn short(value: f64) -> String {
 #[derive(Serialize)]
 struct Event {
     time: f64,
-    event: String,
+    #[serde(rename = "event")]
+    label: String,
     from: String,
     to: String,
     before: Map<String, Value>,
@@ -208,7 +211,7 @@ fn document(plan: &RunPlan, found: &Recording) -> Value {
         .iter()
         .map(|event| Event {
             time: event.s,
-            event: label(system, event),
+            label: label(system, event),
             from: name(event.from),
             to: name(event.to),
             before: state(&event.before),

@@ -19,6 +19,7 @@ const PAGES: [&str; 17] = [
     "stickslip-reproduce.1",
     "stickslip-run.1",
     "stickslip-stack.1",
+    "stickslip-system.1",
     "stickslip-table.1",
     "stickslip-timestep.1",
     "stickslip-trace.1",

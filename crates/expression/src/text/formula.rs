@@ -1,6 +1,6 @@
 //! Formulas: read from tokens straight into a graph.
 
-use super::statements::Reader;
+use super::reader::Reader;
 use super::tokens::Token;
 use super::{TextError, names};
 use crate::graph::{Binary, Formula, Unary, Variable};
@@ -482,5 +482,23 @@ impl Reader<'_> {
             format!("`{name}` is not known{}", names::hint(name, known.chain(functions)))
         };
         Err(self.error_at(at, message))
+    }
+
+    /// A formula that differs from mode to mode, in the mode that is read.
+    pub(super) fn in_mode(&mut self, name: &str, at: usize) -> Result<Option<Formula>, TextError> {
+        let Some((&name, statement)) = self.by_mode.get_key_value(name) else { return Ok(None) };
+        if let Some(formula) = self.formulas.get(name) {
+            return Ok(Some(*formula));
+        }
+        if statement.start > at {
+            return Ok(None);
+        }
+        let (place, start) = (self.next, statement.start);
+        self.next = start + 2;
+        let formula = self.number()?;
+        self.expect_end()?;
+        self.next = place;
+        self.formulas.insert(name, formula);
+        Ok(Some(formula))
     }
 }

@@ -1,43 +1,18 @@
 //! Statements: what a system declares, its modes and their rules.
 
 use std::collections::{HashMap, HashSet};
-use std::ops::Range;
 
 use stickslip_solver::Direction;
 
-use super::formula::{RESERVED, is_function};
-use super::tokens::{Spanned, Token, tokens};
+use super::formula::{RESERVED, Truth, is_function};
+use super::reader::{Reader, Statement};
+use super::tokens::{Token, tokens};
 use super::{TextError, names};
 use crate::graph::{Binary, Formula, Variable};
 use crate::system::{Component, Mode, Next, Parameter, Rule, System, Trigger};
 
 /// The slopes of all modes together have at most as many entries.
 const MOST_SLOPES: usize = 10_000_000;
-
-/// The tokens of a statement, without the end of its line.
-type Statement = Range<usize>;
-
-/// Reads a system from its text.
-pub(super) struct Reader<'a> {
-    text: &'a str,
-    tokens: Vec<Spanned<'a>>,
-    /// The next token.
-    pub(super) next: usize,
-    /// How deep the formula that is read is nested.
-    pub(super) depth: usize,
-    pub(super) system: System,
-    /// What names stand for here.
-    pub(super) formulas: HashMap<&'a str, Formula>,
-    /// The derivatives of components, in the mode that is read.
-    pub(super) slopes: Vec<Option<Formula>>,
-    /// Formulas above the modes that have another value in each, because they contain derivatives
-    /// along the flow.
-    by_mode: HashMap<&'a str, Statement>,
-    components: HashMap<&'a str, usize>,
-    modes: HashMap<&'a str, usize>,
-    /// Where each name is defined, to name it where it is used too early.
-    defined: HashMap<&'a str, usize>,
-}
 
 /// The statements of a mode.
 struct Section<'a> {
@@ -82,53 +57,6 @@ impl System {
 }
 
 impl<'a> Reader<'a> {
-    pub(super) fn peek(&self) -> &Token<'a> {
-        &self.tokens[self.next.min(self.tokens.len() - 1)].token
-    }
-
-    /// An error at a token.
-    pub(super) fn error_at(&self, token: usize, message: String) -> TextError {
-        TextError::at(self.text, self.tokens[token.min(self.tokens.len() - 1)].offset, message)
-    }
-
-    /// An error at the next token.
-    pub(super) fn error(&self, message: String) -> TextError {
-        let Spanned { token, offset, length } = &self.tokens[self.next.min(self.tokens.len() - 1)];
-        let found = if *token == Token::End {
-            "the line ends here".to_owned()
-        } else {
-            let found: String = self.text[*offset..offset + length].chars().take(30).collect();
-            format!("`{found}` is out of place")
-        };
-        let message =
-            if message.starts_with("expected") { format!("{found}; {message}") } else { message };
-        TextError::at(self.text, *offset, message)
-    }
-
-    pub(super) fn takes(&mut self, sign: &str) -> bool {
-        let takes = matches!(self.peek(), Token::Sign(it) if *it == sign);
-        self.next += usize::from(takes);
-        takes
-    }
-
-    pub(super) fn takes_one(&mut self, signs: &[&'static str]) -> Option<&'static str> {
-        signs.iter().copied().find(|sign| self.takes(sign))
-    }
-
-    pub(super) fn takes_word(&mut self, word: &str) -> bool {
-        let takes = matches!(self.peek(), Token::Name(it) if *it == word);
-        self.next += usize::from(takes);
-        takes
-    }
-
-    pub(super) fn expect(&mut self, sign: &str) -> Result<(), TextError> {
-        if self.takes(sign) { Ok(()) } else { Err(self.error(format!("expected {sign}"))) }
-    }
-
-    pub(super) fn expect_word(&mut self, word: &str) -> Result<(), TextError> {
-        if self.takes_word(word) { Ok(()) } else { Err(self.error(format!("expected `{word}`"))) }
-    }
-
     fn expect_name(&mut self, what: &str) -> Result<&'a str, TextError> {
         match *self.peek() {
             Token::Name(name) if !RESERVED.contains(&name) => {
@@ -141,23 +69,6 @@ impl<'a> Reader<'a> {
             }
             _ => Err(self.error(format!("expected {what}"))),
         }
-    }
-
-    fn expect_end(&self) -> Result<(), TextError> {
-        match self.peek() {
-            Token::End => Ok(()),
-            _ => Err(self.error("expected the end of the line".to_owned())),
-        }
-    }
-
-    fn line_of(&self, token: usize) -> usize {
-        self.text[..self.tokens[token].offset].matches('\n').count() + 1
-    }
-
-    /// The line of a definition that comes after a token.
-    pub(super) fn defined_below(&self, name: &str, token: usize) -> Option<usize> {
-        let place = *self.defined.get(name)?;
-        (place > token).then(|| self.line_of(place))
     }
 
     /// The statements of the text.
@@ -498,24 +409,6 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// A formula that differs from mode to mode, in the mode that is read.
-    pub(super) fn in_mode(&mut self, name: &str, at: usize) -> Result<Option<Formula>, TextError> {
-        let Some((&name, statement)) = self.by_mode.get_key_value(name) else { return Ok(None) };
-        if let Some(formula) = self.formulas.get(name) {
-            return Ok(Some(*formula));
-        }
-        if statement.start > at {
-            return Ok(None);
-        }
-        let (place, start) = (self.next, statement.start);
-        self.next = start + 2;
-        let formula = self.number()?;
-        self.expect_end()?;
-        self.next = place;
-        self.formulas.insert(name, formula);
-        Ok(Some(formula))
-    }
-
     /// `when …`, `at …` or `every …`, up to the end of its line.
     fn rule(&mut self) -> Result<Rule, TextError> {
         let at = self.next;
@@ -643,7 +536,6 @@ impl<'a> Reader<'a> {
 
     /// `if … -> a else -> b`
     fn branch(&mut self) -> Result<Next, TextError> {
-        use super::formula::Truth;
         let truth = self.truth()?;
         self.expect("->")?;
         let yes = self.target()?;

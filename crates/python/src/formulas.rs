@@ -1,0 +1,232 @@
+//! Systems of formulas, which are read from a text and run without the interpreter.
+
+use numpy::{IntoPyArray, PyArray1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyDictMethods};
+use stickslip_expression::{Recording, Rule, System, Trigger};
+use stickslip_solver::{EmbeddedPair, Options, Outcome};
+
+use crate::failure::{ComputationError, bad_input};
+
+/// A parameter: its name, its value and its range.
+type Parameter = (String, f64, Option<(f64, f64)>);
+
+/// Method, tolerances, longest and first step, and the largest number of switches.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+struct Settings {
+    method: String,
+    rtol: f64,
+    atol: f64,
+    max_step: f64,
+    first_step: Option<f64>,
+    max_switches: usize,
+}
+
+/// A system that is made of formulas.
+#[pyclass(frozen, module = "stickslip._native")]
+pub struct FormulaSystem(System);
+
+#[pymethods]
+impl FormulaSystem {
+    #[new]
+    fn parse(text: &str) -> PyResult<Self> {
+        System::parse(text).map(Self).map_err(|error| PyValueError::new_err(error.to_string()))
+    }
+
+    fn text(&self) -> String {
+        self.0.text()
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        let all = self.0.parameters.iter();
+        all.map(|it| (it.name.clone(), it.value, it.range)).collect()
+    }
+
+    /// Names, and whether only rules change them.
+    fn components(&self) -> Vec<(String, bool)> {
+        self.0.components.iter().map(|it| (it.name.clone(), it.discrete)).collect()
+    }
+
+    /// Names, with those of their rules.
+    fn modes(&self) -> Vec<(String, Vec<String>)> {
+        let modes = self.0.modes.iter();
+        modes
+            .map(|mode| {
+                let rules = mode.rules.iter().enumerate();
+                (mode.name.clone(), rules.map(|(place, rule)| label(place, rule)).collect())
+            })
+            .collect()
+    }
+
+    /// Runs the system, and returns what it found as columns.
+    fn run<'py>(
+        &self,
+        py: Python<'py>,
+        parameters: Vec<f64>,
+        start: (Option<usize>, Option<f64>, Option<Vec<f64>>),
+        end: Option<f64>,
+        settings: Settings,
+        times: Option<Vec<f64>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (mode, s, state) = start;
+        let runnable = self.0.with(&parameters).map_err(bad_input)?;
+        let runnable = runnable.starting(mode, s, state.as_deref()).map_err(bad_input)?;
+        let end = end.unwrap_or(runnable.end());
+        if end.is_nan() || end <= runnable.start().s {
+            let s = runnable.start().s;
+            return Err(bad_input(format!("the run ends at {end}; expected an end after {s}")));
+        }
+        if end.is_infinite() && !self.0.ends_itself() {
+            return Err(bad_input(
+                "the system has no end and no rule that ends it; expected t_span",
+            ));
+        }
+        let method: EmbeddedPair = settings.method.parse().map_err(bad_input)?;
+        let options = Options {
+            rtol: settings.rtol,
+            atol: settings.atol,
+            max_step: settings.max_step,
+            first_step: settings.first_step,
+            max_switches: settings.max_switches,
+            ..Options::default()
+        };
+        options.validate().map_err(bad_input)?;
+        let found = py.detach(|| runnable.record(method, end, &options));
+        let found = found.map_err(|error| ComputationError::new_err(error.to_string()))?;
+        columns(py, &self.0, &found, times)
+    }
+}
+
+/// The name of a rule.
+fn label(place: usize, rule: &Rule) -> String {
+    let kind = match rule.trigger {
+        Trigger::When(..) => "when",
+        Trigger::At(_) => "at",
+        Trigger::Every { .. } => "every",
+    };
+    rule.label.clone().unwrap_or_else(|| format!("{kind} {}", place + 1))
+}
+
+/// What a run found, as `hybrid::record` has it.
+fn columns<'py>(
+    py: Python<'py>,
+    system: &System,
+    found: &Recording,
+    times: Option<Vec<f64>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let columns = PyDict::new(py);
+    let (mut t, mut y, mut modes) = (Vec::new(), Vec::new(), Vec::new());
+    let mut point = |s: f64, mode: usize, state: &[f64]| {
+        t.push(s);
+        modes.push(mode);
+        y.extend_from_slice(state);
+    };
+    if let Some(times) = times {
+        for s in times {
+            if let Some(state) = found.at(s) {
+                point(s, found.mode_at(s), &state);
+            }
+        }
+    } else {
+        let changes = |it: &&stickslip_solver::DynamicSwitch<usize>| it.before != it.after;
+        let mut events = found.events.iter().filter(changes).peekable();
+        let n = found.run.state.len();
+        for step in found.steps() {
+            while let Some(event) = events.next_if(|event| event.s <= step.s) {
+                point(event.s, event.from, &event.before);
+            }
+            point(step.s, step.mode, &step.coefficients[..n]);
+        }
+        events.for_each(|event| point(event.s, event.from, &event.before));
+        point(found.run.s, found.run.mode, &found.run.state);
+    }
+    columns.set_item("t", t.into_pyarray(py))?;
+    columns.set_item("y", y.into_pyarray(py))?;
+    columns.set_item("modes", modes.into_pyarray(py))?;
+    let events = &found.events;
+    let numbers = |of: fn(&stickslip_solver::DynamicSwitch<usize>) -> usize| {
+        events.iter().map(of).collect::<Vec<_>>().into_pyarray(py)
+    };
+    let reals = |values: Vec<f64>| -> Bound<'py, PyArray1<f64>> { values.into_pyarray(py) };
+    columns.set_item("event_times", reals(events.iter().map(|it| it.s).collect()))?;
+    columns.set_item("event_guards", numbers(|it| it.guard))?;
+    columns.set_item("event_from", numbers(|it| it.from))?;
+    columns.set_item("event_to", numbers(|it| it.to))?;
+    columns.set_item("event_flatness", reals(events.iter().map(|it| it.flatness).collect()))?;
+    let jumps: Vec<bool> = events.iter().map(|it| it.jump).collect();
+    columns.set_item("event_jump", jumps.into_pyarray(py))?;
+    let together: Vec<_> = events.iter().map(|it| it.simultaneous.clone()).collect();
+    columns.set_item("event_simultaneous", together)?;
+    let states = |of: fn(&stickslip_solver::DynamicSwitch<usize>) -> &Vec<f64>| {
+        reals(events.iter().flat_map(|it| of(it).iter().copied()).collect())
+    };
+    columns.set_item("event_before", states(|it| &it.before))?;
+    columns.set_item("event_after", states(|it| &it.after))?;
+    let touches: Vec<_> =
+        found.touches.iter().map(|it| (it.s, it.mode, it.guard, it.margin)).collect();
+    columns.set_item("touches", touches)?;
+    let poles: Vec<_> = found.poles.iter().map(|it| (it.s, it.mode, it.guard)).collect();
+    columns.set_item("poles", poles)?;
+    let preempted: Vec<_> = found.preempted.iter().map(|it| (it.s, it.mode, it.guard)).collect();
+    columns.set_item("preempted", preempted)?;
+    let steps = found.steps();
+    columns.set_item("starts", reals(steps.iter().map(|it| it.s).collect()))?;
+    columns.set_item("sizes", reals(steps.iter().map(|it| it.h).collect()))?;
+    let step_modes: Vec<usize> = steps.iter().map(|it| it.mode).collect();
+    columns.set_item("segment_modes", step_modes.into_pyarray(py))?;
+    let coefficients = steps.iter().flat_map(|it| it.coefficients.iter().copied());
+    columns.set_item("coefficients", reals(coefficients.collect()))?;
+    columns.set_item("start_time", found.start())?;
+    columns.set_item("end_time", found.run.s)?;
+    columns.set_item("end_mode", found.run.mode)?;
+    columns.set_item("end_state", reals(found.run.state.clone()))?;
+    columns.set_item("decided", found.run.decided)?;
+    ending(&columns, system, found)?;
+    let work = found.run.statistics;
+    columns.set_item("nfev", work.field)?;
+    let statistics = PyDict::new(py);
+    for (name, value) in [
+        ("accepted", work.accepted),
+        ("rejected", work.rejected),
+        ("too_coarse", work.too_coarse),
+        ("field", work.field),
+        ("guards", work.guards),
+        ("resteps", work.resteps),
+        ("isolations", work.isolations),
+        ("switches", work.switches),
+    ] {
+        statistics.set_item(name, value)?;
+    }
+    columns.set_item("statistics", statistics)?;
+    Ok(columns)
+}
+
+/// How the run ended.
+fn ending(columns: &Bound<'_, PyDict>, system: &System, found: &Recording) -> PyResult<()> {
+    let s = found.run.s;
+    let (outcome, status, accumulation, message) = match found.run.outcome {
+        Outcome::ReachedEnd => ("reached_end", 0, None, "The end was reached.".to_owned()),
+        Outcome::EndedByGuard { guard } => {
+            let rule = label(guard, &system.modes[found.run.mode].rules[guard]);
+            ("ended_by_guard", 1, None, format!("At t = {s:?}, rule {rule:?} ended the run."))
+        }
+        Outcome::SwitchLimit => {
+            let message = format!("Stopped at t = {s:?}: max_switches was reached.");
+            ("switch_limit", -1, None, message)
+        }
+        Outcome::Zeno { accumulation } => {
+            let message =
+                format!("Stopped at t = {s:?}: the switches accumulate at {accumulation:?}.");
+            ("zeno", -1, Some(accumulation), message)
+        }
+        Outcome::StepLimit | Outcome::Stopped => {
+            ("step_limit", -1, None, format!("Stopped at t = {s:?}: too many steps."))
+        }
+    };
+    columns.set_item("outcome", outcome)?;
+    columns.set_item("status", status)?;
+    columns.set_item("accumulation", accumulation)?;
+    columns.set_item("message", message)
+}

@@ -1,0 +1,210 @@
+"""Systems of formulas: read from a text, decided, and run without the interpreter.
+
+`system` makes one of a text, `read` of a file. The language is described in docs/systems.md of the
+repository.
+"""
+
+from collections.abc import Mapping
+from os import PathLike
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from stickslip import _native
+from stickslip._compiled import _count, _number
+from stickslip._solutions import DenseOutput, Solution
+from stickslip.hybrid import _method, _span, _state, _times
+
+Floats: TypeAlias = NDArray[np.float64]
+
+
+class FormulaSystem:
+    """A hybrid system that is made of formulas. `system` and `read` make one.
+
+    >>> import stickslip
+    >>> decay = stickslip.system("parameter rate = 1\\nstate x = 1\\nx' = -rate*x\\nend = 1")
+    >>> round(float(decay.solve(parameters={"rate": 2.0}).y[0, -1]), 10)
+    0.1353352832
+    """
+
+    def __init__(self, text: str) -> None:
+        self._native = _native.FormulaSystem(text)
+
+    @property
+    def text(self) -> str:
+        """The system as text, which reads as the same system."""
+        return self._native.text()
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """The values that parameters have unless others are given, by name."""
+        return {name: value for name, value, _ in self._native.parameters()}
+
+    @property
+    def ranges(self) -> dict[str, tuple[float, float]]:
+        """The ranges of interest of parameters that have one."""
+        rows = self._native.parameters()
+        return {name: interval for name, _, interval in rows if interval is not None}
+
+    @property
+    def components(self) -> list[str]:
+        """The names of the components of the state, those that only rules change among them."""
+        return [name for name, _ in self._native.components()]
+
+    @property
+    def modes(self) -> list[str]:
+        """The names of the modes."""
+        return [name for name, _ in self._native.modes()]
+
+    def solve(
+        self,
+        t_span: ArrayLike | None = None,
+        y0: ArrayLike | None = None,
+        mode: str | None = None,
+        *,
+        parameters: Mapping[str, float] | None = None,
+        method: str = "dop853",
+        rtol: float = 1e-10,
+        atol: float = 1e-12,
+        t_eval: ArrayLike | None = None,
+        dense_output: bool = False,
+        max_step: float = np.inf,
+        first_step: float | None = None,
+        max_switches: int = 10_000_000,
+    ) -> Solution:
+        """Runs the system through every event.
+
+        t_span, y0 and mode replace the start and the end that the system has. parameters: other
+        values, by name. The rest is as in `stickslip.solve`. Guards of the events are the rules,
+        by their labels.
+
+        Raises ValueError if a name or a value is wrong, and ComputationError if the run fails.
+        """
+        values = self.parameters
+        for name, value in (parameters or {}).items():
+            if name not in values:
+                known = ", ".join(values) or "none"
+                raise ValueError(f"parameters: {name!r} is no parameter; expected one of {known}")
+            values[name] = _number(value, name)
+        start, end = (None, None) if t_span is None else _span(t_span)
+        state = None if y0 is None else _state(y0).tolist()
+        if mode is not None and mode not in self.modes:
+            raise ValueError(f"mode = {mode!r}; expected one of {self.modes}")
+        place = None if mode is None else self.modes.index(mode)
+        settings = {
+            "method": _method(method),
+            "rtol": _number(rtol, "rtol"),
+            "atol": _number(atol, "atol"),
+            "max_step": _number(max_step, "max_step"),
+            "first_step": None if first_step is None else _number(first_step, "first_step"),
+            "max_switches": _count(max_switches, "max_switches"),
+        }
+        low, high = (-np.inf if start is None else start, np.inf if end is None else end)
+        times = None if t_eval is None else _times(t_eval, low, high).tolist()
+        given = (place, start, state)
+        found = self._native.run(list(values.values()), given, end, settings, times)
+        return self._solution(found, bool(dense_output))
+
+    def _solution(self, found: dict[str, Any], dense: bool) -> Solution:
+        modes = self._native.modes()
+        n = len(self.components)
+        names = np.array([name for name, _ in modes])
+        labels = [rules for _, rules in modes]
+        event_names = list(dict.fromkeys(label for rules in labels for label in rules))
+        text = f"U{max(map(len, [*names, *event_names, ' ']))}"
+        place: list[Any] = [("time", "f8"), ("guard", text), ("mode", text)]
+        events = self._events(found, text, names, labels)
+        rows = [events["guard"] == name for name in event_names]
+        touches = [(t, labels[m][g], names[m], margin) for t, m, g, margin in found["touches"]]
+        poles, preempted = (
+            [(t, labels[m][g], names[m]) for t, m, g in found[kind]]
+            for kind in ("poles", "preempted")
+        )
+        rests: list[Any] = [place[0], ("error", "f8"), place[1], ("from", text), ("to", text)]
+        start = found["start_time"]
+        return Solution(
+            t=found["t"],
+            y=found["y"].reshape(found["t"].size, n).T,
+            mode=names[found["modes"]],
+            variables={},
+            sides={},
+            sol=DenseOutput(found, names, start) if dense else None,
+            t_events=[events["time"][row] for row in rows],
+            y_events=[events["before"][row] for row in rows],
+            event_names=event_names,
+            events=events,
+            touches=np.array(touches, dtype=[*place, ("margin", "f8")]),
+            poles=np.array(poles, dtype=place),
+            preempted=np.array(preempted, dtype=place),
+            rests=np.empty(0, dtype=rests),
+            decided=found["decided"],
+            status=found["status"],
+            outcome=found["outcome"],
+            message=found["message"],
+            accumulation=found["accumulation"],
+            nfev=found["nfev"],
+            statistics=found["statistics"],
+        )
+
+    def _events(
+        self, found: dict[str, Any], text: str, names: NDArray[np.str_], labels: list[list[str]]
+    ) -> NDArray[np.void]:
+        size, n = found["event_times"].size, len(self.components)
+        state = ("f8", (n,))
+        dtype: list[Any] = [("time", "f8"), ("guard", text), ("from", text), ("to", text)]
+        dtype += [("before", *state), ("after", *state)]
+        dtype += [("flatness", "f8"), ("jump", "?"), ("simultaneous", "O")]
+        events: NDArray[np.void] = np.empty(size, dtype=dtype)
+        left = found["event_from"]
+        events["time"] = found["event_times"]
+        events["guard"] = [labels[m][g] for m, g in zip(left, found["event_guards"], strict=True)]
+        events["from"] = names[left]
+        events["to"] = names[found["event_to"]]
+        events["before"] = found["event_before"].reshape(size, n)
+        events["after"] = found["event_after"].reshape(size, n)
+        events["flatness"] = found["event_flatness"]
+        events["jump"] = found["event_jump"]
+        together = events["simultaneous"]
+        for row, others in enumerate(found["event_simultaneous"]):
+            together[row] = tuple(labels[left[row]][guard] for guard in others)
+        return events
+
+    def __repr__(self) -> str:
+        values = ", ".join(f"{name}={value!r}" for name, value in self.parameters.items())
+        return f"FormulaSystem({', '.join(self.components)}; modes {self.modes}; {values})"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return FormulaSystem, (self.text,)
+
+
+def system(text: str) -> FormulaSystem:
+    """The system that a text describes.
+
+    Raises ValueError with line, column and what was expected, if the text is no system.
+
+    >>> import stickslip
+    >>> ball = stickslip.system(\"\"\"
+    ... parameter g = 9.81, e = 0.5
+    ... state x = 4.905, v = 0
+    ... x' = v
+    ... v' = -g
+    ... when x < 0 "bounce"
+    ...   x := 0
+    ...   v := -e*v
+    ... end = 2.9
+    ... \"\"\")
+    >>> found = ball.solve()
+    >>> found.decided, found.t_events[0].round(12).tolist()
+    (True, [1.0, 2.0, 2.5, 2.75, 2.875])
+    """
+    return FormulaSystem(text)
+
+
+def read(path: str | PathLike[str]) -> FormulaSystem:
+    """The system that a file describes, in UTF-8.
+
+    Raises OSError if it cannot be read, and ValueError if it is no system.
+    """
+    return FormulaSystem(Path(path).read_text(encoding="utf-8"))
