@@ -51,6 +51,7 @@ from stickslip.family_stacks import (
     stack_family,
 )
 from stickslip.fits import Fit, fit
+from stickslip._recorded import recorded_formulas as recorded
 from stickslip.formulas import FormulaSystem, read, system
 from stickslip.gaining import GainingLine, GainingLines, gaining_lines
 from stickslip.hybrid import solve
@@ -161,6 +162,7 @@ __all__ = [
     "map",
     "psi_of_ratio",
     "read",
+    "recorded",
     "reproduce",
     "reproduction_parts",
     "solve",

@@ -55,6 +55,23 @@ class DenseOutput:
         return np.where(inside, self._names[self._modes[index]], "")[()]
 
 
+def rows_of_events(
+    events: NDArray[np.void], names: list[str], stays: NDArray[np.bool_], ended: bool
+) -> list[NDArray[np.intp]]:
+    """The rows of `events` in which each name fired, also together with another one that changes
+    nothing. `stays`: whether an event stays in its mode. `ended`: whether the last one ended the
+    run."""
+    rows = [np.flatnonzero(events["guard"] == name) for name in names]
+    for row in [row for row, others in enumerate(events["simultaneous"]) if others]:
+        one = events[row]
+        same = stays[row] and np.array_equal(one["before"], one["after"])
+        if same and not (ended and row == events.size - 1):
+            for name in one["simultaneous"]:
+                index = names.index(name)
+                rows[index] = np.sort(np.append(rows[index], row))
+    return rows
+
+
 @dataclass(frozen=True)
 class Solution:
     """What `solve` found. The names are those of SciPy's `solve_ivp` where it has them."""
@@ -101,6 +118,8 @@ class Solution:
     #: Whether all guards and events were decided. Those of callables are sampled: one that changes
     #: faster than the state may have fired unseen. A `guard_scale` helps there.
     decided: bool
+    #: "decided", or "sampled: " with the reason why the functions could not be recorded.
+    guards: str
     #: 0 if the end was reached, 1 if a guard or an event ended the run, and else -1.
     status: int
     #: The same in a word: reached_end, ended_by_guard, zeno, switch_limit, step_limit,

@@ -37,7 +37,8 @@ from stickslip._family_options import TraceOptions, VerifyOptions, _json
 from stickslip._systems import HybridSystem, Mode, _check_function
 from stickslip.atlases import AtlasWarning
 from stickslip.collisions import Floats, _threads
-from stickslip.hybrid import _arguments, _callee, _span, _state, _Table
+from stickslip._run_arguments import span, state_at_start
+from stickslip.hybrid import _arguments, _callee, _Table
 
 __all__ = [
     "FamilyAtlas",
@@ -145,10 +146,10 @@ class HybridFamily:
     ) -> None:
         if not isinstance(system, HybridSystem):
             raise TypeError(f"{type(system).__name__} is not a HybridSystem; a family needs guards")
-        begin, end = _span(t_span)
+        begin, end = span(t_span)
         if not end > begin:
             raise ValueError(f"t_span = ({begin}, {end}); expected an end after the start")
-        state = _state(y0)
+        state = state_at_start(y0)
         table = _Table(system, [], _arguments(args))
         table.apart, table.conditions = False, True
         if np.isinf(end) and not table.may_end:

@@ -14,8 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _native
 from stickslip._compiled import _count, _number
-from stickslip._solutions import DenseOutput, Solution
-from stickslip.hybrid import _method, _span, _state, _times
+from stickslip._run_arguments import method_name, span, state_at_start, times_within
+from stickslip._solutions import DenseOutput, Solution, rows_of_events
 
 Floats: TypeAlias = NDArray[np.float64]
 
@@ -31,6 +31,12 @@ class FormulaSystem:
 
     def __init__(self, text: str) -> None:
         self._native = _native.FormulaSystem(text)
+
+    @classmethod
+    def _of(cls, native: _native.FormulaSystem) -> "FormulaSystem":
+        system = cls.__new__(cls)
+        system._native = native
+        return system
 
     @property
     def text(self) -> str:
@@ -88,13 +94,13 @@ class FormulaSystem:
                 known = ", ".join(values) or "none"
                 raise ValueError(f"parameters: {name!r} is no parameter; expected one of {known}")
             values[name] = _number(value, name)
-        start, end = (None, None) if t_span is None else _span(t_span)
-        state = None if y0 is None else _state(y0).tolist()
+        start, end = (None, None) if t_span is None else span(t_span)
+        state = None if y0 is None else state_at_start(y0).tolist()
         if mode is not None and mode not in self.modes:
             raise ValueError(f"mode = {mode!r}; expected one of {self.modes}")
         place = None if mode is None else self.modes.index(mode)
         settings = {
-            "method": _method(method),
+            "method": method_name(method),
             "rtol": _number(rtol, "rtol"),
             "atol": _number(atol, "atol"),
             "max_step": _number(max_step, "max_step"),
@@ -102,21 +108,25 @@ class FormulaSystem:
             "max_switches": _count(max_switches, "max_switches"),
         }
         low, high = (-np.inf if start is None else start, np.inf if end is None else end)
-        times = None if t_eval is None else _times(t_eval, low, high).tolist()
+        times = None if t_eval is None else times_within(t_eval, low, high).tolist()
         given = (place, start, state)
         found = self._native.run(list(values.values()), given, end, settings, times)
         return self._solution(found, bool(dense_output))
 
-    def _solution(self, found: dict[str, Any], dense: bool) -> Solution:
+    def _solution(
+        self, found: dict[str, Any], dense: bool, event_names: list[str] | None = None
+    ) -> Solution:
         modes = self._native.modes()
         n = len(self.components)
         names = np.array([name for name, _ in modes])
         labels = [rules for _, rules in modes]
-        event_names = list(dict.fromkeys(label for rules in labels for label in rules))
+        if event_names is None:
+            event_names = list(dict.fromkeys(label for rules in labels for label in rules))
         text = f"U{max(map(len, [*names, *event_names, ' ']))}"
         place: list[Any] = [("time", "f8"), ("guard", text), ("mode", text)]
         events = self._events(found, text, names, labels)
-        rows = [events["guard"] == name for name in event_names]
+        stays = found["event_from"] == found["event_to"]
+        rows = rows_of_events(events, event_names, stays, found["status"] == 1)
         touches = [(t, labels[m][g], names[m], margin) for t, m, g, margin in found["touches"]]
         poles, preempted = (
             [(t, labels[m][g], names[m]) for t, m, g in found[kind]]
@@ -140,6 +150,7 @@ class FormulaSystem:
             preempted=np.array(preempted, dtype=place),
             rests=np.empty(0, dtype=rests),
             decided=found["decided"],
+            guards="decided",
             status=found["status"],
             outcome=found["outcome"],
             message=found["message"],

@@ -13,15 +13,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _native
-from stickslip._compiled import Compiled, Function, _count, _number, _reals
-from stickslip._solutions import DenseOutput, Solution
+from stickslip._compiled import Compiled, Function, _count, _number
+from stickslip._recorded import Recorded
+from stickslip._recording import CannotRecord
+from stickslip._run_arguments import method_name, span, state_at_start, times_within
+from stickslip._solutions import DenseOutput, Solution, rows_of_events
 from stickslip._systems import Guard, HybridSystem, Mode, _check_function, _Clock, _Source
 
 Floats: TypeAlias = NDArray[np.float64]
-#: The names of methods; in small letters they mean the same.
-METHODS = {"dop853": "dop853", "dopri5": "dopri5", "rk45": "dopri5"}
-
-
 def solve(
     system: HybridSystem | Function,
     t_span: ArrayLike,
@@ -40,6 +39,7 @@ def solve(
     guard_scale: float | None = None,
     args: tuple[Any, ...] = (),
     sides: Mapping[str, int] | None = None,
+    record: bool | None = None,
 ) -> Solution:
     """Runs a system from t_span[0] to t_span[1], through every switch.
 
@@ -62,6 +62,11 @@ def solve(
     functions, after t and y (and after variables and signs, if the system has such). sides: the
     sides of surfaces, 1, -1 or 0, on which a run starts where it could go on in several ways.
 
+    record: Python functions are called once with symbols for t and y, and run as formulas whose
+    events are decided, if that is possible: they do not depend on anything that changes meanwhile.
+    `Solution.guards` says so, or why not. False turns this off; with True, what cannot be recorded
+    is an error.
+
     Functions get a state of their own, which they may keep and change. Their exceptions stop the
     run and come out as they are. TypeError and ValueError name the function that returned something
     wrong, and the time. What happens to the numbers (not finite, tolerance not met, switches that
@@ -71,12 +76,12 @@ def solve(
     >>> round(float(found.y[0, -1]), 10)
     0.3678794412
     """
-    start, end = _span(t_span)
-    state = _state(y0)
+    start, end = span(t_span)
+    state = state_at_start(y0)
     table = _Table(system, _event_list(events), _arguments(args))
     first = table.index_of(mode)
-    settings = {
-        "method": _method(method),
+    settings: dict[str, Any] = {
+        "method": method_name(method),
         "rtol": _number(rtol, "rtol"),
         "atol": _number(atol, "atol"),
         "max_step": _number(max_step, "max_step"),
@@ -84,16 +89,47 @@ def solve(
         "max_switches": _count(max_switches, "max_switches"),
         "guard_scale": None if guard_scale is None else _number(guard_scale, "guard_scale"),
     }
-    times = None if t_eval is None else _times(t_eval, start, end)
+    times = None if t_eval is None else times_within(t_eval, start, end)
     if np.isinf(end) and not table.may_end:
         raise ValueError("t_span is infinite, and no guard or event is terminal")
     if end < start:
         table.refuse_changes()
     begin = (first, start, state, table.sides(sides or {}))
+    reason = "record = False"
+    if settings["guard_scale"] is not None and not settings["guard_scale"] > 0.0:
+        raise ValueError(f"guard_scale = {guard_scale}; expected a number above 0")
+    if record is not False:
+        found_recorded, reason = _try_recorded(
+            table, (first, start, end), state, settings, times, bool(dense_output)
+        )
+        if found_recorded is not None:
+            return found_recorded
+        if record:
+            raise ValueError(f"record = True, but {reason}")
     found = _native.run_hybrid(
         table.system(), table.args, begin, end, settings, (times, bool(dense_output))
     )
+    table.reason = reason
     return table.solution(found, state.size, start, bool(dense_output))
+
+
+def _try_recorded(
+    table: "_Table",
+    begin: tuple[int, float, float],
+    state: Floats,
+    settings: dict[str, Any],
+    times: Floats | None,
+    dense: bool,
+) -> tuple[Solution | None, str]:
+    """The solution of the recorded system, or why there is none."""
+    if begin[2] <= begin[1]:
+        return None, "the run goes backwards"
+    try:
+        recorded = Recorded(table, begin[1], state)
+        wanted = None if times is None else times.tolist()
+        return recorded.solve(begin, settings, wanted, dense), ""
+    except (CannotRecord, _native.ComputationError) as reason:
+        return None, str(reason)
 
 
 class _Table:
@@ -103,6 +139,8 @@ class _Table:
         self, system: HybridSystem | Function, events: list[Function], args: tuple[Any, ...]
     ) -> None:
         self.args = args
+        #: Why the functions are not recorded.
+        self.reason = ""
         #: Whether conditions of transitions are wanted.
         self.conditions = False
         self.events = [_event(event, name) for event, name in _named(events)]
@@ -315,8 +353,8 @@ class _Table:
         variables = self.variables.columns(found["seen_variables"].reshape(seen, -1))
         sides = self.signs.columns(found["seen_sides"].reshape(seen, -1))
         events = self.event_array(found, dimension, text, (names, guards))
-        modes = (found["event_from"], found["event_to"])
-        rows = self.rows(events, modes, found["status"] == 1)
+        stays = found["event_from"] == found["event_to"]
+        rows = rows_of_events(events, self.event_names, stays, found["status"] == 1)
         return Solution(
             t=found["t"],
             y=found["y"].reshape(found["t"].size, dimension).T,
@@ -335,6 +373,7 @@ class _Table:
                 rests, dtype=[place[0], ("error", "f8"), place[1], ("from", text), ("to", text)]
             ),
             decided=found["decided"],
+            guards="decided" if found["decided"] else f"sampled: {self.reason}",
             status=found["status"],
             outcome=found["outcome"],
             message=found["message"],
@@ -389,21 +428,6 @@ class _Table:
             together[row] = tuple(guards[mode][guard] for guard in others) if others else ()
         return events
 
-    def rows(
-        self, events: NDArray[Any], modes: tuple[NDArray[Any], NDArray[Any]], ended: bool
-    ) -> list[NDArray[np.intp]]:
-        """The rows of `events`, which lead from `modes` to others, in which each name of
-        `event_names` fired."""
-        rows = [np.flatnonzero(events["guard"] == name) for name in self.event_names]
-        for row in [row for row, others in enumerate(events["simultaneous"]) if others]:
-            one = events[row]
-            same = modes[0][row] == modes[1][row] and np.array_equal(one["before"], one["after"])
-            if same and not (ended and row == events.size - 1):
-                for name in one["simultaneous"]:
-                    index = self.event_names.index(name)
-                    rows[index] = np.sort(np.append(rows[index], row))
-        return rows
-
 
 def _callee(function: Function) -> Any:
     if isinstance(function, Compiled):
@@ -447,46 +471,3 @@ def _arguments(args: Any) -> tuple[Any, ...]:
     if not isinstance(args, Iterable):
         raise TypeError(f"args = {args!r}; expected a tuple, as in args=({args!r},)")
     return tuple(args)
-
-
-def _method(method: str) -> str:
-    found = METHODS.get(str(method).lower())
-    if found is None:
-        raise ValueError(
-            f'method = {method!r}; expected "dop853" or "dopri5" ("RK45"); there are no others, '
-            "and no implicit ones"
-        )
-    return found
-
-
-def _span(t_span: ArrayLike) -> tuple[float, float]:
-    span = _reals(t_span, "t_span")
-    if span.shape != (2,):
-        raise ValueError(f"t_span has shape {span.shape}; expected (start, end)")
-    start, end = map(float, span)
-    if not np.isfinite(start) or np.isnan(end):
-        raise ValueError(f"t_span = ({start}, {end}); expected a finite start and an end")
-    return start, end
-
-
-def _state(y0: ArrayLike) -> Floats:
-    state = _reals(y0, "y0")
-    if state.ndim != 1:
-        raise ValueError(f"y0 has {state.ndim} dimensions; expected one, as in y0=[1.0]")
-    if not np.isfinite(state).all():
-        index = int(np.flatnonzero(~np.isfinite(state))[0])
-        raise ValueError(f"component {index} of y0 is {state[index]}; expected a finite number")
-    return state
-
-
-def _times(t_eval: ArrayLike, start: float, end: float) -> Floats:
-    times = _reals(t_eval, "t_eval")
-    if times.ndim != 1:
-        raise ValueError(f"t_eval has {times.ndim} dimensions; expected one")
-    low, high = min(start, end), max(start, end)
-    if not ((times >= low) & (times <= high)).all():
-        raise ValueError(f"t_eval leaves t_span = ({start}, {end})")
-    steps = np.diff(times) * (1.0 if end >= start else -1.0)
-    if (steps < 0.0).any():
-        raise ValueError("t_eval is not sorted in the direction of t_span")
-    return times

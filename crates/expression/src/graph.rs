@@ -17,6 +17,12 @@ impl Formula {
     pub(crate) fn index(self) -> usize {
         self.0 as usize
     }
+
+    /// The place of the formula among the nodes of its graph.
+    #[must_use]
+    pub fn number(self) -> u32 {
+        self.0
+    }
 }
 
 /// What a formula reads.
@@ -172,6 +178,12 @@ impl Graph {
             Node::Constant(bits) => Some(f64::from_bits(bits)),
             _ => None,
         }
+    }
+
+    /// The formula at a place among the nodes.
+    #[must_use]
+    pub fn formula(&self, number: u32) -> Option<Formula> {
+        ((number as usize) < self.len()).then_some(Formula(number))
     }
 
     /// The number of nodes.

@@ -91,7 +91,7 @@ impl System {
     /// Whether a rule ends runs.
     #[must_use]
     pub fn ends_itself(&self) -> bool {
-        self.modes.iter().flat_map(|mode| &mode.rules).any(|rule| rule.next == Next::End)
+        self.modes.iter().flat_map(|mode| &mode.rules).any(|rule| rule.ends_after > 0)
     }
 
     /// The system with numbers for its parameters.
@@ -232,9 +232,9 @@ fn guard(rule: &Rule) -> Guard {
         Trigger::When(_, direction) => Guard::new(direction),
         _ => Guard::new(Direction::Clock),
     };
-    let guard = guard.priority(rule.priority);
-    let guard = if rule.sees_jumps { guard.sees_jumps() } else { guard };
-    if rule.next == Next::End { guard.terminal() } else { guard }
+    let guard = guard.priority(rule.priority).from_zero(rule.from_zero);
+    let guard = guard.terminal_after(rule.ends_after);
+    if rule.sees_jumps { guard.sees_jumps() } else { guard }
 }
 
 impl Runnable {
@@ -326,7 +326,7 @@ impl ReadableDynamic for Runnable {
         let mut values: SmallVec<[f64; 16]> = SmallVec::from_elem(0.0, reaction.changed.len());
         reaction.changes.run(s, y, &mut values);
         let next = match reaction.next {
-            Next::Stay | Next::End => mode,
+            Next::Stay => mode,
             Next::Mode(next) => next,
             Next::Branch(_, above, below) => {
                 let condition = ReadableDynamic::transition_condition(self, mode, guard, s, y);

@@ -69,6 +69,10 @@ pub struct Rule {
     pub priority: i8,
     /// Whether it also acts where another rule carries its guard across zero.
     pub sees_jumps: bool,
+    /// The run ends when the rule acts for so many times; 0 means never.
+    pub ends_after: u32,
+    /// The order of a zero from which the guard starts, where rounding may hide it; 0 otherwise.
+    pub from_zero: u32,
     /// New values of components, made of the state before the event.
     pub changes: Vec<(usize, Formula)>,
     /// Where the run goes on.
@@ -98,8 +102,6 @@ pub enum Next {
     Stay,
     /// In this mode.
     Mode(usize),
-    /// Nowhere: the run ends.
-    End,
     /// In the second mode where the formula is ≥ 0, and in the third where it is negative.
     Branch(Formula, usize, usize),
 }

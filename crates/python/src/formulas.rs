@@ -7,7 +7,7 @@ use pyo3::types::{PyDict, PyDictMethods};
 use stickslip_expression::{Recording, Rule, System, Trigger};
 use stickslip_solver::{EmbeddedPair, Options, Outcome};
 
-use crate::failure::{ComputationError, bad_input};
+use crate::failure::{bad_input, failed};
 
 /// A parameter: its name, its value and its range.
 type Parameter = (String, f64, Option<(f64, f64)>);
@@ -26,7 +26,7 @@ struct Settings {
 
 /// A system that is made of formulas.
 #[pyclass(frozen, module = "stickslip._native")]
-pub struct FormulaSystem(System);
+pub struct FormulaSystem(pub(crate) System);
 
 #[pymethods]
 impl FormulaSystem {
@@ -94,8 +94,13 @@ impl FormulaSystem {
         };
         options.validate().map_err(bad_input)?;
         let found = py.detach(|| runnable.record(method, end, &options));
-        let found = found.map_err(|error| ComputationError::new_err(error.to_string()))?;
-        columns(py, &self.0, &found, times)
+        let found = found.map_err(|error| failed(error))?;
+        let columns = columns(py, &self.0, &found, times)?;
+        // As of functions of Python: with the stages of dense output, and a look at the start.
+        let stages = if method == EmbeddedPair::Dop853 { 3 } else { 0 };
+        let work = found.run.statistics.field + stages * found.steps().len() + 1;
+        columns.set_item("nfev", work)?;
+        Ok(columns)
     }
 }
 
@@ -124,7 +129,9 @@ fn columns<'py>(
         y.extend_from_slice(state);
     };
     if let Some(times) = times {
-        for s in times {
+        // A run that ends early ends with a point, whatever times are wanted.
+        let last = times.iter().any(|&s| s > found.run.s).then_some(found.run.s);
+        for s in times.into_iter().take_while(|&s| s <= found.run.s).chain(last) {
             if let Some(state) = found.at(s) {
                 point(s, found.mode_at(s), &state);
             }
@@ -185,7 +192,6 @@ fn columns<'py>(
     columns.set_item("decided", found.run.decided)?;
     ending(&columns, system, found)?;
     let work = found.run.statistics;
-    columns.set_item("nfev", work.field)?;
     let statistics = PyDict::new(py);
     for (name, value) in [
         ("accepted", work.accepted),

@@ -5,7 +5,7 @@
 //! Python functions that call these, in `python/stickslip`.
 //!
 //! Start reading in `arrays`; then `collision`, `impacts`, `planes`, `stacks`, `steps`, `fits`,
-//! `tables`, `studies` (results), `hybrid` and `formulas` (systems of one's own), `families` (and
+//! `tables`, `studies` (results), `hybrid`, `formulas` and `tape` (systems of one's own), `families` (and
 //! what they depend on), `engines`, `parallel` and `failure` (what they share).
 
 mod arrays;
@@ -23,6 +23,7 @@ mod stacks;
 mod steps;
 mod studies;
 mod tables;
+mod tape;
 
 /// The module that Python loads. It has no state of its own, and needs no lock of the interpreter.
 #[pyo3::pymodule(gil_used = false)]
@@ -55,4 +56,6 @@ mod _native {
     use super::studies::{asymptote, compare_laws, converge, reproduce, reproduction_parts};
     #[pymodule_export]
     use super::tables::RestitutionTable;
+    #[pymodule_export]
+    use super::tape::Tape;
 }

@@ -6,8 +6,8 @@ use std::fmt::Write;
 use stickslip_solver::Direction;
 
 use super::formula::{RESERVED, is_function, name_of};
-use crate::graph::{Binary, Formula, Node, Unary, Variable};
-use crate::system::{Next, Rule, System, Trigger};
+use crate::graph::{Binary, Formula, Graph, Node, Unary, Variable};
+use crate::system::{Component, Mode, Next, Rule, System, Trigger};
 
 /// Formulas that are nested deeper get a name.
 const DEEPEST: usize = 30;
@@ -51,6 +51,37 @@ impl System {
     #[must_use]
     pub fn text(&self) -> String {
         Printer::new(self).print()
+    }
+}
+
+impl Graph {
+    /// Formulas as text, with these names for the components of the state. What several of them
+    /// need may have a name of its own, as a line in front of them.
+    ///
+    /// ```
+    /// use stickslip_expression::{Binary, Graph, Unary};
+    ///
+    /// let mut graph = Graph::default();
+    /// let x = graph.component(0);
+    /// let (sine, square) = (graph.unary(Unary::Sin, x), graph.unary(Unary::Square, x));
+    /// let product = graph.binary(Binary::Mul, sine, square);
+    /// assert_eq!(graph.texts(&[product], &["x".to_owned()]), ["sin(x)*x^2"]);
+    /// ```
+    #[must_use]
+    pub fn texts(&self, formulas: &[Formula], names: &[String]) -> Vec<String> {
+        let mut graph = self.clone();
+        let start = graph.constant(0.0);
+        let component = |name: &String| Component { name: name.clone(), start, discrete: false };
+        let slopes = formulas.to_vec();
+        let system = System {
+            components: names.iter().map(component).collect(),
+            modes: vec![Mode { name: String::new(), slopes, rules: Vec::new() }],
+            graph,
+            ..System::default()
+        };
+        let printer = Printer::new(&system);
+        let named = printer.named.lines().map(str::to_owned);
+        named.chain(formulas.iter().map(|&formula| printer.of(formula).text.clone())).collect()
     }
 }
 
@@ -293,11 +324,18 @@ impl<'a> Printer<'a> {
         match rule.next {
             Next::Stay => {}
             Next::Mode(mode) => write!(text, " -> {}", name(mode))?,
-            Next::End => write!(text, " -> end")?,
             Next::Branch(condition, above, below) => {
                 let (condition, above, below) = (sum(condition), name(above), name(below));
                 write!(text, " if {condition} >= 0 -> {above} else -> {below}")?;
             }
+        }
+        match rule.ends_after {
+            0 => {}
+            1 => write!(text, " -> end")?,
+            count => write!(text, " end after {count}")?,
+        }
+        if rule.from_zero > 0 {
+            write!(text, " from zero {}", rule.from_zero)?;
         }
         writeln!(text)?;
         for &(component, formula) in &rule.changes {

@@ -452,6 +452,8 @@ impl<'a> Reader<'a> {
             label: None,
             priority: 0,
             sees_jumps: false,
+            ends_after: 0,
+            from_zero: 0,
             changes: Vec::new(),
             next: Next::Stay,
         };
@@ -475,14 +477,27 @@ impl<'a> Reader<'a> {
                     let priority = value as i8;
                     rule.priority = priority;
                 }
+                Token::Name("end") => {
+                    self.next += 1;
+                    self.expect_word("after")?;
+                    rule.ends_after = self.count()?;
+                }
+                Token::Name("from") => {
+                    self.next += 1;
+                    self.expect_word("zero")?;
+                    rule.from_zero = self.count()?;
+                }
                 Token::Name("jumps") => {
                     self.next += 1;
                     rule.sees_jumps = true;
                 }
                 Token::Sign("->") => {
                     self.next += 1;
-                    rule.next =
-                        if self.takes_word("end") { Next::End } else { Next::Mode(self.target()?) };
+                    if self.takes_word("end") {
+                        rule.ends_after = 1;
+                    } else {
+                        rule.next = Next::Mode(self.target()?);
+                    }
                 }
                 Token::Name("if") => {
                     self.next += 1;
@@ -490,12 +505,25 @@ impl<'a> Reader<'a> {
                 }
                 Token::End => return Ok(rule),
                 _ => {
-                    let message = "expected a label, `priority`, `jumps`, `if`, -> or the end of \
-                                   the line";
+                    let message = "expected a label, ->, `if`, `priority`, `jumps`, `end after`, \
+                                   `from zero` or the end of the line";
                     return Err(self.error(message.to_owned()));
                 }
             }
         }
+    }
+
+    /// A count, 1 or above.
+    fn count(&mut self) -> Result<u32, TextError> {
+        let at = self.next;
+        let formula = self.number()?;
+        let value = self.constant(formula, at)?;
+        if value.fract() != 0.0 || !(1.0..=1e9).contains(&value) {
+            return Err(self.error_at(at, format!("this is {value}; expected a count from 1")));
+        }
+        // The value is an integer in range.
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        Ok(value as u32)
     }
 
     /// `x < 1`, `x rises through 1`, `x falls through 1`, `x crosses 1`.

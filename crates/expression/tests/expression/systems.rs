@@ -140,3 +140,13 @@ fn one_thousand_narrow_dips_are_found() {
         );
     }
 }
+
+#[test]
+fn runs_end_after_some_events() {
+    let (end, switches) = runs(
+        "state x = 0, v = 1\nx' = v\nv' = -x\n\
+         when x crosses 0 \"node\" priority 2 end after 3 from zero 1\nend = 100",
+    );
+    let pi = std::f64::consts::PI;
+    assert!((end.s - 3.0 * pi).abs() < 1e-9 && switches.len() == 3, "{end:?}");
+}

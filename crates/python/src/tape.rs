@@ -1,0 +1,241 @@
+//! Formulas that Python records one by one.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use pyo3::prelude::*;
+use stickslip_expression::{
+    Binary, Component, Formula, Graph, Inputs, Mode, Next, Program, Rule, System, Trigger, Unary,
+    Variable,
+};
+use stickslip_solver::Direction;
+
+use crate::failure::bad_input;
+use crate::formulas::FormulaSystem;
+
+/// The highest order of a zero that is looked for.
+const MOST_ORDERS: u32 = 8;
+
+/// Formulas, which go by their numbers.
+#[pyclass(frozen, module = "stickslip._native")]
+#[derive(Default)]
+pub struct Tape(Mutex<Graph>);
+
+/// A rule of a recorded system.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+struct RuleRow {
+    label: String,
+    /// A formula; a clock has none.
+    guard: Option<u32>,
+    direction: String,
+    /// Period and phase of a clock, or else its times.
+    period: Option<(f64, f64)>,
+    times: Vec<f64>,
+    to: Option<usize>,
+    /// The state that follows.
+    after: Option<Vec<u32>>,
+    terminal: u32,
+    from_zero: u32,
+    priority: i8,
+    sees_jumps: bool,
+}
+
+#[pymethods]
+impl Tape {
+    #[new]
+    fn new() -> Self {
+        Self::default()
+    }
+
+    fn constant(&self, x: f64) -> u32 {
+        self.graph().constant(x).number()
+    }
+
+    fn time(&self) -> u32 {
+        self.graph().time().number()
+    }
+
+    fn component(&self, index: u32) -> u32 {
+        self.graph().component(index).number()
+    }
+
+    /// The number that a formula is, if it is constant.
+    fn value(&self, formula: u32) -> PyResult<Option<f64>> {
+        let graph = self.graph();
+        Ok(graph.value(known(&graph, formula)?))
+    }
+
+    fn unary(&self, name: &str, a: u32) -> PyResult<u32> {
+        let mut graph = self.graph();
+        let a = known(&graph, a)?;
+        let function = unary(name).ok_or_else(|| bad_input(format!("no function {name}")))?;
+        Ok(graph.unary(function, a).number())
+    }
+
+    fn binary(&self, name: &str, a: u32, b: u32) -> PyResult<u32> {
+        let mut graph = self.graph();
+        let (a, b) = (known(&graph, a)?, known(&graph, b)?);
+        let function = match name {
+            "add" => Binary::Add,
+            "sub" => Binary::Sub,
+            "mul" => Binary::Mul,
+            "div" => Binary::Div,
+            "min" => Binary::Min,
+            "max" => Binary::Max,
+            "atan2" => Binary::Atan2,
+            "power" => return Ok(graph.power(a, b).number()),
+            "mod" => return Ok(graph.modulo(a, b).number()),
+            _ => return Err(bad_input(format!("no function {name}"))),
+        };
+        Ok(graph.binary(function, a, b).number())
+    }
+
+    fn select(&self, condition: u32, above: u32, below: u32) -> PyResult<u32> {
+        let mut graph = self.graph();
+        let [condition, above, below] = [condition, above, below].map(|it| known(&graph, it));
+        Ok(graph.select(condition?, above?, below?).number())
+    }
+
+    /// The values of formulas at a time and a state.
+    fn evaluate(&self, formulas: Vec<u32>, t: f64, y: Vec<f64>) -> PyResult<Vec<f64>> {
+        let graph = self.graph();
+        values(&graph, &all_known(&graph, &formulas)?, t, &y)
+    }
+
+    /// Formulas of a state with n components as text.
+    fn text(&self, formulas: Vec<u32>, n: usize) -> PyResult<Vec<String>> {
+        let graph = self.graph();
+        let formulas = all_known(&graph, &formulas)?;
+        let names: Vec<String> = (0..n).map(|place| format!("y{place}")).collect();
+        Ok(graph.texts(&formulas, &names))
+    }
+
+    /// The order of the zero that a formula has at a time and a state, along the flow with these
+    /// slopes: 0 if it is no zero.
+    fn zero_order(&self, formula: u32, slopes: Vec<u32>, t: f64, y: Vec<f64>) -> PyResult<u32> {
+        let mut graph = self.graph();
+        let mut formula = known(&graph, formula)?;
+        let slopes = all_known(&graph, &slopes)?;
+        let (zero, one) = (graph.constant(0.0), graph.constant(1.0));
+        for order in 0..MOST_ORDERS {
+            if values(&graph, &[formula], t, &y)?[0] != 0.0 {
+                return Ok(order);
+            }
+            formula = graph.slope(formula, &mut |_, variable| match variable {
+                Variable::Time => one,
+                Variable::Component(place) => slopes.get(place as usize).copied().unwrap_or(zero),
+                Variable::Parameter(_) => zero,
+            });
+        }
+        Ok(MOST_ORDERS)
+    }
+
+    /// A system of formulas of this tape: the state at the start, and modes with slopes and rules.
+    fn system(
+        &self,
+        start: Vec<f64>,
+        modes: Vec<(String, Vec<u32>, Vec<RuleRow>)>,
+    ) -> PyResult<FormulaSystem> {
+        let mut graph = self.graph().clone();
+        let component = |(place, &x): (usize, &f64)| Component {
+            name: format!("y{place}"),
+            start: graph.constant(x),
+            discrete: false,
+        };
+        let components = start.iter().enumerate().map(component).collect();
+        let sizes = (modes.len(), start.len());
+        let mut read = Vec::new();
+        for (name, slopes, rows) in modes {
+            let slopes = all_known(&graph, &slopes)?;
+            if slopes.len() != start.len() {
+                return Err(bad_input("a mode has another number of components"));
+            }
+            let rules = rows.into_iter().map(|row| rule(&mut graph, row, sizes));
+            read.push(Mode { name, slopes, rules: rules.collect::<PyResult<_>>()? });
+        }
+        let system = System { graph, components, modes: read, ..System::default() };
+        Ok(FormulaSystem(system))
+    }
+}
+
+impl Tape {
+    fn graph(&self) -> MutexGuard<'_, Graph> {
+        // A graph is whole between calls.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// A formula of the tape.
+fn known(graph: &Graph, number: u32) -> PyResult<Formula> {
+    graph.formula(number).ok_or_else(|| bad_input(format!("there is no formula {number}")))
+}
+
+fn all_known(graph: &Graph, numbers: &[u32]) -> PyResult<Vec<Formula>> {
+    numbers.iter().map(|&number| known(graph, number)).collect()
+}
+
+fn values(graph: &Graph, formulas: &[Formula], t: f64, y: &[f64]) -> PyResult<Vec<f64>> {
+    let is_beyond = |variable: &Variable| match variable {
+        Variable::Time => false,
+        Variable::Component(place) => *place as usize >= y.len(),
+        Variable::Parameter(_) => true,
+    };
+    if graph.reads(formulas).iter().any(is_beyond) {
+        return Err(bad_input("a formula reads another component"));
+    }
+    let inputs = Inputs { components: y.len(), parameters: 0, fixed: true };
+    let mut values = vec![f64::NAN; formulas.len()];
+    Program::compile(graph, formulas, inputs).run(t, y, &mut values);
+    Ok(values)
+}
+
+fn rule(graph: &mut Graph, row: RuleRow, (modes, n): (usize, usize)) -> PyResult<Rule> {
+    let trigger = match (row.guard, row.period) {
+        (Some(guard), _) => {
+            let direction = match row.direction.as_str() {
+                "below" => Direction::Below,
+                "falling" => Direction::Falling,
+                "rising" => Direction::Rising,
+                _ => Direction::Either,
+            };
+            Trigger::When(known(graph, guard)?, direction)
+        }
+        (None, Some((period, phase))) => {
+            Trigger::Every { period: graph.constant(period), phase: graph.constant(phase) }
+        }
+        (None, None) => Trigger::At(row.times.iter().map(|&time| graph.constant(time)).collect()),
+    };
+    let next = match row.to {
+        None => Next::Stay,
+        Some(mode) if mode < modes => Next::Mode(mode),
+        Some(mode) => return Err(bad_input(format!("there is no mode {mode}"))),
+    };
+    let after = all_known(graph, &row.after.unwrap_or_default())?;
+    if after.len() > n {
+        return Err(bad_input("a reset has another number of components"));
+    }
+    Ok(Rule {
+        trigger,
+        label: Some(row.label),
+        priority: row.priority,
+        sees_jumps: row.sees_jumps,
+        ends_after: row.terminal,
+        from_zero: row.from_zero,
+        changes: after.into_iter().enumerate().collect(),
+        next,
+    })
+}
+
+#[rustfmt::skip]
+fn unary(name: &str) -> Option<Unary> {
+    Some(match name {
+        "neg" => Unary::Neg, "abs" => Unary::Abs, "floor" => Unary::Floor,
+        "square" => Unary::Square, "sqrt" => Unary::Sqrt, "exp" => Unary::Exp,
+        "expm1" => Unary::ExpM1, "log" => Unary::Ln, "log1p" => Unary::Ln1p,
+        "sin" => Unary::Sin, "cos" => Unary::Cos, "tan" => Unary::Tan, "asin" => Unary::Asin,
+        "acos" => Unary::Acos, "atan" => Unary::Atan, "sinh" => Unary::Sinh,
+        "cosh" => Unary::Cosh, "tanh" => Unary::Tanh, "asinh" => Unary::Asinh,
+        "acosh" => Unary::Acosh, "atanh" => Unary::Atanh, "erf" => Unary::Erf,
+        _ => return None,
+    })
+}

@@ -1,0 +1,282 @@
+"""Functions of Python that run as formulas."""
+
+import functools
+import itertools
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import stickslip
+from stickslip import HybridSystem, recorded, solve
+
+MATRIX = np.array([[0.0, 1.0], [-2.0, -0.1]])
+RATES = [0.5, 1.5]
+SETTINGS = {"k": 3.0}
+PLACE = SimpleNamespace(stiffness=2.0)
+
+
+def pendulum(t, y):
+    return [y[1], -np.sin(y[0])]
+
+
+def with_math(t, y):
+    return [y[1], -math.sin(y[0]) + math.exp(-t) * math.sqrt(1 + y[0] ** 2)]
+
+
+def into_zeros(t, y):
+    slope = np.zeros(2)
+    slope[0] = y[1]
+    slope[1] = -y[0] / (1 + y[0] ** 2)
+    return slope
+
+
+def like(t, y):
+    slope = np.zeros_like(y)
+    slope[0], slope[1] = y[1], -y[0] ** 3
+    return slope
+
+
+def unpacked(t, y):
+    x, v = y
+    return v, -x - 0.1 * v * abs(v)
+
+
+def product(t, y):
+    return MATRIX @ y
+
+
+def dotted(t, y):
+    return np.dot(MATRIX, y) + np.array([0.0, np.cos(t)])
+
+
+def selected(t, y):
+    return np.array([y[1], np.where(y[0] > 0, -y[0], -2 * y[0])])
+
+
+def branched(t, y):
+    if y[0] > 0:
+        force = -y[0]
+    elif y[1] < 0:
+        force = -2 * y[0]
+    else:
+        force = -2 * y[0] + 0.1
+    return [y[1], force]
+
+
+def clipped(t, y):
+    return [y[1], np.clip(-3 * y[0], -1, 1) - min(y[1], 0.5) + max(0.0, y[0])]
+
+
+def table(t, y):
+    return [y[1], -np.interp(y[0], [-1.0, 0.0, 2.0], [-2.0, 0.0, 1.0])]
+
+
+def helped(t, y):
+    return [y[1], spring(y[0], k=SETTINGS["k"])]
+
+
+def spring(x, k):
+    return -k * x
+
+
+def looped(t, y):
+    return [sum(RATES[i] * y[(i + j) % 2] * (-1) ** j for i in range(2)) for j in range(2)]
+
+
+def attributes(t, y):
+    return [y[1], -PLACE.stiffness * y[0]]
+
+
+def closed(omega):
+    def field(t, y):
+        return np.array([y[1], -(omega**2) * y[0]])
+
+    return field
+
+
+def joined(t, y):
+    return np.concatenate([y[1:], -np.tanh(y[:1])])
+
+
+def logical(t, y):
+    inside = (y[0] > -0.5) & (y[0] < 0.5)
+    return [y[1], np.where(inside, -y[0], -np.sign(y[0]) * 0.5)]
+
+
+def powers(t, y):
+    return [y[1], -(y[0] ** 5) - np.power(np.abs(y[0]), 1.5) - 2.0 ** y[1] + np.hypot(y[0], 1)]
+
+
+def reduced(t, y):
+    return [y[1] - y.mean(), -np.sum(y**2) * np.prod(y) - np.max(y) - np.linalg.norm(y)]
+
+
+def in_place(t, y):
+    y *= 2
+    y[1] += 1
+    return [y[1], -y[0]]
+
+
+def functions(t, y):
+    x = 0.3 * np.tanh(y[0])
+    circular = np.arcsin(x) + np.arctan2(x, 2.0) + np.arccos(x) + np.tan(x)
+    return [y[1], -circular - np.arcsinh(x) - np.log1p(x) + np.expm1(x) - math.erf(x) - np.cosh(x)]
+
+
+@pytest.mark.parametrize(
+    "field",
+    [
+        *(pendulum, with_math, into_zeros, like, unpacked, product, dotted, selected, branched),
+        *(clipped, table, helped, looped, attributes, closed(1.3), joined, logical, powers),
+        *(reduced, in_place, functions, lambda t, y: [y[1], -y[0] if t < 1 else y[0]]),
+    ],
+    ids=lambda field: field.__name__,
+)
+def test_common_functions_are_recorded(field) -> None:
+    formulas = recorded(field, 2)
+    assert len(formulas) >= 2
+    for y in ([0.3, -0.2], [-0.7, 0.4]):
+        span = (0.0, 0.1)
+        one = solve(field, span, y, record=True, rtol=1e-8, atol=1e-10)
+        other = solve(field, span, y, record=False, rtol=1e-8, atol=1e-10)
+        np.testing.assert_allclose(one.y[:, -1], other.y[:, -1], rtol=1e-7, atol=1e-9)
+
+
+def test_what_is_recorded_is_decided() -> None:
+    def dip(t, y):
+        return 0.5 - np.exp(-(((t - 7.123) / 0.03) ** 2))
+
+    found = solve(lambda t, y: [1.0], (0, 10), [0.0], events=dip)
+    half = 0.03 * math.sqrt(math.log(2))
+    assert found.guards == "decided" and found.decided
+    np.testing.assert_allclose(found.t_events[0], [7.123 - half, 7.123 + half], atol=1e-12)
+    sampled = solve(lambda t, y: [1.0], (0, 10), [0.0], events=dip, record=False)
+    assert sampled.guards == "sampled: record = False" and not sampled.decided
+
+
+def test_random_dips_are_found() -> None:
+    random = np.random.default_rng(1)
+    for _ in range(150):
+        width, place = 10 ** random.uniform(-3, -1), random.uniform(1, 9)
+        found = solve(
+            lambda t, y: [1.0],
+            (0, 10),
+            [0.0],
+            events=lambda t, y, p=place, w=width: 0.5 - np.exp(-(((t - p) / w) ** 2)),
+        )
+        half = width * math.sqrt(math.log(2))
+        np.testing.assert_allclose(found.t_events[0], [place - half, place + half], atol=1e-11)
+
+
+def test_systems_of_modes_are_recorded() -> None:
+    belt = HybridSystem()
+    stick = belt.mode("stick", lambda t, y: [y[1], 0.0])
+    stick.guard("breaks away", lambda t, y: 1 - y[0], to="slip")
+    slip = belt.mode("slip", lambda t, y: [y[1], 0.6 - y[0]])
+    slip.guard("stops", lambda t, y: 0.5 - y[1], to="stick", reset=lambda t, y: [y[0], 0.5])
+    found = solve(belt, (0, 30), [0.0, 0.5], "stick", record=True, dense_output=True)
+    other = solve(belt, (0, 30), [0.0, 0.5], "stick", record=False)
+    assert found.guards == "decided" and found.events["guard"].tolist()[:2] == ["breaks away", "stops"]
+    np.testing.assert_allclose(found.events["time"], other.events["time"], atol=1e-9)
+    np.testing.assert_allclose(found.y[:, -1], other.y[:, -1], atol=1e-9)
+
+
+def test_an_event_that_starts_from_zero_does_not_fire_there() -> None:
+    for event in (lambda t, y: y[0], lambda t, y: y[0] ** 2 * (1 - y[0])):
+        found = solve(lambda t, y: [1.0], (0, 2), [0.0], events=event, record=True)
+        other = solve(lambda t, y: [1.0], (0, 2), [0.0], events=event, record=False)
+        np.testing.assert_allclose(found.t_events[0], other.t_events[0], atol=1e-12)
+
+
+def changes_a_list(log):
+    def field(t, y):
+        log.append(t)
+        return -y
+
+    return field
+
+
+def counts():
+    calls = 0
+
+    def field(t, y):
+        nonlocal calls
+        calls += 1
+        return -y
+
+    return field
+
+
+def toggles(state):
+    def field(t, y):
+        if y[0] < 0.5:
+            state["on"] = False
+        return [-1.0 if state["on"] else 1.0]
+
+    return field
+
+
+@pytest.mark.parametrize(
+    ("field", "reason"),
+    [
+        (changes_a_list([]), "changes something outside"),
+        (counts(), "changes 'calls'"),
+        (toggles({"on": True}), "changes something outside"),
+        (lambda t, y: -y + 1e-9 * np.random.normal(), "random"),
+        (lambda t, y, c=itertools.count(): [-y[0] + next(c)], ""),
+        (functools.partial(lambda k, t, y: -k * y, 2.0), "of type partial"),
+        (lambda t, y: [[1.0, 2.0][int(t)]], r"int\(\)"),
+        (lambda t, y: np.linalg.solve(np.eye(1) * (1 + y[0] ** 2), -y), "linalg"),
+        (lambda t, y: [y[0], y[0]], "returns 2 numbers instead of 1"),
+        (lambda t, y: [y[0] > 0], "truth value"),
+    ],
+)
+def test_what_is_no_formula_is_not_frozen(field, reason) -> None:
+    with pytest.raises(ValueError, match=f"record = True, but the right-hand side.*{reason}"):
+        solve(field, (0, 0.1), [1.0], record=True)
+
+
+def test_functions_do_not_see_symbols_outside() -> None:
+    log: list[float] = []
+    found = solve(changes_a_list(log), (0, 1), [1.0], events=lambda t, y: y[0] - 0.5)
+    assert found.guards.startswith("sampled: the right-hand side: the function changes something")
+    assert log and all(isinstance(t, float) for t in log)
+
+
+def test_state_that_others_change_is_noticed() -> None:
+    """What a function reads may change between its calls; its formulas would not."""
+    shared = {"sign": 1.0}
+
+    def field(t, y):
+        return [shared["sign"]]
+
+    def turn(t, y):
+        shared["sign"] = -shared["sign"]
+        return y
+
+    system = HybridSystem()
+    system.mode("m", field).guard("top", lambda t, y: 1 - y[0], direction="falling", reset=turn)
+    found = solve(system, (0, 3), [0.0])
+    assert found.guards.startswith("sampled: the reset")
+
+
+def test_loops_end() -> None:
+    def endless(t, y):
+        total = 0.0
+        while total < y[0]:
+            total += 0.1
+        return [total]
+
+    with pytest.raises(ValueError, match="more than 100 decisions"):
+        recorded(endless, 1)
+    assert solve(endless, (0, 0.1), [1.0]).success
+
+
+def test_recorded_shows_formulas() -> None:
+    assert recorded(pendulum, 2) == ["y1", "-sin(y0)"]
+    assert recorded(lambda t, y, k: k * y, 1, (2.0,)) == ["y0*2"]
+    with pytest.raises(ValueError, match="cannot be recorded"):
+        recorded(lambda t, y: [np.random.normal()], 1)
+    assert "recorded" in stickslip.__all__
