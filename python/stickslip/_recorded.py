@@ -163,8 +163,13 @@ class Recorded:
         """Refuses a function that returns something else than its formulas."""
         t, y = at
         assert not isinstance(function, Compiled)
-        with np.errstate(all="ignore"):
-            returned = np.asarray(function(t, y.copy(), *self.table.args), dtype=float).reshape(-1)
+        try:
+            with np.errstate(all="ignore"):
+                found = function(t, y.copy(), *self.table.args)
+                returned = np.asarray(found, dtype=float).reshape(-1)
+        except Exception as error:
+            # Without formulas it says so itself, if it is called there.
+            raise CannotRecord(f"{what}: {type(error).__name__} at t = {t!r}: {error}") from None
         size = max(1.0, float(np.nanmax(np.abs(recorded), initial=0.0)))
         if returned.shape != recorded.shape or not np.allclose(
             returned, recorded, rtol=1e-7, atol=1e-10 * size, equal_nan=True

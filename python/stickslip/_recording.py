@@ -27,8 +27,15 @@ MOST_WAYS, MOST_DECISIONS = 64, 100
 _DTYPES = (None, float, object, np.float64, "float", "float64", "d")
 
 
-class CannotRecord(Exception):
-    """Why a function is no formula."""
+class CannotRecord(BaseException):
+    """Why a function is no formula. A function that catches exceptions does not catch it."""
+
+    #: How many there have been: what a function catches all the same is noticed.
+    count = 0
+
+    def __init__(self, reason: str) -> None:
+        super().__init__(reason)
+        CannotRecord.count += 1
 
 
 class Symbol:
@@ -184,7 +191,10 @@ class Tape:
     def record(self, function: Callable[..., Any], n: int, args: tuple[Any, ...]) -> list[Symbol]:
         """The numbers that function(t, y, *args) returns, for y of shape (n,)."""
         outside: list[Any] = []
-        recorded = _copy(function, {}, outside)
+        done: dict[int, Any] = {}
+        recorded = _copy(function, done, outside)
+        args = tuple(_swapped(value, done, outside) for value in args)
+        refusals = CannotRecord.count
         time = Symbol(self, self.native.time())
         state = np.empty(n, dtype=object)
         state[:] = [Symbol(self, self.native.component(i)) for i in range(n)]
@@ -210,6 +220,8 @@ class Tape:
                 break
             node, is_negative, _ = self.way.pop()
             self.way.append((node, not is_negative, True))
+        if CannotRecord.count != refusals:
+            raise CannotRecord("it catches what a number that is not known yet cannot do")
         if repr(list(map(_inside, outside))) != before:
             raise CannotRecord("the function changes something outside")
         return self._merged(ways, 0)
@@ -624,7 +636,7 @@ _np["random"] = _NoRandomNumbers()
 
 class _FloatKind(type):
     def __instancecheck__(cls, value: Any) -> bool:
-        return isinstance(value, float)
+        return isinstance(value, float | Symbol)
 
 
 class _Float(float, metaclass=_FloatKind):
@@ -638,15 +650,19 @@ _BUILTINS = vars(builtins) | {
     "max": _extreme("maximum", max),
     "min": _extreme("minimum", min),
     "float": _Float,
+    "print": lambda *args, **options: None,
 }
 _SWAPS: dict[int, Any] = {id(math): _Names(math, _math), id(np): _Names(np, _np)}
 _SWAPS |= {id(getattr(math, name)): other for name, other in _math.items()}
 _SWAPS |= {id(getattr(np, name)): other for name, other in _np.items() if name != "random"}
 #: Values that nobody can change, and types.
 _FIXED = (
-    *(numbers.Number, str, bytes, type, types.BuiltinFunctionType, np.ufunc, np.dtype),
+    *(numbers.Number, str, bytes, type, np.ufunc, np.dtype),
     *(BaseException, Compiled),
 )
+#: Modules whose functions return something else each time.
+_CHANGING = {"random", "_random", "numpy.random", "numpy.random.mtrand", "time", "datetime", "os"}
+_CHANGING |= {"numpy.random._generator", "secrets", "uuid"}
 _FORBIDDEN = {"STORE_GLOBAL", "STORE_DEREF", "STORE_ATTR", "DELETE_ATTR"}
 
 
@@ -681,11 +697,12 @@ def _copy(function: Any, done: dict[int, Any], outside: list[Any]) -> Any:
     used &= function.__globals__.keys()
     names: dict[str, Any] = {"__builtins__": _BUILTINS}
     cells = tuple(types.CellType() for _ in function.__closure__ or ())
-    copied = types.FunctionType(
-        function.__code__, names, function.__name__, function.__defaults__, cells
-    )
-    copied.__kwdefaults__ = function.__kwdefaults__
+    copied = types.FunctionType(function.__code__, names, function.__name__, None, cells)
     done[id(function)] = copied
+    defaults = function.__defaults__ or ()
+    copied.__defaults__ = tuple(_swapped(value, done, outside) for value in defaults)
+    named = (function.__kwdefaults__ or {}).items()
+    copied.__kwdefaults__ = {name: _swapped(value, done, outside) for name, value in named}
     for name in used:
         names[name] = _swapped(function.__globals__[name], done, outside)
     for new, old in zip(cells, function.__closure__ or (), strict=True):
@@ -702,8 +719,14 @@ def _swapped(value: Any, done: dict[int, Any], outside: list[Any]) -> Any:
     if id(value) in _SWAPS:
         return _SWAPS[id(value)]
     if isinstance(value, types.ModuleType):
-        if value.__name__ in ("random", "numpy.random", "time"):
+        if value.__name__ in _CHANGING:
             raise CannotRecord(f"the function uses the module {value.__name__}")
+        return value
+    if isinstance(value, types.BuiltinFunctionType):
+        source = getattr(value, "__self__", None)
+        source = source if isinstance(source, types.ModuleType) else type(source)
+        if (getattr(source, "__module__", None) or source.__name__) in _CHANGING:
+            raise CannotRecord(f"the function uses {value.__name__}, which changes by itself")
         return value
     if isinstance(value, types.FunctionType | types.MethodType):
         own = (value.__module__ or "").partition(".")[0] not in ("numpy", "scipy")
@@ -712,6 +735,8 @@ def _swapped(value: Any, done: dict[int, Any], outside: list[Any]) -> Any:
         return value
     if isinstance(value, np.random.Generator | np.random.RandomState):
         raise CannotRecord("the function uses random numbers")
+    if isinstance(value, Symbol | Symbols):
+        return value
     if id(value) not in done:
         try:
             done[id(value)] = copy.deepcopy(value)

@@ -238,6 +238,59 @@ def test_what_is_no_formula_is_not_frozen(field, reason) -> None:
         solve(field, (0, 0.1), [1.0], record=True)
 
 
+def catches(t, y):
+    try:
+        return [[1.0, 2.0][int(y[0])]]
+    except Exception:
+        return [1.0]
+
+
+def catches_all(t, y):
+    try:
+        return [[1.0, 2.0][int(y[0])]]
+    except:  # noqa: E722
+        return [1.0]
+
+
+@pytest.mark.parametrize("field", [catches, catches_all])
+def test_what_is_caught_is_not_frozen(field) -> None:
+    with pytest.raises(ValueError, match="record = True"):
+        solve(field, (0, 0.1), [0.5], record=True)
+    assert solve(field, (0, 2), [0.5]).guards.startswith(("sampled", "decided"))
+
+
+def test_clocks_and_random_numbers_are_refused() -> None:
+    from random import random
+    from time import perf_counter
+
+    for changing in (random, perf_counter):
+        with pytest.raises(ValueError, match="changes by itself"):
+            recorded(lambda t, y, f=changing: [f() * y[0]], 1)
+
+
+def test_defaults_and_arguments_are_not_changed() -> None:
+    log: list[float] = []
+
+    def field(t, y, kept=log):
+        kept.append(t)
+        return -y
+
+    with pytest.raises(ValueError, match="changes something outside"):
+        recorded(field, 1)
+    with pytest.raises(ValueError, match="changes something outside"):
+        recorded(lambda t, y, kept: [kept.append(t) or y[0]], 1, (log,))
+    assert not log
+
+
+def test_nothing_is_printed(capsys) -> None:
+    def field(t, y):
+        print("t =", t, f"{1:3}")
+        return -y
+
+    assert recorded(field, 1) == ["-y0"]
+    assert not capsys.readouterr().out
+
+
 def test_functions_do_not_see_symbols_outside() -> None:
     log: list[float] = []
     found = solve(changes_a_list(log), (0, 1), [1.0], events=lambda t, y: y[0] - 0.5)
