@@ -21,6 +21,10 @@ from stickslip._solutions import DenseOutput, Solution, rows_of_events
 from stickslip._systems import Guard, HybridSystem, Mode, _check_function, _Clock, _Source
 
 Floats: TypeAlias = NDArray[np.float64]
+#: Functions of more components are recorded on request only: numpy is faster than many formulas.
+MOST_RECORDED = 200
+
+
 def solve(
     system: HybridSystem | Function,
     t_span: ArrayLike,
@@ -98,7 +102,9 @@ def solve(
     reason = "record = False"
     if settings["guard_scale"] is not None and not settings["guard_scale"] > 0.0:
         raise ValueError(f"guard_scale = {guard_scale}; expected a number above 0")
-    if record is not False:
+    if record is None and state.size > MOST_RECORDED:
+        reason = f"the state has more than {MOST_RECORDED} components; record=True records it"
+    elif record is not False:
         found_recorded, reason = _try_recorded(
             table, (first, start, end), state, settings, times, bool(dense_output)
         )

@@ -327,6 +327,18 @@ def test_loops_end() -> None:
     assert solve(endless, (0, 0.1), [1.0]).success
 
 
+def test_large_systems_are_recorded_on_request() -> None:
+    def chain(t, y):
+        return np.roll(y, 1) - 2 * y + np.roll(y, -1)
+
+    start = np.sin(np.arange(300) * 2 * np.pi / 300)
+    found = solve(chain, (0, 1), start, events=lambda t, y: y[75] - 0.99999)
+    assert "more than 200 components" in found.guards
+    again = solve(chain, (0, 1), start, events=lambda t, y: y[75] - 0.99999, record=True)
+    assert again.guards == "decided"
+    np.testing.assert_allclose(found.y[:, -1], again.y[:, -1], atol=1e-11)
+
+
 def test_recorded_shows_formulas() -> None:
     assert recorded(pendulum, 2) == ["y1", "-sin(y0)"]
     assert recorded(lambda t, y, k: k * y, 1, (2.0,)) == ["y0*2"]

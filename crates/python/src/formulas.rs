@@ -94,7 +94,7 @@ impl FormulaSystem {
         };
         options.validate().map_err(bad_input)?;
         let found = py.detach(|| runnable.record(method, end, &options));
-        let found = found.map_err(|error| failed(error))?;
+        let found = found.map_err(failed)?;
         let columns = columns(py, &self.0, &found, times)?;
         // As of functions of Python: with the stages of dense output, and a look at the start.
         let stages = if method == EmbeddedPair::Dop853 { 3 } else { 0 };

@@ -31,7 +31,7 @@ pub(super) enum Truth {
 }
 
 /// Functions of one number, by name.
-const FUNCTIONS: [(&str, Unary); 22] = [
+const FUNCTIONS: [(&str, Unary); 21] = [
     ("abs", Unary::Abs),
     ("floor", Unary::Floor),
     ("sqrt", Unary::Sqrt),
@@ -53,7 +53,6 @@ const FUNCTIONS: [(&str, Unary); 22] = [
     ("acosh", Unary::Acosh),
     ("atanh", Unary::Atanh),
     ("erf", Unary::Erf),
-    ("square", Unary::Square),
 ];
 
 /// Other functions, with the number of their arguments.
