@@ -8,6 +8,7 @@ What cannot be recorded raises `CannotRecord` with the reason.
 import builtins
 import copy
 import dis
+import functools
 import math
 import numbers
 import types
@@ -24,7 +25,7 @@ MOST_WAYS, MOST_DECISIONS = 64, 100
 
 
 #: What an array of symbols may be asked to consist of.
-_DTYPES = (None, float, object, np.float64, "float", "float64", "d")
+_DTYPES: tuple[Any, ...] = (None, float, object, np.float64, "float", "float64", "d")
 
 
 class CannotRecord(BaseException):
@@ -79,7 +80,8 @@ class Symbol:
         return self._no("round()")
 
     def __format__(self, spec: str) -> str:
-        return str(self._no("text"))
+        # A message may be made, and is not a result.
+        return "<a number>"
 
     @property
     def real(self) -> "Symbol":
@@ -147,6 +149,24 @@ class Symbols(np.ndarray[Any, Any]):
 
     def __array_function__(self, function: Any, _: Any, args: Any, options: Any) -> Any:
         return _on_numpy(function, args, options)
+
+
+    def __setitem__(self, index: Any, values: Any) -> None:
+        mask = np.asarray(index, dtype=object) if isinstance(index, np.ndarray) else index
+        chosen: Any = [] if isinstance(index, tuple | slice) else np.ravel(_boxed(mask))
+        if any(isinstance(one, Condition) for one in chosen):
+            if np.ndim(values) and np.shape(values) != self.shape:
+                raise CannotRecord("a choice of entries by a condition")
+            np.asarray(self)[...] = np.asarray(_where(mask, values, self.copy()), dtype=object)
+        else:
+            super().__setitem__(index, values)
+
+    def __getitem__(self, index: Any) -> Any:
+        if isinstance(index, Condition) or (
+            isinstance(index, np.ndarray) and any(isinstance(i, Condition) for i in index.flat)
+        ):
+            raise CannotRecord("a choice of entries by a condition")
+        return super().__getitem__(index)
 
 
 class Tape:
@@ -488,6 +508,21 @@ def _select(conditions: Any, choices: Any, default: Any = 0.0) -> Any:
     return result
 
 
+def _spline(spline: Any, t: Any, derivative: int = 0) -> Any:
+    """A piecewise polynomial of SciPy."""
+    if spline.extrapolate is not True or spline.c.ndim != 2 or derivative:
+        raise CannotRecord("a spline that is periodic, ends, has several values, or is derived")
+    if isinstance(t, np.ndarray) and t.ndim:
+        return _array([_spline(spline, one) for one in t])
+    result: Any = None
+    for start, coefficients in zip(spline.x, spline.c.T, strict=False):
+        piece: Any = coefficients[0]
+        for coefficient in coefficients[1:]:
+            piece = piece * (t - start) + coefficient
+        result = piece if result is None else (t >= start).choose(piece, result)
+    return result
+
+
 def _norm(x: Any, order: Any = None) -> Any:
     if order not in (None, 2):
         raise CannotRecord("this norm")
@@ -646,6 +681,7 @@ class _Float(float, metaclass=_FloatKind):
         return value if _has_symbols(value) else float(value)
 
 
+_DTYPES += (_Float,)
 _BUILTINS = vars(builtins) | {
     "max": _extreme("maximum", max),
     "min": _extreme("minimum", min),
@@ -660,6 +696,8 @@ _FIXED = (
     *(numbers.Number, str, bytes, type, np.ufunc, np.dtype),
     *(BaseException, Compiled),
 )
+#: Piecewise polynomials of SciPy.
+_SPLINES = {"CubicSpline", "PchipInterpolator", "Akima1DInterpolator", "PPoly"}
 #: Modules whose functions return something else each time.
 _CHANGING = {"random", "_random", "numpy.random", "numpy.random.mtrand", "time", "datetime", "os"}
 _CHANGING |= {"numpy.random._generator", "secrets", "uuid"}
@@ -737,6 +775,8 @@ def _swapped(value: Any, done: dict[int, Any], outside: list[Any]) -> Any:
         raise CannotRecord("the function uses random numbers")
     if isinstance(value, Symbol | Symbols):
         return value
+    if type(value).__name__ in _SPLINES and type(value).__module__.startswith("scipy"):
+        return _either(value, functools.partial(_spline, value))
     if id(value) not in done:
         try:
             done[id(value)] = copy.deepcopy(value)

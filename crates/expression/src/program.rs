@@ -144,14 +144,14 @@ impl Program {
         y: &[T],
         out: &mut [T],
     ) {
-        // R is a power of two, so that no index is out of range.
-        self.run_on(code, registers, y, out, |index| usize::from(index) & (R - 1));
+        // R is a power of two, so that no register is out of range.
+        self.run_on(code, registers, y, out, usize::from, |index| index & (R - 1));
     }
 
     #[inline(never)]
     fn run_wide<T: Number>(&self, code: &[Instruction<u32>], t: T, y: &[T], out: &mut [T]) {
         let mut registers: SmallVec<[T; 512]> = SmallVec::from_elem(t, self.registers);
-        self.run_on(code, &mut registers, y, out, |index| index as usize);
+        self.run_on(code, &mut registers, y, out, |index| index as usize, |index| index);
     }
 
     #[inline(always)]
@@ -161,8 +161,10 @@ impl Program {
         r: &mut [T],
         y: &[T],
         out: &mut [T],
-        at: impl Fn(I) -> usize,
+        place: impl Fn(I) -> usize,
+        register: impl Fn(usize) -> usize,
     ) {
+        let at = |index: I| register(place(index));
         r[..self.inputs].copy_from_slice(&y[..self.inputs]);
         let pool = &self.pool[..];
         for &(to, from) in &self.loads {
@@ -184,10 +186,9 @@ impl Program {
                     r[at(instruction.c)]
                 };
             }
-            // The pool may be shorter than the registers.
             macro_rules! k {
                 () => {
-                    pool[at(instruction.b)]
+                    pool[place(instruction.b)]
                 };
             }
             let x = match instruction.op {

@@ -24,6 +24,10 @@ fn random(numbers: &mut fastrand::Rng, size: usize) -> (Graph, Vec<Formula>) {
     known.extend([0.5, 2.0, -3.0, 1.0, 0.0].map(|x| graph.constant(x)));
     while graph.len() < size {
         let [a, b, c] = [(); 3].map(|()| known[numbers.usize(..known.len())]);
+        // Many constants, so that their places are beyond those of the registers.
+        if numbers.u8(..4) == 0 {
+            known.push(graph.constant(4.0 * numbers.f64() - 2.0));
+        }
         let formula = match numbers.u8(..10) {
             0..3 => graph.unary(UNARY[numbers.usize(..UNARY.len())], a),
             3..8 => graph.binary(BINARY[numbers.usize(..BINARY.len())], a, b),
