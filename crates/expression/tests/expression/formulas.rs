@@ -214,3 +214,23 @@ fn deep_formulas_need_no_stack() {
     let expected = (0..100_000).fold(1.0_f64, |x, _| x.sin());
     assert!(values[0] == expected && values[1] > 0.0 && values[1] < 1.0);
 }
+
+/// Two registers and forty constants: places of constants are not those of registers.
+#[test]
+fn constants_are_found_whatever_their_number() {
+    let mut graph = Graph::default();
+    let x = graph.component(0);
+    let mut sum = x;
+    for k in 0..40 {
+        let factor = graph.constant(0.5 + 0.01 * f64::from(k));
+        sum = graph.binary(Binary::Mul, sum, factor);
+        let shift = graph.constant(-1.0 - f64::from(k));
+        sum = graph.binary(Binary::Add, sum, shift);
+    }
+    let inputs = Inputs { components: 1, parameters: 0, fixed: true };
+    let mut found = [0.0];
+    Program::compile(&graph, &[sum], inputs).run(0.0, &[3.0], &mut found);
+    let expected =
+        (0..40).fold(3.0, |sum, k| sum * (0.5 + 0.01 * f64::from(k)) + (-1.0 - f64::from(k)));
+    assert_eq!(found[0], expected);
+}
