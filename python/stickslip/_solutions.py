@@ -55,23 +55,6 @@ class DenseOutput:
         return np.where(inside, self._names[self._modes[index]], "")[()]
 
 
-def rows_of_events(
-    events: NDArray[np.void], names: list[str], stays: NDArray[np.bool_], ended: bool
-) -> list[NDArray[np.intp]]:
-    """The rows of `events` in which each name fired, also together with another one that changes
-    nothing. `stays`: whether an event stays in its mode. `ended`: whether the last one ended the
-    run."""
-    rows = [np.flatnonzero(events["guard"] == name) for name in names]
-    for row in [row for row, others in enumerate(events["simultaneous"]) if others]:
-        one = events[row]
-        same = stays[row] and np.array_equal(one["before"], one["after"])
-        if same and not (ended and row == events.size - 1):
-            for name in one["simultaneous"]:
-                index = names.index(name)
-                rows[index] = np.sort(np.append(rows[index], row))
-    return rows
-
-
 @dataclass(frozen=True)
 class Solution:
     """What `solve` found. The names are those of SciPy's `solve_ivp` where it has them."""
@@ -150,3 +133,110 @@ class Solution:
     def __repr__(self) -> str:
         shape = f"y of shape {self.y.shape}, {self.events.size} events, nfev = {self.nfev}"
         return f"Solution(status={self.status}: {self.message} {shape})"
+
+
+#: Names of modes and of the guards of each, by their numbers, and all names of guards.
+Names: TypeAlias = tuple[list[str], list[list[str]], list[str]]
+
+
+def _text(names: Names) -> str:
+    """The type of an array of names."""
+    return f"U{max(map(len, [*names[0], *names[2], ' ']))}"
+
+
+def event_array(
+    found: dict[str, Any], dimension: int, names: Names, extra: list[Any]
+) -> NDArray[np.void]:
+    """Everything that fired, in order, with room for further columns."""
+    text, state = _text(names), ("f8", (dimension,))
+    dtype: list[Any] = [("time", "f8"), ("guard", text), ("from", text), ("to", text)]
+    dtype += [("before", *state), ("after", *state)]
+    dtype += [("flatness", "f8"), ("jump", "?"), ("simultaneous", "O"), *extra]
+    modes, guards, _ = names
+    left = found["event_from"].tolist()
+    events: NDArray[np.void] = np.empty(len(left), dtype=dtype)
+    events["time"] = found["event_times"]
+    fired = zip(left, found["event_guards"].tolist(), strict=True)
+    events["guard"] = [guards[mode][guard] for mode, guard in fired]
+    events["from"] = [modes[mode] for mode in left]
+    events["to"] = [modes[mode] for mode in found["event_to"].tolist()]
+    events["before"] = found["event_before"].reshape(len(left), dimension)
+    events["after"] = found["event_after"].reshape(len(left), dimension)
+    events["flatness"] = found["event_flatness"]
+    events["jump"] = found["event_jump"]
+    together = events["simultaneous"]
+    for row, others in enumerate(found["event_simultaneous"]):
+        together[row] = tuple(guards[left[row]][guard] for guard in others)
+    return events
+
+
+def solution_of(
+    found: dict[str, Any],
+    events: NDArray[np.void],
+    names: Names,
+    *,
+    start: float,
+    dense: bool,
+    guards: str,
+    variables: dict[str, NDArray[np.float64]] | None = None,
+    sides: dict[str, NDArray[np.int8]] | None = None,
+) -> Solution:
+    """The solution that the native module has found, as columns."""
+    modes = np.array(names[0])
+    labels, event_names = names[1:]
+    text = _text(names)
+    place: list[Any] = [("time", "f8"), ("guard", text), ("mode", text)]
+    touches = [(t, labels[mode][g], modes[mode], m) for t, mode, g, m in found["touches"]]
+    poles, preempted = (
+        [(t, labels[mode][guard], modes[mode]) for t, mode, guard in found[kind]]
+        for kind in ("poles", "preempted")
+    )
+    rests = [
+        (t, error, labels[left][guard], modes[left], modes[to])
+        for t, error, guard, left, to in found["rests"]
+    ]
+    stays = found["event_from"] == found["event_to"]
+    rows = _rows(events, event_names, stays, found["status"] == 1)
+    return Solution(
+        t=found["t"],
+        y=found["y"].reshape(found["t"].size, found["end_state"].size).T,
+        mode=modes[found["modes"]],
+        variables=variables or {},
+        sides=sides or {},
+        sol=DenseOutput(found, modes, start) if dense else None,
+        t_events=[events["time"][row] for row in rows],
+        y_events=[events["before"][row] for row in rows],
+        event_names=event_names,
+        events=events,
+        touches=np.array(touches, dtype=[*place, ("margin", "f8")]),
+        poles=np.array(poles, dtype=place),
+        preempted=np.array(preempted, dtype=place),
+        rests=np.array(
+            rests, dtype=[place[0], ("error", "f8"), place[1], ("from", text), ("to", text)]
+        ),
+        decided=found["decided"],
+        guards=guards,
+        status=found["status"],
+        outcome=found["outcome"],
+        message=found["message"],
+        accumulation=found["accumulation"],
+        nfev=found["nfev"],
+        statistics=found["statistics"],
+    )
+
+
+def _rows(
+    events: NDArray[np.void], names: list[str], stays: NDArray[np.bool_], ended: bool
+) -> list[NDArray[np.intp]]:
+    """The rows of `events` in which each name fired, also together with another one that changes
+    nothing. `stays`: whether an event stays in its mode. `ended`: whether the last one ended the
+    run."""
+    rows = [np.flatnonzero(events["guard"] == name) for name in names]
+    for row in [row for row, others in enumerate(events["simultaneous"]) if others]:
+        one = events[row]
+        same = stays[row] and np.array_equal(one["before"], one["after"])
+        if same and not (ended and row == events.size - 1):
+            for name in one["simultaneous"]:
+                index = names.index(name)
+                rows[index] = np.sort(np.append(rows[index], row))
+    return rows

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip import _native
 from stickslip._compiled import _count, _number
 from stickslip._run_arguments import method_name, span, state_at_start, times_within
-from stickslip._solutions import DenseOutput, Solution, rows_of_events
+from stickslip._solutions import Solution, event_array, solution_of
 
 Floats: TypeAlias = NDArray[np.float64]
 
@@ -117,70 +117,13 @@ class FormulaSystem:
         self, found: dict[str, Any], dense: bool, event_names: list[str] | None = None
     ) -> Solution:
         modes = self._native.modes()
-        n = len(self.components)
-        names = np.array([name for name, _ in modes])
         labels = [rules for _, rules in modes]
         if event_names is None:
             event_names = list(dict.fromkeys(label for rules in labels for label in rules))
-        text = f"U{max(map(len, [*names, *event_names, ' ']))}"
-        place: list[Any] = [("time", "f8"), ("guard", text), ("mode", text)]
-        events = self._events(found, text, names, labels)
-        stays = found["event_from"] == found["event_to"]
-        rows = rows_of_events(events, event_names, stays, found["status"] == 1)
-        touches = [(t, labels[m][g], names[m], margin) for t, m, g, margin in found["touches"]]
-        poles, preempted = (
-            [(t, labels[m][g], names[m]) for t, m, g in found[kind]]
-            for kind in ("poles", "preempted")
-        )
-        rests: list[Any] = [place[0], ("error", "f8"), place[1], ("from", text), ("to", text)]
+        names = ([name for name, _ in modes], labels, event_names)
+        events = event_array(found, len(self.components), names, [])
         start = found["start_time"]
-        return Solution(
-            t=found["t"],
-            y=found["y"].reshape(found["t"].size, n).T,
-            mode=names[found["modes"]],
-            variables={},
-            sides={},
-            sol=DenseOutput(found, names, start) if dense else None,
-            t_events=[events["time"][row] for row in rows],
-            y_events=[events["before"][row] for row in rows],
-            event_names=event_names,
-            events=events,
-            touches=np.array(touches, dtype=[*place, ("margin", "f8")]),
-            poles=np.array(poles, dtype=place),
-            preempted=np.array(preempted, dtype=place),
-            rests=np.empty(0, dtype=rests),
-            decided=found["decided"],
-            guards="decided",
-            status=found["status"],
-            outcome=found["outcome"],
-            message=found["message"],
-            accumulation=found["accumulation"],
-            nfev=found["nfev"],
-            statistics=found["statistics"],
-        )
-
-    def _events(
-        self, found: dict[str, Any], text: str, names: NDArray[np.str_], labels: list[list[str]]
-    ) -> NDArray[np.void]:
-        size, n = found["event_times"].size, len(self.components)
-        state = ("f8", (n,))
-        dtype: list[Any] = [("time", "f8"), ("guard", text), ("from", text), ("to", text)]
-        dtype += [("before", *state), ("after", *state)]
-        dtype += [("flatness", "f8"), ("jump", "?"), ("simultaneous", "O")]
-        events: NDArray[np.void] = np.empty(size, dtype=dtype)
-        left = found["event_from"]
-        events["time"] = found["event_times"]
-        events["guard"] = [labels[m][g] for m, g in zip(left, found["event_guards"], strict=True)]
-        events["from"] = names[left]
-        events["to"] = names[found["event_to"]]
-        events["before"] = found["event_before"].reshape(size, n)
-        events["after"] = found["event_after"].reshape(size, n)
-        events["flatness"] = found["event_flatness"]
-        events["jump"] = found["event_jump"]
-        together = events["simultaneous"]
-        for row, others in enumerate(found["event_simultaneous"]):
-            together[row] = tuple(labels[left[row]][guard] for guard in others)
-        return events
+        return solution_of(found, events, names, start=start, dense=dense, guards="decided")
 
     def __repr__(self) -> str:
         values = ", ".join(f"{name}={value!r}" for name, value in self.parameters.items())

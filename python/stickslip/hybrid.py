@@ -17,7 +17,7 @@ from stickslip._compiled import Compiled, Function, _count, _number
 from stickslip._recorded import Recorded
 from stickslip._recording import CannotRecord
 from stickslip._run_arguments import method_name, span, state_at_start, times_within
-from stickslip._solutions import DenseOutput, Solution, rows_of_events
+from stickslip._solutions import Solution, event_array, solution_of
 from stickslip._systems import Guard, HybridSystem, Mode, _check_function, _Clock, _Source
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -342,97 +342,37 @@ class _Table:
     ) -> Solution:
         """The result that Python sees."""
         # The native module counts modes with their variables and sides.
-        names = np.array(self.names)[found["seen_modes"]]
-        guards = [self.places[mode] for mode in found["seen_modes"]]
-        text = f"U{max(map(len, [*self.names, *self.event_names, ' ']))}"
-        place = [("time", "f8"), ("guard", text), ("mode", text)]
-        touches = [(t, guards[mode][g], names[mode], m) for t, mode, g, m in found["touches"]]
-        poles, preempted = (
-            [(t, guards[mode][guard], names[mode]) for t, mode, guard in found[kind]]
-            for kind in ("poles", "preempted")
-        )
-        rests = [
-            (t, error, guards[left][guard], names[left], names[to])
-            for t, error, guard, left, to in found["rests"]
-        ]
-        seen = len(names)
-        variables = self.variables.columns(found["seen_variables"].reshape(seen, -1))
-        sides = self.signs.columns(found["seen_sides"].reshape(seen, -1))
-        events = self.event_array(found, dimension, text, (names, guards))
-        stays = found["event_from"] == found["event_to"]
-        rows = rows_of_events(events, self.event_names, stays, found["status"] == 1)
-        return Solution(
-            t=found["t"],
-            y=found["y"].reshape(found["t"].size, dimension).T,
-            mode=names[found["modes"]],
-            variables={name: values[found["modes"]] for name, values in variables.items()},
-            sides={name: values[found["modes"]] for name, values in sides.items()},
-            sol=DenseOutput(found, names, start) if dense else None,
-            t_events=[events["time"][one] for one in rows],
-            y_events=[events["before"][one] for one in rows],
-            event_names=self.event_names,
-            events=events,
-            touches=np.array(touches, dtype=[*place, ("margin", "f8")]),
-            poles=np.array(poles, dtype=place),
-            preempted=np.array(preempted, dtype=place),
-            rests=np.array(
-                rests, dtype=[place[0], ("error", "f8"), place[1], ("from", text), ("to", text)]
-            ),
-            decided=found["decided"],
-            guards="decided" if found["decided"] else f"sampled: {self.reason}",
-            status=found["status"],
-            outcome=found["outcome"],
-            message=found["message"],
-            accumulation=found["accumulation"],
-            nfev=found["nfev"],
-            statistics=found["statistics"],
-        )
-
-    def event_array(
-        self,
-        found: dict[str, Any],
-        dimension: int,
-        text: str,
-        seen: tuple[NDArray[np.str_], list[list[str]]],
-    ) -> NDArray[Any]:
-        """Everything that fired, in order. `seen` are names and guards by the numbers of modes."""
-        state = ("f8", (dimension,))
-        dtype: list[Any] = [("time", "f8"), ("guard", text), ("from", text), ("to", text)]
-        dtype += [("before", *state), ("after", *state)]
-        dtype += [("flatness", "f8"), ("jump", "?"), ("simultaneous", "O")]
+        modes = found["seen_modes"].tolist()
+        names = [self.names[mode] for mode in modes]
+        guards = [self.places[mode] for mode in modes]
+        variables = self.variables.columns(found["seen_variables"].reshape(len(modes), -1))
+        sides = self.signs.columns(found["seen_sides"].reshape(len(modes), -1))
+        extra: list[Any] = []
         if self.variables:
             shapes = self.variables.shapes.items()
-            dtype += [("variables", [(name, "f8", shape) for name, shape in shapes])]
+            extra += [("variables", [(name, "f8", shape) for name, shape in shapes])]
         if self.signs:
-            sides = [(name, "i1") for name in self.signs.names]
-            dtype += [("sides_from", sides), ("sides_to", sides), ("unique", "?")]
-        size = found["event_times"].size
-        events: NDArray[Any] = np.empty(size, dtype=dtype)
-        names, guards = seen
-        modes, to = found["event_from"], found["event_to"]
-        places = list(zip(modes.tolist(), found["event_guards"].tolist(), strict=True))
-        events["time"] = found["event_times"]
-        events["guard"] = [guards[mode][guard] for mode, guard in places]
-        events["from"] = names[modes]
-        events["to"] = names[to]
-        events["before"] = found["event_before"].reshape(size, dimension)
-        events["after"] = found["event_after"].reshape(size, dimension)
-        events["flatness"] = found["event_flatness"]
-        events["jump"] = found["event_jump"]
-        rows = found["seen_variables"].reshape(len(names), -1)
-        for name, values in self.variables.columns(rows).items():
+            signs = [(name, "i1") for name in self.signs.names]
+            extra += [("sides_from", signs), ("sides_to", signs), ("unique", "?")]
+        events = event_array(found, dimension, (names, guards, self.event_names), extra)
+        left, to = found["event_from"], found["event_to"]
+        for name, values in variables.items():
             events["variables"][name] = values[to]
-        rows = found["seen_sides"].reshape(len(names), -1)
-        for name, signs in self.signs.columns(rows).items():
-            events["sides_from"][name] = signs[modes]
-            events["sides_to"][name] = signs[to]
+        for name, values in sides.items():
+            events["sides_from"][name] = values[left]
+            events["sides_to"][name] = values[to]
         if self.signs:
             events["unique"] = found["seen_unique"][to]
-        together = events["simultaneous"]
-        for row, others in enumerate(found["event_simultaneous"]):
-            mode = places[row][0]
-            together[row] = tuple(guards[mode][guard] for guard in others) if others else ()
-        return events
+        return solution_of(
+            found,
+            events,
+            (names, guards, self.event_names),
+            start=start,
+            dense=dense,
+            guards="decided" if found["decided"] else f"sampled: {self.reason}",
+            variables={name: values[found["modes"]] for name, values in variables.items()},
+            sides={name: values[found["modes"]] for name, values in sides.items()},
+        )
 
 
 def _callee(function: Function) -> Any:

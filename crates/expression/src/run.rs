@@ -1,5 +1,7 @@
 //! A system with numbers for its parameters, as the solver sees it.
 
+mod whole;
+
 use smallvec::SmallVec;
 use stickslip_number::Number;
 use stickslip_solver::{
@@ -110,6 +112,7 @@ impl System {
         {
             return Err(InvalidParameters::NotFinite { name: it.name.clone(), value });
         }
+        whole::require(self)?;
         let compiler = Compiler { system: self, parameters };
         let end = self.end.map(|end| compiler.number(end, || "the end".to_owned()));
         let start = self.start.map(|start| compiler.number(start, || "the start".to_owned()));

@@ -25,6 +25,40 @@ pub struct System {
     pub end: Option<Formula>,
 }
 
+impl System {
+    /// What is a number as soon as parameters are: starts, ends and times.
+    pub(crate) fn fixed_formulas(&self) -> Vec<Formula> {
+        let starts = self.components.iter().map(|component| component.start);
+        let mut formulas: Vec<Formula> = starts.chain(self.start).chain(self.end).collect();
+        for rule in self.modes.iter().flat_map(|mode| &mode.rules) {
+            match &rule.trigger {
+                Trigger::When(..) => {}
+                Trigger::At(times) => formulas.extend(times),
+                Trigger::Every { period, phase } => formulas.extend([period, phase]),
+            }
+        }
+        formulas
+    }
+
+    /// What changes during a run.
+    pub(crate) fn moving_formulas(&self) -> Vec<Formula> {
+        let mut formulas = Vec::new();
+        for mode in &self.modes {
+            formulas.extend(&mode.slopes);
+            for rule in &mode.rules {
+                if let Trigger::When(guard, _) = rule.trigger {
+                    formulas.push(guard);
+                }
+                formulas.extend(rule.changes.iter().map(|(_, formula)| *formula));
+                if let Next::Branch(condition, ..) = rule.next {
+                    formulas.push(condition);
+                }
+            }
+        }
+        formulas
+    }
+}
+
 /// A number that is the same during a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
@@ -77,6 +111,19 @@ pub struct Rule {
     pub changes: Vec<(usize, Formula)>,
     /// Where the run goes on.
     pub next: Next,
+}
+
+impl Rule {
+    /// The label, or else a name from the `place` of the rule in its mode.
+    #[must_use]
+    pub fn name(&self, place: usize) -> String {
+        let kind = match self.trigger {
+            Trigger::When(..) => "when",
+            Trigger::At(_) => "at",
+            Trigger::Every { .. } => "every",
+        };
+        self.label.clone().unwrap_or_else(|| format!("{kind} {}", place + 1))
+    }
 }
 
 /// When a rule acts.

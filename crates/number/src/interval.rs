@@ -269,7 +269,7 @@ impl Interval {
     /// The powers of the numbers ≥ 0 with any exponent.
     #[must_use]
     pub fn powf(self, exponent: f64) -> Self {
-        if self.upper < 0.0 {
+        if self.upper < 0.0 || exponent.is_nan() {
             return Self::ENTIRE;
         }
         let base = Self::new(self.lower.max(0.0), self.upper);
@@ -514,6 +514,7 @@ mod tests {
         assert_eq!(Interval::new(1.5, 1.6).tan(), Interval::ENTIRE);
         assert_eq!(Interval::new(-1.0, 1.0).inverse(), Interval::ENTIRE);
         assert_eq!(Interval::point(f64::NAN), Interval::ENTIRE);
+        assert_eq!(Interval::new(1.0, 2.0).powf(f64::NAN), Interval::ENTIRE);
         // For thousands of turns, each extremum is met in an interval around it and in no other.
         for k in 0..10_000 {
             let top = FRAC_PI_2 + TAU * f64::from(k);

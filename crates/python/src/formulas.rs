@@ -4,8 +4,8 @@ use numpy::{IntoPyArray, PyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods};
-use stickslip_expression::{Recording, Rule, System, Trigger};
-use stickslip_solver::{EmbeddedPair, Options, Outcome};
+use stickslip_expression::{Recording, System};
+use stickslip_solver::{DynamicSwitch, EmbeddedPair, Options, Outcome};
 
 use crate::failure::{bad_input, failed};
 
@@ -55,7 +55,7 @@ impl FormulaSystem {
         modes
             .map(|mode| {
                 let rules = mode.rules.iter().enumerate();
-                (mode.name.clone(), rules.map(|(place, rule)| label(place, rule)).collect())
+                (mode.name.clone(), rules.map(|(place, rule)| rule.name(place)).collect())
             })
             .collect()
     }
@@ -104,16 +104,6 @@ impl FormulaSystem {
     }
 }
 
-/// The name of a rule.
-fn label(place: usize, rule: &Rule) -> String {
-    let kind = match rule.trigger {
-        Trigger::When(..) => "when",
-        Trigger::At(_) => "at",
-        Trigger::Every { .. } => "every",
-    };
-    rule.label.clone().unwrap_or_else(|| format!("{kind} {}", place + 1))
-}
-
 /// What a run found, as `hybrid::record` has it.
 fn columns<'py>(
     py: Python<'py>,
@@ -137,7 +127,7 @@ fn columns<'py>(
             }
         }
     } else {
-        let changes = |it: &&stickslip_solver::DynamicSwitch<usize>| it.before != it.after;
+        let changes = |it: &&DynamicSwitch<usize>| it.before != it.after;
         let mut events = found.events.iter().filter(changes).peekable();
         let n = found.run.state.len();
         for step in found.steps() {
@@ -153,7 +143,7 @@ fn columns<'py>(
     columns.set_item("y", y.into_pyarray(py))?;
     columns.set_item("modes", modes.into_pyarray(py))?;
     let events = &found.events;
-    let numbers = |of: fn(&stickslip_solver::DynamicSwitch<usize>) -> usize| {
+    let numbers = |of: fn(&DynamicSwitch<usize>) -> usize| {
         events.iter().map(of).collect::<Vec<_>>().into_pyarray(py)
     };
     let reals = |values: Vec<f64>| -> Bound<'py, PyArray1<f64>> { values.into_pyarray(py) };
@@ -166,7 +156,7 @@ fn columns<'py>(
     columns.set_item("event_jump", jumps.into_pyarray(py))?;
     let together: Vec<_> = events.iter().map(|it| it.simultaneous.clone()).collect();
     columns.set_item("event_simultaneous", together)?;
-    let states = |of: fn(&stickslip_solver::DynamicSwitch<usize>) -> &Vec<f64>| {
+    let states = |of: fn(&DynamicSwitch<usize>) -> &Vec<f64>| {
         reals(events.iter().flat_map(|it| of(it).iter().copied()).collect())
     };
     columns.set_item("event_before", states(|it| &it.before))?;
@@ -178,6 +168,8 @@ fn columns<'py>(
     columns.set_item("poles", poles)?;
     let preempted: Vec<_> = found.preempted.iter().map(|it| (it.s, it.mode, it.guard)).collect();
     columns.set_item("preempted", preempted)?;
+    // A system of formulas has no rest.
+    columns.set_item("rests", Vec::<(f64, f64, usize, usize, usize)>::new())?;
     let steps = found.steps();
     columns.set_item("starts", reals(steps.iter().map(|it| it.s).collect()))?;
     columns.set_item("sizes", reals(steps.iter().map(|it| it.h).collect()))?;
@@ -215,7 +207,7 @@ fn ending(columns: &Bound<'_, PyDict>, system: &System, found: &Recording) -> Py
     let (outcome, status, accumulation, message) = match found.run.outcome {
         Outcome::ReachedEnd => ("reached_end", 0, None, "The end was reached.".to_owned()),
         Outcome::EndedByGuard { guard } => {
-            let rule = label(guard, &system.modes[found.run.mode].rules[guard]);
+            let rule = system.modes[found.run.mode].rules[guard].name(guard);
             ("ended_by_guard", 1, None, format!("At t = {s:?}, rule {rule:?} ended the run."))
         }
         Outcome::SwitchLimit => {

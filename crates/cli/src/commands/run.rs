@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 use serde_json::{Map, Value, json};
-use stickslip_expression::{Recording, Rule, System, Trigger};
+use stickslip_expression::{Recording, System};
 use stickslip_figure::pictures;
 use stickslip_files::output::csv::{CsvFile, Rows};
 use stickslip_files::output::file::{StoredFile, publish};
@@ -64,13 +64,7 @@ pub fn describe(arguments: &SystemArguments) -> Result<(), Failure> {
 
 /// The name of an event.
 fn label(system: &System, event: &DynamicSwitch<usize>) -> String {
-    let rule: &Rule = &system.modes[event.from].rules[event.guard];
-    let kind = match rule.trigger {
-        Trigger::When(..) => "when",
-        Trigger::At(_) => "at",
-        Trigger::Every { .. } => "every",
-    };
-    rule.label.clone().unwrap_or_else(|| format!("{kind} {}", event.guard + 1))
+    system.modes[event.from].rules[event.guard].name(event.guard)
 }
 
 fn outcome(found: &Recording) -> (&'static str, Option<f64>) {

@@ -126,7 +126,7 @@ fn words_of(text: &str, words: &[&Spanned<'_>], formatted: &mut String) {
             Token::Sign(")" | "'") | Token::Number(_) | Token::Label(_) => false,
             Token::Sign(_) | Token::End => true,
             Token::Name(name) => {
-                super::formula::RESERVED.contains(name) && !matches!(*name, "t" | "pi")
+                super::reader::RESERVED.contains(name) && !matches!(*name, "t" | "pi")
             }
         };
     }

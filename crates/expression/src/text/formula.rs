@@ -1,6 +1,6 @@
 //! Formulas: read from tokens straight into a graph.
 
-use super::reader::Reader;
+use super::reader::{RESERVED, Reader};
 use super::tokens::Token;
 use super::{TextError, names};
 use crate::graph::{Binary, Formula, Unary, Variable};
@@ -66,14 +66,6 @@ const OTHERS: [(&str, usize, usize); 9] = [
     ("mod", 2, 2),
     ("min", 2, usize::MAX),
     ("max", 2, usize::MAX),
-];
-
-/// Words that no name may be.
-#[rustfmt::skip]
-pub(super) const RESERVED: [&str; 27] = [
-    "parameter", "state", "discrete", "mode", "when", "at", "every", "from", "start", "in", "end",
-    "if", "then", "else", "and", "or", "not", "rises", "falls", "crosses", "through", "priority",
-    "jumps", "sliding", "on", "t", "pi",
 ];
 
 /// The name of a function of one number.

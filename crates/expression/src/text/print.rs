@@ -5,7 +5,8 @@ use std::fmt::Write;
 
 use stickslip_solver::Direction;
 
-use super::formula::{RESERVED, is_function, name_of};
+use super::formula::{is_function, name_of};
+use super::reader::RESERVED;
 use crate::graph::{Binary, Formula, Graph, Node, Unary, Variable};
 use crate::system::{Component, Mode, Next, Rule, System, Trigger};
 
@@ -100,31 +101,10 @@ impl<'a> Printer<'a> {
         printer
     }
 
-    /// All formulas that the system needs in its modes.
-    fn roots(&self) -> Vec<Formula> {
-        let mut roots = Vec::new();
-        for mode in &self.system.modes {
-            roots.extend(&mode.slopes);
-            for rule in &mode.rules {
-                match &rule.trigger {
-                    Trigger::When(guard, _) => roots.push(*guard),
-                    Trigger::At(times) => roots.extend(times),
-                    Trigger::Every { period, phase } => roots.extend([period, phase]),
-                }
-                roots.extend(rule.changes.iter().map(|(_, formula)| *formula));
-                if let Next::Branch(condition, ..) = rule.next {
-                    roots.push(condition);
-                }
-            }
-        }
-        roots
-    }
-
     fn formulas(&mut self) {
         let system = self.system;
-        let (roots, graph) = (self.roots(), &system.graph);
-        let starts = system.components.iter().map(|it| it.start);
-        let bounds: Vec<Formula> = starts.chain(system.start).chain(system.end).collect();
+        let (roots, graph) = (system.moving_formulas(), &system.graph);
+        let bounds = system.fixed_formulas();
         let in_modes = graph.needed(&roots);
         let needed = graph.needed(&[&roots[..], &bounds[..]].concat());
         let mut uses = vec![0_usize; needed.len()];

@@ -3,10 +3,18 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use super::TextError;
 use super::tokens::{Spanned, Token};
-use crate::graph::Formula;
+use super::{TextError, names};
+use crate::graph::{Formula, Variable};
 use crate::system::System;
+
+/// Words that no name may be.
+#[rustfmt::skip]
+pub(super) const RESERVED: [&str; 27] = [
+    "parameter", "state", "discrete", "mode", "when", "at", "every", "from", "start", "in", "end",
+    "if", "then", "else", "and", "or", "not", "rises", "falls", "crosses", "through", "priority",
+    "jumps", "sliding", "on", "t", "pi",
+];
 
 /// The tokens of a statement, without the end of its line.
 pub(super) type Statement = Range<usize>;
@@ -96,5 +104,58 @@ impl<'a> Reader<'a> {
     pub(super) fn defined_below(&self, name: &str, token: usize) -> Option<usize> {
         let place = *self.defined.get(name)?;
         (place > token).then(|| self.line_of(place))
+    }
+
+    pub(super) fn expect_name(&mut self, what: &str) -> Result<&'a str, TextError> {
+        match *self.peek() {
+            Token::Name(name) if !RESERVED.contains(&name) => {
+                self.next += 1;
+                Ok(name)
+            }
+            Token::Name(name) => {
+                let message = format!("`{name}` has a meaning of its own; expected {what}");
+                Err(self.error(message))
+            }
+            _ => Err(self.error(format!("expected {what}"))),
+        }
+    }
+
+    /// The number that a formula is.
+    pub(super) fn constant(&self, formula: Formula, at: usize) -> Result<f64, TextError> {
+        match self.system.graph.value(formula) {
+            Some(value) if value.is_finite() => Ok(value),
+            Some(value) => {
+                Err(self.error_at(at, format!("this is {value}; expected a finite number")))
+            }
+            None => Err(self.error_at(at, "this depends on a name; expected a number".to_owned())),
+        }
+    }
+
+    /// Refuses what depends on more than parameters.
+    pub(super) fn parameters_alone(&self, formula: Formula, at: usize) -> Result<(), TextError> {
+        let read = self.system.graph.reads(&[formula]);
+        if read.iter().all(|variable| matches!(variable, Variable::Parameter(_))) {
+            return Ok(());
+        }
+        let message = "this changes during a run; expected numbers and parameters alone";
+        Err(self.error_at(at, message.to_owned()))
+    }
+
+    /// The component that is the next token.
+    pub(super) fn component(&self, name: &str) -> Result<usize, TextError> {
+        self.components.get(name).copied().ok_or_else(|| {
+            let hint = names::hint(name, self.components.keys().copied());
+            self.error(format!("`{name}` is no state{hint}; expected a name after `state`"))
+        })
+    }
+
+    /// The mode that is the next token.
+    pub(super) fn target(&mut self) -> Result<usize, TextError> {
+        let at = self.next;
+        let name = self.expect_name("the name of a mode")?;
+        self.modes.get(name).copied().ok_or_else(|| {
+            let hint = names::hint(name, self.modes.keys().copied());
+            self.error_at(at, format!("there is no mode `{name}`{hint}"))
+        })
     }
 }

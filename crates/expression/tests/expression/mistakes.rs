@@ -1,6 +1,7 @@
 //! Texts that are no systems: refused with their place, and without a panic.
 
-use stickslip_expression::System;
+use stickslip_expression::{Graph, Next, System};
+use stickslip_solver::{EmbeddedPair, Options};
 
 #[track_caller]
 fn refused(text: &str, line: usize, column: usize, message: &str) {
@@ -181,4 +182,45 @@ fn no_text_panics() {
         }
     }
     assert!(read > 1000, "{read}");
+}
+
+/// Formulas without a value: the run is refused, and nothing overflows.
+#[test]
+fn what_has_no_value_ends_in_an_error() {
+    for formula in ["x^(0/0)", "x^log(-1)", "0/0", "sqrt(-x)", "x^-1e9", "mod(x, 0)"] {
+        for rule in ["x' = 1\nwhen G < 1 -> end", "x' = G"] {
+            let text = format!("state x = 2\n{}\nend = 3", rule.replace('G', formula));
+            let Ok(system) = System::parse(&text) else { continue };
+            let runnable = system.with(&[]).expect("no parameters");
+            let _ = runnable.record(EmbeddedPair::Dop853, 3.0, &Options::default());
+        }
+    }
+}
+
+/// Systems that are made by hand.
+#[test]
+fn parts_that_do_not_fit_are_refused() {
+    let whole = || {
+        let text =
+            "parameter a = 1\nstate x = a\nmode m\nx' = a\nwhen x > 2 -> n\nx := 0\nmode n\nx' = t";
+        System::parse(text).expect("a system")
+    };
+    let damages: [fn(&mut System); 8] = [
+        |it| it.first = 2,
+        |it| it.modes.clear(),
+        |it| it.components.clear(),
+        |it| it.parameters.clear(),
+        |it| it.modes[0].rules[0].next = Next::Mode(2),
+        |it| it.modes[0].rules[0].changes[0].0 = 1,
+        |it| it.graph = Graph::default(),
+        |it| it.end = Some(it.modes[1].slopes[0]),
+    ];
+    assert!(whole().with(&[1.0]).is_ok());
+    for damage in damages {
+        let mut damaged = whole();
+        damage(&mut damaged);
+        let values = damaged.values();
+        let error = damaged.with(&values).expect_err("a damaged system");
+        assert!(error.to_string().contains("; expected "), "{error}");
+    }
 }

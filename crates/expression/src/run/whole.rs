@@ -1,0 +1,63 @@
+//! Whether the parts of a system fit together. Those of a text do; others may be made by hand.
+
+use super::InvalidParameters;
+use crate::graph::{Formula, Variable};
+use crate::system::{Next, System};
+
+/// Refuses a system whose parts do not fit together.
+pub(super) fn require(system: &System) -> Result<(), InvalidParameters> {
+    let (n, modes) = (system.components.len(), system.modes.len());
+    require_below(modes, system.first, "the first mode")?;
+    for mode in &system.modes {
+        if mode.slopes.len() != n {
+            return broken("the number of slopes", mode.slopes.len(), "one for each component");
+        }
+        for rule in &mode.rules {
+            let (one, other) = match rule.next {
+                Next::Stay => (0, 0),
+                Next::Mode(mode) => (mode, mode),
+                Next::Branch(_, above, below) => (above, below),
+            };
+            require_below(modes, one.max(other), "the mode that follows a rule")?;
+            for &(component, _) in &rule.changes {
+                require_below(n, component, "the component that a rule changes")?;
+            }
+        }
+    }
+    require_known(system, &system.fixed_formulas(), None)?;
+    require_known(system, &system.moving_formulas(), Some(n))
+}
+
+/// Refuses formulas of another graph, and those that read what is not there. Fixed formulas have
+/// no components, and no time.
+fn require_known(
+    system: &System,
+    formulas: &[Formula],
+    components: Option<usize>,
+) -> Result<(), InvalidParameters> {
+    for formula in formulas {
+        require_below(system.graph.len(), formula.index(), "a formula")?;
+    }
+    for variable in system.graph.reads(formulas) {
+        match (variable, components) {
+            (Variable::Time, Some(_)) => {}
+            (Variable::Time, None) => return broken("the time in a start or end", 0, "no time"),
+            (Variable::Component(place), n) => {
+                require_below(n.unwrap_or(0), place as usize, "a component that a formula reads")?;
+            }
+            (Variable::Parameter(place), _) => {
+                let parameters = system.parameters.len();
+                require_below(parameters, place as usize, "a parameter that a formula reads")?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn require_below(count: usize, place: usize, what: &str) -> Result<(), InvalidParameters> {
+    if place < count { Ok(()) } else { broken(what, place, "one of those that the system has") }
+}
+
+fn broken(what: &str, value: usize, expected: &'static str) -> Result<(), InvalidParameters> {
+    Err(InvalidParameters::Value { what: what.to_owned(), value: value as f64, expected })
+}
