@@ -36,8 +36,9 @@ fn formula(graph: &mut Graph, value: &Value) -> Option<Formula> {
         Value::String(name) => Some(graph.component(name.strip_prefix('y')?.parse().ok()?)),
         Value::Array(parts) => {
             let (name, arguments) = parts.split_first()?;
-            let arguments = arguments.iter().map(|argument| formula(graph, argument));
-            call(graph, name.as_str()?, &arguments.collect::<Option<Vec<_>>>()?)
+            let read = |argument| formula(&mut *graph, argument);
+            let arguments = arguments.iter().map(read).collect::<Option<Vec<_>>>()?;
+            call(graph, name.as_str()?, &arguments)
         }
         _ => None,
     }
