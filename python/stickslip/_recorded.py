@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip._compiled import Compiled, Function
-from stickslip._recording import CannotRecord, Symbol, Tape
+from stickslip._recording import Tape
 from stickslip._solutions import DenseOutput, Solution
+from stickslip._symbols import CannotRecord, Symbol
 from stickslip._systems import Guard, Mode, _Clock, _Source
 from stickslip.formulas import FormulaSystem
 

@@ -15,9 +15,9 @@ from numpy.typing import ArrayLike, NDArray
 from stickslip import _native
 from stickslip._compiled import Compiled, Function, _count, _number
 from stickslip._recorded import Recorded
-from stickslip._recording import CannotRecord
 from stickslip._run_arguments import method_name, span, state_at_start, times_within
 from stickslip._solutions import Solution, event_array, solution_of
+from stickslip._symbols import CannotRecord
 from stickslip._systems import Guard, HybridSystem, Mode, _check_function, _Clock, _Source
 
 Floats: TypeAlias = NDArray[np.float64]

@@ -10,6 +10,7 @@ import pytest
 
 import stickslip
 from stickslip import HybridSystem, recorded, solve
+from stickslip._recording import Tape
 
 MATRIX = np.array([[0.0, 1.0], [-2.0, -0.1]])
 RATES = [0.5, 1.5]
@@ -144,6 +145,44 @@ def test_common_functions_are_recorded(field) -> None:
         np.testing.assert_allclose(one.y[:, -1], other.y[:, -1], rtol=1e-7, atol=1e-9)
 
 
+#: Idioms, each recorded as what it computes, at any place.
+IDIOMS = [
+    lambda t, y: [y[np.argmax(y)], max(y), min(*y), sum(y), max(y, key=abs)],
+    lambda t, y: [*np.sort(y), *sorted(y)],
+    lambda t, y: [y.max() - y.min(), y.std(), y.var(), np.linalg.norm(y - 0.3)],
+    lambda t, y: [np.heaviside(y[0], 0.5), np.sign(y[1]), t // 0.3, t % 0.3],
+    lambda t, y: [y[0] ** -2, (-2.0) ** 2 * y[1], y[2] ** 3, abs(y[0]) ** 0.5, 2 ** y[1]],
+    lambda t, y: [math.floor(3 * t), math.ceil(y[0]), np.where(y, 1.0, 2.0)[0]],
+    lambda t, y: np.concatenate([np.outer(y, y).ravel(), np.cross(y, [1.0, 2.0, 3.0])]),
+    lambda t, y: np.einsum("ij,j->i", np.arange(6.0).reshape(2, 3), y),
+    lambda t, y: [3.0 if y[0] else 4.0, 3.0 if y[0] == 0.5 else 4.0, y[0] * (y[1] > 0)],
+    lambda t, y: [3.0 if -0.1 < y[0] < 0.5 else y[1], 1.0 if not (y[0] > 0) else y[0]],
+    lambda t, y: [*np.diff(y, prepend=0.0), *np.cumsum(y), *np.roll(y, 1), *y[::-1]],
+    lambda t, y: np.array([[y[0], 0], [1, y[1]]]) @ np.array([1.0, 2.0]),
+    lambda t, y: np.select([y > 0.2, y > -0.2], [y, 2 * y], default=-1.0),
+    lambda t, y: np.piecewise(y, [y < 0, y >= 0], [lambda x: -x, lambda x: x**2]),
+    lambda t, y: [*np.polyval([1.0, 2.0, 3.0], y), *np.full(2, y[0]), *np.full_like(y, 2.0)],
+    lambda t, y: [math.hypot(y[0], y[1]), math.atan2(y[0], y[1]), math.copysign(1.0, y[0])],
+    lambda t, y: [math.log(abs(y[0]) + 1, 2), math.degrees(y[0]), math.sin(math.pi * t)],
+    lambda t, y: [y[0] if isinstance(t, float) else 7.0, len(y), y.size, float(y[0])],
+    lambda t, y: [y[0] if t < 0.2 or y[1] > 0 and y[2] < 0 else -y[0]],
+    lambda t, y: [np.logical_and(y[0] > 0, y[1] > 0) * 1.0, np.where((y[0] > 0) | (y[1] > 0), 1, 2)],
+]
+
+
+@pytest.mark.parametrize("number", range(len(IDIOMS)))
+def test_idioms_are_what_they_compute(number: int) -> None:
+    function = IDIOMS[number]
+    tape = Tape()
+    formulas = [symbol.id for symbol in tape.record(function, 3, ())]
+    random = np.random.default_rng(number)
+    for _ in range(100):
+        t, y = float(random.uniform(0, 1)), random.uniform(-1, 1, 3)
+        expected = np.asarray(function(t, y.copy()), dtype=float).ravel()
+        found = tape.native.evaluate(formulas, t, y.tolist())
+        np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-14)
+
+
 def test_what_is_recorded_is_decided() -> None:
     def dip(t, y):
         return 0.5 - np.exp(-(((t - 7.123) / 0.03) ** 2))
@@ -231,6 +270,7 @@ def toggles(state):
         (lambda t, y: np.linalg.solve(np.eye(1) * (1 + y[0] ** 2), -y), "linalg"),
         (lambda t, y: [y[0], y[0]], "returns 2 numbers instead of 1"),
         (lambda t, y: [y[0] > 0], "truth value"),
+        (lambda t, y: [(y[0] > 0) + (y[0] > 0.5)], "of two truth values"),
     ],
 )
 def test_what_is_no_formula_is_not_frozen(field, reason) -> None:
