@@ -297,7 +297,11 @@ impl Runnable {
 
 impl ReadableDynamic for Runnable {
     type Mode = usize;
+    const ON_FIXED_STATES: bool = true;
 
+    fn most_guards(&self) -> usize {
+        self.modes.iter().map(|mode| mode.guards.len()).max().unwrap_or(0)
+    }
     #[inline]
     fn field<T: Number>(&self, mode: usize, s: T, y: &[T], slope: &mut [T]) {
         self.modes[mode].slopes.run(s, y, slope);

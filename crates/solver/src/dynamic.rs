@@ -81,6 +81,7 @@
 mod backwards;
 mod by_name;
 mod dense;
+pub(crate) mod few;
 mod results;
 mod runner;
 mod system;

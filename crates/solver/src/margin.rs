@@ -47,6 +47,7 @@ mod name;
 mod prescribed;
 mod rate;
 
+use crate::dynamic::few::on_fixed_states;
 use crate::dynamic::{DynamicRun, DynamicStart, DynamicSystem};
 use crate::error::RunError;
 use crate::hybrid::{Direction, Guard, HybridSystem, Outcome, Run, Start};
@@ -114,7 +115,7 @@ where
 /// # Errors
 /// Those of [`run_dynamic`](crate::run_dynamic).
 pub fn margins_dynamic<M, S>(
-    _method: M,
+    method: M,
     system: &S,
     start: DynamicStart<'_, S::Mode>,
     end: f64,
@@ -124,6 +125,7 @@ where
     M: Method,
     S: DynamicSystem,
 {
+    on_fixed_states!(system, start, |filled, from, n| margins(method, &filled, from, end, options));
     let (system, from) = (Free::new(system, start.state.len()), start.state.to_vec());
     free::margins::<M, _>(&system, (start.mode, start.s, &from), end, options)
 }
@@ -156,7 +158,7 @@ where
 /// # Errors
 /// Those of [`run_dynamic`](crate::run_dynamic).
 pub fn margin_dynamic<M, S>(
-    _method: M,
+    method: M,
     system: &S,
     start: DynamicStart<'_, S::Mode>,
     end: f64,
@@ -167,6 +169,9 @@ where
     M: Method,
     S: DynamicSystem,
 {
+    on_fixed_states!(system, start, |filled, from, n| {
+        self::margin(method, &filled, from, end, options, margin)
+    });
     let (system, from) = (Free::new(system, start.state.len()), start.state.to_vec());
     near_miss::<M, _>(&system, (start.mode, start.s, &from), end, options, margin)
 }
@@ -213,7 +218,7 @@ where
 /// # Errors
 /// Those of [`run_dynamic`](crate::run_dynamic).
 pub fn follow_dynamic<M, S>(
-    _method: M,
+    method: M,
     system: &S,
     start: DynamicStart<'_, S::Mode>,
     end: f64,
@@ -224,6 +229,14 @@ where
     M: Method,
     S: DynamicSystem,
 {
+    on_fixed_states!(system, start, |filled, from, n| {
+        let followed = follow(method, &filled, from, end, options, exits)?;
+        Ok(followed.map(|Followed { exits, run }| {
+            let Run { outcome, s, mode, state, decided, statistics } = run;
+            let state = state.as_slice()[..n].to_vec();
+            Followed { exits, run: DynamicRun { outcome, s, mode, state, decided, statistics } }
+        }))
+    });
     let (system, from) = (Free::new(system, start.state.len()), start.state.to_vec());
     let from = (start.mode, start.s, &from);
     let followed = followed::<M, _>(&system, from, end, options, exits)?;

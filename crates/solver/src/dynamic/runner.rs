@@ -1,13 +1,15 @@
 //! A run of a dynamic system: the engine on buffers.
 
 use crate::dynamic::dense::DynamicDense;
+use crate::dynamic::few::{Emptied, on_fixed_states};
 use crate::dynamic::results::{DynamicEvent, DynamicObserver, DynamicRun};
 use crate::dynamic::system::{DynamicStart, DynamicSystem};
 use crate::error::RunError;
 use crate::events::Note;
-use crate::hybrid::{Grazing, Pole, Preempted, Rest};
+use crate::hybrid::{Grazing, Pole, Preempted, Rest, Run};
 use crate::method::{DenseOf, Method};
 use crate::options::Options;
+use crate::runs::run;
 use crate::runs::runner::{End, Watcher, run_any};
 use crate::system::Free;
 
@@ -23,7 +25,7 @@ use crate::system::Free;
 /// side that is not finite, a guard that is not a number, that is identically zero or that cannot
 /// be resolved, and a tolerance that no step meets.
 pub fn run_dynamic<M, S, O>(
-    _method: M,
+    method: M,
     system: &S,
     start: DynamicStart<'_, S::Mode>,
     end: f64,
@@ -35,6 +37,13 @@ where
     S: DynamicSystem,
     O: DynamicObserver<S::Mode>,
 {
+    on_fixed_states!(system, start, |filled, from, n| {
+        let mut observer = Emptied { observer, n };
+        let run = run(method, &filled, from, end, options, &mut observer)?;
+        let Run { outcome, s, mode, state, decided, statistics } = run;
+        let state = state.as_slice()[..n].to_vec();
+        Ok(DynamicRun { outcome, s, mode, state, decided, statistics })
+    });
     let mut told = Told { observer, simultaneous: Vec::new(), coefficients: Vec::new() };
     let from = (start.mode, start.s, &start.state.to_vec());
     let system = Free::new(system, start.state.len());

@@ -36,6 +36,15 @@ pub trait DynamicSystem {
     /// Whether [`Self::enclose_guards`] bounds the guards.
     const READABLE: bool = false;
 
+    /// Whether runs of up to 8 components, with up to 8 guards in each mode, take states of fixed
+    /// dimension. They are several times as fast then, and the engine is compiled thrice more.
+    const ON_FIXED_STATES: bool = false;
+
+    /// The largest number of guards of a mode. It is asked for if [`Self::ON_FIXED_STATES`].
+    fn most_guards(&self) -> usize {
+        usize::MAX
+    }
+
     /// The components that the guards read, in any order; none means all.
     fn reads(&self, _mode: Self::Mode) -> &[usize] {
         &[]
@@ -120,6 +129,14 @@ pub trait ReadableDynamic {
     /// Writes the values of the guards of `mode` to `values`.
     fn guard_values<T: Number>(&self, mode: Self::Mode, s: T, y: &[T], values: &mut [T]);
 
+    /// As [`DynamicSystem::ON_FIXED_STATES`].
+    const ON_FIXED_STATES: bool = false;
+
+    /// As [`DynamicSystem::most_guards`].
+    fn most_guards(&self) -> usize {
+        usize::MAX
+    }
+
     /// The components that the guards read, in any order; none means all. Only these are bounded,
     /// which saves time if they are few of many.
     fn reads(&self, _mode: Self::Mode) -> &[usize] {
@@ -156,7 +173,12 @@ pub trait ReadableDynamic {
 impl<S: ReadableDynamic> DynamicSystem for S {
     type Mode = S::Mode;
     const READABLE: bool = true;
+    const ON_FIXED_STATES: bool = S::ON_FIXED_STATES;
 
+    fn most_guards(&self) -> usize {
+        ReadableDynamic::most_guards(self)
+    }
+    #[inline]
     fn field(&self, mode: S::Mode, s: f64, y: &[f64], slope: &mut [f64]) {
         ReadableDynamic::field(self, mode, s, y, slope);
     }
