@@ -201,12 +201,19 @@ impl Graph {
     /// Which nodes some formulas need, themselves among them.
     #[must_use]
     pub(crate) fn needed(&self, formulas: &[Formula]) -> Vec<bool> {
+        self.needed_above(&[], formulas)
+    }
+
+    /// Which nodes some formulas need if others, in ascending order, are known.
+    pub(crate) fn needed_above(&self, known: &[Formula], formulas: &[Formula]) -> Vec<bool> {
         let mut needed = vec![false; self.len()];
         for formula in formulas {
             needed[formula.index()] = true;
         }
+        let is_known =
+            |index| known.binary_search_by_key(&index, |formula| formula.index()).is_ok();
         for index in (0..self.len()).rev() {
-            if needed[index] {
+            if needed[index] && !is_known(index) {
                 for operand in self.nodes[index].operands() {
                     needed[operand.index()] = true;
                 }

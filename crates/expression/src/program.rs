@@ -5,6 +5,8 @@
 
 mod compile;
 
+use std::ops::Range;
+
 use smallvec::SmallVec;
 use stickslip_number::Number;
 
@@ -16,8 +18,8 @@ use crate::graph::{Binary, Unary};
 #[rustfmt::skip]
 enum Op {
     Add, Sub, Mul, Div, Min, Max, Atan2,
-    /// a + k, k − a, a·k, a/k, k/a.
-    AddK, KSub, MulK, DivK, KDiv,
+    /// a + k, a − k, k − a, a·k, a/k, k/a.
+    AddK, SubK, KSub, MulK, DivK, KDiv,
     /// a·b + c, a·b − c, c − a·b, each rounded twice.
     MulAdd, MulSub, SubMul,
     /// a·k + c.
@@ -70,10 +72,12 @@ enum Code {
 #[derive(Clone, Debug)]
 pub struct Program {
     code: Code,
-    /// Constants, and after them the parameters if these are fixed.
+    /// Constants; after them the parameters, if these are fixed, and what is made of them alone.
     pool: Vec<f64>,
-    /// Where the parameters begin in the pool.
-    parameters: usize,
+    /// The places of the parameters in the pool.
+    parameters: Range<usize>,
+    /// What computes the rest of the pool from them.
+    preparation: Option<Box<Program>>,
     /// Registers that start with a number of the pool.
     loads: Vec<(u32, u32)>,
     outputs: Vec<u32>,
@@ -98,13 +102,18 @@ impl Program {
     /// The program with these parameters. Further ones are ignored; missing ones stay as they are.
     #[must_use]
     pub fn with(mut self, parameters: &[f64]) -> Self {
-        for (place, &value) in self.pool[self.parameters..].iter_mut().zip(parameters) {
+        let (pool, made) = self.pool.split_at_mut(self.parameters.end);
+        let own = &mut pool[self.parameters.clone()];
+        for (place, &value) in own.iter_mut().zip(parameters) {
             *place = value;
+        }
+        if let Some(preparation) = &self.preparation {
+            preparation.run(f64::NAN, own, made);
         }
         self
     }
 
-    /// The number of instructions.
+    /// The number of instructions that a run of the program takes.
     #[must_use]
     pub fn len(&self) -> usize {
         match &self.code {
@@ -128,6 +137,7 @@ impl Program {
     pub fn run<T: Number>(&self, t: T, y: &[T], out: &mut [T]) {
         assert!(y.len() >= self.inputs, "the program reads {} components", self.inputs);
         match (&self.code, self.registers) {
+            (Code::Short(code), ..=8) => self.run_in(code, &mut [t; 8], y, out),
             (Code::Short(code), ..=16) => self.run_in(code, &mut [t; 16], y, out),
             (Code::Short(code), ..=32) => self.run_in(code, &mut [t; 32], y, out),
             (Code::Short(code), ..=64) => self.run_in(code, &mut [t; 64], y, out),
@@ -165,7 +175,10 @@ impl Program {
         register: impl Fn(usize) -> usize,
     ) {
         let at = |index: I| register(place(index));
-        r[..self.inputs].copy_from_slice(&y[..self.inputs]);
+        // A loop, since a call that copies a few numbers costs more than they do.
+        for (register, &y) in r.iter_mut().zip(&y[..self.inputs]) {
+            *register = y;
+        }
         let pool = &self.pool[..];
         for &(to, from) in &self.loads {
             r[to as usize] = T::from(pool[from as usize]);
@@ -200,6 +213,7 @@ impl Program {
                 Op::Max => a!().max(b!()),
                 Op::Atan2 => a!().atan2(b!()),
                 Op::AddK => a!() + k!(),
+                Op::SubK => a!() - k!(),
                 Op::KSub => -a!() + k!(),
                 Op::MulK => a!() * k!(),
                 Op::DivK => a!() / k!(),

@@ -2,6 +2,7 @@
 //! used again.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 use super::{Code, Inputs, Instruction, Op, Program};
 use crate::graph::{Binary, Formula, Graph, Node, Variable};
@@ -26,6 +27,10 @@ struct Draft {
 struct Compiler<'a> {
     graph: &'a Graph,
     inputs: Inputs,
+    /// What is made of fixed parameters alone, by its place among what is prepared.
+    prepared: HashMap<usize, u32>,
+    /// Where the parameters begin in the pool, once all constants are there.
+    parameters: usize,
     /// Whether a node is a product that belongs to the sum which uses it.
     joined: Vec<bool>,
     pool: Vec<f64>,
@@ -41,10 +46,16 @@ impl Program {
     #[must_use]
     pub fn compile(graph: &Graph, formulas: &[Formula], inputs: Inputs) -> Self {
         let needed = graph.needed(formulas);
+        let prepared = if inputs.fixed { prepared(graph, formulas, &needed) } else { Vec::new() };
+        let places = prepared.iter().enumerate().map(|(i, formula)| (formula.index(), index(i)));
+        let places: HashMap<usize, u32> = places.collect();
+        let needed = graph.needed_above(&prepared, formulas);
         let mut compiler = Compiler {
             graph,
             inputs,
-            joined: joined(graph, formulas, &needed),
+            joined: joined(graph, formulas, &needed, &places),
+            prepared: places,
+            parameters: 0,
             pool: Vec::new(),
             pooled: HashMap::new(),
             drafts: Vec::new(),
@@ -56,21 +67,24 @@ impl Program {
                 compiler.pooled(f64::from(n));
             } else if let Node::RealPower(_, n) = node(graph, index) {
                 compiler.pooled(f64::from_bits(n));
-            } else if let Node::Binary(Binary::Sub, _, b) = node(graph, index)
-                && let Some(x) = graph.value(b)
-            {
-                compiler.pooled(-x);
             }
         }
         // Parameters change, so that each has a place of its own.
-        let parameters = compiler.pool.len();
-        compiler.pool.resize(parameters + if inputs.fixed { inputs.parameters } else { 0 }, 0.0);
+        let first = compiler.pool.len();
+        compiler.parameters = first;
+        let parameters = first..first + if inputs.fixed { inputs.parameters } else { 0 };
+        compiler.pool.resize(parameters.end + prepared.len(), 0.0);
         for index in (0..needed.len()).filter(|&index| needed[index]) {
-            if !compiler.joined[index] {
+            if !compiler.joined[index] && !compiler.prepared.contains_key(&index) {
                 compiler.draft(index);
             }
         }
-        compiler.finish(formulas, &needed, parameters)
+        let mut program = compiler.finish(formulas, &needed, parameters);
+        if !prepared.is_empty() {
+            let inputs = Inputs { components: 0, fixed: false, ..inputs };
+            program.preparation = Some(Box::new(Self::compile(graph, &prepared, inputs)));
+        }
+        program
     }
 }
 
@@ -78,8 +92,35 @@ fn node(graph: &Graph, index: usize) -> Node {
     graph.nodes()[index]
 }
 
+/// What is made of parameters alone and used by something that is not, or asked for.
+fn prepared(graph: &Graph, formulas: &[Formula], needed: &[bool]) -> Vec<Formula> {
+    let mut still = vec![false; needed.len()];
+    for index in (0..needed.len()).filter(|&index| needed[index]) {
+        still[index] = match node(graph, index) {
+            Node::Constant(_) | Node::Variable(Variable::Parameter(_)) => true,
+            Node::Variable(_) => false,
+            node => node.operands().into_iter().all(|operand| still[operand.index()]),
+        };
+    }
+    let is_made = |formula: &Formula| {
+        still[formula.index()]
+            && !matches!(graph.node(*formula), Node::Constant(_) | Node::Variable(_))
+    };
+    let moving = (0..needed.len()).filter(|&index| needed[index] && !still[index]);
+    let read = moving.flat_map(|index| node(graph, index).operands());
+    let mut prepared: Vec<_> = read.chain(formulas.iter().copied()).filter(is_made).collect();
+    prepared.sort_unstable();
+    prepared.dedup();
+    prepared
+}
+
 /// Products that are used once, by a sum or a difference.
-fn joined(graph: &Graph, formulas: &[Formula], needed: &[bool]) -> Vec<bool> {
+fn joined(
+    graph: &Graph,
+    formulas: &[Formula],
+    needed: &[bool],
+    prepared: &HashMap<usize, u32>,
+) -> Vec<bool> {
     let mut uses = vec![0_u32; needed.len()];
     for formula in formulas {
         uses[formula.index()] += 2;
@@ -90,6 +131,7 @@ fn joined(graph: &Graph, formulas: &[Formula], needed: &[bool]) -> Vec<bool> {
     }
     let constant = |formula: Formula| {
         matches!(graph.node(formula), Node::Constant(_) | Node::Variable(Variable::Parameter(_)))
+            || prepared.contains_key(&formula.index())
     };
     let mut joined = vec![false; needed.len()];
     for index in indices() {
@@ -99,7 +141,10 @@ fn joined(graph: &Graph, formulas: &[Formula], needed: &[bool]) -> Vec<bool> {
         let fits = |product: Formula, other: Formula| {
             let Node::Binary(Binary::Mul, p, q) = graph.node(product) else { return false };
             let scaled = constant(p) || constant(q);
-            uses[product.index()] == 1 && !constant(other) && !(scaled && sum == Binary::Sub)
+            uses[product.index()] == 1
+                && !constant(product)
+                && !constant(other)
+                && !(scaled && sum == Binary::Sub)
         };
         if fits(a, b) {
             joined[a.index()] = true;
@@ -123,10 +168,13 @@ impl Compiler<'_> {
 
     /// The place of a formula in the pool, if it is a constant or a fixed parameter.
     fn place(&self, formula: Formula) -> Option<u32> {
+        if let Some(place) = self.prepared.get(&formula.index()) {
+            return Some(index(self.parameters + self.inputs.parameters) + place);
+        }
         match self.graph.node(formula) {
             Node::Constant(bits) => self.pooled.get(&bits).copied(),
             Node::Variable(Variable::Parameter(parameter)) if self.inputs.fixed => {
-                Some(index(self.pool.len() - self.inputs.parameters) + parameter)
+                Some(index(self.parameters) + parameter)
             }
             _ => None,
         }
@@ -170,14 +218,10 @@ impl Compiler<'_> {
             };
             return self.push(op, index, operands);
         }
-        // A difference with a constant is a sum, to the last bit.
-        let negated = self.graph.value(b).and_then(|x| self.pooled.get(&(-x).to_bits()).copied());
-        if let (Sub, Some(k)) = (function, negated) {
-            return self.push(Op::AddK, index, [value(a), Pool(k), None]);
-        }
         let (op, operands) = match (function, self.place(a), self.place(b)) {
             (Add, _, Some(k)) => (Op::AddK, [value(a), Pool(k), None]),
             (Add, Some(k), _) => (Op::AddK, [value(b), Pool(k), None]),
+            (Sub, _, Some(k)) => (Op::SubK, [value(a), Pool(k), None]),
             (Sub, Some(k), _) => (Op::KSub, [value(b), Pool(k), None]),
             (Mul, _, Some(k)) => (Op::MulK, [value(a), Pool(k), None]),
             (Mul, Some(k), _) => (Op::MulK, [value(b), Pool(k), None]),
@@ -202,7 +246,12 @@ impl Compiler<'_> {
     }
 
     /// Chooses registers: a value keeps its register until the last instruction that reads it.
-    fn finish(mut self, formulas: &[Formula], needed: &[bool], parameters: usize) -> Program {
+    fn finish(
+        mut self,
+        formulas: &[Formula],
+        needed: &[bool],
+        parameters: Range<usize>,
+    ) -> Program {
         let Inputs { components, fixed, .. } = self.inputs;
         let inputs = components + if fixed { 0 } else { self.inputs.parameters };
         let mut register = vec![u32::MAX; needed.len()];
@@ -277,7 +326,16 @@ impl Compiler<'_> {
             Some(short) if registers <= 256 => Code::Short(short),
             _ => Code::Wide(code),
         };
-        Program { code, pool: self.pool, parameters, loads, outputs, inputs, registers }
+        Program {
+            code,
+            pool: self.pool,
+            parameters,
+            preparation: None,
+            loads,
+            outputs,
+            inputs,
+            registers,
+        }
     }
 }
 
