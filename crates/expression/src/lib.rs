@@ -35,10 +35,12 @@
 //! ```
 //!
 //! The modules in reading order: `graph` has formulas and their derivatives, `program` compiles and
-//! computes them, `system` is what a hybrid system consists of, `run` what the solver sees of it,
+//! computes them, `system` is what a hybrid system consists of, `compiled` makes it ready for
+//! parameters, `run` is what the solver sees of it,
 //! `recording` a run with its events, and `text` reads and writes it. `docs/systems.md` in the
 //! repository describes the language.
 
+mod compiled;
 mod graph;
 mod program;
 mod recording;
@@ -46,10 +48,11 @@ mod run;
 mod system;
 mod text;
 
+pub use compiled::{Compiled, InvalidParameters};
 pub use graph::{Binary, Formula, Graph, Node, Unary, Variable};
 pub use program::{Inputs, Program};
 pub use recording::{Recording, Stay, StoredStep};
-pub use run::{InvalidParameters, Runnable};
+pub use run::Runnable;
 pub use system::{Component, Mode, Next, Parameter, Rule, System, Trigger};
 pub use text::{TextError, format};
 

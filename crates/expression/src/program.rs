@@ -6,6 +6,7 @@
 mod compile;
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use smallvec::SmallVec;
 use stickslip_number::Number;
@@ -71,13 +72,19 @@ enum Code {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Program {
-    code: Code,
     /// Constants; after them the parameters, if these are fixed, and what is made of them alone.
     pool: Vec<f64>,
+    body: Arc<Body>,
+}
+
+/// What programs have in common that differ in their parameters.
+#[derive(Debug)]
+struct Body {
+    code: Code,
     /// The places of the parameters in the pool.
     parameters: Range<usize>,
     /// What computes the rest of the pool from them.
-    preparation: Option<Box<Program>>,
+    preparation: Option<Program>,
     /// Registers that start with a number of the pool.
     loads: Vec<(u32, u32)>,
     outputs: Vec<u32>,
@@ -101,22 +108,23 @@ pub struct Inputs {
 impl Program {
     /// The program with these parameters. Further ones are ignored; missing ones stay as they are.
     #[must_use]
-    pub fn with(mut self, parameters: &[f64]) -> Self {
-        let (pool, made) = self.pool.split_at_mut(self.parameters.end);
-        let own = &mut pool[self.parameters.clone()];
+    pub fn with(&self, parameters: &[f64]) -> Self {
+        let (mut all, body) = (self.pool.clone(), &self.body);
+        let (pool, made) = all.split_at_mut(body.parameters.end);
+        let own = &mut pool[body.parameters.clone()];
         for (place, &value) in own.iter_mut().zip(parameters) {
             *place = value;
         }
-        if let Some(preparation) = &self.preparation {
+        if let Some(preparation) = &body.preparation {
             preparation.run(f64::NAN, own, made);
         }
-        self
+        Self { pool: all, body: body.clone() }
     }
 
     /// The number of instructions that a run of the program takes.
     #[must_use]
     pub fn len(&self) -> usize {
-        match &self.code {
+        match &self.body.code {
             Code::Short(code) => code.len(),
             Code::Wide(code) => code.len(),
         }
@@ -135,8 +143,8 @@ impl Program {
     /// If there are fewer components than the program was compiled for.
     #[inline]
     pub fn run<T: Number>(&self, t: T, y: &[T], out: &mut [T]) {
-        assert!(y.len() >= self.inputs, "the program reads {} components", self.inputs);
-        match (&self.code, self.registers) {
+        assert!(y.len() >= self.body.inputs, "the program reads {} components", self.body.inputs);
+        match (&self.body.code, self.body.registers) {
             (Code::Short(code), ..=8) => self.run_in(code, &mut [t; 8], y, out),
             (Code::Short(code), ..=16) => self.run_in(code, &mut [t; 16], y, out),
             (Code::Short(code), ..=32) => self.run_in(code, &mut [t; 32], y, out),
@@ -160,7 +168,7 @@ impl Program {
 
     #[inline(never)]
     fn run_wide<T: Number>(&self, code: &[Instruction<u32>], t: T, y: &[T], out: &mut [T]) {
-        let mut registers: SmallVec<[T; 512]> = SmallVec::from_elem(t, self.registers);
+        let mut registers: SmallVec<[T; 512]> = SmallVec::from_elem(t, self.body.registers);
         self.run_on(code, &mut registers, y, out, |index| index as usize, |index| index);
     }
 
@@ -176,11 +184,11 @@ impl Program {
     ) {
         let at = |index: I| register(place(index));
         // A loop, since a call that copies a few numbers costs more than they do.
-        for (register, &y) in r.iter_mut().zip(&y[..self.inputs]) {
+        for (register, &y) in r.iter_mut().zip(&y[..self.body.inputs]) {
             *register = y;
         }
         let pool = &self.pool[..];
-        for &(to, from) in &self.loads {
+        for &(to, from) in &self.body.loads {
             r[to as usize] = T::from(pool[from as usize]);
         }
         for instruction in code {
@@ -252,7 +260,7 @@ impl Program {
             };
             r[at(instruction.to)] = x;
         }
-        for (out, &from) in out.iter_mut().zip(&self.outputs) {
+        for (out, &from) in out.iter_mut().zip(&self.body.outputs) {
             *out = r[from as usize];
         }
     }

@@ -3,8 +3,9 @@
 
 use std::collections::HashMap;
 use std::ops::Range;
+use std::sync::Arc;
 
-use super::{Code, Inputs, Instruction, Op, Program};
+use super::{Body, Code, Inputs, Instruction, Op, Program};
 use crate::graph::{Binary, Formula, Graph, Node, Variable};
 
 /// What an instruction reads.
@@ -79,12 +80,11 @@ impl Program {
                 compiler.draft(index);
             }
         }
-        let mut program = compiler.finish(formulas, &needed, parameters);
-        if !prepared.is_empty() {
+        let preparation = (!prepared.is_empty()).then(|| {
             let inputs = Inputs { components: 0, fixed: false, ..inputs };
-            program.preparation = Some(Box::new(Self::compile(graph, &prepared, inputs)));
-        }
-        program
+            Self::compile(graph, &prepared, inputs)
+        });
+        compiler.finish(formulas, &needed, (parameters, preparation))
     }
 }
 
@@ -140,11 +140,8 @@ fn joined(
         };
         let fits = |product: Formula, other: Formula| {
             let Node::Binary(Binary::Mul, p, q) = graph.node(product) else { return false };
-            let scaled = constant(p) || constant(q);
-            uses[product.index()] == 1
-                && !constant(product)
-                && !constant(other)
-                && !(scaled && sum == Binary::Sub)
+            let unfit = sum == Binary::Sub && (constant(p) || constant(q));
+            uses[product.index()] == 1 && !constant(product) && !constant(other) && !unfit
         };
         if fits(a, b) {
             joined[a.index()] = true;
@@ -250,7 +247,7 @@ impl Compiler<'_> {
         mut self,
         formulas: &[Formula],
         needed: &[bool],
-        parameters: Range<usize>,
+        (parameters, preparation): (Range<usize>, Option<Program>),
     ) -> Program {
         let Inputs { components, fixed, .. } = self.inputs;
         let inputs = components + if fixed { 0 } else { self.inputs.parameters };
@@ -326,16 +323,8 @@ impl Compiler<'_> {
             Some(short) if registers <= 256 => Code::Short(short),
             _ => Code::Wide(code),
         };
-        Program {
-            code,
-            pool: self.pool,
-            parameters,
-            preparation: None,
-            loads,
-            outputs,
-            inputs,
-            registers,
-        }
+        let body = Body { code, parameters, preparation, loads, outputs, inputs, registers };
+        Program { pool: self.pool, body: Arc::new(body) }
     }
 }
 

@@ -21,17 +21,17 @@ macro_rules! on_fixed_states {
             match ($n, $system.most_guards()) {
                 (1..=2, 0..=2) => {
                     let $filled = $crate::dynamic::few::Filled::<S, 2, 2>::new($system, $n);
-                    let $from = $filled.start(&$start);
+                    let $from = $crate::dynamic::few::start(&$start);
                     return $body;
                 }
                 (1..=4, 0..=4) => {
                     let $filled = $crate::dynamic::few::Filled::<S, 4, 4>::new($system, $n);
-                    let $from = $filled.start(&$start);
+                    let $from = $crate::dynamic::few::start(&$start);
                     return $body;
                 }
                 (1..=8, 0..=8) => {
                     let $filled = $crate::dynamic::few::Filled::<S, 8, 8>::new($system, $n);
-                    let $from = $filled.start(&$start);
+                    let $from = $crate::dynamic::few::start(&$start);
                     return $body;
                 }
                 _ => {}
@@ -40,6 +40,12 @@ macro_rules! on_fixed_states {
     };
 }
 pub(crate) use on_fixed_states;
+
+/// Where a run of a system that has been filled up starts.
+pub(crate) fn start<Mode: Copy, const N: usize>(start: &DynamicStart<'_, Mode>) -> Start<Mode, N> {
+    let state = State::from_fn(|i, _| start.state.get(i).copied().unwrap_or(0.0));
+    Start { mode: start.mode, s: start.s, state }
+}
 
 /// A system of `n` ≤ `N` components, filled up.
 pub(crate) struct Filled<'a, S, const N: usize, const G: usize> {
@@ -52,11 +58,6 @@ pub(crate) struct Filled<'a, S, const N: usize, const G: usize> {
 impl<'a, S: DynamicSystem, const N: usize, const G: usize> Filled<'a, S, N, G> {
     pub(crate) fn new(system: &'a S, n: usize) -> Self {
         Self { system, n, share: (N as f64 / n as f64).sqrt() }
-    }
-
-    pub(crate) fn start(&self, start: &DynamicStart<'_, S::Mode>) -> Start<S::Mode, N> {
-        let state = State::from_fn(|i, _| start.state.get(i).copied().unwrap_or(0.0));
-        Start { mode: start.mode, s: start.s, state }
     }
 
     #[inline(always)]

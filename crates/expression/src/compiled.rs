@@ -1,0 +1,274 @@
+//! A system whose formulas are compiled once, for any values of its parameters.
+
+mod whole;
+
+use stickslip_solver::{Direction, Guard, InvalidTimes, Times};
+use thiserror::Error;
+
+use crate::graph::{Formula, Variable};
+use crate::program::{Inputs, Program};
+use crate::run::{Mode, Reaction, Runnable, Ticks};
+use crate::system::{self, Next, Rule, System, Trigger};
+
+/// A system that is ready for parameters.
+#[derive(Clone, Debug)]
+pub struct Compiled {
+    parameters: Vec<String>,
+    components: Vec<String>,
+    names: Vec<String>,
+    modes: Vec<Mode>,
+    /// What fires at times in each mode.
+    clocks: Vec<Vec<Clock>>,
+    first: usize,
+    /// Computes [`System::fixed_formulas`] from parameters.
+    numbers: Program,
+    count: usize,
+    has: (bool, bool),
+}
+
+/// How many numbers of a rule are times.
+#[derive(Clone, Copy, Debug)]
+enum Clock {
+    Never,
+    At(usize),
+    Every,
+}
+
+/// Why a system cannot run with some parameters.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum InvalidParameters {
+    /// There are more or fewer than the system has.
+    #[error("there are {found} parameters; expected {expected}: {names}")]
+    Count {
+        /// How many there are.
+        found: usize,
+        /// How many the system has.
+        expected: usize,
+        /// Their names.
+        names: String,
+    },
+    /// A parameter is not a number.
+    #[error("{name} = {value}; expected a finite number")]
+    NotFinite {
+        /// The name of the parameter.
+        name: String,
+        /// Its value.
+        value: f64,
+    },
+    /// What parameters make is not a number.
+    #[error("{what} is {value}; expected {expected}")]
+    Value {
+        /// What is computed from them.
+        what: String,
+        /// Its value.
+        value: f64,
+        /// What it must be.
+        expected: &'static str,
+    },
+}
+
+impl System {
+    /// The values that parameters have unless others are given.
+    #[must_use]
+    pub fn values(&self) -> Vec<f64> {
+        self.parameters.iter().map(|parameter| parameter.value).collect()
+    }
+
+    /// Whether a rule ends runs.
+    #[must_use]
+    pub fn ends_itself(&self) -> bool {
+        self.modes.iter().flat_map(|mode| &mode.rules).any(|rule| rule.ends_after > 0)
+    }
+
+    /// The system, ready for parameters.
+    ///
+    /// # Errors
+    /// [`InvalidParameters`] if its parts, which may be made by hand, do not fit together.
+    pub fn compile(&self) -> Result<Compiled, InvalidParameters> {
+        whole::require(self)?;
+        let fixed = self.fixed_formulas();
+        let inputs = Inputs { components: 0, parameters: self.parameters.len(), fixed: false };
+        let clock = |rule: &Rule| match &rule.trigger {
+            Trigger::When(..) => Clock::Never,
+            Trigger::At(times) => Clock::At(times.len()),
+            Trigger::Every { .. } => Clock::Every,
+        };
+        Ok(Compiled {
+            parameters: self.parameters.iter().map(|it| it.name.clone()).collect(),
+            components: self.components.iter().map(|it| it.name.clone()).collect(),
+            names: self.modes.iter().map(|mode| mode.name.clone()).collect(),
+            modes: self.modes.iter().map(|mode| self.compile_mode(mode)).collect(),
+            clocks: self.modes.iter().map(|mode| mode.rules.iter().map(clock).collect()).collect(),
+            first: self.first,
+            numbers: Program::compile(&self.graph, &fixed, inputs),
+            count: fixed.len(),
+            has: (self.start.is_some(), self.end.is_some()),
+        })
+    }
+
+    /// The system with numbers for its parameters.
+    ///
+    /// # Errors
+    /// As [`Self::compile`] and [`Compiled::with`].
+    pub fn with(&self, parameters: &[f64]) -> Result<Runnable, InvalidParameters> {
+        self.compile()?.with(parameters)
+    }
+
+    fn program(&self, formulas: &[Formula]) -> Program {
+        let (components, parameters) = (self.components.len(), self.parameters.len());
+        Program::compile(&self.graph, formulas, Inputs { components, parameters, fixed: true })
+    }
+
+    fn compile_mode(&self, mode: &system::Mode) -> Mode {
+        let nothing = |rule: &Rule| match rule.trigger {
+            Trigger::When(guard, _) => guard,
+            // Clocks have no value.
+            _ => mode.slopes.first().copied().unwrap_or(Formula(0)),
+        };
+        let values: Vec<Formula> = mode.rules.iter().map(nothing).collect();
+        let guards = mode.rules.iter().filter_map(|rule| match rule.trigger {
+            Trigger::When(guard, _) => Some(guard),
+            _ => None,
+        });
+        let reads = self.graph.reads(&guards.collect::<Vec<_>>());
+        let mut reads: Vec<usize> = reads
+            .into_iter()
+            .filter_map(|it| match it {
+                Variable::Component(component) => Some(component as usize),
+                _ => None,
+            })
+            .collect();
+        // An empty list would mean all.
+        if reads.is_empty() && !self.components.is_empty() {
+            reads.push(0);
+        }
+        let reaction = |rule: &Rule| {
+            let condition: &[Formula] = match &rule.next {
+                Next::Branch(condition, ..) => &[*condition],
+                _ => &[],
+            };
+            let (changed, changes): (Vec<_>, Vec<_>) = rule.changes.iter().copied().unzip();
+            let (changes, condition) = (self.program(&changes), self.program(condition));
+            Reaction { changed: changed.into(), changes, next: rule.next.clone(), condition }
+        };
+        Mode {
+            slopes: self.program(&mode.slopes),
+            guards: mode.rules.iter().map(guard).collect(),
+            values: self.program(&values),
+            reads: reads.into(),
+            reactions: mode.rules.iter().map(reaction).collect(),
+        }
+    }
+}
+
+impl Compiled {
+    /// The system with numbers for its parameters.
+    ///
+    /// # Errors
+    /// [`InvalidParameters`] if their number is wrong, if one is not finite, or if a start, an end
+    /// or a time of a rule is not a number with them.
+    pub fn with(&self, parameters: &[f64]) -> Result<Runnable, InvalidParameters> {
+        if parameters.len() != self.parameters.len() {
+            let (found, expected) = (parameters.len(), self.parameters.len());
+            let names = self.parameters.join(", ");
+            return Err(InvalidParameters::Count { found, expected, names });
+        }
+        if let Some((name, &value)) =
+            self.parameters.iter().zip(parameters).find(|(_, value)| !value.is_finite())
+        {
+            return Err(InvalidParameters::NotFinite { name: name.clone(), value });
+        }
+        let mut numbers = vec![f64::NAN; self.count];
+        self.numbers.run(f64::NAN, parameters, &mut numbers);
+        let mut numbers = Numbers(numbers.into_iter());
+        let starts = self.components.iter();
+        let state = starts.map(|it| numbers.next(|| format!("the start of `{it}`")));
+        let state: Result<_, _> = state.collect();
+        let start = self.has.0.then(|| numbers.next(|| "the start".to_owned()));
+        let end = self.has.1.then(|| numbers.next(|| "the end".to_owned()));
+        let mut ticks = Vec::with_capacity(self.modes.len());
+        for (clocks, name) in self.clocks.iter().zip(&self.names) {
+            let of_mode = clocks.iter().map(|clock| clock.ticks(&mut numbers, name));
+            ticks.push(of_mode.collect::<Result<_, _>>()?);
+        }
+        Ok(Runnable {
+            state: state?,
+            modes: self.modes.iter().map(|mode| mode.with(parameters)).collect(),
+            ticks,
+            first: self.first,
+            start: start.transpose()?.unwrap_or(0.0),
+            end: end.transpose()?.unwrap_or(f64::INFINITY),
+        })
+    }
+}
+
+/// What parameters make, in the order of [`System::fixed_formulas`].
+struct Numbers(std::vec::IntoIter<f64>);
+
+impl Numbers {
+    fn next(&mut self, what: impl FnOnce() -> String) -> Result<f64, InvalidParameters> {
+        let value = self.0.next().unwrap_or(f64::NAN);
+        if value.is_finite() {
+            return Ok(value);
+        }
+        Err(InvalidParameters::Value { what: what(), value, expected: "a finite number" })
+    }
+}
+
+impl Clock {
+    fn ticks(self, numbers: &mut Numbers, mode: &str) -> Result<Ticks, InvalidParameters> {
+        let what = |what: &str| format!("{what} of a rule of mode `{mode}`");
+        match self {
+            Self::Never => Ok(Ticks::Never),
+            Self::At(count) => {
+                let times = (0..count).map(|_| numbers.next(|| what("a time")));
+                let mut times = times.collect::<Result<Vec<_>, _>>()?;
+                times.sort_by(f64::total_cmp);
+                let finite = |_: InvalidTimes| InvalidParameters::Value {
+                    what: what("a time"),
+                    value: f64::NAN,
+                    expected: "a finite number",
+                };
+                Ok(Ticks::At(Times::new(times).map_err(finite)?))
+            }
+            Self::Every => {
+                let value = numbers.next(|| what("the period"))?;
+                if value <= 0.0 {
+                    let what = what("the period");
+                    let expected = "a number above 0";
+                    return Err(InvalidParameters::Value { what, value, expected });
+                }
+                Ok(Ticks::Every(value, numbers.next(|| what("the phase"))?))
+            }
+        }
+    }
+}
+
+impl Mode {
+    fn with(&self, parameters: &[f64]) -> Self {
+        let bound = |program: &Program| program.with(parameters);
+        let reaction = |it: &Reaction| Reaction {
+            changes: bound(&it.changes),
+            condition: bound(&it.condition),
+            ..it.clone()
+        };
+        Self {
+            slopes: bound(&self.slopes),
+            values: bound(&self.values),
+            reactions: self.reactions.iter().map(reaction).collect(),
+            guards: self.guards.clone(),
+            reads: self.reads.clone(),
+        }
+    }
+}
+
+/// The guard of a rule.
+fn guard(rule: &Rule) -> Guard {
+    let guard = match rule.trigger {
+        Trigger::When(_, direction) => Guard::new(direction),
+        _ => Guard::new(Direction::Clock),
+    };
+    let guard = guard.priority(rule.priority).from_zero(rule.from_zero);
+    let guard = guard.terminal_after(rule.ends_after);
+    if rule.sees_jumps { guard.sees_jumps() } else { guard }
+}
