@@ -162,12 +162,8 @@ impl System {
 }
 
 impl Compiled {
-    /// The system with numbers for its parameters.
-    ///
-    /// # Errors
-    /// [`InvalidParameters`] if their number is wrong, if one is not finite, or if a start, an end
-    /// or a time of a rule is not a number with them.
-    pub fn with(&self, parameters: &[f64]) -> Result<Runnable, InvalidParameters> {
+    /// Refuses a wrong number of parameters, and those that are not finite.
+    pub(crate) fn check(&self, parameters: &[f64]) -> Result<(), InvalidParameters> {
         if parameters.len() != self.parameters.len() {
             let (found, expected) = (parameters.len(), self.parameters.len());
             let names = self.parameters.join(", ");
@@ -178,6 +174,16 @@ impl Compiled {
         {
             return Err(InvalidParameters::NotFinite { name: name.clone(), value });
         }
+        Ok(())
+    }
+
+    /// The system with numbers for its parameters.
+    ///
+    /// # Errors
+    /// [`InvalidParameters`] if their number is wrong, if one is not finite, or if a start, an end
+    /// or a time of a rule is not a number with them.
+    pub fn with(&self, parameters: &[f64]) -> Result<Runnable, InvalidParameters> {
+        self.check(parameters)?;
         let mut numbers = vec![f64::NAN; self.count];
         self.numbers.run(f64::NAN, parameters, &mut numbers);
         let mut numbers = Numbers(numbers.into_iter());
@@ -264,8 +270,10 @@ impl Mode {
 
 /// The guard of a rule.
 fn guard(rule: &Rule) -> Guard {
-    let guard = match rule.trigger {
-        Trigger::When(_, direction) => Guard::new(direction),
+    let guard = match &rule.trigger {
+        Trigger::When(_, direction) => Guard::new(*direction),
+        // A rule that never acts.
+        Trigger::At(times) if times.is_empty() => return Guard::OFF,
         _ => Guard::new(Direction::Clock),
     };
     let guard = guard.priority(rule.priority).from_zero(rule.from_zero);

@@ -37,10 +37,12 @@
 //! The modules in reading order: `graph` has formulas and their derivatives, `program` compiles and
 //! computes them, `system` is what a hybrid system consists of, `compiled` makes it ready for
 //! parameters, `run` is what the solver sees of it,
-//! `recording` a run with its events, and `text` reads and writes it. `docs/systems.md` in the
+//! `recording` a run with its events, `family` the runs of a
+//! plane of parameters, and `text` reads and writes it. `docs/systems.md` in the
 //! repository describes the language.
 
 mod compiled;
+mod family;
 mod graph;
 mod program;
 mod recording;
@@ -49,6 +51,7 @@ mod system;
 mod text;
 
 pub use compiled::{Compiled, InvalidParameters};
+pub use family::SystemFamily;
 pub use graph::{Binary, Formula, Graph, Node, Unary, Variable};
 pub use program::{Inputs, Program};
 pub use recording::{Recording, Stay, StoredStep};

@@ -41,13 +41,30 @@ pub trait DynamicProblem {
     /// The hybrid system.
     type System: DynamicSystem;
 
-    /// The system at `point`, and the mode, the place and the state at the start of its run.
-    fn at(&self, point: &Point) -> (Self::System, DynamicBeginning<Self>);
+    /// The run at `point`; `None` where there is none, so that it counts as one that fails.
+    fn at(&self, point: &Point) -> Option<DynamicSetting<Self::System>>;
 }
 
-/// The mode, the place and the state at the start of a run.
-pub type DynamicBeginning<P> =
-    (<<P as DynamicProblem>::System as DynamicSystem>::Mode, f64, Vec<f64>);
+/// A system, where its run starts, and where it ends.
+#[derive(Clone, Debug)]
+pub struct DynamicSetting<S: DynamicSystem> {
+    /// The system.
+    pub system: S,
+    /// The first mode.
+    pub mode: S::Mode,
+    /// The place at the start.
+    pub s: f64,
+    /// The state at the start.
+    pub state: Vec<f64>,
+    /// The end, if no terminal guard ends the run before.
+    pub end: f64,
+}
+
+impl<S: DynamicSystem> DynamicSetting<S> {
+    fn start(&self) -> DynamicStart<'_, S::Mode> {
+        DynamicStart { mode: self.mode, s: self.s, state: &self.state }
+    }
+}
 
 /// What a run of a [`HybridFamily`] does.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -146,44 +163,37 @@ where
 /// The runs of a problem whose dimension is known at run time. It is as a [`HybridFamily`].
 #[derive(Clone, Copy, Debug)]
 pub struct DynamicFamily<P, M> {
-    /// The system and the start of its run, at every point.
+    /// The system, and the start and the end of its run, at every point.
     pub problem: P,
     /// The Runge–Kutta method of every run.
     pub method: M,
     /// The options of every run. They also determine the accuracy of margins.
     pub options: Options,
-    /// The end of every run, if no terminal guard ends it before.
-    pub end: f64,
 }
 
 impl<P: DynamicProblem, M: Method> DynamicFamily<P, M> {
-    /// How the run at `point` ends.
+    /// How the run at `point` ends, and the guards that fire before; `None` if there is no run.
     ///
     /// # Errors
     /// The error of a run that fails.
-    pub fn outcome(&self, point: &Point) -> Result<Outcome, RunError> {
-        self.run(point).map(|(outcome, _)| outcome)
-    }
-
-    /// The outcome of the run at `point`, and the guards that fire.
-    fn run(&self, point: &Point) -> Result<(Outcome, Vec<usize>), RunError> {
-        let (system, (mode, s, state)) = self.problem.at(point);
-        let start = DynamicStart { mode, s, state: &state };
+    pub fn run(&self, point: &Point) -> Result<Option<(Outcome, Vec<usize>)>, RunError> {
+        let Some(setting) = self.problem.at(point) else { return Ok(None) };
+        let (system, start, end) = (&setting.system, setting.start(), setting.end);
         let mut fired = Fired(Vec::new());
-        let run = run_dynamic(self.method, &system, start, self.end, &self.options, &mut fired)?;
-        Ok((run.outcome, fired.before(run.outcome)))
+        let run = run_dynamic(self.method, system, start, end, &self.options, &mut fired)?;
+        Ok(Some((run.outcome, fired.before(run.outcome))))
     }
 
     fn near_miss(&self, point: &Point, which: &Margin) -> Result<Option<NearMiss>, RunError> {
-        let (system, (mode, s, state)) = self.problem.at(point);
-        let start = DynamicStart { mode, s, state: &state };
-        margin_dynamic(self.method, &system, start, self.end, &self.options, which)
+        let Some(setting) = self.problem.at(point) else { return Ok(None) };
+        let (system, start, end) = (&setting.system, setting.start(), setting.end);
+        margin_dynamic(self.method, system, start, end, &self.options, which)
     }
 
-    fn margins(&self, point: &Point) -> Result<Margins, RunError> {
-        let (system, (mode, s, state)) = self.problem.at(point);
-        let start = DynamicStart { mode, s, state: &state };
-        margins_dynamic(self.method, &system, start, self.end, &self.options)
+    fn margins(&self, point: &Point) -> Result<Option<Margins>, RunError> {
+        let Some(setting) = self.problem.at(point) else { return Ok(None) };
+        let (system, start, end) = (&setting.system, setting.start(), setting.end);
+        margins_dynamic(self.method, system, start, end, &self.options).map(Some)
     }
 }
 
@@ -197,7 +207,7 @@ where
     type Error = FamilyError;
 
     fn label(&self, point: &Point) -> Result<Itinerary, FamilyError> {
-        label(point, self.run(point))
+        label(point, self.run(point).map(Some))
     }
 
     fn margin(&self, point: &Point, which: &Margin) -> Result<Option<f64>, FamilyError> {
@@ -214,7 +224,7 @@ where
     }
 
     fn free_run(&self, point: &Point) -> Result<FreeRun<Itinerary, Margin>, FamilyError> {
-        free_run(point, self.margins(point))
+        free_run(point, self.margins(point).map(Some))
     }
 }
 
@@ -248,12 +258,12 @@ impl<P: DynamicProblem, M: Method> Family for DynamicFamily<P, M> {
 /// The label of a run.
 fn label(
     point: &Point,
-    run: Result<(Outcome, Vec<usize>), RunError>,
+    run: Result<Option<(Outcome, Vec<usize>)>, RunError>,
 ) -> Result<Itinerary, FamilyError> {
     if let Err(RunError::Cycle { .. }) = run {
         return Ok(Itinerary::Accumulates);
     }
-    let run = value_of(point, run)?;
+    let run = value_of(point, run)?.flatten();
     Ok(run.map_or(Itinerary::Fails, |(outcome, fired)| itinerary(outcome, fired)))
 }
 
@@ -266,12 +276,12 @@ fn is_sure(margin: &Margin) -> bool {
 /// A free run from its margins.
 fn free_run(
     point: &Point,
-    found: Result<Margins, RunError>,
+    found: Result<Option<Margins>, RunError>,
 ) -> Result<FreeRun<Itinerary, Margin>, FamilyError> {
     if let Err(RunError::Cycle { .. }) = found {
         return Ok(FreeRun { label: Itinerary::Accumulates, margins: Vec::new() });
     }
-    let Some(found) = value_of(point, found)? else {
+    let Some(found) = value_of(point, found)?.flatten() else {
         return Ok(FreeRun { label: Itinerary::Fails, margins: Vec::new() });
     };
     let margins = found.near_misses.into_iter().map(|miss| (miss.margin, miss.value));

@@ -120,7 +120,7 @@ pub use document::{Document, DocumentError, SCHEMA};
 pub use executor::{Executor, FreeRunOf, LabelOf, Serial};
 pub use family::{Family, FreeRun};
 pub use hybrid::{
-    DynamicBeginning, DynamicFamily, DynamicProblem, FamilyError, HybridFamily, Itinerary, ModeOf,
+    DynamicFamily, DynamicProblem, DynamicSetting, FamilyError, HybridFamily, Itinerary, ModeOf,
     Problem,
 };
 pub use options::{InvalidTraceOption, TraceError, TraceOptions};

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use stickslip_solver::Options;
 use stickslip_solver::sliding::SlidingMode;
-use stickslip_tracer::{DynamicBeginning, DynamicProblem, Point};
+use stickslip_tracer::{DynamicProblem, DynamicSetting, Point};
 
 use crate::hybrid::arguments::{ChangeArguments, Settings, Start, StartArguments, SystemArguments};
 use crate::hybrid::function::{Caller, Code, Function};
@@ -101,8 +101,8 @@ pub struct Members {
 impl DynamicProblem for Members {
     type System = Sliding;
 
-    fn at(&self, point: &Point) -> (Sliding, DynamicBeginning<Self>) {
-        let Blueprint { start, first, .. } = &*self.blueprint;
+    fn at(&self, point: &Point) -> Option<DynamicSetting<Sliding>> {
+        let &Blueprint { ref start, ref first, end, .. } = &*self.blueprint;
         let system = self.blueprint.system([point.x, point.y], self.trouble.clone());
         let mut state = start.state.clone();
         let regime = system.change(system.first(start.mode), first, start.s, &mut state);
@@ -110,6 +110,6 @@ impl DynamicProblem for Members {
         let mode = system.mode_from(regime, &start.sides, start.s, &state);
         // A run from where the solution does not go on fails.
         let mode = mode.unwrap_or_else(|refusal| SlidingMode::refused(regime, refusal));
-        (system, (mode, start.s, state))
+        Some(DynamicSetting { system, mode, s: start.s, state, end })
     }
 }

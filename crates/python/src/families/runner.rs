@@ -29,8 +29,7 @@ impl Runner {
     /// that has to do it.
     pub fn new(blueprint: &Arc<Blueprint>, trouble: Arc<Trouble>, looks: bool) -> Self {
         let problem = Members { blueprint: blueprint.clone(), trouble: trouble.clone() };
-        let (options, end) = (blueprint.options, blueprint.end);
-        let runs = DynamicFamily { problem, method: Dop853, options, end };
+        let runs = DynamicFamily { problem, method: Dop853, options: blueprint.options };
         Self { runs, trouble, looked: looks.then(|| Mutex::new(Instant::now())) }
     }
 

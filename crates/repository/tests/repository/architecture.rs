@@ -13,8 +13,8 @@ use crate::root;
 const LAYERS: [&[&str]; 11] = [
     &["stickslip-number"],
     &["stickslip-solver"],
-    &["stickslip-contact", "stickslip-expression", "stickslip-tracer"],
-    &["stickslip-exact"],
+    &["stickslip-contact", "stickslip-tracer"],
+    &["stickslip-exact", "stickslip-expression"],
     &["stickslip-model"],
     &["stickslip-plane"],
     &["stickslip-figure"],

@@ -8,10 +8,12 @@
 //! | `answers` | the defined answers, limits, errors, runs backwards |
 //! | `chains` | several guards at one instant |
 //! | `broken` | inputs that nobody designed for |
+//! | `fixed_states` | small systems on states of fixed dimension |
 
 mod answers;
 mod broken;
 mod chains;
+mod fixed_states;
 mod large;
 mod planted;
 mod same;

@@ -2,7 +2,7 @@
 
 use stickslip_solver::{Direction, Dop853, DynamicSystem, Guard, Options};
 use stickslip_tracer::{
-    Atlas, AtlasOptions, DynamicBeginning, DynamicFamily, DynamicProblem, Itinerary, Point,
+    Atlas, AtlasOptions, DynamicFamily, DynamicProblem, DynamicSetting, Itinerary, Point,
     TraceOptions, VerifyOptions, Window,
 };
 
@@ -35,8 +35,9 @@ struct Chains;
 impl DynamicProblem for Chains {
     type System = Chain;
 
-    fn at(&self, point: &Point) -> (Chain, DynamicBeginning<Self>) {
-        (Chain(*point), ((), 0.0, vec![0.0; 4]))
+    fn at(&self, point: &Point) -> Option<DynamicSetting<Chain>> {
+        let (system, state) = (Chain(*point), vec![0.0; 4]);
+        Some(DynamicSetting { system, mode: (), s: 0.0, state, end: 6.0 })
     }
 }
 
@@ -59,7 +60,7 @@ fn largest() -> f64 {
 #[test]
 fn a_family_from_rest_is_traced() {
     let options = Options::with_tolerance(1e-13);
-    let family = any(DynamicFamily { problem: Chains, method: Dop853, options, end: 6.0 });
+    let family = any(DynamicFamily { problem: Chains, method: Dop853, options });
     let slope = largest();
     let window = Window { low: Point::new(0.9, 0.9 * slope), high: Point::new(1.1, 1.1 * slope) };
     let verify = VerifyOptions { random_points: 100, ..VerifyOptions::default() };

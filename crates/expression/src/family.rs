@@ -1,0 +1,140 @@
+//! A system and two of its parameters, as a family of runs whose boundaries can be traced.
+
+mod align;
+
+use stickslip_solver::{Dop853, Margin, Options, Outcome, RunError};
+use stickslip_tracer::{
+    DynamicFamily, DynamicProblem, DynamicSetting, Family, FamilyError, FreeRun, Itinerary, Point,
+};
+
+use crate::compiled::{Compiled, InvalidParameters};
+use crate::run::Runnable;
+use crate::system::System;
+
+/// A system whose runs depend on two of its parameters.
+///
+/// Itineraries count rules by their places in [`Self::rules`]. The method is [`Dop853`].
+///
+/// ```
+/// use stickslip_expression::{System, SystemFamily};
+/// use stickslip_solver::Options;
+/// use stickslip_tracer::{Family, Itinerary, Point};
+///
+/// let system = System::parse(
+///     "parameter height = 1, e = 0.5\nstate x = height, v = 0\nx' = v\nv' = -1\n\
+///      when x < 0 \"floor\"\n  x := 0\n  v := -e*v\nend = 2.4",
+/// )?;
+/// let family = SystemFamily::new(&system, [0, 1], &system.values(), None, Options::default())?;
+/// assert_eq!(family.rules(), ["floor"]);
+/// // The second bounce comes after (1 + 2e)·√(2·height).
+/// assert_eq!(family.label(&Point::new(1.0, 0.3))?, Itinerary::Fires(vec![0, 0]));
+/// assert_eq!(family.label(&Point::new(1.0, 0.4))?, Itinerary::Fires(vec![0]));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct SystemFamily {
+    runs: DynamicFamily<Plane, Dop853>,
+    rules: Vec<String>,
+}
+
+/// The systems of a plane of parameters.
+#[derive(Clone, Debug)]
+struct Plane {
+    compiled: Compiled,
+    parameters: Vec<f64>,
+    axes: [usize; 2],
+    end: Option<f64>,
+}
+
+impl DynamicProblem for Plane {
+    type System = Runnable;
+
+    fn at(&self, point: &Point) -> Option<DynamicSetting<Runnable>> {
+        let mut parameters = self.parameters.clone();
+        for (&axis, value) in self.axes.iter().zip([point.x, point.y]) {
+            parameters[axis] = value;
+        }
+        // Where a start or a period is not a number, there is no run.
+        let system = self.compiled.with(&parameters).ok()?;
+        let start = system.start();
+        let (mode, s, state) = (start.mode, start.s, start.state.to_vec());
+        let end = self.end.unwrap_or(system.end());
+        (end > s).then_some(DynamicSetting { system, mode, s, state, end })
+    }
+}
+
+impl SystemFamily {
+    /// The family over the parameters at the places `axes`. The other ones have the values in
+    /// `parameters`. All runs end at `end`, if it is given.
+    ///
+    /// # Errors
+    /// [`InvalidParameters`] if there are not as many parameters as the system has, if one is not
+    /// finite, or if an axis is none of them or both are the same.
+    pub fn new(
+        system: &System,
+        axes: [usize; 2],
+        parameters: &[f64],
+        end: Option<f64>,
+        options: Options,
+    ) -> Result<Self, InvalidParameters> {
+        let (system, rules) = align::align(system);
+        let compiled = system.compile()?;
+        compiled.check(parameters)?;
+        let count = parameters.len();
+        if let Some(&axis) = axes.iter().find(|&&axis| axis >= count || axes[0] == axes[1]) {
+            let (what, value) = ("the place of an axis".to_owned(), axis as f64);
+            let expected = "two different parameters of the system";
+            return Err(InvalidParameters::Value { what, value, expected });
+        }
+        let problem = Plane { compiled, parameters: parameters.to_vec(), axes, end };
+        Ok(Self { runs: DynamicFamily { problem, method: Dop853, options }, rules })
+    }
+
+    /// The names of the rules, in the order in which itineraries count them. Rules of several modes
+    /// that have one label are one.
+    #[must_use]
+    pub fn rules(&self) -> &[String] {
+        &self.rules
+    }
+
+    /// The same family with another value of a parameter, which should not be an axis. A place that
+    /// is no parameter changes nothing.
+    #[must_use]
+    pub fn with(&self, parameter: usize, value: f64) -> Self {
+        let mut other = self.clone();
+        if let Some(own) = other.runs.problem.parameters.get_mut(parameter) {
+            *own = value;
+        }
+        other
+    }
+
+    /// How the run at `point` ends, and the rules that act before; `None` if there is no run.
+    ///
+    /// # Errors
+    /// The error of a run that fails.
+    pub fn run(&self, point: &Point) -> Result<Option<(Outcome, Vec<usize>)>, RunError> {
+        self.runs.run(point)
+    }
+}
+
+impl Family for SystemFamily {
+    type Label = Itinerary;
+    type Margin = Margin;
+    type Error = FamilyError;
+
+    fn label(&self, point: &Point) -> Result<Itinerary, FamilyError> {
+        self.runs.label(point)
+    }
+    fn margin(&self, point: &Point, which: &Margin) -> Result<Option<f64>, FamilyError> {
+        self.runs.margin(point, which)
+    }
+    fn moved(&self, point: &Point, which: &Margin) -> Result<Margin, FamilyError> {
+        self.runs.moved(point, which)
+    }
+    fn is_sure(&self, margin: &Margin) -> bool {
+        self.runs.is_sure(margin)
+    }
+    fn free_run(&self, point: &Point) -> Result<FreeRun<Itinerary, Margin>, FamilyError> {
+        self.runs.free_run(point)
+    }
+}
