@@ -52,9 +52,22 @@ pub enum Failure {
         /// The output file.
         path: PathBuf,
     },
+    /// Some runs of a map of a system have no result.
+    #[error("{failed} of {points} runs failed and are NaN and -1 in {}", path.display())]
+    Runs {
+        /// The number of runs without a result.
+        failed: usize,
+        /// The number of all runs.
+        points: usize,
+        /// The output file.
+        path: PathBuf,
+    },
     /// Boundaries cannot be traced.
     #[error("the boundaries cannot be traced: {0}")]
     Trace(AtlasError),
+    /// Boundaries of a system of one's own cannot be traced.
+    #[error("the boundaries cannot be traced: {0}")]
+    Family(String),
     /// A study has no result.
     #[error(transparent)]
     Study(#[from] StudyError),

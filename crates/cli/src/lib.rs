@@ -31,8 +31,8 @@ use args::{Arguments, Command};
 pub use error::Failure;
 use output::console::say;
 use plan::{
-    CollidePlan, FitPlan, ImpactPlan, JoinPlan, LocatePlan, MapPlan, ReproducePlan, RunPlan,
-    StackPlan, StudyPlan, TablePlan, TimestepPlan, TracePlan,
+    CollidePlan, FitPlan, ImpactPlan, JoinPlan, LocatePlan, Mapped, ReproducePlan, RunPlan,
+    StackPlan, StudyPlan, TablePlan, TimestepPlan, Traced,
 };
 pub use stickslip_files::FileError;
 use version::NAME;
@@ -98,11 +98,17 @@ fn carry_out(arguments: &Arguments) -> Result<(), Failure> {
             ImpactPlan::Batch(plan) => commands::impact::batch::run(*plan),
         },
         Command::Laws(arguments) => commands::laws::run(arguments),
-        Command::Map(arguments) => commands::map::run(&MapPlan::new(arguments)?),
+        Command::Map(arguments) => match Mapped::new(arguments)? {
+            Mapped::Collisions(plan) => commands::map::run(&plan),
+            Mapped::System(plan) => commands::system_map::run(&plan),
+        },
         Command::Join(arguments) => commands::join::run(&JoinPlan::new(arguments)?),
         Command::Run(arguments) => commands::run::run(&RunPlan::new(arguments)?),
         Command::System(arguments) => commands::run::describe(arguments),
-        Command::Trace(arguments) => commands::trace::run(&TracePlan::new(arguments)?),
+        Command::Trace(arguments) => match Traced::new(arguments)? {
+            Traced::Collisions(plan) => commands::trace::run(&plan),
+            Traced::System(plan) => commands::trace::system(&plan),
+        },
         Command::Stack(arguments) => commands::stack::run(&StackPlan::new(arguments)?),
         Command::Locate(arguments) => commands::locate::run(&LocatePlan::new(arguments)?),
         Command::Reproduce(arguments) => match ReproducePlan::new(arguments) {

@@ -1,7 +1,7 @@
 //! What the options mean together: arguments become a plan that a command can carry out.
 //!
 //! One file for each command. Rules that several of them need are in `collision` (one collision
-//! from options), `window` (intervals of κ and ψ), `engine` (what computes collisions), `law`,
+//! from options), `system` (systems that are texts), `window` (intervals of κ and ψ), `engine` (what computes collisions), `law`,
 //! `batch` and `course` (their files) and `files` (outputs are files of their own).
 
 mod batch;
@@ -20,6 +20,7 @@ mod reproduce;
 mod run;
 mod stack;
 mod studies;
+mod system;
 mod table;
 mod timestep;
 mod trace;
@@ -32,11 +33,12 @@ pub use fit::FitPlan;
 pub use impact::{Engines, ImpactBatch, ImpactPlan, SingleImpact};
 pub use join::JoinPlan;
 pub use locate::LocatePlan;
-pub use map::{MapFormat, MapOutput, MapPlan};
+pub use map::{MapFormat, MapOutput, MapPlan, Mapped, SystemMapPlan};
 pub use reproduce::{PagePlan, ReproducePlan, StatementsPlan};
-pub use run::{RunPlan, read};
+pub use run::RunPlan;
 pub use stack::StackPlan;
 pub use studies::StudyPlan;
+pub use system::{SystemPlane, read};
 pub use table::{TableFormat, TablePlan};
 pub use timestep::TimestepPlan;
-pub use trace::TracePlan;
+pub use trace::{SystemTracePlan, TracePlan, Traced};

@@ -2,9 +2,10 @@
 
 mod align;
 
-use stickslip_solver::{Dop853, Margin, Options, Outcome, RunError};
+use stickslip_solver::{Dop853, Margin, Options, RunError};
 use stickslip_tracer::{
-    DynamicFamily, DynamicProblem, DynamicSetting, Family, FamilyError, FreeRun, Itinerary, Point,
+    DynamicFamily, DynamicFired, DynamicProblem, DynamicSetting, Family, FamilyError, FreeRun,
+    Itinerary, Point,
 };
 
 use crate::compiled::{Compiled, InvalidParameters};
@@ -97,6 +98,12 @@ impl SystemFamily {
         &self.rules
     }
 
+    /// The values of the parameters; those of the axes are not used.
+    #[must_use]
+    pub fn parameters(&self) -> &[f64] {
+        &self.runs.problem.parameters
+    }
+
     /// The same family with another value of a parameter, which should not be an axis. A place that
     /// is no parameter changes nothing.
     #[must_use]
@@ -108,11 +115,11 @@ impl SystemFamily {
         other
     }
 
-    /// How the run at `point` ends, and the rules that act before; `None` if there is no run.
+    /// The run at `point`; `None` if there is none.
     ///
     /// # Errors
     /// The error of a run that fails.
-    pub fn run(&self, point: &Point) -> Result<Option<(Outcome, Vec<usize>)>, RunError> {
+    pub fn run(&self, point: &Point) -> Result<Option<DynamicFired<usize>>, RunError> {
         self.runs.run(point)
     }
 }

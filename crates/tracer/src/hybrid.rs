@@ -1,9 +1,9 @@
 //! Hybrid systems with two parameters as families of runs.
 
 use stickslip_solver::{
-    DynamicEvent, DynamicObserver, DynamicStart, DynamicSystem, HybridSystem, Margin, Margins,
-    Method, NearMiss, Observer, Options, Outcome, Place, RunError, Start, SwitchEvent, margin,
-    margin_dynamic, margins, margins_dynamic, run, run_dynamic,
+    DynamicEvent, DynamicObserver, DynamicRun, DynamicStart, DynamicSystem, HybridSystem, Margin,
+    Margins, Method, NearMiss, Observer, Options, Outcome, Place, RunError, Start, SwitchEvent,
+    margin, margin_dynamic, margins, margins_dynamic, run, run_dynamic,
 };
 
 use crate::family::{Family, FreeRun};
@@ -171,17 +171,30 @@ pub struct DynamicFamily<P, M> {
     pub options: Options,
 }
 
+/// A run of a family.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DynamicFired<Mode> {
+    /// How it ended.
+    pub run: DynamicRun<Mode>,
+    /// The guards that fired before it ended, in order.
+    pub fired: Vec<usize>,
+}
+
+/// The mode of a dynamic problem's system.
+pub type DynamicModeOf<P> = <<P as DynamicProblem>::System as DynamicSystem>::Mode;
+
 impl<P: DynamicProblem, M: Method> DynamicFamily<P, M> {
-    /// How the run at `point` ends, and the guards that fire before; `None` if there is no run.
+    /// The run at `point`; `None` if there is none.
     ///
     /// # Errors
     /// The error of a run that fails.
-    pub fn run(&self, point: &Point) -> Result<Option<(Outcome, Vec<usize>)>, RunError> {
+    pub fn run(&self, point: &Point) -> Result<Option<DynamicFired<DynamicModeOf<P>>>, RunError> {
         let Some(setting) = self.problem.at(point) else { return Ok(None) };
         let (system, start, end) = (&setting.system, setting.start(), setting.end);
         let mut fired = Fired(Vec::new());
         let run = run_dynamic(self.method, system, start, end, &self.options, &mut fired)?;
-        Ok(Some((run.outcome, fired.before(run.outcome))))
+        let fired = fired.before(run.outcome);
+        Ok(Some(DynamicFired { run, fired }))
     }
 
     fn near_miss(&self, point: &Point, which: &Margin) -> Result<Option<NearMiss>, RunError> {
@@ -234,7 +247,8 @@ impl<P: DynamicProblem, M: Method> Family for DynamicFamily<P, M> {
     type Error = FamilyError;
 
     fn label(&self, point: &Point) -> Result<Itinerary, FamilyError> {
-        label(point, self.run(point))
+        let run = self.run(point);
+        label(point, run.map(|run| run.map(|it| (it.run.outcome, it.fired))))
     }
 
     fn margin(&self, point: &Point, which: &Margin) -> Result<Option<f64>, FamilyError> {

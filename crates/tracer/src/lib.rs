@@ -120,8 +120,8 @@ pub use document::{Document, DocumentError, SCHEMA};
 pub use executor::{Executor, FreeRunOf, LabelOf, Serial};
 pub use family::{Family, FreeRun};
 pub use hybrid::{
-    DynamicFamily, DynamicProblem, DynamicSetting, FamilyError, HybridFamily, Itinerary, ModeOf,
-    Problem,
+    DynamicFamily, DynamicFired, DynamicModeOf, DynamicProblem, DynamicSetting, FamilyError,
+    HybridFamily, Itinerary, ModeOf, Problem,
 };
 pub use options::{InvalidTraceOption, TraceError, TraceOptions};
 pub use regions::finding::{Euler, Finding, SubdivisionError};

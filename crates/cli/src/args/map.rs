@@ -9,29 +9,34 @@ use stickslip_plane::Range;
 
 use super::law::LawArguments;
 use super::method::MethodArguments;
+use super::plane::PlaneArguments;
 use super::shared::{self, CollisionArguments};
 
 /// Options of `map`.
 #[derive(Debug, clap::Args)]
 pub struct MapArguments {
+    /// A system of one's own.
+    #[command(flatten)]
+    pub plane: PlaneArguments,
+
     /// Columns: interval of the scaled stiffness κ = k_t/(α m β^⅘ g_n^⅖), 0 or above
     #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
-    #[arg(value_parser = range::parse)]
+    #[arg(value_parser = range::parse, conflicts_with = "system")]
     pub kappa: Option<Range>,
 
     /// Rows: interval of the reduced impact ratio ψ = (g_t/g_n)·α/μ, 0 or above
     #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
-    #[arg(value_parser = range::parse)]
+    #[arg(value_parser = range::parse, conflicts_with = "system")]
     pub psi: Option<Range>,
 
     /// Rows, instead of --psi: interval of the impact ratio g_t/g_n, 0 or above
     #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
-    #[arg(value_parser = range::parse)]
+    #[arg(value_parser = range::parse, conflicts_with = "system")]
     pub ratio: Option<Range>,
 
     /// JSON file of two bodies, as for impact; the axes are then --normal and --tangential
     #[arg(long, value_name = "FILE.json", help_heading = "Window in SI units")]
-    #[arg(conflicts_with_all = ["kappa", "psi", "ratio", "mu", "alpha", "damping", "tangential_damping"])]
+    #[arg(conflicts_with_all = ["system", "kappa", "psi", "ratio", "mu", "alpha", "damping", "tangential_damping"])]
     pub bodies: Option<PathBuf>,
 
     /// Columns: interval of the normal velocity g_n of the surfaces in m/s, 0 or above
@@ -68,7 +73,7 @@ pub struct MapArguments {
     /// Compute only part K of N of the map, 1 <= K <= N <= 1000000; FILE is then for the command
     /// join, and may have any name
     #[arg(long, value_name = "K/N", help_heading = "Output", allow_hyphen_values = true)]
-    #[arg(value_parser = MapPart::parse, conflicts_with = "plot")]
+    #[arg(value_parser = MapPart::parse, conflicts_with_all = ["plot", "system"])]
     pub part: Option<MapPart>,
 
     /// Picture of ε_t in colours, and of the regions with equal numbers of switches
@@ -91,7 +96,10 @@ collision at the centre of each cell is computed: κ_i = LO + (HI − LO)·((i +
 and the same for ψ with H. An interval may therefore begin at 0, where there is no collision.
 
 The axes are --kappa and one of --psi and --ratio. For two bodies in SI units they are --normal and \
---tangential, the velocities of the surfaces at the contact.";
+--tangential, the velocities of the surfaces at the contact.
+
+With SYSTEM.slip, the runs of a system of your own over two of its parameters, --x and --y: the number \
+of events, and the time and the state at the end.";
 
 /// What `map --help` says last.
 pub const EXAMPLES: &str = "\
@@ -103,6 +111,10 @@ Results:
   of the bodies; rtol and atol; method and version. FILE.csv has the same names as columns and one
   row per point. A point that cannot be computed is NaN and -1, and the exit code is 1.
 
+  With SYSTEM.slip, FILE.npz has the two parameters (W and H) by their names, event_count (H x W,
+  of events before the end), end_time, end_mode, and the components of the state by their names,
+  end_NAME. The picture shows the number of events, the time, and the first components.
+
   Finished tiles are kept in FILE.npz.tiles until the map is complete. After an interruption the
   same command continues where it stopped, and the result is the same, bit for bit.
 
@@ -112,6 +124,8 @@ Examples:
   stickslip map --kappa 17:19 --psi 0:2 --method exact --size 2000x2000 --out map.npz
   stickslip map --kappa 0:70 --psi 0:2.9 --damping 0.05 --size 500x500 --out damped.npz
   stickslip map --bodies pair.json --normal 0:200 --tangential 0:200 --size 500x500 --out si.npz
+  stickslip map examples/systems/belt.slip --x belt=0.1:1.5 --y kinetic=0.2:0.9 --size 300x300 \\
+    --out belt.npz --plot belt.svg
 
 A map in parts, as a job array of Slurm:
   #!/bin/sh

@@ -8,24 +8,29 @@ use stickslip_files::output::picture::PictureFile;
 use stickslip_plane::Range;
 
 use super::law::LawArguments;
+use super::plane::PlaneArguments;
 use super::shared::{self, CollisionArguments};
 
 /// Options of `trace`.
 #[derive(Debug, clap::Args)]
 pub struct TraceArguments {
+    /// A system of one's own.
+    #[command(flatten)]
+    pub plane: PlaneArguments,
+
     /// Interval of the scaled stiffness κ = k_t/(α m β^⅘ g_n^⅖), above 0
     #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
-    #[arg(value_parser = |text: &str| range::parse_for(Parameter::Kappa, text))]
+    #[arg(value_parser = |text: &str| range::parse_for(Parameter::Kappa, text), conflicts_with = "system")]
     pub kappa: Option<Range>,
 
     /// Interval of the reduced impact ratio ψ = (g_t/g_n)·α/μ, above 0
     #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
-    #[arg(value_parser = |text: &str| range::parse_for(Parameter::Psi, text))]
+    #[arg(value_parser = |text: &str| range::parse_for(Parameter::Psi, text), conflicts_with = "system")]
     pub psi: Option<Range>,
 
     /// Interval of the impact ratio g_t/g_n, instead of --psi; above 0
     #[arg(long, value_name = "LO:HI", help_heading = "Window", allow_hyphen_values = true)]
-    #[arg(value_parser = |text: &str| range::parse_for(Parameter::Ratio, text))]
+    #[arg(value_parser = |text: &str| range::parse_for(Parameter::Ratio, text), conflicts_with = "system")]
     pub ratio: Option<Range>,
 
     /// The parameters beside κ and ψ.
@@ -37,7 +42,8 @@ pub struct TraceArguments {
     pub law: LawArguments,
 
     /// Accuracy of boundaries in ψ, also between their points; from 1e-11·(1 + HI) to 1e-9·(1 +
-    /// HI) with HI of ψ, and less in narrow windows [default: 1e-10·(1 + HI)]
+    /// HI) with HI of ψ, and less in narrow windows [default: 1e-10·(1 + HI)]. Of a system, above 0
+    /// and below a thousandth of the window [default: 1e-9]
     #[arg(long, value_name = "T", help_heading = "Collisions", allow_hyphen_values = true)]
     #[arg(value_parser = number::parse_option)]
     pub tolerance: Option<f64>,
@@ -52,12 +58,12 @@ pub struct TraceArguments {
     pub plot: Option<PictureFile>,
 
     /// GeoJSON file of regions, boundaries and vertices; coordinates are κ and ψ, not degrees
-    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    #[arg(long, value_name = "FILE", help_heading = "Output", conflicts_with = "system")]
     pub geojson: Option<PathBuf>,
 
     /// JSON file for the lines on which ε_t is 1 or −1, beyond which the law gives back more
     /// tangential energy than it took
-    #[arg(long, value_name = "FILE.json", help_heading = "Output")]
+    #[arg(long, value_name = "FILE.json", help_heading = "Output", conflicts_with = "system")]
     pub gaining: Option<PathBuf>,
 
     /// Threads for the verification; 1 to 1024 [default: one for each core]; results do not depend
@@ -75,7 +81,10 @@ vanishing-phase), where they are extremal in κ or ψ, and the regions between t
 
 The regions are verified by integration, so that damping is 0 or 1e-8 to 1e4: collisions at 20 000 random points of the window, and at 40 points beside \
 each boundary, must have the switches of their region. If one of them has others, or if a question \
-remained open, the atlas is written and says so, and the exit code is 1.";
+remained open, the atlas is written and says so, and the exit code is 1.
+
+With SYSTEM.slip, the runs of a system of your own over two of its parameters, --x and --y: every \
+boundary on which the sequence of its events changes.";
 
 /// What `trace --help` says last.
 pub const EXAMPLES: &str = "\
@@ -86,5 +95,7 @@ Examples:
   stickslip trace --kappa 5:20 --psi 0.2:2.5 --out atlas.json --geojson atlas.geojson
   stickslip trace --kappa 1.2:1.3 --psi 0.85:1 --law gran/hertz/history --out atlas.json \
     --gaining gaining.json
+  stickslip trace examples/systems/ball.slip --x e=0.3:0.7 --y g=5:15 --max-events 6 \
+    --out ball.json --plot ball.svg
 
 Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

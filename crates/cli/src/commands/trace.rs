@@ -7,10 +7,12 @@ use stickslip_files::output::json;
 use stickslip_files::output::picture::PictureFile;
 use stickslip_plane::atlas::{self, Document, geojson};
 use stickslip_plane::gaining;
+use stickslip_plane::progress::InParallel;
+use stickslip_tracer::{Surveyor, Watch};
 
 use crate::error::Failure;
 use crate::output::progress::Bar;
-use crate::plan::TracePlan;
+use crate::plan::{SystemTracePlan, TracePlan};
 use crate::threads;
 
 /// Traces the boundaries of the window and writes its atlas.
@@ -51,6 +53,37 @@ pub fn run(plan: &TracePlan) -> Result<(), Failure> {
     match (&plan.gaining, gained.and_then(|gained| gained.objection())) {
         (Some(path), Some(reason)) => Err(Failure::Doubtful { path: path.clone(), reason }),
         _ => Ok(()),
+    }
+}
+
+/// Traces the boundaries of a system of one's own, and writes its atlas.
+///
+/// # Errors
+/// A run fails, files cannot be written, or something speaks against the atlas. In the last case
+/// the files are complete and say so.
+pub fn system(plan: &SystemTracePlan) -> Result<(), Failure> {
+    let SystemTracePlan { plane, options, out, plot, threads } = plan;
+    plot.as_ref().map(PictureFile::probe).transpose()?;
+    let pool = threads::pool(*threads)?;
+    let file = OutputFile::create(out)?;
+    let bar = Bar::steps();
+    let report = |progress| bar.report(progress);
+    let (options, executor, watch) = (*options, InParallel, Watch::from(&report));
+    let surveyor = Surveyor { options, executor, watch };
+    let atlas = pool.install(|| surveyor.atlas(&plane.family, &plane.window));
+    drop(bar);
+    let atlas = atlas.map_err(|error| Failure::Family(error.to_string()))?;
+    let [x, y] = &plane.axes;
+    let mut document = stickslip_tracer::Document::new(&atlas, &options, &plane.name, [x, y]);
+    document.guards = plane.family.rules().to_vec();
+    let mut stored = vec![write_json(file, &document)?];
+    if let Some(plot) = plot {
+        stored.push(plot.write(Ok(pictures::family::draw_runs(&atlas, &plane.name, [x, y])))?);
+    }
+    publish(stored)?;
+    match atlas.objection() {
+        Some(reason) => Err(Failure::Doubtful { path: out.clone(), reason }),
+        None => Ok(()),
     }
 }
 

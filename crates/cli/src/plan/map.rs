@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use stickslip_files::input::part::MapPart;
+use stickslip_files::input::range::Size;
 use stickslip_files::input::source::is_standard_input;
 use stickslip_files::input::{bodies, law};
 use stickslip_files::output::picture::PictureFile;
@@ -13,11 +14,65 @@ use stickslip_plane::{Coordinates, Grid, GridAxis, Range};
 use super::engine::engine;
 use super::files::require_different;
 use super::law::chosen_law;
+use super::system::SystemPlane;
 use super::window::{ImpactRange, KappaWindow};
 use crate::args::{MapArguments, Method};
 use crate::error::Failure;
 
-/// A map to be computed.
+/// What is to be mapped.
+#[derive(Debug)]
+pub enum Mapped {
+    /// Collisions.
+    Collisions(Box<MapPlan>),
+    /// A system of one's own.
+    System(Box<SystemMapPlan>),
+}
+
+/// A map of a system of one's own.
+#[derive(Debug)]
+pub struct SystemMapPlan {
+    /// The runs.
+    pub plane: SystemPlane,
+    /// The number of columns and rows.
+    pub size: Size,
+    /// The file of the map.
+    pub out: PathBuf,
+    /// The format of that file.
+    pub format: MapFormat,
+    /// The file of a picture, if the map is drawn.
+    pub plot: Option<PictureFile>,
+    /// The number of threads; `None` is one for each core.
+    pub threads: Option<u16>,
+}
+
+/// The largest number of points of a map of a system, which is in memory.
+const MOST_POINTS: usize = 100_000_000;
+
+impl Mapped {
+    /// The plan that `arguments` make.
+    ///
+    /// # Errors
+    /// As [`MapPlan::new`]; or the system cannot be read, or options do not fit it.
+    pub fn new(arguments: &MapArguments) -> Result<Self, Failure> {
+        let Some(plane) = SystemPlane::new(&arguments.plane)? else {
+            return MapPlan::new(arguments).map(|plan| Self::Collisions(Box::new(plan)));
+        };
+        let &MapArguments { size, ref out, ref plot, threads, .. } = arguments;
+        let picture = plot.as_ref().map(PictureFile::path);
+        let system = arguments.plane.system.as_deref();
+        require_different(&[("--out", Some(out)), ("--plot", picture)], &[("the system", system)])?;
+        if size.columns.saturating_mul(size.rows) > MOST_POINTS {
+            return Err(Failure::Usage(format!(
+                "--size: {}x{} points; expected at most {MOST_POINTS} of a system",
+                size.columns, size.rows
+            )));
+        }
+        let (format, out, plot) = (MapFormat::of(out)?, out.clone(), plot.clone());
+        Ok(Self::System(Box::new(SystemMapPlan { plane, size, out, format, plot, threads })))
+    }
+}
+
+/// A map of collisions to be computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MapPlan {
     /// The cells of the map.

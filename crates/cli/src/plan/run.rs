@@ -1,18 +1,15 @@
 //! What `run` is to do.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use stickslip_expression::{Runnable, System};
-use stickslip_files::input::source;
 use stickslip_files::output::picture::PictureFile;
 use stickslip_solver::{EmbeddedPair, Options};
 
 use super::files::require_different;
+use super::system::{read, require_end, title, values};
 use crate::args::{Format, RunArguments};
 use crate::error::Failure;
-
-/// The largest text of a system, in bytes.
-const MOST_TEXT: u64 = 100_000_000;
 
 /// A run of a system.
 #[derive(Debug)]
@@ -41,20 +38,6 @@ pub struct RunPlan {
     pub plot: Option<PictureFile>,
 }
 
-/// Reads a system, and its text.
-///
-/// # Errors
-/// [`Failure::File`]: it cannot be read, or is no system.
-pub fn read(path: &Path) -> Result<(System, String), Failure> {
-    let text = source::read(path, MOST_TEXT)?;
-    let shown = source::shown(path);
-    let text =
-        String::from_utf8(text).map_err(|_| Failure::input(shown, "is not a text in UTF-8"))?;
-    let refused = |error| Failure::Text { path: shown.to_owned(), error };
-    let system = System::parse(&text).map_err(refused)?;
-    Ok((system, text))
-}
-
 impl RunPlan {
     /// The plan that `arguments` make.
     ///
@@ -69,18 +52,7 @@ impl RunPlan {
         ];
         require_different(&outputs, &[("the system", Some(&*arguments.system))])?;
         let (system, _) = read(&arguments.system)?;
-        let mut parameters = system.values();
-        for (name, value) in set {
-            let place = system.parameters.iter().position(|it| it.name == *name);
-            let Some(place) = place else {
-                let names: Vec<_> = system.parameters.iter().map(|it| it.name.as_str()).collect();
-                let known = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-                let message =
-                    format!("--set {name}: the system has no such parameter; it has {known}");
-                return Err(Failure::Usage(message));
-            };
-            parameters[place] = *value;
-        }
+        let parameters = values(&system, set)?;
         let runnable =
             system.with(&parameters).map_err(|error| Failure::Usage(error.to_string()))?;
         let end = arguments.end.unwrap_or(runnable.end());
@@ -90,19 +62,15 @@ impl RunPlan {
                 "the run ends at {end}; expected an end after {start}"
             )));
         }
-        if end.is_infinite() && !system.ends_itself() {
-            let message = "the system says no end; expected --end, `end = …`, or a rule -> end";
-            return Err(Failure::Usage(message.to_owned()));
-        }
+        require_end(&system, arguments.end)?;
         let defaults = Options::default();
         let options = Options {
             rtol: arguments.rtol.unwrap_or(defaults.rtol),
             atol: arguments.atol.unwrap_or(defaults.atol),
             ..defaults
         };
-        let name = source::shown(&arguments.system).file_stem();
         Ok(Self {
-            name: name.map_or_else(String::new, |it| it.to_string_lossy().into_owned()),
+            name: title(&arguments.system),
             parameters,
             runnable,
             end,

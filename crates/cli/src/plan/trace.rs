@@ -6,14 +6,67 @@ use stickslip_files::input::recipe::reduced;
 use stickslip_files::output::picture::PictureFile;
 use stickslip_plane::Range;
 use stickslip_plane::atlas::Frame;
+use stickslip_tracer::AtlasOptions;
 
 use super::files::require_different;
 use super::law::chosen_law;
+use super::system::SystemPlane;
 use super::window::{ImpactRange, KappaWindow};
 use crate::args::TraceArguments;
 use crate::error::Failure;
 
-/// An atlas to be traced.
+/// What is to be traced.
+#[derive(Debug)]
+pub enum Traced {
+    /// Collisions.
+    Collisions(Box<TracePlan>),
+    /// A system of one's own.
+    System(Box<SystemTracePlan>),
+}
+
+/// An atlas of a system of one's own.
+#[derive(Debug)]
+pub struct SystemTracePlan {
+    /// The runs.
+    pub plane: SystemPlane,
+    /// How they are traced.
+    pub options: AtlasOptions,
+    /// The file of the atlas.
+    pub out: PathBuf,
+    /// The file of a picture, if the atlas is drawn.
+    pub plot: Option<PictureFile>,
+    /// The number of threads; `None` is one for each core.
+    pub threads: Option<u16>,
+}
+
+impl Traced {
+    /// The plan that `arguments` make.
+    ///
+    /// # Errors
+    /// As [`TracePlan::new`]; or the system cannot be read, or options do not fit it.
+    pub fn new(arguments: &TraceArguments) -> Result<Self, Failure> {
+        let Some(plane) = SystemPlane::new(&arguments.plane)? else {
+            return TracePlan::new(arguments).map(|plan| Self::Collisions(Box::new(plan)));
+        };
+        let TraceArguments { out, plot, threads, .. } = arguments;
+        let picture = plot.as_ref().map(PictureFile::path);
+        let system = arguments.plane.system.as_deref();
+        require_different(&[("--out", Some(out)), ("--plot", picture)], &[("the system", system)])?;
+        let tolerance = arguments.tolerance.unwrap_or(1e-9);
+        let most = 1e-3 * plane.window.extent().min();
+        if !(tolerance > 0.0 && tolerance < most) {
+            return Err(Failure::Usage(format!(
+                "--tolerance {tolerance}: expected above 0 and below {most}, a thousandth of the \
+                 window"
+            )));
+        }
+        let options = AtlasOptions { tolerance, ..AtlasOptions::default() };
+        let (out, plot, threads) = (out.clone(), plot.clone(), *threads);
+        Ok(Self::System(Box::new(SystemTracePlan { plane, options, out, plot, threads })))
+    }
+}
+
+/// An atlas of collisions to be traced.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TracePlan {
     /// The window of the atlas.

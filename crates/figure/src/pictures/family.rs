@@ -1,6 +1,7 @@
 //! The picture of an atlas of any family.
 
-use stickslip_tracer::{Atlas, Location, Point, Unresolved};
+use stickslip_solver::{Margin, Place};
+use stickslip_tracer::{Atlas, Itinerary, Location, Point, Unresolved};
 
 use super::regions;
 use crate::canvas::Legend;
@@ -36,6 +37,28 @@ pub struct Captions<'a, Label, Margin> {
     pub kind: &'a dyn Fn(&Margin) -> usize,
     /// A short text for the regions with a label.
     pub text: &'a dyn Fn(&Label) -> String,
+}
+
+/// Draws the atlas of a hybrid system, with the number of events in each region.
+#[must_use]
+pub fn draw_runs(atlas: &Atlas<Itinerary, Margin>, family: &str, axes: [&str; 2]) -> Svg {
+    let (curves, regions) = (atlas.plane.curves().len(), atlas.plane.regions().len());
+    let title =
+        format!("{family}: {curves} boundaries, {regions} regions with their number of events");
+    let kind = |margin: &Margin| match margin.place {
+        Place::End => 0,
+        Place::Minimum { .. } | Place::Maximum { .. } => 1,
+        Place::Exit(_) => 2,
+        Place::Start { .. } | Place::Branch(_) => 3,
+    };
+    let text = |label: &Itinerary| match label {
+        Itinerary::Fires(guards) => guards.len().to_string(),
+        Itinerary::Begins(guards) => format!("{}+", guards.len()),
+        Itinerary::Accumulates => "∞".to_owned(),
+        Itinerary::Unfinished | Itinerary::Fails => "–".to_owned(),
+    };
+    let kinds = &["event at the end", "graze", "order of events", "start or branch"];
+    draw(atlas, &Captions { title: &title, axes, kinds, kind: &kind, text: &text })
 }
 
 /// Draws an atlas in its coordinates, with linear axes. Regions in doubt have the text `?`.

@@ -8,6 +8,9 @@ use std::io::{self, BufWriter, Write};
 
 use rawzip::{Error, ErrorKind, ZipArchiveWriter};
 
+/// What an archive is written with.
+pub use rawzip::ZipArchiveWriter as Archive;
+
 /// Writes the entry `name`.npy, whose content `elements` writes.
 ///
 /// # Errors

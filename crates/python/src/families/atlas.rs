@@ -4,7 +4,7 @@ use numpy::{IntoPyArray, PyReadonlyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use serde_json::Value;
-use stickslip_figure::pictures::family::{Captions, draw};
+use stickslip_figure::pictures::family::draw_runs;
 use stickslip_solver::{Margin, Place};
 use stickslip_tracer::{
     Atlas, AtlasOptions, Document, End, Followed, Itinerary, Location, Point, SCHEMA, SpecialPoint,
@@ -150,21 +150,7 @@ impl FamilyAtlas {
     /// The picture as SVG.
     fn picture(&self, py: Python<'_>) -> String {
         let Description(family, [x, y], _) = &self.description;
-        py.detach(|| {
-            let plane = &self.atlas.plane;
-            let (curves, regions) = (plane.curves().len(), plane.regions().len());
-            let title = format!(
-                "{family}: {curves} boundaries, {regions} regions with their number of events"
-            );
-            let captions = Captions {
-                title: &title,
-                axes: [x, y],
-                kinds: &["event at the end", "graze", "order of events", "start or branch"],
-                kind: &kind,
-                text: &number,
-            };
-            draw(&self.atlas, &captions).document()
-        })
+        py.detach(|| draw_runs(&self.atlas, family, [x, y]).document())
     }
 
     /// The region of each point and its distance from the nearest curve in y: −1 on a curve within
@@ -252,26 +238,6 @@ pub fn label(label: &Itinerary) -> Label {
         Itinerary::Accumulates => ("accumulates", Vec::new()),
         Itinerary::Unfinished => ("unfinished", Vec::new()),
         Itinerary::Fails => ("fails", Vec::new()),
-    }
-}
-
-/// The kind of a boundary in the picture.
-fn kind(margin: &Margin) -> usize {
-    match margin.place {
-        Place::End => 0,
-        Place::Minimum { .. } | Place::Maximum { .. } => 1,
-        Place::Exit(_) => 2,
-        Place::Start { .. } | Place::Branch(_) => 3,
-    }
-}
-
-/// The number of events in the picture.
-fn number(label: &Itinerary) -> String {
-    match label {
-        Itinerary::Fires(guards) => guards.len().to_string(),
-        Itinerary::Begins(guards) => format!("{}+", guards.len()),
-        Itinerary::Accumulates => "∞".to_owned(),
-        Itinerary::Unfinished | Itinerary::Fails => "–".to_owned(),
     }
 }
 

@@ -100,7 +100,7 @@ fn compare<M: Method>(method: M, n: usize) {
     let pieces = one.sides.windows(2).filter(|two| !near(&two[0][1], &two[1][0], 1e-9)).count();
     assert!(pieces <= one.events.len(), "{name}: {pieces}");
     assert_eq!(one.sides.len(), other.sides.len(), "{name}");
-    assert!(one.events.len() > 3, "{name}");
+    assert!(!one.events.is_empty(), "{name}");
     assert_eq!(one.events.len(), other.events.len(), "{name}");
     for (a, b) in one.events.iter().zip(&other.events) {
         assert!((a.s - b.s).abs() < 1e-9 && near(&a.before, &b.before, 1e-9), "{name}");
@@ -114,7 +114,7 @@ fn compare<M: Method>(method: M, n: usize) {
     };
     let a = found(margins_dynamic(method, &fixed, start(), end, &options));
     let b = found(margins_dynamic(method, &free, start(), end, &options));
-    assert!(a.len() > 3 && a.len() == b.len(), "{name}: {} {}", a.len(), b.len());
+    assert!(!a.is_empty() && a.len() == b.len(), "{name}: {} {}", a.len(), b.len());
     for ((which, a), (_, b)) in a.iter().zip(&b) {
         assert!((a - b).abs() < 1e-8, "{name}: {which:?} {a} {b}");
         let again = margin_dynamic(method, &fixed, start(), end, &options, which).expect(&name);

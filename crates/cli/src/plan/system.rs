@@ -1,0 +1,124 @@
+//! Systems that are texts, and their parameters.
+
+use std::path::Path;
+
+use stickslip_expression::{System, SystemFamily};
+use stickslip_files::input::source;
+use stickslip_solver::Options;
+use stickslip_tracer::{Point, Window};
+
+use crate::args::{Axis, PlaneArguments};
+use crate::error::Failure;
+
+/// The largest text of a system, in bytes.
+const MOST_TEXT: u64 = 100_000_000;
+
+/// Reads a system, and its text.
+///
+/// # Errors
+/// [`Failure::File`]: it cannot be read, or is no system.
+pub fn read(path: &Path) -> Result<(System, String), Failure> {
+    let text = source::read(path, MOST_TEXT)?;
+    let shown = source::shown(path);
+    let text =
+        String::from_utf8(text).map_err(|_| Failure::input(shown, "is not a text in UTF-8"))?;
+    let refused = |error| Failure::Text { path: shown.to_owned(), error };
+    let system = System::parse(&text).map_err(refused)?;
+    Ok((system, text))
+}
+
+/// The name of a system in titles: that of its file.
+pub fn title(path: &Path) -> String {
+    let name = source::shown(path).file_stem();
+    name.map_or_else(String::new, |it| it.to_string_lossy().into_owned())
+}
+
+/// The values of the parameters of a system, some of which are set.
+///
+/// # Errors
+/// [`Failure::Usage`]: there is no such parameter.
+pub fn values(system: &System, set: &[(String, f64)]) -> Result<Vec<f64>, Failure> {
+    let mut values = system.values();
+    for (name, value) in set {
+        values[place(system, "--set", name)?] = *value;
+    }
+    Ok(values)
+}
+
+/// The place of a parameter.
+fn place(system: &System, option: &str, name: &str) -> Result<usize, Failure> {
+    let place = system.parameters.iter().position(|it| it.name == *name);
+    place.ok_or_else(|| {
+        let names: Vec<_> = system.parameters.iter().map(|it| it.name.as_str()).collect();
+        let known = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+        Failure::Usage(format!("{option} {name}: the system has no such parameter; it has {known}"))
+    })
+}
+
+/// Refuses runs without an end.
+///
+/// # Errors
+/// [`Failure::Usage`]: nothing ends the runs.
+pub fn require_end(system: &System, end: Option<f64>) -> Result<(), Failure> {
+    if end.is_none() && system.end.is_none() && !system.ends_itself() {
+        let message = "the system says no end; expected --end, `end = …`, or a rule -> end";
+        return Err(Failure::Usage(message.to_owned()));
+    }
+    Ok(())
+}
+
+/// The runs of a system over a window of two of its parameters.
+#[derive(Debug)]
+pub struct SystemPlane {
+    /// The name of the system in titles.
+    pub name: String,
+    /// The system.
+    pub system: System,
+    /// The runs.
+    pub family: SystemFamily,
+    /// The names of the parameters on the axes.
+    pub axes: [String; 2],
+    /// The window.
+    pub window: Window,
+}
+
+impl SystemPlane {
+    /// The plane that `arguments` describe, if they name a system.
+    ///
+    /// # Errors
+    /// [`Failure`]: the system cannot be read, or options do not fit it.
+    pub fn new(arguments: &PlaneArguments) -> Result<Option<Self>, Failure> {
+        let PlaneArguments { system, x, y, set, end, .. } = arguments;
+        let (Some(path), Some(x), Some(y)) = (system, x, y) else { return Ok(None) };
+        let (system, _) = read(path)?;
+        let parameters = values(&system, set)?;
+        let axis = |option: &str, axis: &Axis| place(&system, option, &axis.name);
+        let places = [axis("--x", x)?, axis("--y", y)?];
+        if places[0] == places[1] {
+            return Err(Failure::Usage(format!(
+                "--x and --y are both {}; expected two parameters",
+                x.name
+            )));
+        }
+        require_end(&system, *end)?;
+        let defaults = Options::with_tolerance(1e-13);
+        let options = Options {
+            rtol: arguments.system_rtol.unwrap_or(defaults.rtol),
+            atol: arguments.system_atol.unwrap_or(defaults.atol),
+            max_switches: arguments.max_events.map_or(defaults.max_switches, |most| most as usize),
+            ..defaults
+        };
+        let family = SystemFamily::new(&system, places, &parameters, *end, options);
+        let family = family.map_err(|error| Failure::Usage(error.to_string()))?;
+        Ok(Some(Self {
+            name: title(path),
+            family,
+            axes: [x.name.clone(), y.name.clone()],
+            window: Window {
+                low: Point::new(x.range.low, y.range.low),
+                high: Point::new(x.range.high, y.range.high),
+            },
+            system,
+        }))
+    }
+}
