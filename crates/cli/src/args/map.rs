@@ -112,8 +112,8 @@ Results:
   row per point. A point that cannot be computed is NaN and -1, and the exit code is 1.
 
   With SYSTEM.slip, FILE.npz has the two parameters (W and H) by their names, event_count (H x W,
-  of events before the end), end_time, end_mode, and the components of the state by their names,
-  end_NAME. The picture shows the number of events, the time, and the first components.
+  of events before the end), outcome (end, rule, accumulation, event_limit, step_limit or failed),
+  end_time, end_mode, and the components of the state, end_NAME. The picture shows the number of events, the time, and the first components.
 
   Finished tiles are kept in FILE.npz.tiles until the map is complete. After an interruption the
   same command continues where it stopped, and the result is the same, bit for bit.

@@ -67,8 +67,9 @@ fn label(system: &System, event: &DynamicSwitch<usize>) -> String {
     system.modes[event.from].rules[event.guard].name(event.guard)
 }
 
-fn outcome(found: &Recording) -> (&'static str, Option<f64>) {
-    match found.run.outcome {
+/// Why a run ended, and where events accumulate.
+pub fn outcome(outcome: Outcome) -> (&'static str, Option<f64>) {
+    match outcome {
         Outcome::ReachedEnd => ("end", None),
         Outcome::EndedByGuard { .. } => ("rule", None),
         Outcome::StepLimit => ("step_limit", None),
@@ -212,7 +213,7 @@ fn document(plan: &RunPlan, found: &Recording) -> Value {
             after: state(&event.after),
         })
         .collect();
-    let (outcome, accumulation) = outcome(found);
+    let (outcome, accumulation) = outcome(found.run.outcome);
     json!({
         "schema": schema::RUN,
         "system": plan.name,
@@ -251,7 +252,7 @@ fn table(out: &mut dyn Write, plan: &RunPlan, found: &Recording) -> io::Result<(
         }
     }
     writeln!(out)?;
-    let ended = match outcome(found) {
+    let ended = match outcome(found.run.outcome) {
         ("end", _) => "at its end".to_owned(),
         ("rule", _) => "by a rule".to_owned(),
         ("accumulation", Some(at)) => format!("events accumulate at {}", number(at)),

@@ -6,10 +6,11 @@ use rayon::prelude::*;
 use stickslip_figure::pictures::map::{self, MapAxis, MapPanel, Values};
 use stickslip_files::output::csv::{CsvFile, Rows};
 use stickslip_files::output::file::{OutputFile, StoredFile, publish};
-use stickslip_files::output::npz::{Archive, array, number, plain, text};
+use stickslip_files::output::npz::{Archive, array, number, plain, text, texts};
 use stickslip_files::output::picture::PictureFile;
 use stickslip_tracer::{DynamicFired, Point};
 
+use crate::commands::run::outcome;
 use crate::error::Failure;
 use crate::output::progress::Bar;
 use crate::plan::{MapFormat, SystemMapPlan, SystemPlane};
@@ -24,6 +25,7 @@ const MOST_PIXELS: usize = 1000;
 struct Cell {
     /// The number of events before the end; negative if the run has no result.
     events: i32,
+    outcome: &'static str,
     mode: i32,
     time: f64,
     state: Vec<f64>,
@@ -74,10 +76,11 @@ fn centres(low: f64, high: f64, count: usize) -> Vec<f64> {
 fn cell(plane: &SystemPlane, point: &Point) -> Cell {
     let Ok(Some(DynamicFired { run, fired })) = plane.family.run(point) else {
         let state = vec![f64::NAN; plane.system.components.len()];
-        return Cell { events: -1, mode: -1, time: f64::NAN, state };
+        return Cell { events: -1, outcome: "failed", mode: -1, time: f64::NAN, state };
     };
     Cell {
         events: i32::try_from(fired.len()).unwrap_or(i32::MAX),
+        outcome: outcome(run.outcome).0,
         mode: i32::try_from(run.mode).unwrap_or(i32::MAX),
         time: run.s,
         state: run.state,
@@ -117,6 +120,7 @@ impl Map<'_> {
                 self.cells.iter().try_for_each(|cell| out.write_all(&of(cell).to_le_bytes()))
             })?;
         }
+        texts(&mut archive, "outcome", &shape, self.cells.iter().map(|cell| cell.outcome))?;
         array(&mut archive, "end_time", "<f8", &shape, |out| {
             write(out, &mut self.cells.iter().map(|cell| cell.time))
         })?;
@@ -140,7 +144,7 @@ impl Map<'_> {
         let mut file = CsvFile::create(path)?;
         let mut rows = Rows::default();
         rows.fields(self.plane.axes.iter().map(String::as_str));
-        rows.fields(["event_count", "end_mode", "end_time"]);
+        rows.fields(["event_count", "outcome", "end_mode", "end_time"]);
         rows.fields(self.plane.system.components.iter().map(|it| format!("end_{}", it.name)));
         rows.end();
         for (y, row) in self.y.iter().zip(self.cells.chunks(self.x.len())) {
@@ -148,6 +152,7 @@ impl Map<'_> {
                 rows.number(*x);
                 rows.number(*y);
                 rows.count(cell.events);
+                rows.field(cell.outcome);
                 let mode = usize::try_from(cell.mode).ok();
                 rows.field(mode.map_or("", |mode| &self.plane.system.modes[mode].name));
                 rows.number(cell.time);
@@ -167,7 +172,9 @@ impl Map<'_> {
         let rows = self.cells.chunks(self.x.len()).step_by(up);
         let shown: Vec<&Cell> = rows.flat_map(|row| row.iter().step_by(across)).collect();
         let (columns, rows) = (self.x.len().div_ceil(across), self.y.len().div_ceil(up));
-        let counts: Vec<i32> = shown.iter().map(|cell| cell.events).collect();
+        // Events that accumulate have no number.
+        let known = |cell: &&Cell| if cell.outcome == "accumulation" { -1 } else { cell.events };
+        let counts: Vec<i32> = shown.iter().map(known).collect();
         let times: Vec<f64> = shown.iter().map(|cell| cell.time).collect();
         let names = self.plane.system.components.iter().take(MOST_PANELS).enumerate();
         let values: Vec<(String, Vec<f64>)> =

@@ -33,6 +33,7 @@ mod parts_failures;
 #[cfg(unix)]
 mod parts_interrupted;
 mod pictures;
+mod plane;
 mod reproduce;
 mod run;
 mod stack;

@@ -6,17 +6,16 @@
 
 use std::io::{self, BufWriter, Write};
 
-use rawzip::{Error, ErrorKind, ZipArchiveWriter};
-
 /// What an archive is written with.
 pub use rawzip::ZipArchiveWriter as Archive;
+use rawzip::{Error, ErrorKind};
 
 /// Writes the entry `name`.npy, whose content `elements` writes.
 ///
 /// # Errors
 /// The archive cannot be written.
 pub fn array<W: Write>(
-    archive: &mut ZipArchiveWriter<W>,
+    archive: &mut Archive<W>,
     name: &str,
     element: &str,
     shape: &str,
@@ -57,11 +56,7 @@ pub fn plain(error: Error) -> io::Error {
 ///
 /// # Errors
 /// The archive cannot be written.
-pub fn number<W: Write>(
-    archive: &mut ZipArchiveWriter<W>,
-    name: &str,
-    value: f64,
-) -> io::Result<()> {
+pub fn number<W: Write>(archive: &mut Archive<W>, name: &str, value: f64) -> io::Result<()> {
     array(archive, name, "<f8", "", |out| out.write_all(&value.to_le_bytes()))
 }
 
@@ -69,11 +64,31 @@ pub fn number<W: Write>(
 ///
 /// # Errors
 /// The archive cannot be written.
-pub fn text<W: Write>(archive: &mut ZipArchiveWriter<W>, name: &str, text: &str) -> io::Result<()> {
+pub fn text<W: Write>(archive: &mut Archive<W>, name: &str, text: &str) -> io::Result<()> {
     // In NumPy a character takes four bytes.
     let element = format!("<U{}", text.chars().count());
     array(archive, name, &element, "", |out| {
         text.chars().try_for_each(|c| out.write_all(&u32::from(c).to_le_bytes()))
+    })
+}
+
+/// Writes texts as an array of this shape.
+///
+/// # Errors
+/// The archive cannot be written.
+pub fn texts<'a, W: Write>(
+    archive: &mut Archive<W>,
+    name: &str,
+    shape: &str,
+    texts: impl Iterator<Item = &'a str> + Clone,
+) -> io::Result<()> {
+    let width = texts.clone().map(|text| text.chars().count()).max().unwrap_or(0);
+    array(archive, name, &format!("<U{width}"), shape, |out| {
+        for text in texts {
+            let padded = text.chars().map(u32::from).chain(std::iter::repeat(0));
+            padded.take(width).try_for_each(|c| out.write_all(&c.to_le_bytes()))?;
+        }
+        Ok(())
     })
 }
 
