@@ -2,6 +2,8 @@
 
 mod whole;
 
+use std::sync::Arc;
+
 use stickslip_solver::{Direction, Guard, InvalidTimes, Times};
 use thiserror::Error;
 
@@ -93,11 +95,12 @@ impl System {
             Trigger::At(times) => Clock::At(times.len()),
             Trigger::Every { .. } => Clock::Every,
         };
+        let modes = self.modes.iter().zip(self.counters());
         Ok(Compiled {
             parameters: self.parameters.iter().map(|it| it.name.clone()).collect(),
             components: self.components.iter().map(|it| it.name.clone()).collect(),
             names: self.modes.iter().map(|mode| mode.name.clone()).collect(),
-            modes: self.modes.iter().map(|mode| self.compile_mode(mode)).collect(),
+            modes: modes.map(|(mode, counters)| self.compile_mode(mode, counters)).collect(),
             clocks: self.modes.iter().map(|mode| mode.rules.iter().map(clock).collect()).collect(),
             first: self.first,
             numbers: Program::compile(&self.graph, &fixed, inputs),
@@ -114,12 +117,33 @@ impl System {
         self.compile()?.with(parameters)
     }
 
+    /// The numbers under which rules are counted: by their labels, or else each on its own, except
+    /// that modes have common rules at one place.
+    fn counters<'a>(&'a self) -> Vec<Arc<[usize]>> {
+        if self.modes.iter().flat_map(|mode| &mode.rules).all(|rule| rule.ends_after <= 1) {
+            return self.modes.iter().map(|mode| (0..mode.rules.len()).collect()).collect();
+        }
+        let mut known: Vec<(usize, &'a Rule)> = Vec::new();
+        let mut number = |(place, rule): (usize, &'a Rule)| {
+            let is_same = |&(other, known): &(usize, &Rule)| match (&known.label, &rule.label) {
+                (None, None) => other == place && known == rule,
+                (one, other) => one == other,
+            };
+            known.iter().position(is_same).unwrap_or_else(|| {
+                known.push((place, rule));
+                known.len() - 1
+            })
+        };
+        let modes = self.modes.iter();
+        modes.map(|mode| mode.rules.iter().enumerate().map(&mut number).collect()).collect()
+    }
+
     fn program(&self, formulas: &[Formula]) -> Program {
         let (components, parameters) = (self.components.len(), self.parameters.len());
         Program::compile(&self.graph, formulas, Inputs { components, parameters, fixed: true })
     }
 
-    fn compile_mode(&self, mode: &system::Mode) -> Mode {
+    fn compile_mode(&self, mode: &system::Mode, counters: Arc<[usize]>) -> Mode {
         let nothing = |rule: &Rule| match rule.trigger {
             Trigger::When(guard, _) => guard,
             // Clocks have no value.
@@ -152,6 +176,7 @@ impl System {
             Reaction { changed: changed.into(), changes, next: rule.next.clone(), condition }
         };
         Mode {
+            counters,
             slopes: self.program(&mode.slopes),
             guards: mode.rules.iter().map(guard).collect(),
             values: self.program(&values),
@@ -263,6 +288,7 @@ impl Mode {
             values: bound(&self.values),
             reactions: self.reactions.iter().map(reaction).collect(),
             guards: self.guards.clone(),
+            counters: self.counters.clone(),
             reads: self.reads.clone(),
         }
     }

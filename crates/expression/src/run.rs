@@ -26,6 +26,8 @@ pub struct Runnable {
 pub(crate) struct Mode {
     pub(crate) slopes: Program,
     pub(crate) guards: Arc<[Guard]>,
+    /// The numbers under which rules are counted.
+    pub(crate) counters: Arc<[usize]>,
     pub(crate) values: Program,
     /// The components that guards read, none if these are all.
     pub(crate) reads: Arc<[usize]>,
@@ -108,7 +110,8 @@ impl ReadableDynamic for Runnable {
     const ON_FIXED_STATES: bool = true;
 
     fn most_guards(&self) -> usize {
-        self.modes.iter().map(|mode| mode.guards.len()).max().unwrap_or(0)
+        let most = |mode: &Mode| mode.counters.iter().map(|counter| counter + 1).max().unwrap_or(0);
+        self.modes.iter().map(|mode| most(mode).max(mode.guards.len())).max().unwrap_or(0)
     }
     #[inline]
     fn field<T: Number>(&self, mode: usize, s: T, y: &[T], slope: &mut [T]) {
@@ -123,6 +126,10 @@ impl ReadableDynamic for Runnable {
     }
     fn reads(&self, mode: usize) -> &[usize] {
         &self.modes[mode].reads
+    }
+    fn counter(&self, mode: usize, guard: usize) -> usize {
+        // Places beyond the guards of a mode may be asked for.
+        self.modes[mode].counters.get(guard).copied().unwrap_or(guard)
     }
     fn schedule(&self, mode: usize, guard: usize) -> Schedule<'_> {
         match &self.ticks[mode][guard] {

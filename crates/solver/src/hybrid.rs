@@ -120,6 +120,14 @@ pub trait HybridSystem<const N: usize, const G: usize> {
         (mode, *y)
     }
 
+    /// The number, below `G`, under which the firings of `guard` of `mode` are counted
+    /// ([`Guard::terminal_after`]). Guards with one number are counted together; the provided
+    /// version returns the place of the guard, by which [margins](mod@crate::margin) always count.
+    #[inline]
+    fn counter(&self, _mode: Self::Mode, guard: usize) -> usize {
+        guard
+    }
+
     /// The times at which a [clock](Guard::clock) among the guards of `mode` fires.
     ///
     /// Steps end at these times, without a search. A time at which a phase begins belongs to the

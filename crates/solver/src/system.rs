@@ -193,6 +193,8 @@ pub(crate) trait System: Sized {
         s: f64,
         y: &mut Self::State,
     ) -> Option<Self::Mode>;
+    /// The number under which firings of a guard are counted.
+    fn counter(&self, mode: Self::Mode, guard: usize) -> usize;
     /// The first time after `s` at which a clock fires.
     fn next_time(&self, mode: Self::Mode, guard: usize, s: f64) -> f64;
     fn step<M: Method>(
@@ -253,6 +255,10 @@ impl<S: HybridSystem<N, G>, const N: usize, const G: usize> System for Fixed<'_,
         let (to, after) = self.0.rest(mode, guard, s, y)?;
         *y = after;
         Some(to)
+    }
+    #[inline(always)]
+    fn counter(&self, mode: S::Mode, guard: usize) -> usize {
+        self.0.counter(mode, guard)
     }
     fn next_time(&self, mode: S::Mode, guard: usize, s: f64) -> f64 {
         self.0.schedule(mode, guard).next_after(s)
@@ -354,6 +360,10 @@ impl<S: DynamicSystem> System for Free<'_, S> {
     }
     fn rest(&self, mode: S::Mode, guard: usize, s: f64, y: &mut Vec<f64>) -> Option<S::Mode> {
         self.0.rest(mode, guard, s, y)
+    }
+    #[inline(always)]
+    fn counter(&self, mode: S::Mode, guard: usize) -> usize {
+        self.0.counter(mode, guard)
     }
     fn next_time(&self, mode: S::Mode, guard: usize, s: f64) -> f64 {
         self.0.schedule(mode, guard).next_after(s)

@@ -150,3 +150,30 @@ fn runs_end_after_some_events() {
     let pi = std::f64::consts::PI;
     assert!((end.s - 3.0 * pi).abs() < 1e-9 && switches.len() == 3, "{end:?}");
 }
+
+/// Rules that stand at one place of two modes are counted apart, unless they have one label.
+#[test]
+fn rules_are_counted_one_by_one() {
+    let text = |first: &str, second: &str| {
+        format!(
+            "state x = 0, y = 0\nmode a\n  x' = 1\n  y' = 0\n  when x > 1 {first} -> b\n    x := 0\n\
+             mode b\n  x' = 1\n  y' = 1\n  when x > 1 {second} end after 3\n    x := 0\n  \
+             when y > 1.5 -> a\n    y := 0\nstart in a\nend = 100\n"
+        )
+    };
+    let end = |first, second| {
+        let system = System::parse(&text(first, second)).expect("a system");
+        let found = run(&system.with(&[]).expect("no parameters"));
+        found.0.s
+    };
+    // b counts at 2, 4 and 6; a acts at 1, 3 and 5, and with it the third time is 3.
+    assert!((end("", "") - 6.0).abs() < 1e-12);
+    assert!((end("\"up\"", "\"count\"") - 6.0).abs() < 1e-12);
+    assert!((end("\"one\"", "\"one\"") - 4.0).abs() < 1e-12);
+    // A common rule counts wherever it acts.
+    let common = "state x = 0\nx' = 1\nwhen x > 1 end after 3\n  x := 0\nmode a\n  at 1.5 -> b\n\
+                  mode b\n  at 2.5 -> a\nstart in a\nend = 100\n";
+    let system = System::parse(common).expect("a system");
+    let found = run(&system.with(&[]).expect("no parameters"));
+    assert!((found.0.s - 3.0).abs() < 1e-12, "{}", found.0.s);
+}

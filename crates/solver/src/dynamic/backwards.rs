@@ -60,6 +60,10 @@ impl<S: DynamicSystem> DynamicSystem for Reversed<&S> {
         self.0.guard_values(mode, reverse(tau), y, values);
     }
 
+    fn counter(&self, mode: S::Mode, guard: usize) -> usize {
+        self.0.counter(mode, guard)
+    }
+
     fn schedule(&self, mode: S::Mode, guard: usize) -> Schedule<'_> {
         self.0.schedule(mode, guard).reversed()
     }

@@ -116,6 +116,9 @@ impl<S: DynamicSystem, const N: usize, const G: usize> HybridSystem<N, G> for Fi
         let to = self.system.transition(mode, guard, s, &mut after.as_mut_slice()[..self.n]);
         (to, after)
     }
+    fn counter(&self, mode: S::Mode, guard: usize) -> usize {
+        self.system.counter(mode, guard)
+    }
     fn schedule(&self, mode: S::Mode, guard: usize) -> Schedule<'_> {
         self.system.schedule(mode, guard)
     }

@@ -40,7 +40,8 @@ pub trait DynamicSystem {
     /// dimension. They are several times as fast then, and the engine is compiled thrice more.
     const ON_FIXED_STATES: bool = false;
 
-    /// The largest number of guards of a mode. It is asked for if [`Self::ON_FIXED_STATES`].
+    /// The largest number of guards of a mode, and of [counters](Self::counter). It is asked for if
+    /// [`Self::ON_FIXED_STATES`].
     fn most_guards(&self) -> usize {
         usize::MAX
     }
@@ -58,6 +59,11 @@ pub trait DynamicSystem {
         _y: &[Enclosure],
         _values: &mut [Enclosure],
     ) {
+    }
+
+    /// As [`HybridSystem::counter`](crate::HybridSystem::counter).
+    fn counter(&self, _mode: Self::Mode, guard: usize) -> usize {
+        guard
     }
 
     /// As [`HybridSystem::schedule`](crate::HybridSystem::schedule).
@@ -143,6 +149,11 @@ pub trait ReadableDynamic {
         &[]
     }
 
+    /// As [`HybridSystem::counter`](crate::HybridSystem::counter).
+    fn counter(&self, _mode: Self::Mode, guard: usize) -> usize {
+        guard
+    }
+
     /// As [`HybridSystem::schedule`](crate::HybridSystem::schedule).
     fn schedule(&self, _mode: Self::Mode, _guard: usize) -> Schedule<'_> {
         Schedule::NEVER
@@ -199,6 +210,9 @@ impl<S: ReadableDynamic> DynamicSystem for S {
         values: &mut [Enclosure],
     ) {
         ReadableDynamic::guard_values(self, mode, s, y, values);
+    }
+    fn counter(&self, mode: S::Mode, guard: usize) -> usize {
+        ReadableDynamic::counter(self, mode, guard)
     }
     fn schedule(&self, mode: S::Mode, guard: usize) -> Schedule<'_> {
         ReadableDynamic::schedule(self, mode, guard)

@@ -59,11 +59,12 @@ impl<S: System> Phase<S> {
         self.mode = mode;
         system.guards(mode, &mut self.guards);
         let n = self.count();
-        if fired.parts().len() < n {
-            fired.fit(n, 0);
+        let counters = (0..n).map(|guard| system.counter(mode, guard) + 1).max().unwrap_or(0);
+        if fired.parts().len() < counters {
+            fired.fit(counters, 0);
         }
-        for (guard, fired) in self.guards.parts_mut().iter_mut().zip(fired.parts()) {
-            *guard = guard.fired(*fired);
+        for (place, guard) in self.guards.parts_mut().iter_mut().enumerate() {
+            *guard = guard.fired(fired[system.counter(mode, place)]);
         }
         self.values.fit(n, 0.0);
         system.guard_values(mode, s, y, &mut self.values);

@@ -112,7 +112,8 @@ impl Guard {
     /// Makes the guard end the run when it fires for the `count`-th time. Before that it causes
     /// transitions. With a count of 0 it never ends the run.
     ///
-    /// Guards are counted by their place, whatever the mode.
+    /// Guards are counted by their place, whatever the mode, or by the
+    /// [counter](crate::HybridSystem::counter) that the system gives them.
     #[must_use]
     pub const fn terminal_after(self, count: u32) -> Self {
         Self { terminal: count, ..self }

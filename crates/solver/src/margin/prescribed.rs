@@ -452,6 +452,10 @@ impl<S: System> System for Prescribed<'_, S> {
         None
     }
 
+    fn counter(&self, at: Self::Mode, guard: usize) -> usize {
+        self.system.counter(at.mode, guard)
+    }
+
     fn next_time(&self, at: Self::Mode, guard: usize, s: f64) -> f64 {
         self.system.next_time(at.mode, guard, s)
     }

@@ -127,6 +127,10 @@ where
         step.reverse();
     }
 
+    fn counter(&self, mode: S::Mode, guard: usize) -> usize {
+        self.0.counter(mode, guard)
+    }
+
     fn schedule(&self, mode: S::Mode, guard: usize) -> Schedule<'_> {
         self.0.schedule(mode, guard).reversed()
     }

@@ -458,7 +458,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             let (phase, fired) = (&mut self.phase.guards, &mut self.fired);
             let together = |guard: &usize| *guard == note.guard || note.simultaneous[*guard];
             for guard in (0..phase.parts().len()).filter(together) {
-                fired[guard] += 1;
+                fired[self.system.counter(self.phase.mode, guard)] += 1;
                 phase[guard] = phase[guard].fired(1);
             }
             self.statistics.switches += 1;

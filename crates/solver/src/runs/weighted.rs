@@ -102,6 +102,10 @@ where
         step.take_with::<M>(&mut field, trial, |component| self.tolerances[component]);
     }
 
+    fn counter(&self, mode: S::Mode, guard: usize) -> usize {
+        self.system.counter(mode, guard)
+    }
+
     fn schedule(&self, mode: S::Mode, guard: usize) -> Schedule<'_> {
         self.system.schedule(mode, guard)
     }

@@ -123,7 +123,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         let hides = self.hides(event, guard, crossed);
         let before = self.state.clone();
         let to = if ends { from } else { self.system.transition(from, guard, s, &mut self.state) };
-        self.fired[guard] += 1;
+        self.fired[self.system.counter(from, guard)] += 1;
         self.statistics.switches += usize::from(!ends);
         let first = self.instant.acted.parts().iter().all(Option::is_none);
         // Those that a row without a change names would have fired with it.
