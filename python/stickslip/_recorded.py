@@ -1,6 +1,8 @@
 """Systems of Python's functions that are recorded as formulas, run, and compared."""
 
 import math
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -20,40 +22,75 @@ MOST_PLACES = 8
 class Recorded:
     """The formulas of a system, and the functions from which they come.
 
+    names: those of parameters that functions get before further arguments. beginning: a function of
+    the start that returns the state there.
+
     Raises CannotRecord with the reason, if a function is no formula.
     """
 
-    def __init__(self, table: Any, start: float, state: NDArray[np.float64]) -> None:
+    def __init__(
+        self,
+        table: Any,
+        begin: tuple[int, float],
+        state: NDArray[np.float64],
+        names: Sequence[str] = (),
+        beginning: Function | None = None,
+    ) -> None:
         if not state.size:
             raise CannotRecord("there is no state")
         if table.variables or table.signs:
             raise CannotRecord("the system has variables or surfaces")
         if table.apart:
             raise CannotRecord("guards of several modes are counted until the run ends")
-        self.table, self.state, self.start = table, state, start
+        self.table, self.state, self.start = table, state, begin[1]
         self.tape = Tape()
+        native = self.tape.native
+        symbols = [Symbol(self.tape, native.parameter(place)) for place in range(len(names))]
+        self.args = (*symbols, *table.args)
+        self.beginning = beginning
         #: For each mode, functions with their formulas: the right-hand side, guards, and resets.
         self.slopes: list[tuple[str, Function, list[int]]] = []
         self.guards: list[list[tuple[str, Function, list[int]]]] = []
         self.resets: list[dict[int, tuple[str, Function]]] = []
+        self.transitions: list[dict[int, tuple[str, Callable[..., Any]]]] = []
         modes = [self.mode(mode) for mode in table.system_modes]
-        self.system = FormulaSystem._of(self.tape.native.system(state.tolist(), modes))
+        if beginning is None:
+            first = [native.constant(value) for value in state.tolist()]
+        else:
+            first = self.formulas("start", beginning, state.size, (self.start, state.tolist()))
+        self.first, self.from_start = begin[0], first
+        given = (begin[0], self.start, first)
+        self.system = FormulaSystem._of(native.system(list(names), given, modes))
 
-    def formulas(self, what: str, function: Function, count: int) -> list[int]:
+    def formulas(
+        self,
+        what: str,
+        function: Function,
+        count: int,
+        at: tuple[float, list[float]] | None = None,
+    ) -> list[int]:
         """The formulas of a function that returns so many numbers."""
+        found = self.recorded(
+            what, function, lambda plain: self.tape.record(plain, self.state.size, self.args, at)
+        )
+        if len(found) != count:
+            raise CannotRecord(f"{what}: it returns {len(found)} numbers instead of {count}")
+        return [symbol.id for symbol in found]
+
+    def recorded(
+        self, what: str, function: Function, record: Callable[[Callable[..., Any]], Any]
+    ) -> Any:
+        """What is recorded of a function."""
         if isinstance(function, Compiled):
             raise CannotRecord(f"{what}: it is compiled")
         try:
-            found = self.tape.record(function, self.state.size, self.table.args)
+            return record(function)
         except CannotRecord as reason:
             raise CannotRecord(f"{what}: {reason}") from None
         except BaseException as error:
             # Whatever the function raises, it raises again when it runs with numbers.
             kind = type(error).__name__
             raise CannotRecord(f"{what}: {kind} with symbols for t and y: {error}") from None
-        if len(found) != count:
-            raise CannotRecord(f"{what}: it returns {len(found)} numbers instead of {count}")
-        return [symbol.id for symbol in found]
 
     def mode(self, mode: Mode) -> tuple[str, list[int], list[dict[str, Any]]]:
         """A mode for the native module."""
@@ -64,6 +101,7 @@ class Recorded:
         self.slopes.append((about, mode.right_hand_side, slopes))
         self.guards.append([])
         self.resets.append({})
+        self.transitions.append({})
         rules: list[dict[str, Any]] = []
         for source in [*self.table.events, *mode._sources]:
             values: list[int | None] = [None] * len(source.guards)
@@ -81,11 +119,24 @@ class Recorded:
         """A guard for the native module."""
         mode, slopes, source = of
         about = f"guard {guard.name!r} of mode {mode.name!r}"
-        others = {"transition": guard.transition, "rest": guard.rest, "sets": guard.sets}
+        others = {"rest": guard.rest, "sets": guard.sets}
         for name, other in others.items():
             if other is not None:
                 raise CannotRecord(f"{about} has {name}")
-        after = None
+        after, to, branch = None, self.table.target(guard.to, about), None
+        if guard.transition is not None:
+            what = f"the transition of {about}"
+            choose = partial(self.tape.choice, n=self.state.size, args=self.args)
+            found = self.recorded(what, guard.transition, partial(choose, names=self.table.names))
+            choice, state = found
+            self.transitions[-1][place] = (what, self.table.transition(guard.transition, what))
+            if isinstance(choice, tuple):
+                branch = (choice[0].id, *choice[1:])
+            elif choice is not None:
+                to = choice
+            if state is not None and len(state) != self.state.size:
+                raise CannotRecord(f"{what}: it returns a state of {len(state)} components")
+            after = None if state is None else [symbol.id for symbol in state]
         if guard.reset is not None:
             what = f"the reset of {about}"
             after = self.formulas(what, guard.reset, self.state.size)
@@ -108,7 +159,8 @@ class Recorded:
             "direction": guard.direction,
             "period": times if periodic else None,
             "times": [] if periodic else times,
-            "to": self.table.target(guard.to, about),
+            "to": to,
+            "branch": branch,
             "after": after,
             "terminal": int(guard.terminal),
             "from_zero": order,
@@ -128,12 +180,12 @@ class Recorded:
         settings = {name: value for name, value in settings.items() if name != "guard_scale"}
         given = (first, start, self.state.tolist())
         found = self.system._native.run([], given, end, settings, times)
-        self.compare(found, first)
+        self.compare(found)
         return self.system._solution(found, dense, self.table.event_names)
 
-    def compare(self, found: dict[str, Any], first: int) -> None:
-        """Refuses formulas that are not what their functions return."""
-        self.compare_at(first, self.start, self.state)
+    def compare(self, found: dict[str, Any], values: tuple[float, ...] = ()) -> None:
+        """Refuses formulas that are not what their functions return with values of parameters."""
+        self.compare_start(values)
         dense = DenseOutput(found, np.array(self.table.names), self.start)
         starts, sizes, modes = found["starts"], found["sizes"], found["segment_modes"]
         chosen = np.unique(np.linspace(0, starts.size - 1, MOST_PLACES).astype(int))
@@ -141,7 +193,7 @@ class Recorded:
         # An irrational part of a step is at no event.
         times = starts[chosen] + 0.61803 * sizes[chosen]
         for t, mode, y in zip(times.tolist(), modes[chosen].tolist(), dense(times).T, strict=True):
-            self.compare_at(mode, t, y)
+            self.compare_at(mode, t, y, values)
         n = self.state.size
         before = found["event_before"].reshape(-1, n)
         after = found["event_after"].reshape(-1, n)
@@ -150,18 +202,43 @@ class Recorded:
             if guard in self.resets[mode] and not (before[row] == after[row]).all():
                 what, reset = self.resets[mode][guard]
                 at = (float(found["event_times"][row]), before[row])
-                self.same(what, reset, at, after[row].tolist())
+                self.same(what, reset, at, values, after[row].tolist())
+            if guard in self.transitions[mode] and found["outcome"] != "ended_by_guard":
+                what, transition = self.transitions[mode][guard]
+                t, y = float(found["event_times"][row]), before[row]
+                to, state = transition(t, y.copy(), *values, *self.table.args)
+                if to is not None and to != found["event_to"][row]:
+                    name = self.table.names[found["event_to"][row]]
+                    raise CannotRecord(
+                        f"{what}: at t = {t!r} it leads to mode {self.table.names[to]!r}, and its "
+                        f"formulas to {name!r}: it depends on more than t and y"
+                    )
+                if state is not None:
+                    given = partial(lambda state, *_: state, state)
+                    self.same(what, given, (t, y), values, after[row].tolist())
 
-    def compare_at(self, mode: int, t: float, y: NDArray[np.float64]) -> None:
+    def compare_start(self, values: tuple[float, ...] = ()) -> None:
+        """Refuses formulas that differ at the start."""
+        at = (self.start, self.state)
+        native = self.tape.native
+        found = native.evaluate(self.from_start, self.start, self.state.tolist(), list(values))
+        if self.beginning is not None:
+            self.same("start", self.beginning, at, values, found)
+        self.compare_at(self.first, self.start, np.array(found), values)
+
+    def compare_at(
+        self, mode: int, t: float, y: NDArray[np.float64], values: tuple[float, ...]
+    ) -> None:
         for what, function, formulas in [self.slopes[mode], *self.guards[mode]]:
-            values = self.tape.native.evaluate(formulas, t, y.tolist())
-            self.same(what, function, (t, y), values)
+            found = self.tape.native.evaluate(formulas, t, y.tolist(), list(values))
+            self.same(what, function, (t, y), values, found)
 
     def same(
         self,
         what: str,
         function: Function,
         at: tuple[float, NDArray[np.float64]],
+        values: tuple[float, ...],
         recorded: list[float],
     ) -> None:
         """Refuses a function that returns something else than its formulas."""
@@ -169,7 +246,7 @@ class Recorded:
         assert not isinstance(function, Compiled)
         try:
             with np.errstate(all="ignore"):
-                found = function(t, y.copy(), *self.table.args)
+                found = function(t, y.copy(), *values, *self.table.args)
                 returned = np.asarray(found, dtype=float).reshape(-1).tolist()
         except Exception as error:
             # Without formulas it says so itself, if it is called there.
@@ -181,8 +258,8 @@ class Recorded:
         )
         if len(returned) != len(recorded) or not all(near):
             raise CannotRecord(
-                f"{what}: at t = {t!r} it returns {returned}, and its formulas {recorded}: it "
-                "depends on more than t and y"
+                f"{what}: at t = {t!r}{''.join(f', {value!r}' for value in values)} it returns "
+                f"{returned}, and its formulas {recorded}: it depends on more than t and y"
             )
 
 

@@ -6,7 +6,7 @@ every curve in a window of the parameters on which the sequence of events of its
 
 import graphlib
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from itertools import count, pairwise
 from typing import Any, TypeAlias
@@ -34,11 +34,14 @@ from stickslip._family_atlases import (
     _pairs,
 )
 from stickslip._family_options import TraceOptions, VerifyOptions, _json
+from stickslip._recorded import Recorded
+from stickslip._symbols import CannotRecord
 from stickslip._systems import HybridSystem, Mode, _check_function
 from stickslip.atlases import AtlasWarning
 from stickslip.collisions import Floats, _threads
 from stickslip._run_arguments import span, state_at_start
-from stickslip.hybrid import _arguments, _callee, _Table
+from stickslip.formulas import FormulaSystem
+from stickslip.hybrid import MOST_RECORDED, _arguments, _callee, _Table
 
 __all__ = [
     "FamilyAtlas",
@@ -112,6 +115,10 @@ class HybridFamily:
     method is "dop853". max_switches: itineraries are told apart up to so many events. Where events
     accumulate, there are boundaries without end, unless this is a small number.
 
+    record: as in `solve`. Recorded functions run as formulas, whose guards are decided, on all
+    threads. They are compared with the functions at points of what is asked for; `reason` says why
+    they are not recorded, None if they are.
+
     Any number of components and guards. Guards that have one name in several modes count as one
     guard, if the modes list them in one order.
 
@@ -143,9 +150,12 @@ class HybridFamily:
         first_step: float | None = None,
         max_switches: int = 10_000_000,
         guard_scale: float | None = None,
+        record: bool | None = None,
     ) -> None:
         if not isinstance(system, HybridSystem):
-            raise TypeError(f"{type(system).__name__} is not a HybridSystem; a family needs guards")
+            hint = "; expected HybridFamily.of" if isinstance(system, FormulaSystem) else ""
+            kind = type(system).__name__
+            raise TypeError(f"{kind} is not a HybridSystem; a family needs guards{hint}")
         begin, end = span(t_span)
         if not end > begin:
             raise ValueError(f"t_span = ({begin}, {end}); expected an end after the start")
@@ -187,14 +197,127 @@ class HybridFamily:
         names = [part for name in table.surfaces for part in (name, f"{name}-")] + names
         #: The names of the guards, in the order in which files count them.
         self.guards = tuple(names)
+        first_mode = table.index_of(mode)
         self._native = _native.HybridFamily(
             table.system(places),
             table.args,
-            ((table.index_of(mode), begin, state, []), first),
+            ((first_mode, begin, state, []), first),
             end,
             settings,
             (self.name, list(self.axes), names),
         )
+        #: Why guards are sampled; None if the functions were recorded, so that they are decided.
+        self.reason: str | None = "record = False"
+        self._recorded: Recorded | None = None
+        self._must_record = bool(record)
+        if record is None and state.size > MOST_RECORDED:
+            self.reason = f"the state has more than {MOST_RECORDED} components"
+        elif record is not False:
+            self._callables = self._native
+            try:
+                self._recorded = Recorded(table, (first_mode, begin), state, ("p", "q"), start)
+                del settings["guard_scale"]
+                self._settings = settings
+                self._end = end
+                self._native = _native.HybridFamily.of_formulas(
+                    self._recorded.system._native,
+                    [0, 1],
+                    [0.0, 0.0],
+                    end,
+                    settings,
+                    (self.name, list(self.axes)),
+                    (names, places),
+                )
+                self.reason = None
+            except CannotRecord as reason:
+                self._fall_back(str(reason))
+
+    def _fall_back(self, reason: str) -> None:
+        if self._must_record:
+            raise ValueError(f"record = True, but {reason}")
+        self.reason, self._recorded, self._native = reason, None, self._callables
+
+    def _compare(self, x: ArrayLike, y: ArrayLike) -> None:
+        """Compares formulas with their functions at up to three points, before they are used."""
+        xs, ys = np.ravel(np.asarray(x, dtype=float)), np.ravel(np.asarray(y, dtype=float))
+        for place in sorted({0, xs.size // 2, xs.size - 1}) if xs.size else ():
+            if self._recorded is None:
+                return
+            values = (float(xs[place]), float(ys[place]))
+            try:
+                self._recorded.compare_start(values)
+                try:
+                    system = self._recorded.system._native
+                    given = (None, None, None)
+                    found = system.run(list(values), given, self._end, self._settings, [])
+                except (ValueError, _native.ComputationError):
+                    continue
+                self._recorded.compare(found, values)
+            except CannotRecord as reason:
+                self._fall_back(str(reason))
+
+    @classmethod
+    def of(
+        cls,
+        system: FormulaSystem,
+        x: str,
+        y: str,
+        *,
+        parameters: Mapping[str, float] | None = None,
+        end: float | None = None,
+        name: str = "systems",
+        rtol: float = 1e-13,
+        atol: float = 1e-13,
+        max_step: float = np.inf,
+        first_step: float | None = None,
+        max_switches: int = 10_000_000,
+    ) -> "HybridFamily":
+        """The family of a system of formulas over two of its parameters, by their names.
+
+        parameters: the values of others. end: where all runs end, instead of the system's own end.
+        name: what was traced, for files and pictures. The rest is as in `HybridFamily`.
+
+        >>> import stickslip
+        >>> ball = stickslip.system(\"\"\"
+        ... parameter height = 1, restitution = 0.5
+        ... state x = height, v = 0
+        ... x' = v
+        ... v' = -1
+        ... when x < 0 "floor"
+        ...   x := 0
+        ...   v := -restitution*v
+        ... end = 2.4
+        ... \"\"\")
+        >>> family = HybridFamily.of(ball, "height", "restitution")
+        >>> str(family.label(1.0, 0.4)), str(family.label(0.6, 0.55))
+        ('floor', 'floor, floor')
+        """
+        if not isinstance(system, FormulaSystem):
+            raise TypeError(f"{type(system).__name__} is not a FormulaSystem")
+        values, known = system.values(parameters), list(system.parameters)
+        for axis in (x, y):
+            if axis not in known:
+                raise ValueError(f"{axis!r} is no parameter; expected one of {', '.join(known)}")
+        if end is not None and np.isnan(_number(end, "end")):
+            raise ValueError(f"end = {end!r}; expected a number")
+        settings = {
+            "method": "dop853",
+            "rtol": _number(rtol, "rtol"),
+            "atol": _number(atol, "atol"),
+            "max_step": _number(max_step, "max_step"),
+            "first_step": None if first_step is None else _number(first_step, "first_step"),
+            "max_switches": _count(max_switches, "max_switches"),
+        }
+        family = cls.__new__(cls)
+        family.name, family.axes = _text(name, "name"), (x, y)
+        axes = [known.index(x), known.index(y)]
+        last = None if end is None else float(end)
+        family._native = _native.HybridFamily.of_formulas(
+            system._native, axes, values, last, settings, (family.name, [x, y]), None
+        )
+        family.guards = tuple(family._native.guards())
+        family.reason, family._recorded = None, None
+        return family
 
     def __reduce__(self) -> Any:
         raise TypeError("a HybridFamily cannot be pickled; build it in each process")
@@ -212,6 +335,7 @@ class HybridFamily:
         threads: as in `trace_family`.
         """
         (x, y), shape = _pairs(x, y)
+        self._compare(x, y)
         found = self._native.labels(x, y, _threads(threads))
         return _objects([_label(one, self.guards) for one in found], shape)
 
@@ -221,6 +345,7 @@ class HybridFamily:
         Pairs of a margin and its value, in the order of the phases. Where the itinerary changes,
         one of them vanishes.
         """
+        self._compare(x, y)
         _, found = self._native.margins(_number(x, "x"), _number(y, "y"))
         return tuple((_margin(one[:3], self.guards), one[3]) for one in found)
 
@@ -248,6 +373,7 @@ class HybridFamily:
         for index, monitor in enumerate(functions):
             if not callable(monitor):
                 raise TypeError(f"monitor {index} is of type {type(monitor).__name__}")
+        self._compare(places[:, 0], places[:, 1])
         text = _json(asdict(options or TraceOptions()))
         (one, two), (three, four) = places.tolist()
         found = self._native.follow(window, text, ((one, two), (three, four)), functions)
@@ -293,8 +419,8 @@ def trace_family(
     What cannot be resolved is part of the atlas: `unresolved`, `findings`, and the regions in
     doubt. If anything speaks against the atlas, it says so in an AtlasWarning and in `objection`.
 
-    threads: for compiled functions, 1 to 1024, or None for one for each core; results have the same
-    bits with any number. Functions of Python are called on this thread, one after the other. Their
+    threads: for recorded and compiled functions, 1 to 1024, or None for one for each core; results
+    have the same bits with any number. Other functions of Python are called on this thread, one after the other. Their
     exceptions end the trace and come out as they are, with a note that has the parameters; NaN says
     that a run has no value there, and fails.
 
@@ -309,6 +435,7 @@ def trace_family(
     window, text = _survey(x, y, options, verify, tolerance, rounds)
     _check_calls(progress, cancelled)
     calls = (progress, cancelled)
+    family._compare(*([*interval, sum(interval) / 2.0] for interval in window))
     return _finish(family._native.trace(window, text, _threads(threads), calls))
 
 

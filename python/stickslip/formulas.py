@@ -64,6 +64,19 @@ class FormulaSystem:
         """The names of the modes."""
         return [name for name, _ in self._native.modes()]
 
+    def values(self, parameters: Mapping[str, float] | None = None) -> list[float]:
+        """The values of all parameters in order, with others for some names.
+
+        Raises ValueError if a name or a value is wrong.
+        """
+        values = self.parameters
+        for name, value in (parameters or {}).items():
+            if name not in values:
+                known = ", ".join(values) or "none"
+                raise ValueError(f"parameters: {name!r} is no parameter; expected one of {known}")
+            values[name] = _number(value, name)
+        return list(values.values())
+
     def solve(
         self,
         t_span: ArrayLike | None = None,
@@ -88,12 +101,7 @@ class FormulaSystem:
 
         Raises ValueError if a name or a value is wrong, and ComputationError if the run fails.
         """
-        values = self.parameters
-        for name, value in (parameters or {}).items():
-            if name not in values:
-                known = ", ".join(values) or "none"
-                raise ValueError(f"parameters: {name!r} is no parameter; expected one of {known}")
-            values[name] = _number(value, name)
+        values = self.values(parameters)
         start, end = (None, None) if t_span is None else span(t_span)
         state = None if y0 is None else state_at_start(y0).tolist()
         if mode is not None and mode not in self.modes:
@@ -110,7 +118,7 @@ class FormulaSystem:
         low, high = (-np.inf if start is None else start, np.inf if end is None else end)
         times = None if t_eval is None else times_within(t_eval, low, high).tolist()
         given = (place, start, state)
-        found = self._native.run(list(values.values()), given, end, settings, times)
+        found = self._native.run(values, given, end, settings, times)
         return self._solution(found, bool(dense_output))
 
     def _solution(

@@ -131,7 +131,7 @@ def _try_recorded(
     if begin[2] <= begin[1]:
         return None, "the run goes backwards"
     try:
-        recorded = Recorded(table, begin[1], state)
+        recorded = Recorded(table, begin[:2], state)
         wanted = None if times is None else times.tolist()
         return recorded.solve(begin, settings, wanted, dense), ""
     except (CannotRecord, _native.ComputationError) as reason:

@@ -8,6 +8,8 @@ use stickslip_tracer::{
     Itinerary, Point,
 };
 
+pub use align::RuleOrder;
+
 use crate::compiled::{Compiled, InvalidParameters};
 use crate::run::Runnable;
 use crate::system::System;
@@ -78,8 +80,27 @@ impl SystemFamily {
         end: Option<f64>,
         options: Options,
     ) -> Result<Self, InvalidParameters> {
-        let (system, rules) = align::align(system);
-        let compiled = system.compile()?;
+        Self::ordered(system, RuleOrder::of(system), axes, parameters, (end, options))
+    }
+
+    /// As [`Self::new`], with an order of rules.
+    ///
+    /// # Errors
+    /// As [`Self::new`], or the order is not one of the rules of the system.
+    pub fn ordered(
+        system: &System,
+        order: RuleOrder,
+        axes: [usize; 2],
+        parameters: &[f64],
+        (end, options): (Option<f64>, Options),
+    ) -> Result<Self, InvalidParameters> {
+        if !order.fits(system) {
+            let (what, value) = ("the number of rules in order".to_owned(), order.names.len());
+            let expected = "a place for each rule of each mode";
+            return Err(InvalidParameters::Value { what, value: value as f64, expected });
+        }
+        let compiled = order.align(system).compile()?;
+        let rules = order.names;
         compiled.check(parameters)?;
         let count = parameters.len();
         if let Some(&axis) = axes.iter().find(|&&axis| axis >= count || axes[0] == axes[1]) {

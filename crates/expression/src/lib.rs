@@ -51,7 +51,7 @@ mod system;
 mod text;
 
 pub use compiled::{Compiled, InvalidParameters};
-pub use family::SystemFamily;
+pub use family::{RuleOrder, SystemFamily};
 pub use graph::{Binary, Formula, Graph, Node, Unary, Variable};
 pub use program::{Inputs, Program};
 pub use recording::{Recording, Stay, StoredStep};

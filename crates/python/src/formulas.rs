@@ -15,13 +15,30 @@ type Parameter = (String, f64, Option<(f64, f64)>);
 /// Method, tolerances, longest and first step, and the largest number of switches.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-struct Settings {
+pub struct Settings {
     method: String,
     rtol: f64,
     atol: f64,
     max_step: f64,
     first_step: Option<f64>,
     max_switches: usize,
+}
+
+impl Settings {
+    /// The method and the options, checked.
+    pub fn checked(&self) -> PyResult<(EmbeddedPair, Options)> {
+        let method = self.method.parse().map_err(bad_input)?;
+        let options = Options {
+            rtol: self.rtol,
+            atol: self.atol,
+            max_step: self.max_step,
+            first_step: self.first_step,
+            max_switches: self.max_switches,
+            ..Options::default()
+        };
+        options.validate().map_err(bad_input)?;
+        Ok((method, options))
+    }
 }
 
 /// A system that is made of formulas.
@@ -83,16 +100,7 @@ impl FormulaSystem {
                 "the system has no end and no rule that ends it; expected t_span",
             ));
         }
-        let method: EmbeddedPair = settings.method.parse().map_err(bad_input)?;
-        let options = Options {
-            rtol: settings.rtol,
-            atol: settings.atol,
-            max_step: settings.max_step,
-            first_step: settings.first_step,
-            max_switches: settings.max_switches,
-            ..Options::default()
-        };
-        options.validate().map_err(bad_input)?;
+        let (method, options) = settings.checked()?;
         let found = py.detach(|| runnable.record(method, end, &options));
         let found = found.map_err(failed)?;
         let columns = columns(py, &self.0, &found, times)?;

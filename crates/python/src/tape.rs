@@ -4,8 +4,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use pyo3::prelude::*;
 use stickslip_expression::{
-    Binary, Component, Formula, Graph, Inputs, Mode, Next, Program, Rule, System, Trigger, Unary,
-    Variable,
+    Binary, Component, Formula, Graph, Inputs, Mode, Next, Parameter, Program, Rule, System,
+    Trigger, Unary, Variable,
 };
 use stickslip_solver::Direction;
 
@@ -32,6 +32,8 @@ struct RuleRow {
     period: Option<(f64, f64)>,
     times: Vec<f64>,
     to: Option<usize>,
+    /// A formula, the mode where it is 0 or above, and the mode where it is below.
+    branch: Option<(u32, usize, usize)>,
     /// The state that follows.
     after: Option<Vec<u32>>,
     terminal: u32,
@@ -57,6 +59,10 @@ impl Tape {
 
     fn component(&self, index: u32) -> u32 {
         self.graph().component(index).number()
+    }
+
+    fn parameter(&self, index: u32) -> u32 {
+        self.graph().parameter(index).number()
     }
 
     /// The number that a formula is, if it is constant.
@@ -96,10 +102,16 @@ impl Tape {
         Ok(graph.select(condition?, above?, below?).number())
     }
 
-    /// The values of formulas at a time and a state.
-    fn evaluate(&self, formulas: Vec<u32>, t: f64, y: Vec<f64>) -> PyResult<Vec<f64>> {
+    /// The values of formulas at a time, a state and parameters.
+    fn evaluate(
+        &self,
+        formulas: Vec<u32>,
+        t: f64,
+        y: Vec<f64>,
+        parameters: Vec<f64>,
+    ) -> PyResult<Vec<f64>> {
         let graph = self.graph();
-        values(&graph, &all_known(&graph, &formulas)?, t, &y)
+        values(&graph, &all_known(&graph, &formulas)?, t, (&y, &parameters))
     }
 
     /// Formulas of a state with n components as text.
@@ -118,7 +130,7 @@ impl Tape {
         let slopes = all_known(&graph, &slopes)?;
         let (zero, one) = (graph.constant(0.0), graph.constant(1.0));
         for order in 0..MOST_ORDERS {
-            if values(&graph, &[formula], t, &y)?[0] != 0.0 {
+            if values(&graph, &[formula], t, (&y, &[]))?[0] != 0.0 {
                 return Ok(order);
             }
             formula = graph.slope(formula, &mut |_, variable| match variable {
@@ -130,19 +142,26 @@ impl Tape {
         Ok(MOST_ORDERS)
     }
 
-    /// A system of formulas of this tape: the state at the start, and modes with slopes and rules.
+    /// A system of formulas of this tape: names of parameters; the first mode, the time and the
+    /// state at the start; and modes with slopes and rules.
     fn system(
         &self,
-        start: Vec<f64>,
+        parameters: Vec<String>,
+        start: (usize, f64, Vec<u32>),
         modes: Vec<(String, Vec<u32>, Vec<RuleRow>)>,
     ) -> PyResult<FormulaSystem> {
         let mut graph = self.graph().clone();
-        let component = |(place, &x): (usize, &f64)| Component {
+        let (first, time, start) = start;
+        let start = all_known(&graph, &start)?;
+        let component = |(place, &start): (usize, &Formula)| Component {
             name: format!("y{place}"),
-            start: graph.constant(x),
+            start,
             discrete: false,
         };
         let components = start.iter().enumerate().map(component).collect();
+        let parameter = |name| Parameter { name, value: 0.0, range: None };
+        let parameters = parameters.into_iter().map(parameter).collect();
+        let begin = Some(graph.constant(time));
         let sizes = (modes.len(), start.len());
         let mut read = Vec::new();
         for (name, slopes, rows) in modes {
@@ -153,7 +172,17 @@ impl Tape {
             let rules = rows.into_iter().map(|row| rule(&mut graph, row, sizes));
             read.push(Mode { name, slopes, rules: rules.collect::<PyResult<_>>()? });
         }
-        let system = System { graph, components, modes: read, ..System::default() };
+        let end = None;
+        let system = System {
+            graph,
+            parameters,
+            components,
+            modes: read,
+            first,
+            start: begin,
+            end,
+            ..System::default()
+        };
         Ok(FormulaSystem(system))
     }
 }
@@ -174,18 +203,23 @@ fn all_known(graph: &Graph, numbers: &[u32]) -> PyResult<Vec<Formula>> {
     numbers.iter().map(|&number| known(graph, number)).collect()
 }
 
-fn values(graph: &Graph, formulas: &[Formula], t: f64, y: &[f64]) -> PyResult<Vec<f64>> {
+fn values(
+    graph: &Graph,
+    formulas: &[Formula],
+    t: f64,
+    (y, parameters): (&[f64], &[f64]),
+) -> PyResult<Vec<f64>> {
     let is_beyond = |variable: &Variable| match variable {
         Variable::Time => false,
         Variable::Component(place) => *place as usize >= y.len(),
-        Variable::Parameter(_) => true,
+        Variable::Parameter(place) => *place as usize >= parameters.len(),
     };
     if graph.reads(formulas).iter().any(is_beyond) {
         return Err(bad_input("a formula reads another component"));
     }
-    let inputs = Inputs { components: y.len(), parameters: 0, fixed: true };
+    let inputs = Inputs { components: y.len(), parameters: parameters.len(), fixed: true };
     let mut values = vec![f64::NAN; formulas.len()];
-    Program::compile(graph, formulas, inputs).run(t, y, &mut values);
+    Program::compile(graph, formulas, inputs).with(parameters).run(t, y, &mut values);
     Ok(values)
 }
 
@@ -205,11 +239,21 @@ fn rule(graph: &mut Graph, row: RuleRow, (modes, n): (usize, usize)) -> PyResult
         }
         (None, None) => Trigger::At(row.times.iter().map(|&time| graph.constant(time)).collect()),
     };
-    let next = match row.to {
-        None => Next::Stay,
-        Some(mode) if mode < modes => Next::Mode(mode),
-        Some(mode) => return Err(bad_input(format!("there is no mode {mode}"))),
+    let next = match (row.branch, row.to) {
+        (Some((condition, above, below)), _) => {
+            Next::Branch(known(graph, condition)?, above, below)
+        }
+        (None, Some(mode)) => Next::Mode(mode),
+        (None, None) => Next::Stay,
     };
+    let (one, other) = match next {
+        Next::Branch(_, above, below) => (above, below),
+        Next::Mode(mode) => (mode, mode),
+        Next::Stay => (0, 0),
+    };
+    if one.max(other) >= modes {
+        return Err(bad_input(format!("there is no mode {}", one.max(other))));
+    }
     let after = all_known(graph, &row.after.unwrap_or_default())?;
     if after.len() > n {
         return Err(bad_input("a reset has another number of components"));

@@ -2,23 +2,51 @@
 
 use std::collections::HashSet;
 
-use crate::system::{Next, Rule, System, Trigger};
+use crate::system::{Mode, Next, Rule, System, Trigger};
 
-/// The system with the same list of rules in each mode, some of which never act, and their names.
-///
-/// Rules of several modes with one label are one, as long as all modes have them in one order.
-pub(super) fn align(system: &System) -> (System, Vec<String>) {
-    let own: Vec<Vec<String>> = (0..system.modes.len()).map(|mode| names(system, mode)).collect();
-    let (list, places) = merge(&own);
-    let mut aligned = system.clone();
-    for (mode, places) in aligned.modes.iter_mut().zip(&places) {
-        let mut rules = vec![never(); list.len()];
-        for (rule, &place) in mode.rules.drain(..).zip(places) {
-            rules[place] = rule;
-        }
-        mode.rules = rules;
+/// One list of rules for all modes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RuleOrder {
+    /// The names of the rules.
+    pub names: Vec<String>,
+    /// The place in that list of each rule of each mode.
+    pub places: Vec<Vec<usize>>,
+}
+
+impl RuleOrder {
+    /// The list in which rules of several modes with one label are one, as long as all modes have
+    /// them in one order.
+    #[must_use]
+    pub fn of(system: &System) -> Self {
+        let own: Vec<Vec<String>> =
+            (0..system.modes.len()).map(|mode| names(system, mode)).collect();
+        let (names, places) = merge(&own);
+        Self { names, places }
     }
-    (aligned, list)
+
+    /// Whether there is a place of its own for each rule of each mode.
+    pub(super) fn fits(&self, system: &System) -> bool {
+        let fits = |(mode, places): (&Mode, &Vec<usize>)| {
+            let different: HashSet<_> = places.iter().collect();
+            let all = different.len() == mode.rules.len() && places.len() == mode.rules.len();
+            all && places.iter().all(|&place| place < self.names.len())
+        };
+        self.places.len() == system.modes.len()
+            && system.modes.iter().zip(&self.places).all(fits)
+    }
+
+    /// The system with this list of rules in each mode, some of which never act.
+    pub(super) fn align(&self, system: &System) -> System {
+        let mut aligned = system.clone();
+        for (mode, places) in aligned.modes.iter_mut().zip(&self.places) {
+            let mut rules = vec![never(); self.names.len()];
+            for (rule, &place) in mode.rules.drain(..).zip(places) {
+                rules[place] = rule;
+            }
+            mode.rules = rules;
+        }
+        aligned
+    }
 }
 
 /// A rule that acts at no time.

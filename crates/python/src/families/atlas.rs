@@ -27,7 +27,7 @@ pub struct FamilyAtlas {
 
 /// What a file says about a family: its name, the names of the two parameters, and those of guards.
 #[derive(Clone, PartialEq, FromPyObject)]
-pub struct Description(String, [String; 2], Vec<String>);
+pub struct Description(pub String, pub [String; 2], pub Vec<String>);
 
 impl Description {
     /// Requires a family to have the same parameters and guards as another one of its stack.

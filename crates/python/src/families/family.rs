@@ -6,14 +6,16 @@ use std::sync::Arc;
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
+use stickslip_expression::{RuleOrder, SystemFamily};
 use stickslip_tracer::{AtlasOptions, Family, Monitor, Point, TraceOptions, Window, follow};
 
 use crate::failure::{bad_input, failed};
 use crate::families::atlas::{Description, FamilyAtlas, Label, followed, label, place, points};
 use crate::families::blueprint::Blueprint;
 use crate::families::failure::of_trace;
-use crate::families::runner::Runner;
+use crate::families::runner::{Made, Runner};
 use crate::families::survey::{Callbacks, survey};
+use crate::formulas::{FormulaSystem, Settings as FormulaSettings};
 use crate::hybrid::Level;
 use crate::hybrid::arguments::{ChangeArguments, Settings, StartArguments, SystemArguments};
 use crate::hybrid::trouble::Trouble;
@@ -25,7 +27,7 @@ type MarginFields = (Vec<usize>, usize, &'static str, f64);
 /// A family of systems of one's own.
 #[pyclass(frozen, module = "stickslip._native")]
 pub struct HybridFamily {
-    pub blueprint: Arc<Blueprint>,
+    pub made: Made,
     pub description: Description,
 }
 
@@ -44,7 +46,35 @@ impl HybridFamily {
         description: Description,
     ) -> PyResult<Self> {
         let blueprint = Blueprint::new(py, system, &args, start, end, &settings)?;
-        Ok(Self { blueprint: Arc::new(blueprint), description })
+        Ok(Self { made: Made::Functions(Arc::new(blueprint)), description })
+    }
+
+    /// The family of a system of formulas over two of its parameters, with the values of all, the
+    /// end unless the system has one, what files say about it, a name and those of the axes, and the
+    /// names of the guards with their places in each mode, unless these follow from the system.
+    #[staticmethod]
+    fn of_formulas(
+        system: &FormulaSystem,
+        axes: [usize; 2],
+        parameters: Vec<f64>,
+        end: Option<f64>,
+        settings: FormulaSettings,
+        names: (String, [String; 2]),
+        order: Option<(Vec<String>, Vec<Vec<usize>>)>,
+    ) -> PyResult<Self> {
+        let (name, names) = names;
+        let order = order.map(|(names, places)| RuleOrder { names, places });
+        let order = order.unwrap_or_else(|| RuleOrder::of(&system.0));
+        let (_, options) = settings.checked()?;
+        let family = SystemFamily::ordered(&system.0, order, axes, &parameters, (end, options));
+        let family = family.map_err(bad_input)?;
+        let description = Description(name, names, family.rules().to_vec());
+        Ok(Self { made: Made::Formulas(Arc::new(family)), description })
+    }
+
+    /// The names of the guards.
+    fn guards(&self) -> Vec<String> {
+        self.description.2.clone()
     }
 
     /// Traces the boundaries between two values of each parameter. Returns the atlas, and an
@@ -175,11 +205,11 @@ impl HybridFamily {
 impl HybridFamily {
     /// The threads that the runs may have; `None` if they need this one.
     pub fn threads(&self, threads: usize) -> Option<usize> {
-        self.blueprint.is_compiled().then_some(threads)
+        self.made.is_compiled().then_some(threads)
     }
 
     fn runner(&self, trouble: Trouble, looks: bool) -> Runner {
-        Runner::new(&self.blueprint, Arc::new(trouble), looks)
+        Runner::new(&self.made, Arc::new(trouble), looks)
     }
 
     /// The labels of the runs at points.

@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 use pyo3::prelude::*;
+use stickslip_expression::SystemFamily;
 use stickslip_solver::{Dop853, Margin};
 use stickslip_tracer::{DynamicFamily, Family, FreeRun, Itinerary, Point};
 
@@ -13,8 +14,40 @@ use crate::families::failure::UserError;
 use crate::hybrid::system::PAUSE;
 use crate::hybrid::trouble::{Trouble, lock};
 
+/// What the runs of a family are made of.
+#[derive(Clone)]
+pub enum Made {
+    /// Functions of Python, or compiled ones.
+    Functions(Arc<Blueprint>),
+    /// Formulas.
+    Formulas(Arc<SystemFamily>),
+}
+
+impl Made {
+    /// Whether no run needs the interpreter.
+    pub fn is_compiled(&self) -> bool {
+        match self {
+            Self::Functions(blueprint) => blueprint.is_compiled(),
+            Self::Formulas(_) => true,
+        }
+    }
+}
+
 /// The runs of a family, as the tracer knows them.
-type Runs = DynamicFamily<Members, Dop853>;
+enum Runs {
+    Functions(DynamicFamily<Members, Dop853>),
+    Formulas(Arc<SystemFamily>),
+}
+
+/// Calls a method of the family.
+macro_rules! of_runs {
+    ($runs:expr, $family:ident => $call:expr) => {
+        match $runs {
+            Runs::Functions($family) => $call,
+            Runs::Formulas($family) => $call,
+        }
+    };
+}
 
 /// The runs of a family, for one call of Python.
 pub struct Runner {
@@ -27,9 +60,15 @@ pub struct Runner {
 impl Runner {
     /// The runs of the family that Python passes. It `looks` for Ctrl-C if they are on the thread
     /// that has to do it.
-    pub fn new(blueprint: &Arc<Blueprint>, trouble: Arc<Trouble>, looks: bool) -> Self {
-        let problem = Members { blueprint: blueprint.clone(), trouble: trouble.clone() };
-        let runs = DynamicFamily { problem, method: Dop853, options: blueprint.options };
+    pub fn new(made: &Made, trouble: Arc<Trouble>, looks: bool) -> Self {
+        let runs = match made {
+            Made::Functions(blueprint) => {
+                let problem = Members { blueprint: blueprint.clone(), trouble: trouble.clone() };
+                let options = blueprint.options;
+                Runs::Functions(DynamicFamily { problem, method: Dop853, options })
+            }
+            Made::Formulas(family) => Runs::Formulas(family.clone()),
+        };
         Self { runs, trouble, looked: looks.then(|| Mutex::new(Instant::now())) }
     }
 
@@ -77,26 +116,26 @@ impl Family for Runner {
     type Error = UserError;
 
     fn label(&self, point: &Point) -> Result<Itinerary, UserError> {
-        self.checked(|runs| runs.label(point))
+        self.checked(|runs| of_runs!(runs, family => family.label(point)))
     }
 
     fn margin(&self, point: &Point, margin: &Margin) -> Result<Option<f64>, UserError> {
-        self.checked(|runs| runs.margin(point, margin))
+        self.checked(|runs| of_runs!(runs, family => family.margin(point, margin)))
     }
 
     fn moved(&self, point: &Point, margin: &Margin) -> Result<Margin, UserError> {
-        self.checked(|runs| runs.moved(point, margin))
+        self.checked(|runs| of_runs!(runs, family => family.moved(point, margin)))
     }
 
     fn is_sure(&self, margin: &Margin) -> bool {
-        self.runs.is_sure(margin)
+        of_runs!(&self.runs, family => family.is_sure(margin))
     }
 
     fn cusps(&self, margin: &Margin) -> Vec<[Margin; 2]> {
-        self.runs.cusps(margin)
+        of_runs!(&self.runs, family => family.cusps(margin))
     }
 
     fn free_run(&self, point: &Point) -> Result<FreeRun<Itinerary, Margin>, UserError> {
-        self.checked(|runs| runs.free_run(point))
+        self.checked(|runs| of_runs!(runs, family => family.free_run(point)))
     }
 }

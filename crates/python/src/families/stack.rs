@@ -108,7 +108,7 @@ impl Families {
         let family = made(py, &self.function, value)?;
         let first = self.first.get();
         family.get().description.expect_like(&first.description)?;
-        if first.blueprint.is_compiled() && !family.get().blueprint.is_compiled() {
+        if first.made.is_compiled() && !family.get().made.is_compiled() {
             return Err(bad_input(
                 "the family has functions of Python; expected compiled ones, as in the first one",
             ));
@@ -127,10 +127,10 @@ impl Families {
     /// The runs of the family at a value. If there is none, they fail. An interruption that only
     /// asks for an end does not spoil the call, which is repeated.
     fn runner(&self, value: f64, looks: bool) -> Runner {
-        let blueprint = Python::attach(|py| {
+        let made = Python::attach(|py| {
             while !self.trouble.has_failed() {
                 match self.at(py, value) {
-                    Ok(family) => return family.get().blueprint.clone(),
+                    Ok(family) => return family.get().made.clone(),
                     Err(error) => {
                         if let Some(error) = self.trouble.postpone(error) {
                             self.trouble.fail(error);
@@ -138,9 +138,9 @@ impl Families {
                     }
                 }
             }
-            self.first.get().blueprint.clone()
+            self.first.get().made.clone()
         });
-        Runner::new(&blueprint, self.trouble.clone(), looks)
+        Runner::new(&made, self.trouble.clone(), looks)
     }
 }
 
