@@ -54,7 +54,7 @@ from stickslip.fits import Fit, fit
 from stickslip._recorded import recorded_formulas as recorded
 from stickslip.formulas import FormulaSystem, read, system
 from stickslip.gaining import GainingLine, GainingLines, gaining_lines
-from stickslip.hybrid import solve
+from stickslip.hybrid import SampledGuardsWarning, solve
 from stickslip.impacts import (
     Bodies,
     Impacts,
@@ -66,6 +66,7 @@ from stickslip.impacts import (
     WallMotion,
     impact,
 )
+from stickslip.many import solve_many
 from stickslip.maps import map
 from stickslip.stacks import Change, Layer, Stack, stack
 from stickslip.studies import (
@@ -129,6 +130,7 @@ __all__ = [
     "NamedLaw",
     "Region",
     "RestitutionTable",
+    "SampledGuardsWarning",
     "Sensitivity",
     "Solution",
     "Sphere",
@@ -166,6 +168,7 @@ __all__ = [
     "reproduce",
     "reproduction_parts",
     "solve",
+    "solve_many",
     "stack",
     "stack_family",
     "sweep",

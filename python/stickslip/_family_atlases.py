@@ -330,6 +330,7 @@ class FamilyAtlas:
         the window's edge, and in regions in doubt. None outside the window. x and y broadcast.
         """
         (x, y), shape = _pairs(x, y)
+        family._compare(x, y)
         found = family._native.decide(self._native, x, y, _threads(threads))
         return _objects([one and _label(one, family.guards) for one in found], shape)
 

@@ -46,7 +46,7 @@ class Recorded:
         self.tape = Tape()
         native = self.tape.native
         symbols = [Symbol(self.tape, native.parameter(place)) for place in range(len(names))]
-        self.args = (*symbols, *table.args)
+        self.args, self.names = (*symbols, *table.args), names
         self.beginning = beginning
         #: For each mode, functions with their formulas: the right-hand side, guards, and resets.
         self.slopes: list[tuple[str, Function, list[int]]] = []
@@ -142,7 +142,7 @@ class Recorded:
             after = self.formulas(what, guard.reset, self.state.size)
             self.resets[-1][place] = (what, guard.reset)
         order = int(guard.from_zero)
-        if self.table.plain and not order and value is not None:
+        if self.table.plain and not order and value is not None and not self.names:
             state = self.state.tolist()
             order = self.tape.native.zero_order(value, slopes, self.start, state)
             if order >= 8:

@@ -131,6 +131,7 @@ def stack_family(
         if not isinstance(found, HybridFamily):
             kind = type(found).__name__
             raise TypeError(f"family({value}) is of type {kind}; expected a HybridFamily")
+        found._compare(*([*interval, sum(interval) / 2.0] for interval in window))
         return found._native
 
     search = (text, width, _count(atlases, "atlases"))

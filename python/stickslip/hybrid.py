@@ -5,6 +5,7 @@ switch. A plain function with events, as for SciPy's `solve_ivp`, needs no syste
 """
 
 import operator
+import warnings
 from collections.abc import Callable, Iterable, Mapping
 from itertools import count
 from typing import Any, TypeAlias
@@ -68,8 +69,9 @@ def solve(
 
     record: Python functions are called once with symbols for t and y, and run as formulas whose
     events are decided, if that is possible: they do not depend on anything that changes meanwhile.
-    `Solution.guards` says so, or why not. False turns this off; with True, what cannot be recorded
-    is an error.
+    `Solution.guards` says so, or why not; the first time that guards are sampled and there is no
+    guard_scale, a SampledGuardsWarning says so too. False turns this off; with True, what cannot be
+    recorded is an error.
 
     Functions get a state of their own, which they may keep and change. Their exceptions stop the
     run and come out as they are. TypeError and ValueError name the function that returned something
@@ -116,7 +118,31 @@ def solve(
         table.system(), table.args, begin, end, settings, (times, bool(dense_output))
     )
     table.reason = reason
-    return table.solution(found, state.size, start, bool(dense_output))
+    solution = table.solution(found, state.size, start, bool(dense_output))
+    if record is None and settings["guard_scale"] is None and not solution.decided:
+        _warn_once(solution.guards)
+    return solution
+
+
+class SampledGuardsWarning(UserWarning):
+    """Guards are sampled, so that one that changes faster than the state may act unseen."""
+
+
+_warned: list[str] = []
+
+
+def _warn_once(reason: str) -> None:
+    """Says once in a process that guards are sampled, and what helps."""
+    if not _warned:
+        _warned.append(reason)
+        warnings.warn(
+            f"guards are {reason}. One that changes faster than the state may act unseen: pass "
+            "guard_scale, the shortest time on which guards change; or write functions of t and y "
+            "alone with numpy, which are recorded and decided; or a text (stickslip.system). This "
+            "is said once; record=False says that it is known",
+            SampledGuardsWarning,
+            stacklevel=3,
+        )
 
 
 def _try_recorded(

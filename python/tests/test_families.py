@@ -73,13 +73,14 @@ def ball(end=END, **options):
 
 
 def plain_ball(floor=lambda t, y, p, q: y[0], bounce=lambda t, y, p, q: [0.0, -q * y[1]]):
-    """The same one of Python functions."""
+    """The same one of Python functions that are called and not recorded."""
     system = HybridSystem()
     fly = system.mode("fly", lambda t, y, p, q: [y[1], -1.0])
     fly.guard("floor", floor, reset=bounce)
     start = lambda t, y, p, q: [p, 0.0]  # noqa: E731
     axes = ("height", "restitution")
-    return HybridFamily(system, (0, END), [1.0, 0.0], start=start, name="ball", axes=axes)
+    begin = (0, END), [1.0, 0.0]
+    return HybridFamily(system, *begin, start=start, name="ball", axes=axes, record=False)
 
 
 def bounces(p, q, end=END, most=40):

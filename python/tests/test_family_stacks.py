@@ -56,7 +56,8 @@ def plain_ball(end, floor=lambda t, y, p, q: y[0]):
     system = HybridSystem()
     fly = system.mode("fly", lambda t, y, p, q: [y[1], -1.0])
     fly.guard("floor", floor, reset=lambda t, y, p, q: [0.0, -q * y[1]])
-    return HybridFamily(system, (0, end), [1.0, 0.0], start=lambda t, y, p, q: [p, 0.0])
+    start = lambda t, y, p, q: [p, 0.0]  # noqa: E731
+    return HybridFamily(system, (0, end), [1.0, 0.0], start=start, record=False)
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,6 @@
 //! Systems of formulas, which are read from a text and run without the interpreter.
 
-use numpy::{IntoPyArray, PyArray1};
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods};
@@ -77,6 +77,17 @@ impl FormulaSystem {
             .collect()
     }
 
+    /// The states at the start, one row of parameters after another.
+    fn starts(&self, parameters: PyReadonlyArray2<'_, f64>) -> PyResult<Vec<f64>> {
+        let compiled = self.0.compile().map_err(bad_input)?;
+        let mut states = Vec::new();
+        for row in parameters.as_array().rows() {
+            let runnable = compiled.with(&row.to_vec()).map_err(bad_input)?;
+            states.extend_from_slice(runnable.start().state);
+        }
+        Ok(states)
+    }
+
     /// Runs the system, and returns what it found as columns.
     fn run<'py>(
         &self,
@@ -109,6 +120,17 @@ impl FormulaSystem {
         let work = found.run.statistics.field + stages * found.steps().len() + 1;
         columns.set_item("nfev", work)?;
         Ok(columns)
+    }
+}
+
+/// Why a run ended, in a word.
+pub fn word(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::ReachedEnd => "reached_end",
+        Outcome::EndedByGuard { .. } => "ended_by_guard",
+        Outcome::SwitchLimit => "switch_limit",
+        Outcome::Zeno { .. } => "zeno",
+        Outcome::StepLimit | Outcome::Stopped => "step_limit",
     }
 }
 
@@ -212,26 +234,25 @@ fn columns<'py>(
 /// How the run ended.
 fn ending(columns: &Bound<'_, PyDict>, system: &System, found: &Recording) -> PyResult<()> {
     let s = found.run.s;
-    let (outcome, status, accumulation, message) = match found.run.outcome {
-        Outcome::ReachedEnd => ("reached_end", 0, None, "The end was reached.".to_owned()),
+    let (status, accumulation, message) = match found.run.outcome {
+        Outcome::ReachedEnd => (0, None, "The end was reached.".to_owned()),
         Outcome::EndedByGuard { guard } => {
             let rule = system.modes[found.run.mode].rules[guard].name(guard);
-            ("ended_by_guard", 1, None, format!("At t = {s:?}, rule {rule:?} ended the run."))
+            (1, None, format!("At t = {s:?}, rule {rule:?} ended the run."))
         }
         Outcome::SwitchLimit => {
-            let message = format!("Stopped at t = {s:?}: max_switches was reached.");
-            ("switch_limit", -1, None, message)
+            (-1, None, format!("Stopped at t = {s:?}: max_switches was reached."))
         }
         Outcome::Zeno { accumulation } => {
             let message =
                 format!("Stopped at t = {s:?}: the switches accumulate at {accumulation:?}.");
-            ("zeno", -1, Some(accumulation), message)
+            (-1, Some(accumulation), message)
         }
         Outcome::StepLimit | Outcome::Stopped => {
-            ("step_limit", -1, None, format!("Stopped at t = {s:?}: too many steps."))
+            (-1, None, format!("Stopped at t = {s:?}: too many steps."))
         }
     };
-    columns.set_item("outcome", outcome)?;
+    columns.set_item("outcome", word(found.run.outcome))?;
     columns.set_item("status", status)?;
     columns.set_item("accumulation", accumulation)?;
     columns.set_item("message", message)

@@ -5,7 +5,7 @@
 //! Python functions that call these, in `python/stickslip`.
 //!
 //! Start reading in `arrays`; then `collision`, `impacts`, `planes`, `stacks`, `steps`, `fits`,
-//! `tables`, `studies` (results), `hybrid`, `formulas`, `tape` (systems of one's own), `families`
+//! `tables`, `studies` (results), `hybrid`, `formulas`, `many`, `tape` (systems of one's own), `families`
 //! (and what they depend on), `engines`, `parallel` and `failure` (what they share).
 
 mod arrays;
@@ -17,6 +17,7 @@ mod fits;
 mod formulas;
 mod hybrid;
 mod impacts;
+mod many;
 mod parallel;
 mod planes;
 mod stacks;
@@ -46,6 +47,8 @@ mod _native {
     use super::hybrid::{evaluate_dense, run_hybrid};
     #[pymodule_export]
     use super::impacts::{BodyPair, homogeneous_mass};
+    #[pymodule_export]
+    use super::many::run_many;
     #[pymodule_export]
     use super::planes::{Atlas, gaining_lines};
     #[pymodule_export]

@@ -103,6 +103,7 @@ impl Tape {
     }
 
     /// The values of formulas at a time, a state and parameters.
+    #[pyo3(signature = (formulas, t, y, parameters=Vec::new()))]
     fn evaluate(
         &self,
         formulas: Vec<u32>,

@@ -31,8 +31,7 @@ impl RuleOrder {
             let all = different.len() == mode.rules.len() && places.len() == mode.rules.len();
             all && places.iter().all(|&place| place < self.names.len())
         };
-        self.places.len() == system.modes.len()
-            && system.modes.iter().zip(&self.places).all(fits)
+        self.places.len() == system.modes.len() && system.modes.iter().zip(&self.places).all(fits)
     }
 
     /// The system with this list of rules in each mode, some of which never act.

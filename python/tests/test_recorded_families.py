@@ -1,0 +1,150 @@
+"""Families whose functions are recorded, and families of formulas."""
+
+import math
+
+import numpy as np
+import pytest
+import stickslip
+from stickslip import HybridFamily, HybridSystem, TraceOptions, VerifyOptions, trace_family
+
+FEW = {"options": TraceOptions(cells=6), "verify": VerifyOptions(200, 4)}
+BALL = """
+parameter height = 1, restitution = 0.5, gravity = 1
+state x = height, v = 0
+x' = v
+v' = -gravity
+when x < 0 "floor"
+  x := 0
+  v := -restitution*v
+end = 2.4
+"""
+
+
+def ball(record=None, **options):
+    system = HybridSystem()
+    fly = system.mode("fly", lambda t, y, p, q: [y[1], -1.0])
+    fly.guard("floor", lambda t, y, p, q: y[0], reset=lambda t, y, p, q: [0.0, -q * y[1]])
+    start = lambda t, y, p, q: [p, 0.0]  # noqa: E731
+    begin = (0.0, 2.4), [1.0, 0.0]
+    return HybridFamily(system, *begin, start=start, record=record, max_switches=4, **options)
+
+
+def points_of(atlas):
+    return np.concatenate([curve.points for curve in atlas.curves])
+
+
+def bounce(n, height, restitution):
+    powers = [2.0 * restitution**k for k in range(1, n)]
+    return math.sqrt(2.0 * height) * (1.0 + sum(powers))
+
+
+def test_a_recorded_family_has_the_atlas_of_its_closed_form() -> None:
+    family = ball()
+    assert family.reason is None
+    atlas = trace_family(family, (0.5, 1.5), (0.3, 0.6), **FEW)
+    assert atlas.objection is None and len(atlas.curves) == 3
+    for curve in atlas.curves:
+        n = 1 + len(curve.margin.after)
+        for height, restitution in curve.points:
+            assert abs(bounce(n, height, restitution) - 2.4) < 1e-8, (n, height, restitution)
+    single = trace_family(family, (0.5, 1.5), (0.3, 0.6), threads=1, **FEW)
+    assert single.document == atlas.document
+
+
+def test_a_system_of_formulas_has_the_same_atlas() -> None:
+    system = stickslip.system(BALL)
+    family = HybridFamily.of(system, "height", "restitution", max_switches=4, name="ball")
+    assert family.guards == ("floor",) and family.axes == ("height", "restitution")
+    one = trace_family(family, (0.5, 1.5), (0.3, 0.6), **FEW)
+    other = trace_family(ball(), (0.5, 1.5), (0.3, 0.6), **FEW)
+    assert [len(curve.points) for curve in one.curves] == [len(c.points) for c in other.curves]
+    assert np.allclose(points_of(one), points_of(other), rtol=0, atol=1e-9)
+    # Other values of the rest, and another end.
+    moon = HybridFamily.of(system, "height", "restitution", parameters={"gravity": 0.25}, end=4.8)
+    found = moon.labels([1.0, 0.6], [0.4, 0.5]).tolist()
+    assert [str(label) for label in found] == ["floor", "floor, floor"]
+
+
+def test_what_depends_on_more_falls_back() -> None:
+    count = [0]
+
+    def counts(t, y, p, q):
+        count[0] += 1
+        return y[0] - 1e-9 * count[0]
+
+    system = HybridSystem()
+    fly = system.mode("fly", lambda t, y, p, q: [y[1], -1.0])
+    fly.guard("floor", counts, terminal=True)
+    family = HybridFamily(system, (0, 2), [1.0, 0.0])
+    assert family.reason is not None and "floor" in family.reason
+    with pytest.raises(ValueError, match="record = True, but guard 'floor'"):
+        HybridFamily(system, (0, 2), [1.0, 0.0], record=True)
+    assert "record = False" in str(ball(record=False).reason)
+
+
+def test_formulas_are_compared_before_they_are_used() -> None:
+    factor = np.array([1.0])
+    system = HybridSystem()
+    fly = system.mode("fly", lambda t, y, p, q: [y[1], -factor[0]])
+    fly.guard("floor", lambda t, y, p, q: y[0] + p, terminal=True)
+    family = HybridFamily(system, (0, 2), [1.0, 0.0])
+    assert family.reason is None
+    factor[0] = 2.0
+    family.label(0.0, 0.0)
+    assert "depends on more than t and y" in str(family.reason)
+    factor[0] = 1.0
+    strict = HybridFamily(system, (0, 2), [1.0, 0.0], record=True)
+    factor[0] = 2.0
+    with pytest.raises(ValueError, match="the right-hand side of mode 'fly'"):
+        strict.label(0.0, 0.0)
+
+
+def test_a_transition_that_chooses_is_recorded() -> None:
+    """A ball on a plate that breaks: fast, it falls through."""
+
+    def lands(t, y, p, q):
+        if y[1] < -p:
+            return "below"
+        return "above", [0.0, -q * y[1]]
+
+    def choosing(record):
+        system = HybridSystem()
+        above = system.mode("above", lambda t, y, p, q: [y[1], -1.0])
+        system.mode("below", lambda t, y, p, q: [y[1], -1.0])
+        above.guard("plate", lambda t, y, p, q: y[0], transition=lands)
+        start = [1.0, 0.0]
+        return HybridFamily(system, (0, 4), start, "above", record=record, max_switches=5)
+
+    # What it returns depends on the way: a state on one, none on the other.
+    assert "depends on a condition" in str(choosing(None).reason)
+
+    def lands(t, y, p, q):  # noqa: F811
+        if y[1] < -p:
+            return "below", [0.0, y[1]]
+        return "above", [0.0, -q * y[1]]
+
+    recorded, called = choosing(None), choosing(False)
+    assert recorded.reason is None
+    x, y = np.meshgrid(np.linspace(0.3, 2.0, 9), np.linspace(0.2, 0.8, 5))
+    one, other = recorded.labels(x, y), called.labels(x, y)
+    assert (one == other).all() and len(set(map(str, one.ravel()))) > 2
+    # It falls through if it is faster than p: at √2.
+    atlas = trace_family(recorded, (1.2, 1.6), (0.2, 0.4), **FEW)
+    assert any(abs(curve.points[:, 0] - math.sqrt(2)).max() < 1e-9 for curve in atlas.curves)
+
+
+def test_what_does_not_fit_is_refused() -> None:
+    system = stickslip.system(BALL)
+    for arguments, options, message in [
+        (("height", "mass"), {}, "'mass' is no parameter"),
+        (("height", "height"), {}, "two different parameters"),
+        (("height", "gravity"), {"parameters": {"mass": 1.0}}, "'mass' is no parameter"),
+        (("height", "gravity"), {"rtol": 0.5}, "rtol"),
+        (("height", "gravity"), {"end": math.nan}, "end"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            HybridFamily.of(system, *arguments, **options)
+    with pytest.raises(TypeError, match="expected HybridFamily.of"):
+        HybridFamily(system, (0, 1), [1.0])
+    with pytest.raises(TypeError, match="is not a FormulaSystem"):
+        HybridFamily.of(HybridSystem(), "p", "q")
