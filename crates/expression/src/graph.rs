@@ -222,6 +222,35 @@ impl Graph {
         needed
     }
 
+    /// The formula that reads other formulas in place of the components.
+    ///
+    /// # Panics
+    /// If it reads a component beyond them.
+    pub fn substituted(&mut self, formula: Formula, components: &[Formula]) -> Formula {
+        let needed = self.needed(&[formula]);
+        let mut made: Vec<Formula> = vec![Formula(0); needed.len()];
+        for index in (0..needed.len()).filter(|&index| needed[index]) {
+            let of = |operand: Formula| made[operand.index()];
+            made[index] = match self.nodes[index] {
+                Node::Constant(bits) => self.constant(f64::from_bits(bits)),
+                Node::Variable(Variable::Component(place)) => components[place as usize],
+                Node::Variable(variable) => self.variable(variable),
+                Node::Unary(function, a) => self.unary(function, of(a)),
+                Node::Binary(function, a, b) => self.binary(function, of(a), of(b)),
+                Node::Power(a, n) => {
+                    let (a, n) = (of(a), self.constant(f64::from(n)));
+                    self.power(a, n)
+                }
+                Node::RealPower(a, bits) => {
+                    let (a, exponent) = (of(a), self.constant(f64::from_bits(bits)));
+                    self.power(a, exponent)
+                }
+                Node::Select(a, b, c) => self.select(of(a), of(b), of(c)),
+            };
+        }
+        made[formula.index()]
+    }
+
     /// What the formulas read.
     #[must_use]
     pub fn reads(&self, formulas: &[Formula]) -> Vec<Variable> {

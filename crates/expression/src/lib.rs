@@ -38,7 +38,7 @@
 //! computes them, `system` is what a hybrid system consists of, `compiled` makes it ready for
 //! parameters, `run` is what the solver sees of it,
 //! `recording` a run with its events, `family` the runs of a
-//! plane of parameters, and `text` reads and writes it. `docs/systems.md` in the
+//! plane of parameters, `sensitivity` derivatives of runs, and `text` reads and writes it. `docs/systems.md` in the
 //! repository describes the language.
 
 mod compiled;
@@ -47,6 +47,7 @@ mod graph;
 mod program;
 mod recording;
 mod run;
+mod sensitivity;
 mod system;
 mod text;
 
@@ -56,6 +57,7 @@ pub use graph::{Binary, Formula, Graph, Node, Unary, Variable};
 pub use program::{Inputs, Program};
 pub use recording::{Recording, Stay, StoredStep};
 pub use run::Runnable;
+pub use sensitivity::{By, Moving, Sensitivities, SensitivityError};
 pub use system::{Component, Mode, Next, Parameter, Rule, System, Trigger};
 pub use text::{TextError, format};
 

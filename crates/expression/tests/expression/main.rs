@@ -3,4 +3,5 @@
 mod examples;
 mod formulas;
 mod mistakes;
+mod sensitivities;
 mod systems;
