@@ -10,6 +10,7 @@ codes), `fit` (contact laws to measured impacts), `table` (restitution to be loo
 
 from stickslip import _native
 from stickslip._compiled import Compiled
+from stickslip._derivatives import Sensitivities
 from stickslip._laws import NamedLaw, laws
 from stickslip._native import ComputationError
 from stickslip._solutions import DenseOutput, Solution
@@ -131,6 +132,7 @@ __all__ = [
     "Region",
     "RestitutionTable",
     "SampledGuardsWarning",
+    "Sensitivities",
     "Sensitivity",
     "Solution",
     "Sphere",

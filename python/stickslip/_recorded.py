@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stickslip._compiled import Compiled, Function
+from stickslip._derivatives import Rerun
 from stickslip._recording import Tape
 from stickslip._solutions import DenseOutput, Solution
 from stickslip._symbols import CannotRecord, Symbol
@@ -181,7 +182,8 @@ class Recorded:
         given = (first, start, self.state.tolist())
         found = self.system._native.run([], given, end, settings, times)
         self.compare(found)
-        return self.system._solution(found, dense, self.table.event_names)
+        rerun: Rerun = ([], given, end, settings)
+        return self.system._solution(found, dense, rerun, self.table.event_names)
 
     def compare(self, found: dict[str, Any], values: tuple[float, ...] = ()) -> None:
         """Refuses formulas that are not what their functions return with values of parameters."""

@@ -1,12 +1,16 @@
 """What a run gives: points, events, and the state at any time."""
 
-from dataclasses import dataclass
-from typing import Any, Literal, TypeAlias
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _native
+from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
+
+if TYPE_CHECKING:
+    from stickslip.formulas import FormulaSystem
 
 Floats: TypeAlias = NDArray[np.float64]
 Outcome: TypeAlias = Literal[
@@ -119,6 +123,32 @@ class Solution:
     #: The methods are explicit: no Jacobians, no factors.
     njev: int = 0
     nlu: int = 0
+    #: The system of formulas that has run, and with which arguments.
+    _again: Any = field(default=None, repr=False, compare=False)
+
+    @property
+    def system(self) -> "FormulaSystem | None":
+        """The formulas that have run: those of a text, or those of recorded functions."""
+        return None if self._again is None else self._again[0]
+
+    def sensitivities(self, *by: str) -> Sensitivities:
+        """Derivatives of events and of the end by parameters, and by components at the start (y0,
+        y1, … of functions), by a run with derivatives. See `FormulaSystem.sensitivities`.
+
+        Raises ValueError if the functions were not recorded.
+
+        >>> from stickslip import solve
+        >>> found = solve(lambda t, y: [y[1], -9.81], (0, 2), [4.905, 0.0], events=lambda t, y: y[0])
+        >>> found.sensitivities("y0").t_by[0].round(9).tolist()
+        [0.101936799]
+        """
+        if self._again is None:
+            raise ValueError(
+                "derivatives are those of formulas, and the functions were not recorded; guards are "
+                f"{self.guards}"
+            )
+        system, rerun = self._again
+        return sensitivities_of(system, by, rerun)
 
     @property
     def success(self) -> bool:
@@ -180,6 +210,7 @@ def solution_of(
     guards: str,
     variables: dict[str, NDArray[np.float64]] | None = None,
     sides: dict[str, NDArray[np.int8]] | None = None,
+    again: "tuple[FormulaSystem, Rerun] | None" = None,
 ) -> Solution:
     """The solution that the native module has found, as columns."""
     modes = np.array(names[0])
@@ -222,6 +253,7 @@ def solution_of(
         accumulation=found["accumulation"],
         nfev=found["nfev"],
         statistics=found["statistics"],
+        _again=again,
     )
 
 

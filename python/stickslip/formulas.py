@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _native
 from stickslip._compiled import _count, _number
+from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
 from stickslip._run_arguments import method_name, span, state_at_start, times_within
 from stickslip._solutions import Solution, event_array, solution_of
 
@@ -101,6 +102,66 @@ class FormulaSystem:
 
         Raises ValueError if a name or a value is wrong, and ComputationError if the run fails.
         """
+        rerun = self._arguments(
+            (t_span, y0, mode), parameters, method, (rtol, atol, max_step, first_step, max_switches)
+        )
+        values, given, end, settings = rerun
+        start = given[1]
+        low, high = (-np.inf if start is None else start, np.inf if end is None else end)
+        times = None if t_eval is None else times_within(t_eval, low, high).tolist()
+        found = self._native.run(values, given, end, settings, times)
+        return self._solution(found, bool(dense_output), rerun)
+
+    def sensitivities(
+        self,
+        *by: str,
+        t_span: ArrayLike | None = None,
+        y0: ArrayLike | None = None,
+        mode: str | None = None,
+        parameters: Mapping[str, float] | None = None,
+        method: str = "dop853",
+        rtol: float = 1e-10,
+        atol: float = 1e-12,
+        max_step: float = np.inf,
+        first_step: float | None = None,
+        max_switches: int = 10_000_000,
+    ) -> Sensitivities:
+        """Runs the system together with derivatives by parameters, and by values of components at
+        the start, through every event. The rest is as in `solve`.
+
+        Derivatives are as accurate as the states. Those of formulas are formulas: nothing is
+        differenced. Raises ComputationError where there are none: at a graze.
+
+        >>> import stickslip
+        >>> ball = stickslip.system(\"\"\"
+        ... parameter e = 0.5
+        ... state x = 0, v = 4.905
+        ... x' = v
+        ... v' = -9.81
+        ... when x < 0 "bounce"
+        ...   x := 0
+        ...   v := -e*v
+        ... end = 1.6
+        ... \"\"\")
+        >>> found = ball.sensitivities("e", "v")
+        >>> found.t[:2].round(9).tolist(), found.t_by[1].round(9).tolist()
+        ([1.0, 1.5], [1.0, 0.305810398])
+        """
+        rerun = self._arguments(
+            (t_span, y0, mode), parameters, method, (rtol, atol, max_step, first_step, max_switches)
+        )
+        return sensitivities_of(self, by, rerun)
+
+    def _arguments(
+        self,
+        begin: tuple[ArrayLike | None, ArrayLike | None, str | None],
+        parameters: Mapping[str, float] | None,
+        method: str,
+        options: tuple[float, float, float, float | None, int],
+    ) -> Rerun:
+        """The arguments of a run, checked."""
+        t_span, y0, mode = begin
+        rtol, atol, max_step, first_step, max_switches = options
         values = self.values(parameters)
         start, end = (None, None) if t_span is None else span(t_span)
         state = None if y0 is None else state_at_start(y0).tolist()
@@ -115,14 +176,14 @@ class FormulaSystem:
             "first_step": None if first_step is None else _number(first_step, "first_step"),
             "max_switches": _count(max_switches, "max_switches"),
         }
-        low, high = (-np.inf if start is None else start, np.inf if end is None else end)
-        times = None if t_eval is None else times_within(t_eval, low, high).tolist()
-        given = (place, start, state)
-        found = self._native.run(values, given, end, settings, times)
-        return self._solution(found, bool(dense_output))
+        return values, (place, start, state), end, settings
 
     def _solution(
-        self, found: dict[str, Any], dense: bool, event_names: list[str] | None = None
+        self,
+        found: dict[str, Any],
+        dense: bool,
+        rerun: Rerun,
+        event_names: list[str] | None = None,
     ) -> Solution:
         modes = self._native.modes()
         labels = [rules for _, rules in modes]
@@ -131,7 +192,10 @@ class FormulaSystem:
         names = ([name for name, _ in modes], labels, event_names)
         events = event_array(found, len(self.components), names, [])
         start = found["start_time"]
-        return solution_of(found, events, names, start=start, dense=dense, guards="decided")
+        again = (self, rerun)
+        return solution_of(
+            found, events, names, start=start, dense=dense, guards="decided", again=again
+        )
 
     def __repr__(self) -> str:
         values = ", ".join(f"{name}={value!r}" for name, value in self.parameters.items())

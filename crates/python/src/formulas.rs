@@ -4,7 +4,7 @@ use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods};
-use stickslip_expression::{Recording, System};
+use stickslip_expression::{By, Recording, SensitivityError, System};
 use stickslip_solver::{DynamicSwitch, EmbeddedPair, Options, Outcome};
 
 use crate::failure::{bad_input, failed};
@@ -75,6 +75,62 @@ impl FormulaSystem {
                 (mode.name.clone(), rules.map(|(place, rule)| rule.name(place)).collect())
             })
             .collect()
+    }
+
+    /// Runs the system with derivatives by parameters and by values of components at the start:
+    /// times and states of events and of the end, the derivatives of times, shape (places, by), and
+    /// those of states, shape (places, by, components); and rules and modes of the events.
+    fn sensitivities<'py>(
+        &self,
+        py: Python<'py>,
+        by: Vec<(bool, usize)>,
+        parameters: Vec<f64>,
+        start: (Option<usize>, Option<f64>, Option<Vec<f64>>),
+        end: Option<f64>,
+        settings: Settings,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (method, options) = settings.checked()?;
+        let by: Vec<By> = by
+            .into_iter()
+            .map(|(start, place)| if start { By::Start(place) } else { By::Parameter(place) })
+            .collect();
+        let mut system = self.0.clone();
+        let (mode, s, state) = start;
+        system.first = mode.unwrap_or(system.first);
+        if let Some(s) = s {
+            system.start = Some(system.graph.constant(s));
+        }
+        if let Some(state) = state {
+            if state.len() != system.components.len() {
+                return Err(bad_input("the state has another number of components"));
+            }
+            for (component, value) in system.components.iter_mut().zip(state) {
+                component.start = system.graph.constant(value);
+            }
+        }
+        if end.is_none() && system.end.is_none() && !system.ends_itself() {
+            return Err(bad_input(
+                "the system has no end and no rule that ends it; expected t_span",
+            ));
+        }
+        let found = py.detach(|| system.sensitivities(&by, &parameters, method, end, &options));
+        let found = found.map_err(|error| match error {
+            SensitivityError::Parameters(error) => bad_input(error),
+            SensitivityError::Run(error) => failed(error),
+        })?;
+        let columns = PyDict::new(py);
+        let reals = |values: Vec<f64>| values.into_pyarray(py);
+        let places = || found.places.iter();
+        columns.set_item("t", reals(places().map(|it| it.s).collect()))?;
+        columns.set_item("t_by", reals(places().flat_map(|it| it.s_by.clone()).collect()))?;
+        columns.set_item("y", reals(places().flat_map(|it| it.state.clone()).collect()))?;
+        let of_states = places().flat_map(|it| it.state_by.concat());
+        columns.set_item("y_by", reals(of_states.collect()))?;
+        let events = &found.recording.events;
+        let rules: Vec<(usize, usize)> = events.iter().map(|it| (it.from, it.guard)).collect();
+        columns.set_item("rules", rules)?;
+        columns.set_item("outcome", word(found.recording.run.outcome))?;
+        Ok(columns)
     }
 
     /// The states at the start, one row of parameters after another.

@@ -1,0 +1,61 @@
+"""Derivatives of runs, as the native module finds them."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from stickslip.formulas import FormulaSystem
+
+#: The values of parameters; mode, time and state at the start; the end; and settings.
+Rerun = tuple[list[float], tuple[int | None, float | None, list[float] | None], float | None, Any]
+
+
+@dataclass(frozen=True)
+class Sensitivities:
+    """Derivatives of the events of a run, and of its end, with respect to parameters and initial
+    values. They hold as long as the order of events stays, and grow without bound towards a graze.
+    """
+
+    #: What the run is differentiated by: names of parameters, and of components at the start.
+    by: tuple[str, ...]
+    #: The names of the events, and "" for the end of a run that no event ended; shape (k,).
+    event: NDArray[np.str_]
+    #: Their times, shape (k,), and the derivatives of these, shape (k, by).
+    t: NDArray[np.float64]
+    t_by: NDArray[np.float64]
+    #: The states before them, shape (k, n), and the derivatives at places that move along, shape
+    #: (k, by, n).
+    y: NDArray[np.float64]
+    y_by: NDArray[np.float64]
+    #: As `Solution.outcome`.
+    outcome: str
+
+
+def sensitivities_of(system: "FormulaSystem", by: tuple[str, ...], rerun: Rerun) -> Sensitivities:
+    """The derivatives of a run of a system."""
+    parameters, components = list(system.parameters), system.components
+    places = []
+    for name in by:
+        if name in parameters:
+            places.append((False, parameters.index(name)))
+        elif name in components:
+            places.append((True, components.index(name)))
+        else:
+            known = ", ".join([*parameters, *components])
+            raise ValueError(f"{name!r} is no parameter and no component; expected some of {known}")
+    found = system._native.sensitivities(places, *rerun)
+    labels = [rules for _, rules in system._native.modes()]
+    count, n = found["t"].size, len(components)
+    events = [labels[mode][rule] for mode, rule in found["rules"]]
+    return Sensitivities(
+        by=by,
+        event=np.array(events + [""] * (count - len(events)), dtype=str),
+        t=found["t"],
+        t_by=found["t_by"].reshape(count, len(by)),
+        y=found["y"].reshape(count, n),
+        y_by=found["y_by"].reshape(count, len(by), n),
+        outcome=found["outcome"],
+    )
