@@ -1,8 +1,9 @@
 //! What the options mean together: arguments become a plan that a command can carry out.
 //!
 //! One file for each command. Rules that several of them need are in `collision` (one collision
-//! from options), `system` (systems that are texts), `window` (intervals of κ and ψ), `engine` (what computes collisions), `law`,
-//! `batch` and `course` (their files) and `files` (outputs are files of their own).
+//! from options), `system` (systems that are texts), `window` (intervals of κ and ψ), `engine`
+//! (what computes collisions), `law`, `batch` and `course` (their files) and `files` (outputs are
+//! files of their own).
 
 mod batch;
 mod collide;

@@ -5,9 +5,9 @@ mod whole;
 use std::sync::Arc;
 
 use stickslip_solver::{Direction, Guard, InvalidTimes, Times};
-use thiserror::Error;
 
 use crate::graph::{Formula, Variable};
+use crate::invalid::InvalidParameters;
 use crate::program::{Inputs, Program};
 use crate::run::{Mode, Reaction, Runnable, Ticks};
 use crate::system::{self, Next, Rule, System, Trigger};
@@ -34,39 +34,6 @@ enum Clock {
     Never,
     At(usize),
     Every,
-}
-
-/// Why a system cannot run with some parameters.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum InvalidParameters {
-    /// There are more or fewer than the system has.
-    #[error("there are {found} parameters; expected {expected}: {names}")]
-    Count {
-        /// How many there are.
-        found: usize,
-        /// How many the system has.
-        expected: usize,
-        /// Their names.
-        names: String,
-    },
-    /// A parameter is not a number.
-    #[error("{name} = {value}; expected a finite number")]
-    NotFinite {
-        /// The name of the parameter.
-        name: String,
-        /// Its value.
-        value: f64,
-    },
-    /// What parameters make is not a number.
-    #[error("{what} is {value}; expected {expected}")]
-    Value {
-        /// What is computed from them.
-        what: String,
-        /// Its value.
-        value: f64,
-        /// What it must be.
-        expected: &'static str,
-    },
 }
 
 impl System {

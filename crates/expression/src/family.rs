@@ -10,7 +10,8 @@ use stickslip_tracer::{
 
 pub use align::RuleOrder;
 
-use crate::compiled::{Compiled, InvalidParameters};
+use crate::compiled::Compiled;
+use crate::invalid::InvalidParameters;
 use crate::run::Runnable;
 use crate::system::System;
 

@@ -44,6 +44,7 @@
 mod compiled;
 mod family;
 mod graph;
+mod invalid;
 mod program;
 mod recording;
 mod run;
@@ -51,9 +52,10 @@ mod sensitivity;
 mod system;
 mod text;
 
-pub use compiled::{Compiled, InvalidParameters};
+pub use compiled::Compiled;
 pub use family::{RuleOrder, SystemFamily};
 pub use graph::{Binary, Formula, Graph, Node, Unary, Variable};
+pub use invalid::InvalidParameters;
 pub use program::{Inputs, Program};
 pub use recording::{Recording, Stay, StoredStep};
 pub use run::Runnable;

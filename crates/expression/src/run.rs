@@ -6,7 +6,7 @@ use smallvec::SmallVec;
 use stickslip_number::Number;
 use stickslip_solver::{DynamicStart, Guard, ReadableDynamic, Schedule, Times};
 
-use crate::compiled::InvalidParameters;
+use crate::invalid::InvalidParameters;
 use crate::program::Program;
 use crate::system::Next;
 

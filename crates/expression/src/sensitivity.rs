@@ -8,8 +8,8 @@
 use stickslip_solver::{EmbeddedPair, Options, Outcome, RunError};
 use thiserror::Error;
 
-use crate::compiled::InvalidParameters;
 use crate::graph::{Binary, Formula, Graph, Unary, Variable};
+use crate::invalid::InvalidParameters;
 use crate::program::{Inputs, Program};
 use crate::recording::Recording;
 use crate::system::{Component, Next, Rule, System, Trigger};

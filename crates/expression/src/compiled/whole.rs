@@ -1,7 +1,7 @@
 //! Whether the parts of a system fit together. Those of a text do; others may be made by hand.
 
-use super::InvalidParameters;
 use crate::graph::{Formula, Variable};
+use crate::invalid::InvalidParameters;
 use crate::system::{Next, System};
 
 /// Refuses a system whose parts do not fit together.
