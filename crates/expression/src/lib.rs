@@ -36,10 +36,9 @@
 //!
 //! The modules in reading order: `graph` has formulas and their derivatives, `program` compiles and
 //! computes them, `system` is what a hybrid system consists of, `compiled` makes it ready for
-//! parameters, `run` is what the solver sees of it,
-//! `recording` a run with its events, `family` the runs of a
-//! plane of parameters, `sensitivity` derivatives of runs, and `text` reads and writes it. `docs/systems.md` in the
-//! repository describes the language.
+//! parameters, `run` is what the solver sees of it, `recording` a run with its events,
+//! `sensitivity` its derivatives, `family` the runs of a plane of parameters, and `text` reads and
+//! writes it. `docs/systems.md` in the repository describes the language.
 
 mod compiled;
 mod family;
