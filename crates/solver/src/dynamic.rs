@@ -53,12 +53,14 @@
 //! # What is the same
 //!
 //! The engine: a run is that of [`run`](crate::run) on buffers, bit for bit up to 8 components, or
-//! on states of fixed dimension ([`DynamicSystem::ON_FIXED_STATES`]). The guards of a [`DynamicSystem`] are black boxes. Those of a [`ReadableDynamic`], whose formulas
-//! are generic in their numbers, are decided.
+//! on states of fixed dimension ([`DynamicSystem::ON_FIXED_STATES`]). The guards of a
+//! [`DynamicSystem`] are black boxes. Those of a [`ReadableDynamic`], whose formulas are generic in
+//! their numbers, are decided.
 //!
 //! # What differs
 //!
-//! - There are no sensitivities. Systems of formulas, in the crate `stickslip-expression`, have them.
+//! - There are no sensitivities. Systems of formulas, in the crate `stickslip-expression`, have
+//!   them.
 //! - [`DynamicEvent::simultaneous`] is a list, so that it can name any number of guards.
 //! - Up to 8 components, the effect of rounding of the state on a guard is measured component by
 //!   component; beyond that, by moving all components at once, in eight irregular but fixed

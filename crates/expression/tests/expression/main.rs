@@ -1,5 +1,6 @@
 //! Tests of formulas and systems as data.
 
+mod checks;
 mod examples;
 mod formulas;
 mod mistakes;

@@ -1,5 +1,6 @@
 //! Texts that are no systems: refused with their place, and without a panic.
 
+use crate::checks;
 use stickslip_expression::{Graph, Next, System};
 use stickslip_solver::{EmbeddedPair, Options};
 
@@ -169,16 +170,19 @@ fn no_text_panics() {
                 }
             }
         }
-        let formatted = stickslip_expression::format(&text);
-        if let Ok(system) = System::parse(&text) {
-            read += 1;
-            let again = System::parse(&system.text());
-            let again = again.unwrap_or_else(|error| panic!("{error}\n{text}\n{}", system.text()));
-            assert_eq!(again.text(), system.text(), "{text}");
-            let formatted = formatted.expect("a system");
-            let formatted = System::parse(&formatted).unwrap_or_else(|it| panic!("{it}\n{text}"));
-            assert_eq!(formatted.text(), system.text(), "{text}");
-            let _ = system.with(&system.values());
+        read += u32::from(checks::text(text.as_bytes()).unwrap_or_else(|it| panic!("{it}")));
+    }
+    for seed in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/seeds/systems"))
+        .expect("the seeds")
+    {
+        let bytes = std::fs::read(seed.expect("a seed").path()).expect("a file");
+        assert_eq!(checks::text(&bytes), Ok(true));
+        // Cut anywhere, and with one byte changed.
+        for _ in 0..300 {
+            let mut damaged = bytes[..numbers.usize(1..bytes.len())].to_vec();
+            let place = numbers.usize(..damaged.len());
+            damaged[place] = numbers.u8(..);
+            checks::text(&damaged).unwrap_or_else(|it| panic!("{it}"));
         }
     }
     assert!(read > 1000, "{read}");
