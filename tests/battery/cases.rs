@@ -5,6 +5,7 @@
 
 mod expression;
 pub mod running;
+pub mod text;
 mod verdict;
 
 use serde_json::Value;
@@ -19,6 +20,8 @@ use verdict::Verdict;
 pub struct Case {
     /// The name of the case.
     pub name: String,
+    /// The same as a text.
+    text: String,
     modes: Vec<Mode>,
     start: (usize, f64, Vec<f64>),
     end: f64,
@@ -111,6 +114,7 @@ impl Case {
         };
         Some(Self {
             name: case["name"].as_str()?.to_owned(),
+            text: text::of(case)?,
             modes: each(&case["modes"], Mode::read)?,
             start: (
                 index(&start["mode"])?,

@@ -29,7 +29,8 @@ impl Expression {
     }
 }
 
-fn formula(graph: &mut Graph, value: &Value) -> Option<Formula> {
+/// Reads a formula in prefix form.
+pub fn formula(graph: &mut Graph, value: &Value) -> Option<Formula> {
     match value {
         Value::Number(number) => Some(graph.constant(number.as_f64()?)),
         Value::String(name) if name == "t" => Some(graph.time()),

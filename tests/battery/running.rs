@@ -138,12 +138,13 @@ fn run_free<M: Method>(method: M, case: &Case, guard_scale: Option<f64>) -> Repo
     report(case, events.found, result, begin)
 }
 
-fn options(case: &Case, guard_scale: Option<f64>) -> Options {
+/// The options of a case.
+pub fn options(case: &Case, guard_scale: Option<f64>) -> Options {
     Options { rtol: case.rtol, atol: case.atol, guard_scale, ..Options::default() }
 }
 
 /// What a run found that began at this moment.
-fn report(
+pub fn report(
     case: &Case,
     found: Vec<Place>,
     result: Result<(Outcome, usize), RunError>,

@@ -1,21 +1,20 @@
 //! Every event of the battery is found, and no other.
 
-use stickslip::solver::{Dop853, Dopri5, Method};
+use stickslip::solver::{Dop853, EmbeddedPair};
 
-use crate::cases::running::run_readable;
-use crate::cases::{Reading, cases, run_case};
+use crate::cases::{Reading, cases, run_case, text};
 
 /// Cases that take the 5(4) pair more steps than a run may have by default.
 const TOO_LONG_FOR_DOPRI5: [&str; 1] = ["long-run-1e5"];
 
-/// Checks all cases but those that are `left_out`.
-fn check<M: Method>(method: M, left_out: &[&str]) {
+/// Checks all cases, as texts, but those that are `left_out`.
+fn check(pair: EmbeddedPair, left_out: &[&str]) {
     let mut wrong = Vec::new();
     for case in cases() {
         if left_out.contains(&case.name.as_str()) {
             continue;
         }
-        let report = run_readable(method, &case);
+        let report = text::run(pair, &case);
         if !report.is_right() {
             wrong.push(format!("{}: {report}", case.name));
         }
@@ -25,12 +24,12 @@ fn check<M: Method>(method: M, left_out: &[&str]) {
 
 #[test]
 fn the_battery_is_right_with_dop853() {
-    check(Dop853, &[]);
+    check(EmbeddedPair::Dop853, &[]);
 }
 
 #[test]
 fn the_battery_is_right_with_dopri5() {
-    check(Dopri5, &TOO_LONG_FOR_DOPRI5);
+    check(EmbeddedPair::Dopri5, &TOO_LONG_FOR_DOPRI5);
 }
 
 #[test]

@@ -51,8 +51,9 @@ pub fn run_many<'py>(
             let samples = samples.collect();
             return Ok(Ended { run: found.run, events: found.events, samples });
         }
-        let found = runnable.events(method, end, &options);
-        let (run, events) = found.map_err(|error| error.to_string())?;
+        let mut events = Vec::new();
+        let run = runnable.events(method, end, &options, &mut events);
+        let run = run.map_err(|error| error.to_string())?;
         Ok(Ended { run, events, samples: Vec::new() })
     };
     let pool = Threads::pool(threads)?;
