@@ -1,4 +1,5 @@
-//! Bytes as the text of a system. `crates/expression/tests/expression/checks.rs` says what must hold.
+//! Bytes as the text of a system. `crates/expression/tests/expression/checks.rs` says what must
+//! hold.
 
 #![no_main]
 

@@ -9,8 +9,8 @@ pub struct LocateArguments {
     #[arg(long, value_name = "ATLAS.json", help_heading = "Input")]
     pub atlas: PathBuf,
 
-    /// CSV file with a header row that names kappa and psi, and one point per row; - is standard
-    /// input
+    /// CSV file with a header row that names kappa and psi, or the parameters of a system, and one
+    /// point per row; - is standard input
     #[arg(long, value_name = "POINTS.csv", help_heading = "Input")]
     pub batch: PathBuf,
 
@@ -28,7 +28,11 @@ input followed by switch_count, itinerary, region and distance. The distance, in
 nearest boundary of the atlas at the same κ. Within the error of a boundary, the collision itself is \
 computed, and decides. A point has no count, itinerary and region if it lies outside the window, or \
 if its collision has the switches of no region there. The first such point is named on standard \
-error, and the exit code is 1.";
+error, and the exit code is 1.
+
+In an atlas of a system of your own, the columns are the parameters on its axes, and event_count takes \
+the place of switch_count. Nothing is run: within the error of a boundary and in regions in doubt, a \
+point is not located.";
 
 /// What `locate --help` says last.
 pub const EXAMPLES: &str = "\

@@ -41,6 +41,24 @@ fn the_atlas_of_a_ball_is_that_of_its_closed_form() {
     }
     assert!(seen > 10 && atlas["regions"].as_array().unwrap().len() >= 3, "{seen}");
     assert!(directory.read("atlas.svg").contains("regions with their number of events"));
+    // Points are located without the system.
+    directory.write("points.csv", "height,name,e\n1,a,0.21\n1.1,b,0.45\n1.5,c,0.3\n");
+    let ran = directory.run("locate --atlas atlas.json --batch points.csv --out located.csv");
+    assert_eq!(ran.code, 1);
+    let message = "row 3: e = 0.3, height = 1.5 lies outside the window";
+    assert!(ran.stderr.contains("1 of 3 points") && ran.stderr.contains(message), "{}", ran.stderr);
+    let located = rows(&directory.read("located.csv"));
+    assert_eq!(located[0].join(","), "height,name,e,event_count,itinerary,region,distance");
+    for (row, e, height) in [(1, 0.21, 1.0), (2, 0.45, 1.1)] {
+        let count = (1..5).take_while(|&n| bounce(n, height, e) < 3.2).count();
+        let more = if count == 4 { "; …" } else { "" };
+        assert_eq!(located[row][3], count.to_string());
+        assert_eq!(located[row][4], format!("{}{more}", vec!["bounce"; count].join("; ")));
+    }
+    assert_eq!(located[3][3..], ["", "", "", ""]);
+    directory.write("others.csv", "height,f\n1,2\n");
+    let ran = directory.run("locate --atlas atlas.json --batch others.csv --out located.csv");
+    assert!(ran.stderr.contains("e is missing; expected columns e and height"), "{}", ran.stderr);
     // The same bits on one thread.
     let again = "--threads 1 --out again.json";
     assert_eq!(directory.run(&format!("trace ball.slip {window} {again}")).code, 0);

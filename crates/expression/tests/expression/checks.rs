@@ -4,8 +4,8 @@ use stickslip_expression::{By, System, SystemFamily};
 use stickslip_solver::{EmbeddedPair, Options};
 use stickslip_tracer::{Family, Point};
 
-/// A text is refused, or reads the same when it is written or formatted; and a run of it, a label of
-/// its family and its derivatives end, with or without a result. Whether the text is a system.
+/// A text is refused, or reads the same when it is written or formatted; and a run of it, a label
+/// of its family and its derivatives end, with or without a result. Whether the text is a system.
 ///
 /// # Errors
 /// What does not hold.

@@ -4,6 +4,8 @@ use std::path::Path;
 
 use serde::Deserialize;
 use stickslip_plane::atlas::{Atlas, Document, SCHEMA};
+use stickslip_solver::Margin;
+use stickslip_tracer::Itinerary;
 
 use super::{json, source};
 use crate::error::FileError;
@@ -17,19 +19,48 @@ struct Schema {
     schema: String,
 }
 
+/// An atlas of either kind.
+#[derive(Debug)]
+pub enum AnyAtlas {
+    /// Of collisions.
+    Collisions(Box<Atlas>),
+    /// Of a system of one's own.
+    Runs(Box<RunsAtlas>),
+}
+
+/// An atlas of a system of one's own.
+#[derive(Debug)]
+pub struct RunsAtlas {
+    /// The atlas.
+    pub atlas: stickslip_tracer::Atlas<Itinerary, Margin>,
+    /// The names of the parameters on its axes.
+    pub axes: [String; 2],
+    /// The names of the guards that itineraries count.
+    pub guards: Vec<String>,
+}
+
 /// Reads an atlas; `-` is standard input.
 ///
 /// # Errors
 /// [`FileError::Input`]: the file cannot be read, does not hold an atlas, or contradicts itself.
-pub fn read(path: &Path) -> Result<Atlas, FileError> {
+pub fn read(path: &Path) -> Result<AnyAtlas, FileError> {
     let unusable = |reason: String| FileError::input(source::shown(path), reason);
     let text = source::read(path, MOST_BYTES)?;
     let Schema { schema } = json::parse(&text).map_err(unusable)?;
+    if schema == stickslip_tracer::SCHEMA {
+        let document: stickslip_tracer::Document<Itinerary, Margin> =
+            json::parse(&text).map_err(unusable)?;
+        let (axes, guards) = (document.axes.clone(), document.guards.clone());
+        let atlas = document.atlas().map_err(|error| unusable(error.to_string()))?;
+        return Ok(AnyAtlas::Runs(Box::new(RunsAtlas { atlas, axes, guards })));
+    }
     if schema != SCHEMA {
         return Err(unusable(format!(
-            "schema is {schema:?}; expected {SCHEMA:?}, which stickslip trace writes"
+            "schema is {schema:?}; expected {SCHEMA:?} or {:?}, which stickslip trace writes",
+            stickslip_tracer::SCHEMA
         )));
     }
     let document: Document = json::parse(&text).map_err(unusable)?;
-    Atlas::try_from(document).map_err(|error| unusable(error.to_string()))
+    let atlas = Atlas::try_from(document).map_err(|error| unusable(error.to_string()))?;
+    Ok(AnyAtlas::Collisions(Box::new(atlas)))
 }

@@ -17,7 +17,7 @@ use stickslip_model::Contact;
 use crate::error::FileError;
 use crate::input::recipe::Recipe;
 use crate::input::source::{self, Source};
-pub use columns::{Columns, names};
+pub use columns::{Columns, TwoColumns, names};
 use portions::{Portion, Portions};
 
 /// Largest number of rows in a portion.

@@ -14,6 +14,9 @@ pub const ESTIMATES: [&str; 3] = ["eps_t_error", "distance", "certain"];
 /// The columns of results where points are located in an atlas.
 pub const LOCATED: [&str; 4] = ["switch_count", "itinerary", "region", "distance"];
 
+/// The columns of results where points are located in an atlas of a system of one's own.
+pub const LOCATED_RUNS: [&str; 4] = ["event_count", "itinerary", "region", "distance"];
+
 /// The columns of the file of switches.
 pub const EVENTS: [&str; 8] =
     ["case", "index", "time", "time_left", "to", "side", "spring", "velocity"];

@@ -50,8 +50,8 @@ impl HybridFamily {
     }
 
     /// The family of a system of formulas over two of its parameters, with the values of all, the
-    /// end unless the system has one, what files say about it, a name and those of the axes, and the
-    /// names of the guards with their places in each mode, unless these follow from the system.
+    /// end unless the system has one, what files say about it, a name and those of the axes, and
+    /// the names of the guards with their places in each mode, unless these follow from the system.
     #[staticmethod]
     fn of_formulas(
         system: &FormulaSystem,

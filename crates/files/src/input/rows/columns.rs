@@ -4,8 +4,10 @@ use std::collections::HashSet;
 
 use csv::ByteRecord;
 
+use crate::input::number;
 use crate::input::parameter::Parameter;
 use crate::input::recipe::{Given, Recipe, RecipeError};
+use crate::input::rows::Reading;
 use crate::output::rows::LOCATED;
 
 /// The columns that have a meaning.
@@ -91,6 +93,45 @@ pub fn names<'a>(
         }
     }
     Ok(names)
+}
+
+/// Two numbers in columns that have names: a point.
+#[derive(Clone, Copy, Debug)]
+pub struct TwoColumns([usize; 2]);
+
+impl TwoColumns {
+    /// The columns with these names.
+    ///
+    /// # Errors
+    /// What is wrong with the columns, and what is expected.
+    pub fn named(
+        header: &ByteRecord,
+        axes: &[String; 2],
+        results: &[&str],
+    ) -> Result<Self, String> {
+        let names = names(header, results, &axes.join(","))?;
+        let place = |axis: &String| {
+            let place = names.iter().position(|name| *name == axis.as_bytes());
+            let [x, y] = axes;
+            place.ok_or_else(|| format!("{axis} is missing; expected columns {x} and {y}"))
+        };
+        Ok(Self([place(&axes[0])?, place(&axes[1])?]))
+    }
+}
+
+impl Reading for TwoColumns {
+    type Case = (f64, f64);
+
+    fn read(&mut self, fields: &ByteRecord) -> Result<(f64, f64), String> {
+        let [x, y] = self.0.map(|column| {
+            let text = String::from_utf8_lossy(&fields[column]);
+            match number::parse(text.trim()) {
+                Ok(value) if value.is_finite() => Ok(value),
+                _ => Err(format!("{text:?} is not a finite number")),
+            }
+        });
+        Ok((x?, y?))
+    }
 }
 
 /// What is wrong with the columns and options.
