@@ -23,8 +23,8 @@ MOST_PLACES = 8
 class Recorded:
     """The formulas of a system, and the functions from which they come.
 
-    names: those of parameters that functions get before further arguments. beginning: a function of
-    the start that returns the state there.
+    names: those of parameters that functions get before further arguments. values: their values, if
+    these are known. beginning: a function of the start that returns the state there.
 
     Raises CannotRecord with the reason, if a function is no formula.
     """
@@ -35,6 +35,7 @@ class Recorded:
         begin: tuple[int, float],
         state: NDArray[np.float64],
         names: Sequence[str] = (),
+        values: Sequence[float] | None = None,
         beginning: Function | None = None,
     ) -> None:
         if not state.size:
@@ -47,7 +48,8 @@ class Recorded:
         self.tape = Tape()
         native = self.tape.native
         symbols = [Symbol(self.tape, native.parameter(place)) for place in range(len(names))]
-        self.args, self.names = (*symbols, *table.args), names
+        self.args = (*symbols, *table.args)
+        self.values = list(values) if values is not None else None if names else []
         self.beginning = beginning
         #: For each mode, functions with their formulas: the right-hand side, guards, and resets.
         self.slopes: list[tuple[str, Function, list[int]]] = []
@@ -143,9 +145,10 @@ class Recorded:
             after = self.formulas(what, guard.reset, self.state.size)
             self.resets[-1][place] = (what, guard.reset)
         order = int(guard.from_zero)
-        if self.table.plain and not order and value is not None and not self.names:
+        if self.table.plain and not order and value is not None and self.values is not None:
             state = self.state.tolist()
-            order = self.tape.native.zero_order(value, slopes, self.start, state)
+            known = (self.start, state, self.values)
+            order = self.tape.native.zero_order(value, slopes, *known)
             if order >= 8:
                 raise CannotRecord(f"{source.label} is zero all the time at the start")
         if value is not None and self.tape.native.value(value) is not None:
@@ -180,9 +183,10 @@ class Recorded:
         first, start, end = begin
         settings = {name: value for name, value in settings.items() if name != "guard_scale"}
         given = (first, start, self.state.tolist())
-        found = self.system._native.run([], given, end, settings, times)
-        self.compare(found)
-        rerun: Rerun = ([], given, end, settings)
+        values = self.values or []
+        found = self.system._native.run(values, given, end, settings, times)
+        self.compare(found, tuple(values))
+        rerun: Rerun = (values, given, end, settings)
         return self.system._solution(found, dense, rerun, self.table.event_names)
 
     def compare(self, found: dict[str, Any], values: tuple[float, ...] = ()) -> None:

@@ -161,6 +161,7 @@ class HybridFamily:
             raise ValueError(f"t_span = ({begin}, {end}); expected an end after the start")
         state = state_at_start(y0)
         table = _Table(system, [], _arguments(args))
+        counted = table.apart
         table.apart, table.conditions = False, True
         if np.isinf(end) and not table.may_end:
             raise ValueError("t_span is infinite, and no guard is terminal")
@@ -215,7 +216,11 @@ class HybridFamily:
         elif record is not False:
             self._callables = self._native
             try:
-                self._recorded = Recorded(table, (first_mode, begin), state, ("p", "q"), start)
+                if counted:
+                    raise CannotRecord("guards of several modes are counted until the run ends")
+                self._recorded = Recorded(
+                    table, (first_mode, begin), state, ("p", "q"), beginning=start
+                )
                 del settings["guard_scale"]
                 self._settings = settings
                 self._end = end

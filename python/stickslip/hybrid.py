@@ -43,6 +43,7 @@ def solve(
     max_switches: int = 10_000_000,
     guard_scale: float | None = None,
     args: tuple[Any, ...] = (),
+    parameters: Mapping[str, float] | None = None,
     sides: Mapping[str, int] | None = None,
     record: bool | None = None,
 ) -> Solution:
@@ -64,7 +65,8 @@ def solve(
 
     guard_scale: the shortest time on which guards and events change, if they change faster than the
     state. max_switches: a run that has so many events stops. args: further arguments of all Python
-    functions, after t and y (and after variables and signs, if the system has such). sides: the
+    functions, after t and y (and after variables and signs, if the system has such). parameters:
+    numbers that Python functions get before args, by names for `Solution.sensitivities`. sides: the
     sides of surfaces, 1, -1 or 0, on which a run starts where it could go on in several ways.
 
     record: Python functions are called once with symbols for t and y, and run as formulas whose
@@ -86,6 +88,9 @@ def solve(
     state = state_at_start(y0)
     table = _Table(system, _event_list(events), _arguments(args))
     first = table.index_of(mode)
+    given = {name: _number(value, name) for name, value in (parameters or {}).items()}
+    if given and table.has_compiled:
+        raise TypeError("parameters are those of functions of Python; expected Compiled(f, [...])")
     settings: dict[str, Any] = {
         "method": method_name(method),
         "rtol": _number(rtol, "rtol"),
@@ -108,14 +113,19 @@ def solve(
         reason = f"the state has more than {MOST_RECORDED} components; record=True records it"
     elif record is not False:
         found_recorded, reason = _try_recorded(
-            table, (first, start, end), state, settings, times, bool(dense_output)
+            table, (first, start, end), state, settings, times, (bool(dense_output), given)
         )
         if found_recorded is not None:
             return found_recorded
         if record:
             raise ValueError(f"record = True, but {reason}")
     found = _native.run_hybrid(
-        table.system(), table.args, begin, end, settings, (times, bool(dense_output))
+        table.system(),
+        (*given.values(), *table.args),
+        begin,
+        end,
+        settings,
+        (times, bool(dense_output)),
     )
     table.reason = reason
     solution = table.solution(found, state.size, start, bool(dense_output))
@@ -151,13 +161,14 @@ def _try_recorded(
     state: Floats,
     settings: dict[str, Any],
     times: Floats | None,
-    dense: bool,
+    more: tuple[bool, dict[str, float]],
 ) -> tuple[Solution | None, str]:
     """The solution of the recorded system, or why there is none."""
     if begin[2] <= begin[1]:
         return None, "the run goes backwards"
     try:
-        recorded = Recorded(table, begin[:2], state)
+        dense, given = more
+        recorded = Recorded(table, begin[:2], state, list(given), list(given.values()))
         wanted = None if times is None else times.tolist()
         return recorded.solve(begin, settings, wanted, dense), ""
     except (CannotRecord, _native.ComputationError) as reason:
@@ -201,6 +212,14 @@ class _Table:
                 self.event_names.append(guard.name)
         #: The name of each guard of each mode, by its place.
         self.places: list[list[str]] = []
+
+    @property
+    def has_compiled(self) -> bool:
+        """Whether a right-hand side or guards are compiled."""
+        sides = [mode.right_hand_side for mode in self.system_modes]
+        sources = [*self.events, *(s for mode in self.system_modes for s in mode._sources)]
+        functions = [*sides, *(source.function for source in sources)]
+        return any(isinstance(function, Compiled) for function in functions)
 
     @property
     def may_end(self) -> bool:

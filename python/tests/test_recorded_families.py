@@ -133,6 +133,22 @@ def test_a_transition_that_chooses_is_recorded() -> None:
     assert any(abs(curve.points[:, 0] - math.sqrt(2)).max() < 1e-9 for curve in atlas.curves)
 
 
+def test_guards_that_are_counted_in_each_mode_are_not_recorded() -> None:
+    def family(record=None):
+        system = HybridSystem()
+        one = system.mode("one", lambda t, y, p, q: [1.0])
+        two = system.mode("two", lambda t, y, p, q: [1.0])
+        up = lambda t, y, p, q: y[0] - p  # noqa: E731
+        reset = lambda t, y, p, q: [0.0]  # noqa: E731
+        one.guard("up", up, direction="rising", to="two", reset=reset, terminal=2)
+        two.guard("up", up, direction="rising", to="one", reset=reset, terminal=2)
+        return HybridFamily(system, (0, 10), [0.0], "one", record=record)
+
+    assert "counted until the run ends" in str(family().reason)
+    found = family().label(1.0, 0.0)
+    assert found == family(False).label(1.0, 0.0) and len(found.guards) == 2
+
+
 def test_what_does_not_fit_is_refused() -> None:
     system = stickslip.system(BALL)
     for arguments, options, message in [

@@ -55,6 +55,27 @@ def test_those_of_functions_are_those_of_their_formulas() -> None:
     assert (again.sensitivities("y0").t_by == derivatives.t_by).all()
 
 
+def test_functions_have_those_by_their_parameters() -> None:
+    fall = lambda t, y, g, e: [y[1], -g]  # noqa: E731
+    floor = lambda t, y, g, e: y[0] - 0.0 * e  # noqa: E731
+    given = {"g": 2.0, "e": 0.5}
+    found = solve(fall, (0, 3), [1.0, 0.0], events=floor, parameters=given, rtol=1e-12)
+    assert found.guards == "decided"
+    # t = √(2h/g)
+    moves = found.sensitivities("g", "e", "y0")
+    assert np.allclose(moves.t_by[0], [-0.25, 0.0, 0.5], rtol=0, atol=1e-10)
+    called = solve(fall, (0, 3), [1.0, 0.0], events=floor, parameters=given, record=False)
+    assert np.allclose(called.t_events[0], found.t_events[0], rtol=0, atol=1e-9)
+    # An event that is zero at the start does not fire there.
+    start = lambda t, y, level: y[0] - level  # noqa: E731
+    found = solve(
+        lambda t, y, level: [-y[0]], (0, 1), [2.0], events=start, parameters={"level": 2.0}
+    )
+    assert found.guards == "decided" and found.events.size == 0
+    with pytest.raises(TypeError, match="level"):
+        solve(lambda t, y, level: -y, (0, 1), [1.0], parameters={"level": "high"})
+
+
 def test_what_has_none_is_refused() -> None:
     system = stickslip.system(BALL)
     with pytest.raises(ValueError, match="'mass' is no parameter and no component"):

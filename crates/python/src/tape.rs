@@ -123,15 +123,23 @@ impl Tape {
         Ok(graph.texts(&formulas, &names))
     }
 
-    /// The order of the zero that a formula has at a time and a state, along the flow with these
-    /// slopes: 0 if it is no zero.
-    fn zero_order(&self, formula: u32, slopes: Vec<u32>, t: f64, y: Vec<f64>) -> PyResult<u32> {
+    /// The order of the zero that a formula has at a time, a state and parameters, along the flow
+    /// with these slopes: 0 if it is no zero.
+    #[pyo3(signature = (formula, slopes, t, y, parameters=Vec::new()))]
+    fn zero_order(
+        &self,
+        formula: u32,
+        slopes: Vec<u32>,
+        t: f64,
+        y: Vec<f64>,
+        parameters: Vec<f64>,
+    ) -> PyResult<u32> {
         let mut graph = self.graph();
         let mut formula = known(&graph, formula)?;
         let slopes = all_known(&graph, &slopes)?;
         let (zero, one) = (graph.constant(0.0), graph.constant(1.0));
         for order in 0..MOST_ORDERS {
-            if values(&graph, &[formula], t, (&y, &[]))?[0] != 0.0 {
+            if values(&graph, &[formula], t, (&y, &parameters))?[0] != 0.0 {
                 return Ok(order);
             }
             formula = graph.slope(formula, &mut |_, variable| match variable {
