@@ -1,6 +1,7 @@
 """Many runs of one system."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -173,3 +174,16 @@ def test_guards_that_are_sampled_are_said_once(monkeypatch) -> None:
     solve(lambda t, y: [-y[0]], (0, 1), [1.0], events=lost, guard_scale=0.1)
     solve(lambda t, y: [-y[0]], (0, 1), [1.0], events=lost, record=False)
     assert hybrid._warned == []
+
+
+def test_the_collision_as_text_has_the_switches_of_the_engine() -> None:
+    path = Path(__file__).parents[2] / "examples" / "systems" / "collision.slip"
+    random = np.random.default_rng(5)
+    kappa = xr.DataArray(random.uniform(1.0, 100.0, 300), dims="collision")
+    psi = xr.DataArray(random.uniform(0.05, 2.5, 300), dims="collision")
+    found = solve_many(stickslip.read(path), parameters={"kappa": kappa, "psi": psi})
+    assert (found.outcome == "ended_by_guard").all() and bool(found.decided.all())
+    switches = stickslip.eps_t_and_switch_count(kappa.values, psi.values, 0.1)[1]
+    # The last event is the end of the contact.
+    assert (found.event_count.to_numpy() - 1 == switches).all()
+    assert found.event_guard[-1] == "parts"
