@@ -64,8 +64,7 @@ fn parameters_are_given_when_it_runs() {
     assert_eq!(error(&[1.0, f64::NAN, 1.0]), "static = NaN; expected a finite number");
 }
 
-/// What is common to modes stands above them; a prime is the derivative along the flow. Guards that
-/// start from zeros, also double ones, need no declaration.
+/// What is common to modes stands above them; a prime is the derivative along the flow.
 #[test]
 fn the_collision_of_spheres() {
     let (end, switches) = runs(include_str!("../../../../examples/systems/collision.slip"));
