@@ -1,11 +1,11 @@
 """Arguments of runs, checked."""
 
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from stickslip._compiled import _reals
+from stickslip._compiled import _count, _number, _reals
 
 Floats: TypeAlias = NDArray[np.float64]
 #: The names of methods; in small letters they mean the same.
@@ -53,3 +53,22 @@ def times_within(t_eval: ArrayLike, start: float, end: float) -> Floats:
     if (steps < 0.0).any():
         raise ValueError("t_eval is not sorted in the direction of t_span")
     return times
+
+
+def settings_of(
+    method: str,
+    rtol: float,
+    atol: float,
+    max_step: float,
+    first_step: float | None,
+    max_switches: int,
+) -> dict[str, Any]:
+    """The settings of runs, as the native module takes them."""
+    return {
+        "method": method_name(method),
+        "rtol": _number(rtol, "rtol"),
+        "atol": _number(atol, "atol"),
+        "max_step": _number(max_step, "max_step"),
+        "first_step": None if first_step is None else _number(first_step, "first_step"),
+        "max_switches": _count(max_switches, "max_switches"),
+    }

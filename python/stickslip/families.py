@@ -39,7 +39,7 @@ from stickslip._symbols import CannotRecord
 from stickslip._systems import HybridSystem, Mode, _check_function
 from stickslip.atlases import AtlasWarning
 from stickslip.collisions import Floats, _threads
-from stickslip._run_arguments import span, state_at_start
+from stickslip._run_arguments import settings_of, span, state_at_start
 from stickslip.formulas import FormulaSystem
 from stickslip.hybrid import MOST_RECORDED, _arguments, _callee, _Table
 
@@ -178,15 +178,10 @@ class HybridFamily:
                 for guard in source.guards:
                     for what, function in (("reset", guard.reset), ("condition", guard.condition)):
                         _check_parameters(function, f"the {what} of guard {guard.name!r}")
-        settings = {
-            "method": "dop853",
-            "rtol": _number(rtol, "rtol"),
-            "atol": _number(atol, "atol"),
-            "max_step": _number(max_step, "max_step"),
-            "first_step": None if first_step is None else _number(first_step, "first_step"),
-            "max_switches": _count(max_switches, "max_switches"),
-            "guard_scale": None if guard_scale is None else _number(guard_scale, "guard_scale"),
-        }
+        settings = settings_of("dop853", rtol, atol, max_step, first_step, max_switches)
+        settings["guard_scale"] = (
+            None if guard_scale is None else _number(guard_scale, "guard_scale")
+        )
         #: The name of the family.
         self.name = _text(name, "name")
         if isinstance(axes, str) or len(axes) != 2:
@@ -305,14 +300,7 @@ class HybridFamily:
                 raise ValueError(f"{axis!r} is no parameter; expected one of {', '.join(known)}")
         if end is not None and np.isnan(_number(end, "end")):
             raise ValueError(f"end = {end!r}; expected a number")
-        settings = {
-            "method": "dop853",
-            "rtol": _number(rtol, "rtol"),
-            "atol": _number(atol, "atol"),
-            "max_step": _number(max_step, "max_step"),
-            "first_step": None if first_step is None else _number(first_step, "first_step"),
-            "max_switches": _count(max_switches, "max_switches"),
-        }
+        settings = settings_of("dop853", rtol, atol, max_step, first_step, max_switches)
         family = cls.__new__(cls)
         family.name, family.axes = _text(name, "name"), (x, y)
         axes = [known.index(x), known.index(y)]

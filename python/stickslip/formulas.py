@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _native
-from stickslip._compiled import _count, _number
+from stickslip._compiled import _number
 from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
-from stickslip._run_arguments import method_name, span, state_at_start, times_within
+from stickslip._run_arguments import settings_of, span, state_at_start, times_within
 from stickslip._solutions import Solution, event_array, solution_of
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -168,14 +168,7 @@ class FormulaSystem:
         if mode is not None and mode not in self.modes:
             raise ValueError(f"mode = {mode!r}; expected one of {self.modes}")
         place = None if mode is None else self.modes.index(mode)
-        settings = {
-            "method": method_name(method),
-            "rtol": _number(rtol, "rtol"),
-            "atol": _number(atol, "atol"),
-            "max_step": _number(max_step, "max_step"),
-            "first_step": None if first_step is None else _number(first_step, "first_step"),
-            "max_switches": _count(max_switches, "max_switches"),
-        }
+        settings = settings_of(method, rtol, atol, max_step, first_step, max_switches)
         return values, (place, start, state), end, settings
 
     def _solution(

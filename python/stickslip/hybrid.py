@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _native
-from stickslip._compiled import Compiled, Function, _count, _number
+from stickslip._compiled import Compiled, Function, _number
 from stickslip._recorded import Recorded
-from stickslip._run_arguments import method_name, span, state_at_start, times_within
+from stickslip._run_arguments import settings_of, span, state_at_start, times_within
 from stickslip._solutions import Solution, event_array, solution_of
 from stickslip._symbols import CannotRecord
 from stickslip._systems import Guard, HybridSystem, Mode, _check_function, _Clock, _Source
@@ -91,15 +91,8 @@ def solve(
     given = {name: _number(value, name) for name, value in (parameters or {}).items()}
     if given and table.has_compiled:
         raise TypeError("parameters are those of functions of Python; expected Compiled(f, [...])")
-    settings: dict[str, Any] = {
-        "method": method_name(method),
-        "rtol": _number(rtol, "rtol"),
-        "atol": _number(atol, "atol"),
-        "max_step": _number(max_step, "max_step"),
-        "first_step": None if first_step is None else _number(first_step, "first_step"),
-        "max_switches": _count(max_switches, "max_switches"),
-        "guard_scale": None if guard_scale is None else _number(guard_scale, "guard_scale"),
-    }
+    settings = settings_of(method, rtol, atol, max_step, first_step, max_switches)
+    settings["guard_scale"] = None if guard_scale is None else _number(guard_scale, "guard_scale")
     times = None if t_eval is None else times_within(t_eval, start, end)
     if np.isinf(end) and not table.may_end:
         raise ValueError("t_span is infinite, and no guard or event is terminal")

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stickslip import _native
-from stickslip._compiled import Function, _count, _number
+from stickslip._compiled import Function
 from stickslip._recorded import Recorded
-from stickslip._run_arguments import method_name, span, state_at_start, times_within
+from stickslip._run_arguments import settings_of, span, state_at_start, times_within
 from stickslip._symbols import CannotRecord
 from stickslip._systems import HybridSystem, Mode
 from stickslip.collisions import _threads
@@ -77,14 +77,7 @@ def solve_many(
 
     given = dict(parameters or {})
     start, end = (None, None) if t_span is None else span(t_span)
-    settings: dict[str, Any] = {
-        "method": method_name(method),
-        "rtol": _number(rtol, "rtol"),
-        "atol": _number(atol, "atol"),
-        "max_step": _number(max_step, "max_step"),
-        "first_step": None if first_step is None else _number(first_step, "first_step"),
-        "max_switches": _count(max_switches, "max_switches"),
-    }
+    settings = settings_of(method, rtol, atol, max_step, first_step, max_switches)
     state = None if y0 is None else state_at_start(y0)
     recorded: Recorded | None = None
     if isinstance(system, FormulaSystem):

@@ -77,20 +77,12 @@ macro_rules! sized {
 /// The case has more components or guards than any other so far. Another line in `sized` helps.
 pub fn run_case<M: Method>(method: M, case: &Case, reading: Reading) -> Report {
     match reading {
-        Reading::Readable => run_readable(method, case),
+        Reading::Readable => sized!(run_read(method, case)),
         Reading::BlackBox => sized!(run_black_box(method, case, None)),
         Reading::ScaledBlackBox => sized!(run_black_box(method, case, case.guard_scale)),
         Reading::Dynamic => run_free(method, case, None),
         Reading::ScaledDynamic => run_free(method, case, case.guard_scale),
     }
-}
-
-/// Runs a case whose formulas the solver reads. Who only does that need not compile the rest.
-///
-/// # Panics
-/// As [`run_case`].
-pub fn run_readable<M: Method>(method: M, case: &Case) -> Report {
-    sized!(run_read(method, case))
 }
 
 fn run_read<M: Method, const N: usize, const G: usize>(method: M, case: &Case) -> Report {

@@ -114,6 +114,21 @@ pub struct Rule {
 }
 
 impl Rule {
+    /// A rule that changes nothing.
+    #[must_use]
+    pub fn new(trigger: Trigger) -> Self {
+        Self {
+            trigger,
+            label: None,
+            priority: 0,
+            sees_jumps: false,
+            ends_after: 0,
+            from_zero: 0,
+            changes: Vec::new(),
+            next: Next::Stay,
+        }
+    }
+
     /// The label, or else a name from the `place` of the rule in its mode.
     #[must_use]
     pub fn name(&self, place: usize) -> String {

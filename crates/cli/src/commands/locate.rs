@@ -2,7 +2,7 @@
 
 use stickslip_files::input::atlas::{self, AnyAtlas, RunsAtlas};
 use stickslip_files::input::recipe::Given;
-use stickslip_files::input::rows::{Columns, Input, TwoColumns};
+use stickslip_files::input::rows::{ByteRecord, Columns, Input, Reading, TwoColumns};
 use stickslip_files::output::csv::{CsvFile, Rows};
 use stickslip_files::output::file::publish;
 use stickslip_files::output::rows::{LOCATED, LOCATED_RUNS};
@@ -25,64 +25,46 @@ pub fn run(plan: &LocatePlan) -> Result<(), Failure> {
         AnyAtlas::Runs(atlas) => return runs(plan, &atlas),
     };
     let points = |header: &_| Columns::POINTS.recipe(header, &Given::default());
-    let mut input = Input::open(&plan.input, points)?;
-    let pool = threads::pool(Some(1))?;
-    let mut table = CsvFile::create(&plan.out)?;
-    let mut text = Rows::default();
-    text.fields(input.header().iter().chain(LOCATED.iter().map(|name| name.as_bytes())));
-    text.end();
-    let (mut rows, mut failed, mut first) = (0, 0, None);
-    let mut portion = Vec::new();
-    loop {
-        table.write(&std::mem::take(&mut text))?;
-        pool.install(|| input.read_portion(&mut portion))?;
-        if portion.is_empty() {
-            break;
-        }
-        for row in &portion {
-            let located = row.case.as_ref().map(|contact| atlas.locate(contact));
-            let distance = located.as_ref().ok().and_then(|located| located.distance);
-            let region = match located {
-                Ok(located) => located.region.map_err(|why| format!("row {}: {why}", rows + 1)),
-                Err(reason) => Err(reason.clone()),
-            };
-            text.fields(&row.fields);
-            if let Ok(region) = region {
-                let itinerary = atlas.itinerary(region);
-                text.count(switch_count(itinerary));
-                text.field(itinerary);
-                text.field(region.to_string());
-            } else {
-                text.fields([""; LOCATED.len() - 1]);
-            }
-            match distance {
-                Some(distance) => text.number(distance),
-                None => text.field(""),
-            }
-            text.end();
-            rows += 1;
-            if let Err(reason) = region {
-                failed += 1;
-                first.get_or_insert(reason);
-            }
-        }
-    }
-    publish([table.store()?])?;
-    match first {
-        Some(first) => Err(Failure::Unlocated { failed, rows, path: plan.out.clone(), first }),
-        None => Ok(()),
-    }
+    write(plan, points, &LOCATED, |contact| {
+        let located = atlas.locate(contact);
+        let region = located.region.map_err(|why| why.to_string()).map(|region| {
+            let itinerary = atlas.itinerary(region);
+            [switch_count(itinerary).to_string(), itinerary.to_owned(), region.to_string()]
+        });
+        (region, located.distance)
+    })
 }
 
 /// Locates every point of the input in an atlas of a system of one's own.
 fn runs(plan: &LocatePlan, found: &RunsAtlas) -> Result<(), Failure> {
     let RunsAtlas { atlas, axes, guards } = found;
     let points = |header: &_| TwoColumns::named(header, axes, &LOCATED_RUNS);
+    write(plan, points, &LOCATED_RUNS, |&(x, y)| {
+        let point = Point::new(x, y);
+        let region = region_of(atlas, &point).map(|(region, label)| {
+            let (count, itinerary) = itinerary(label, guards);
+            [count, itinerary, region.to_string()]
+        });
+        let named = |why| format!("{} = {x}, {} = {y} {why}", axes[0], axes[1]);
+        (region.map_err(named), atlas.plane.vertical_distance(&point))
+    })
+}
+
+/// The first columns of a point, or the reason why it is not located, and its distance.
+type Located = (Result<[String; 3], String>, Option<f64>);
+
+/// Writes a row with the columns `names` for every point of the input.
+fn write<R: Reading>(
+    plan: &LocatePlan,
+    points: impl FnOnce(&ByteRecord) -> Result<R, String>,
+    names: &[&str; 4],
+    locate: impl Fn(&R::Case) -> Located,
+) -> Result<(), Failure> {
     let mut input = Input::open(&plan.input, points)?;
     let pool = threads::pool(Some(1))?;
     let mut table = CsvFile::create(&plan.out)?;
     let mut text = Rows::default();
-    text.fields(input.header().iter().chain(LOCATED_RUNS.iter().map(|name| name.as_bytes())));
+    text.fields(input.header().iter().chain(names.iter().map(|name| name.as_bytes())));
     text.end();
     let (mut rows, mut failed, mut first) = (0, 0, None);
     let mut portion = Vec::new();
@@ -93,29 +75,24 @@ fn runs(plan: &LocatePlan, found: &RunsAtlas) -> Result<(), Failure> {
             break;
         }
         for row in &portion {
-            text.fields(&row.fields);
             rows += 1;
-            let point = row.case.as_ref().map(|&(x, y)| Point::new(x, y));
-            let region = point.map_err(Clone::clone).and_then(|point| {
-                region_of(atlas, &point).map_err(|why| {
-                    let [x, y] = axes;
-                    format!("row {rows}: {x} = {}, {y} = {} {why}", point.x, point.y)
-                })
-            });
-            match region {
-                Ok((region, label)) => {
-                    let (count, itinerary) = itinerary(label, guards);
-                    text.field(count);
-                    text.field(itinerary);
-                    text.count(region);
+            let (region, distance) = match &row.case {
+                Ok(point) => {
+                    let (region, distance) = locate(point);
+                    (region.map_err(|why| format!("row {rows}: {why}")), distance)
                 }
+                Err(reason) => (Err(reason.clone()), None),
+            };
+            text.fields(&row.fields);
+            match region {
+                Ok(columns) => text.fields(columns),
                 Err(reason) => {
-                    text.fields([""; LOCATED_RUNS.len() - 1]);
+                    text.fields([""; 3]);
                     failed += 1;
                     first.get_or_insert(reason);
                 }
             }
-            match point.ok().and_then(|point| atlas.plane.vertical_distance(&point)) {
+            match distance {
                 Some(distance) => text.number(distance),
                 None => text.field(""),
             }

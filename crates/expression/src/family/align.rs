@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use crate::system::{Mode, Next, Rule, System, Trigger};
+use crate::system::{Mode, Rule, System, Trigger};
 
 /// One list of rules for all modes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -38,27 +38,14 @@ impl RuleOrder {
     pub(super) fn align(&self, system: &System) -> System {
         let mut aligned = system.clone();
         for (mode, places) in aligned.modes.iter_mut().zip(&self.places) {
-            let mut rules = vec![never(); self.names.len()];
+            let never = Rule::new(Trigger::At(Vec::new()));
+            let mut rules = vec![never; self.names.len()];
             for (rule, &place) in mode.rules.drain(..).zip(places) {
                 rules[place] = rule;
             }
             mode.rules = rules;
         }
         aligned
-    }
-}
-
-/// A rule that acts at no time.
-fn never() -> Rule {
-    Rule {
-        trigger: Trigger::At(Vec::new()),
-        label: None,
-        priority: 0,
-        sees_jumps: false,
-        ends_after: 0,
-        from_zero: 0,
-        changes: Vec::new(),
-        next: Next::Stay,
     }
 }
 

@@ -48,16 +48,7 @@ impl Reader<'_> {
                 return Err(self.error_at(at + 1, message.to_owned()));
             }
         }
-        let mut rule = Rule {
-            trigger,
-            label: None,
-            priority: 0,
-            sees_jumps: false,
-            ends_after: 0,
-            from_zero: 0,
-            changes: Vec::new(),
-            next: Next::Stay,
-        };
+        let mut rule = Rule::new(trigger);
         loop {
             match self.peek().clone() {
                 Token::Label(label) => {

@@ -10,7 +10,7 @@ mod scan;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use csv::ByteRecord;
+pub use csv::ByteRecord;
 use rayon::prelude::*;
 use stickslip_model::Contact;
 
