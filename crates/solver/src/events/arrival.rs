@@ -34,7 +34,7 @@ impl<S: System> Examination<'_, S> {
             if self.notes_of(guard).any(|note| note.s >= s - SAME * step.h) {
                 continue;
             }
-            let arrival = self.arrival(guard, step, (step.h, ARRIVES), &step.y1);
+            let arrival = self.arrival(guard, step, (step.h, 0.0), ARRIVES, &step.y1);
             let Some(crossed) = arrival else { continue };
             let found = self.at_end(guard, crossed, step);
             if self.is_noted(&found) {
@@ -83,13 +83,14 @@ impl<S: System> Examination<'_, S> {
         first
     }
 
-    /// How a guard crosses zero at a place of `step`, if it does so in its direction and is zero
-    /// there to within so many roundings.
+    /// How a guard crosses zero at a place of `step` that has an error, if it does so in its
+    /// direction and is zero there to within the error and so many roundings.
     pub(crate) fn arrival(
         &mut self,
         guard: usize,
         step: &StepOf<S::State>,
-        (elapsed, roundings): (f64, f64),
+        (elapsed, error): (f64, f64),
+        roundings: f64,
         y: &S::State,
     ) -> Option<Crossed> {
         let direction = self.phase.guards[guard].direction();
@@ -129,7 +130,7 @@ impl<S: System> Examination<'_, S> {
         room.give(moved);
         let crosses = shows && (behind < 0.0) != (ahead < 0.0);
         let slope = ((ahead - behind) / (2.0 * reach)).abs();
-        let zero = there.abs() <= roundings * (hidden + slope * self.drift(elapsed));
+        let zero = there.abs() <= roundings * (hidden + slope * self.drift(elapsed)) + slope * error;
         let fires = zero && crosses && direction.fires_from(behind);
         fires.then_some(Crossed { slope, jump: false, sign: behind.signum() })
     }

@@ -335,9 +335,10 @@ impl<S: System> Examination<'_, S> {
                 self.locate::<M>(&found.step, guard, &crossing, true)?.map(Some).ok_or(Unresolved)
             }
             _ if self.notes_of(guard).next().is_none() => {
-                let Event { step, elapsed, state, .. } = &*found;
+                let place = (found.elapsed, self.error_of(found));
+                let Event { step, state, .. } = &*found;
                 // At the start of the step, it may have been noted on the step before.
-                let crossed = self.arrival(guard, step, (*elapsed, 1.0), state).filter(|crossed| {
+                let crossed = self.arrival(guard, step, place, 1.0, state).filter(|crossed| {
                     !may_wait
                         || self.phase.zero_orders[guard] == 0
                             && crossed.sign * self.phase.values[guard] > 0.0
@@ -439,13 +440,14 @@ impl<S: System> Examination<'_, S> {
         if self.phase.count() == 1 || event.elapsed < (1.0 - TOGETHER) * h {
             return;
         }
+        let place = (event.elapsed, self.error_of(event));
         for guard in 0..self.phase.count() {
             let near = there[guard].abs() <= NEAR_ZERO * largest::<S>(guard, values);
             if near
                 && event.crossed[guard].is_none()
                 && self.notes_of(guard).next().is_none()
                 && let Some(crossed) =
-                    self.arrival(guard, &event.step, (event.elapsed, 1.0), &event.state)
+                    self.arrival(guard, &event.step, place, 1.0, &event.state)
             {
                 event.crossed[guard] = Some(crossed);
                 if self.precedes(guard, event.guard) {

@@ -36,6 +36,10 @@ pub(super) struct Instant<S: System> {
     chain: Vec<(S::Mode, usize)>,
 }
 
+/// The parts of a usual step over which a guard shows on which side it leaves zero: the first that is
+/// tried, and about the last.
+const CLOSE: f64 = 1e-6;
+const FAR: f64 = 1e-2;
 /// A cycle of transitions at one instant is named if it is no longer than this.
 const LONGEST_CYCLE: usize = 8;
 
@@ -383,12 +387,34 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             return true;
         }
         // It has crossed zero where it is now, whatever its rounding is.
-        let mode = self.phase.mode;
-        self.instant.pending[guard].is_some_and(|pending| pending.mode == mode) && {
-            let at = (mode, guard);
-            let there = self.room.value(self.system, at, self.clock.s, &event.state);
+        let Some(Pending { mode, .. }) = self.instant.pending[guard] else { return false };
+        self.sense(event, mode, guard) == 1.0 && {
+            let there = self.room.value(self.system, (mode, guard), self.clock.s, &event.state);
             self.statistics.guards += 1;
-            (value - there).abs() <= self.hidden(event, guard)
+            let hidden = self.hidden(event, guard);
+            (value - there).abs() <= hidden
+                && (mode == self.phase.mode || self.falls(guard, value, hidden))
         }
+    }
+
+    /// Whether a guard with this value falls where the active mode goes on.
+    fn falls(&mut self, guard: usize, value: f64, hidden: f64) -> bool {
+        let (mode, s) = (self.phase.mode, self.clock.s);
+        let (mut slope, mut ahead) = (self.room.state(), self.room.state());
+        self.system.field(mode, s, &self.state, &mut slope);
+        self.statistics.field += 1;
+        let mut reach = (CLOSE * self.h).max(256.0 * f64::EPSILON * s.abs());
+        let change = loop {
+            S::State::shifted(&mut ahead, &self.state, &slope, reach);
+            let change = self.room.value(self.system, (mode, guard), s + reach, &ahead) - value;
+            self.statistics.guards += 1;
+            if change.abs() > 8.0 * hidden || reach >= FAR * self.h {
+                break change;
+            }
+            reach *= 16.0;
+        };
+        self.room.give(slope);
+        self.room.give(ahead);
+        change < -8.0 * hidden
     }
 }
