@@ -38,6 +38,6 @@ pub(crate) mod status;
 pub(crate) use along_step::{dense_output, repeated_step};
 pub(crate) use event::{Crossed, Event, Found, Note, only};
 pub(crate) use examination::{Examination, values_on};
-pub(crate) use first_guard::all_clearly_away;
+pub(crate) use first_guard::{UNSEEN, all_clearly_away};
 pub(crate) use notices::{Noticed, Notices};
 pub(crate) use phase::Phase;

@@ -102,7 +102,8 @@ impl<S: System> Examination<'_, S> {
         self.statistics.guards += 1;
         let largest = self.phase.largest[guard];
         // In a phase that is hardly longer than rounding of time, it hides more.
-        let near = NEAR_ZERO.max(16.0 * f64::EPSILON * (s.abs() + self.age) / elapsed);
+        let rounding = f64::EPSILON * s.abs() + self.drift(elapsed);
+        let near = NEAR_ZERO.max(16.0 * rounding / elapsed);
         if largest > 0.0 && there.abs() > near * largest {
             return None;
         }
@@ -130,7 +131,8 @@ impl<S: System> Examination<'_, S> {
         room.give(moved);
         let crosses = shows && (behind < 0.0) != (ahead < 0.0);
         let slope = ((ahead - behind) / (2.0 * reach)).abs();
-        let zero = there.abs() <= roundings * (hidden + slope * self.drift(elapsed)) + slope * error;
+        let zero =
+            there.abs() <= roundings * (hidden + slope * self.drift(elapsed)) + slope * error;
         let fires = zero && crosses && direction.fires_from(behind);
         fires.then_some(Crossed { slope, jump: false, sign: behind.signum() })
     }

@@ -18,7 +18,7 @@ use crate::system::{PerGuard, Room, System};
 /// A guard is zero at an event if its value there is below this part of its values before.
 pub(crate) const TOGETHER: f64 = 1e-12;
 /// A step shows nothing about guards if it is shorter than this many units of rounding of time.
-const UNSEEN: f64 = 16.0;
+pub(crate) const UNSEEN: f64 = 16.0;
 /// The part of a step on which the noise of a guard is measured.
 const CLOSE: f64 = 1e-6;
 /// The part of what surely exceeds noise that it may well be.
@@ -156,12 +156,19 @@ impl<S: System> Examination<'_, S> {
         let s = self.trial.s + event.elapsed;
         let since = s - 2.0 * self.error_of(event) - 8.0 * f64::EPSILON * s.abs();
         let phase = self.phase;
-        self.notes.retain(|note| {
-            let stays = note.s < since || phase.precedes(note.guard, event.guard);
-            if !stays {
+        self.notes.retain_mut(|note| {
+            let waits = |guard: usize| note.s >= since && !phase.precedes(guard, event.guard);
+            if waits(note.guard) {
                 event.take_in(&note.crossed);
+                return false;
             }
-            stays
+            for guard in 0..phase.count() {
+                if note.simultaneous[guard] && waits(guard) {
+                    note.simultaneous[guard] = false;
+                    event.crossed[guard] = event.crossed[guard].or(note.crossed[guard].take());
+                }
+            }
+            true
         });
     }
 
@@ -394,9 +401,9 @@ impl<S: System> Examination<'_, S> {
         drift + if error.is_finite() { error } else { 0.0 }
     }
 
-    /// The effect on a time of rounding of the state since the start of the phase.
+    /// The effect on a time of rounding of the state since the start of the run.
     pub(crate) fn drift(&self, elapsed: f64) -> f64 {
-        4.0 * f64::EPSILON * (self.age + elapsed)
+        4.0 * f64::EPSILON * (self.ran + elapsed)
     }
 
     /// The effect of rounding on a guard at a place of `step`: of time and state, and within the
@@ -446,8 +453,7 @@ impl<S: System> Examination<'_, S> {
             if near
                 && event.crossed[guard].is_none()
                 && self.notes_of(guard).next().is_none()
-                && let Some(crossed) =
-                    self.arrival(guard, &event.step, place, 1.0, &event.state)
+                && let Some(crossed) = self.arrival(guard, &event.step, place, 1.0, &event.state)
             {
                 event.crossed[guard] = Some(crossed);
                 if self.precedes(guard, event.guard) {

@@ -15,11 +15,12 @@ pub(crate) struct Clock {
     rest: f64,
     /// The duration of the phase so far, with a relative error of rounding.
     pub(crate) phase: f64,
+    start: f64,
 }
 
 impl Clock {
     pub(crate) fn new(s: f64) -> Self {
-        Self { s, rest: 0.0, phase: 0.0 }
+        Self { s, rest: 0.0, phase: 0.0, start: s }
     }
 
     pub(crate) fn advance(&mut self, h: f64) {
@@ -30,6 +31,11 @@ impl Clock {
         let added = sum - self.s;
         self.rest = (self.s - (sum - added)) + (step - added);
         self.s = sum;
+    }
+
+    /// The duration of the run so far.
+    pub(crate) fn ran(&self) -> f64 {
+        self.s - self.start
     }
 
     /// Sets the clock to `end`, where the run has arrived, so that rounding of the sum does not

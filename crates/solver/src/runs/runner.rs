@@ -11,8 +11,8 @@ use std::cmp::Ordering;
 
 use crate::error::RunError;
 use crate::events::{
-    Event, Examination, Found, Note, Noticed, Notices, Phase, all_clearly_away, dense_output,
-    values_on,
+    Event, Examination, Found, Note, Noticed, Notices, Phase, UNSEEN, all_clearly_away,
+    dense_output, values_on,
 };
 use crate::hybrid::{HybridSystem, Observer, Outcome, Run, Start, Statistics};
 use crate::lists::List;
@@ -368,6 +368,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             phase: &self.phase,
             trial: &trial,
             age: self.clock.phase,
+            ran: self.clock.ran(),
             usual: self.h,
             guard_scale: self.options.scale_of_guards(),
             notes: &mut self.notes,
@@ -376,6 +377,8 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             notices: &mut self.notices,
             room: &mut self.room,
         };
+        // On a last step that time hardly resolves, guards that end up at zero have crossed.
+        let away = away || last && h <= UNSEEN * f64::EPSILON * self.clock.s.abs();
         let at_end = match examination.look::<M>(step, event, values, away)? {
             Found::Nothing(at_end) => Some(at_end),
             Found::Event => None,
@@ -413,6 +416,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             phase: &self.phase,
             trial: &trial,
             age: self.clock.phase,
+            ran: self.clock.ran(),
             usual: self.h,
             guard_scale: self.options.scale_of_guards(),
             notes: &mut self.notes,

@@ -235,11 +235,8 @@ impl Case {
             };
             found.swap_remove(index);
         }
-        // A guard that changes something later at the instant may be named before.
-        found.retain(|&(guard, s, named)| {
-            let same = |act: &Act| act.guard == guard && self.wrong_time(s, act).is_none();
-            !(named && acts(false).any(same))
-        });
+        // Guards that are zero there and do not act are named as well.
+        found.retain(|(_, _, named)| !named);
         if let Some((guard, s, _)) = found.first() {
             return Some(Fault::Order(format!("guard {guard} acts at {s} and changes nothing")));
         }

@@ -89,12 +89,12 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         acted.fit(count, None);
         if self.clock.phase > 0.0 {
             acted.parts_mut().fill(None);
-            // What has just been noted on this step is of this instant too.
-            let since = self.clock.s - TOGETHER * event.step.h;
-            for note in self.notes.iter().filter(|note| note.s >= since) {
-                let noted = |guard: &usize| *guard == note.guard || note.simultaneous[*guard];
-                (0..count).filter(noted).for_each(|guard| acted[guard] = Some(mode));
-            }
+        }
+        // What has just been noted on this step is of this instant too.
+        let since = self.clock.s - TOGETHER * event.step.h;
+        for note in self.notes.iter().filter(|note| note.s >= since) {
+            let noted = |guard: &usize| *guard == note.guard || note.simultaneous[*guard];
+            (0..count).filter(noted).for_each(|guard| acted[guard] = Some(mode));
         }
         for guard in 0..count {
             let of = self.phase.guards[guard];

@@ -135,6 +135,18 @@ impl Walk<'_> {
         Some((errors, own))
     }
 
+    /// Whether errors of the time and the state may move a guard by more than its own rounding.
+    fn is_moved(&self, guard: usize, time: f64) -> bool {
+        let Some(function) = self.planted.uses[self.mode][guard] else { return false };
+        let function = &self.planted.functions[function];
+        let mut errors = Vec::new();
+        for i in 0..LINEAR {
+            combine(&mut errors, f64::from(function.components[i]), &self.errors[i]);
+        }
+        let moved = bound(&errors) + f64::from(function.time).abs() * time;
+        moved > ROUNDING * function.size(self.s, &self.y)
+    }
+
     fn source(&mut self, component: usize, size: f64) {
         let errors = &mut self.errors[component];
         errors.resize(self.sources + 1, 0.0);
@@ -320,6 +332,11 @@ impl Walk<'_> {
             for guard in self.active().filter(|&guard| !kinds[guard].is_edge()) {
                 let Some((value, slope)) = self.form(guard) else { continue };
                 if value == 0 && slope == 0 {
+                    return Err(Stop::Here);
+                }
+                // Rounding so far may put it on the other side where it has not crossed now.
+                let moved = self.is_moved(guard, bound(delay) + own);
+                if value == 0 && !conditions.contains(&guard) && moved {
                     return Err(Stop::Here);
                 }
                 let errors = bound(delay) + own;
@@ -515,6 +532,7 @@ impl Plan {
                 return Some(Self::ends(&walk, acts, walk.s, Some(guard)));
             }
             let here = walk.clone();
+            let before = here.s;
             let known = acts.len();
             // The run may end between two instants that are far from each other.
             let middle = (0.5 * here.free_time() * 1_048_576.0).floor() as i128 * (UNIT >> 20);
@@ -533,6 +551,8 @@ impl Plan {
                 && random.f64() < 0.05
                 && walk.s % (UNIT >> 40) == 0
                 && bound(&delay) < 4.0 * own
+                // Within the instant before, rounding of a guard hides that it goes anywhere.
+                && walk.s - before > UNIT >> 20
             {
                 let mut plan = Self::ends(&walk, acts.clone(), walk.s, None);
                 plan.counts.at_end = acts.len() - known;
