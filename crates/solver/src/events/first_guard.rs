@@ -204,10 +204,14 @@ impl<S: System> Examination<'_, S> {
                 open.enumerate().find(|(_, (open, status))| **open && **status == Status::Unclear);
             let unclear = unclear.map(|(guard, _)| guard);
             // Whether a guard fires together with an event at the start is asked on the whole step.
-            let starts = candidate.is_some_and(|(_, crossing)| crossing.bracket.high == 0.0);
+            let at_start = |guard| {
+                event.as_ref().is_some_and(|it| it.elapsed == 0.0) && self.phase.values[guard] == 0.0
+            };
+            let starts = candidate.is_some_and(|(_, crossing)| crossing.bracket.high == 0.0)
+                || unclear.is_some_and(at_start);
             let next = match (candidate, unclear, event.as_mut()) {
                 (None, None, _) => break,
-                (_, Some(guard), None) if candidate.is_none() || starts => {
+                (_, Some(guard), found) if starts || found.is_none() && candidate.is_none() => {
                     match self.isolate_rest::<M>(guard, step, values, beginnings)? {
                         Some(status) => statuses[guard] = status,
                         None if starts => search.open[guard] = false,

@@ -195,7 +195,7 @@ impl Case {
         // A reset to the value that a component has already may move it by its rounding.
         let is_same = |(one, other): (&f64, &f64)| {
             let size = self.planted.scales.state + one.abs();
-            (one - other).abs() <= 16.0 * f64::EPSILON * size
+            (one - other).abs() <= 4.0 * f64::EPSILON * size
         };
         let is_idle =
             |seen: &&Seen| seen.from == seen.to && seen.before.iter().zip(&seen.after).all(is_same);

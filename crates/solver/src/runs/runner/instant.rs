@@ -297,15 +297,21 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
         for guard in 0..self.phase.count() {
             let (value, direction) =
                 (self.phase.values[guard], self.phase.guards[guard].direction());
-            let acted = self.instant.acted[guard].filter(|_| direction.is_edge());
             // On the right side, a bound of the domain needs no pardon.
             let below = direction == Direction::Below && value < 0.0;
-            if self.phase.zero_orders[guard] > 0 || !below && acted.is_none() {
+            let crossed = if direction.is_edge() {
+                self.instant.acted[guard]
+            } else {
+                // One that is clearly beyond has not been located.
+                let located = |it: &Pending<_>| below && it.crossed.slope.is_finite();
+                self.instant.pending[guard].filter(located).map(|it| it.mode)
+            };
+            if self.phase.zero_orders[guard] > 0 || !below && crossed.is_none() {
                 continue;
             }
-            // A guard that has acted stands on its zero, whatever its rounding is, while nothing
+            // A guard that has crossed stands on its zero, whatever its rounding is, while nothing
             // changes its value. That of another mode does not.
-            let left = match acted.map(|mode| self.left(event, act, mode, guard)) {
+            let left = match crossed.map(|mode| self.left(event, act, mode, guard)) {
                 Some(None) => continue,
                 left => left.flatten().unwrap_or(0.0),
             };

@@ -147,6 +147,16 @@ impl Walk<'_> {
         moved > ROUNDING * function.size(self.s, &self.y)
     }
 
+    /// Whether a guard is the negative of what it is in another mode.
+    fn is_negative(&self, mode: usize, guard: usize) -> bool {
+        let of = |mode: usize| {
+            let function = &self.planted.functions[self.planted.uses[mode][guard]?];
+            Some((function.components, function.time, function.level))
+        };
+        let negated = of(mode).map(|(y, s, level)| (y.map(|factor| -factor), -s, -level));
+        of(self.mode) == negated
+    }
+
     fn source(&mut self, component: usize, size: f64) {
         let errors = &mut self.errors[component];
         errors.resize(self.sources + 1, 0.0);
@@ -424,7 +434,14 @@ impl Walk<'_> {
                 if value == 0 && !known && self.leaves(other, slope) {
                     return Err(Stop::Here);
                 }
-                if !kinds[other].is_edge() || !kinds[other].sees_jumps || !same {
+                if !kinds[other].is_edge() || !kinds[other].sees_jumps {
+                    continue;
+                }
+                if !same {
+                    // To a run, the negative of a guard is the same guard.
+                    if forms[other].is_some() && self.is_negative(from, other) {
+                        return Err(Stop::Here);
+                    }
                     continue;
                 }
                 let earlier = earlier.unwrap_or(0);
