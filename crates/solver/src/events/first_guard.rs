@@ -19,6 +19,8 @@ use crate::system::{PerGuard, Room, System};
 pub(crate) const TOGETHER: f64 = 1e-12;
 /// A step shows nothing about guards if it is shorter than this many units of rounding of time.
 pub(crate) const UNSEEN: f64 = 16.0;
+/// A guard that starts from a zero is on its way across it for at most so many roundings of time.
+const FORGETS: f64 = 1024.0;
 /// The part of a step on which the noise of a guard is measured.
 const CLOSE: f64 = 1e-6;
 /// The part of what surely exceeds noise that it may well be.
@@ -65,6 +67,7 @@ impl<S: System> Examination<'_, S> {
             let (value, zero_order) = (self.phase.values[guard], self.phase.zero_orders[guard]);
             beginnings[guard] = Beginning { theta: 0.0, value, zero_order };
         }
+        self.pass_forgiven(step, &mut beginnings, &mut statuses, &mut end_values);
         // The event before that changed nothing.
         let mut last: Option<Event<S>> = None;
         loop {
@@ -98,6 +101,47 @@ impl<S: System> Examination<'_, S> {
                 end_values[guard] = -f64::MIN_POSITIVE.copysign(sign);
             }
             last = event.take();
+        }
+    }
+
+    /// Lets guards that rounding has moved away from the zero from which they start, and that are
+    /// still on their way across it, begin behind it.
+    fn pass_forgiven(
+        &mut self,
+        step: &StepOf<S::State>,
+        beginnings: &mut PerGuard<S, Beginning>,
+        statuses: &mut PerGuard<S, Status>,
+        end_values: &mut PerGuard<S, f64>,
+    ) {
+        for guard in 0..self.phase.count() {
+            let value = self.phase.values[guard];
+            if S::READABLE || !self.phase.forgiven[guard] || value == 0.0 {
+                continue;
+            }
+            let (system, mode, s) = (self.system, self.phase.mode, self.trial.s);
+            let mut ahead = self.room.state();
+            let most = FORGETS * f64::EPSILON * (self.ran + s.abs());
+            let mut reach = f64::EPSILON * (self.ran + s.abs());
+            let passes = loop {
+                S::State::shifted(&mut ahead, self.trial.y, self.trial.slope, reach);
+                self.statistics.guards += 1;
+                if self.room.value(system, (mode, guard), s + reach, &ahead) * value < 0.0 {
+                    break true;
+                }
+                reach *= 2.0;
+                if reach > most {
+                    break false;
+                }
+            };
+            self.room.give(ahead);
+            let theta = 2.0 * reach / step.h;
+            if passes && theta < 1.0 {
+                beginnings[guard] = Beginning { theta, value: -value, zero_order: 0 };
+                statuses[guard] = Status::Unclear;
+            } else if passes {
+                statuses[guard] = Status::Clear;
+                end_values[guard] = -f64::MIN_POSITIVE.copysign(value);
+            }
         }
     }
 
@@ -205,7 +249,8 @@ impl<S: System> Examination<'_, S> {
             let unclear = unclear.map(|(guard, _)| guard);
             // Whether a guard fires together with an event at the start is asked on the whole step.
             let at_start = |guard| {
-                event.as_ref().is_some_and(|it| it.elapsed == 0.0) && self.phase.values[guard] == 0.0
+                event.as_ref().is_some_and(|it| it.elapsed == 0.0)
+                    && self.phase.values[guard] == 0.0
             };
             let starts = candidate.is_some_and(|(_, crossing)| crossing.bracket.high == 0.0)
                 || unclear.is_some_and(at_start);

@@ -186,8 +186,13 @@ impl Case {
             .map(|what| Fault::Value(format!("at the end, {what}")))
     }
 
-    /// What differs in the events of a run.
+    /// What differs in the events of a run, however much rounding may move what a reset leaves as
+    /// it is.
     fn compare(&self, seen: &[Seen]) -> Option<Fault> {
+        self.compare_within(4.0, seen).and_then(|_| self.compare_within(64.0, seen))
+    }
+
+    fn compare_within(&self, roundings: f64, seen: &[Seen]) -> Option<Fault> {
         let acts = |idle: bool| {
             let acts = self.plan.acts.iter().filter(move |act| act.then.is_some());
             acts.filter(move |act| act.idle == idle)
@@ -195,7 +200,7 @@ impl Case {
         // A reset to the value that a component has already may move it by its rounding.
         let is_same = |(one, other): (&f64, &f64)| {
             let size = self.planted.scales.state + one.abs();
-            (one - other).abs() <= 4.0 * f64::EPSILON * size
+            (one - other).abs() <= roundings * f64::EPSILON * size
         };
         let is_idle =
             |seen: &&Seen| seen.from == seen.to && seen.before.iter().zip(&seen.after).all(is_same);

@@ -40,6 +40,8 @@ pub(super) struct Instant<S: System> {
 /// tried, and about the last.
 const CLOSE: f64 = 1e-6;
 const FAR: f64 = 1e-2;
+/// The roundings of time within which an event that changes nothing is of the instant of a switch.
+const HIDES: f64 = 64.0;
 /// A cycle of transitions at one instant is named if it is no longer than this.
 const LONGEST_CYCLE: usize = 8;
 
@@ -91,7 +93,8 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             acted.parts_mut().fill(None);
         }
         // What has just been noted on this step is of this instant too.
-        let since = self.clock.s - TOGETHER * event.step.h;
+        let rounding = HIDES * f64::EPSILON * (self.clock.s.abs() + self.clock.ran());
+        let since = self.clock.s - rounding.max(TOGETHER * event.step.h);
         for note in self.notes.iter().filter(|note| note.s >= since) {
             let noted = |guard: &usize| *guard == note.guard || note.simultaneous[*guard];
             (0..count).filter(noted).for_each(|guard| acted[guard] = Some(mode));
