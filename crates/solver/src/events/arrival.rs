@@ -102,8 +102,7 @@ impl<S: System> Examination<'_, S> {
         self.statistics.guards += 1;
         let largest = self.phase.largest[guard];
         // In a phase that is hardly longer than rounding of time, it hides more.
-        let rounding = f64::EPSILON * s.abs() + self.drift(elapsed);
-        let near = NEAR_ZERO.max(16.0 * rounding / elapsed);
+        let near = NEAR_ZERO.max(16.0 * self.drift(elapsed) / elapsed);
         if largest > 0.0 && there.abs() > near * largest {
             return None;
         }

@@ -17,8 +17,8 @@ pub(crate) struct Examination<'a, S: System> {
     pub(crate) trial: &'a TrialOf<'a, S::State>,
     /// The time from the start of the phase to that of the step.
     pub(crate) age: f64,
-    /// The time from the start of the run to that of the step.
-    pub(crate) ran: f64,
+    /// By how much rounding may have moved a time at the start of the step.
+    pub(crate) drift: f64,
     /// The size of a step that nothing cuts.
     pub(crate) usual: f64,
     /// The shortest time on which a guard of a black box may change, infinite if it is not known.

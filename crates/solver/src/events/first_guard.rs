@@ -20,7 +20,7 @@ pub(crate) const TOGETHER: f64 = 1e-12;
 /// A step shows nothing about guards if it is shorter than this many units of rounding of time.
 pub(crate) const UNSEEN: f64 = 16.0;
 /// A guard that starts from a zero is on its way across it for at most so many roundings of time.
-const FORGETS: f64 = 1024.0;
+const FORGETS: f64 = 256.0;
 /// The part of a step on which the noise of a guard is measured.
 const CLOSE: f64 = 1e-6;
 /// The part of what surely exceeds noise that it may well be.
@@ -115,13 +115,13 @@ impl<S: System> Examination<'_, S> {
     ) {
         for guard in 0..self.phase.count() {
             let value = self.phase.values[guard];
-            if S::READABLE || !self.phase.forgiven[guard] || value == 0.0 {
+            if !self.phase.forgiven[guard] || value == 0.0 {
                 continue;
             }
             let (system, mode, s) = (self.system, self.phase.mode, self.trial.s);
             let mut ahead = self.room.state();
-            let most = FORGETS * f64::EPSILON * (self.ran + s.abs());
-            let mut reach = f64::EPSILON * (self.ran + s.abs());
+            let most = FORGETS * self.drift;
+            let mut reach = self.drift;
             let passes = loop {
                 S::State::shifted(&mut ahead, self.trial.y, self.trial.slope, reach);
                 self.statistics.guards += 1;
@@ -450,9 +450,9 @@ impl<S: System> Examination<'_, S> {
         drift + if error.is_finite() { error } else { 0.0 }
     }
 
-    /// The effect on a time of rounding of the state since the start of the run.
+    /// By how much rounding may have moved a time on the step.
     pub(crate) fn drift(&self, elapsed: f64) -> f64 {
-        4.0 * f64::EPSILON * (self.ran + elapsed)
+        self.drift + 5.0 * f64::EPSILON * elapsed
     }
 
     /// The effect of rounding on a guard at a place of `step`: of time and state, and within the

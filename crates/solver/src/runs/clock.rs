@@ -33,9 +33,10 @@ impl Clock {
         self.s = sum;
     }
 
-    /// The duration of the run so far.
-    pub(crate) fn ran(&self) -> f64 {
-        self.s - self.start
+    /// By how much rounding may have moved the time at which something happens: its own, and that
+    /// of the state since the start of the run.
+    pub(crate) fn drift(&self) -> f64 {
+        f64::EPSILON * (4.0 * (self.s - self.start) + self.s.abs())
     }
 
     /// Sets the clock to `end`, where the run has arrived, so that rounding of the sum does not

@@ -41,7 +41,7 @@ pub(super) struct Instant<S: System> {
 const CLOSE: f64 = 1e-6;
 const FAR: f64 = 1e-2;
 /// The roundings of time within which an event that changes nothing is of the instant of a switch.
-const HIDES: f64 = 64.0;
+const HIDES: f64 = 16.0;
 /// A cycle of transitions at one instant is named if it is no longer than this.
 const LONGEST_CYCLE: usize = 8;
 
@@ -93,7 +93,7 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
             acted.parts_mut().fill(None);
         }
         // What has just been noted on this step is of this instant too.
-        let rounding = HIDES * f64::EPSILON * (self.clock.s.abs() + self.clock.ran());
+        let rounding = HIDES * self.clock.drift();
         let since = self.clock.s - rounding.max(TOGETHER * event.step.h);
         for note in self.notes.iter().filter(|note| note.s >= since) {
             let noted = |guard: &usize| *guard == note.guard || note.simultaneous[*guard];
@@ -318,7 +318,9 @@ impl<S: System, O: Watcher<S>> Runner<'_, S, O> {
                 Some(None) => continue,
                 left => left.flatten().unwrap_or(0.0),
             };
-            if (value - left).abs() <= self.hidden(event, guard) {
+            let slope = if guard == act.guard { act.crossed.slope } else { 0.0 };
+            let drift = if slope.is_finite() { slope * self.clock.drift() } else { 0.0 };
+            if (value - left).abs() <= self.hidden(event, guard) + drift {
                 self.phase.forgive(guard);
             }
         }
