@@ -9,7 +9,7 @@ use stickslip_solver::{Direction, Guard, InvalidTimes, Times};
 use crate::graph::{Formula, Variable};
 use crate::invalid::InvalidParameters;
 use crate::program::{Inputs, Program};
-use crate::run::{Mode, Reaction, Runnable, Ticks};
+use crate::run::{Mode, Reaction, Resets, Rest, Runnable, Ticks};
 use crate::system::{self, Next, Rule, System, Trigger};
 
 /// A system that is ready for parameters.
@@ -22,6 +22,8 @@ pub struct Compiled {
     /// What fires at times in each mode.
     clocks: Vec<Vec<Clock>>,
     first: usize,
+    /// The first mode where the last number is negative.
+    otherwise: Option<usize>,
     /// Computes [`System::fixed_formulas`] from parameters.
     numbers: Program,
     count: usize,
@@ -70,6 +72,7 @@ impl System {
             modes: modes.map(|(mode, counters)| self.compile_mode(mode, counters)).collect(),
             clocks: self.modes.iter().map(|mode| mode.rules.iter().map(clock).collect()).collect(),
             first: self.first,
+            otherwise: self.otherwise.map(|(_, mode)| mode),
             numbers: Program::compile(&self.graph, &fixed, inputs),
             count: fixed.len(),
             has: (self.start.is_some(), self.end.is_some()),
@@ -110,6 +113,11 @@ impl System {
         Program::compile(&self.graph, formulas, Inputs { components, parameters, fixed: true })
     }
 
+    fn resets(&self, changes: &[(usize, Formula)]) -> Resets {
+        let (changed, values): (Vec<_>, Vec<_>) = changes.iter().copied().unzip();
+        Resets { changed: changed.into(), values: self.program(&values) }
+    }
+
     fn compile_mode(&self, mode: &system::Mode, counters: Arc<[usize]>) -> Mode {
         let nothing = |rule: &Rule| match rule.trigger {
             Trigger::When(guard, _) => guard,
@@ -138,9 +146,13 @@ impl System {
                 Next::Branch(condition, ..) => &[*condition],
                 _ => &[],
             };
-            let (changed, changes): (Vec<_>, Vec<_>) = rule.changes.iter().copied().unzip();
-            let (changes, condition) = (self.program(&changes), self.program(condition));
-            Reaction { changed: changed.into(), changes, next: rule.next.clone(), condition }
+            let rest = rule.rest.as_ref();
+            Reaction {
+                resets: self.resets(&rule.changes),
+                next: rule.next.clone(),
+                condition: self.program(condition),
+                rest: rest.map(|it| Rest { next: it.next, resets: self.resets(&it.changes) }),
+            }
         };
         Mode {
             counters,
@@ -189,11 +201,16 @@ impl Compiled {
             let of_mode = clocks.iter().map(|clock| clock.ticks(&mut numbers, name));
             ticks.push(of_mode.collect::<Result<_, _>>()?);
         }
+        let mut first = self.first;
+        if let Some(other) = self.otherwise {
+            let choice = numbers.next(|| "what chooses the first mode".to_owned())?;
+            first = if choice < 0.0 { other } else { first };
+        }
         Ok(Runnable {
             state: state?,
             modes: self.modes.iter().map(|mode| mode.with(parameters)).collect(),
             ticks,
-            first: self.first,
+            first,
             start: start.transpose()?.unwrap_or(0.0),
             end: end.transpose()?.unwrap_or(f64::INFINITY),
         })
@@ -245,10 +262,13 @@ impl Clock {
 impl Mode {
     fn with(&self, parameters: &[f64]) -> Self {
         let bound = |program: &Program| program.with(parameters);
+        let resets =
+            |it: &Resets| Resets { changed: it.changed.clone(), values: bound(&it.values) };
         let reaction = |it: &Reaction| Reaction {
-            changes: bound(&it.changes),
+            resets: resets(&it.resets),
+            next: it.next.clone(),
             condition: bound(&it.condition),
-            ..it.clone()
+            rest: it.rest.as_ref().map(|it| Rest { next: it.next, resets: resets(&it.resets) }),
         };
         Self {
             slopes: bound(&self.slopes),

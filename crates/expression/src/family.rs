@@ -11,6 +11,7 @@ use stickslip_tracer::{
 pub use align::RuleOrder;
 
 use crate::compiled::Compiled;
+use crate::graph::Variable;
 use crate::invalid::InvalidParameters;
 use crate::run::Runnable;
 use crate::system::System;
@@ -73,7 +74,8 @@ impl SystemFamily {
     ///
     /// # Errors
     /// [`InvalidParameters`] if there are not as many parameters as the system has, if one is not
-    /// finite, or if an axis is none of them or both are the same.
+    /// finite, if an axis is none of them or both are the same, or if the first mode depends on
+    /// one.
     pub fn new(
         system: &System,
         axes: [usize; 2],
@@ -99,6 +101,16 @@ impl SystemFamily {
             let (what, value) = ("the number of rules in order".to_owned(), order.names.len());
             let expected = "a place for each rule of each mode";
             return Err(InvalidParameters::Value { what, value: value as f64, expected });
+        }
+        if let Some((formula, _)) = system.otherwise {
+            let read = system.graph.reads(&[formula]);
+            let is_axis = |axis: &usize| {
+                u32::try_from(*axis).is_ok_and(|axis| read.contains(&Variable::Parameter(axis)))
+            };
+            if let Some(axis) = axes.iter().find(|axis| is_axis(axis)) {
+                let name = system.parameters[*axis].name.clone();
+                return Err(InvalidParameters::FirstMode { name });
+            }
         }
         let compiled = order.align(system).compile()?;
         let rules = order.names;

@@ -227,13 +227,80 @@ impl Graph {
     /// # Panics
     /// If it reads a component beyond them.
     pub fn substituted(&mut self, formula: Formula, components: &[Formula]) -> Formula {
+        self.rewritten(formula, &mut |_, node, _| match node {
+            Node::Variable(Variable::Component(place)) => Some(components[place as usize]),
+            _ => None,
+        })
+    }
+
+    /// The formula where `surface` is positive, or else where it is negative: its sign, its
+    /// absolute value, and choices by it are decided.
+    pub(crate) fn on_side(&mut self, formula: Formula, surface: Formula, above: bool) -> Formula {
+        let negative = self.unary(Unary::Neg, surface);
+        let magnitude = if above { surface } else { negative };
+        let node = self.unary(Unary::Abs, surface);
+        let size = self.node(node);
+        self.rewritten(formula, &mut |_, node, made| match node {
+            Node::Select(condition, on_or_above, _) if condition == surface && above => {
+                Some(made[on_or_above.index()])
+            }
+            Node::Select(condition, _, below) if condition == surface => Some(made[below.index()]),
+            Node::Select(condition, _, below) if condition == negative && above => {
+                Some(made[below.index()])
+            }
+            Node::Select(condition, on_or_above, _) if condition == negative => {
+                Some(made[on_or_above.index()])
+            }
+            node if node == size => Some(magnitude),
+            _ => None,
+        })
+    }
+
+    /// The formula with a number in place of the sign of `surface`.
+    pub(crate) fn with_sign(
+        &mut self,
+        formula: Formula,
+        surface: Formula,
+        sign: Formula,
+    ) -> Formula {
+        let (above, zero) = (self.sign(surface), self.constant(0.0));
+        let negative = self.unary(Unary::Neg, surface);
+        let (below, opposite) = (self.sign(negative), self.unary(Unary::Neg, sign));
+        let [above, below] = [above, below].map(|it| self.node(it));
+        let size = self.unary(Unary::Abs, surface);
+        let size = self.node(size);
+        self.rewritten(formula, &mut |_, node, _| match node {
+            node if node == above => Some(sign),
+            node if node == below => Some(opposite),
+            node if node == size => Some(zero),
+            _ => None,
+        })
+    }
+
+    /// The formula at a given time.
+    pub(crate) fn at_time(&mut self, formula: Formula, time: Formula) -> Formula {
+        let is_time = |node| matches!(node, Node::Variable(Variable::Time));
+        self.rewritten(formula, &mut |_, node, _| is_time(node).then_some(time))
+    }
+
+    /// The formula made anew, with other formulas in place of some nodes: `instead` gets a node,
+    /// and what has been made of its operands.
+    fn rewritten(
+        &mut self,
+        formula: Formula,
+        instead: &mut impl FnMut(&mut Self, Node, &[Formula]) -> Option<Formula>,
+    ) -> Formula {
         let needed = self.needed(&[formula]);
         let mut made: Vec<Formula> = vec![Formula(0); needed.len()];
         for index in (0..needed.len()).filter(|&index| needed[index]) {
+            let node = self.nodes[index];
+            if let Some(other) = instead(self, node, &made) {
+                made[index] = other;
+                continue;
+            }
             let of = |operand: Formula| made[operand.index()];
-            made[index] = match self.nodes[index] {
+            made[index] = match node {
                 Node::Constant(bits) => self.constant(f64::from_bits(bits)),
-                Node::Variable(Variable::Component(place)) => components[place as usize],
                 Node::Variable(variable) => self.variable(variable),
                 Node::Unary(function, a) => self.unary(function, of(a)),
                 Node::Binary(function, a, b) => self.binary(function, of(a), of(b)),

@@ -23,6 +23,12 @@ pub enum InvalidParameters {
         /// Its value.
         value: f64,
     },
+    /// In a plane of parameters, runs would start in several modes.
+    #[error("the first mode depends on {name}; expected a parameter that leaves it as it is")]
+    FirstMode {
+        /// The name of the parameter.
+        name: String,
+    },
     /// What parameters make is not a number.
     #[error("{what} is {value}; expected {expected}")]
     Value {

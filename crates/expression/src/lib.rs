@@ -35,7 +35,8 @@
 //! ```
 //!
 //! The modules in reading order: `graph` has formulas and their derivatives, `program` compiles and
-//! computes them, `system` is what a hybrid system consists of, `compiled` makes it ready for
+//! computes them, `system` is what a hybrid system consists of, `sliding` lets it slide along surfaces, `compiled`
+//! makes it ready for
 //! parameters, `run` is what the solver sees of it, `recording` a run with its events,
 //! `sensitivity` its derivatives, `family` the runs of a plane of parameters, and `text` reads and
 //! writes it. `docs/systems.md` in the repository describes the language.
@@ -48,6 +49,7 @@ mod program;
 mod recording;
 mod run;
 mod sensitivity;
+mod sliding;
 mod system;
 mod text;
 
@@ -59,7 +61,8 @@ pub use program::{Inputs, Program};
 pub use recording::{Recording, Stay, StoredStep};
 pub use run::Runnable;
 pub use sensitivity::{By, Moving, Sensitivities, SensitivityError};
-pub use system::{Component, Mode, Next, Parameter, Rule, System, Trigger};
+pub use sliding::NotSliding;
+pub use system::{Component, Mode, Next, Parameter, Rest, Rule, System, Trigger};
 pub use text::{TextError, format};
 
 #[doc = include_str!("../README.md")]

@@ -37,10 +37,34 @@ pub(crate) struct Mode {
 /// What happens when a guard fires.
 #[derive(Clone, Debug)]
 pub(crate) struct Reaction {
-    pub(crate) changed: Arc<[usize]>,
-    pub(crate) changes: Program,
+    pub(crate) resets: Resets,
     pub(crate) next: Next,
     pub(crate) condition: Program,
+    pub(crate) rest: Option<Rest>,
+}
+
+/// What happens where events accumulate.
+#[derive(Clone, Debug)]
+pub(crate) struct Rest {
+    pub(crate) next: usize,
+    pub(crate) resets: Resets,
+}
+
+/// New values of components.
+#[derive(Clone, Debug)]
+pub(crate) struct Resets {
+    pub(crate) changed: Arc<[usize]>,
+    pub(crate) values: Program,
+}
+
+impl Resets {
+    fn apply(&self, s: f64, y: &mut [f64]) {
+        let mut values: SmallVec<[f64; 16]> = SmallVec::from_elem(0.0, self.changed.len());
+        self.values.run(s, y, &mut values);
+        for (&component, value) in self.changed.iter().zip(values) {
+            y[component] = value;
+        }
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -145,8 +169,6 @@ impl ReadableDynamic for Runnable {
     }
     fn transition(&self, mode: usize, guard: usize, s: f64, y: &mut [f64]) -> usize {
         let reaction = &self.modes[mode].reactions[guard];
-        let mut values: SmallVec<[f64; 16]> = SmallVec::from_elem(0.0, reaction.changed.len());
-        reaction.changes.run(s, y, &mut values);
         let next = match reaction.next {
             Next::Stay => mode,
             Next::Mode(next) => next,
@@ -155,9 +177,12 @@ impl ReadableDynamic for Runnable {
                 if condition >= 0.0 { above } else { below }
             }
         };
-        for (&component, value) in reaction.changed.iter().zip(values) {
-            y[component] = value;
-        }
+        reaction.resets.apply(s, y);
         next
+    }
+    fn rest(&self, mode: usize, guard: usize, s: f64, y: &mut [f64]) -> Option<usize> {
+        let rest = self.modes[mode].reactions.get(guard)?.rest.as_ref()?;
+        rest.resets.apply(s, y);
+        Some(rest.next)
     }
 }

@@ -61,7 +61,8 @@ impl System {
     /// Runs the system to `end`, or to its own end, together with derivatives.
     ///
     /// Error control covers the derivatives too, which are about as accurate as the state. They
-    /// hold for an unchanged order of events, and grow without bound towards a graze.
+    /// hold for an unchanged order of events, and grow without bound towards a graze. Where events
+    /// accumulate, the run ends, also if the system says how it goes on.
     ///
     /// ```
     /// use stickslip_expression::{By, System};
@@ -128,8 +129,12 @@ struct Extended<'a> {
 impl<'a> Extended<'a> {
     fn of(system: &System, by: &'a [By]) -> Self {
         let n = system.components.len();
-        let mut extended =
-            Self { system: system.clone(), by, n, moves: Vec::new(), end_moves: Vec::new() };
+        let mut ending = system.clone();
+        // How derivatives go on behind an accumulation is not known: the run ends there.
+        for rule in ending.modes.iter_mut().flat_map(|mode| &mut mode.rules) {
+            rule.rest = None;
+        }
+        let mut extended = Self { system: ending, by, n, moves: Vec::new(), end_moves: Vec::new() };
         for &by in by {
             for (place, component) in system.components.iter().enumerate() {
                 let start = match by {

@@ -19,6 +19,8 @@ pub struct System {
     pub modes: Vec<Mode>,
     /// The first mode.
     pub first: usize,
+    /// A formula of parameters, and the first mode where it is negative.
+    pub otherwise: Option<(Formula, usize)>,
     /// The time at the start.
     pub start: Option<Formula>,
     /// The time at the end.
@@ -37,6 +39,7 @@ impl System {
                 Trigger::Every { period, phase } => formulas.extend([period, phase]),
             }
         }
+        formulas.extend(self.otherwise.map(|(formula, _)| formula));
         formulas
     }
 
@@ -49,7 +52,8 @@ impl System {
                 if let Trigger::When(guard, _) = rule.trigger {
                     formulas.push(guard);
                 }
-                formulas.extend(rule.changes.iter().map(|(_, formula)| *formula));
+                let at_rest = rule.rest.iter().flat_map(|rest| &rest.changes);
+                formulas.extend(rule.changes.iter().chain(at_rest).map(|(_, formula)| *formula));
                 if let Next::Branch(condition, ..) = rule.next {
                     formulas.push(condition);
                 }
@@ -111,6 +115,17 @@ pub struct Rule {
     pub changes: Vec<(usize, Formula)>,
     /// Where the run goes on.
     pub next: Next,
+    /// How the run goes on where events of the rule accumulate; otherwise it ends there.
+    pub rest: Option<Rest>,
+}
+
+/// How a run goes on behind a place where events accumulate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rest {
+    /// The mode that follows.
+    pub next: usize,
+    /// New values of components, made of the state behind the last event.
+    pub changes: Vec<(usize, Formula)>,
 }
 
 impl Rule {
@@ -126,6 +141,7 @@ impl Rule {
             from_zero: 0,
             changes: Vec::new(),
             next: Next::Stay,
+            rest: None,
         }
     }
 

@@ -276,6 +276,7 @@ fn rule(graph: &mut Graph, row: RuleRow, (modes, n): (usize, usize)) -> PyResult
         from_zero: row.from_zero,
         changes: after.into_iter().enumerate().collect(),
         next,
+        rest: None,
     })
 }
 

@@ -7,7 +7,8 @@ use crate::system::{Next, System};
 /// Refuses a system whose parts do not fit together.
 pub(super) fn require(system: &System) -> Result<(), InvalidParameters> {
     let (n, modes) = (system.components.len(), system.modes.len());
-    require_below(modes, system.first, "the first mode")?;
+    let otherwise = system.otherwise.map_or(0, |(_, mode)| mode);
+    require_below(modes, system.first.max(otherwise), "the first mode")?;
     for mode in &system.modes {
         if mode.slopes.len() != n {
             return broken("the number of slopes", mode.slopes.len(), "one for each component");
@@ -19,7 +20,10 @@ pub(super) fn require(system: &System) -> Result<(), InvalidParameters> {
                 Next::Branch(_, above, below) => (above, below),
             };
             require_below(modes, one.max(other), "the mode that follows a rule")?;
-            for &(component, _) in &rule.changes {
+            let rest = rule.rest.as_ref();
+            require_below(modes, rest.map_or(0, |rest| rest.next), "the mode at rest")?;
+            for &(component, _) in rule.changes.iter().chain(rest.iter().flat_map(|it| &it.changes))
+            {
                 require_below(n, component, "the component that a rule changes")?;
             }
         }

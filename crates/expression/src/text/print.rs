@@ -229,6 +229,7 @@ impl<'a> Printer<'a> {
 
     fn write(&self, system: &System, text: &mut String) -> std::fmt::Result {
         let of = |formula: Formula| &self.of(formula).text;
+        let sum = |formula: Formula| self.of(formula).within(Bond::Sum);
         for parameter in &system.parameters {
             let value = constant(parameter.value).text;
             write!(text, "parameter {} = {value}", parameter.name)?;
@@ -257,7 +258,13 @@ impl<'a> Printer<'a> {
         }
         writeln!(text)?;
         if let Some(first) = system.modes.get(system.first) {
-            write!(text, "start in {}", first.name)?;
+            match system.otherwise {
+                Some((formula, other)) => {
+                    let (condition, other) = (sum(formula), &system.modes[other].name);
+                    write!(text, "start if {condition} >= 0 in {} else {other}", first.name)?;
+                }
+                None => write!(text, "start in {}", first.name)?,
+            }
             if let Some(start) = system.start {
                 write!(text, " at {}", of(start))?;
             }
@@ -318,8 +325,13 @@ impl<'a> Printer<'a> {
             write!(text, " from zero {}", rule.from_zero)?;
         }
         writeln!(text)?;
-        for &(component, formula) in &rule.changes {
-            writeln!(text, "    {} := {}", self.system.components[component].name, of(formula))?;
+        let change = |text: &mut String, &(component, formula): &(usize, Formula)| {
+            writeln!(text, "    {} := {}", self.system.components[component].name, of(formula))
+        };
+        rule.changes.iter().try_for_each(|it| change(text, it))?;
+        if let Some(rest) = &rule.rest {
+            writeln!(text, "    rest -> {}", name(rest.next))?;
+            rest.changes.iter().try_for_each(|it| change(text, it))?;
         }
         Ok(())
     }

@@ -7,7 +7,7 @@ use super::formula::Truth;
 use super::reader::Reader;
 use super::tokens::Token;
 use crate::graph::{Binary, Variable};
-use crate::system::{Next, Rule, Trigger};
+use crate::system::{Next, Rest, Rule, Trigger};
 
 impl Reader<'_> {
     /// `when …`, `at …` or `every …`, up to the end of its line.
@@ -162,17 +162,30 @@ impl Reader<'_> {
         })
     }
 
+    /// `rest -> mode`
+    pub(super) fn rest(&mut self, rule: &mut Rule) -> Result<(), TextError> {
+        let at = self.next - 1;
+        if rule.rest.is_some() || rule.next != Next::Stay {
+            let message = "expected one `rest`, under a rule that stays in its mode";
+            return Err(self.error_at(at, message.to_owned()));
+        }
+        self.expect("->")?;
+        rule.rest = Some(Rest { next: self.target()?, changes: Vec::new() });
+        self.expect_end()
+    }
+
     /// `x := …`
     pub(super) fn change(&mut self, rule: &mut Rule) -> Result<(), TextError> {
         let Token::Name(name) = self.peek().clone() else { return Ok(()) };
         let component = self.component(name)?;
-        if rule.changes.iter().any(|(other, _)| *other == component) {
+        let changes = rule.rest.as_mut().map_or(&mut rule.changes, |rest| &mut rest.changes);
+        if changes.iter().any(|(other, _)| *other == component) {
             return Err(self.error(format!("`{name}` gets two values at one event")));
         }
         self.next += 2;
         let formula = self.number()?;
         self.expect_end()?;
-        rule.changes.push((component, formula));
+        changes.push((component, formula));
         Ok(())
     }
 }

@@ -2,11 +2,11 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::formula::is_function;
+use super::formula::{Truth, is_function};
 use super::reader::{RESERVED, Reader, Statement};
 use super::tokens::{Token, tokens};
 use super::{TextError, names};
-use crate::graph::Variable;
+use crate::graph::{Binary, Formula, Variable};
 use crate::system::{Component, Mode, Parameter, System};
 
 /// The slopes of all modes together have at most as many entries.
@@ -28,6 +28,10 @@ enum Kind<'a> {
     Rule,
     /// A new value, which belongs to the rule above.
     Change,
+    /// The mode at rest, which belongs to the rule above.
+    Rest,
+    /// Along what the mode slides.
+    Surface,
 }
 
 impl System {
@@ -45,6 +49,7 @@ impl System {
             system: Self::default(),
             formulas: HashMap::new(),
             slopes: Vec::new(),
+            surfaces: Vec::new(),
             by_mode: HashMap::new(),
             components: HashMap::new(),
             modes: HashMap::new(),
@@ -102,13 +107,13 @@ impl<'a> Reader<'a> {
                     sections.push(Section { name, statements: Vec::new() });
                 }
                 Token::Name("start") => ends.push(statement),
-                Token::Name("when" | "at" | "every") => {
+                Token::Name("when" | "at" | "every" | "rest" | "sliding") => {
                     let last = sections.len() - 1;
                     sections[last].statements.push(statement);
                 }
                 Token::Name(name) => {
                     let words = ["parameter", "state", "discrete", "mode", "start", "when", "at"];
-                    let words = words.into_iter().chain(["every", "end"]);
+                    let words = words.into_iter().chain(["every", "end", "rest", "sliding"]);
                     let hint = names::hint(name, words);
                     let message = format!(
                         "`{name}` begins no statement{hint}; expected a word such as `state` or \
@@ -124,7 +129,13 @@ impl<'a> Reader<'a> {
             self.next = statement.start;
             self.bound()?;
         }
-        Ok(self.system)
+        if self.surfaces.iter().all(Option::is_none) {
+            return Ok(self.system);
+        }
+        let surfaces: Vec<_> = self.surfaces.iter().map(|it| it.map(|(it, _)| it)).collect();
+        let sliding = std::mem::take(&mut self.system).sliding(&surfaces);
+        let first = self.surfaces.iter().flatten().map(|it| it.1).next().unwrap_or(0);
+        sliding.map_err(|wrong| self.error_at(first, wrong.to_string()))
     }
 
     fn second(&self) -> Token<'a> {
@@ -207,6 +218,8 @@ impl<'a> Reader<'a> {
             }
             (Token::Name(name), Token::Sign("=")) => Ok(Kind::Name(name)),
             (Token::Name(_), Token::Sign(":=")) => Ok(Kind::Change),
+            (Token::Name("rest"), _) => Ok(Kind::Rest),
+            (Token::Name("sliding"), _) => Ok(Kind::Surface),
             (Token::Name(_), _) => Ok(Kind::Rule),
             _ => Err(self.error("expected a name".to_owned())),
         }
@@ -235,6 +248,7 @@ impl<'a> Reader<'a> {
         }
         // What is the same in all modes is read once.
         let (mut equations, mut rules, mut after_rule) = (Vec::new(), Vec::new(), false);
+        let mut surface = None;
         for statement in shared {
             match self.kind(&statement)? {
                 Kind::Name(name) if self.depends_on_mode(&statement) => {
@@ -242,10 +256,12 @@ impl<'a> Reader<'a> {
                     self.by_mode.insert(name, statement);
                 }
                 Kind::Slope(_) if self.depends_on_mode(&statement) => equations.push(statement),
-                Kind::Change if !after_rule => {
+                Kind::Surface if surface.is_none() => surface = Some(statement),
+                Kind::Surface => return Err(self.two_surfaces()),
+                Kind::Change | Kind::Rest if !after_rule => {
                     return Err(self.error("expected a rule (`when`, `at`) above this".to_owned()));
                 }
-                Kind::Rule | Kind::Change => {
+                Kind::Rule | Kind::Change | Kind::Rest => {
                     rules.push(statement);
                     after_rule = true;
                     continue;
@@ -258,8 +274,12 @@ impl<'a> Reader<'a> {
             after_rule = false;
         }
         let common = self.slopes.clone();
-        for section in sections.drain(1..) {
+        for mut section in sections.drain(1..) {
             self.slopes.clone_from(&common);
+            let is_surface = |it: &Statement| self.tokens[it.start].token == Token::Name("sliding");
+            if !section.statements.iter().any(is_surface) {
+                section.statements.extend(surface.clone());
+            }
             self.mode(&section, &equations, &rules)?;
         }
         Ok(())
@@ -298,6 +318,7 @@ impl<'a> Reader<'a> {
         shared: &[Statement],
     ) -> Result<(), TextError> {
         let mut own = HashSet::new();
+        let mut surface = None;
         let (mut local, mut rules) = (Vec::new(), shared.to_vec());
         let mut after_rule = false;
         for statement in &section.statements {
@@ -313,10 +334,12 @@ impl<'a> Reader<'a> {
                         return Err(self.error_at(at, message));
                     }
                 }
-                Kind::Change if !after_rule => {
+                Kind::Surface if surface.is_none() => surface = Some(self.surface()?),
+                Kind::Surface => return Err(self.two_surfaces()),
+                Kind::Change | Kind::Rest if !after_rule => {
                     return Err(self.error("expected a rule (`when`, `at`) above this".to_owned()));
                 }
-                Kind::Change | Kind::Rule => {
+                Kind::Change | Kind::Rule | Kind::Rest => {
                     after_rule = true;
                     rules.push(statement.clone());
                     continue;
@@ -336,6 +359,10 @@ impl<'a> Reader<'a> {
             self.next = statement.start;
             if let Token::Name("when" | "at" | "every") = self.peek() {
                 read.push(self.rule()?);
+            } else if let Some(rule) = read.last_mut()
+                && self.takes_word("rest")
+            {
+                self.rest(rule)?;
             } else if let Some(rule) = read.last_mut() {
                 self.change(rule)?;
             }
@@ -358,13 +385,36 @@ impl<'a> Reader<'a> {
         }
         let slopes = self.slopes.iter().copied().flatten().collect();
         self.system.modes.push(Mode { name: section.name.to_owned(), slopes, rules: read });
+        self.surfaces.push(surface);
         for name in local.into_iter().chain(self.by_mode.keys().copied()) {
             self.formulas.remove(name);
         }
         Ok(())
     }
 
-    /// `start in mode at 0`, `end = 10`.
+    /// `sliding on v = belt`
+    fn surface(&mut self) -> Result<(Formula, usize), TextError> {
+        let at = self.next;
+        self.next += 1;
+        self.expect_word("on")?;
+        let left = self.number()?;
+        self.expect("=")?;
+        let right = self.number()?;
+        self.expect_end()?;
+        let surface = self.system.graph.binary(Binary::Sub, left, right);
+        if self.system.graph.reads(&[surface]).iter().all(|it| matches!(it, Variable::Parameter(_)))
+        {
+            let message = "the surface is made of numbers alone; expected one with a state";
+            return Err(self.error_at(at, message.to_owned()));
+        }
+        Ok((surface, at))
+    }
+
+    fn two_surfaces(&self) -> TextError {
+        self.error("a mode slides along one surface; expected one `sliding on`".to_owned())
+    }
+
+    /// `start in mode at 0`, `start if condition in one else other`, `end = 10`.
     fn bound(&mut self) -> Result<(), TextError> {
         if self.takes_word("end") {
             self.expect("=")?;
@@ -374,8 +424,26 @@ impl<'a> Reader<'a> {
             self.system.end = Some(end);
         } else {
             self.next += 1;
+            let at = self.next;
+            let condition = if self.takes_word("if") { Some(self.truth()?) } else { None };
             if self.takes_word("in") {
                 self.system.first = self.target()?;
+            }
+            if let Some(condition) = condition {
+                self.expect_word("else")?;
+                let other = self.target()?;
+                let formula = match condition {
+                    Truth::NotNegative(formula) => {
+                        self.system.otherwise = Some((formula, other));
+                        formula
+                    }
+                    Truth::Negative(formula) => {
+                        self.system.otherwise = Some((formula, self.system.first));
+                        self.system.first = other;
+                        formula
+                    }
+                };
+                self.parameters_alone(formula, at + 1)?;
             }
             if self.takes_word("at") {
                 let at = self.next;

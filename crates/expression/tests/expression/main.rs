@@ -5,4 +5,5 @@ mod examples;
 mod formulas;
 mod mistakes;
 mod sensitivities;
+mod sliding;
 mod systems;

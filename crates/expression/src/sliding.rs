@@ -1,0 +1,316 @@
+//! Modes that slide along a surface, as modes without.
+//!
+//! On a surface h = 0 the equations of a mode jump: they contain the sign of h, its absolute value,
+//! or a choice by it. With the derivatives f₁ above the surface and f₂ below, and the rates a₁ and
+//! a₂ of h along them, the solution crosses where a₁ and a₂ have one sign, and slides along the
+//! surface where a₁ < 0 < a₂, with (a₂ f₁ − a₁ f₂)/(a₂ − a₁), until a₁ or a₂ vanishes (Filippov,
+//! *Differential Equations with Discontinuous Righthand Sides*, 1988, §4).
+//!
+//! All of these are formulas. So a mode that slides becomes five ordinary ones:
+//!
+//! | mode | until | then |
+//! |---|---|---|
+//! | `above` | h falls to 0 | a₂ ≥ 0: `sliding`, else `below` |
+//! | `below` | h rises to 0 | a₁ ≤ 0: `sliding`, else `above` |
+//! | `sliding` | a₁ rises to 0; a₂ falls to 0 | `above_released`; `below_released` |
+//! | `above_released`, `below_released` | as `above` and `below` | as those |
+//!
+//! The last two start from a zero of h and of its rate, which rounding would hide.
+
+use stickslip_solver::Direction;
+use thiserror::Error;
+
+use crate::graph::{Binary, Formula, Unary, Variable};
+use crate::system::{Mode, Next, Rule, System, Trigger};
+
+/// The places of the modes that take the place of one that slides, from the first.
+const ABOVE: usize = 0;
+const BELOW: usize = 1;
+const SLIDING: usize = 2;
+const ABOVE_RELEASED: usize = 3;
+const BELOW_RELEASED: usize = 4;
+const PARTS: [&str; 5] = ["above", "below", "sliding", "above_released", "below_released"];
+
+/// Why a mode cannot slide.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+pub enum NotSliding {
+    /// Nothing depends on the side.
+    #[error(
+        "no equation of mode `{0}` changes across the surface; expected sign(…), abs(…) or `if …` \
+         of the difference of both sides in one"
+    )]
+    NothingJumps(String),
+    /// The rate of the surface's function is the same on both sides.
+    #[error(
+        "in mode `{0}`, the surface moves no differently on its two sides; expected an equation \
+         that jumps for what the surface is made of"
+    )]
+    NothingSlides(String),
+    /// A rule chooses between modes of which one slides.
+    #[error("a rule of mode `{0}` chooses by `if`; expected modes that do not slide behind it")]
+    Branch(String),
+    /// Events accumulate, and the mode that follows slides.
+    #[error("a rule of mode `{0}` comes to rest in a mode that slides; expected another mode")]
+    Rest(String),
+}
+
+/// The formulas of one side of a surface.
+struct Side {
+    slopes: Vec<Formula>,
+    rate: Formula,
+}
+
+impl System {
+    /// The system with each mode that has a surface, where this formula is zero, replaced by modes
+    /// that arrive at it, slide along it, and leave it.
+    ///
+    /// ```
+    /// use stickslip_expression::System;
+    /// use stickslip_solver::{EmbeddedPair, Options};
+    ///
+    /// // A block on a belt, with dry friction: it is carried until the spring is stretched by 1.
+    /// let belt = System::parse(
+    ///     "state x = 0, v = 0.5\nmode move\n  sliding on v = 0.5\n  x' = v\n\
+    ///      v' = -x - sign(v - 0.5)\nend = 3",
+    /// )?;
+    /// let found = belt.with(&[])?.record(EmbeddedPair::Dop853, 3.0, &Options::default())?;
+    /// assert_eq!(belt.modes[found.events[0].to].name, "move_sliding");
+    /// assert!((found.events[1].s - 2.0).abs() < 1e-12);
+    /// assert_eq!(belt.modes[found.events[1].to].name, "move_below_released");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`NotSliding`].
+    pub fn sliding(mut self, surfaces: &[Option<Formula>]) -> Result<Self, NotSliding> {
+        let surface = |mode: usize| surfaces.get(mode).copied().flatten();
+        let old = std::mem::take(&mut self.modes);
+        // Where each mode, or the first of its parts, is found.
+        let mut places = Vec::with_capacity(old.len());
+        let mut count = 0;
+        for mode in 0..old.len() {
+            places.push(count);
+            count += if surface(mode).is_some() { PARTS.len() } else { 1 };
+        }
+        let targets = Targets { surfaces, places: &places };
+        for (place, mode) in old.iter().enumerate() {
+            match surface(place) {
+                None => {
+                    let rules = self.redirected(&targets, place, mode, &mode.rules)?;
+                    self.modes.push(Mode { rules, ..mode.clone() });
+                }
+                Some(surface) => self.slide(&targets, place, mode, surface, &old)?,
+            }
+        }
+        if let Some(surface) = surface(self.first) {
+            let starts: Vec<_> = self.components.iter().map(|component| component.start).collect();
+            let at_start = self.graph.substituted(surface, &starts);
+            let start = self.start.unwrap_or_else(|| self.graph.constant(0.0));
+            let at_start = self.graph.at_time(at_start, start);
+            self.otherwise = Some((at_start, places[self.first] + BELOW));
+        }
+        self.first = places.get(self.first).copied().unwrap_or(0);
+        Ok(self)
+    }
+
+    /// Adds the parts of a mode that slides.
+    fn slide(
+        &mut self,
+        targets: &Targets<'_>,
+        place: usize,
+        mode: &Mode,
+        surface: Formula,
+        old: &[Mode],
+    ) -> Result<(), NotSliding> {
+        let above = self.side(mode, surface, true);
+        let below = self.side(mode, surface, false);
+        if above.slopes == below.slopes {
+            return Err(NotSliding::NothingJumps(mode.name.clone()));
+        }
+        if above.rate == below.rate {
+            return Err(NotSliding::NothingSlides(mode.name.clone()));
+        }
+        let (a1, a2) = (above.rate, below.rate);
+        let difference = self.graph.binary(Binary::Sub, a2, a1);
+        let mut sliding = Vec::new();
+        for (&f1, &f2) in above.slopes.iter().zip(&below.slopes) {
+            let first = self.graph.binary(Binary::Mul, a2, f1);
+            let second = self.graph.binary(Binary::Mul, a1, f2);
+            sliding.push(if f1 == f2 {
+                f1
+            } else if first == second {
+                self.graph.constant(0.0)
+            } else {
+                let sum = self.graph.binary(Binary::Sub, first, second);
+                self.graph.binary(Binary::Div, sum, difference)
+            });
+        }
+        // The sign that keeps the solution on the surface.
+        let sum = self.graph.binary(Binary::Add, a1, a2);
+        let multiplier = self.graph.binary(Binary::Div, sum, difference);
+        let [falls, rises] = [surface, self.graph.unary(Unary::Neg, surface)];
+        let minus_a1 = self.graph.unary(Unary::Neg, a1);
+        let first = targets.places[place];
+        let to = |part: usize| first + part;
+        let rule = |guard: Formula, label: &str, next: Next, from_zero: u32| Rule {
+            label: Some(label.to_owned()),
+            from_zero,
+            next,
+            ..Rule::new(Trigger::When(guard, Direction::Below))
+        };
+        for (part, suffix) in PARTS.into_iter().enumerate() {
+            let is_above = matches!(part, ABOVE | ABOVE_RELEASED);
+            let slopes = match part {
+                SLIDING => sliding.clone(),
+                _ if is_above => above.slopes.clone(),
+                _ => below.slopes.clone(),
+            };
+            let sided: Vec<Rule> = mode
+                .rules
+                .iter()
+                .map(|rule| {
+                    self.mapped(rule, |graph, formula| match part {
+                        SLIDING => graph.with_sign(formula, surface, multiplier),
+                        _ => graph.on_side(formula, surface, is_above),
+                    })
+                })
+                .collect();
+            let mut rules = self.redirected(targets, place, mode, &sided)?;
+            let from_zero = if part > SLIDING { 2 } else { 0 };
+            if part > SLIDING {
+                // A rule that stays is no longer where the surface was left.
+                let stays = rules.iter_mut().filter(|rule| rule.next == Next::Stay);
+                stays.for_each(|rule| rule.next = Next::Mode(to(part - ABOVE_RELEASED)));
+            }
+            if part == SLIDING {
+                rules.push(rule(minus_a1, "leaves", Next::Mode(to(ABOVE_RELEASED)), 0));
+                rules.push(rule(a2, "leaves", Next::Mode(to(BELOW_RELEASED)), 0));
+            } else if is_above {
+                let next = Next::Branch(a2, to(SLIDING), to(BELOW));
+                rules.push(rule(falls, "arrives", next, from_zero));
+            } else {
+                let next = Next::Branch(minus_a1, to(SLIDING), to(ABOVE));
+                rules.push(rule(rises, "arrives", next, from_zero));
+            }
+            let mut name = format!("{}_{suffix}", mode.name);
+            while old.iter().any(|mode| mode.name == name) {
+                name.push('_');
+            }
+            self.modes.push(Mode { name, slopes, rules });
+        }
+        Ok(())
+    }
+
+    /// The equations of a mode on one side, and the rate of the surface's function there.
+    fn side(&mut self, mode: &Mode, surface: Formula, above: bool) -> Side {
+        let graph = &mut self.graph;
+        let slopes: Vec<Formula> =
+            mode.slopes.iter().map(|&slope| graph.on_side(slope, surface, above)).collect();
+        let rate = graph.slope(surface, &mut |graph, variable| match variable {
+            Variable::Time => graph.constant(1.0),
+            Variable::Component(place) => slopes[place as usize],
+            Variable::Parameter(_) => graph.constant(0.0),
+        });
+        Side { slopes, rate }
+    }
+
+    /// A rule with its moving formulas made anew.
+    fn mapped(
+        &mut self,
+        rule: &Rule,
+        mut of: impl FnMut(&mut crate::graph::Graph, Formula) -> Formula,
+    ) -> Rule {
+        let mut rule = rule.clone();
+        if let Trigger::When(guard, _) = &mut rule.trigger {
+            *guard = of(&mut self.graph, *guard);
+        }
+        let at_rest = rule.rest.iter_mut().flat_map(|rest| &mut rest.changes);
+        for (_, formula) in rule.changes.iter_mut().chain(at_rest) {
+            *formula = of(&mut self.graph, *formula);
+        }
+        if let Next::Branch(condition, ..) = &mut rule.next {
+            *condition = of(&mut self.graph, *condition);
+        }
+        rule
+    }
+
+    /// Rules whose modes have other places now.
+    fn redirected(
+        &mut self,
+        targets: &Targets<'_>,
+        place: usize,
+        mode: &Mode,
+        rules: &[Rule],
+    ) -> Result<Vec<Rule>, NotSliding> {
+        let mut redirected = Vec::new();
+        for rule in rules {
+            let mut rule = rule.clone();
+            rule.next = match rule.next {
+                Next::Stay => match targets.surface(place) {
+                    Some(surface) if self.moves(surface, &rule) => {
+                        self.entering(targets, place, &rule)
+                    }
+                    _ => Next::Stay,
+                },
+                Next::Mode(next) => self.entering(targets, next, &rule),
+                Next::Branch(condition, one, other) => {
+                    if targets.surface(one).or(targets.surface(other)).is_some() {
+                        return Err(NotSliding::Branch(mode.name.clone()));
+                    }
+                    Next::Branch(condition, targets.places[one], targets.places[other])
+                }
+            };
+            if let Some(rest) = &mut rule.rest {
+                if targets.surface(rest.next).is_some() {
+                    return Err(NotSliding::Rest(mode.name.clone()));
+                }
+                rest.next = targets.places[rest.next];
+            }
+            redirected.push(rule);
+        }
+        Ok(redirected)
+    }
+
+    /// How a mode is entered behind a rule's changes.
+    fn entering(&mut self, targets: &Targets<'_>, next: usize, rule: &Rule) -> Next {
+        let place = targets.places[next];
+        match targets.surface(next) {
+            None => Next::Mode(place),
+            Some(surface) => {
+                let behind = self.behind(surface, rule);
+                Next::Branch(behind, place + ABOVE, place + BELOW)
+            }
+        }
+    }
+
+    /// Whether a rule changes what a surface's function is.
+    fn moves(&mut self, surface: Formula, rule: &Rule) -> bool {
+        self.behind(surface, rule) != surface
+    }
+
+    /// A formula of the state behind a rule's changes, as one of the state before.
+    fn behind(&mut self, formula: Formula, rule: &Rule) -> Formula {
+        let mut components: Vec<Formula> = Vec::with_capacity(self.components.len());
+        for place in 0..self.components.len() {
+            let change = rule.changes.iter().find(|(changed, _)| *changed == place);
+            components.push(match change {
+                Some(&(_, formula)) => formula,
+                // There are fewer than 2³² components.
+                None => self.graph.component(u32::try_from(place).unwrap_or(u32::MAX)),
+            });
+        }
+        self.graph.substituted(formula, &components)
+    }
+}
+
+/// Where the modes are, and along what they slide.
+struct Targets<'a> {
+    surfaces: &'a [Option<Formula>],
+    places: &'a [usize],
+}
+
+impl Targets<'_> {
+    fn surface(&self, mode: usize) -> Option<Formula> {
+        self.surfaces.get(mode).copied().flatten()
+    }
+}
