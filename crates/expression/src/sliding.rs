@@ -15,7 +15,8 @@
 //! | `sliding` | a₁ rises to 0; a₂ falls to 0 | `above_released`; `below_released` |
 //! | `above_released`, `below_released` | as `above` and `below` | as those |
 //!
-//! The last two start from a zero of h and of its rate, which rounding would hide.
+//! The last two start from a zero of h and of its rate, which rounding would hide. So the state is
+//! moved onto the surface where they are entered, along f₁ − f₂.
 
 use stickslip_solver::Direction;
 use thiserror::Error;
@@ -145,6 +146,7 @@ impl System {
                 self.graph.binary(Binary::Div, sum, difference)
             });
         }
+        let onto_surface = self.onto_surface(surface, &above, &below, difference);
         // The sign that keeps the solution on the surface.
         let sum = self.graph.binary(Binary::Add, a1, a2);
         let multiplier = self.graph.binary(Binary::Div, sum, difference);
@@ -183,8 +185,10 @@ impl System {
                 stays.for_each(|rule| rule.next = Next::Mode(to(part - ABOVE_RELEASED)));
             }
             if part == SLIDING {
-                rules.push(rule(minus_a1, "leaves", Next::Mode(to(ABOVE_RELEASED)), 0));
-                rules.push(rule(a2, "leaves", Next::Mode(to(BELOW_RELEASED)), 0));
+                for (guard, part) in [(minus_a1, ABOVE_RELEASED), (a2, BELOW_RELEASED)] {
+                    let changes = onto_surface.clone();
+                    rules.push(Rule { changes, ..rule(guard, "leaves", Next::Mode(to(part)), 0) });
+                }
             } else if is_above {
                 let next = Next::Branch(a2, to(SLIDING), to(BELOW));
                 rules.push(rule(falls, "arrives", next, from_zero));
@@ -199,6 +203,30 @@ impl System {
             self.modes.push(Mode { name, slopes, rules });
         }
         Ok(())
+    }
+
+    /// The changes that move the state onto the surface, from which rounding has moved it away:
+    /// along the difference of the fields.
+    fn onto_surface(
+        &mut self,
+        surface: Formula,
+        above: &Side,
+        below: &Side,
+        difference: Formula,
+    ) -> Vec<(usize, Formula)> {
+        let mut changes = Vec::new();
+        let graph = &mut self.graph;
+        let distance = graph.binary(Binary::Div, surface, difference);
+        for (place, (&f1, &f2)) in above.slopes.iter().zip(&below.slopes).enumerate() {
+            if f1 != f2 {
+                let jump = graph.binary(Binary::Sub, f1, f2);
+                let step = graph.binary(Binary::Mul, jump, distance);
+                // There are fewer than 2³² components.
+                let here = graph.component(u32::try_from(place).unwrap_or(u32::MAX));
+                changes.push((place, graph.binary(Binary::Add, here, step)));
+            }
+        }
+        changes
     }
 
     /// The equations of a mode on one side, and the rate of the surface's function there.

@@ -53,7 +53,7 @@ pub fn format(text: &str) -> Result<String, TextError> {
                 (in_mode, in_rule) = (false, false);
             }
             Some(Token::Name("when" | "at" | "every")) => in_rule = true,
-            Some(Token::Name("rest")) => {}
+            Some(Token::Name("rest")) if second == Some(&Token::Sign("->")) => {}
             _ if second == Some(&Token::Sign(":=")) || first.is_none() => {}
             _ => in_rule = false,
         }

@@ -10,10 +10,10 @@ use crate::system::System;
 
 /// Words that no name may be.
 #[rustfmt::skip]
-pub(super) const RESERVED: [&str; 28] = [
+pub(super) const RESERVED: [&str; 27] = [
     "parameter", "state", "discrete", "mode", "when", "at", "every", "from", "start", "in", "end",
     "if", "then", "else", "and", "or", "not", "rises", "falls", "crosses", "through", "priority",
-    "jumps", "sliding", "on", "rest", "t", "pi",
+    "jumps", "sliding", "on", "t", "pi",
 ];
 
 /// The tokens of a statement, without the end of its line.

@@ -218,7 +218,7 @@ impl<'a> Reader<'a> {
             }
             (Token::Name(name), Token::Sign("=")) => Ok(Kind::Name(name)),
             (Token::Name(_), Token::Sign(":=")) => Ok(Kind::Change),
-            (Token::Name("rest"), _) => Ok(Kind::Rest),
+            (Token::Name("rest"), Token::Sign("->")) => Ok(Kind::Rest),
             (Token::Name("sliding"), _) => Ok(Kind::Surface),
             (Token::Name(_), _) => Ok(Kind::Rule),
             _ => Err(self.error("expected a name".to_owned())),
@@ -360,8 +360,9 @@ impl<'a> Reader<'a> {
             if let Token::Name("when" | "at" | "every") = self.peek() {
                 read.push(self.rule()?);
             } else if let Some(rule) = read.last_mut()
-                && self.takes_word("rest")
+                && self.second() == Token::Sign("->")
             {
+                self.next += 1;
                 self.rest(rule)?;
             } else if let Some(rule) = read.last_mut() {
                 self.change(rule)?;

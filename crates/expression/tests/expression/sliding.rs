@@ -1,7 +1,8 @@
 //! Modes that slide along a surface, and runs that go on behind an accumulation.
 
 use stickslip_expression::{By, InvalidParameters, Recording, System, SystemFamily};
-use stickslip_solver::{EmbeddedPair, Options, Outcome};
+use stickslip_solver::sliding::{SampledFilippov, Side, TwoFields};
+use stickslip_solver::{Dop853, DynamicStart, EmbeddedPair, Options, Outcome, run_dynamic};
 
 const BELT: &str = "parameter belt = 0.5, friction = 0.8\nstate x = -0.3, v = belt\n\
                     x' = v\nv' = -x - friction*sign(v - belt)\n\
@@ -163,4 +164,70 @@ fn what_cannot_slide_is_refused() {
         let error = System::parse(&format!("{head}{text}")).expect_err(text).to_string();
         assert!(error.contains(expected), "{text}{error}");
     }
+}
+
+/// Random linear fields on both sides of a line, as text and as two closures.
+#[test]
+fn random_fields_slide_as_the_solvers_own_do() {
+    let mut random = fastrand::Rng::with_seed(7);
+    let mut number = || (random.f64() * 4.0 - 2.0, random.f64() * 4.0 - 2.0);
+    let (mut slides, mut crossings, mut refused) = (0, 0, 0);
+    for case in 0..300 {
+        let [(a, b), (c, d), (g, k), (l, m)] = [number(), number(), number(), number()];
+        let ((tilt, wave), (x0, y0)) = (number(), number());
+        let text = format!(
+            "state x = {x0:?}, y = {y0:?}\nh = y - {tilt:?}*x\nmode main\n  sliding on h = 0\n  \
+             x' = if h > 0 then {a:?} - x + {b:?}*y else {g:?} - x + {k:?}*y\n  \
+             y' = if h > 0 then {c:?} + {d:?}*x - y + {wave:?}*sin(3*t) else {l:?} + {m:?}*x - y\n"
+        );
+        let system = System::parse(&text).expect("a system");
+        let runnable = system.with(&[]).expect("a system");
+        let options = Options::with_tolerance(1e-12);
+        let found = runnable.record(EmbeddedPair::Dop853, 6.0, &options);
+        let filippov = SampledFilippov::new(TwoFields(
+            |s: f64, y: &[f64], slope: &mut [f64]| {
+                slope[0] = a - y[0] + b * y[1];
+                slope[1] = c + d * y[0] - y[1] + wave * (3.0 * s).sin();
+            },
+            |_, y: &[f64], slope: &mut [f64]| {
+                slope[0] = g - y[0] + k * y[1];
+                slope[1] = l + m * y[0] - y[1];
+            },
+            |_, y: &[f64]| y[1] - tilt * y[0],
+        ));
+        let state = [x0, y0];
+        let mode = filippov.mode((), 0.0, &state).expect("a start beside the surface");
+        let start = DynamicStart { mode, s: 0.0, state: &state };
+        let mut switches = Vec::new();
+        let end = run_dynamic(Dop853, &filippov, start, 6.0, &options, &mut switches);
+        let (found, end) = match (found, end) {
+            (Ok(found), Ok(end)) => (found, end),
+            // Where both fields become tangential at once, neither goes on.
+            (one, other) => {
+                println!("{case}: {:?} {:?} {text}", one.map(|_| ()), other.map(|_| ()));
+                refused += 1;
+                continue;
+            }
+        };
+        assert_eq!(found.events.len(), switches.len(), "{case}\n{text}");
+        for (one, other) in found.events.iter().zip(&switches) {
+            assert!((one.s - other.s).abs() < 1e-8, "{case}: {} {}\n{text}", one.s, other.s);
+            let slid = system.modes[one.to].name == "main_sliding";
+            assert_eq!(slid, other.to.sides() == [Side::Sliding], "{case}");
+            slides += usize::from(slid);
+            crossings += usize::from(!slid);
+        }
+        for (one, other) in found.run.state.iter().zip(&end.state) {
+            assert!((one - other).abs() < 1e-8, "{case}: {:?} {:?}", found.run, end);
+        }
+    }
+    assert!(slides > 100 && crossings > 100 && refused < 5, "{slides} {crossings} {refused}");
+}
+
+#[test]
+fn what_is_called_rest_stays_a_name() {
+    let text =
+        "state rest = 1\nrest' = -rest\nmode main\n  when rest < 0.5\n    rest := 1\nend = 2";
+    let system = System::parse(text).expect("a system");
+    assert_eq!(run(&system, &[]).events.len(), 2);
 }
