@@ -5,6 +5,9 @@
 //! compared with runs at random points and, where there are any, with closed forms. Sequences are
 //! told apart up to the eighth event, because events accumulate in some of the windows.
 //!
+//! Each family is a text too, in the folder `text`, whose atlas has to have the same regions, and
+//! the same curves.
+//!
 //! Run with `cargo run --release --example gallery -- [POINTS] [NAME] [FOLDER]`. Pictures are
 //! written into the folder, if there is one.
 
@@ -30,9 +33,10 @@ use std::time::Instant;
 use stickslip::plane::progress::InParallel;
 use stickslip::solver::{Dop853, Margin, Options, Place};
 use stickslip::tracer::{
-    AtlasOptions, Family, HybridFamily, Itinerary, Point, Problem, Surveyor, TraceOptions,
-    VerifyOptions, Watch, Window,
+    Atlas, AtlasOptions, Family, FamilyError, HybridFamily, Itinerary, Point, Problem, Surveyor,
+    TraceOptions, VerifyOptions, Watch, Window,
 };
+use stickslip_expression::{System, SystemFamily};
 use stickslip_figure::pictures::family::{Captions, draw};
 
 use any::Any;
@@ -50,11 +54,21 @@ struct Row {
     /// closed form.
     wrong: usize,
     picture: String,
+    text: AsText,
+}
+
+/// The atlas of the same family as text.
+struct AsText {
+    curves: usize,
+    regions: usize,
+    /// How many nodes of its curves lie beside the family's, and how many there are.
+    beside: [usize; 2],
 }
 
 /// A family with the ends of its runs, in words.
 struct Room {
     name: &'static str,
+    text: &'static str,
     axes: [&'static str; 2],
     window: Window,
     end: f64,
@@ -69,6 +83,14 @@ const MOST: usize = 8;
 const BELT_AXES: [&str; 2] =
     ["frequency Ω in units of √(k/m)", "amplitude f in units of the friction"];
 
+/// The settings of runs.
+fn runs() -> Options {
+    Options { max_step: 0.3, max_switches: MOST, ..Options::with_tolerance(1e-13) }
+}
+
+/// The part of the window over which margins are differenced.
+const STEP: f64 = 1e-6;
+
 /// There is no closed form.
 fn unknown(_: &Point, _: &Itinerary) -> bool {
     true
@@ -81,21 +103,21 @@ fn has(label: &Itinerary, events: usize) -> bool {
 
 #[rustfmt::skip]
 const GALLERY: [Exhibit; 8] = [
-    (Room { name: "bouncing ball", axes: bouncing_ball::AXES, window: bouncing_ball::WINDOW, end: 5.0 },
+    (Room { name: "bouncing ball", text: include_str!("text/bouncing_ball.slip"), axes: bouncing_ball::AXES, window: bouncing_ball::WINDOW, end: 5.0 },
      |room, points| show(bouncing_ball::drop, room, |at, label| has(label, bouncing_ball::bounces(at)), points)),
-    (Room { name: "ball on a table", axes: ball::AXES, window: ball::WINDOW, end: 8.0 },
+    (Room { name: "ball on a table", text: include_str!("text/ball_on_a_table.slip"), axes: ball::AXES, window: ball::WINDOW, end: 8.0 },
      |room, points| show(ball::throw, room, unknown, points)),
-    (Room { name: "impact oscillator", axes: impact_oscillator::AXES, window: impact_oscillator::WINDOW, end: 10.0 },
+    (Room { name: "impact oscillator", text: include_str!("text/impact_oscillator.slip"), axes: impact_oscillator::AXES, window: impact_oscillator::WINDOW, end: 10.0 },
      |room, points| show(impact_oscillator::start, room, unknown, points)),
-    (Room { name: "relay", axes: relay::AXES, window: relay::WINDOW, end: 20.0 },
+    (Room { name: "relay", text: include_str!("text/relay.slip"), axes: relay::AXES, window: relay::WINDOW, end: 20.0 },
      |room, points| show(relay::start, room, |at, label| !relay::is_still(at) || has(label, 0), points)),
-    (Room { name: "dry friction", axes: dry_friction::AXES, window: dry_friction::WINDOW, end: 20.0 },
+    (Room { name: "dry friction", text: include_str!("text/dry_friction.slip"), axes: dry_friction::AXES, window: dry_friction::WINDOW, end: 20.0 },
      |room, points| show(dry_friction::shake, room, unknown, points)),
-    (Room { name: "two masses", axes: two_masses::AXES, window: two_masses::WINDOW, end: 11.0 },
+    (Room { name: "two masses", text: include_str!("text/two_masses.slip"), axes: two_masses::AXES, window: two_masses::WINDOW, end: 11.0 },
      |room, points| show(two_masses::belt, room, unknown, points)),
-    (Room { name: "boost converter", axes: converter::AXES, window: converter::WINDOW, end: 12.0 },
+    (Room { name: "boost converter", text: include_str!("text/boost_converter.slip"), axes: converter::AXES, window: converter::WINDOW, end: 12.0 },
      |room, points| show(converter::boost, room, converter::fits, points)),
-    (Room { name: "shaken belt", axes: BELT_AXES, window: belt::WINDOW, end: f64::INFINITY },
+    (Room { name: "shaken belt", text: include_str!("text/shaken_belt.slip"), axes: BELT_AXES, window: belt::WINDOW, end: f64::INFINITY },
      |room, points| {
          let switches = |at: &Point| Belt { frequency: at.x, amplitude: at.y }.switches();
          let fits = |at: &Point, label: &Itinerary| has(label, switches(at));
@@ -113,9 +135,7 @@ fn show<P, const N: usize, const G: usize>(
 where
     P: Problem<N, G> + Sync,
 {
-    let accurate = Options::with_tolerance(1e-13);
-    let options = Options { max_step: 0.3, max_switches: MOST, ..accurate };
-    let family = HybridFamily { problem, method: Dop853, options, end: room.end };
+    let family = HybridFamily { problem, method: Dop853, options: runs(), end: room.end };
     compare(&Any(&family), room, &fits, points)
 }
 
@@ -123,7 +143,7 @@ where
 /// where the first half disagrees. `fits` compares a label with the closed form.
 fn compare(
     family: &Any<'_>,
-    Room { name, axes, window, .. }: &Room,
+    Room { name, text, axes, window, .. }: &Room,
     fits: &dyn Fn(&Point, &Itinerary) -> bool,
     points: usize,
 ) -> Result<Row, Box<dyn Error>> {
@@ -132,6 +152,14 @@ fn compare(
     let options = AtlasOptions { trace, verify, ..AtlasOptions::default() };
     let surveyor = Surveyor { options, executor: InParallel, watch: Watch::SILENT };
     let atlas = surveyor.atlas(family, window)?;
+    let system = System::parse(text)?;
+    let own = SystemFamily::new(&system, [0, 1], &system.values(), None, runs())?;
+    let again = surveyor.atlas(&Any(&own), window)?;
+    let text = AsText {
+        curves: again.plane.curves().len(),
+        regions: again.plane.regions().len(),
+        beside: beside(&again, family, window)?,
+    };
     let mut random = fastrand::Rng::with_seed(2);
     let mut wrong = 0;
     for _ in 0..points {
@@ -153,7 +181,50 @@ fn compare(
         sure: atlas.sure_area(),
         wrong,
         picture: draw(&atlas, &captions).document(),
+        text,
     })
+}
+
+/// How many nodes of an atlas lie beside the curves of a family, and how many there are: where the
+/// family's margin over its slope is more than a millionth of the window.
+fn beside(
+    atlas: &Atlas<Itinerary, Margin>,
+    family: &Any<'_>,
+    window: &Window,
+) -> Result<[usize; 2], FamilyError> {
+    let mut counts = [0; 2];
+    for curve in atlas.plane.curves() {
+        for node in &curve.nodes {
+            let margin = |part: Point| {
+                let point = node.point + window.extent().component_mul(&part);
+                Ok::<_, FamilyError>(family.margin(&point, &curve.margin)?.unwrap_or(f64::NAN))
+            };
+            let here = margin(Point::zeros())?;
+            // Margins end where an event before them grazes, so that a step may lead beyond.
+            let slope = |axis: Point| {
+                let [ahead, behind] = [STEP, -STEP].map(|step| margin(axis * step));
+                let [ahead, behind] = [(ahead? - here) / STEP, (here - behind?) / STEP];
+                Ok::<_, FamilyError>(if ahead.is_nan() { behind } else { ahead })
+            };
+            let slope = slope(Point::new(1.0, 0.0))?.hypot(slope(Point::new(0.0, 1.0))?);
+            let distance = here.abs() / if slope.is_nan() { 1.0 } else { slope };
+            // Where it ends at the node itself, it is known beside it. One that the family does not
+            // have is far away.
+            let is_near = || {
+                let places = [(STEP, 0.0), (-STEP, 0.0), (0.0, STEP), (0.0, -STEP)];
+                let mut near = places.map(|(x, y)| margin(Point::new(x, y))).into_iter();
+                near.any(|value| value.is_ok_and(|value| value.abs() < 1e-2))
+            };
+            let distance = match distance {
+                it if it.is_nan() && is_near() => STEP,
+                it if it.is_nan() => 1.0,
+                it => it,
+            };
+            counts[0] += usize::from(distance > STEP);
+            counts[1] += 1;
+        }
+    }
+    Ok(counts)
 }
 
 /// The kinds of boundaries in the pictures.
@@ -187,17 +258,19 @@ fn main() -> Result<(), Box<dyn Error>> {
     let points = arguments.next().map_or(Ok(10_000), |points| points.parse())?;
     let name = arguments.next().unwrap_or_default();
     let folder = arguments.next();
-    println!("| family | curves | regions | unresolved | findings | sure area | wrong | time |");
-    println!("|---|---|---|---|---|---|---|---|");
+    println!(
+        "| family | curves | regions | unresolved | findings | sure area | wrong | as text | time |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|");
     for (room, family) in GALLERY.iter().filter(|(room, _)| room.name.contains(&name)) {
         let began = Instant::now();
-        let Row { curves, regions, unresolved, findings, sure, wrong, picture } =
+        let Row { curves, regions, unresolved, findings, sure, wrong, picture, text } =
             family(room, points)?;
         let seconds = began.elapsed().as_secs_f64();
         println!(
             "| {} | {curves} | {regions} | {unresolved} | {findings} | {sure:.6} \
-             | {wrong} of {points} | {seconds:.1} s |",
-            room.name
+             | {wrong} of {points} | {} and {}, {} of {} | {seconds:.1} s |",
+            room.name, text.curves, text.regions, text.beside[0], text.beside[1]
         );
         if let Some(folder) = &folder {
             let file = format!("{}.svg", room.name.replace(' ', "_"));
@@ -214,6 +287,8 @@ fn small_families_hold() {
         let (room, family) = GALLERY.iter().find(|(room, _)| room.name == name).expect("a name");
         let row = family(room, 200).expect("an atlas");
         assert_eq!((row.unresolved, row.findings, row.wrong), (0, 0, 0), "{name}");
+        assert_eq!(row.text.regions, row.regions, "{name}");
+        assert_eq!(row.text.beside[0], 0, "{name}");
         assert!(row.picture.contains(room.axes[0]) && row.picture.contains(room.axes[1]));
     }
 }
