@@ -54,15 +54,13 @@ fn rule(graph: &mut Graph, guard: &Value) -> Option<Rule> {
     for (place, value) in guard["reset"].as_array().into_iter().flatten().enumerate() {
         changes.push((place, formula(graph, value)?));
     }
+    let trigger = Trigger::When(formula(graph, &guard["value"])?, direction);
     Some(Rule {
-        trigger: Trigger::When(formula(graph, &guard["value"])?, direction),
-        label: None,
-        priority: 0,
-        sees_jumps: false,
         ends_after: u32::from(guard["terminal"] == true),
         from_zero: guard["zero_order"].as_u64().unwrap_or(0).try_into().ok()?,
         changes,
         next: index(&guard["to"]).map_or(Next::Stay, Next::Mode),
+        ..Rule::new(trigger)
     })
 }
 
