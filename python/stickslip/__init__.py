@@ -53,6 +53,7 @@ from stickslip.family_stacks import (
 )
 from stickslip.fits import Fit, fit
 from stickslip._recorded import recorded_formulas as recorded
+from stickslip._sympy import from_sympy
 from stickslip.formulas import FormulaSystem, read, system
 from stickslip.gaining import GainingLine, GainingLines, gaining_lines
 from stickslip.hybrid import SampledGuardsWarning, solve
@@ -159,6 +160,7 @@ __all__ = [
     "eps_t",
     "eps_t_and_switch_count",
     "fit",
+    "from_sympy",
     "gaining_lines",
     "impact",
     "laws",

@@ -97,3 +97,21 @@ def test_mistakes_have_a_place() -> None:
         stickslip.read("nowhere.slip")
     with pytest.raises(stickslip.ComputationError):
         stickslip.system("state x = 1\nx' = x^2\nend = 2").solve()
+
+
+def test_a_text_slides_and_comes_to_rest() -> None:
+    belt = stickslip.system(
+        "parameter belt = 0.5\nstate x = -0.3, v = belt\nx' = v\nv' = -x - 0.8*sign(v - belt)\n"
+        "mode move\n  sliding on v = belt\nend = 5\n"
+    )
+    found = belt.solve(parameters={"belt": 0.4})
+    assert belt.modes[:3] == ["move_above", "move_below", "move_sliding"]
+    assert found.guards == "decided"
+    leaves = found.t_switches[1]
+    assert leaves == pytest.approx(1.1 / 0.4, rel=1e-12)
+    ball = stickslip.system(
+        "state x = 0.5, v = 0\nx' = v\nmode fall\n  v' = -1\n  when x < 0\n    x := 0\n"
+        "    v := -0.5*v\n    rest -> lie\n    v := 0\nmode lie\n  v' = 0\nend = 6\n"
+    )
+    assert ball.solve().y[:, -1] == pytest.approx([0, 0], abs=1e-9)
+    assert "rest -> lie" in ball.text
