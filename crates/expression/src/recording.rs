@@ -2,7 +2,7 @@
 
 use stickslip_solver::{
     DynamicDense, DynamicEvent, DynamicObserver, DynamicRun, DynamicSwitch, EmbeddedPair, Grazing,
-    Options, Pole, Preempted, RunError, run_dynamic_with,
+    Options, Pole, Preempted, Rest, RunError, run_dynamic_with,
 };
 
 use crate::run::Runnable;
@@ -18,6 +18,8 @@ pub struct Recording {
     pub touches: Vec<Grazing<usize>>,
     /// Where guards changed their sign at a pole.
     pub poles: Vec<Pole<usize>>,
+    /// Where events accumulated and the run went on behind them.
+    pub rests: Vec<Rest<usize>>,
     /// Rules that did not act, because another one had left their mode.
     pub preempted: Vec<Preempted<usize>>,
     start: f64,
@@ -56,6 +58,7 @@ struct Recorder {
     touches: Vec<Grazing<usize>>,
     poles: Vec<Pole<usize>>,
     preempted: Vec<Preempted<usize>>,
+    rests: Vec<Rest<usize>>,
     steps: Vec<StoredStep>,
 }
 
@@ -73,6 +76,9 @@ impl DynamicObserver<usize> for Recorder {
     }
     fn on_preempted(&mut self, preempted: &Preempted<usize>) {
         self.preempted.push(*preempted);
+    }
+    fn on_rest(&mut self, rest: &Rest<usize>) {
+        self.rests.push(*rest);
     }
     fn forget(&mut self, switches: usize) {
         self.events.truncate(self.events.len().saturating_sub(switches));
@@ -109,9 +115,9 @@ impl Runnable {
         let mut recorder = Recorder::default();
         let start = self.start();
         let run = run_dynamic_with(method, self, start, end, options, &mut recorder)?;
-        let Recorder { events, touches, poles, preempted, steps } = recorder;
+        let Recorder { events, touches, poles, preempted, rests, steps } = recorder;
         let (state, mode, start) = (start.state.to_vec(), start.mode, start.s);
-        Ok(Recording { run, events, touches, poles, preempted, start, state, mode, steps })
+        Ok(Recording { run, events, touches, poles, rests, preempted, start, state, mode, steps })
     }
 }
 
@@ -165,16 +171,22 @@ impl Recording {
         }
     }
 
-    /// The modes of the run, in order. A mode that an event enters anew is another stay only if it
+    /// The modes of the run, in order. A mode that is entered anew is another stay only if it
     /// is another mode.
     #[must_use]
     pub fn stays(&self) -> Vec<Stay> {
         let mut stays = vec![Stay { mode: self.mode, from: self.start, to: self.run.s }];
+        let mut rests = self.rests.iter().map(|rest| (rest.s, rest.to)).peekable();
+        let mut moves = Vec::with_capacity(self.events.len());
         for event in &self.events {
+            moves.extend(std::iter::from_fn(|| rests.next_if(|(s, _)| *s <= event.s)));
+            moves.push((event.s, event.to));
+        }
+        for (s, mode) in moves.into_iter().chain(rests) {
             let last = stays.len() - 1;
-            if event.to != stays[last].mode {
-                stays[last].to = event.s;
-                stays.push(Stay { mode: event.to, from: event.s, to: self.run.s });
+            if mode != stays[last].mode {
+                stays[last].to = s;
+                stays.push(Stay { mode, from: s, to: self.run.s });
             }
         }
         stays
@@ -209,8 +221,15 @@ impl Recording {
     /// The mode at a time of the run, and at an event the mode behind it.
     #[must_use]
     pub fn mode_at(&self, s: f64) -> usize {
-        let behind = self.events.partition_point(|event| event.s <= s);
-        behind.checked_sub(1).map_or(self.mode, |last| self.events[last].to)
+        let event = self.events.partition_point(|event| event.s <= s);
+        let rest = self.rests.partition_point(|rest| rest.s <= s);
+        let event = event.checked_sub(1).map(|last| &self.events[last]);
+        match (event, rest.checked_sub(1).map(|last| &self.rests[last])) {
+            (Some(event), Some(rest)) if event.s < rest.s => rest.to,
+            (Some(event), _) => event.to,
+            (None, Some(rest)) => rest.to,
+            (None, None) => self.mode,
+        }
     }
 }
 

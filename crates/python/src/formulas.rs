@@ -254,8 +254,8 @@ fn columns<'py>(
     columns.set_item("poles", poles)?;
     let preempted: Vec<_> = found.preempted.iter().map(|it| (it.s, it.mode, it.guard)).collect();
     columns.set_item("preempted", preempted)?;
-    // A system of formulas has no rest.
-    columns.set_item("rests", Vec::<(f64, f64, usize, usize, usize)>::new())?;
+    let rests = found.rests.iter().map(|it| (it.s, it.error, it.guard, it.from, it.to));
+    columns.set_item("rests", rests.collect::<Vec<_>>())?;
     let steps = found.steps();
     columns.set_item("starts", reals(steps.iter().map(|it| it.s).collect()))?;
     columns.set_item("sizes", reals(steps.iter().map(|it| it.h).collect()))?;

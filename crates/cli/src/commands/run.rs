@@ -11,7 +11,7 @@ use stickslip_files::output::csv::{CsvFile, Rows};
 use stickslip_files::output::file::{StoredFile, publish};
 use stickslip_files::output::json;
 use stickslip_files::output::picture::PictureFile;
-use stickslip_solver::{DynamicSwitch, Outcome};
+use stickslip_solver::{DynamicSwitch, Outcome, Rest};
 
 use crate::args::{Format, SystemArguments};
 use crate::error::Failure;
@@ -213,6 +213,8 @@ fn document(plan: &RunPlan, found: &Recording) -> Value {
             after: state(&event.after),
         })
         .collect();
+    let rest = |it: &Rest<usize>| json!({ "time": it.s, "error": it.error, "from": name(it.from), "to": name(it.to) });
+    let rests: Vec<Value> = found.rests.iter().map(rest).collect();
     let (outcome, accumulation) = outcome(found.run.outcome);
     json!({
         "schema": schema::RUN,
@@ -225,6 +227,7 @@ fn document(plan: &RunPlan, found: &Recording) -> Value {
         "state": state(&found.run.state),
         "decided": found.run.decided,
         "events": events,
+        "rests": rests,
         "statistics": found.run.statistics,
     })
 }
@@ -266,6 +269,9 @@ fn table(out: &mut dyn Write, plan: &RunPlan, found: &Recording) -> io::Result<(
     let values = system.components.iter().zip(&found.run.state);
     lines.extend(values.map(|(it, &value)| (it.name.as_str(), number(value))));
     lines.push(("events", found.events.len().to_string()));
+    if !found.rests.is_empty() {
+        lines.push(("accumulations passed", found.rests.len().to_string()));
+    }
     lines.push(("guards", if found.run.decided { "decided" } else { "sampled" }.to_owned()));
     text::pairs(out, &lines)?;
     text::work(out, &found.run.statistics)

@@ -104,6 +104,9 @@ fn a_ball_comes_to_rest_and_the_run_goes_on() {
     assert_eq!(found.run.outcome, Outcome::ReachedEnd);
     // It lies from 1 + 2 = 3 on, and is thrown up at 5.
     assert_eq!(found.at(4.0), Some(vec![0.0, 0.0]));
+    assert!((found.rests[0].s - 3.0).abs() < 1e-9, "{:?}", found.rests);
+    assert_eq!(modes(&ball, &found), ["fall", "lie", "fall"]);
+    assert_eq!([2.9, 4.0, 5.5].map(|s| found.mode_at(s)), [0, 1, 0]);
     assert!((found.run.state[0] - 0.5).abs() < 1e-12, "{:?}", found.run.state);
     let text = ball.text();
     assert!(text.contains("rest -> lie"), "{text}");
