@@ -65,6 +65,24 @@ fn parameters_and_the_end_are_options() {
 }
 
 #[test]
+fn a_run_goes_on_behind_an_accumulation() {
+    let directory = Workspace::new();
+    let text = "state x = 0.5, v = 0\nx' = v\nmode fall\n  v' = -1\n  when x < 0 \"floor\"\n    \
+                x := 0\n    v := -0.5*v\n    rest -> lie\n    v := 0\nmode lie\n  v' = 0\nend = 6\n";
+    directory.write("ball.slip", text);
+    let ran = directory.run("run ball.slip --format json --course course.csv --points 13");
+    assert_eq!(ran.code, 0, "{}", ran.stderr);
+    let found: Value = serde_json::from_str(&ran.stdout).unwrap();
+    assert_eq!((&found["outcome"], &found["mode"]), (&"end".into(), &"lie".into()));
+    let rest = &found["rests"][0];
+    assert!((rest["time"].as_f64().unwrap() - 3.0).abs() < 1e-9, "{rest}");
+    assert_eq!((&rest["from"], &rest["to"]), (&"fall".into(), &"lie".into()));
+    let course = rows(&directory.read("course.csv"));
+    assert_eq!(course.last().unwrap()[..2], ["6.0", "lie"]);
+    assert!(directory.run("run ball.slip").stdout.contains("accumulations passed  1"));
+}
+
+#[test]
 fn mistakes_are_shown_with_their_place() {
     let directory = Workspace::new();
     directory.write("ball.slip", BALL.replace("-g", "-gg"));
