@@ -36,8 +36,8 @@ pub(super) struct Instant<S: System> {
     chain: Vec<(S::Mode, usize)>,
 }
 
-/// The parts of a usual step over which a guard shows on which side it leaves zero: the first that is
-/// tried, and about the last.
+/// The parts of a usual step over which a guard shows on which side it leaves zero: the first that
+/// is tried, and about the last.
 const CLOSE: f64 = 1e-6;
 const FAR: f64 = 1e-2;
 /// The roundings of time within which an event that changes nothing is of the instant of a switch.
