@@ -34,7 +34,7 @@ impl<S: System> Examination<'_, S> {
             if self.notes_of(guard).any(|note| note.s >= s - SAME * step.h) {
                 continue;
             }
-            let arrival = self.arrival(guard, step, (step.h, 0.0), ARRIVES, &step.y1);
+            let arrival = self.arrival(guard, (step, step.h, &step.y1), ARRIVES, None);
             let Some(crossed) = arrival else { continue };
             let found = self.at_end(guard, crossed, step);
             if self.is_noted(&found) {
@@ -83,15 +83,14 @@ impl<S: System> Examination<'_, S> {
         first
     }
 
-    /// How a guard crosses zero at a place of `step` that has an error, if it does so in its
-    /// direction and is zero there to within the error and so many roundings.
+    /// How a guard crosses zero at a place of a step, if it does so in its direction and is zero
+    /// there to within so many roundings, and the error of an `event` there.
     pub(crate) fn arrival(
         &mut self,
         guard: usize,
-        step: &StepOf<S::State>,
-        (elapsed, error): (f64, f64),
+        (step, elapsed, y): (&StepOf<S::State>, f64, &S::State),
         roundings: f64,
-        y: &S::State,
+        event: Option<&Event<S>>,
     ) -> Option<Crossed> {
         let direction = self.phase.guards[guard].direction();
         if !direction.has_values() {
@@ -130,10 +129,12 @@ impl<S: System> Examination<'_, S> {
         room.give(moved);
         let crosses = shows && (behind < 0.0) != (ahead < 0.0);
         let slope = ((ahead - behind) / (2.0 * reach)).abs();
-        let zero =
-            there.abs() <= roundings * (hidden + slope * self.drift(elapsed)) + slope * error;
-        let fires = zero && crosses && direction.fires_from(behind);
-        fires.then_some(Crossed { slope, jump: false, sign: behind.signum() })
+        if !crosses || !direction.fires_from(behind) {
+            return None;
+        }
+        let error = event.map_or(0.0, |event| self.error_of(event));
+        let hidden = roundings * (hidden + slope * self.drift(elapsed)) + slope * error;
+        (there.abs() <= hidden).then_some(Crossed { slope, jump: false, sign: behind.signum() })
     }
 
     /// The event of a guard at the end of `step`.

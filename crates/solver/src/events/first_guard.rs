@@ -391,10 +391,9 @@ impl<S: System> Examination<'_, S> {
                 self.locate::<M>(&found.step, guard, &crossing, true)?.map(Some).ok_or(Unresolved)
             }
             _ if self.notes_of(guard).next().is_none() => {
-                let place = (found.elapsed, self.error_of(found));
-                let Event { step, state, .. } = &*found;
+                let place = (&found.step, found.elapsed, &found.state);
                 // At the start of the step, it may have been noted on the step before.
-                let crossed = self.arrival(guard, step, place, 1.0, state).filter(|crossed| {
+                let crossed = self.arrival(guard, place, 1.0, Some(found)).filter(|crossed| {
                     !may_wait
                         || self.phase.zero_orders[guard] == 0
                             && crossed.sign * self.phase.values[guard] > 0.0
@@ -496,13 +495,13 @@ impl<S: System> Examination<'_, S> {
         if self.phase.count() == 1 || event.elapsed < (1.0 - TOGETHER) * h {
             return;
         }
-        let place = (event.elapsed, self.error_of(event));
         for guard in 0..self.phase.count() {
             let near = there[guard].abs() <= NEAR_ZERO * largest::<S>(guard, values);
             if near
                 && event.crossed[guard].is_none()
                 && self.notes_of(guard).next().is_none()
-                && let Some(crossed) = self.arrival(guard, &event.step, place, 1.0, &event.state)
+                && let place = (&event.step, event.elapsed, &event.state)
+                && let Some(crossed) = self.arrival(guard, place, 1.0, Some(event))
             {
                 event.crossed[guard] = Some(crossed);
                 if self.precedes(guard, event.guard) {
