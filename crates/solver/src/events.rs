@@ -8,6 +8,8 @@
 //! | `event` | the guards that fire on a step at one instant |
 //! | `examination` | everything that the examination of a step needs |
 //! | `first_guard` | which guards of a step fire first |
+//! | `noted` | events that change nothing |
+//! | `doubt` | by how much rounding may move the place of an event |
 //! | `one_guard` | what one guard does on a step |
 //! | `quick` | the first look at a guard, from six values that the step already has |
 //! | `by_bounds` | the first look at a guard of a readable system |
@@ -23,11 +25,13 @@ pub(crate) mod along_step;
 pub(crate) mod arrival;
 pub(crate) mod aside;
 mod by_bounds;
+mod doubt;
 mod event;
 mod examination;
 pub(crate) mod first_guard;
 pub(crate) mod isolate;
 pub(crate) mod locate;
+mod noted;
 pub(crate) mod notices;
 pub(crate) mod one_guard;
 mod path;

@@ -3,10 +3,9 @@
 use smallvec::SmallVec;
 
 use crate::error::RunError;
-use crate::events::along_step::{rounding, scales};
-use crate::events::event::{Crossed, Event, Found, Note, only};
+use crate::events::event::{Crossed, Event, Found};
 use crate::events::examination::{Examination, column, confirmed};
-use crate::events::isolate::{Beginning, Bracket, noise};
+use crate::events::isolate::{Beginning, Bracket};
 use crate::events::phase::{NEAR_ZERO, Phase};
 use crate::events::quick::{self, NODES};
 use crate::events::status::{Crossing, Status};
@@ -21,10 +20,6 @@ pub(crate) const TOGETHER: f64 = 1e-12;
 pub(crate) const UNSEEN: f64 = 16.0;
 /// A guard that starts from a zero is on its way across it for at most so many roundings of time.
 const FORGETS: f64 = 256.0;
-/// The part of a step on which the noise of a guard is measured.
-const CLOSE: f64 = 1e-6;
-/// The part of what surely exceeds noise that it may well be.
-const PART: f64 = 0.25;
 
 impl<S: System> Examination<'_, S> {
     /// Finds the first guard that fires on `step` and changes something, and writes it to `event`,
@@ -143,77 +138,6 @@ impl<S: System> Examination<'_, S> {
                 end_values[guard] = -f64::MIN_POSITIVE.copysign(value);
             }
         }
-    }
-
-    /// Whether an event only reports a crossing: mode and state go on unchanged.
-    pub(crate) fn is_noted(&self, event: &Event<S>) -> bool {
-        let about = self.phase.guards[event.guard];
-        let before = self.notes_of(event.guard).count();
-        if about.direction() == Direction::Below
-            || before + 1 == about.fires_until_end() as usize
-            || !event.state.parts().iter().all(|value| value.is_finite())
-        {
-            return false;
-        }
-        let s = self.trial.s + event.elapsed;
-        let mut after = event.state.clone();
-        self.system.transition(self.phase.mode, event.guard, s, &mut after) == self.phase.mode
-            && after == event.state
-    }
-
-    /// The notes of a guard on this step.
-    pub(crate) fn notes_of(&self, guard: usize) -> impl Iterator<Item = &Note<S>> {
-        self.notes.iter().filter(move |note| note.guard == guard || note.simultaneous[guard])
-    }
-
-    /// Notes an event that changes nothing. If it is `together` with the one before, both are one.
-    pub(crate) fn note(&mut self, event: &Event<S>, together: bool) {
-        if together
-            && let Some(last) = self.notes.last_mut()
-            && last.guard != event.guard
-            && !last.simultaneous[event.guard]
-        {
-            last.simultaneous[event.guard] = true;
-            last.crossed[event.guard] = event.crossed[event.guard];
-            return;
-        }
-        let crossed = event.own();
-        self.notes.push(Note {
-            s: self.trial.s + event.elapsed,
-            guard: event.guard,
-            simultaneous: List::of(self.phase.count(), false),
-            flatness: self.phase.flatness(event.guard, crossed.slope),
-            crossed: only(self.phase.count(), event.guard, crossed),
-            from: self.phase.mode,
-            to: self.phase.mode,
-            before: event.state.clone(),
-            after: event.state.clone(),
-        });
-    }
-
-    /// Lets guards that were noted at the instant of `event`, and whose turn is only behind its
-    /// guard, wait for their turn: what acts before may change what they do.
-    pub(crate) fn take_back(&mut self, event: &mut Event<S>) {
-        if self.notes.is_empty() {
-            return;
-        }
-        let s = self.trial.s + event.elapsed;
-        let since = s - 2.0 * self.error_of(event) - 8.0 * f64::EPSILON * s.abs();
-        let phase = self.phase;
-        self.notes.retain_mut(|note| {
-            let waits = |guard: usize| note.s >= since && !phase.precedes(guard, event.guard);
-            if waits(note.guard) {
-                event.take_in(&note.crossed);
-                return false;
-            }
-            for guard in 0..phase.count() {
-                if note.simultaneous[guard] && waits(guard) {
-                    note.simultaneous[guard] = false;
-                    event.crossed[guard] = event.crossed[guard].or(note.crossed[guard].take());
-                }
-            }
-            true
-        });
     }
 
     /// Finds the first guard that fires, whether or not it changes something, with all guards that
@@ -434,53 +358,6 @@ impl<S: System> Examination<'_, S> {
     fn located(&mut self, event: &Event<S>) -> Located {
         let (guard, crossed) = (event.guard, event.own());
         Located { guard, elapsed: event.elapsed, error: self.error_of(event), crossed }
-    }
-
-    /// By how much the place of an event may be wrong: by what rounding of time and state, and what
-    /// is left of the guard, move its zero.
-    pub(crate) fn error_of(&mut self, event: &Event<S>) -> f64 {
-        let Crossed { slope, jump, .. } = event.own();
-        let drift = self.drift(event.elapsed);
-        if event.elapsed == 0.0 || jump {
-            return drift;
-        }
-        let hidden = self.hidden_at(event.guard, &event.step, event.elapsed, &event.state);
-        let error = (hidden + event.residual) / slope;
-        drift + if error.is_finite() { error } else { 0.0 }
-    }
-
-    /// By how much rounding may have moved a time on the step.
-    pub(crate) fn drift(&self, elapsed: f64) -> f64 {
-        self.drift + 5.0 * f64::EPSILON * elapsed
-    }
-
-    /// The effect of rounding on a guard at a place of `step`: of time and state, and within the
-    /// guard.
-    pub(crate) fn hidden_at(
-        &mut self,
-        guard: usize,
-        step: &StepOf<S::State>,
-        elapsed: f64,
-        y: &S::State,
-    ) -> f64 {
-        let (system, at, s) = (self.system, (self.phase.mode, guard), step.s + elapsed);
-        let (mut scale, mut slope) = (self.room.state(), self.room.state());
-        let s_scale = scales(step, s, y, &mut scale);
-        let (hidden, count) = rounding(system, at, (s, y), (s_scale, &scale), self.room);
-        self.statistics.guards += count;
-        system.field(at.0, s, y, &mut slope);
-        self.statistics.field += 1;
-        let (room, statistics, moved) = (&mut *self.room, &mut *self.statistics, &mut scale);
-        let mut value = |ahead: f64| {
-            S::State::shifted(moved, y, &slope, ahead);
-            statistics.guards += 1;
-            room.value(system, at, s + ahead, moved)
-        };
-        let reach = (CLOSE * self.usual).max(256.0 * f64::EPSILON * s.abs());
-        let noise = PART * noise(&mut value, -reach, reach, [0.0]);
-        self.room.give(scale);
-        self.room.give(slope);
-        hidden.max(noise)
     }
 
     /// Adds the guards that cross zero behind the end of a step of size `h`, but within rounding of

@@ -1,0 +1,62 @@
+//! By how much rounding may move the place of an event, and hide what a guard is there.
+
+use crate::events::along_step::{rounding, scales};
+use crate::events::event::{Crossed, Event};
+use crate::events::examination::Examination;
+use crate::events::isolate::noise;
+use crate::method::{StepOf, Store};
+use crate::system::System;
+
+/// The part of a step on which the noise of a guard is measured.
+const CLOSE: f64 = 1e-6;
+/// The part of what surely exceeds noise that it may well be.
+const PART: f64 = 0.25;
+
+impl<S: System> Examination<'_, S> {
+    /// By how much the place of an event may be wrong: by what rounding of time and state, and what
+    /// is left of the guard, move its zero.
+    pub(crate) fn error_of(&mut self, event: &Event<S>) -> f64 {
+        let Crossed { slope, jump, .. } = event.own();
+        let drift = self.drift(event.elapsed);
+        if event.elapsed == 0.0 || jump {
+            return drift;
+        }
+        let hidden = self.hidden_at(event.guard, &event.step, event.elapsed, &event.state);
+        let error = (hidden + event.residual) / slope;
+        drift + if error.is_finite() { error } else { 0.0 }
+    }
+
+    /// By how much rounding may have moved a time on the step.
+    pub(crate) fn drift(&self, elapsed: f64) -> f64 {
+        self.drift + 5.0 * f64::EPSILON * elapsed
+    }
+
+    /// The effect of rounding on a guard at a place of `step`: of time and state, and within the
+    /// guard.
+    pub(crate) fn hidden_at(
+        &mut self,
+        guard: usize,
+        step: &StepOf<S::State>,
+        elapsed: f64,
+        y: &S::State,
+    ) -> f64 {
+        let (system, at, s) = (self.system, (self.phase.mode, guard), step.s + elapsed);
+        let (mut scale, mut slope) = (self.room.state(), self.room.state());
+        let s_scale = scales(step, s, y, &mut scale);
+        let (hidden, count) = rounding(system, at, (s, y), (s_scale, &scale), self.room);
+        self.statistics.guards += count;
+        system.field(at.0, s, y, &mut slope);
+        self.statistics.field += 1;
+        let (room, statistics, moved) = (&mut *self.room, &mut *self.statistics, &mut scale);
+        let mut value = |ahead: f64| {
+            S::State::shifted(moved, y, &slope, ahead);
+            statistics.guards += 1;
+            room.value(system, at, s + ahead, moved)
+        };
+        let reach = (CLOSE * self.usual).max(256.0 * f64::EPSILON * s.abs());
+        let noise = PART * noise(&mut value, -reach, reach, [0.0]);
+        self.room.give(scale);
+        self.room.give(slope);
+        hidden.max(noise)
+    }
+}
