@@ -25,14 +25,14 @@ use std::io;
 use std::process::ExitCode;
 
 use clap::Parser;
-use stickslip_studies::{convergence, stiff_springs};
+use stickslip_studies::{convergence, own_system, stiff_springs};
 
 use args::{Arguments, Command};
 pub use error::Failure;
 use output::console::say;
 use plan::{
     CollidePlan, FitPlan, ImpactPlan, JoinPlan, LocatePlan, Mapped, ReproducePlan, RunPlan,
-    StackPlan, StudyPlan, TablePlan, TimestepPlan, Traced,
+    Stacked, StudyPlan, TablePlan, TimestepPlan, Traced,
 };
 pub use stickslip_files::FileError;
 use version::NAME;
@@ -109,7 +109,10 @@ fn carry_out(arguments: &Arguments) -> Result<(), Failure> {
             Traced::Collisions(plan) => commands::trace::run(&plan),
             Traced::System(plan) => commands::trace::system(&plan),
         },
-        Command::Stack(arguments) => commands::stack::run(&StackPlan::new(arguments)?),
+        Command::Stack(arguments) => match Stacked::new(arguments)? {
+            Stacked::Collisions(plan) => commands::stack::run(&plan),
+            Stacked::System(plan) => commands::stack::system(&plan),
+        },
         Command::Locate(arguments) => commands::locate::run(&LocatePlan::new(arguments)?),
         Command::Reproduce(arguments) => match ReproducePlan::new(arguments) {
             ReproducePlan::Page(plan) => commands::reproduce::run(&plan),
@@ -118,9 +121,10 @@ fn carry_out(arguments: &Arguments) -> Result<(), Failure> {
         Command::Asymptote(arguments) => {
             commands::studies::run(&StudyPlan::stiff_springs(arguments)?, stiff_springs::run)
         }
-        Command::Converge(arguments) => {
-            commands::studies::run(&StudyPlan::convergence(arguments)?, convergence::run)
-        }
+        Command::Converge(arguments) => match StudyPlan::own_system(arguments)? {
+            Some(plan) => commands::studies::run(&plan, own_system::run),
+            None => commands::studies::run(&StudyPlan::convergence(arguments)?, convergence::run),
+        },
         Command::Timestep(arguments) => commands::timestep::run(&TimestepPlan::new(arguments)?),
         Command::Fit(arguments) => commands::fit::run(&FitPlan::new(arguments)?),
         Command::Table(arguments) => commands::table::run(&TablePlan::new(arguments)?),

@@ -37,7 +37,7 @@ pub use locate::LocatePlan;
 pub use map::{MapFormat, MapOutput, MapPlan, Mapped, SystemMapPlan};
 pub use reproduce::{PagePlan, ReproducePlan, StatementsPlan};
 pub use run::RunPlan;
-pub use stack::StackPlan;
+pub use stack::{StackPlan, Stacked, SystemStackPlan};
 pub use studies::StudyPlan;
 pub use system::{SystemPlane, read};
 pub use table::{TableFormat, TablePlan};

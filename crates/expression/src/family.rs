@@ -11,7 +11,6 @@ use stickslip_tracer::{
 pub use align::RuleOrder;
 
 use crate::compiled::Compiled;
-use crate::graph::Variable;
 use crate::invalid::InvalidParameters;
 use crate::run::Runnable;
 use crate::system::System;
@@ -102,16 +101,7 @@ impl SystemFamily {
             let expected = "a place for each rule of each mode";
             return Err(InvalidParameters::Value { what, value: value as f64, expected });
         }
-        if let Some((formula, _)) = system.otherwise {
-            let read = system.graph.reads(&[formula]);
-            let is_axis = |axis: &usize| {
-                u32::try_from(*axis).is_ok_and(|axis| read.contains(&Variable::Parameter(axis)))
-            };
-            if let Some(axis) = axes.iter().find(|axis| is_axis(axis)) {
-                let name = system.parameters[*axis].name.clone();
-                return Err(InvalidParameters::FirstMode { name });
-            }
-        }
+        axes.iter().try_for_each(|&axis| system.require_one_first_mode(axis))?;
         let compiled = order.align(system).compile()?;
         let rules = order.names;
         compiled.check(parameters)?;

@@ -4,6 +4,7 @@
 //! numbers: no formula is nested too deep for a stack.
 
 mod slope;
+mod table;
 
 use std::collections::HashMap;
 

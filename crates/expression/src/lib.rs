@@ -58,7 +58,7 @@ pub use family::{RuleOrder, SystemFamily};
 pub use graph::{Binary, Formula, Graph, Node, Unary, Variable};
 pub use invalid::InvalidParameters;
 pub use program::{Inputs, Program};
-pub use recording::{Recording, Stay, StoredStep};
+pub use recording::{Recording, Stay, StoredStep, outcome_name};
 pub use run::Runnable;
 pub use sensitivity::{By, Moving, Sensitivities, SensitivityError};
 pub use sliding::NotSliding;

@@ -2,7 +2,7 @@
 
 use stickslip_solver::{
     DynamicDense, DynamicEvent, DynamicObserver, DynamicRun, DynamicSwitch, EmbeddedPair, Grazing,
-    Options, Pole, Preempted, Rest, RunError, run_dynamic_with,
+    Options, Outcome, Pole, Preempted, Rest, RunError, run_dynamic_with,
 };
 
 use crate::run::Runnable;
@@ -50,6 +50,20 @@ pub struct Stay {
     pub from: f64,
     /// When it ended.
     pub to: f64,
+}
+
+/// How a run ended, in a word: `end` of its time, at a `rule`, at the `accumulation` of its events,
+/// at the `event_limit` or the `step_limit`, or `stopped`.
+#[must_use]
+pub const fn outcome_name(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::ReachedEnd => "end",
+        Outcome::EndedByGuard { .. } => "rule",
+        Outcome::Zeno { .. } => "accumulation",
+        Outcome::SwitchLimit => "event_limit",
+        Outcome::StepLimit => "step_limit",
+        Outcome::Stopped => "stopped",
+    }
 }
 
 #[derive(Default)]

@@ -2,7 +2,8 @@
 
 use stickslip_solver::Direction;
 
-use crate::graph::{Formula, Graph};
+use crate::graph::{Formula, Graph, Variable};
+use crate::invalid::InvalidParameters;
 
 /// A hybrid system: formulas for what changes, and rules for what happens when.
 #[derive(Clone, Debug, Default)]
@@ -41,6 +42,23 @@ impl System {
         }
         formulas.extend(self.otherwise.map(|(formula, _)| formula));
         formulas
+    }
+
+    /// Refuses a parameter on which the first mode depends: runs with several of its values cannot
+    /// be compared along a boundary.
+    ///
+    /// # Errors
+    /// [`InvalidParameters::FirstMode`].
+    pub fn require_one_first_mode(&self, parameter: usize) -> Result<(), InvalidParameters> {
+        let Some((formula, _)) = self.otherwise else { return Ok(()) };
+        let decides = u32::try_from(parameter)
+            .is_ok_and(|it| self.graph.reads(&[formula]).contains(&Variable::Parameter(it)));
+        match self.parameters.get(parameter) {
+            Some(Parameter { name, .. }) if decides => {
+                Err(InvalidParameters::FirstMode { name: name.clone() })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// What changes during a run.
@@ -129,6 +147,18 @@ pub struct Rest {
 }
 
 impl Rule {
+    /// A rule that leaves everything as it is acts where its condition begins to hold: it would act
+    /// without end as long as the condition holds.
+    pub(crate) fn note_once(&mut self) {
+        let idle = self.next == Next::Stay && self.changes.is_empty() && self.rest.is_none();
+        if let Trigger::When(_, direction @ Direction::Below) = &mut self.trigger
+            && idle
+            && self.ends_after != 1
+        {
+            *direction = Direction::Falling;
+        }
+    }
+
     /// A rule that changes nothing.
     #[must_use]
     pub fn new(trigger: Trigger) -> Self {

@@ -4,13 +4,20 @@ use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyDictMethods};
-use stickslip_expression::{By, Recording, SensitivityError, System};
+use stickslip_expression::{By, Recording, Runnable, SensitivityError, System};
+use stickslip_plane::progress::SILENT;
 use stickslip_solver::{DynamicSwitch, EmbeddedPair, Options, Outcome};
 
+use stickslip_studies::own_system;
+
 use crate::failure::{bad_input, failed};
+use crate::studies;
 
 /// A parameter: its name, its value and its range.
 type Parameter = (String, f64, Option<(f64, f64)>);
+
+/// The mode, the time and the state at the start, where they are not those of the system.
+type Start = (Option<usize>, Option<f64>, Option<Vec<f64>>);
 
 /// Method, tolerances, longest and first step, and the largest number of switches.
 #[derive(FromPyObject)]
@@ -85,7 +92,7 @@ impl FormulaSystem {
         py: Python<'py>,
         by: Vec<(bool, usize)>,
         parameters: Vec<f64>,
-        start: (Option<usize>, Option<f64>, Option<Vec<f64>>),
+        start: Start,
         end: Option<f64>,
         settings: Settings,
     ) -> PyResult<Bound<'py, PyDict>> {
@@ -149,13 +156,48 @@ impl FormulaSystem {
         &self,
         py: Python<'py>,
         parameters: Vec<f64>,
-        start: (Option<usize>, Option<f64>, Option<Vec<f64>>),
+        start: Start,
         end: Option<f64>,
         settings: Settings,
         times: Option<Vec<f64>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let (mode, s, state) = start;
-        let runnable = self.0.with(&parameters).map_err(bad_input)?;
+        let (runnable, end) = self.started(&parameters, start, end)?;
+        let (method, options) = settings.checked()?;
+        let found = py.detach(|| runnable.record(method, end, &options));
+        let found = found.map_err(failed)?;
+        let columns = columns(py, &self.0, &found, times)?;
+        // As of functions of Python: with the stages of dense output, and a look at the start.
+        let stages = if method == EmbeddedPair::Dop853 { 3 } else { 0 };
+        let work = found.run.statistics.field + stages * found.steps().len() + 1;
+        columns.set_item("nfev", work)?;
+        Ok(columns)
+    }
+
+    /// The study of how accurate a run is. `name` is that of the system in titles.
+    fn converge<'py>(
+        &self,
+        py: Python<'py>,
+        name: String,
+        parameters: Vec<f64>,
+        start: Start,
+        end: Option<f64>,
+        threads: usize,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let (runnable, end) = self.started(&parameters, start, end)?;
+        let settings = own_system::Settings { name, system: self.0.clone(), runnable, end };
+        studies::run(py, threads, || own_system::run(&settings, SILENT))
+    }
+}
+
+impl FormulaSystem {
+    /// The system with its parameters and its start, and the end of its run.
+    fn started(
+        &self,
+        parameters: &[f64],
+        (mode, s, state): Start,
+        end: Option<f64>,
+    ) -> PyResult<(Runnable, f64)> {
+        let runnable = self.0.with(parameters).map_err(bad_input)?;
         let runnable = runnable.starting(mode, s, state.as_deref()).map_err(bad_input)?;
         let end = end.unwrap_or(runnable.end());
         if end.is_nan() || end <= runnable.start().s {
@@ -167,15 +209,7 @@ impl FormulaSystem {
                 "the system has no end and no rule that ends it; expected t_span",
             ));
         }
-        let (method, options) = settings.checked()?;
-        let found = py.detach(|| runnable.record(method, end, &options));
-        let found = found.map_err(failed)?;
-        let columns = columns(py, &self.0, &found, times)?;
-        // As of functions of Python: with the stages of dense output, and a look at the start.
-        let stages = if method == EmbeddedPair::Dop853 { 3 } else { 0 };
-        let work = found.run.statistics.field + stages * found.steps().len() + 1;
-        columns.set_item("nfev", work)?;
-        Ok(columns)
+        Ok((runnable, end))
     }
 }
 

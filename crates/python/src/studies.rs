@@ -89,7 +89,8 @@ pub fn reproduce(
     Ok(study)
 }
 
-fn run(
+/// What `make` makes, on so many threads, as a dictionary.
+pub fn run(
     py: Python<'_>,
     threads: usize,
     make: impl FnOnce() -> Result<Study, StudyError> + Send,

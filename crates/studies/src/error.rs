@@ -3,6 +3,7 @@
 use stickslip_figure::FigureError;
 use stickslip_model::exact::ExactError;
 use stickslip_model::{Contact, EngineError, InvalidParameter, OtherLaw};
+use stickslip_solver::RunError;
 
 use crate::limits::{MOST_CELLS, MOST_LAWS, MOST_PSI, MOST_STIFFNESS, STIFFNESSES};
 use crate::search::SearchError;
@@ -16,6 +17,9 @@ pub enum StudyError {
     /// The settings of a study of contact laws are out of range.
     #[error(transparent)]
     ContactLaws(#[from] InvalidContactLaws),
+    /// The run of a system fails.
+    #[error("the run failed: {0}")]
+    Run(#[from] RunError),
     /// A picture cannot be drawn.
     #[error(transparent)]
     Picture(#[from] FigureError),

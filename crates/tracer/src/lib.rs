@@ -135,6 +135,8 @@ pub use regions::verify::report::{
 pub use regions::verify::{VerifyOptions, verify, verify_unless_cancelled, verify_with};
 pub use stack::change::{Change, Effect};
 pub use stack::conditions::MeetingKind;
+#[cfg(feature = "serde")]
+pub use stack::document::{LayerDocument, StackDocument};
 pub use stack::meeting::Meeting;
 pub use stack::{Layer, Stack, StackError, StackOf, StackOptions};
 pub use survey::{Found, Survey, Surveyor};

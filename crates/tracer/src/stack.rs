@@ -8,10 +8,13 @@
 //! - `meeting`: where that is, by Newton's method in all three parameters
 //! - `change`: what a change does to the regions
 //! - `search`: how changes are isolated
+//! - `document`: the file of a stack (feature `serde`)
 
 mod candidates;
 pub mod change;
 pub mod conditions;
+#[cfg(feature = "serde")]
+pub mod document;
 pub mod meeting;
 mod sample;
 mod search;

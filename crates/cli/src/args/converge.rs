@@ -4,11 +4,28 @@ use std::path::PathBuf;
 
 use stickslip_files::input::parameter::Parameter;
 
+use super::run::{setting, time};
 use super::shared::{self, CollisionArguments};
 
 /// Options of `converge`.
 #[derive(Debug, clap::Args)]
 pub struct ConvergeArguments {
+    /// A system of your own instead of collisions: a text as docs/systems.md describes it; - is
+    /// standard input
+    #[arg(value_name = "SYSTEM.slip")]
+    #[arg(conflicts_with_all = ["kappa", "ratio", "psi", "mu", "alpha", "damping"])]
+    pub system: Option<PathBuf>,
+
+    /// The value of a parameter of the system; may be repeated
+    #[arg(long, value_name = "NAME=VALUE", value_parser = setting, requires = "system")]
+    #[arg(help_heading = "System of your own")]
+    pub set: Vec<(String, f64)>,
+
+    /// Where the run ends, instead of the end that the system says
+    #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
+    #[arg(requires = "system", help_heading = "System of your own")]
+    pub end: Option<f64>,
+
     /// Scaled stiffness κ of one collision, instead of the usual 38; above 0, at most 10⁶
     #[arg(long, value_name = "K", help_heading = "Collision", allow_hyphen_values = true)]
     #[arg(value_parser = |text: &str| Parameter::Kappa.parse(text))]
@@ -49,7 +66,10 @@ over them.
 Errors are those of the final tangential velocity and of all switch times. The reference is the \
 exact solution or, with damping, dop853 at a tolerance of 1e-15. Without --kappa, errors are root \
 mean squares over 38 collisions with κ = 18 and 63 and ψ = 0.1, 0.2, … 1.9, which have two to eight \
-switches; --damping is then the damping of all of them.";
+switches; --damping is then the damping of all of them.
+
+With SYSTEM.slip, a run of a system of your own at tolerances from 1e-2 to 1e-13, with both methods: \
+the errors of its last state and of the times of its events, and where there are other events.";
 
 /// What `converge --help` says last.
 pub const EXAMPLES: &str = "\
@@ -62,11 +82,15 @@ Files in DIR:
   convergence_time.csv          measured times, the only file that differs from run to run
   convergence_*.svg             pictures
 
+With SYSTEM.slip: convergence.json, convergence_tolerances.csv, convergence_events.csv (the events
+of the reference, dop853 at a tolerance of 1e-15), and pictures.
+
 Each finding is printed on a line.
 
 Examples:
   stickslip converge --out convergence
   stickslip converge --damping 0.1 --out damped
   stickslip converge --kappa 1000 --psi 0.5 --out stiff
+  stickslip converge examples/systems/belt.slip --set belt=0.3 --out belt
 
 Exit codes: 0 done, 1 the computation failed, 2 bad usage or bad input.";

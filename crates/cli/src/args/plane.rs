@@ -62,6 +62,29 @@ pub struct Axis {
     pub range: Range,
 }
 
+/// A parameter that differs between atlases.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Over {
+    /// Its name.
+    pub name: String,
+    /// Its values, in ascending order.
+    pub values: Vec<f64>,
+}
+
+/// Reads `name=value,value,…`.
+pub(super) fn over(text: &str) -> Result<Over, String> {
+    const EXPECTED: &str =
+        "expected NAME=V,V,… with two values or more in ascending order, such as mu=0.1,0.3,0.5";
+    let (name, values) = text.split_once('=').ok_or(EXPECTED)?;
+    let value = |text| number::parse(text).map_err(|problem| format!("{problem}; {EXPECTED}"));
+    let values = values.split(',').map(value).collect::<Result<Vec<f64>, _>>()?;
+    let ascend = values.windows(2).all(|pair| pair[0] < pair[1]);
+    if values.len() < 2 || !ascend || !values.iter().all(|value| value.is_finite()) {
+        return Err(format!("{values:?}; {EXPECTED}"));
+    }
+    Ok(Over { name: name.trim().to_owned(), values })
+}
+
 /// Reads `name=lo:hi`.
 fn axis(text: &str) -> Result<Axis, String> {
     const EXPECTED: &str = "expected NAME=LO:HI with LO below HI, such as mu=0.1:0.5";

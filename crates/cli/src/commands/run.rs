@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 use serde_json::{Map, Value, json};
-use stickslip_expression::{Recording, System};
+use stickslip_expression::{Recording, System, outcome_name};
 use stickslip_figure::pictures;
 use stickslip_files::output::csv::{CsvFile, Rows};
 use stickslip_files::output::file::{StoredFile, publish};
@@ -69,14 +69,11 @@ fn label(system: &System, event: &DynamicSwitch<usize>) -> String {
 
 /// Why a run ended, and where events accumulate.
 pub fn outcome(outcome: Outcome) -> (&'static str, Option<f64>) {
-    match outcome {
-        Outcome::ReachedEnd => ("end", None),
-        Outcome::EndedByGuard { .. } => ("rule", None),
-        Outcome::StepLimit => ("step_limit", None),
-        Outcome::SwitchLimit => ("event_limit", None),
-        Outcome::Stopped => ("stopped", None),
-        Outcome::Zeno { accumulation } => ("accumulation", Some(accumulation)),
-    }
+    let accumulation = match outcome {
+        Outcome::Zeno { accumulation } => Some(accumulation),
+        _ => None,
+    };
+    (outcome_name(outcome), accumulation)
 }
 
 fn write_events(path: &Path, system: &System, found: &Recording) -> Result<StoredFile, Failure> {

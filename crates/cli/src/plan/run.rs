@@ -7,7 +7,7 @@ use stickslip_files::output::picture::PictureFile;
 use stickslip_solver::{EmbeddedPair, Options};
 
 use super::files::require_different;
-use super::system::{read, require_end, title, values};
+use super::system::SystemRun;
 use crate::args::{Format, RunArguments};
 use crate::error::Failure;
 
@@ -51,18 +51,8 @@ impl RunPlan {
             ("--plot", plot.as_ref().map(PictureFile::path)),
         ];
         require_different(&outputs, &[("the system", Some(&*arguments.system))])?;
-        let (system, _) = read(&arguments.system)?;
-        let parameters = values(&system, set)?;
-        let runnable =
-            system.with(&parameters).map_err(|error| Failure::Usage(error.to_string()))?;
-        let end = arguments.end.unwrap_or(runnable.end());
-        if end.is_nan() || end <= runnable.start().s {
-            let start = runnable.start().s;
-            return Err(Failure::Usage(format!(
-                "the run ends at {end}; expected an end after {start}"
-            )));
-        }
-        require_end(&system, arguments.end)?;
+        let SystemRun { name, system, parameters, runnable, end } =
+            SystemRun::new(&arguments.system, set, arguments.end)?;
         let defaults = Options::default();
         let options = Options {
             rtol: arguments.rtol.unwrap_or(defaults.rtol),
@@ -70,7 +60,7 @@ impl RunPlan {
             ..defaults
         };
         Ok(Self {
-            name: title(&arguments.system),
+            name,
             parameters,
             runnable,
             end,

@@ -4,9 +4,10 @@ use std::fmt::Display;
 use std::path::PathBuf;
 
 use stickslip_files::input::recipe::Given;
-use stickslip_studies::{contact_laws, convergence, stiff_springs};
+use stickslip_studies::{contact_laws, convergence, own_system, stiff_springs};
 
 use super::collision::contact;
+use super::system::SystemRun;
 use crate::args::{AsymptoteArguments, CollisionArguments, ConvergeArguments, LawsArguments};
 use crate::error::Failure;
 
@@ -39,6 +40,21 @@ impl StudyPlan<convergence::Settings> {
         };
         settings.validate().map_err(refused)?;
         Ok(Self { settings, out: out.clone(), threads })
+    }
+}
+
+impl StudyPlan<own_system::Settings> {
+    /// The study of a system of one's own that `arguments` make; `None` if they name none.
+    ///
+    /// # Errors
+    /// [`Failure`]: the system cannot be read, or options do not fit it.
+    pub fn own_system(arguments: &ConvergeArguments) -> Result<Option<Self>, Failure> {
+        let ConvergeArguments { system: Some(path), set, end, out, threads, .. } = arguments else {
+            return Ok(None);
+        };
+        let SystemRun { name, system, runnable, end, .. } = SystemRun::new(path, set, *end)?;
+        let settings = own_system::Settings { name, system, runnable, end };
+        Ok(Some(Self { settings, out: out.clone(), threads: *threads }))
     }
 }
 

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use stickslip_expression::{System, SystemFamily};
+use stickslip_expression::{Runnable, System, SystemFamily};
 use stickslip_files::input::source;
 use stickslip_solver::Options;
-use stickslip_tracer::{Point, Window};
+use stickslip_tracer::{AtlasOptions, Point, Window};
 
 use crate::args::{Axis, PlaneArguments};
 use crate::error::Failure;
@@ -46,7 +46,10 @@ pub fn values(system: &System, set: &[(String, f64)]) -> Result<Vec<f64>, Failur
 }
 
 /// The place of a parameter.
-fn place(system: &System, option: &str, name: &str) -> Result<usize, Failure> {
+///
+/// # Errors
+/// [`Failure::Usage`]: there is no such parameter.
+pub fn place(system: &System, option: &str, name: &str) -> Result<usize, Failure> {
     let place = system.parameters.iter().position(|it| it.name == *name);
     place.ok_or_else(|| {
         let names: Vec<_> = system.parameters.iter().map(|it| it.name.as_str()).collect();
@@ -65,6 +68,45 @@ pub fn require_end(system: &System, end: Option<f64>) -> Result<(), Failure> {
         return Err(Failure::Usage(message.to_owned()));
     }
     Ok(())
+}
+
+/// A run of a system.
+#[derive(Debug)]
+pub struct SystemRun {
+    /// The name of the system in titles.
+    pub name: String,
+    /// The system.
+    pub system: System,
+    /// The values of its parameters.
+    pub parameters: Vec<f64>,
+    /// The system with these values.
+    pub runnable: Runnable,
+    /// Where the run ends.
+    pub end: f64,
+}
+
+impl SystemRun {
+    /// The run of the system in a file, with some parameters set, and with another end if one is
+    /// given.
+    ///
+    /// # Errors
+    /// [`Failure`]: the system cannot be read, or options do not fit it.
+    pub fn new(path: &Path, set: &[(String, f64)], end: Option<f64>) -> Result<Self, Failure> {
+        let (system, _) = read(path)?;
+        let parameters = values(&system, set)?;
+        let runnable =
+            system.with(&parameters).map_err(|error| Failure::Usage(error.to_string()))?;
+        let given = end;
+        let end = given.unwrap_or(runnable.end());
+        if end.is_nan() || end <= runnable.start().s {
+            let start = runnable.start().s;
+            return Err(Failure::Usage(format!(
+                "the run ends at {end}; expected an end after {start}"
+            )));
+        }
+        require_end(&system, given)?;
+        Ok(Self { name: title(path), system, parameters, runnable, end })
+    }
 }
 
 /// The runs of a system over a window of two of its parameters.
@@ -120,5 +162,21 @@ impl SystemPlane {
             },
             system,
         }))
+    }
+
+    /// The options of an atlas.
+    ///
+    /// # Errors
+    /// [`Failure::Usage`]: the tolerance is out of its range.
+    pub fn atlas_options(&self, tolerance: Option<f64>) -> Result<AtlasOptions, Failure> {
+        let tolerance = tolerance.unwrap_or(1e-9);
+        let most = 1e-3 * self.window.extent().min();
+        if !(tolerance > 0.0 && tolerance < most) {
+            return Err(Failure::Usage(format!(
+                "--tolerance {tolerance}: expected above 0 and below {most}, a thousandth of the \
+                 window"
+            )));
+        }
+        Ok(AtlasOptions { tolerance, ..AtlasOptions::default() })
     }
 }

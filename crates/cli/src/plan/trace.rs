@@ -52,15 +52,7 @@ impl Traced {
         let picture = plot.as_ref().map(PictureFile::path);
         let system = arguments.plane.system.as_deref();
         require_different(&[("--out", Some(out)), ("--plot", picture)], &[("the system", system)])?;
-        let tolerance = arguments.tolerance.unwrap_or(1e-9);
-        let most = 1e-3 * plane.window.extent().min();
-        if !(tolerance > 0.0 && tolerance < most) {
-            return Err(Failure::Usage(format!(
-                "--tolerance {tolerance}: expected above 0 and below {most}, a thousandth of the \
-                 window"
-            )));
-        }
-        let options = AtlasOptions { tolerance, ..AtlasOptions::default() };
+        let options = plane.atlas_options(arguments.tolerance)?;
         let (out, plot, threads) = (out.clone(), plot.clone(), *threads);
         Ok(Self::System(Box::new(SystemTracePlan { plane, options, out, plot, threads })))
     }

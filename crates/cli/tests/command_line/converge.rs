@@ -189,3 +189,51 @@ fn help_names_every_file() {
         assert!(ran.stdout.contains(name), "{name}");
     }
 }
+
+#[test]
+fn a_system_has_errors_in_proportion_to_the_tolerance() {
+    let workspace = Workspace::new();
+    // The state is cos s, whose zeros are counted.
+    let text = "parameter until = 8\nstate x = 1, v = 0\nx' = v\nv' = -x\nwhen x crosses 0 \
+                \"zero\"\nend = until\n";
+    workspace.write("swing.slip", text);
+    let ran = workspace.run("converge swing.slip --set until=10 --out study");
+    assert_eq!((ran.code, ran.stderr.as_str()), (0, ""));
+    let names = ["", "_events", "_tolerances", "_tolerances", "_work"];
+    let endings = ["json", "csv", "csv", "svg", "svg"];
+    let files =
+        names.iter().zip(endings).map(|(name, ending)| format!("convergence{name}.{ending}"));
+    assert_eq!(workspace.names_in("study"), files.collect::<Vec<_>>());
+    let study = json(&workspace, "study/convergence.json");
+    assert_eq!(study["schema"], "stickslip.system-convergence/1");
+    let findings: Vec<_> = ran.stdout.lines().collect();
+    assert_eq!(study["findings"], Value::from(findings));
+    assert!(ran.stdout.contains("dop853 finds the same events at every tolerance."));
+    let state: [f64; 2] = serde_json::from_value(study["reference"]["end_state"].clone()).unwrap();
+    assert!((state[0] - 10_f64.cos()).abs() < 1e-14 && (state[1] + 10_f64.sin()).abs() < 1e-14);
+    let events = rows(&workspace.read("study/convergence_events.csv"));
+    for (index, row) in events[1..].iter().enumerate() {
+        let right = (index as f64 + 0.5) * std::f64::consts::PI;
+        assert!(row[0] == "zero" && (row[1].parse::<f64>().unwrap() - right).abs() < 1e-14);
+    }
+    assert_eq!(events.len(), 1 + 3);
+    let errors = rows(&workspace.read("study/convergence_tolerances.csv"));
+    assert_eq!(errors.len(), 1 + 2 * 12);
+    for row in &errors[1..] {
+        let [tolerance, state, time] = [1, 5, 6].map(|column| row[column].parse::<f64>().unwrap());
+        assert!(state.max(time) < 30.0 * tolerance && row[4] == "1", "{row:?}");
+    }
+    // One thread finds the same.
+    workspace.run("converge swing.slip --set until=10 --out again --threads 1");
+    assert!(workspace.read("study/convergence.json") == workspace.read("again/convergence.json"));
+    for (option, message) in [
+        ("--kappa 3", "cannot be used with"),
+        ("--set unknown=1", "it has until"),
+        ("--end -1", "expected an end after 0"),
+    ] {
+        let ran = workspace.run(&format!("converge swing.slip {option} --out other"));
+        assert!(ran.code == 2 && ran.stderr.contains(message), "{option}: {}", ran.stderr);
+    }
+    let ran = workspace.run("converge --set until=1 --out other");
+    assert!(ran.code == 2 && ran.stderr.contains("SYSTEM.slip"), "{}", ran.stderr);
+}

@@ -66,6 +66,59 @@ fn the_atlas_of_a_ball_is_that_of_its_closed_form() {
 }
 
 #[test]
+fn the_stack_of_a_ball_changes_where_a_boundary_passes_a_corner() {
+    let directory = Workspace::new();
+    directory.write("ball.slip", BALL.replace("unused = 3", "until = 3").replace("3.2", "until"));
+    let window = "--x e=0.2:0.5 --y height=0.9:1.2 --max-events 4";
+    let line =
+        format!("stack ball.slip {window} --over until=1.95,2.2,3.2 --out s.json --plot s.svg");
+    let ran = directory.run(&line);
+    assert_eq!((ran.code, ran.stdout.as_str(), ran.stderr.as_str()), (0, "", ""));
+    let stack: Value = serde_json::from_str(&directory.read("s.json")).unwrap();
+    assert_eq!(
+        (&stack["schema"], &stack["objection"]),
+        (&"stickslip.family-stack/1".into(), &Value::Null)
+    );
+    assert_eq!(stack["axes"].as_array().unwrap(), &["e", "height", "until"]);
+    assert_eq!(stack["layers"].as_array().unwrap().len(), 3);
+    // An event comes at the end at a corner.
+    let mut expected = Vec::new();
+    for (n, e, height) in (0..16).map(|k| (1 + k / 4, [0.2, 0.5][k % 2], [0.9, 1.2][k / 2 % 2])) {
+        let until = bounce(i32::try_from(n).unwrap(), height, e);
+        expected.extend((1.95..3.2).contains(&until).then_some((until, e, height)));
+    }
+    expected.sort_by(|one, other| one.0.total_cmp(&other.0));
+    assert!(expected.len() >= 6, "{expected:?}");
+    let changes = stack["changes"].as_array().unwrap();
+    assert_eq!(changes.len(), expected.len(), "{changes:?}");
+    let mut effects = Vec::new();
+    for (change, (until, e, height)) in changes.iter().zip(expected) {
+        assert_eq!(change["meeting"]["kind"], "corner");
+        let found: Vec<f64> = serde_json::from_value(change["meeting"]["point"].clone()).unwrap();
+        let value = change["meeting"]["value"].as_f64().unwrap();
+        let off = (value - until).abs().max((found[0] - e).abs()).max((found[1] - height).abs());
+        assert!(off < 1e-8, "{off:e}: {change} beside {until}");
+        effects.extend(change["effects"].as_array().unwrap().iter().map(Value::to_string));
+    }
+    let born = [r#"{"born":{"fires":[0,0,0]}}"#, r#"{"born":{"begins":[0,0,0,0]}}"#];
+    assert_eq!(effects, [born[0], born[1], r#"{"dies":{"fires":[0]}}"#]);
+    assert!(directory.read("s.svg").contains("place of a change up to the next until"));
+    for (option, message) in [
+        ("", "--over is missing"),
+        ("--over until=3", "two values or more in ascending order"),
+        ("--over until=3,2", "two values or more in ascending order"),
+        ("--over e=0.2,0.3", "expected another parameter than --x and --y"),
+        ("--over u=1,2", "it has height, e, until"),
+        ("--over until=1,2 --kappa 1:2", "cannot be used with"),
+    ] {
+        let ran = directory.run(&format!("stack ball.slip {window} {option} --out s.json"));
+        assert!(ran.code == 2 && ran.stderr.contains(message), "{option}: {}", ran.stderr);
+    }
+    let lacks = directory.run("stack --kappa 1:2 --out s.json");
+    assert!(lacks.code == 2 && lacks.stderr.contains("--psi"), "{}", lacks.stderr);
+}
+
+#[test]
 fn the_map_of_a_ball_counts_its_bounces() {
     let directory = Workspace::new();
     directory.write("ball.slip", BALL);

@@ -56,7 +56,7 @@ const FUNCTIONS: [(&str, Unary); 21] = [
 ];
 
 /// Other functions, with the number of their arguments.
-const OTHERS: [(&str, usize, usize); 9] = [
+const OTHERS: [(&str, usize, usize); 11] = [
     ("ceil", 1, 1),
     ("sign", 1, 1),
     ("log10", 1, 1),
@@ -66,6 +66,8 @@ const OTHERS: [(&str, usize, usize); 9] = [
     ("mod", 2, 2),
     ("min", 2, usize::MAX),
     ("max", 2, usize::MAX),
+    ("polygon", 3, usize::MAX),
+    ("spline", 3, usize::MAX),
 ];
 
 /// The name of a function of one number.
@@ -406,6 +408,9 @@ impl Reader<'_> {
 
     fn call(&mut self, name: &str, at: usize) -> Result<Formula, TextError> {
         self.expect("(")?;
+        if let "polygon" | "spline" = name {
+            return self.table(name);
+        }
         let mut arguments = vec![self.number()?];
         while self.takes(",") {
             arguments.push(self.number()?);
@@ -450,6 +455,35 @@ impl Reader<'_> {
                 let rest = arguments[1..].iter();
                 rest.fold(first, |least, &other| graph.binary(function, least, other))
             }
+        })
+    }
+
+    /// `x, place: value, place: value, …)`: a function through points.
+    fn table(&mut self, name: &str) -> Result<Formula, TextError> {
+        let x = self.number()?;
+        let (mut points, mut last): (Vec<(f64, Formula)>, _) = (Vec::new(), f64::NEG_INFINITY);
+        while self.takes(",") {
+            let at = self.next;
+            let place = self.number()?;
+            let place = self.constant(place, at)?;
+            if place.is_nan() || place <= last {
+                let message = format!("{place} is not above {last}; expected places that ascend");
+                return Err(self.error_at(at, message));
+            }
+            last = place;
+            self.expect(":")?;
+            points.push((place, self.number()?));
+        }
+        let at = self.next;
+        self.expect(")")?;
+        let graph = &mut self.system.graph;
+        let made =
+            if name == "spline" { graph.spline(x, &points) } else { graph.polygon(x, &points) };
+        made.ok_or_else(|| {
+            let count = points.len();
+            let message =
+                format!("`{name}` has {count} points; expected two or more, place: value");
+            self.error_at(at, message)
         })
     }
 

@@ -7,7 +7,7 @@ use super::reader::{RESERVED, Reader, Statement};
 use super::tokens::{Token, tokens};
 use super::{TextError, names};
 use crate::graph::{Binary, Formula, Variable};
-use crate::system::{Component, Mode, Parameter, System};
+use crate::system::{Component, Mode, Parameter, Rule, System};
 
 /// The slopes of all modes together have at most as many entries.
 const MOST_SLOPES: usize = 10_000_000;
@@ -368,6 +368,7 @@ impl<'a> Reader<'a> {
                 self.change(rule)?;
             }
         }
+        read.iter_mut().for_each(Rule::note_once);
         if self.system.modes.is_empty() {
             // Mistakes in formulas that no mode uses.
             let formulas: Vec<_> =

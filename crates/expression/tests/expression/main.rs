@@ -7,3 +7,4 @@ mod mistakes;
 mod sensitivities;
 mod sliding;
 mod systems;
+mod tables;

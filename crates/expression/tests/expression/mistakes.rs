@@ -53,6 +53,12 @@ fn places_and_hints() {
     refused(&with("speed' = 1\nend = speed"), 5, 7, "numbers and parameters alone");
     refused(&with("speed' = 1\nstart in nowhere"), 5, 10, "no mode `nowhere`");
     refused(&with("mode a\nspeed' = 1\nspeed' = 2"), 6, 1, "two equations");
+    refused(&with("speed' = polygon(t)"), 4, 19, "has 0 points; expected two or more");
+    refused(&with("speed' = spline(t, 0: 1)"), 4, 24, "has 1 points; expected two or more");
+    refused(&with("speed' = spline(t, 0: 1, 0: 2)"), 4, 26, "0 is not above 0");
+    refused(&with("speed' = spline(t, 0: 1, gravity: 2)"), 4, 26, "expected a number");
+    refused(&with("speed' = polygon(t, 0: 1, 2)"), 4, 28, "expected :");
+    refused(&with("polygon = 2\nspeed' = 1"), 4, 1, "is a function");
     refused("parameter a = 1 in 2:3\nstate x = 0\nx' = a", 1, 20, "does not contain 1");
     refused("parameter a = b", 1, 15, "not known");
     refused("state x = t", 1, 11, "numbers and parameters alone");

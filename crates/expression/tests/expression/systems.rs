@@ -176,3 +176,27 @@ fn rules_are_counted_one_by_one() {
     let found = run(&system.with(&[]).expect("no parameters"));
     assert!((found.0.s - 3.0).abs() < 1e-12, "{}", found.0.s);
 }
+
+#[test]
+fn a_rule_that_leaves_everything_as_it_is_notes_where_its_condition_begins() {
+    let found = |rule: &str| {
+        let text = format!("state x = 0\nx' = cos(t)\nwhen {rule}\nend = 20");
+        let runnable = System::parse(&text).unwrap().with(&[]).unwrap();
+        let found = runnable.record(EmbeddedPair::Dop853, 20.0, &Options::default()).unwrap();
+        found.events.iter().map(|event| event.s).collect::<Vec<f64>>()
+    };
+    use std::f64::consts::PI;
+    let near = |found: &[f64], right: &[f64]| {
+        assert_eq!(found.len(), right.len(), "{found:?}");
+        assert!(found.iter().zip(right).all(|(a, b)| (a - b).abs() < 1e-8), "{found:?}");
+    };
+    let sixth = PI / 6.0;
+    let above = [sixth, sixth + 2.0 * PI, sixth + 4.0 * PI, sixth + 6.0 * PI];
+    near(&found("x > 0.5"), &above);
+    near(&found("x >= 0.5 \"high\""), &above);
+    near(&found("x > 0.5 and t > 3"), &above[1..]);
+    near(&found("x > 0.5 end after 2"), &above[..2]);
+    // It holds at the start, and begins to hold later.
+    near(&found("x < 0.5"), &[5.0, 17.0, 29.0].map(|k| k * sixth));
+    near(&found("t > -1 -> end"), &[0.0]);
+}

@@ -29,6 +29,17 @@ pub struct ChartAxis<'a> {
     pub scale: Scale,
 }
 
+impl<'a> ChartAxis<'a> {
+    /// A logarithmic axis around values above 0, with room for marks at its ends. Where there are
+    /// no two values, it has any range.
+    #[must_use]
+    pub fn around(name: &'a str, (low, high): (f64, f64)) -> Self {
+        let room = (high / low).powf(0.02);
+        let range = if low < high { (low / room, high * room) } else { (0.1, 1.0) };
+        Self { name, range, scale: Scale::Logarithmic }
+    }
+}
+
 /// Points that belong together. Points outside the axes or without a value are not drawn.
 #[derive(Clone, Debug)]
 pub struct Series {

@@ -22,7 +22,12 @@ const LEGENDS_AT: [(f64, f64); 2] = [(72.0, 48.0), (72.0, 68.0)];
 const KEY: f64 = 28.0;
 /// The strokes of the kinds of curves, in the order in which they are given. Further kinds have the
 /// last one.
-const STROKES: [Stroke; 4] = [BOUNDARY_END, BOUNDARY_STICK, BOUNDARY_SLIP, BOUNDARY_START];
+pub(super) const STROKES: [Stroke; 4] =
+    [BOUNDARY_END, BOUNDARY_STICK, BOUNDARY_SLIP, BOUNDARY_START];
+
+/// The kinds of curves in the atlas of a hybrid system.
+pub(super) const KINDS: [&str; 4] =
+    ["event at the end", "graze", "order of events", "start or branch"];
 
 /// What the picture of an atlas says in words.
 #[derive(Clone, Copy)]
@@ -45,20 +50,23 @@ pub fn draw_runs(atlas: &Atlas<Itinerary, Margin>, family: &str, axes: [&str; 2]
     let (curves, regions) = (atlas.plane.curves().len(), atlas.plane.regions().len());
     let title =
         format!("{family}: {curves} boundaries, {regions} regions with their number of events");
-    let kind = |margin: &Margin| match margin.place {
-        Place::End => 0,
-        Place::Minimum { .. } | Place::Maximum { .. } => 1,
-        Place::Exit(_) => 2,
-        Place::Start { .. } | Place::Branch(_) => 3,
-    };
     let text = |label: &Itinerary| match label {
         Itinerary::Fires(guards) => guards.len().to_string(),
         Itinerary::Begins(guards) => format!("{}+", guards.len()),
         Itinerary::Accumulates => "∞".to_owned(),
         Itinerary::Unfinished | Itinerary::Fails => "–".to_owned(),
     };
-    let kinds = &["event at the end", "graze", "order of events", "start or branch"];
-    draw(atlas, &Captions { title: &title, axes, kinds, kind: &kind, text: &text })
+    draw(atlas, &Captions { title: &title, axes, kinds: &KINDS, kind: &kind, text: &text })
+}
+
+/// The kind of a curve on which a margin vanishes, as an index of [`KINDS`].
+pub(super) fn kind(margin: &Margin) -> usize {
+    match margin.place {
+        Place::End => 0,
+        Place::Minimum { .. } | Place::Maximum { .. } => 1,
+        Place::Exit(_) => 2,
+        Place::Start { .. } | Place::Branch(_) => 3,
+    }
 }
 
 /// Draws an atlas in its coordinates, with linear axes. Regions in doubt have the text `?`.

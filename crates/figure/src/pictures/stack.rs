@@ -2,8 +2,11 @@
 
 use stickslip_plane::atlas::BoundaryKind;
 use stickslip_plane::stack::{DampingChange, DampingLayer, DampingStack};
+use stickslip_solver::Margin;
+use stickslip_tracer::{Change, Effect, Itinerary, Layer, Stack};
 
 use super::atlas::{KINDS, boundaries, stroke};
+use super::family::{KINDS as KINDS_OF_RUNS, STROKES, kind};
 use crate::canvas::Legend;
 use crate::canvas::number::number;
 use crate::canvas::panel::{Edge, LINEAR, Panel, Scale};
@@ -38,147 +41,248 @@ const EFFECTS: [(&str, &str, &str); 5] = [
     ("", "neighbours change", "#222222"),
 ];
 
+/// What is drawn, whoever has traced it.
+struct Drawing {
+    title: String,
+    /// The names of the coordinates, and of what differs between the atlases.
+    axes: [String; 3],
+    /// The last of these in a word.
+    over: String,
+    window: [(f64, f64); 2],
+    scales: (Scale, Scale),
+    /// The kinds of curves with their strokes.
+    kinds: Vec<(&'static str, Stroke)>,
+    sheets: Vec<Sheet>,
+    turns: Vec<Turn>,
+}
+
+/// One atlas.
+struct Sheet {
+    value: f64,
+    regions: usize,
+    curves: Vec<(Stroke, Vec<(f64, f64)>)>,
+}
+
+/// A change between atlases.
+struct Turn {
+    between: [f64; 2],
+    /// Where it is solved for: the value, and the place in the plane.
+    meeting: Option<(f64, (f64, f64))>,
+    effects: Vec<&'static str>,
+}
+
 /// Draws `stack`: an atlas for each damping, with rings around the places of the changes up to the
 /// next damping, and all changes over the damping. A change that is only enclosed is drawn as wide
 /// as its bracket.
 #[must_use]
 pub fn draw(stack: &DampingStack) -> Svg {
-    let title = title(stack);
-    let rows = stack.layers.len().div_ceil(COLUMNS).max(1) as f64;
-    let line_top = FIRST.top + STEP.1 * rows + ABOVE - (STEP.1 - FIRST.height);
-    let line_height = ROW * EFFECTS.len() as f64;
-    let mut svg = Svg::new(WIDTH, line_top + line_height + 50.0, &title);
-    svg.words(TITLE_AT, Words::new(&title, TITLE, Anchor::Start));
-    legend(&mut svg, stack);
-    for (index, layer) in stack.layers.iter().enumerate() {
-        let (column, row) = (index % COLUMNS, index / COLUMNS);
-        let left = FIRST.left + STEP.0 * column as f64;
-        let frame = Rectangle { left, top: FIRST.top + STEP.1 * row as f64, ..FIRST };
-        let panel = panel(stack, frame);
-        let next = stack.layers.get(index + 1).map_or(f64::INFINITY, |next| next.damping);
-        atlas(&mut svg, &panel, layer);
-        places(&mut svg, &panel, stack, layer.damping..next);
-        panel.border(&mut svg);
-        panel.ticks(&mut svg, Edge::Left, column == 0);
-        panel.ticks(&mut svg, Edge::Bottom, index + COLUMNS >= stack.layers.len());
-    }
-    let height = STEP.1 * rows - (STEP.1 - FIRST.height);
-    let middle = (FIRST.left - 48.0, FIRST.top + 0.5 * height);
-    let name = Words::new("ψ = (α/μ) g_t/g_n", TEXT, Anchor::Middle);
-    svg.words(middle, Words { upwards: true, ..name });
-    let below = (0.5 * (FIRST.left + WIDTH), FIRST.top + height + 34.0);
-    svg.words(below, Words::new("scaled stiffness κ", TEXT, Anchor::Middle));
-    let width = WIDTH - LINE_LEFT - 24.0;
-    line(&mut svg, stack, Rectangle { left: LINE_LEFT, top: line_top, width, height: line_height });
-    svg
-}
-
-/// The numbers of dampings and of changes.
-fn title(stack: &DampingStack) -> String {
-    let solved = stack.changes.iter().filter(|change| change.meeting.is_some()).count();
-    let enclosed = stack.changes.len() - solved;
-    let changes = if enclosed == 0 {
-        format!("{solved} changes of the regions between them")
-    } else {
-        format!(
-            "{} changes of the regions between them, {enclosed} of them only enclosed",
-            stack.changes.len()
-        )
-    };
-    format!("Atlases at {} scaled dampings a, {changes}", stack.layers.len())
-}
-
-/// The kinds of boundaries in the atlases, and the ring.
-fn legend(svg: &mut Svg, stack: &DampingStack) {
     let has = |kind: BoundaryKind| {
         let mut atlases = stack.layers.iter().map(|layer| &layer.atlas.atlas);
         atlases.any(|atlas| atlas.regions.curves().iter().any(|curve| curve.margin == kind))
     };
-    let mut legend = Legend::new(LEGEND_AT);
-    for (kind, _, text) in KINDS.into_iter().filter(|(kind, ..)| has(*kind)) {
-        legend.entry(svg, KEY, text, |svg, key| {
-            let y = key.top + 0.5 * key.height;
-            svg.line((key.left, y), (key.right(), y), thin(kind));
+    let kinds = KINDS.into_iter().filter(|(kind, ..)| has(*kind));
+    let sheet = |layer: &DampingLayer| {
+        let atlas = &layer.atlas.atlas;
+        let curves =
+            boundaries(atlas).into_iter().map(|(kind, points)| (thin(stroke(kind)), points));
+        let regions = atlas.regions.regions().len();
+        Sheet { value: layer.damping, regions, curves: curves.collect() }
+    };
+    let turn = |change: &DampingChange| Turn {
+        between: change.between,
+        meeting: change.meeting.as_ref().map(|it| (it.damping, (it.kappa, it.psi))),
+        effects: change.effects.iter().map(|it| it.effect).collect(),
+    };
+    let window = [stack.frame.kappa, stack.frame.psi].map(|side| (side.low, side.high));
+    let x_scale = if window[0].1 > 10.0 * window[0].0 { Scale::Logarithmic } else { Scale::Linear };
+    let drawing = Drawing {
+        title: format!("Atlases at {} scaled dampings a", stack.layers.len()),
+        axes: ["scaled stiffness κ", "ψ = (α/μ) g_t/g_n", "scaled damping a"].map(str::to_owned),
+        over: "a".to_owned(),
+        window,
+        scales: (x_scale, Scale::Linear),
+        kinds: kinds.map(|(kind, _, text)| (text, thin(stroke(kind)))).collect(),
+        sheets: stack.layers.iter().map(sheet).collect(),
+        turns: stack.changes.iter().map(turn).collect(),
+    };
+    drawing.draw()
+}
+
+/// The same picture of the atlases of a hybrid system over its parameter `over`.
+#[must_use]
+pub fn draw_runs(
+    stack: &Stack<Itinerary, Margin>,
+    family: &str,
+    axes: [&str; 2],
+    over: &str,
+) -> Svg {
+    let sheet = |layer: &Layer<Itinerary, Margin>| {
+        let plane = &layer.atlas.plane;
+        let curves = plane.curves().iter().map(|curve| {
+            let points = curve.polyline(&plane.window().extent());
+            let points = points.iter().map(|point| (point.x, point.y)).collect();
+            (thin(STROKES[kind(&curve.margin)]), points)
         });
-    }
-    if stack.changes.iter().any(|change| change.meeting.is_some()) {
-        let text = "place of a change up to the next a";
-        legend.entry(svg, 2.0 * RING.0, text, |svg, key| {
-            svg.ring((key.left + RING.0, key.top + 0.5 * key.height), RING.0, RING.1);
-        });
-    }
+        Sheet { value: layer.value, regions: plane.regions().len(), curves: curves.collect() }
+    };
+    let turn = |change: &Change<Itinerary>| Turn {
+        between: change.between,
+        meeting: change.meeting.map(|it| (it.value, (it.point.x, it.point.y))),
+        effects: change.effects.iter().map(Effect::name).collect(),
+    };
+    let curves = || stack.layers.iter().flat_map(|layer| layer.atlas.plane.curves());
+    let has = |index: usize| curves().any(|curve| kind(&curve.margin) == index);
+    let kinds = KINDS_OF_RUNS.into_iter().zip(STROKES).enumerate().filter(|(it, _)| has(*it));
+    let window = stack.layers.first().map(|layer| *layer.atlas.plane.window());
+    let window =
+        window.map_or([(0.0, 1.0); 2], |it| [(it.low.x, it.high.x), (it.low.y, it.high.y)]);
+    let drawing = Drawing {
+        title: format!("{family}: atlases at {} values of {over}", stack.layers.len()),
+        axes: [axes[0], axes[1], over].map(str::to_owned),
+        over: over.to_owned(),
+        window,
+        scales: LINEAR,
+        kinds: kinds.map(|(_, (text, stroke))| (text, thin(stroke))).collect(),
+        sheets: stack.layers.iter().map(sheet).collect(),
+        turns: stack.changes.iter().map(turn).collect(),
+    };
+    drawing.draw()
 }
 
-/// The stroke of a kind of boundary in a small atlas.
-fn thin(kind: BoundaryKind) -> Stroke {
-    Stroke { width: 1.1, ..stroke(kind) }
+/// The stroke of a kind of curve in a small atlas.
+fn thin(stroke: Stroke) -> Stroke {
+    Stroke { width: 1.1, ..stroke }
 }
 
-fn panel(stack: &DampingStack, frame: Rectangle) -> Panel {
-    let [x, y] = [stack.frame.kappa, stack.frame.psi].map(|side| (side.low, side.high));
-    let x_scale = if x.1 > 10.0 * x.0 { Scale::Logarithmic } else { Scale::Linear };
-    Panel { frame, x, y, scales: (x_scale, Scale::Linear) }
-}
-
-/// An atlas with its damping and its number of regions.
-fn atlas(svg: &mut Svg, panel: &Panel, layer: &DampingLayer) {
-    let frame = panel.frame;
-    let regions = layer.atlas.atlas.regions.regions().len();
-    let text = format!("a = {}", number(layer.damping, 4));
-    svg.words((frame.left, frame.top - 11.0), Words::new(&text, TEXT, Anchor::Start));
-    let text = if regions == 1 { "1 region".to_owned() } else { format!("{regions} regions") };
-    svg.words((frame.right(), frame.top - 11.0), Words::new(&text, SMALL, Anchor::End));
-    svg.begin_group("atlas");
-    for (kind, points) in boundaries(&layer.atlas.atlas) {
-        panel.curve(svg, points, thin(kind));
-    }
-    svg.end_group();
-}
-
-/// Rings around the places of changes in a range of dampings.
-fn places(svg: &mut Svg, panel: &Panel, stack: &DampingStack, dampings: std::ops::Range<f64>) {
-    svg.begin_group("places");
-    let meetings = stack.changes.iter().filter_map(|change| change.meeting.as_ref());
-    for meeting in meetings.filter(|meeting| dampings.contains(&meeting.damping)) {
-        svg.ring(panel.place((meeting.kappa, meeting.psi)), RING.0, RING.1);
-    }
-    svg.end_group();
-}
-
-/// All changes over the damping, a row for each kind of them.
-fn line(svg: &mut Svg, stack: &DampingStack, frame: Rectangle) {
-    let last = stack.layers.last().map_or(1.0, |layer| layer.damping);
-    let panel = Panel { frame, x: (0.0, last), y: (0.0, 1.0), scales: LINEAR };
-    for (row, (effect, text, colour)) in EFFECTS.into_iter().enumerate() {
-        let top = frame.top + ROW * row as f64;
-        let count = stack.changes.iter().filter(|change| has_effect(change, effect)).count();
-        let at = (frame.left - 8.0, top + 0.5 * ROW);
-        svg.words(at, Words::new(&format!("{text}: {count}"), SMALL, Anchor::End));
-        if row > 0 {
-            svg.line((frame.left, top), (frame.right(), top), RULE);
+impl Drawing {
+    fn draw(&self) -> Svg {
+        let title = self.title();
+        let rows = self.sheets.len().div_ceil(COLUMNS).max(1) as f64;
+        let line_top = FIRST.top + STEP.1 * rows + ABOVE - (STEP.1 - FIRST.height);
+        let line_height = ROW * EFFECTS.len() as f64;
+        let mut svg = Svg::new(WIDTH, line_top + line_height + 50.0, &title);
+        svg.words(TITLE_AT, Words::new(&title, TITLE, Anchor::Start));
+        self.legend(&mut svg);
+        for (index, sheet) in self.sheets.iter().enumerate() {
+            let (column, row) = (index % COLUMNS, index / COLUMNS);
+            let left = FIRST.left + STEP.0 * column as f64;
+            let frame = Rectangle { left, top: FIRST.top + STEP.1 * row as f64, ..FIRST };
+            let [x, y] = self.window;
+            let panel = Panel { frame, x, y, scales: self.scales };
+            let next = self.sheets.get(index + 1).map_or(f64::INFINITY, |next| next.value);
+            self.atlas(&mut svg, &panel, sheet);
+            self.places(&mut svg, &panel, sheet.value..next);
+            panel.border(&mut svg);
+            panel.ticks(&mut svg, Edge::Left, column == 0);
+            panel.ticks(&mut svg, Edge::Bottom, index + COLUMNS >= self.sheets.len());
         }
-        svg.begin_group("changes");
-        for change in stack.changes.iter().filter(|change| has_effect(change, effect)) {
-            let (from, to) = (top + 3.0, top + ROW - 3.0);
-            if let Some(meeting) = &change.meeting {
-                let (x, _) = panel.place((meeting.damping, 0.0));
-                svg.line((x, from), (x, to), Stroke::full(colour, 1.6));
-            } else {
-                let [left, right] = change.between.map(|damping| panel.place((damping, 0.0)).0);
-                let width = (right - left).max(4.0);
-                let at = Rectangle { left, top: from, width, height: to - from };
-                svg.outline(at, Stroke::full(colour, 1.0));
-            }
+        let height = STEP.1 * rows - (STEP.1 - FIRST.height);
+        let middle = (FIRST.left - 48.0, FIRST.top + 0.5 * height);
+        let name = Words::new(&self.axes[1], TEXT, Anchor::Middle);
+        svg.words(middle, Words { upwards: true, ..name });
+        let below = (0.5 * (FIRST.left + WIDTH), FIRST.top + height + 34.0);
+        svg.words(below, Words::new(&self.axes[0], TEXT, Anchor::Middle));
+        let width = WIDTH - LINE_LEFT - 24.0;
+        let frame = Rectangle { left: LINE_LEFT, top: line_top, width, height: line_height };
+        self.line(&mut svg, frame);
+        svg
+    }
+
+    /// The title with the number of changes.
+    fn title(&self) -> String {
+        let solved = self.turns.iter().filter(|turn| turn.meeting.is_some()).count();
+        let enclosed = self.turns.len() - solved;
+        let changes = if enclosed == 0 {
+            format!("{solved} changes of the regions between them")
+        } else {
+            let all = self.turns.len();
+            format!("{all} changes of the regions between them, {enclosed} of them only enclosed")
+        };
+        format!("{}, {changes}", self.title)
+    }
+
+    /// The kinds of boundaries in the atlases, and the ring.
+    fn legend(&self, svg: &mut Svg) {
+        let mut legend = Legend::new(LEGEND_AT);
+        for (text, stroke) in &self.kinds {
+            legend.entry(svg, KEY, text, |svg, key| {
+                let y = key.top + 0.5 * key.height;
+                svg.line((key.left, y), (key.right(), y), *stroke);
+            });
+        }
+        if self.turns.iter().any(|turn| turn.meeting.is_some()) {
+            let text = format!("place of a change up to the next {}", self.over);
+            legend.entry(svg, 2.0 * RING.0, &text, |svg, key| {
+                svg.ring((key.left + RING.0, key.top + 0.5 * key.height), RING.0, RING.1);
+            });
+        }
+    }
+
+    /// An atlas with its value and its number of regions.
+    fn atlas(&self, svg: &mut Svg, panel: &Panel, sheet: &Sheet) {
+        let frame = panel.frame;
+        let text = format!("{} = {}", self.over, number(sheet.value, 4));
+        svg.words((frame.left, frame.top - 11.0), Words::new(&text, TEXT, Anchor::Start));
+        let text = match sheet.regions {
+            1 => "1 region".to_owned(),
+            regions => format!("{regions} regions"),
+        };
+        svg.words((frame.right(), frame.top - 11.0), Words::new(&text, SMALL, Anchor::End));
+        svg.begin_group("atlas");
+        for (stroke, points) in &sheet.curves {
+            panel.curve(svg, points.iter().copied(), *stroke);
         }
         svg.end_group();
     }
-    svg.outline(frame, FRAME);
-    panel.ticks(svg, Edge::Bottom, true);
-    panel.name(svg, Edge::Bottom, 34.0, "scaled damping a");
+
+    /// Rings around the places of changes in a range of values.
+    fn places(&self, svg: &mut Svg, panel: &Panel, values: std::ops::Range<f64>) {
+        svg.begin_group("places");
+        let meetings = self.turns.iter().filter_map(|turn| turn.meeting);
+        for (_, place) in meetings.filter(|(value, _)| values.contains(value)) {
+            svg.ring(panel.place(place), RING.0, RING.1);
+        }
+        svg.end_group();
+    }
+
+    /// All changes over what differs between the atlases, a row for each kind of them.
+    fn line(&self, svg: &mut Svg, frame: Rectangle) {
+        let ends = [self.sheets.first(), self.sheets.last()];
+        let [first, last] = ends.map(|sheet| sheet.map_or(1.0, |sheet| sheet.value));
+        let panel = Panel { frame, x: (first.min(0.0), last), y: (0.0, 1.0), scales: LINEAR };
+        for (row, (effect, text, colour)) in EFFECTS.into_iter().enumerate() {
+            let top = frame.top + ROW * row as f64;
+            let turns = || self.turns.iter().filter(|turn| turn.has(effect));
+            let words = format!("{text}: {}", turns().count());
+            let at = (frame.left - 8.0, top + 0.5 * ROW);
+            svg.words(at, Words::new(&words, SMALL, Anchor::End));
+            if row > 0 {
+                svg.line((frame.left, top), (frame.right(), top), RULE);
+            }
+            svg.begin_group("changes");
+            for turn in turns() {
+                let (from, to) = (top + 3.0, top + ROW - 3.0);
+                if let Some((value, _)) = turn.meeting {
+                    let (x, _) = panel.place((value, 0.0));
+                    svg.line((x, from), (x, to), Stroke::full(colour, 1.6));
+                } else {
+                    let [left, right] = turn.between.map(|value| panel.place((value, 0.0)).0);
+                    let width = (right - left).max(4.0);
+                    let at = Rectangle { left, top: from, width, height: to - from };
+                    svg.outline(at, Stroke::full(colour, 1.0));
+                }
+            }
+            svg.end_group();
+        }
+        svg.outline(frame, FRAME);
+        panel.ticks(svg, Edge::Bottom, true);
+        panel.name(svg, Edge::Bottom, 34.0, &self.axes[2]);
+    }
 }
 
-/// Whether a change does this to a region; the empty name stands for changes without effects.
-fn has_effect(change: &DampingChange, effect: &str) -> bool {
-    change.effects.iter().any(|own| own.effect == effect)
-        || (effect.is_empty() && change.effects.is_empty())
+impl Turn {
+    /// Whether the change does this to a region; the empty name stands for changes without effects.
+    fn has(&self, effect: &str) -> bool {
+        self.effects.contains(&effect) || (effect.is_empty() && self.effects.is_empty())
+    }
 }

@@ -1,7 +1,6 @@
 //! The study as pictures.
 
 use stickslip_figure::Svg;
-use stickslip_figure::canvas::panel::Scale;
 use stickslip_figure::canvas::shape::Stroke;
 use stickslip_figure::pictures::chart::{self, Chart, ChartAxis, Mark, Shape};
 use stickslip_solver::{EmbeddedPair, Order};
@@ -162,11 +161,6 @@ fn draw(title: &str, axis: &str, drawn: &DrawnError, series: Vec<chart::Series>)
         })
     };
     let (x, y) = (range(|point| point.0), range(|point| point.1));
-    let axes = |name, (low, high): (f64, f64)| {
-        // Marks at the edge shall be whole. Where there is nothing to draw, any range does.
-        let room = (high / low).powf(0.02);
-        let range = if low < high { (low / room, high * room) } else { (0.1, 1.0) };
-        ChartAxis { name, range, scale: Scale::Logarithmic }
-    };
-    chart::draw(&Chart { title, x: axes(axis, x), y: axes(drawn.name, y), series })
+    let (x, y) = (ChartAxis::around(axis, x), ChartAxis::around(drawn.name, y));
+    chart::draw(&Chart { title, x, y, series })
 }

@@ -7,6 +7,7 @@ use crate::stack::sample::Sample;
 
 /// A change of the structure of atlases with the third parameter.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Change<Label> {
     /// The two values at which the atlases differ.
     pub between: [f64; 2],
@@ -23,6 +24,8 @@ pub struct Change<Label> {
 
 /// What becomes of a region as the third parameter grows.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Effect<Label> {
     /// A region with this label is born.
     Born(Label),

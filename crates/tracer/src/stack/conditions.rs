@@ -30,6 +30,8 @@ pub(super) enum Conditions<Margin> {
 
 /// What happens at a value of the third parameter where the structure changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum MeetingKind {
     /// Three boundaries pass through one point.
     Crossing,

@@ -9,6 +9,7 @@ use crate::window::{Point, Window};
 
 /// A place in the plane and a value of the third parameter at which codimension-2 points meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Meeting {
     /// What happens.
     pub kind: MeetingKind,
