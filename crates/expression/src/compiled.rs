@@ -64,12 +64,14 @@ impl System {
             Trigger::At(times) => Clock::At(times.len()),
             Trigger::Every { .. } => Clock::Every,
         };
-        let modes = self.modes.iter().zip(self.counters());
+        let modes = self.modes.iter().zip(self.counters()).zip(self.zero_orders());
         Ok(Compiled {
             parameters: self.parameters.iter().map(|it| it.name.clone()).collect(),
             components: self.components.iter().map(|it| it.name.clone()).collect(),
             names: self.modes.iter().map(|mode| mode.name.clone()).collect(),
-            modes: modes.map(|(mode, counters)| self.compile_mode(mode, counters)).collect(),
+            modes: modes
+                .map(|((mode, counters), orders)| self.compile_mode(mode, counters, &orders))
+                .collect(),
             clocks: self.modes.iter().map(|mode| mode.rules.iter().map(clock).collect()).collect(),
             first: self.first,
             otherwise: self.otherwise.map(|(_, mode)| mode),
@@ -118,7 +120,7 @@ impl System {
         Resets { changed: changed.into(), values: self.program(&values) }
     }
 
-    fn compile_mode(&self, mode: &system::Mode, counters: Arc<[usize]>) -> Mode {
+    fn compile_mode(&self, mode: &system::Mode, counters: Arc<[usize]>, orders: &[u32]) -> Mode {
         let nothing = |rule: &Rule| match rule.trigger {
             Trigger::When(guard, _) => guard,
             // Clocks have no value.
@@ -157,7 +159,12 @@ impl System {
         Mode {
             counters,
             slopes: self.program(&mode.slopes),
-            guards: mode.rules.iter().map(guard).collect(),
+            guards: mode
+                .rules
+                .iter()
+                .zip(orders)
+                .map(|(rule, &order)| guard(rule, order))
+                .collect(),
             values: self.program(&values),
             reads: reads.into(),
             reactions: mode.rules.iter().map(reaction).collect(),
@@ -281,15 +288,15 @@ impl Mode {
     }
 }
 
-/// The guard of a rule.
-fn guard(rule: &Rule) -> Guard {
+/// The guard of a rule, which starts from a zero of this order.
+fn guard(rule: &Rule, order: u32) -> Guard {
     let guard = match &rule.trigger {
         Trigger::When(_, direction) => Guard::new(*direction),
         // A rule that never acts.
         Trigger::At(times) if times.is_empty() => return Guard::OFF,
         _ => Guard::new(Direction::Clock),
     };
-    let guard = guard.priority(rule.priority).from_zero(rule.from_zero);
+    let guard = guard.priority(rule.priority).from_zero(order);
     let guard = guard.terminal_after(rule.ends_after);
     if rule.sees_jumps { guard.sees_jumps() } else { guard }
 }

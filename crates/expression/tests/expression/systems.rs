@@ -1,5 +1,7 @@
 //! Systems from text against closed forms.
 
+use std::f64::consts::PI;
+
 use stickslip_expression::{Runnable, System};
 use stickslip_solver::{DynamicRun, DynamicSwitch, EmbeddedPair, Options};
 
@@ -185,7 +187,6 @@ fn a_rule_that_leaves_everything_as_it_is_notes_where_its_condition_begins() {
         let found = runnable.record(EmbeddedPair::Dop853, 20.0, &Options::default()).unwrap();
         found.events.iter().map(|event| event.s).collect::<Vec<f64>>()
     };
-    use std::f64::consts::PI;
     let near = |found: &[f64], right: &[f64]| {
         assert_eq!(found.len(), right.len(), "{found:?}");
         assert!(found.iter().zip(right).all(|(a, b)| (a - b).abs() < 1e-8), "{found:?}");
@@ -199,4 +200,30 @@ fn a_rule_that_leaves_everything_as_it_is_notes_where_its_condition_begins() {
     // It holds at the start, and begins to hold later.
     near(&found("x < 0.5"), &[5.0, 17.0, 29.0].map(|k| k * sixth));
     near(&found("t > -1 -> end"), &[0.0]);
+}
+
+#[test]
+fn guards_that_start_from_zeros_of_higher_order_need_no_declaration() {
+    // A block is held by friction, let go by a growing load, and held again where it stops. Its
+    // guard of stopping starts from zero together with its rate.
+    let text = "state v = 0, x = 0\nmode stick\n  v' = 0\n  x' = 0\n  when sin(t) > 0.5 -> slip\n\
+                mode slip\n  v' = sin(t) - 0.5\n  x' = v\n  when v < 0 \"stops\" -> stick\n    v := 0\n\
+                start in stick\nend = 7";
+    let (_, events) = runs(text);
+    let sixth = std::f64::consts::FRAC_PI_6;
+    // It stops where cos(π/6) − cos t = (t − π/6)/2.
+    let excess = |t: f64| sixth.cos() - t.cos() - 0.5 * (t - sixth);
+    assert!(events.len() == 3 && excess(events[1].s).abs() < 1e-9, "{events:?}");
+    assert!((events[0].s - sixth).abs() < 1e-10 && events[1].s > 2.5, "{events:?}");
+    assert!((events[2].s - 13.0 * sixth).abs() < 1e-10, "{events:?}");
+    // Of the third order: the load and its rate are balanced where the block is let go.
+    let text = "state a = 0, v = 0, x = 0\nmode stick\n  a' = 0\n  v' = 0\n  x' = 0\n  at 1 -> slip\n\
+                mode slip\n  a' = cos(t - 1)\n  v' = a\n  x' = v\n  when x < 0 -> end\nstart in stick\n\
+                end = 30";
+    let (end, events) = runs(text);
+    // x = τ − sin τ never comes back.
+    assert!(events.len() == 1 && end.s == 30.0, "{events:?}");
+    let (end, _) = runs(&text.replace("cos(t - 1)", "1 - (t - 1)"));
+    // x = τ³/6 − τ⁴/24 vanishes again at τ = 4.
+    assert!((end.s - 5.0).abs() < 1e-9, "{end:?}");
 }

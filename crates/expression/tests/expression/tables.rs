@@ -116,7 +116,7 @@ fn a_table_in_a_text() {
     let again = again.record(EmbeddedPair::Dop853, 5.0, &Options::default()).unwrap();
     assert_eq!((again.run, again.events), (found.run, found.events));
     assert!(
-        stickslip_expression::format(VALVE).unwrap().contains("polygon(t, 0: 0, 1: open, 3: open")
+        stickslip_expression::format(VALVE).unwrap().contains("polygon(t, 0:0, 1:open, 3:open")
     );
 }
 

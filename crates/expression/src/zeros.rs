@@ -1,0 +1,203 @@
+//! Zeros from which guards start, found from the formulas.
+//!
+//! Where every way into a mode makes a guard vanish together with its first derivatives, the guard
+//! starts there from a zero of that order. Whether a formula vanishes is decided as for polynomials
+//! in what the formulas read and in functions of that; on the zero of the guard that leads into the
+//! mode, as for their multiples. What is not found this way can be declared.
+
+mod polynomial;
+
+use stickslip_solver::Direction;
+
+use crate::graph::{Formula, Graph, Variable};
+use crate::system::{Mode, Next, Rule, System, Trigger};
+use polynomial::Polynomial;
+
+/// The highest order that is looked for.
+const HIGHEST: u32 = 6;
+
+/// What is known of a component while a system is in a mode.
+#[derive(Clone, Copy, PartialEq)]
+enum Held {
+    /// The mode is not reached.
+    Nowhere,
+    /// It is always this formula of parameters.
+    At(Formula),
+    /// It may be anything.
+    Free,
+}
+
+/// A way into a mode.
+struct Entry {
+    mode: usize,
+    /// The components behind it, as formulas of the state before.
+    state: Vec<Formula>,
+    /// The time, if it is known.
+    time: Option<Formula>,
+    /// What vanishes there.
+    zero: Option<Formula>,
+}
+
+impl System {
+    /// The order of the zero from which each guard of each mode starts, as declared or found; 0 for
+    /// those that start elsewhere, or that need no declaration.
+    pub(crate) fn zero_orders(&self) -> Vec<Vec<u32>> {
+        let mut graph = self.graph.clone();
+        let entries = self.entries(&mut graph);
+        let modes = self.modes.iter().enumerate();
+        let orders = modes.map(|(place, mode)| {
+            let ways = || entries.iter().filter(move |entry| entry.mode == place);
+            let order = |rule: &Rule| {
+                // An edge at the start may act there; its side is that of its first derivative.
+                let Trigger::When(guard, Direction::Below) = rule.trigger else {
+                    return rule.from_zero;
+                };
+                let orders = ways().map(|entry| zero_order(&mut graph, mode, guard, entry));
+                // A simple zero needs no declaration.
+                let least = orders.min().filter(|order| (2..=HIGHEST).contains(order));
+                rule.from_zero.max(least.unwrap_or(0))
+            };
+            mode.rules.iter().map(order).collect()
+        });
+        orders.collect()
+    }
+
+    /// All ways into modes. A rule that stays and changes nothing is none.
+    fn entries(&self, graph: &mut Graph) -> Vec<Entry> {
+        let starts: Vec<Formula> = self.components.iter().map(|it| it.start).collect();
+        let first = [Some(self.first), self.otherwise.map(|(_, mode)| mode)];
+        let time = self.start.unwrap_or_else(|| graph.constant(0.0));
+        let held = self.held(graph, &first, &starts);
+        let start = |mode| Entry { mode, state: starts.clone(), time: Some(time), zero: None };
+        let mut entries: Vec<Entry> = first.into_iter().flatten().map(start).collect();
+        for (place, mode) in self.modes.iter().enumerate() {
+            if held[place].contains(&Held::Nowhere) {
+                continue;
+            }
+            let before = before(graph, &held[place]);
+            for rule in mode.rules.iter().filter(|rule| rule.ends_after != 1) {
+                let state = behind(graph, &before, &rule.changes);
+                let zero = match rule.trigger {
+                    Trigger::When(guard, _) => Some(graph.substituted(guard, &before)),
+                    _ => None,
+                };
+                let idle = rule.next == Next::Stay && rule.changes.is_empty();
+                for mode in targets(place, &rule.next).filter(|_| !idle) {
+                    entries.push(Entry { mode, state: state.clone(), time: None, zero });
+                }
+                if let Some(rest) = &rule.rest {
+                    let state = behind(graph, &state, &rest.changes);
+                    entries.push(Entry { mode: rest.next, state, time: None, zero: None });
+                }
+            }
+        }
+        entries
+    }
+
+    /// What is known of the components in each mode.
+    fn held(
+        &self,
+        graph: &mut Graph,
+        first: &[Option<usize>; 2],
+        starts: &[Formula],
+    ) -> Vec<Vec<Held>> {
+        let mut held = vec![vec![Held::Nowhere; self.components.len()]; self.modes.len()];
+        let mut open: Vec<usize> = Vec::new();
+        for mode in first.iter().copied().flatten() {
+            self.enter(graph, &mut held[mode], mode, starts);
+            open.push(mode);
+        }
+        while let Some(place) = open.pop() {
+            let before = before(graph, &held[place]);
+            for rule in &self.modes[place].rules {
+                let state = behind(graph, &before, &rule.changes);
+                for next in targets(place, &rule.next) {
+                    if self.enter(graph, &mut held[next], next, &state) {
+                        open.push(next);
+                    }
+                }
+                if let Some(rest) = &rule.rest {
+                    let state = behind(graph, &state, &rest.changes);
+                    if self.enter(graph, &mut held[rest.next], rest.next, &state) {
+                        open.push(rest.next);
+                    }
+                }
+            }
+        }
+        held
+    }
+
+    /// Adds a way into a mode to what is known there; whether that is less now.
+    fn enter(&self, graph: &Graph, held: &mut [Held], mode: usize, state: &[Formula]) -> bool {
+        let mut less = false;
+        for ((held, &slope), &formula) in held.iter_mut().zip(&self.modes[mode].slopes).zip(state) {
+            let fixed = || {
+                let read = graph.reads(&[formula]);
+                read.iter().all(|it| matches!(it, Variable::Parameter(_)))
+            };
+            let now = match *held {
+                Held::Free => Held::Free,
+                _ if graph.value(slope) != Some(0.0) || !fixed() => Held::Free,
+                Held::At(other) if other != formula => Held::Free,
+                _ => Held::At(formula),
+            };
+            less |= now != *held;
+            *held = now;
+        }
+        less
+    }
+}
+
+/// The modes to which a rule leads.
+fn targets(place: usize, next: &Next) -> impl Iterator<Item = usize> + use<> {
+    let modes = match *next {
+        Next::Stay => [Some(place), None],
+        Next::Mode(next) => [Some(next), None],
+        Next::Branch(_, one, other) => [Some(one), Some(other)],
+    };
+    modes.into_iter().flatten()
+}
+
+/// The components in a mode, those that are known as their formulas.
+fn before(graph: &mut Graph, held: &[Held]) -> Vec<Formula> {
+    let component = |(place, held): (usize, &Held)| match held {
+        Held::At(formula) => *formula,
+        // There are fewer than 2³² components.
+        _ => graph.component(u32::try_from(place).unwrap_or(u32::MAX)),
+    };
+    held.iter().enumerate().map(component).collect()
+}
+
+/// The components behind changes.
+fn behind(graph: &mut Graph, before: &[Formula], changes: &[(usize, Formula)]) -> Vec<Formula> {
+    let mut state = before.to_vec();
+    for &(place, formula) in changes {
+        state[place] = graph.substituted(formula, before);
+    }
+    state
+}
+
+/// How many derivatives of a guard, itself among them, vanish behind a way into its mode.
+fn zero_order(graph: &mut Graph, mode: &Mode, guard: Formula, entry: &Entry) -> u32 {
+    let zero = entry.zero.and_then(|zero| Polynomial::of(graph, zero));
+    let mut formula = guard;
+    for order in 0..=HIGHEST {
+        let mut there = graph.substituted(formula, &entry.state);
+        if let Some(time) = entry.time {
+            there = graph.at_time(there, time);
+        }
+        let vanishes = Polynomial::of(graph, there).is_some_and(|it| match &zero {
+            Some(zero) => it.is_zero() || it.is_multiple_of(zero),
+            None => it.is_zero(),
+        });
+        if !vanishes {
+            return order;
+        }
+        formula = graph.slope(formula, &mut |graph, variable| match variable {
+            Variable::Time => graph.constant(1.0),
+            Variable::Parameter(_) => graph.constant(0.0),
+            Variable::Component(place) => mode.slopes[place as usize],
+        });
+    }
+    HIGHEST + 1
+}
