@@ -278,6 +278,11 @@ impl Graph {
         })
     }
 
+    /// The formula with another one in place of a node.
+    pub(crate) fn replaced(&mut self, formula: Formula, old: Node, new: Formula) -> Formula {
+        self.rewritten(formula, &mut |_, node, _| (node == old).then_some(new))
+    }
+
     /// The formula at a given time.
     pub(crate) fn at_time(&mut self, formula: Formula, time: Formula) -> Formula {
         let is_time = |node| matches!(node, Node::Variable(Variable::Time));

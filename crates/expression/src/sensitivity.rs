@@ -3,7 +3,10 @@
 //! Derivatives are further components of the state. Between events they obey the variational
 //! equations, and at an event they jump (Leine and Nijmeijer, *Dynamics and Bifurcations of
 //! Non-Smooth Mechanical Systems*, 2004, section 7.3). Both are formulas that [`Graph::slope`]
-//! makes from those of the system.
+//! makes from those of the system. Where equations themselves jump, by an `if` or by `floor`, the
+//! derivatives jump as at an event.
+
+mod jumps;
 
 use stickslip_solver::{EmbeddedPair, Options, Outcome, RunError};
 use thiserror::Error;
@@ -55,6 +58,14 @@ pub enum SensitivityError {
     /// The run failed, for instance at a graze, where derivatives do not exist.
     #[error(transparent)]
     Run(#[from] RunError),
+    /// Something jumps where derivatives by the way it is reached are not known.
+    #[error("there are no derivatives behind t = {s:?}: {reason}")]
+    Jump {
+        /// Where.
+        s: f64,
+        /// What.
+        reason: &'static str,
+    },
 }
 
 impl System {
@@ -62,7 +73,8 @@ impl System {
     ///
     /// Error control covers the derivatives too, which are about as accurate as the state. They
     /// hold for an unchanged order of events, and grow without bound towards a graze. Where events
-    /// accumulate, the run ends, also if the system says how it goes on.
+    /// accumulate, the run ends, also if the system says how it goes on. Where equations jump, steps
+    /// end, which the run without derivatives does not do.
     ///
     /// ```
     /// use stickslip_expression::{By, System};
@@ -108,7 +120,8 @@ impl System {
         let end = end.unwrap_or(compiled.with(parameters)?.end());
         let extended = Extended::of(self, by);
         let runnable = extended.system.with(parameters)?;
-        let recording = runnable.record(method, end, options)?;
+        let mut recording = runnable.record(method, end, options)?;
+        extended.forget_jumps(&mut recording)?;
         let places = extended.places(&recording, parameters, end_moves);
         Ok(Sensitivities { recording, places })
     }
@@ -159,12 +172,15 @@ impl<'a> Extended<'a> {
                     extended.system.modes[mode].slopes.push(rate);
                 }
             }
+            extended.jumps(own, mode);
             let mut moves = Vec::new();
             for (place, rule) in own.rules.iter().enumerate() {
                 let shifts: Vec<Formula> =
                     (0..by.len()).map(|k| extended.shift(rule, &own.slopes, k)).collect();
                 if !rule.changes.is_empty() || rule.next != Next::Stay {
-                    let changes = extended.jump(system, mode, rule, &shifts);
+                    let rates = extended.rates_behind(system, mode, rule);
+                    let slopes = &own.slopes;
+                    let changes = extended.jump(&rule.changes, (slopes, &rates), &shifts);
                     extended.system.modes[mode].rules[place].changes.extend(changes);
                 }
                 moves.push(shifts);
@@ -268,26 +284,11 @@ impl<'a> Extended<'a> {
         self.graph().unary(Unary::Abs, difference)
     }
 
-    /// The derivatives behind an event: the change of the new state at the time that moves, less
-    /// what the new slopes make of that motion.
-    fn jump(
-        &mut self,
-        system: &System,
-        mode: usize,
-        rule: &Rule,
-        shifts: &[Formula],
-    ) -> Vec<(usize, Formula)> {
-        let n = self.n;
-        let mut after: Vec<Formula> = Vec::with_capacity(n);
-        for place in 0..n {
-            // Components are counted by u32.
-            after.push(self.graph().component(u32::try_from(place).unwrap_or(u32::MAX)));
-        }
-        for &(place, formula) in &rule.changes {
-            after[place] = formula;
-        }
+    /// The slopes behind an event, as formulas of the state before.
+    fn rates_behind(&mut self, system: &System, mode: usize, rule: &Rule) -> Vec<Formula> {
+        let after = self.state_behind(&rule.changes);
         let slopes = |next: usize| &system.modes[next].slopes;
-        let rates: Vec<Formula> = (0..n)
+        (0..self.n)
             .map(|place| match rule.next {
                 Next::Stay => self.graph().substituted(slopes(mode)[place], &after),
                 Next::Mode(next) => self.graph().substituted(slopes(next)[place], &after),
@@ -297,12 +298,35 @@ impl<'a> Extended<'a> {
                     self.graph().select(condition, above, below)
                 }
             })
-            .collect();
+            .collect()
+    }
+
+    /// The state behind changes.
+    fn state_behind(&mut self, changes: &[(usize, Formula)]) -> Vec<Formula> {
+        let mut after: Vec<Formula> = Vec::with_capacity(self.n);
+        for place in 0..self.n {
+            // Components are counted by u32.
+            after.push(self.graph().component(u32::try_from(place).unwrap_or(u32::MAX)));
+        }
+        for &(place, formula) in changes {
+            after[place] = formula;
+        }
+        after
+    }
+
+    /// The derivatives behind an event that makes these changes: the change of the new state at the
+    /// time that moves, less what the new slopes make of that motion.
+    fn jump(
+        &mut self,
+        changes: &[(usize, Formula)],
+        (slopes, rates): (&[Formula], &[Formula]),
+        shifts: &[Formula],
+    ) -> Vec<(usize, Formula)> {
+        let (n, after) = (self.n, self.state_behind(changes));
         let mut changes = Vec::new();
         for (k, &shift) in shifts.iter().enumerate() {
             for place in 0..n {
-                let moving = Some((shift, &slopes(mode)[..]));
-                let change = self.variation(after[place], k, moving);
+                let change = self.variation(after[place], k, Some((shift, slopes)));
                 let back = self.graph().binary(Binary::Mul, rates[place], shift);
                 let change = self.graph().binary(Binary::Sub, change, back);
                 changes.push((n * (k + 1) + place, change));

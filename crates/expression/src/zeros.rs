@@ -177,6 +177,13 @@ fn behind(graph: &mut Graph, before: &[Formula], changes: &[(usize, Formula)]) -
     state
 }
 
+/// Whether a formula is zero wherever another one is, as a multiple of it.
+pub(crate) fn vanishes_with(graph: &Graph, formula: Formula, other: Formula) -> bool {
+    let [formula, other] = [formula, other].map(|it| Polynomial::of(graph, it));
+    let (Some(formula), Some(other)) = (formula, other) else { return false };
+    formula.is_zero() || formula.is_multiple_of(&other)
+}
+
 /// How many derivatives of a guard, itself among them, vanish behind a way into its mode.
 fn zero_order(graph: &mut Graph, mode: &Mode, guard: Formula, entry: &Entry) -> u32 {
     let zero = entry.zero.and_then(|zero| Polynomial::of(graph, zero));

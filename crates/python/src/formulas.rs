@@ -124,6 +124,7 @@ impl FormulaSystem {
         let found = found.map_err(|error| match error {
             SensitivityError::Parameters(error) => bad_input(error),
             SensitivityError::Run(error) => failed(error),
+            error @ SensitivityError::Jump { .. } => failed(error),
         })?;
         let columns = PyDict::new(py);
         let reals = |values: Vec<f64>| values.into_pyarray(py);

@@ -146,3 +146,87 @@ fn what_has_no_derivatives_is_refused() {
     let error = system.sensitivities(&[], &[1.0], EmbeddedPair::Dop853, Some(-1.0), &options());
     assert!(matches!(error, Err(SensitivityError::Run(RunError::Span { .. }))), "{error:?}");
 }
+
+/// The derivatives of the last component at the end.
+fn last(text: &str, by: &[By]) -> Result<Vec<f64>, SensitivityError> {
+    let system = parsed(text);
+    let values = system.values();
+    let made = system.sensitivities(by, &values, EmbeddedPair::Dop853, None, &options())?;
+    let end = made.places.last().expect("an end");
+    Ok(end.state_by.iter().map(|by| *by.last().expect("a component")).collect())
+}
+
+#[test]
+fn equations_that_jump_have_derivatives() {
+    let (p, x, y) = (By::Parameter(0), By::Start(0), By::Start(1));
+    for (text, by, right) in [
+        // A pulse, also one that no step would see.
+        (
+            "parameter p = 1\nstate x = 0\nx' = if t < p then 1 else 0\nend = 2",
+            &[p, x][..],
+            &[1.0, 1.0][..],
+        ),
+        (
+            "parameter p = 1e-7\nstate x = 0\nx' = if t > 1 and t < 1 + p then 1 else 0\nend = 2",
+            &[p],
+            &[1.0],
+        ),
+        // A condition on the state, whose rate differs on both sides or not.
+        (
+            "parameter p = 0.5\nstate x = 0, y = 0\nx' = 1\ny' = if x < p then 3 else 1\nend = 2",
+            &[p, x, y],
+            &[2.0, -2.0, 1.0],
+        ),
+        (
+            "parameter p = 0.5\nstate x = 0\nx' = if x < p then 1 else 2\nend = 2",
+            &[p, x],
+            &[-1.0, 2.0],
+        ),
+        // Friction that changes its sign: v = −½(T − v₀/1.5).
+        ("parameter m = 1\nstate v = 1\nv' = -m - 0.5*sign(v)\nend = 2", &[x], &[1.0 / 3.0]),
+        // The integral of ⌊pt⌋ is that of jumps at k/p.
+        ("parameter p = 1\nstate x = 0\nx' = floor(p*t)\nend = 2.5", &[p], &[3.0]),
+        ("parameter p = -1\nstate x = 0\nx' = floor(p*t)\nend = 2.5", &[p], &[3.0]),
+        // Corners that do not jump, and numbers that do not move.
+        ("parameter p = 0.5\nstate x = 0, y = 0\nx' = 1\ny' = abs(x - p)\nend = 2", &[p], &[-1.0]),
+        (
+            "parameter p = 2\nstate x = 0\nx' = polygon(t, 0: 0, 1: p, 3: p, 4: 0)\nend = 4",
+            &[p],
+            &[3.0],
+        ),
+        ("parameter p = 2\nstate x = 0\nx' = if p > 1 then p else 0\nend = 4", &[p], &[4.0]),
+        // An event behind the jump, whose state does not move.
+        (
+            "parameter p = 1\nstate x = 0\nx' = if t < p then 2 else 1\nwhen x > 3 -> end\nend = 9",
+            &[p],
+            &[0.0],
+        ),
+    ] {
+        let found = last(text, by).unwrap_or_else(|error| panic!("{text}\n{error}"));
+        let off = found.iter().zip(right).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(found.len() == right.len() && off < 1e-9, "{text}\n{found:?} {right:?}");
+    }
+}
+
+#[test]
+fn jumps_without_derivatives_are_refused() {
+    for (text, reason) in [
+        // The condition itself jumps, of equations and of a rule.
+        (
+            "parameter p = 0.3\nstate x = 0\nx' = if t % 1 < p then 1 else 0\nend = 2",
+            "something else",
+        ),
+        (
+            "parameter p = 1\nstate x = 0\nx' = 1\nwhen (if t < p then 1 else -1) falls through 0\nend = 2",
+            "jumps over its limit",
+        ),
+        // The jump comes with an event.
+        (
+            "parameter p = 1\nstate x = 0\nx' = if t < p then 1 else 0\nat 1\n  x := x + 1\nend = 2",
+            "something else",
+        ),
+    ] {
+        let error = last(text, &[By::Parameter(0)]).expect_err(text);
+        assert!(error.to_string().contains(reason), "{text}\n{error}");
+    }
+}
