@@ -99,6 +99,14 @@ class FormulaSystem:
         settings: dict[str, Any],
         times: list[float] | None,
     ) -> dict[str, Any]: ...
+    def converge(
+        self,
+        name: str,
+        parameters: list[float],
+        start: tuple[int | None, float | None, list[float] | None],
+        end: float | None,
+        threads: int,
+    ) -> dict[str, Any]: ...
 
 def run_many(
     system: FormulaSystem,

@@ -56,6 +56,7 @@ class Recorded:
         self.guards: list[list[tuple[str, Function, list[int]]]] = []
         self.resets: list[dict[int, tuple[str, Function]]] = []
         self.transitions: list[dict[int, tuple[str, Callable[..., Any]]]] = []
+        self.rests: list[dict[int, tuple[str, Callable[..., Any], int, list[int] | None]]] = []
         modes = [self.mode(mode) for mode in table.system_modes]
         if beginning is None:
             first = [native.constant(value) for value in state.tolist()]
@@ -105,6 +106,7 @@ class Recorded:
         self.guards.append([])
         self.resets.append({})
         self.transitions.append({})
+        self.rests.append({})
         rules: list[dict[str, Any]] = []
         for source in [*self.table.events, *mode._sources]:
             values: list[int | None] = [None] * len(source.guards)
@@ -122,24 +124,17 @@ class Recorded:
         """A guard for the native module."""
         mode, slopes, source = of
         about = f"guard {guard.name!r} of mode {mode.name!r}"
-        others = {"rest": guard.rest, "sets": guard.sets}
-        for name, other in others.items():
-            if other is not None:
-                raise CannotRecord(f"{about} has {name}")
+        if guard.sets is not None:
+            raise CannotRecord(f"{about} has sets")
         after, to, branch = None, self.table.target(guard.to, about), None
         if guard.transition is not None:
             what = f"the transition of {about}"
-            choose = partial(self.tape.choice, n=self.state.size, args=self.args)
-            found = self.recorded(what, guard.transition, partial(choose, names=self.table.names))
-            choice, state = found
+            choice, after = self.choice(what, guard.transition)
             self.transitions[-1][place] = (what, self.table.transition(guard.transition, what))
             if isinstance(choice, tuple):
                 branch = (choice[0].id, *choice[1:])
             elif choice is not None:
                 to = choice
-            if state is not None and len(state) != self.state.size:
-                raise CannotRecord(f"{what}: it returns a state of {len(state)} components")
-            after = None if state is None else [symbol.id for symbol in state]
         if guard.reset is not None:
             what = f"the reset of {about}"
             after = self.formulas(what, guard.reset, self.state.size)
@@ -157,6 +152,9 @@ class Recorded:
         periodic = isinstance(times, tuple)
         if not periodic and not (np.diff(times) >= 0.0).all():
             raise CannotRecord(f"the times of {about} are out of order")
+        rest = None
+        if guard.rest is not None:
+            rest = self.rest(guard, f"the rest of {about}", place)
         return {
             "label": guard.name,
             "guard": value,
@@ -166,11 +164,34 @@ class Recorded:
             "to": to,
             "branch": branch,
             "after": after,
+            "rest": rest,
             "terminal": int(guard.terminal),
             "from_zero": order,
             "priority": int(guard.priority),
             "sees_jumps": guard.sees_jumps,
         }
+
+    def choice(self, what: str, transition: Callable[..., Any]) -> tuple[Any, list[int] | None]:
+        """The mode to which a transition leads, and the formulas of the state behind it."""
+        choose = partial(self.tape.choice, n=self.state.size, args=self.args)
+        choice, state = self.recorded(what, transition, partial(choose, names=self.table.names))
+        if state is not None and len(state) != self.state.size:
+            raise CannotRecord(f"{what}: it returns a state of {len(state)} components")
+        return choice, None if state is None else [symbol.id for symbol in state]
+
+    def rest(self, guard: Guard, what: str, place: int) -> tuple[int, list[int] | None]:
+        """What follows where events accumulate."""
+        if isinstance(guard.rest, str | Mode):
+            to = self.table.target(guard.rest, what)
+            assert to is not None
+            return to, None
+        assert guard.rest is not None
+        choice, after = self.choice(what, guard.rest)
+        if isinstance(choice, tuple):
+            raise CannotRecord(f"{what}: it chooses between modes")
+        to = len(self.rests) - 1 if choice is None else choice
+        self.rests[-1][place] = (what, self.table.transition(guard.rest, what), to, after)
+        return to, after
 
     def solve(
         self,
@@ -209,6 +230,17 @@ class Recorded:
                 what, reset = self.resets[mode][guard]
                 at = (float(found["event_times"][row]), before[row])
                 self.same(what, reset, at, values, after[row].tolist())
+            if guard in self.rests[mode]:
+                what, rest, rests_in, formulas = self.rests[mode][guard]
+                at = (float(found["event_times"][row]), after[row])
+                to, state = rest(at[0], after[row].copy(), *values, *self.table.args)
+                if (mode if to is None else to) != rests_in:
+                    raise CannotRecord(f"{what}: at t = {at[0]!r} it leads to another mode")
+                if state is not None and formulas is not None:
+                    given = partial(lambda state, *_: state, state)
+                    native = self.tape.native
+                    now = native.evaluate(formulas, at[0], after[row].tolist(), list(values))
+                    self.same(what, given, at, values, now)
             if guard in self.transitions[mode] and found["outcome"] != "ended_by_guard":
                 what, transition = self.transitions[mode][guard]
                 t, y = float(found["event_times"][row]), before[row]
@@ -285,4 +317,7 @@ def recorded_formulas(function: Function, n: int, args: tuple[Any, ...] = ()) ->
         found: list[Symbol] = tape.record(function, n, args)
     except CannotRecord as reason:
         raise ValueError(f"the function cannot be recorded: {reason}") from None
+    except Exception as error:
+        kind = type(error).__name__
+        raise ValueError(f"the function cannot be recorded: {kind}: {error}") from None
     return tape.native.text([symbol.id for symbol in found], n)

@@ -8,9 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from stickslip._copies import copied, inside, swapped
+from stickslip._copies import Copies
 from stickslip._systems import Mode
-from stickslip._symbols import CannotRecord, Condition, Decisions, Symbol, Symbols, array_of
+from stickslip._symbols import (
+    REFUSALS,
+    CannotRecord,
+    Condition,
+    Decisions,
+    Symbol,
+    Symbols,
+    array_of,
+)
 
 #: Ways through a function that are followed.
 MOST_WAYS = 64
@@ -81,11 +89,11 @@ class Tape(Decisions):
         at: tuple[float, Sequence[float]] | None = None,
     ) -> list[tuple[list[tuple[int, bool, bool]], Any]]:
         """What a function returns on each way through it, with the decisions on the way."""
-        outside: list[Any] = []
-        done: dict[int, Any] = {}
-        recorded = copied(function, done, outside)
-        args = tuple(swapped(value, done, outside) for value in args)
-        refusals = CannotRecord.count
+        self.catches = False
+        copies = Copies(self)
+        recorded = copies.function(function)
+        args = tuple(map(copies.value, args))
+        refusals = REFUSALS.count
         if at is None:
             time = Symbol(self, self.native.time())
             parts = [Symbol(self, self.native.component(i)) for i in range(n)]
@@ -96,10 +104,11 @@ class Tape(Decisions):
         state[:] = parts
         ways: list[tuple[list[tuple[int, bool, bool]], Any]] = []
         self.way = []
-        before = repr(list(map(inside, outside)))
         while True:
-            self.place = 0
+            self.place = self.texts = 0
             found = recorded(time, state.copy().view(Symbols), *args)
+            if self.texts:
+                raise CannotRecord("it makes a text of a number that depends on time or state")
             ways.append((self.way[: self.place], found))
             if len(ways) > MOST_WAYS:
                 raise CannotRecord(f"more than {MOST_WAYS} ways through the function")
@@ -110,9 +119,9 @@ class Tape(Decisions):
                 break
             node, is_negative, _ = self.way.pop()
             self.way.append((node, not is_negative, True))
-        if CannotRecord.count != refusals:
+        if REFUSALS.count != refusals:
             raise CannotRecord("it catches what a number that is not known yet cannot do")
-        if repr(list(map(inside, outside))) != before:
+        if copies.changed():
             raise CannotRecord("the function changes something outside")
         return ways
 

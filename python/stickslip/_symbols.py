@@ -5,6 +5,7 @@ numpy's protocols lead here: what a function does with symbols becomes nodes of 
 
 import math
 import numbers
+import threading
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -14,28 +15,42 @@ from stickslip import _native
 
 #: Decisions on one way through a function.
 MOST_DECISIONS = 100
+#: What a number that is not known yet is in a text.
+TEXT = "<a number>"
+
+
+class _Refusals(threading.local):
+    """How often this thread has refused: what a function catches all the same is noticed."""
+
+    count = 0
+
+
+REFUSALS = _Refusals()
+
 
 class CannotRecord(BaseException):
     """Why a function is no formula. A function that catches exceptions does not catch it."""
 
-    #: How many there have been: what a function catches all the same is noticed.
-    count = 0
-
     def __init__(self, reason: str) -> None:
         super().__init__(reason)
-        CannotRecord.count += 1
+        REFUSALS.count += 1
 
 
 class Symbol:
     """A number that is not known yet: a node of a tape."""
 
     __slots__ = ("id", "tape")
-    __hash__ = None  # type: ignore[assignment]
     shape: tuple[int, ...] = ()
-    ndim, size = 0, 1
+    ndim, size, imag = 0, 1, 0.0
 
     def __init__(self, tape: "Decisions", node: int) -> None:
         self.tape, self.id = tape, node
+
+    def __getattr__(self, name: str) -> Any:
+        # A function may ask whether there is an attribute, as numpy does for `dtype`.
+        if not name.startswith("__") and name != "dtype" and hasattr(np.float64, name):
+            self._no(f".{name}")
+        raise AttributeError(name)
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
         return _on_arrays(ufunc, method, inputs, options)
@@ -57,18 +72,34 @@ class Symbol:
 
     __index__ = __int__
 
-    def __iter__(self) -> Any:
-        return self._no("iteration")
-
-    def __len__(self) -> int:
-        return int(self._no("len()"))
+    def __hash__(self) -> int:
+        return int(self._no("hash()"))
 
     def __round__(self, digits: int | None = None) -> Any:
         return self._no("round()")
 
+    def __floor__(self) -> Any:
+        return applied("floor", (self,))
+
+    def __ceil__(self) -> Any:
+        return applied("ceil", (self,))
+
+    def __trunc__(self) -> Any:
+        return applied("trunc", (self,))
+
+    def __divmod__(self, other: Any) -> tuple[Any, Any]:
+        return self // other, self % other
+
+    def __rdivmod__(self, other: Any) -> tuple[Any, Any]:
+        return other // self, other % self
+
+    def __repr__(self) -> str:
+        # A message may be made and printed; the tape counts that.
+        self.tape.texts += 1
+        return TEXT
+
     def __format__(self, spec: str) -> str:
-        # A message may be made, and is not a result.
-        return "<a number>"
+        return repr(self)
 
     @property
     def real(self) -> "Symbol":
@@ -77,14 +108,20 @@ class Symbol:
     def item(self) -> "Symbol":
         return self
 
-    copy = item
+    copy = conjugate = item
+
+    def astype(self, dtype: Any, **options: Any) -> Any:
+        return boxed(self).view(Symbols).astype(dtype, **options)[()]
+
+
+# Functions ask whether an argument is a number, not an array.
+numbers.Real.register(Symbol)
 
 
 class Condition:
     """What holds where a number is negative, or where it is not."""
 
     __slots__ = ("negative", "symbol")
-    __hash__ = None  # type: ignore[assignment]
 
     def __init__(self, symbol: Symbol, negative: bool) -> None:
         self.symbol, self.negative = symbol, negative
@@ -103,6 +140,14 @@ class Condition:
 
     def number(self) -> Symbol:
         return self.choose(1.0, 0.0)
+
+    __float__, __int__, __index__ = Symbol.__float__, Symbol.__int__, Symbol.__index__
+    __hash__, __repr__, __format__ = Symbol.__hash__, Symbol.__repr__, Symbol.__format__
+    _no, astype = Symbol._no, Symbol.astype
+
+    @property
+    def tape(self) -> "Decisions":
+        return self.symbol.tape
 
     def __invert__(self) -> "Condition":
         return Condition(self.symbol, not self.negative)
@@ -137,6 +182,23 @@ class Symbols(np.ndarray[Any, Any]):
     def __array_function__(self, function: Any, _: Any, args: Any, options: Any) -> Any:
         return _on_numpy(function, args, options)
 
+    def __repr__(self) -> str:
+        symbols = [one for one in self.flat if isinstance(one, Symbol | Condition)]
+        return repr(symbols[0]) if symbols else super().__repr__()
+
+    def __format__(self, spec: str) -> str:
+        return repr(self)
+
+    __str__ = __repr__
+
+    def astype(self, dtype: Any, *_: Any, **options: Any) -> Any:
+        """A copy: truth values may become numbers, and numbers stay what they are."""
+        plain = np.asarray(self)
+        kind = np.dtype(dtype).kind
+        truths = all(isinstance(one, Condition | bool | np.bool_) for one in plain.flat)
+        if not (is_real(dtype) or truths and kind in "iub"):
+            raise CannotRecord(f"an array of {np.dtype(dtype)}")
+        return plain.copy().view(Symbols) if kind in "bO" else as_numbers(plain)
 
     def __setitem__(self, index: Any, values: Any) -> None:
         mask = np.asarray(index, dtype=object) if isinstance(index, np.ndarray) else index
@@ -144,7 +206,7 @@ class Symbols(np.ndarray[Any, Any]):
         if any(isinstance(one, Condition) for one in chosen):
             if np.ndim(values) and np.shape(values) != self.shape:
                 raise CannotRecord("a choice of entries by a condition")
-            np.asarray(self)[...] = np.asarray(_where(mask, values, self.copy()), dtype=object)
+            np.asarray(self)[...] = np.asarray(where_of(mask, values, self.copy()), dtype=object)
         else:
             super().__setitem__(index, values)
 
@@ -163,6 +225,10 @@ class Decisions:
         self.native = _native.Tape()
         self.way: list[tuple[int, bool, bool]] = []
         self.place = 0
+        #: Texts that were made of numbers, and not printed.
+        self.texts = 0
+        #: Whether a function catches exceptions of arithmetic.
+        self.catches = False
 
     def number(self, value: Any) -> Symbol:
         """A symbol, a condition or a number as a symbol."""
@@ -237,6 +303,10 @@ _BINARY = {
     "mod": "mod",
     "remainder": "mod",
 }
+#: What may raise an exception for some numbers: divisions, and functions with a domain or a range.
+_RAISING = {"divide", "true_divide", "floor_divide", "mod", "remainder", "power", "float_power"}
+_RAISING |= {"sqrt", "log", "log1p", "log10", "log2", "arcsin", "arccos", "arccosh", "arctanh"}
+_RAISING |= {"exp", "expm1", "exp2", "sinh", "cosh", "fmod"}
 _COMPARE = {
     "less": (False, True),
     "greater": (True, True),
@@ -250,6 +320,12 @@ _DERIVED: dict[str, Callable[..., Any]] = {
     "sign": lambda a: (a < 0.0).choose(-1.0, (a > 0.0).choose(1.0, 0.0)),
     "heaviside": lambda a, b: (a < 0.0).choose(0.0, (a > 0.0).choose(1.0, b)),
     "ceil": lambda a: -np.floor(-a),
+    "trunc": lambda a: (a < 0.0).choose(-np.floor(-a), np.floor(a)),
+    "fmod": lambda a, b: (a < 0.0).choose(-np.mod(-a, np.abs(b)), np.mod(a, np.abs(b))),
+    "clip": lambda a, low, high: np.minimum(np.maximum(a, low), high),
+    "cbrt": lambda a: np.copysign(np.abs(a) ** (1.0 / 3.0), a),
+    "expit": lambda a: 1.0 / (1.0 + np.exp(-a)),
+    "logaddexp": lambda a, b: np.maximum(a, b) + np.log1p(np.exp(-np.abs(a - b))),
     "floor_divide": lambda a, b: np.floor(a / b),
     "hypot": lambda a, b: np.sqrt(a * a + b * b),
     "log10": lambda a: np.log(a) / math.log(10.0),
@@ -269,18 +345,23 @@ _DERIVED: dict[str, Callable[..., Any]] = {
     "equal": lambda a, b: Condition(-np.abs(a - b), False),
     "not_equal": lambda a, b: Condition(-np.abs(a - b), True),
 }
+_DERIVED |= {"logical_xor": _DERIVED["not_equal"]}
 _LOGICAL = {"logical_not", "invert", "logical_and", "bitwise_and", "logical_or", "bitwise_or"}
+#: What truth values have as numbers.
+_OF_TRUTHS = {"multiply", "equal", "not_equal", "logical_xor", *_COMPARE}
 
 
 def applied(name: str, args: Sequence[Any]) -> Any:
     """A function of symbols and numbers by its numpy name."""
     args = [a[()] if isinstance(a, np.ndarray) and a.ndim == 0 else a for a in args]
-    tape = next((_tape(a) for a in args if isinstance(a, Symbol | Condition)), None)
+    tape = next((a.tape for a in args if isinstance(a, Symbol | Condition)), None)
     if tape is None:
         return getattr(np, name)(*args)
     if name in _LOGICAL:
         return _DERIVED[name](*args)
-    if name != "multiply" and sum(isinstance(a, Condition) for a in args) > 1:
+    if name in _RAISING and tape.catches:
+        raise CannotRecord(f"numpy.{name} where an exception may be caught")
+    if name not in _OF_TRUTHS and sum(isinstance(a, Condition) for a in args) > 1:
         # numpy's truth values have other sums than Python's.
         raise CannotRecord(f"numpy.{name} of two truth values")
     if not all(isinstance(a, Symbol | Condition | numbers.Real) for a in args):
@@ -300,10 +381,6 @@ def applied(name: str, args: Sequence[Any]) -> Any:
     raise CannotRecord(f"numpy.{name}")
 
 
-def _tape(value: Symbol | Condition) -> Decisions:
-    return value.tape if isinstance(value, Symbol) else value.symbol.tape
-
-
 def _operator(name: str, turned: bool = False) -> Any:
     ufunc = getattr(np, name)
 
@@ -311,6 +388,8 @@ def _operator(name: str, turned: bool = False) -> Any:
         args = (other, self) if turned else (self, other)
         if isinstance(other, np.ndarray):
             return _on_arrays(ufunc, "__call__", args, {})
+        if isinstance(other, complex | np.complexfloating):
+            raise CannotRecord("complex numbers")
         if not isinstance(other, Symbol | Condition | numbers.Real):
             return NotImplemented
         return applied(name, args)
@@ -338,10 +417,12 @@ for _python, _name in {
     "eq": "equal",
     "ne": "not_equal",
 }.items():
-    setattr(Symbol, f"__{_python}__", _operator(_name))
+    for _class in (Symbol, Condition):
+        setattr(_class, f"__{_python}__", _operator(_name))
+setattr(Condition, "__xor__", _operator("not_equal"))
 for _python, _name in {"neg": "negative", "pos": "positive", "abs": "absolute"}.items():
     setattr(Symbol, f"__{_python}__", lambda self, name=_name: applied(name, (self,)))
-for _name in _UNARY:
+for _name in (*_UNARY, "log10", "log2", "exp2", "deg2rad", "rad2deg", "cbrt", "trunc"):
     # numpy calls these for the elements of arrays of objects.
     setattr(Symbol, _name, lambda self, name=_name: applied(name, (self,)))
 
@@ -394,27 +475,75 @@ def viewed(result: Any) -> Any:
     return result
 
 
+def as_numbers(values: Any) -> Any:
+    """An array of symbols and doubles: truth values and integers become numbers."""
+
+    def one(value: Any) -> Any:
+        if isinstance(value, Symbol) or value is None:
+            return value
+        return value.number() if isinstance(value, Condition) else np.float64(value)
+
+    array = np.empty(np.shape(values), dtype=object)
+    array.reshape(-1)[:] = list(map(one, np.asarray(values, dtype=object).flat))
+    return array.view(Symbols)
+
+
+def is_known(value: Any) -> bool:
+    """Whether there are no symbols inside."""
+    if isinstance(value, np.ndarray):
+        return value.dtype != object or all(map(is_known, value.flat))
+    if isinstance(value, list | tuple):
+        return all(map(is_known, value))
+    return not isinstance(value, Symbol | Condition)
+
+
+def known(value: Any) -> Any:
+    """Numbers where arrays of objects, also in lists, have no symbols inside."""
+    if isinstance(value, np.ndarray) and value.dtype == object:
+        return np.array(value, dtype=float)
+    return type(value)(map(known, value)) if type(value) in (list, tuple) else value
+
+
+_PRODUCTS = {"matmul", "vecdot", "matvec", "vecmat"}
+
+
 def _on_arrays(ufunc: Any, method: str, inputs: Any, options: dict[str, Any]) -> Any:
     """What a universal function of numpy does with symbols."""
-    out = options.pop("out", None)
-    if options.pop("where", True) is not True or not is_real(options.pop("dtype", None)):
-        raise CannotRecord(f"numpy.{ufunc.__name__} with options")
+    name = ufunc.__name__
+    arrays = any(isinstance(value, np.ndarray | list | tuple) for value in inputs)
+    if not arrays and not options and method == "__call__" and name not in _PRODUCTS:
+        return applied(name, inputs)
+    out, where = options.pop("out", None), options.pop("where", True)
+    dtype = options.pop("dtype", None)
+    is_usual = is_real(dtype) or (name in _LOGICAL and np.dtype(dtype) == bool)
+    if not is_usual or (where is not True and (not out or method != "__call__")):
+        raise CannotRecord(f"numpy.{name} with options")
+    first = options.pop("initial", None)
+    if method not in ("__call__", "outer", "reduce", "accumulate"):
+        raise CannotRecord(f"numpy.{name}.{method}")
     # Where these say nothing, arrays of objects do not take them.
     kept = {"axis", "keepdims"}
     options = {name: value for name, value in options.items() if name in kept}
     plain = [boxed(value) for value in inputs]
-    if ufunc.__name__ in {"matmul", "vecdot", "matvec", "vecmat"}:
-        result = ufunc(*plain, **options)
+    if name == "add" and method != "__call__":
+        # A sum of truth values counts.
+        plain = [as_numbers(value) for value in plain]
+    if name in _PRODUCTS:
+        result = ufunc(*map(np.asarray, plain), **options)
     else:
-        each = np.frompyfunc(lambda *args: applied(ufunc.__name__, args), ufunc.nin, 1)
-        result = getattr(each, method)(*plain, **options)
-    if out is not None:
-        np.asarray(out[0])[...] = result
-        return out[0]
-    return viewed(result)
+        each = np.frompyfunc(lambda *args: applied(name, args), ufunc.nin, 1)
+        result = getattr(each, method)(*map(np.asarray, plain), **options)
+    if first is not None and first is not np._NoValue:
+        result = ufunc(viewed(result), first)
+    if out is None:
+        return viewed(result)
+    result = result if where is True else where_of(where, result, out[0])
+    np.asarray(out[0])[...] = result
+    return out[0]
 
 
-def _where(condition: Any, yes: Any = None, no: Any = None) -> Any:
+def where_of(condition: Any, yes: Any = None, no: Any = None) -> Any:
+    """`yes` where a condition holds, and else `no`, entry by entry."""
     if yes is None or no is None:
         raise CannotRecord("numpy.where with one argument")
 
@@ -428,72 +557,14 @@ def _where(condition: Any, yes: Any = None, no: Any = None) -> Any:
     return viewed(np.frompyfunc(one, 3, 1)(*map(boxed, (condition, yes, no))))
 
 
-def _clip(a: Any, a_min: Any = None, a_max: Any = None, **options: Any) -> Any:
-    low, high = options.pop("min", a_min), options.pop("max", a_max)
-    if options:
-        raise CannotRecord("numpy.clip with options")
-    a = a if low is None else np.maximum(a, low)
-    return a if high is None else np.minimum(a, high)
-
-
-def _interp(x: Any, xp: Any, fp: Any, left: Any = None, right: Any = None) -> Any:
-    """Linear pieces between given points."""
-    if isinstance(x, np.ndarray) and x.ndim:
-        return array_of([_interp(one, xp, fp, left, right) for one in x])
-    xp, fp = np.asarray(xp, dtype=float), np.asarray(fp, dtype=float)
-    result: Any = fp[0] if left is None else left
-    for a, b, p, q in zip(xp, xp[1:], fp, fp[1:], strict=False):
-        result = (x >= a).choose(p + (x - a) * ((q - p) / (b - a)), result)
-    return (x >= xp[-1]).choose(fp[-1] if right is None else right, result)
-
-
-def _select(conditions: Any, choices: Any, default: Any = 0.0) -> Any:
-    result = default
-    for condition, choice in reversed(list(zip(conditions, choices, strict=True))):
-        result = _where(condition, choice, result)
-    return result
-
-
-def spline_of(spline: Any, t: Any, derivative: int = 0) -> Any:
-    """A piecewise polynomial of SciPy."""
-    if spline.extrapolate is not True or spline.c.ndim != 2 or derivative:
-        raise CannotRecord("a spline that is periodic, ends, has several values, or is derived")
-    if isinstance(t, np.ndarray) and t.ndim:
-        return array_of([spline_of(spline, one) for one in t])
-    result: Any = None
-    for start, coefficients in zip(spline.x, spline.c.T, strict=False):
-        piece: Any = coefficients[0]
-        for coefficient in coefficients[1:]:
-            piece = piece * (t - start) + coefficient
-        result = piece if result is None else (t >= start).choose(piece, result)
-    return result
-
-
-def _norm(x: Any, order: Any = None) -> Any:
-    if order not in (None, 2):
-        raise CannotRecord("this norm")
-    x = array_of(x).reshape(-1)
-    return np.sqrt((x * x).sum())
-
-
-NUMPY: dict[Any, Callable[..., Any]] = {
-    np.where: _where,
-    np.clip: _clip,
-    np.interp: _interp,
-    np.select: _select,
-    np.linalg.norm: _norm,
-    np.max: lambda a, axis=None: np.maximum.reduce(array_of(a), axis=axis),
-    np.min: lambda a, axis=None: np.minimum.reduce(array_of(a), axis=axis),
-}
-NUMPY |= {np.amax: NUMPY[np.max], np.amin: NUMPY[np.min]}
+#: Functions of numpy for which others stand.
+STANDS_FOR: dict[Any, Callable[..., Any]] = {}
 
 
 def _on_numpy(function: Any, args: Any, options: Any) -> Any:
     """What a function of numpy does with symbols: that of objects, unless it needs numbers."""
-    if function in NUMPY:
-        return NUMPY[function](*args, **options)
-    if function.__module__.startswith("numpy.linalg") or function.__module__ == "numpy.fft":
-        raise CannotRecord(f"{function.__module__}.{function.__name__}")
+    if function in STANDS_FOR:
+        return STANDS_FOR[function](*args, **options)
 
     def plain(value: Any) -> Any:
         if isinstance(value, np.ndarray):
@@ -502,8 +573,17 @@ def _on_numpy(function: Any, args: Any, options: Any) -> Any:
             return boxed(value)
         return type(value)(map(plain, value)) if isinstance(value, list | tuple) else value
 
+    def with_numbers(why: str) -> Any:
+        if not all(map(is_known, (*args, *options.values()))):
+            raise CannotRecord(why)
+        found = function(*map(known, args), **{k: known(v) for k, v in options.items()})
+        return as_numbers(found) if isinstance(found, np.ndarray) else found
+
+    name = f"{function.__module__}.{function.__name__}"
+    if name.startswith(("numpy.linalg.", "numpy.fft.")) or function.__name__.startswith("nan"):
+        return with_numbers(name)
     try:
         result = function(*map(plain, args), **{k: plain(v) for k, v in options.items()})
     except (TypeError, ValueError) as error:
-        raise CannotRecord(f"numpy.{function.__name__}: {error}") from error
+        return with_numbers(f"numpy.{function.__name__}: {error}")
     return viewed(result)

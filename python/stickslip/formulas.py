@@ -17,6 +17,8 @@ from stickslip._compiled import _number
 from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
 from stickslip._run_arguments import settings_of, span, state_at_start, times_within
 from stickslip._solutions import Solution, event_array, solution_of
+from stickslip.collisions import _threads
+from stickslip.studies import Study, _study
 
 Floats: TypeAlias = NDArray[np.float64]
 
@@ -151,6 +153,33 @@ class FormulaSystem:
             (t_span, y0, mode), parameters, method, (rtol, atol, max_step, first_step, max_switches)
         )
         return sensitivities_of(self, by, rerun)
+
+    def converge(
+        self,
+        *,
+        name: str = "the system",
+        t_span: ArrayLike | None = None,
+        y0: ArrayLike | None = None,
+        mode: str | None = None,
+        parameters: Mapping[str, float] | None = None,
+        threads: int | None = None,
+    ) -> Study:
+        """How accurate a run is: the errors of its last state and of the times of its events at
+        tolerances from 1e-2 to 1e-13, with both methods, beside dop853 at 1e-15.
+
+        name: of the system in titles. The rest is as in `solve`. Raises ValueError if a name or a
+        value is wrong, and ComputationError if the reference cannot be computed.
+
+        >>> import stickslip
+        >>> decay = stickslip.system("state x = 1\\nx' = -x\\nwhen x < 0.5\\nend = 2")
+        >>> table = decay.converge().tables["convergence_tolerances"]
+        >>> bool(table.columns["same_events"].all())
+        True
+        """
+        options = (1e-10, 1e-12, np.inf, None, 1)
+        rerun = self._arguments((t_span, y0, mode), parameters, "dop853", options)
+        values, begin, end, _ = rerun
+        return _study(self._native.converge(str(name), values, begin, end, _threads(threads)))
 
     def _arguments(
         self,

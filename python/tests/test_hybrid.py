@@ -453,11 +453,13 @@ def test_a_run_goes_on_at_rest():
         rest=lambda t, y: ("lie", [0.0, 0.0]),
     )
     system.mode("lie", lambda t, y: [0.0, 0.0])
-    found = solve(system, (0, 10), [1.0, 0.0], "fly")
-    assert found.success and found.mode[-1] == "lie" and found.y[:, -1].tolist() == [0.0, 0.0]
-    rest = found.rests[0]
-    expected = 3 * math.sqrt(2 / G)
-    assert abs(rest["time"] - expected) < 1e-9 and rest["guard"] == "floor" and rest["error"] < 1e-9
+    for record in (True, False):
+        found = solve(system, (0, 10), [1.0, 0.0], "fly", record=record)
+        assert found.success and found.mode[-1] == "lie" and found.y[:, -1].tolist() == [0.0, 0.0]
+        rest = found.rests[0]
+        expected = 3 * math.sqrt(2 / G)
+        assert abs(rest["time"] - expected) < 1e-9 and rest["error"] < 1e-9
+        assert rest["guard"] == "floor" and found.decided == record
 
 
 def test_a_chain_without_end_names_its_cycle():
@@ -596,7 +598,7 @@ def test_callables_and_compiled_functions_agree_bit_for_bit():
     jitted = njit(lambda t, y: np.array([y[1], -y[0]]))
     half = [lambda t, y: y[0] - 0.5]
     one = solve(circle, (0, 9), [0.0, 1.0], events=half, record=False)
-    assert_same(solve(jitted, (0, 9), [0.0, 1.0], events=lambda t, y: y[0] - 0.5), one)
+    assert_same(solve(jitted, (0, 9), [0.0, 1.0], events=half, record=False), one)
     assert_same(solve(Compiled(c_circle), (0, 9), [0.0, 1.0], events=half), one)
 
 

@@ -1,14 +1,21 @@
 """Functions of Python that run as formulas."""
 
+import bisect
+import enum
 import functools
 import itertools
 import math
+import numbers
+from collections import deque
 from types import SimpleNamespace
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 
 import stickslip
+from numba import njit
+from scipy.interpolate import interp1d
 from stickslip import HybridSystem, recorded, solve
 from stickslip._recording import Tape
 
@@ -166,7 +173,171 @@ IDIOMS = [
     lambda t, y: [math.log(abs(y[0]) + 1, 2), math.degrees(y[0]), math.sin(math.pi * t)],
     lambda t, y: [y[0] if isinstance(t, float) else 7.0, len(y), y.size, float(y[0])],
     lambda t, y: [y[0] if t < 0.2 or y[1] > 0 and y[2] < 0 else -y[0]],
-    lambda t, y: [np.logical_and(y[0] > 0, y[1] > 0) * 1.0, np.where((y[0] > 0) | (y[1] > 0), 1, 2)],
+    lambda t, y: [np.logical_and(y[0] > 0, y[1] > 0) * 1.0],
+    lambda t, y: [np.where((y[0] > 0) | (y[1] > 0), 1, 2)],
+    # Truth values are compared, counted and converted.
+    lambda t, y: [((y[0] > 0) == (y[1] > 0)) * 1.0, 1.0 if (y[0] > 0) == 1 else 2.0],
+    lambda t, y: [((y[0] > 0) != (y[1] > 0)) * 1.0, ((y[0] > 0) ^ (y[1] > 0)) * 1.0],
+    lambda t, y: [np.sum(y > 0), (y > 0).mean(), np.count_nonzero(y > 0), int(y[0] > 0)],
+    lambda t, y: [*(y > 0).astype(float), *np.array(y > 0, dtype=float), *(y > 0).astype(int)],
+    lambda t, y: [1.0 if np.any(y > 0.5) else 2.0, 1.0 if (y > -0.5).all() else 2.0],
+    # Numbers are asked what they are.
+    lambda t, y: [1.0 if np.isscalar(t) else 2.0, 1.0 if hasattr(t, "__len__") else 2.0],
+    lambda t, y: [1.0 if isinstance(y[0], numbers.Number) else 2.0, 1.0 if t is None else 2.0],
+    # Extremes and sums of generators, of lists, and with a first value.
+    lambda t, y: [max((x for x in y), default=0.0), min(x for x in (2, 1)), *max([y[0]], [y[1]])],
+    lambda t, y: [y.sum(initial=5.0), y.max(initial=0.0), np.max(y, initial=0.3), y.prod()],
+    lambda t, y: [y.clip(-0.5, 0.5)[0], np.clip(y, None, 0.1)[1], *y.clip(min=0.0)],
+    # Integers, remainders and roots.
+    lambda t, y: [int(3 * t) % 2, int(4 * y[0]), np.trunc(3 * y[0]), np.fix(3 * y[1])],
+    lambda t, y: [math.fmod(y[0], 0.3), np.fmod(y[1], -0.4), *divmod(y[0], 0.3), np.cbrt(y[1])],
+    lambda t, y: [math.hypot(*y), math.dist(y, [1, 2, 3]), math.fsum(y), math.prod([*y])],
+    # Arrays of constants that are filled, and arrays of integers.
+    lambda t, y: [_filled(np.array([0.0, 0.0]), y), _filled(np.zeros(2, dtype=float), y)],
+    lambda t, y: [_filled(MATRIX.copy()[0], y), _filled(np.zeros_like(y, dtype=np.float64), y)],
+    lambda t, y: np.sign(MATRIX.dot(y[:2])) + np.maximum(MATRIX.dot(y[:2]), 0) + MATRIX.T @ y[1:],
+    # Linear algebra of small matrices.
+    lambda t, y: np.linalg.solve(np.diag(y**2 + 1) + 0.1 * np.outer(y, y), y),
+    lambda t, y: [*np.linalg.norm(np.outer(y, y), axis=1), np.linalg.norm(y, ord=np.inf)],
+    lambda t, y: [np.linalg.det(np.diag(y)), *(np.linalg.inv(np.eye(3) * (2 + y)) @ y)],
+    lambda t, y: [*np.linalg.solve(np.array([[2.0, 1.0], [1.0, 3.0]]), y[:2]), *np.gradient(y)],
+    # Lists, tables and helpers.
+    lambda t, y: [*np.exp([y[0], 1.0]), *np.r_[0, y], *np.pad(y, 1), np.sinc(y[0])],
+    lambda t, y: [np.searchsorted([0.2, 0.5, 0.9], t), bisect.bisect([0.2, 0.5, 0.9], t)],
+    lambda t, y: np.vectorize(lambda x: 1.0 if x > 0 else math.sin(x))(y),
+    lambda t, y: np.divide(1.0, y, out=np.zeros_like(y), where=y > 0),
+    lambda t, y: [CACHED(y[0]), HELPERS["force"](y[1]), *map(math.cos, y)],
+    lambda t, y: [eval("np.sin(x) * t", {"np": np, "x": y[0], "t": t})],
+]
+
+
+def _filled(array, y):
+    array[0] = y[0] * y[1]
+    array += 1.0
+    return np.sin(array).sum()
+
+
+CACHED = functools.lru_cache(lambda x: math.sin(x) + 1.0)
+HELPERS = {"force": lambda x: -math.sinh(x)}
+
+
+def aliased(t, y):
+    same = np.asarray(y)
+    same[0] = 2.0
+    first, _, last = np.split(y, 3)
+    first -= 0.5
+    last *= 3.0
+    other = np.array(y)
+    other[1] = 7.0
+    return y
+
+
+def imported(t, y):
+    import math
+    from numpy import zeros
+
+    slope = zeros(3)
+    slope[0] = math.sin(y[0])
+    return slope
+
+
+def tried(t, y):
+    try:
+        rate = SETTINGS["rate"]
+    except KeyError:
+        rate = 2.0
+    with np.errstate(all="ignore"):
+        return [rate / y[0], np.sqrt(y[1]), len(y)]
+
+
+class Vector:
+    """Two components."""
+
+    def __init__(self, x, y):
+        self.x, self.y = x, y
+
+    def __add__(self, other):
+        return Vector(self.x + other.x, self.y + other.y)
+
+    @property
+    def length(self):
+        return math.sqrt(self.x**2 + self.y**2)
+
+
+class Spring:
+    """A system with parts that others override."""
+
+    scale = 2.0
+
+    def __call__(self, t, y):
+        return [self.force(y[0]) * self.damping(), (Vector(y[0], t) + Vector(1.0, 0.0)).length]
+
+    def force(self, x):
+        return math.sin(x) * self.scale
+
+    @staticmethod
+    def damping():
+        return 0.5
+
+
+class Hard(Spring):
+    """A spring of another force."""
+
+    def force(self, x):
+        return super().force(x) - x**3
+
+
+class Slotted(Spring):
+    """A spring with a helper that remembers what it has computed."""
+
+    __slots__ = ("stiffness",)
+
+    def __init__(self, stiffness):
+        self.stiffness = stiffness
+
+    @functools.lru_cache  # noqa: B019
+    def force(self, x):
+        return self.stiffness * math.tanh(x)
+
+
+class Named(NamedTuple):
+    """Parameters with a method."""
+
+    rates: np.ndarray
+    scale: float = 2.0
+
+    def field(self, t, y):
+        return self.scale * math.cos(t) * self.rates.dot(y[:2])
+
+
+class Parameters(dict):
+    """Parameters as attributes."""
+
+    __getattr__ = dict.__getitem__
+
+
+class Axis(enum.IntEnum):
+    X, Y, Z = range(3)
+
+
+GIVEN = Parameters(rate=2.0, force=lambda x: math.cos(x))
+BUNDLE = SimpleNamespace(matrix=MATRIX, force=lambda x: math.sin(x), table=deque([2.0, math.cos]))
+CURVE = interp1d([0.0, 0.4, 1.0], [1.0, 2.0, -1.0])
+
+
+@njit
+def jitted(t, y):
+    slope = np.zeros(3)
+    for i in range(3):
+        slope[i] = math.sin(y[i - 1]) - t
+    return slope
+
+
+IDIOMS += [
+    *(aliased, imported, tried, jitted, Spring(), Hard(), Hard().__call__, Slotted(3.0)),
+    Named(MATRIX).field,
+    lambda t, y: [GIVEN.rate * GIVEN.force(y[Axis.Y]), CURVE(t), Axis.Z * y[Axis.Z]],
+    lambda t, y: [*BUNDLE.matrix.dot(y[:2]), BUNDLE.force(t), BUNDLE.table[1](y[2])],
 ]
 
 
@@ -217,7 +388,8 @@ def test_systems_of_modes_are_recorded() -> None:
     slip.guard("stops", lambda t, y: 0.5 - y[1], to="stick", reset=lambda t, y: [y[0], 0.5])
     found = solve(belt, (0, 30), [0.0, 0.5], "stick", record=True, dense_output=True)
     other = solve(belt, (0, 30), [0.0, 0.5], "stick", record=False)
-    assert found.guards == "decided" and found.events["guard"].tolist()[:2] == ["breaks away", "stops"]
+    assert found.guards == "decided"
+    assert found.events["guard"].tolist()[:2] == ["breaks away", "stops"]
     np.testing.assert_allclose(found.events["time"], other.events["time"], atol=1e-9)
     np.testing.assert_allclose(found.y[:, -1], other.y[:, -1], atol=1e-9)
 
@@ -265,9 +437,10 @@ def toggles(state):
         (toggles({"on": True}), "changes something outside"),
         (lambda t, y: -y + 1e-9 * np.random.normal(), "random"),
         (lambda t, y, c=itertools.count(): [-y[0] + next(c)], ""),
-        (functools.partial(lambda k, t, y: -k * y, 2.0), "of type partial"),
+        (len, "of type builtin_function_or_method"),
         (lambda t, y: [[1.0, 2.0][int(t)]], r"int\(\)"),
-        (lambda t, y: np.linalg.solve(np.eye(1) * (1 + y[0] ** 2), -y), "linalg"),
+        (lambda t, y: np.linalg.eigvals(np.eye(1) * (1 + y[0] ** 2)), "linalg"),
+        (lambda t, y: np.array([y[0]], ndmin=2)[0], "numpy.array with options"),
         (lambda t, y: [y[0], y[0]], "returns 2 numbers instead of 1"),
         (lambda t, y: [y[0] > 0], "truth value"),
         (lambda t, y: [(y[0] > 0) + (y[0] > 0.5)], "of two truth values"),
@@ -385,3 +558,50 @@ def test_recorded_shows_formulas() -> None:
     with pytest.raises(ValueError, match="cannot be recorded"):
         recorded(lambda t, y: [np.random.normal()], 1)
     assert "recorded" in stickslip.__all__
+
+
+@pytest.mark.parametrize(
+    ("rest", "mode"),
+    [("lie", "lie"), (lambda t, y: [0.0, 0.25], "fly"), (lambda t, y: ("lie", [t, 0.0]), "lie")],
+)
+def test_a_rest_is_recorded(rest, mode):
+    system = stickslip.HybridSystem()
+    fly = system.mode("fly", lambda t, y: [y[1], -1.0])
+    fly.guard("floor", lambda t, y: y[0], reset=lambda t, y: [0.0, -0.5 * y[1]], rest=rest)
+    system.mode("lie", lambda t, y: [0.0, 0.0])
+    found = solve(system, (0, 10), [0.5, 0.0], "fly", record=True)
+    assert found.guards == "decided" and found.rests["to"][0] == mode
+    assert abs(found.rests["time"][0] - 3.0) < 1e-8
+
+
+def test_a_rest_that_depends_on_more_is_refused():
+    seen = []
+
+    def rest(t, y):
+        return ("lie", [float(len(seen)), 0.0])
+
+    system = stickslip.HybridSystem()
+    fly = system.mode("fly", lambda t, y: [y[1], -1.0])
+    fly.guard(
+        "floor",
+        lambda t, y: y[0],
+        reset=lambda t, y: (seen.append(t), [0.0, -0.5 * y[1]])[1],
+        rest=rest,
+    )
+    system.mode("lie", lambda t, y: [0.0, 0.0])
+    found = solve(system, (0, 10), [0.5, 0.0], "fly")
+    assert found.guards.startswith("sampled") and found.rests["to"][0] == "lie"
+    assert found.y[0, -1] > 0.0
+
+
+def test_a_text_has_a_study_of_its_accuracy():
+    decay = stickslip.system("state x = 1\nx' = -x\nwhen x < 0.5 \"half\"\nend = 2")
+    study = decay.converge(name="decay", threads=1)
+    rows = study.tables["convergence_tolerances"].columns
+    assert (np.maximum(rows["state_error"], rows["time_error"]) < 3 * rows["tolerance"]).all()
+    assert rows["same_events"].all() and study.data["schema"] == "stickslip.system-convergence/1"
+    assert study.tables["convergence_events"].columns["time"][0] == pytest.approx(np.log(2), abs=1e-14)
+    with pytest.raises(ValueError, match="unknown"):
+        decay.converge(parameters={"unknown": 1.0})
+    with pytest.raises(ValueError, match="expected an end after"):
+        decay.converge(t_span=(0.0, 0.0))

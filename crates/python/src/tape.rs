@@ -4,7 +4,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use pyo3::prelude::*;
 use stickslip_expression::{
-    Binary, Component, Formula, Graph, Inputs, Mode, Next, Parameter, Program, Rule, System,
+    Binary, Component, Formula, Graph, Inputs, Mode, Next, Parameter, Program, Rest, Rule, System,
     Trigger, Unary, Variable,
 };
 use stickslip_solver::Direction;
@@ -36,6 +36,8 @@ struct RuleRow {
     branch: Option<(u32, usize, usize)>,
     /// The state that follows.
     after: Option<Vec<u32>>,
+    /// The mode, and the state if it changes, where events accumulate.
+    rest: Option<(usize, Option<Vec<u32>>)>,
     terminal: u32,
     from_zero: u32,
     priority: i8,
@@ -263,10 +265,20 @@ fn rule(graph: &mut Graph, row: RuleRow, (modes, n): (usize, usize)) -> PyResult
     if one.max(other) >= modes {
         return Err(bad_input(format!("there is no mode {}", one.max(other))));
     }
-    let after = all_known(graph, &row.after.unwrap_or_default())?;
-    if after.len() > n {
-        return Err(bad_input("a reset has another number of components"));
-    }
+    let changes = |after: Option<Vec<u32>>| -> PyResult<Vec<(usize, Formula)>> {
+        let after = all_known(graph, &after.unwrap_or_default())?;
+        if after.len() > n {
+            return Err(bad_input("a reset has another number of components"));
+        }
+        Ok(after.into_iter().enumerate().collect())
+    };
+    let rest = match row.rest {
+        Some((next, _)) if next >= modes => {
+            return Err(bad_input(format!("there is no mode {next}")));
+        }
+        Some((next, after)) => Some(Rest { next, changes: changes(after)? }),
+        None => None,
+    };
     Ok(Rule {
         trigger,
         label: Some(row.label),
@@ -274,9 +286,9 @@ fn rule(graph: &mut Graph, row: RuleRow, (modes, n): (usize, usize)) -> PyResult
         sees_jumps: row.sees_jumps,
         ends_after: row.terminal,
         from_zero: row.from_zero,
-        changes: after.into_iter().enumerate().collect(),
+        changes: changes(row.after)?,
         next,
-        rest: None,
+        rest,
     })
 }
 

@@ -1,15 +1,15 @@
 //! Studies of the collision of frictional viscoelastic spheres: the limit of stiff springs, how
-//! accurate the integrators are, also for a system of one's own, and what the contact laws of particle
-//! codes do.
+//! accurate the integrators are, also for a system of one's own, and what the contact laws of
+//! particle codes do.
 //!
 //! Each study is a function from plain settings to a [`Study`]: findings in sentences, numbers,
 //! tables and pictures. It writes no files. Parallel loops run on the rayon pool of the caller.
 //!
 //! Start reading in [`study`]; then, in this order: [`paper`] (what the symbols and axes of the
 //! paper mean), [`stiff_springs`] (the limit of stiff springs), [`convergence`] (how accurate the
-//! integrators are), [`own_system`] (the same for a system that is a text), [`contact_laws`] (the laws of particle codes), [`search`] (maxima and zeros),
-//! [`unreset`] and [`three_parameters`] (the collision with another spring, and in other
-//! parameters).
+//! integrators are), [`own_system`] (the same for a system that is a text), [`contact_laws`] (the
+//! laws of particle codes), [`search`] (maxima and zeros), [`unreset`] and [`three_parameters`] (the
+//! collision with another spring, and in other parameters).
 //! The figures and statements of the paper are studies of `stickslip-reproduction`.
 //!
 //! ```
