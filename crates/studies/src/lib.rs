@@ -8,8 +8,8 @@
 //! Start reading in [`study`]; then, in this order: [`paper`] (what the symbols and axes of the
 //! paper mean), [`stiff_springs`] (the limit of stiff springs), [`convergence`] (how accurate the
 //! integrators are), [`own_system`] (the same for a system that is a text), [`contact_laws`] (the
-//! laws of particle codes), [`search`] (maxima and zeros), [`unreset`] and [`three_parameters`] (the
-//! collision with another spring, and in other parameters).
+//! laws of particle codes), [`search`] (maxima and zeros), [`unreset`] and [`three_parameters`]
+//! (the collision with another spring, and in other parameters).
 //! The figures and statements of the paper are studies of `stickslip-reproduction`.
 //!
 //! ```
