@@ -36,10 +36,10 @@
 //!
 //! The modules in reading order: `graph` has formulas and their derivatives, `program` compiles and
 //! computes them, `system` is what a hybrid system consists of, `sliding` lets it slide along
-//! surfaces, `zeros` finds where guards start from zero, `compiled` makes it ready for parameters, `run` is what the solver sees of it,
-//! `recording` a run with its events, `sensitivity` its derivatives, `family` the runs of a plane
-//! of parameters, and `text` reads and writes it. `docs/systems.md` in the repository describes the
-//! language.
+//! surfaces, `zeros` finds where guards start from zero, `compiled` makes it ready for parameters,
+//! `run` is what the solver sees of it, `recording` a run with its events, `sensitivity` its
+//! derivatives, `family` the runs of a plane of parameters, and `text` reads and writes it.
+//! `docs/systems.md` in the repository describes the language.
 
 mod compiled;
 mod family;

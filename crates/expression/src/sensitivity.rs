@@ -73,8 +73,8 @@ impl System {
     ///
     /// Error control covers the derivatives too, which are about as accurate as the state. They
     /// hold for an unchanged order of events, and grow without bound towards a graze. Where events
-    /// accumulate, the run ends, also if the system says how it goes on. Where equations jump, steps
-    /// end, which the run without derivatives does not do.
+    /// accumulate, the run ends, also if the system says how it goes on. Where equations jump,
+    /// steps end, which the run without derivatives does not do.
     ///
     /// ```
     /// use stickslip_expression::{By, System};

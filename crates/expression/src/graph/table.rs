@@ -50,7 +50,7 @@ impl Graph {
         let mut pieces = Vec::with_capacity(points.len() + 1);
         for (piece, &width) in widths.iter().enumerate() {
             // With second derivatives m and n at its ends, the piece has the slope
-            // (q − p)/h − h·(2m + n)/6 at its start, and m/2 and (n − m)/(6h) are its further terms.
+            // (q − p)/h − h·(2m + n)/6 at its start; m/2 and (n − m)/(6h) are its further terms.
             let [m, n] = [bends[piece], bends[piece + 1]];
             let bent = self.combined(&[(2.0, m), (1.0, n)]);
             let slope = self.combined(&[(1.0, slopes[piece]), (-width / 6.0, bent)]);

@@ -12,7 +12,8 @@ const MOST_DEGREE: i32 = 8;
 /// Sums of rounded products count as zero up to this part of their largest term.
 const ROUNDING: f64 = 1e-14;
 
-/// A product of powers, in ascending order of what is multiplied. Divisors are factors of their own.
+/// A product of powers, in ascending order of what is multiplied. Divisors are factors of their
+/// own.
 type Monomial = Vec<(Factor, u32)>;
 
 /// What is multiplied.
