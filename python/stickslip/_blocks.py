@@ -229,25 +229,31 @@ class Plan:
 
     def block_shape(self, chunks: Chunks) -> tuple[int, ...]:
         """The size of a block along each dimension; blocks at the end may be smaller."""
-        if isinstance(chunks, str):
-            if chunks != "auto":
-                raise ValueError(f'chunks = {chunks!r}; expected "auto" or numbers')
-            block = _auto(self.shape)
-        else:
-            by_name = chunks if isinstance(chunks, Mapping) else dict.fromkeys(self.dims, chunks)
-            unknown = [name for name in by_name if name not in self.dims]
-            if unknown:
-                raise ValueError(f"chunks along {unknown[0]!r}; the dimensions are {self.dims}")
-            block = tuple(
-                _chunk(dim, by_name.get(dim, -1), size)
-                for dim, size in zip(self.dims, self.shape, strict=True)
-            )
-        blocks = math.prod(math.ceil(n / most) for n, most in zip(self.shape, block, strict=True))
-        if blocks > _MOST_BLOCKS:
-            raise ValueError(
-                f"chunks = {chunks!r} makes {blocks} blocks; expected at most {_MOST_BLOCKS}"
-            )
-        return block
+        return block_shape(self.dims, self.shape, chunks)
+
+
+def block_shape(
+    dims: tuple[str, ...], shape: tuple[int, ...], chunks: Chunks, auto: int = _BLOCK
+) -> tuple[int, ...]:
+    """The size of a block along each dimension; blocks at the end may be smaller. With "auto" a
+    block has so many places, or more."""
+    if isinstance(chunks, str):
+        if chunks != "auto":
+            raise ValueError(f'chunks = {chunks!r}; expected "auto" or numbers')
+        block = _auto(shape, auto)
+    else:
+        by_name = chunks if isinstance(chunks, Mapping) else dict.fromkeys(dims, chunks)
+        unknown = [name for name in by_name if name not in dims]
+        if unknown:
+            raise ValueError(f"chunks along {unknown[0]!r}; the dimensions are {dims}")
+        sizes = zip(dims, shape, strict=True)
+        block = tuple(_chunk(dim, by_name.get(dim, -1), size) for dim, size in sizes)
+    blocks = math.prod(math.ceil(n / most) for n, most in zip(shape, block, strict=True))
+    if blocks > _MOST_BLOCKS:
+        raise ValueError(
+            f"chunks = {chunks!r} makes {blocks} blocks; expected at most {_MOST_BLOCKS}"
+        )
+    return block
 
 
 def _named(name: str, value: Any) -> "DataArray":
@@ -304,9 +310,9 @@ def _chunk(dim: str, asked: Any, size: int) -> int:
     return max(1, size if number == -1 else min(number, size))
 
 
-def _auto(shape: tuple[int, ...]) -> tuple[int, ...]:
+def _auto(shape: tuple[int, ...], least: int) -> tuple[int, ...]:
     """Blocks of nearly equal sides, and nearly equal to each other."""
-    left = max(_BLOCK, math.prod(shape) // 10_000)
+    left = max(least, math.prod(shape) // 10_000)
     block = [1] * len(shape)
     for place, axis in enumerate(sorted(range(len(shape)), key=lambda axis: shape[axis])):
         most = max(1, round(left ** (1 / (len(shape) - place))))

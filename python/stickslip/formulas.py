@@ -224,7 +224,12 @@ class FormulaSystem:
         return f"FormulaSystem({', '.join(self.components)}; modes {self.modes}; {values})"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return FormulaSystem, (self.text,)
+        return _restored, (self.text, list(self.parameters), self.components, self.modes)
+
+
+def _restored(text: str, *names: list[str]) -> FormulaSystem:
+    """The system of a text, under the names that it had before."""
+    return FormulaSystem._of(_native.FormulaSystem(text).renamed(*names))
 
 
 def system(text: str) -> FormulaSystem:

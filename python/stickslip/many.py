@@ -1,12 +1,14 @@
 """Many runs of one system: over arrays of parameters and of initial values, on all threads."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Union
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from stickslip import _native
+from stickslip._blocks import Chunks, aligned, block_shape
 from stickslip._compiled import Function
 from stickslip._recorded import Recorded
 from stickslip._run_arguments import settings_of, span, state_at_start, times_within
@@ -23,6 +25,12 @@ if TYPE_CHECKING:
 
 #: Runs at which formulas are compared with their functions.
 _COMPARED = 3
+
+#: Runs of a block with chunks = "auto".
+_BLOCK = 1 << 14
+
+#: The type of the longest word for how a run ended.
+_OUTCOME = "U14"
 
 
 def solve_many(
@@ -42,6 +50,7 @@ def solve_many(
     max_step: float = np.inf,
     first_step: float | None = None,
     max_switches: int = 10_000_000,
+    chunks: Chunks | None = None,
     threads: int | None = None,
 ) -> "Dataset":
     """Runs a system for every combination of parameters and initial values.
@@ -55,8 +64,11 @@ def solve_many(
     together along it. initial: components of the state at the start, likewise; those of functions
     are called y0, y1, and so on.
 
-    t_eval: sorted times at which the state is wanted too. threads: 1 to 1024, or None for one for
-    each core; results have the same bits with any number. The rest is as in `solve`.
+    t_eval: sorted times at which the state is wanted too. chunks: without it, the runs are made
+    here and now. With it, the result is lazy, on Dask, and has no events: "auto", a number for
+    every dimension, or a number for each by name (whole where none is given, or -1). threads: 1 to
+    1024; without it, one for each core here, and one where it is lazy. Results have the same bits
+    with any number and any chunks. The rest is as in `solve`.
 
     The Dataset has, over all dimensions, end_time, end_state (with the dimension component),
     end_mode, outcome (as `Solution.outcome`), event_count (-1 where a run failed), decided, and
@@ -107,36 +119,201 @@ def solve_many(
     if both:
         raise ValueError(f"{both[0]!r} is given as a parameter and as an initial value")
     arrays = {name: _array(name, value) for name, value in {**given, **(initial or {})}.items()}
-    whole = xr.broadcast(*arrays.values()) if arrays else []
-    dims = tuple(whole[0].dims) if arrays else ()
-    shape = tuple(whole[0].shape) if arrays else ()
-    count = int(np.prod(shape, dtype=int))
-    flat = {name: np.ravel(one.to_numpy()) for name, one in zip(arrays, whole, strict=True)}
-    rows = np.tile(np.array(base, dtype=float), (count, 1))
-    for name in given:
-        rows[:, names.index(name)] = flat[name]
-    states = None
-    if state is not None or initial:
-        if state is not None and state.size != len(components):
-            raise ValueError(f"y0 has {state.size} components; expected {len(components)}")
-        states = _states(made, state, rows, (components, initial or {}, flat))
+    if state is not None and state.size != len(components):
+        raise ValueError(f"y0 has {state.size} components; expected {len(components)}")
     times = None
     if t_eval is not None:
         low, high = (-np.inf if start is None else start, np.inf if end is None else end)
         times = times_within(t_eval, low, high)
-    if recorded is not None:
-        _compare(recorded, rows, (states, start, end), settings)
-    found = _native.run_many(
-        made._native,
-        rows,
-        states,
+    runs = _Runs(
+        made,
+        base,
+        {name: names.index(name) for name in given},
+        {name: components.index(name) for name in initial or {}},
+        state,
         (place, start),
         end,
         settings,
-        None if times is None else times.tolist(),
-        _threads(threads),
+        times,
     )
-    return _dataset(found, made, (dims, shape, arrays), times)
+    whole = xr.broadcast(*arrays.values()) if arrays else []
+    dims = tuple(map(str, whole[0].dims)) if arrays else ()
+    shape = tuple(whole[0].shape) if arrays else ()
+    flat = {name: np.ravel(one.to_numpy()) for name, one in zip(arrays, whole, strict=True)}
+    if recorded is not None:
+        _compare(recorded, *runs.rows(flat, int(np.prod(shape, dtype=int))), runs)
+    if chunks is not None:
+        return runs.lazy(arrays, (dims, shape), chunks, threads)
+    found = runs.compute(flat, int(np.prod(shape, dtype=int)), _threads(threads))
+    return runs.dataset(found, (dims, shape), arrays)
+
+
+@dataclass(frozen=True)
+class _Runs:
+    """What many runs have in common."""
+
+    system: FormulaSystem
+    #: The values of all parameters, and the places of those that are given.
+    base: list[float]
+    parameters: dict[str, int]
+    #: The places of components that are given.
+    initial: dict[str, int]
+    #: The state at the start, unless it is that of the system.
+    state: Any
+    begin: tuple[int | None, float | None]
+    end: float | None
+    settings: dict[str, Any]
+    times: NDArray[np.float64] | None
+
+    def rows(self, flat: Mapping[str, Any], count: int) -> tuple[Any, Any]:
+        """The parameters of each run, and its state at the start, if that is not the system's."""
+        rows = np.tile(np.array(self.base, dtype=float), (count, 1))
+        for name, place in self.parameters.items():
+            rows[:, place] = flat[name]
+        n = len(self.system.components)
+        if self.state is not None:
+            states = np.tile(self.state, (count, 1))
+        elif not self.initial:
+            return rows, None
+        elif len(self.initial) < n:
+            # The others are those of the system, which may depend on parameters.
+            states = np.array(self.system._native.starts(rows)).reshape(count, n)
+        else:
+            states = np.empty((count, n))
+        for name, place in self.initial.items():
+            states[:, place] = flat[name]
+        return rows, states
+
+    def compute(self, flat: Mapping[str, Any], count: int, threads: int) -> dict[str, Any]:
+        """Makes so many runs."""
+        rows, states = self.rows(flat, count)
+        times = None if self.times is None else self.times.tolist()
+        system, begin, end = self.system._native, self.begin, self.end
+        return _native.run_many(
+            system, rows, states, begin, end, self.settings, times, threads
+        )
+
+    def results(self, found: dict[str, Any]) -> dict[str, tuple[tuple[str, ...], Any]]:
+        """What is known of each run, with further dimensions."""
+        count, n = found["t"].size, len(self.system.components)
+        modes = np.array([*self.system.modes, ""])
+        results: dict[str, Any] = {
+            "end_time": ((), found["t"]),
+            "end_state": (("component",), found["y"].reshape(count, n)),
+            "end_mode": ((), modes[found["modes"]]),
+            "outcome": ((), np.array(found["outcomes"], dtype=_OUTCOME)),
+            "event_count": ((), found["counts"]),
+            "decided": ((), found["decided"]),
+        }
+        if self.times is not None:
+            samples = found["samples"].reshape(count, self.times.size, n)
+            results["state"] = (("time", "component"), samples)
+        return results
+
+    def coordinates(self, arrays: "Mapping[str, DataArray]") -> dict[str, Any]:
+        coordinates: dict[str, Any] = {**arrays, "component": self.system.components}
+        return coordinates if self.times is None else {**coordinates, "time": self.times}
+
+    def dataset(
+        self,
+        found: dict[str, Any],
+        axes: tuple[tuple[str, ...], tuple[int, ...]],
+        arrays: "Mapping[str, DataArray]",
+    ) -> "Dataset":
+        """What was found, with the events of all runs one after another."""
+        import xarray as xr
+
+        dims, shape = axes
+        variables = {
+            name: ((*dims, *more), values.reshape((*shape, *values.shape[1:])))
+            for name, (more, values) in self.results(found).items()
+        }
+        n, modes = len(self.system.components), np.array([*self.system.modes, ""])
+        labels = [rules for _, rules in self.system._native.modes()]
+        pairs = zip(found["event_from"].tolist(), found["event_guards"].tolist(), strict=True)
+        guards = np.array([labels[mode][guard] for mode, guard in pairs], dtype=str)
+        variables |= {
+            "event_run": (("event",), found["event_runs"]),
+            "event_time": (("event",), found["event_times"]),
+            "event_guard": (("event",), guards),
+            "event_from": (("event",), modes[found["event_from"]]),
+            "event_to": (("event",), modes[found["event_to"]]),
+            "event_before": (("event", "component"), found["event_before"].reshape(-1, n)),
+            "event_after": (("event", "component"), found["event_after"].reshape(-1, n)),
+        }
+        failures = [f"run {index}: {message}" for index, message in found["failures"]]
+        attributes = {"stickslip_version": _native.version(), "failures": failures}
+        return xr.Dataset(variables, self.coordinates(arrays), attributes)
+
+    def lazy(
+        self,
+        arrays: "Mapping[str, DataArray]",
+        axes: tuple[tuple[str, ...], tuple[int, ...]],
+        chunks: Chunks,
+        threads: int | None,
+    ) -> "Dataset":
+        """The same without events, on Dask. A task holds only its part of each array."""
+        import dask.array as da
+        import xarray as xr
+
+        dims, shape = axes
+        if not dims:
+            raise ValueError("chunks: nothing varies; expected an array of a parameter")
+        most = dict(zip(dims, block_shape(dims, shape, chunks, _BLOCK), strict=True))
+        pairs: list[Any] = []
+        for array in arrays.values():
+            sizes = tuple(most[str(dim)] for dim in array.dims)
+            pairs += [da.from_array(array.to_numpy(), chunks=sizes), array.dims]  # type: ignore[no-untyped-call]
+        own = {name: array.dims for name, array in arrays.items()}
+        nothing = {name: np.empty(0) for name in arrays}
+        empty = self.results(self.compute(nothing, 0, 1))
+        fields = np.dtype(
+            [(name, values.dtype, values.shape[1:]) for name, (_, values) in empty.items()]
+        )
+        blocks: Any = da.blockwise(  # type: ignore[no-untyped-call]
+            _block, dims, *pairs, runs=self, own_dims=own, dims=dims, fields=fields,
+            threads=1 if threads is None else _threads(threads),
+            concatenate=True, align_arrays=False, dtype=fields,
+            meta=np.empty((0,) * len(dims), fields),
+        )  # fmt: skip
+        variables = {}
+        for name, (more, values) in empty.items():
+            further = values.shape[1:]
+            variables[name] = (
+                (*dims, *more),
+                da.map_blocks(  # type: ignore[no-untyped-call]
+                    _field, blocks, name, dtype=values.dtype,
+                    new_axis=list(range(len(dims), len(dims) + len(further))) or None,
+                    chunks=(*blocks.chunks, *((size,) for size in further)),
+                    meta=np.empty((0,) * (len(dims) + len(further)), values.dtype),
+                ),
+            )  # fmt: skip
+        attributes = {"stickslip_version": _native.version()}
+        return xr.Dataset(variables, self.coordinates(arrays), attributes)
+
+
+def _block(
+    *parts: Any,
+    runs: _Runs,
+    own_dims: Mapping[str, tuple[Any, ...]],
+    dims: tuple[str, ...],
+    fields: np.dtype[Any],
+    threads: int,
+) -> NDArray[np.void]:
+    """The results of the runs of a block."""
+    named = zip(own_dims.items(), parts, strict=True)
+    arrays = {name: aligned(part, own, dims) for (name, own), part in named}
+    shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
+    flat = {name: np.broadcast_to(array, shape).ravel() for name, array in arrays.items()}
+    found = runs.results(runs.compute(flat, int(np.prod(shape, dtype=int)), threads))
+    block = np.empty(shape, fields)
+    for name, (_, values) in found.items():
+        block[name] = values.reshape((*shape, *values.shape[1:]))
+    return block
+
+
+def _field(block: NDArray[np.void], name: str) -> NDArray[Any]:
+    return block[name]
 
 
 def _mode_of(system: FormulaSystem, mode: str | Mode) -> int:
@@ -163,75 +340,19 @@ def _array(name: str, value: Any) -> "DataArray":
     return array
 
 
-def _states(
-    system: FormulaSystem, state: Any, rows: Any, initial: tuple[list[str], Mapping[str, Any], Any]
-) -> Any:
-    """The state at the start of each run."""
-    components, given, flat = initial
-    if state is None:
-        missing = [name for name in components if name not in given]
-        if missing:
-            # The others are those of the system, which may depend on parameters.
-            own = system._native.starts(rows)
-            states = np.array(own).reshape(len(rows), len(components))
-        else:
-            states = np.empty((len(rows), len(components)))
-    else:
-        states = np.tile(state, (len(rows), 1))
-    for name in given:
-        states[:, components.index(name)] = flat[name]
-    return states
-
-
-def _compare(recorded: Recorded, rows: Any, given: Any, settings: dict[str, Any]) -> None:
+def _compare(recorded: Recorded, rows: Any, states: Any, runs: _Runs) -> None:
     """Compares formulas with their functions at some runs."""
-    states, start, end = given
     places = sorted({0, len(rows) // 2, len(rows) - 1})[:_COMPARED] if len(rows) else []
     for place in places:
         values = tuple(rows[place].tolist())
         state = None if states is None else states[place].tolist()
         try:
             recorded.compare_start(values)
-            begin = (None, start, state)
-            found = recorded.system._native.run(list(values), begin, end, settings, [])
+            begin = (None, runs.begin[1], state)
+            native = recorded.system._native
+            found = native.run(list(values), begin, runs.end, runs.settings, [])
             recorded.compare(found, values)
         except CannotRecord as reason:
             raise ValueError(f"many runs are those of formulas, but {reason}") from None
         except _native.ComputationError:
             continue
-
-
-def _dataset(
-    found: dict[str, Any], system: FormulaSystem, axes: tuple[Any, Any, Any], times: Any
-) -> "Dataset":
-    import xarray as xr
-
-    dims, shape, arrays = axes
-    n, components = len(system.components), system.components
-    modes = np.array([*system.modes, ""])
-    labels = [rules for _, rules in system._native.modes()]
-    pairs = zip(found["event_from"].tolist(), found["event_guards"].tolist(), strict=True)
-    guards = np.array([labels[mode][guard] for mode, guard in pairs], dtype=str)
-    variables: dict[str, Any] = {
-        "end_time": (dims, found["t"].reshape(shape)),
-        "end_state": ((*dims, "component"), found["y"].reshape(*shape, n)),
-        "end_mode": (dims, modes[found["modes"]].reshape(shape)),
-        "outcome": (dims, np.array(found["outcomes"], dtype=str).reshape(shape)),
-        "event_count": (dims, found["counts"].reshape(shape)),
-        "decided": (dims, found["decided"].reshape(shape)),
-        "event_run": ("event", found["event_runs"]),
-        "event_time": ("event", found["event_times"]),
-        "event_guard": ("event", guards),
-        "event_from": ("event", modes[found["event_from"]]),
-        "event_to": ("event", modes[found["event_to"]]),
-        "event_before": (("event", "component"), found["event_before"].reshape(-1, n)),
-        "event_after": (("event", "component"), found["event_after"].reshape(-1, n)),
-    }
-    coordinates: dict[str, Any] = {**arrays, "component": components}
-    if times is not None:
-        samples = found["samples"].reshape(*shape, times.size, n)
-        variables["state"] = ((*dims, "time", "component"), samples)
-        coordinates["time"] = times
-    failures = [f"run {index}: {message}" for index, message in found["failures"]]
-    attributes = {"stickslip_version": _native.version(), "failures": failures}
-    return xr.Dataset(variables, coordinates, attributes)

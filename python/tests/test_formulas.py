@@ -114,3 +114,13 @@ def test_a_text_slides_and_comes_to_rest() -> None:
     )
     assert ball.solve().y[:, -1] == pytest.approx([0, 0], abs=1e-9)
     assert "rest -> lie" in ball.text
+
+
+def test_recorded_functions_are_text_that_reads_the_same():
+    found = stickslip.solve(lambda t, y: [y[1], -y[0]], (0, 2), [1.0, 0.0])
+    text = found.system.text
+    again = stickslip.system(text).solve((0, 2))
+    assert (again.y[:, -1] == found.y[:, -1]).all() and "mode main" in text
+    # A copy keeps the names, also those that no text can have.
+    restored = pickle.loads(pickle.dumps(found.system))
+    assert restored.modes == found.system.modes and restored.text == text

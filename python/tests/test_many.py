@@ -1,5 +1,6 @@
 """Many runs of one system."""
 
+import functools
 import math
 from pathlib import Path
 
@@ -187,3 +188,33 @@ def test_the_collision_as_text_has_the_switches_of_the_engine() -> None:
     # The last event is the end of the contact.
     assert (found.event_count.to_numpy() - 1 == switches).all()
     assert found.event_guard[-1] == "parts"
+
+
+def test_lazy_runs_are_those_at_once():
+    da = pytest.importorskip("dask.array")
+    kwargs = {
+        "parameters": {"k": np.linspace(1.0, 3.0, 7), "c": np.linspace(0.1, 0.5, 5)},
+        "initial": {"y1": [0.0, 1.0]},
+        "events": lambda t, y, k, c: y[0],
+        "t_eval": [0.5, 1.5],
+    }
+    run = functools.partial(
+        solve_many, lambda t, y, k, c: [y[1], -k * y[0] - c * y[1]], (0, 4), [1.0, 0.0]
+    )
+    whole = run(**kwargs)
+    for chunks in ("auto", 3, {"k": 2}):
+        lazy = run(**kwargs, chunks=chunks)
+        assert isinstance(lazy.end_state.data, da.Array) and "event_time" not in lazy
+        found = lazy.compute(scheduler="threads")
+        for name in found:
+            assert found[name].dims == whole[name].dims and found[name].equals(whole[name]), name
+    part = run(**kwargs, chunks={"k": 1, "c": 1}).event_count.isel(k=3, c=2)
+    assert part.compute().equals(whole.event_count.isel(k=3, c=2))
+    # Blocks are computed elsewhere as well.
+    again = run(**kwargs, chunks=3).end_time.compute(scheduler="processes", num_workers=1)
+    assert again.equals(whole.end_time)
+    for chunks, message in [(0, "at least 1"), ({"x": 1}, "the dimensions are"), ("big", "auto")]:
+        with pytest.raises(ValueError, match=message):
+            run(**kwargs, chunks=chunks)
+    with pytest.raises(ValueError, match="nothing varies"):
+        run(parameters={"k": 1.0, "c": 0.1}, chunks=1)

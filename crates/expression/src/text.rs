@@ -1,13 +1,14 @@
 //! Systems as text: read, written and formatted.
 //!
 //! `tokens` divides a text into words and signs, and `reader` goes through them. `formula` reads
-//! formulas, `rules` what happens when, and `statements` the rest. `print` writes a system, and
-//! `format` a text in its usual form.
+//! formulas, `rules` what happens when, and `statements` the rest. `print` writes a system, under
+//! names that are `readable`, and `format` a text in its usual form.
 
 mod format;
 mod formula;
 mod names;
 mod print;
+mod readable;
 mod reader;
 mod rules;
 mod statements;

@@ -63,6 +63,26 @@ impl FormulaSystem {
         self.0.text()
     }
 
+    /// The system with other names of parameters, components and modes.
+    fn renamed(
+        &self,
+        parameters: Vec<String>,
+        components: Vec<String>,
+        modes: Vec<String>,
+    ) -> PyResult<Self> {
+        let mut system = self.0.clone();
+        let counts = [system.parameters.len(), system.components.len(), system.modes.len()];
+        if [parameters.len(), components.len(), modes.len()] != counts {
+            return Err(bad_input(format!("expected as many names as there are: {counts:?}")));
+        }
+        let own = system.parameters.iter_mut().map(|it| &mut it.name);
+        let own = own.chain(system.components.iter_mut().map(|it| &mut it.name));
+        let own = own.chain(system.modes.iter_mut().map(|it| &mut it.name));
+        let names = parameters.into_iter().chain(components).chain(modes);
+        own.zip(names).for_each(|(own, name)| *own = name);
+        Ok(Self(system))
+    }
+
     fn parameters(&self) -> Vec<Parameter> {
         let all = self.0.parameters.iter();
         all.map(|it| (it.name.clone(), it.value, it.range)).collect()

@@ -48,10 +48,10 @@ impl Printed {
 
 impl System {
     /// The system as text, with its names for formulas. [`System::parse`] reads the same formulas
-    /// from it, so that runs are the same bit for bit.
+    /// from it, so that runs are the same bit for bit. Names that no text can have are changed.
     #[must_use]
     pub fn text(&self) -> String {
-        Printer::new(self).print()
+        Printer::new(&self.readable()).print()
     }
 }
 

@@ -227,3 +227,28 @@ fn guards_that_start_from_zeros_of_higher_order_need_no_declaration() {
     // x = τ³/6 − τ⁴/24 vanishes again at τ = 4.
     assert!((end.s - 5.0).abs() < 1e-9, "{end:?}");
 }
+
+#[test]
+fn names_that_no_text_can_have_are_changed_in_it() {
+    let mut system = parsed(
+        "parameter a = 2, b = 3\nstate x = a, y = 0\nmode p\n  x' = -b*x\n  y' = 1\n\
+                             \n  when y > 1 -> q\nmode q\n  x' = 0\n  y' = x\nstart in p\nend = 2",
+    );
+    for (own, name) in system.parameters.iter_mut().zip(["end", "end"]) {
+        own.name = name.to_owned();
+    }
+    for (own, name) in system.components.iter_mut().zip(["sin", "2 y\n"]) {
+        own.name = name.to_owned();
+    }
+    for (own, name) in system.modes.iter_mut().zip(["", "stick slip"]) {
+        own.name = name.to_owned();
+    }
+    let again = parsed(&system.text());
+    let names = |it: &System| it.modes.iter().map(|mode| mode.name.clone()).collect::<Vec<_>>();
+    assert_eq!(names(&again), ["main", "stick_slip"]);
+    assert_eq!(again.parameters[0].name, "end_");
+    assert_eq!(again.parameters[1].name, "end__");
+    assert_eq!([&again.components[0].name, &again.components[1].name], ["sin_", "_2_y_"]);
+    let [one, other] = [system, again].map(|it| run(&it.with(&[2.0, 3.0]).expect("parameters")));
+    assert_eq!(one, other);
+}
