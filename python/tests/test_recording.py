@@ -605,3 +605,25 @@ def test_a_text_has_a_study_of_its_accuracy():
         decay.converge(parameters={"unknown": 1.0})
     with pytest.raises(ValueError, match="expected an end after"):
         decay.converge(t_span=(0.0, 0.0))
+
+
+def test_jumps_of_the_right_hand_side_are_seen():
+    def pulse(t, y):
+        return [1e4 if 1.5 < t < 1.5001 else 0.0]
+
+    found = solve(pulse, (0, 10), [0.0])
+    assert abs(found.y[0, -1] - 1.0) < 1e-9 and found.events.size == 0
+    assert found.sol is None and found.y.shape[0] == 1
+
+    def wave(t, y):
+        return [1.0 if t % 1 < 0.25 else -1.0, float(np.floor(t))]
+
+    found = solve(wave, (0, 8), [0.0, 0.0], dense_output=True, t_eval=[0.5, 7.75])
+    assert np.abs(found.y[:, -1] - [-3.75, 21 + 7 * 0.75]).max() < 1e-11
+    assert abs(found.sol(0.125)[0] - 0.125) < 1e-13
+    assert found.sensitivities("y0").y_by.shape[-1] == 2
+
+
+def test_a_switch_that_slides_is_integrated_as_it_is():
+    found = solve(lambda t, y: [-np.sign(y[0])], (0, 1.00001), [1.0])
+    assert found.success and abs(found.y[0, -1]) < 1e-9

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use stickslip_solver::{Direction, Guard, InvalidTimes, Times};
 
+use crate::branches::Branched;
 use crate::graph::{Formula, Variable};
 use crate::invalid::InvalidParameters;
 use crate::program::{Inputs, Program};
@@ -28,6 +29,8 @@ pub struct Compiled {
     numbers: Program,
     count: usize,
     has: (bool, bool),
+    /// The same system with its branches as events, and what its further components are on a state.
+    branched: Option<Box<(Self, Program)>>,
 }
 
 /// How many numbers of a rule are times.
@@ -56,6 +59,18 @@ impl System {
     /// # Errors
     /// [`InvalidParameters`] if its parts, which may be made by hand, do not fit together.
     pub fn compile(&self) -> Result<Compiled, InvalidParameters> {
+        let mut compiled = self.compile_as_it_is()?;
+        if let Some(Branched { system, starts }) = self.branched() {
+            let (components, parameters) = (self.components.len(), self.parameters.len());
+            let inputs = Inputs { components, parameters, fixed: true };
+            let starts = Program::compile(&system.graph, &starts, inputs);
+            compiled.branched = Some(Box::new((system.compile_as_it_is()?, starts)));
+        }
+        Ok(compiled)
+    }
+
+    /// The system whose branches are no events.
+    pub(crate) fn compile_as_it_is(&self) -> Result<Compiled, InvalidParameters> {
         whole::require(self)?;
         let fixed = self.fixed_formulas();
         let inputs = Inputs { components: 0, parameters: self.parameters.len(), fixed: false };
@@ -78,6 +93,7 @@ impl System {
             numbers: Program::compile(&self.graph, &fixed, inputs),
             count: fixed.len(),
             has: (self.start.is_some(), self.end.is_some()),
+            branched: None,
         })
     }
 
@@ -213,7 +229,12 @@ impl Compiled {
             let choice = numbers.next(|| "what chooses the first mode".to_owned())?;
             first = if choice < 0.0 { other } else { first };
         }
+        // Where a branch has no value, the system runs as it is.
+        let branched = self.branched.as_ref().and_then(|branched| {
+            Some(Box::new((branched.0.with(parameters).ok()?, branched.1.with(parameters))))
+        });
         Ok(Runnable {
+            branched,
             state: state?,
             modes: self.modes.iter().map(|mode| mode.with(parameters)).collect(),
             ticks,

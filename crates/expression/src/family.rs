@@ -102,7 +102,8 @@ impl SystemFamily {
             return Err(InvalidParameters::Value { what, value: value as f64, expected });
         }
         axes.iter().try_for_each(|&axis| system.require_one_first_mode(axis))?;
-        let compiled = order.align(system).compile()?;
+        // Sequences are those of rules alone.
+        let compiled = order.align(system).compile_as_it_is()?;
         let rules = order.names;
         compiled.check(parameters)?;
         let count = parameters.len();

@@ -278,6 +278,23 @@ impl Graph {
         })
     }
 
+    /// The formula with another condition, of the same sign, in its choices by `old`.
+    pub(crate) fn with_condition(
+        &mut self,
+        formula: Formula,
+        old: Formula,
+        new: Formula,
+    ) -> Formula {
+        let [not_old, not_new] = [old, new].map(|it| self.unary(Unary::Neg, it));
+        self.rewritten(formula, &mut |graph, node, made| match node {
+            Node::Select(condition, above, below) if condition == old || condition == not_old => {
+                let condition = if condition == old { new } else { not_new };
+                Some(graph.select(condition, made[above.index()], made[below.index()]))
+            }
+            _ => None,
+        })
+    }
+
     /// The formula with another one in place of a node.
     pub(crate) fn replaced(&mut self, formula: Formula, old: Node, new: Formula) -> Formula {
         self.rewritten(formula, &mut |_, node, _| (node == old).then_some(new))

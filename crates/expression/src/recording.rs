@@ -126,6 +126,28 @@ impl Runnable {
         end: f64,
         options: &Options,
     ) -> Result<Recording, RunError> {
+        if let Some(branched) = self.with_branches()
+            && let Ok(mut found) = branched.record_as_it_is(method, end, options)
+            && found.is_regular()
+        {
+            found.take_out(Hidden { groups: 1, own: self.state.len() }, &self.rules());
+            return Ok(found);
+        }
+        self.record_as_it_is(method, end, options)
+    }
+
+    /// The numbers of rules of all modes.
+    fn rules(&self) -> Vec<usize> {
+        self.modes.iter().map(|mode| mode.guards.len()).collect()
+    }
+
+    /// Records a run whose branches are no events.
+    pub(crate) fn record_as_it_is(
+        &self,
+        method: EmbeddedPair,
+        end: f64,
+        options: &Options,
+    ) -> Result<Recording, RunError> {
         let mut recorder = Recorder::default();
         let start = self.start();
         let run = run_dynamic_with(method, self, start, end, options, &mut recorder)?;
@@ -148,11 +170,76 @@ impl Runnable {
         options: &Options,
         events: &mut Vec<DynamicSwitch<usize>>,
     ) -> Result<DynamicRun<usize>, RunError> {
+        if let Some(branched) = self.with_branches() {
+            let (mut found, start) = (Vec::new(), branched.start());
+            let run = run_dynamic_with(method, &branched, start, end, options, &mut found);
+            if let Ok(mut run) = run
+                && is_regular(run.outcome)
+            {
+                let (own, rules) = (self.state.len(), self.rules());
+                found.retain(|event| event.guard < rules[event.from]);
+                for event in &mut found {
+                    event.before.truncate(own);
+                    event.after.truncate(own);
+                    event.simultaneous.retain(|guard| *guard < rules[event.from]);
+                }
+                run.state.truncate(own);
+                events.append(&mut found);
+                return Ok(run);
+            }
+        }
         run_dynamic_with(method, self, self.start(), end, options, events)
     }
 }
 
+/// Whether a run came to its end. Otherwise its branches may have followed one another without end.
+const fn is_regular(outcome: Outcome) -> bool {
+    matches!(outcome, Outcome::ReachedEnd | Outcome::EndedByGuard { .. })
+}
+
+/// Components that are not those of the system: behind the own ones of each group.
+#[derive(Clone, Copy)]
+pub(crate) struct Hidden {
+    /// The number of groups of a state.
+    pub groups: usize,
+    /// The number of own components of a group.
+    pub own: usize,
+}
+
+impl Hidden {
+    fn take_out(self, states: &mut Vec<f64>, all: usize) {
+        let each = all / self.groups.max(1);
+        let mut place = 0;
+        states.retain(|_| {
+            place += 1;
+            (place - 1) % each < self.own
+        });
+    }
+}
+
 impl Recording {
+    fn is_regular(&self) -> bool {
+        is_regular(self.run.outcome)
+    }
+
+    /// Takes out components that are hidden, and rules behind so many of each mode.
+    pub(crate) fn take_out(&mut self, hidden: Hidden, rules: &[usize]) {
+        let all = self.state.len();
+        let is_own = |mode: usize, guard: usize| guard < rules[mode];
+        self.events.retain(|event| is_own(event.from, event.guard));
+        for event in &mut self.events {
+            event.simultaneous.retain(|&guard| is_own(event.from, guard));
+            hidden.take_out(&mut event.before, all);
+            hidden.take_out(&mut event.after, all);
+        }
+        self.touches.retain(|touch| is_own(touch.mode, touch.guard));
+        self.poles.retain(|pole| is_own(pole.mode, pole.guard));
+        self.preempted.retain(|it| is_own(it.mode, it.guard));
+        self.steps.iter_mut().for_each(|step| hidden.take_out(&mut step.coefficients, all));
+        hidden.take_out(&mut self.run.state, all);
+        hidden.take_out(&mut self.state, all);
+    }
+
     /// Where the run started.
     #[must_use]
     pub fn start(&self) -> f64 {

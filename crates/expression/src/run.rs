@@ -20,6 +20,8 @@ pub struct Runnable {
     pub(crate) start: f64,
     pub(crate) end: f64,
     pub(crate) state: Vec<f64>,
+    /// The same system with its branches as events, and what its further components are on a state.
+    pub(crate) branched: Option<Box<(Self, Program)>>,
 }
 
 #[derive(Clone, Debug)]
@@ -120,6 +122,17 @@ impl Runnable {
             self.state = state.to_vec();
         }
         Ok(self)
+    }
+
+    /// The same run with branches as events, if there are any.
+    pub(crate) fn with_branches(&self) -> Option<Self> {
+        let (branched, starts) = &**self.branched.as_ref()?;
+        let mut branches = vec![f64::NAN; branched.state.len() - self.state.len()];
+        starts.run(self.start, &self.state, &mut branches);
+        let state = [&self.state[..], &branches].concat();
+        let finite = branches.iter().all(|it| it.is_finite());
+        let (first, start, end) = (self.first, self.start, self.end);
+        finite.then(|| Self { first, start, end, state, ..branched.clone() })
     }
 
     /// Where a run ends; infinite if the system does not say.

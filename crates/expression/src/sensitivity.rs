@@ -3,10 +3,7 @@
 //! Derivatives are further components of the state. Between events they obey the variational
 //! equations, and at an event they jump (Leine and Nijmeijer, *Dynamics and Bifurcations of
 //! Non-Smooth Mechanical Systems*, 2004, section 7.3). Both are formulas that [`Graph::slope`]
-//! makes from those of the system. Where equations themselves jump, by an `if` or by `floor`, the
-//! derivatives jump as at an event.
-
-mod jumps;
+//! makes from those of the system, whose branches are events.
 
 use stickslip_solver::{EmbeddedPair, Options, Outcome, RunError};
 use thiserror::Error;
@@ -14,7 +11,7 @@ use thiserror::Error;
 use crate::graph::{Binary, Formula, Graph, Unary, Variable};
 use crate::invalid::InvalidParameters;
 use crate::program::{Inputs, Program};
-use crate::recording::Recording;
+use crate::recording::{Hidden, Recording};
 use crate::system::{Component, Next, Rule, System, Trigger};
 
 /// What a run is differentiated by.
@@ -73,8 +70,7 @@ impl System {
     ///
     /// Error control covers the derivatives too, which are about as accurate as the state. They
     /// hold for an unchanged order of events, and grow without bound towards a graze. Where events
-    /// accumulate, the run ends, also if the system says how it goes on. Where equations jump,
-    /// steps end, which the run without derivatives does not do.
+    /// accumulate, the run ends, also if the system says how it goes on.
     ///
     /// ```
     /// use stickslip_expression::{By, System};
@@ -104,7 +100,7 @@ impl System {
         end: Option<f64>,
         options: &Options,
     ) -> Result<Sensitivities, SensitivityError> {
-        let compiled = self.compile()?;
+        let compiled = self.compile_as_it_is()?;
         if let Some(beyond) = by.iter().find(|by| match by {
             By::Parameter(place) => *place >= self.parameters.len(),
             By::Start(place) => *place >= self.components.len(),
@@ -118,11 +114,26 @@ impl System {
         }
         let end_moves = end.is_none();
         let end = end.unwrap_or(compiled.with(parameters)?.end());
-        let extended = Extended::of(self, by);
-        let runnable = extended.system.with(parameters)?;
-        let mut recording = runnable.record(method, end, options)?;
-        extended.forget_jumps(&mut recording)?;
-        let places = extended.places(&recording, parameters, end_moves);
+        let branched = self.branched();
+        if branched.is_none() && self.branches() {
+            let s = compiled.with(parameters)?.start().s;
+            let reason = "equations branch in many ways, or beside guards that start from zero";
+            return Err(SensitivityError::Jump { s, reason });
+        }
+        let extended = Extended::of(branched.as_ref().map_or(self, |it| &it.system), by);
+        let runnable = extended.system.compile_as_it_is()?.with(parameters)?;
+        let mut recording = runnable.record_as_it_is(method, end, options)?;
+        let rules: Vec<usize> = self.modes.iter().map(|mode| mode.rules.len()).collect();
+        extended.require_jumps_alone(&recording, &rules)?;
+        let mut places = extended.places(&recording, parameters, end_moves, &rules);
+        if branched.is_some() {
+            let own = self.components.len();
+            recording.take_out(Hidden { groups: 1 + by.len(), own }, &rules);
+            for place in &mut places {
+                place.state.truncate(own);
+                place.state_by.iter_mut().for_each(|by| by.truncate(own));
+            }
+        }
         Ok(Sensitivities { recording, places })
     }
 }
@@ -172,7 +183,6 @@ impl<'a> Extended<'a> {
                     extended.system.modes[mode].slopes.push(rate);
                 }
             }
-            extended.jumps(own, mode);
             let mut moves = Vec::new();
             for (place, rule) in own.rules.iter().enumerate() {
                 let shifts: Vec<Formula> =
@@ -335,8 +345,37 @@ impl<'a> Extended<'a> {
         changes
     }
 
-    /// The events and the end of a run, with their derivatives.
-    fn places(&self, found: &Recording, parameters: &[f64], end_moves: bool) -> Vec<Moving> {
+    /// Refuses events behind which derivatives are not known. Rules behind so many of each mode are
+    /// those of branches.
+    fn require_jumps_alone(
+        &self,
+        found: &Recording,
+        rules: &[usize],
+    ) -> Result<(), SensitivityError> {
+        for (place, event) in found.events.iter().enumerate() {
+            let refuse = |reason| Err(SensitivityError::Jump { s: event.s, reason });
+            if event.jump {
+                return refuse("a condition jumps over its limit");
+            }
+            let before = place.checked_sub(1).map_or(found.start(), |last| found.events[last].s);
+            let behind = found.events.get(place + 1).map_or(f64::INFINITY, |next| next.s);
+            let alone = before < event.s && event.s < behind;
+            let is_branch = event.guard >= rules[event.from];
+            if is_branch && !alone && event.before[self.n..] != event.after[self.n..] {
+                return refuse("equations jump where something else happens");
+            }
+        }
+        Ok(())
+    }
+
+    /// The events of the first rules of each mode and the end of a run, with their derivatives.
+    fn places(
+        &self,
+        found: &Recording,
+        parameters: &[f64],
+        end_moves: bool,
+        rules: &[usize],
+    ) -> Vec<Moving> {
         let count = self.system.components.len();
         let inputs = Inputs { components: count, parameters: parameters.len(), fixed: true };
         let compile = |formulas: &[Formula]| {
@@ -362,7 +401,7 @@ impl<'a> Extended<'a> {
             Moving { s, s_by: s_by.to_vec(), state: state[..self.n].to_vec(), state_by }
         };
         let mut places: Vec<Moving> = Vec::with_capacity(found.events.len() + 1);
-        for event in &found.events {
+        for event in found.events.iter().filter(|it| it.guard < rules[it.from]) {
             places.push(moving(&programs[event.from][event.guard], event.s, &event.before));
         }
         if !matches!(found.run.outcome, Outcome::EndedByGuard { .. }) {

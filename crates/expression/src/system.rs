@@ -150,13 +150,17 @@ impl Rule {
     /// A rule that leaves everything as it is acts where its condition begins to hold: it would act
     /// without end as long as the condition holds.
     pub(crate) fn note_once(&mut self) {
-        let idle = self.next == Next::Stay && self.changes.is_empty() && self.rest.is_none();
+        let idle = self.stays_as_it_is() && self.rest.is_none() && self.ends_after != 1;
         if let Trigger::When(_, direction @ Direction::Below) = &mut self.trigger
             && idle
-            && self.ends_after != 1
         {
             *direction = Direction::Falling;
         }
+    }
+
+    /// Whether the rule leaves everything as it is.
+    pub(crate) fn stays_as_it_is(&self) -> bool {
+        self.next == Next::Stay && self.changes.is_empty()
     }
 
     /// A rule that changes nothing.
@@ -212,4 +216,16 @@ pub enum Next {
     Mode(usize),
     /// In the second mode where the formula is ≥ 0, and in the third where it is negative.
     Branch(Formula, usize, usize),
+}
+
+impl Next {
+    /// The modes to which a rule of the mode at `place` leads.
+    pub(crate) fn modes(&self, place: usize) -> impl Iterator<Item = usize> + use<> {
+        let modes = match *self {
+            Self::Stay => [Some(place), None],
+            Self::Mode(next) => [Some(next), None],
+            Self::Branch(_, one, other) => [Some(one), Some(other)],
+        };
+        modes.into_iter().flatten()
+    }
 }

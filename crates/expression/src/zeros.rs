@@ -10,7 +10,7 @@ mod polynomial;
 use stickslip_solver::Direction;
 
 use crate::graph::{Formula, Graph, Variable};
-use crate::system::{Mode, Next, Rule, System, Trigger};
+use crate::system::{Mode, Rule, System, Trigger};
 use polynomial::Polynomial;
 
 /// The highest order that is looked for.
@@ -81,8 +81,7 @@ impl System {
                     Trigger::When(guard, _) => Some(graph.substituted(guard, &before)),
                     _ => None,
                 };
-                let idle = rule.next == Next::Stay && rule.changes.is_empty();
-                for mode in targets(place, &rule.next).filter(|_| !idle) {
+                for mode in rule.next.modes(place).filter(|_| !rule.stays_as_it_is()) {
                     entries.push(Entry { mode, state: state.clone(), time: None, zero });
                 }
                 if let Some(rest) = &rule.rest {
@@ -111,7 +110,7 @@ impl System {
             let before = before(graph, &held[place]);
             for rule in &self.modes[place].rules {
                 let state = behind(graph, &before, &rule.changes);
-                for next in targets(place, &rule.next) {
+                for next in rule.next.modes(place) {
                     if self.enter(graph, &mut held[next], next, &state) {
                         open.push(next);
                     }
@@ -146,16 +145,6 @@ impl System {
         }
         less
     }
-}
-
-/// The modes to which a rule leads.
-fn targets(place: usize, next: &Next) -> impl Iterator<Item = usize> + use<> {
-    let modes = match *next {
-        Next::Stay => [Some(place), None],
-        Next::Mode(next) => [Some(next), None],
-        Next::Branch(_, one, other) => [Some(one), Some(other)],
-    };
-    modes.into_iter().flatten()
 }
 
 /// The components in a mode, those that are known as their formulas.

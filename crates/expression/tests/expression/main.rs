@@ -1,5 +1,6 @@
 //! Tests of formulas and systems as data.
 
+mod branches;
 mod checks;
 mod examples;
 mod formulas;

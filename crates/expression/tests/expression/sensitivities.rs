@@ -187,6 +187,17 @@ fn equations_that_jump_have_derivatives() {
         // The integral of ⌊pt⌋ is that of jumps at k/p.
         ("parameter p = 1\nstate x = 0\nx' = floor(p*t)\nend = 2.5", &[p], &[3.0]),
         ("parameter p = -1\nstate x = 0\nx' = floor(p*t)\nend = 2.5", &[p], &[3.0]),
+        // A square wave, by its duty and by its period.
+        (
+            "parameter p = 0.3\nstate x = 0\nx' = if t % 1 < p then 1 else 0\nend = 2.5",
+            &[p],
+            &[3.0],
+        ),
+        (
+            "parameter p = 1\nstate x = 0\nx' = if t % p < 0.3 then 1 else 0\nend = 2.1",
+            &[p],
+            &[-2.0],
+        ),
         // Corners that do not jump, and numbers that do not move.
         ("parameter p = 0.5\nstate x = 0, y = 0\nx' = 1\ny' = abs(x - p)\nend = 2", &[p], &[-1.0]),
         (
@@ -211,11 +222,7 @@ fn equations_that_jump_have_derivatives() {
 #[test]
 fn jumps_without_derivatives_are_refused() {
     for (text, reason) in [
-        // The condition itself jumps, of equations and of a rule.
-        (
-            "parameter p = 0.3\nstate x = 0\nx' = if t % 1 < p then 1 else 0\nend = 2",
-            "something else",
-        ),
+        // The condition itself jumps.
         (
             "parameter p = 1\nstate x = 0\nx' = 1\nwhen (if t < p then 1 else -1) falls through 0\nend = 2",
             "jumps over its limit",
