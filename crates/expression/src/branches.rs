@@ -1,11 +1,11 @@
 //! Branches of equations as events.
 //!
 //! Where equations jump, by an `if` on what moves or by `floor`, a step that runs over the place is
-//! wrong, and one that does not see it misses it. So a run remembers on which side of each condition
-//! it is, in further components that only events change: the equations read those, and are smooth
-//! between events, and rules change them where a condition changes. They are taken out of what is
-//! found. Where sides would change without end, since both push towards the condition, equations
-//! choose as they are written.
+//! wrong, and one that does not see it misses it. So a run remembers on which side of each
+//! condition it is, in further components that only events change: the equations read those, and
+//! are smooth between events, and rules change them where a condition changes. They are taken out
+//! of what is found. Where sides would change without end, since both push towards the condition,
+//! equations choose as they are written.
 
 use crate::graph::{Binary, Formula, Graph, Node, Unary, Variable};
 use crate::system::{Component, Rule, System, Trigger};
