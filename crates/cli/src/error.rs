@@ -81,7 +81,7 @@ pub enum Failure {
     },
     /// A run of a system failed.
     #[error("the run failed: {0}")]
-    Run(#[from] stickslip_solver::RunError),
+    Run(String),
     /// Errors of time steps cannot be measured.
     #[error(transparent)]
     TimeSteps(#[from] TimeStepsError),

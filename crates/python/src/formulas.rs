@@ -185,7 +185,7 @@ impl FormulaSystem {
         let (runnable, end) = self.started(&parameters, start, end)?;
         let (method, options) = settings.checked()?;
         let found = py.detach(|| runnable.record(method, end, &options));
-        let found = found.map_err(failed)?;
+        let found = found.map_err(|error| failed(self.0.explained(&error)))?;
         let columns = columns(py, &self.0, &found, times)?;
         // As of functions of Python: with the stages of dense output, and a look at the start.
         let stages = if method == EmbeddedPair::Dop853 { 3 } else { 0 };

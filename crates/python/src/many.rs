@@ -44,7 +44,7 @@ pub fn run_many<'py>(
         }
         if let Some(times) = &times {
             let found = runnable.record(method, end, &options);
-            let found = found.map_err(|error| error.to_string())?;
+            let found = found.map_err(|error| system.0.explained(&error))?;
             let samples = times.iter().flat_map(|&s| {
                 found.at(s).unwrap_or_else(|| vec![f64::NAN; found.run.state.len()])
             });
@@ -53,7 +53,7 @@ pub fn run_many<'py>(
         }
         let mut events = Vec::new();
         let run = runnable.events(method, end, &options, &mut events);
-        let run = run.map_err(|error| error.to_string())?;
+        let run = run.map_err(|error| system.0.explained(&error))?;
         Ok(Ended { run, events, samples: Vec::new() })
     };
     let pool = Threads::pool(threads)?;

@@ -3,7 +3,6 @@
 use stickslip_figure::FigureError;
 use stickslip_model::exact::ExactError;
 use stickslip_model::{Contact, EngineError, InvalidParameter, OtherLaw};
-use stickslip_solver::RunError;
 
 use crate::limits::{MOST_CELLS, MOST_LAWS, MOST_PSI, MOST_STIFFNESS, STIFFNESSES};
 use crate::search::SearchError;
@@ -19,7 +18,7 @@ pub enum StudyError {
     ContactLaws(#[from] InvalidContactLaws),
     /// The run of a system fails.
     #[error("the run failed: {0}")]
-    Run(#[from] RunError),
+    Run(String),
     /// A picture cannot be drawn.
     #[error(transparent)]
     Picture(#[from] FigureError),

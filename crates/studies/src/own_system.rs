@@ -71,7 +71,8 @@ pub fn run(settings: &Settings, progress: Report<'_>) -> Result<Study, StudyErro
         progress(Progress::Advance { steps: 1 });
         found
     };
-    let reference = attempt(EmbeddedPair::Dop853, REFERENCE[0])?;
+    let reference = attempt(EmbeddedPair::Dop853, REFERENCE[0])
+        .map_err(|error| StudyError::Run(settings.system.explained(&error)))?;
     let beside = attempt(EmbeddedPair::Dop853, REFERENCE[1]);
     let doubt = Row::new(EmbeddedPair::Dop853, REFERENCE[1], &beside, &reference);
     let row = |&(method, tolerance): &(EmbeddedPair, f64)| {

@@ -37,7 +37,8 @@ pub fn run(plan: &RunPlan) -> Result<(), Failure> {
         path.map_or(Ok(()), CsvFile::probe)?;
     }
     plot.as_ref().map_or(Ok(()), PictureFile::probe)?;
-    let found = runnable.record(*method, *end, options)?;
+    let found = runnable.record(*method, *end, options);
+    let found = found.map_err(|error| Failure::Run(system.explained(&error)))?;
     let events = events.as_deref().map(|path| write_events(path, system, &found)).transpose()?;
     let course = course.as_ref().map(|it| write_course(it, system, &found)).transpose()?;
     let picture = plot.as_ref().map(|plot| plot.write(Ok(draw(plan, &found)))).transpose()?;

@@ -114,3 +114,16 @@ fn a_system_is_printed_in_its_usual_form() {
     assert_eq!(one.stdout, other.stdout);
     assert_eq!(stickslip("system nowhere.slip").code, 2);
 }
+
+#[test]
+fn rules_that_lead_to_each_other_are_named() {
+    let directory = Workspace::new();
+    let text = "state x = 0\nmode up\n  x' = 1\n  when x > 1 \"top\" -> down\nmode down\n  x' = 1\n  \
+                when x < 2 \"bottom\" -> up\nstart in up\nend = 5\n";
+    directory.write("cycle.slip", text);
+    for line in ["run cycle.slip", "converge cycle.slip --out study"] {
+        let ran = directory.run(line);
+        assert_eq!(ran.code, 1, "{line}");
+        assert!(ran.stderr.contains("`top` of mode up, `bottom` of mode down"), "{}", ran.stderr);
+    }
+}
