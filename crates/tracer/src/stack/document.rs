@@ -15,7 +15,7 @@ pub const SCHEMA: &str = "stickslip.family-stack/1";
 /// A stack in the layout of its file: what its atlases consist of, and what changes between them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StackDocument<Label> {
-    /// The name of the layout, [`SCHEMA`].
+    /// The name of the layout, `stickslip.family-stack/1`.
     pub schema: String,
     /// What was traced, in words of the caller.
     pub family: String,
