@@ -171,16 +171,19 @@ impl Measurement<'_> {
 
     fn findings(&self) -> Vec<String> {
         let name = &self.settings.name;
-        let count = self.reference.events.len();
+        let count = match self.reference.events.len() {
+            1 => "1 event".to_owned(),
+            count => format!("{count} events"),
+        };
         let mut findings = vec![if self.doubt.same {
             format!(
-                "The reference of `{name}` is dop853 at a tolerance of {:.0e}: {count} events. At \
+                "The reference of `{name}` is dop853 at a tolerance of {:.0e}: {count}. At \
                  {:.0e} the state is {:.1e} and an event {:.1e} beside it.",
                 REFERENCE[0], REFERENCE[1], self.doubt.state, self.doubt.time
             )
         } else {
             format!(
-                "The reference of `{name}` is in doubt: dop853 finds {count} events at a tolerance \
+                "The reference of `{name}` is in doubt: dop853 finds {count} at a tolerance \
                  of {:.0e}, and others at {:.0e}.",
                 REFERENCE[0], REFERENCE[1]
             )
@@ -198,9 +201,8 @@ impl Measurement<'_> {
                 ),
             });
             for wanted in WANTED {
-                let enough = self.of(method).filter(|row| row.error() <= wanted);
-                let cheapest = enough.min_by_key(|row| row.work.field);
-                findings.extend(cheapest.map(|row| {
+                let enough = self.of(method).find(|row| row.error() <= wanted);
+                findings.extend(enough.map(|row| {
                     format!(
                         "{name} has errors below {wanted:.0e} at a tolerance of {:.0e}, with {} \
                          right-hand sides.",
