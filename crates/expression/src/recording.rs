@@ -298,16 +298,23 @@ impl Recording {
     pub fn curve(&self, parts: usize) -> Vec<(f64, Vec<f64>)> {
         let mut curve = vec![(self.start, self.state.clone())];
         let mut events = self.events.iter().peekable();
+        // Steps end at events that change something; others lie within them.
+        let changes =
+            |event: &&DynamicSwitch<usize>| event.before != event.after || event.from != event.to;
+        let mut changing = self.events.iter().filter(changes).peekable();
         let parts = parts.max(1);
         for step in &self.steps {
             while let Some(event) = events.next_if(|event| event.s <= step.s) {
                 curve.push((event.s, event.before.clone()));
                 curve.push((event.s, event.after.clone()));
             }
-            // A step ends at the next event, but for rounding.
-            let most = events.peek().map_or(self.run.s, |event| event.s);
+            while changing.next_if(|event| event.s <= step.s).is_some() {}
+            let most = changing.peek().map_or(self.run.s, |event| event.s);
             for part in 1..=parts {
                 let s = (step.s + step.h * part as f64 / parts as f64).min(most);
+                while let Some(event) = events.next_if(|event| event.s < s) {
+                    curve.push((event.s, event.before.clone()));
+                }
                 curve.push((s, step.at(s, self.state.len())));
             }
         }

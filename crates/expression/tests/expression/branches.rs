@@ -97,3 +97,17 @@ fn events_are_those_of_rules_alone() {
     let run = system.events(EmbeddedPair::Dop853, 10.0, &Options::default(), &mut events);
     assert_eq!((events, run.expect("a run").state), (found.events, found.run.state));
 }
+
+#[test]
+fn a_curve_goes_through_events_that_change_nothing() {
+    let found = run("state x = 0\nx' = if t < 1 then 1 else -1\nwhen x > 0.4 \"high\"\nend = 2");
+    let curve = found.curve(4);
+    assert!(curve.windows(2).all(|pair| pair[0].0 <= pair[1].0));
+    for (t, x) in &curve {
+        assert!((x[0] - (1.0 - (t - 1.0).abs())).abs() < 1e-12, "{t} {x:?}");
+    }
+    // The corner is a point of it, and so is the event.
+    for place in [0.4, 1.0] {
+        assert!(curve.iter().any(|(t, _)| (t - place).abs() < 1e-12), "{curve:?}");
+    }
+}
