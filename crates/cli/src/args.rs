@@ -46,7 +46,7 @@ pub use locate::LocateArguments;
 pub use man::ManArguments;
 pub use map::MapArguments;
 pub use method::{Method, MethodArguments};
-pub use plane::{Axis, PlaneArguments};
+pub use plane::{Axis, GivenArguments, PlaneArguments};
 pub use reproduce::{AuditFormat, ReproduceArguments};
 pub use run::{RunArguments, SystemArguments};
 pub use shared::{CollisionArguments, Format};

@@ -70,7 +70,7 @@ impl System {
             let mut own = Vec::new();
             // From the outermost one, since conditions are what they are in the graph.
             for (k, branch) in branches.iter().enumerate().rev() {
-                let place = graph.component(short(n + k));
+                let place = graph.component_at(n + k);
                 let mut replaced = |slopes: &[Formula]| -> Vec<Formula> {
                     slopes.iter().map(|&it| branch.replaced(graph, it, place)).collect()
                 };
@@ -91,7 +91,7 @@ impl System {
             }
             for &k in &uses[place] {
                 let graph = &mut system.graph;
-                let own = graph.component(short(n + k));
+                let own = graph.component_at(n + k);
                 for (guard, value) in branches[k].changes(graph, own) {
                     let guard = smooth(graph, guard, &branches, (k, n));
                     // Other branches may be by conditions that branch here.
@@ -152,10 +152,7 @@ fn entered(
     (starts, n): (&[Formula], usize),
 ) {
     let changes = |graph: &mut Graph, own: &[(usize, Formula)], modes: &[usize]| {
-        let mut state: Vec<Formula> = (0..n).map(|place| graph.component(short(place))).collect();
-        for &(place, formula) in own {
-            state[place] = formula;
-        }
+        let state = graph.state(n, own);
         let mut used: Vec<usize> = modes.iter().flat_map(|&mode| &uses[mode]).copied().collect();
         used.sort_unstable();
         used.dedup();
@@ -225,7 +222,7 @@ fn smooth(
 ) -> Formula {
     let mut smooth = formula;
     for (place, branch) in branches.iter().enumerate().rev().filter(|(place, _)| *place != k) {
-        let own = graph.component(short(n + place));
+        let own = graph.component_at(n + place);
         smooth = branch.replaced(graph, smooth, own);
     }
     smooth
@@ -238,9 +235,4 @@ fn moves(graph: &Graph, formula: Formula, discrete: &[bool]) -> bool {
         Variable::Component(place) => !discrete.get(*place as usize).copied().unwrap_or(false),
         Variable::Parameter(_) => false,
     })
-}
-
-/// A place as formulas have it. There are fewer than 2³² components.
-fn short(place: usize) -> u32 {
-    u32::try_from(place).unwrap_or(u32::MAX)
 }

@@ -382,6 +382,20 @@ impl Graph {
         self.variable(Variable::Component(index))
     }
 
+    /// The component at a place of a state. There are fewer than 2³².
+    pub(crate) fn component_at(&mut self, place: usize) -> Formula {
+        self.component(u32::try_from(place).unwrap_or(u32::MAX))
+    }
+
+    /// A state of `n` components behind changes of some.
+    pub(crate) fn state(&mut self, n: usize, changes: &[(usize, Formula)]) -> Vec<Formula> {
+        let mut state: Vec<Formula> = (0..n).map(|place| self.component_at(place)).collect();
+        for &(place, formula) in changes {
+            state[place] = formula;
+        }
+        state
+    }
+
     /// A parameter.
     pub fn parameter(&mut self, index: u32) -> Formula {
         self.variable(Variable::Parameter(index))

@@ -187,10 +187,8 @@ impl<'a> Extended<'a> {
             for (place, rule) in own.rules.iter().enumerate() {
                 let shifts: Vec<Formula> =
                     (0..by.len()).map(|k| extended.shift(rule, &own.slopes, k)).collect();
-                if !rule.changes.is_empty() || rule.next != Next::Stay {
-                    let rates = extended.rates_behind(system, mode, rule);
-                    let slopes = &own.slopes;
-                    let changes = extended.jump(&rule.changes, (slopes, &rates), &shifts);
+                if !rule.stays_as_it_is() {
+                    let changes = extended.jump(system, mode, rule, &shifts);
                     extended.system.modes[mode].rules[place].changes.extend(changes);
                 }
                 moves.push(shifts);
@@ -249,11 +247,7 @@ impl<'a> Extended<'a> {
         match &rule.trigger {
             &Trigger::When(guard, _) => {
                 let change = self.variation(guard, k, None);
-                let rate = self.graph().slope(guard, &mut |graph, variable| match variable {
-                    Variable::Time => graph.constant(1.0),
-                    Variable::Component(place) => slopes[place as usize],
-                    Variable::Parameter(_) => graph.constant(0.0),
-                });
+                let rate = self.graph().rate(guard, slopes);
                 let ratio = self.graph().binary(Binary::Div, change, rate);
                 self.graph().unary(Unary::Neg, ratio)
             }
@@ -294,11 +288,19 @@ impl<'a> Extended<'a> {
         self.graph().unary(Unary::Abs, difference)
     }
 
-    /// The slopes behind an event, as formulas of the state before.
-    fn rates_behind(&mut self, system: &System, mode: usize, rule: &Rule) -> Vec<Formula> {
-        let after = self.state_behind(&rule.changes);
+    /// The derivatives behind an event: the change of the new state at the time that moves, less
+    /// what the new slopes make of that motion.
+    fn jump(
+        &mut self,
+        system: &System,
+        mode: usize,
+        rule: &Rule,
+        shifts: &[Formula],
+    ) -> Vec<(usize, Formula)> {
+        let n = self.n;
+        let after = self.graph().state(n, &rule.changes);
         let slopes = |next: usize| &system.modes[next].slopes;
-        (0..self.n)
+        let rates: Vec<Formula> = (0..n)
             .map(|place| match rule.next {
                 Next::Stay => self.graph().substituted(slopes(mode)[place], &after),
                 Next::Mode(next) => self.graph().substituted(slopes(next)[place], &after),
@@ -308,35 +310,12 @@ impl<'a> Extended<'a> {
                     self.graph().select(condition, above, below)
                 }
             })
-            .collect()
-    }
-
-    /// The state behind changes.
-    fn state_behind(&mut self, changes: &[(usize, Formula)]) -> Vec<Formula> {
-        let mut after: Vec<Formula> = Vec::with_capacity(self.n);
-        for place in 0..self.n {
-            // Components are counted by u32.
-            after.push(self.graph().component(u32::try_from(place).unwrap_or(u32::MAX)));
-        }
-        for &(place, formula) in changes {
-            after[place] = formula;
-        }
-        after
-    }
-
-    /// The derivatives behind an event that makes these changes: the change of the new state at the
-    /// time that moves, less what the new slopes make of that motion.
-    fn jump(
-        &mut self,
-        changes: &[(usize, Formula)],
-        (slopes, rates): (&[Formula], &[Formula]),
-        shifts: &[Formula],
-    ) -> Vec<(usize, Formula)> {
-        let (n, after) = (self.n, self.state_behind(changes));
+            .collect();
         let mut changes = Vec::new();
         for (k, &shift) in shifts.iter().enumerate() {
             for place in 0..n {
-                let change = self.variation(after[place], k, Some((shift, slopes)));
+                let moving = Some((shift, &slopes(mode)[..]));
+                let change = self.variation(after[place], k, moving);
                 let back = self.graph().binary(Binary::Mul, rates[place], shift);
                 let change = self.graph().binary(Binary::Sub, change, back);
                 changes.push((n * (k + 1) + place, change));

@@ -21,7 +21,7 @@
 use stickslip_solver::Direction;
 use thiserror::Error;
 
-use crate::graph::{Binary, Formula, Unary, Variable};
+use crate::graph::{Binary, Formula, Unary};
 use crate::system::{Mode, Next, Rule, System, Trigger};
 
 /// The places of the modes that take the place of one that slides, from the first.
@@ -221,8 +221,7 @@ impl System {
             if f1 != f2 {
                 let jump = graph.binary(Binary::Sub, f1, f2);
                 let step = graph.binary(Binary::Mul, jump, distance);
-                // There are fewer than 2³² components.
-                let here = graph.component(u32::try_from(place).unwrap_or(u32::MAX));
+                let here = graph.component_at(place);
                 changes.push((place, graph.binary(Binary::Add, here, step)));
             }
         }
@@ -234,11 +233,7 @@ impl System {
         let graph = &mut self.graph;
         let slopes: Vec<Formula> =
             mode.slopes.iter().map(|&slope| graph.on_side(slope, surface, above)).collect();
-        let rate = graph.slope(surface, &mut |graph, variable| match variable {
-            Variable::Time => graph.constant(1.0),
-            Variable::Component(place) => slopes[place as usize],
-            Variable::Parameter(_) => graph.constant(0.0),
-        });
+        let rate = graph.rate(surface, &slopes);
         Side { slopes, rate }
     }
 
@@ -318,15 +313,7 @@ impl System {
 
     /// A formula of the state behind a rule's changes, as one of the state before.
     fn behind(&mut self, formula: Formula, rule: &Rule) -> Formula {
-        let mut components: Vec<Formula> = Vec::with_capacity(self.components.len());
-        for place in 0..self.components.len() {
-            let change = rule.changes.iter().find(|(changed, _)| *changed == place);
-            components.push(match change {
-                Some(&(_, formula)) => formula,
-                // There are fewer than 2³² components.
-                None => self.graph.component(u32::try_from(place).unwrap_or(u32::MAX)),
-            });
-        }
+        let components = self.graph.state(self.components.len(), &rule.changes);
         self.graph.substituted(formula, &components)
     }
 }

@@ -151,8 +151,7 @@ impl System {
 fn before(graph: &mut Graph, held: &[Held]) -> Vec<Formula> {
     let component = |(place, held): (usize, &Held)| match held {
         Held::At(formula) => *formula,
-        // There are fewer than 2³² components.
-        _ => graph.component(u32::try_from(place).unwrap_or(u32::MAX)),
+        _ => graph.component_at(place),
     };
     held.iter().enumerate().map(component).collect()
 }
@@ -189,11 +188,7 @@ fn zero_order(graph: &mut Graph, mode: &Mode, guard: Formula, entry: &Entry) -> 
         if !vanishes {
             return order;
         }
-        formula = graph.slope(formula, &mut |graph, variable| match variable {
-            Variable::Time => graph.constant(1.0),
-            Variable::Parameter(_) => graph.constant(0.0),
-            Variable::Component(place) => mode.slopes[place as usize],
-        });
+        formula = graph.rate(formula, &mode.slopes);
     }
     HIGHEST + 1
 }

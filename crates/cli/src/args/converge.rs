@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use stickslip_files::input::parameter::Parameter;
 
-use super::run::{setting, time};
+use super::plane::GivenArguments;
 use super::shared::{self, CollisionArguments};
 
 /// Options of `converge`.
@@ -16,15 +16,9 @@ pub struct ConvergeArguments {
     #[arg(conflicts_with_all = ["kappa", "ratio", "psi", "mu", "alpha", "damping"])]
     pub system: Option<PathBuf>,
 
-    /// The value of a parameter of the system; may be repeated
-    #[arg(long, value_name = "NAME=VALUE", value_parser = setting, requires = "system")]
-    #[arg(help_heading = "System of your own")]
-    pub set: Vec<(String, f64)>,
-
-    /// Where the run ends, instead of the end that the system says
-    #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
-    #[arg(requires = "system", help_heading = "System of your own")]
-    pub end: Option<f64>,
+    /// What else differs from the text.
+    #[command(flatten)]
+    pub given: GivenArguments,
 
     /// Scaled stiffness κ of one collision, instead of the usual 38; above 0, at most 10⁶
     #[arg(long, value_name = "K", help_heading = "Collision", allow_hyphen_values = true)]

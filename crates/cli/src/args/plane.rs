@@ -26,15 +26,9 @@ pub struct PlaneArguments {
     #[arg(help_heading = "System of your own")]
     pub y: Option<Axis>,
 
-    /// The value of another parameter; may be repeated
-    #[arg(long, value_name = "NAME=VALUE", value_parser = setting, requires = "system")]
-    #[arg(help_heading = "System of your own")]
-    pub set: Vec<(String, f64)>,
-
-    /// Where runs end, instead of the end that the system says
-    #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
-    #[arg(requires = "system", help_heading = "System of your own")]
-    pub end: Option<f64>,
+    /// What else differs from the text.
+    #[command(flatten)]
+    pub given: GivenArguments,
 
     /// Events after which a run is not told apart from others; where events accumulate, there are
     /// boundaries without end unless this is a small number [default: 10000000]
@@ -51,6 +45,20 @@ pub struct PlaneArguments {
     #[arg(long = "system-atol", value_name = "T", value_parser = atol, requires = "system")]
     #[arg(allow_hyphen_values = true, help_heading = "System of your own")]
     pub system_atol: Option<f64>,
+}
+
+/// What differs from the text of a system.
+#[derive(Debug, clap::Args)]
+pub struct GivenArguments {
+    /// The value of a parameter; may be repeated
+    #[arg(long, value_name = "NAME=VALUE", value_parser = setting, requires = "system")]
+    #[arg(help_heading = "System of your own")]
+    pub set: Vec<(String, f64)>,
+
+    /// Where runs end, instead of the end that the system says
+    #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
+    #[arg(requires = "system", help_heading = "System of your own")]
+    pub end: Option<f64>,
 }
 
 /// A parameter on an axis.

@@ -49,10 +49,11 @@ impl StudyPlan<own_system::Settings> {
     /// # Errors
     /// [`Failure`]: the system cannot be read, or options do not fit it.
     pub fn own_system(arguments: &ConvergeArguments) -> Result<Option<Self>, Failure> {
-        let ConvergeArguments { system: Some(path), set, end, out, threads, .. } = arguments else {
+        let ConvergeArguments { system: Some(path), given, out, threads, .. } = arguments else {
             return Ok(None);
         };
-        let SystemRun { name, system, runnable, end, .. } = SystemRun::new(path, set, *end)?;
+        let SystemRun { name, system, runnable, end, .. } =
+            SystemRun::new(path, &given.set, given.end)?;
         let settings = own_system::Settings { name, system, runnable, end };
         Ok(Some(Self { settings, out: out.clone(), threads: *threads }))
     }

@@ -7,7 +7,7 @@ use stickslip_files::input::source;
 use stickslip_solver::Options;
 use stickslip_tracer::{AtlasOptions, Point, Window};
 
-use crate::args::{Axis, PlaneArguments};
+use crate::args::{Axis, GivenArguments, PlaneArguments};
 use crate::error::Failure;
 
 /// The largest text of a system, in bytes.
@@ -130,7 +130,7 @@ impl SystemPlane {
     /// # Errors
     /// [`Failure`]: the system cannot be read, or options do not fit it.
     pub fn new(arguments: &PlaneArguments) -> Result<Option<Self>, Failure> {
-        let PlaneArguments { system, x, y, set, end, .. } = arguments;
+        let PlaneArguments { system, x, y, given: GivenArguments { set, end }, .. } = arguments;
         let (Some(path), Some(x), Some(y)) = (system, x, y) else { return Ok(None) };
         let (system, _) = read(path)?;
         let parameters = values(&system, set)?;

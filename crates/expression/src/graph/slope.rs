@@ -32,6 +32,18 @@ impl Graph {
         slopes[formula.index()]
     }
 
+    /// The rate of a formula while the components have these slopes.
+    ///
+    /// # Panics
+    /// If it reads a component beyond them.
+    pub(crate) fn rate(&mut self, formula: Formula, slopes: &[Formula]) -> Formula {
+        self.slope(formula, &mut |graph, variable| match variable {
+            Variable::Time => graph.constant(1.0),
+            Variable::Component(place) => slopes[place as usize],
+            Variable::Parameter(_) => graph.constant(0.0),
+        })
+    }
+
     /// The derivative of a function of formulas with these slopes.
     fn chain(&mut self, whole: Formula, node: Node, [u, v, w]: [Formula; 3]) -> Formula {
         use Binary::{Add, Div, Max, Min, Mul, Sub};
