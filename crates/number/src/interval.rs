@@ -227,8 +227,18 @@ impl Interval {
     /// The bounds of a function that rises.
     #[inline]
     fn rising(self, function: impl Fn(f64) -> f64) -> Self {
-        let (lower, upper) = (function(self.lower), function(self.upper));
-        Self::new(down(lower - FUNCTION * lower.abs()), up(upper + FUNCTION * upper.abs()))
+        Self::computed(function(self.lower), function(self.upper), FUNCTION)
+    }
+
+    /// Bounds of numbers between two that were computed with a relative `error`. One beyond the
+    /// range of doubles lies between the largest of them and infinity.
+    #[inline]
+    fn computed(lower: f64, upper: f64, error: f64) -> Self {
+        let below = |x: f64| {
+            let x = if f64::MAX < x { f64::MAX } else { x };
+            down(x - error * x.abs())
+        };
+        Self::new(below(lower), -below(-upper))
     }
 
     /// The square roots of the numbers that have one.
@@ -250,10 +260,8 @@ impl Interval {
             1 => self,
             ..=-1 => self.powi(exponent.saturating_neg()).inverse(),
             _ => {
-                let slack = FUNCTION * f64::from(exponent);
-                let widen = |lower: f64, upper: f64| {
-                    Self::new(down(lower - slack * lower.abs()), up(upper + slack * upper.abs()))
-                };
+                let error = FUNCTION * f64::from(exponent);
+                let widen = |lower, upper| Self::computed(lower, upper, error);
                 let (a, b) = (self.lower.powi(exponent), self.upper.powi(exponent));
                 if exponent % 2 != 0 || self.lower >= 0.0 {
                     widen(a, b)
@@ -455,6 +463,28 @@ impl Interval {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// What is too large for a double still has its sign.
+    #[test]
+    fn values_beyond_the_range_of_doubles_have_bounds() {
+        let functions: [fn(Interval) -> Interval; 7] = [
+            Interval::exp,
+            Interval::exp_m1,
+            Interval::sinh,
+            Interval::cosh,
+            |x| x.powi(200),
+            |x| x.powi(301),
+            |x| x.powf(1e300),
+        ];
+        for function in functions {
+            let values = function(Interval::new(1e3, 1e4));
+            assert!(values.lower > 0.99 * f64::MAX && values.upper.is_infinite(), "{values:?}");
+        }
+        for function in [Interval::sinh, |x: Interval| x.powi(301)] {
+            let values = function(Interval::new(-1e4, -1e3));
+            assert!(values.upper < -0.99 * f64::MAX && values.lower.is_infinite(), "{values:?}");
+        }
+    }
 
     /// Every function contains the values at random places of a random interval.
     #[test]
