@@ -3,7 +3,6 @@
 
 use crate::events::event::{Crossed, Event, only};
 use crate::events::examination::Examination;
-use crate::events::phase::NEAR_ZERO;
 use crate::lists::List;
 use crate::method::{StepOf, Store};
 use crate::system::System;
@@ -100,9 +99,7 @@ impl<S: System> Examination<'_, S> {
         let there = self.room.value(system, (mode, guard), s, y);
         self.statistics.guards += 1;
         let largest = self.phase.largest[guard];
-        // In a phase that is hardly longer than rounding of time, it hides more.
-        let near = NEAR_ZERO.max(16.0 * self.drift(elapsed) / elapsed);
-        if largest > 0.0 && there.abs() > near * largest {
+        if largest > 0.0 && there.abs() > self.near_zero(elapsed) * largest {
             return None;
         }
         let hidden = self.hidden_at(guard, step, elapsed, y);

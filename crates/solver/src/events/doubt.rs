@@ -4,6 +4,7 @@ use crate::events::along_step::{rounding, scales};
 use crate::events::event::{Crossed, Event};
 use crate::events::examination::Examination;
 use crate::events::isolate::noise;
+use crate::events::phase::NEAR_ZERO;
 use crate::method::{StepOf, Store};
 use crate::system::System;
 
@@ -29,6 +30,12 @@ impl<S: System> Examination<'_, S> {
     /// By how much rounding may have moved a time on the step.
     pub(crate) fn drift(&self, elapsed: f64) -> f64 {
         self.drift + 5.0 * f64::EPSILON * elapsed
+    }
+
+    /// The part of a guard's largest value below which it may be zero. In a phase that is hardly
+    /// longer than rounding of time, it hides more.
+    pub(crate) fn near_zero(&self, elapsed: f64) -> f64 {
+        NEAR_ZERO.max(16.0 * self.drift(elapsed) / elapsed)
     }
 
     /// The effect of rounding on a guard at a place of `step`: of time and state, and within the

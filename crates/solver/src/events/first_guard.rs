@@ -6,7 +6,7 @@ use crate::error::RunError;
 use crate::events::event::{Crossed, Event, Found};
 use crate::events::examination::{Examination, column, confirmed};
 use crate::events::isolate::{Beginning, Bracket};
-use crate::events::phase::{NEAR_ZERO, Phase};
+use crate::events::phase::Phase;
 use crate::events::quick::{self, NODES};
 use crate::events::status::{Crossing, Status};
 use crate::hybrid::{Direction, Statistics};
@@ -256,7 +256,8 @@ impl<S: System> Examination<'_, S> {
                 // In the bracket it crosses zero once, so that its sign tells on which side it is.
                 let before = crossing.sign * search.there[guard];
                 if low > (1.0 + TOGETHER) * theta
-                    || high >= theta && before > NEAR_ZERO * largest::<S>(guard, values)
+                    || high >= theta
+                        && before > self.near_zero(event.elapsed) * largest::<S>(guard, values)
                 {
                     search.open[guard] = false;
                     continue;
@@ -373,7 +374,8 @@ impl<S: System> Examination<'_, S> {
             return;
         }
         for guard in 0..self.phase.count() {
-            let near = there[guard].abs() <= NEAR_ZERO * largest::<S>(guard, values);
+            let near = self.near_zero(event.elapsed) * largest::<S>(guard, values);
+            let near = there[guard].abs() <= near;
             if near
                 && event.crossed[guard].is_none()
                 && self.notes_of(guard).next().is_none()

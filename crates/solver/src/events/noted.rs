@@ -64,16 +64,26 @@ impl<S: System> Examination<'_, S> {
         let since = s - 2.0 * self.error_of(event) - 8.0 * f64::EPSILON * s.abs();
         let phase = self.phase;
         self.notes.retain_mut(|note| {
-            let waits = |guard: usize| note.s >= since && !phase.precedes(guard, event.guard);
-            if waits(note.guard) {
-                event.take_in(&note.crossed);
-                return false;
+            if note.s < since {
+                return true;
             }
+            let mut first: Option<usize> = None;
             for guard in 0..phase.count() {
-                if note.simultaneous[guard] && waits(guard) {
+                let Some(crossed) = note.crossed[guard] else { continue };
+                if phase.precedes(guard, event.guard) {
+                    first = first.filter(|&first| phase.precedes(first, guard)).or(Some(guard));
+                } else {
+                    event.crossed[guard] = event.crossed[guard].or(Some(crossed));
+                    note.crossed[guard] = None;
                     note.simultaneous[guard] = false;
-                    event.crossed[guard] = event.crossed[guard].or(note.crossed[guard].take());
                 }
+            }
+            let Some(guard) = first else { return false };
+            if guard != note.guard {
+                note.simultaneous[guard] = false;
+                note.guard = guard;
+                let slope = note.crossed[guard].map_or(f64::INFINITY, |crossed| crossed.slope);
+                note.flatness = phase.flatness(guard, slope);
             }
             true
         });
