@@ -15,7 +15,7 @@ const ARRIVES: f64 = 16.0;
 /// The roundings of time that may hide what a guard does.
 const HIDES: f64 = 65536.0;
 /// A guard that acts is not asked again within so many roundings of time.
-const UNSEEN: f64 = 256.0;
+const UNSEEN: f64 = 64.0;
 /// An event this close to the end of its step is the one at the end.
 pub(crate) const SAME: f64 = 1e-6;
 
@@ -26,7 +26,7 @@ impl<S: System> Examination<'_, S> {
         for guard in 0..self.phase.count() {
             let s = step.s + step.h;
             // It has acted within rounding of this place.
-            let here = self.age + step.h <= UNSEEN * f64::EPSILON * s.abs();
+            let here = self.age + step.h <= UNSEEN * self.drift;
             if here && self.phase.forgiven[guard] {
                 continue;
             }
@@ -53,7 +53,8 @@ impl<S: System> Examination<'_, S> {
     pub(crate) fn tick(&mut self, step: &StepOf<S::State>, due: f64, event: &mut Option<Event<S>>) {
         if let Some(first) = event {
             let rounding = 4.0 * f64::EPSILON * due.abs().max(step.s.abs());
-            if step.h - first.elapsed > self.error_of(first) + rounding {
+            let latest = first.latest.unwrap_or_else(|| first.elapsed + self.error_of(first));
+            if step.h > latest + rounding {
                 return;
             }
             // The clock knows the time of the instant exactly.
@@ -147,6 +148,7 @@ impl<S: System> Examination<'_, S> {
             crossed: only(count, guard, crossed),
             simultaneous: List::of(count, false),
             elapsed: step.h,
+            latest: None,
             state: step.y1.clone(),
             residual: 0.0,
             beyond: (1.0 + REACH) * step.h,

@@ -34,6 +34,8 @@ pub(crate) struct Event<S: System> {
     pub(crate) elapsed: f64,
     /// The state on the guard.
     pub(crate) state: S::State,
+    /// The latest time at which errors may put a guard of this instant, if there are several.
+    pub(crate) latest: Option<f64>,
     /// The absolute value of the guard at that state, which is zero up to rounding.
     pub(crate) residual: f64,
     /// The time from the start of the step to a place behind the event, up to which the guard does

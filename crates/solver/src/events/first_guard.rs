@@ -215,6 +215,8 @@ impl<S: System> Examination<'_, S> {
             let mut reached: SmallVec<[Located; 2]> =
                 search.located.iter().filter(|it| it.guard == event.guard).copied().collect();
             while let Some(one) = reached.pop() {
+                let latest = one.elapsed + one.error;
+                event.latest = Some(event.latest.map_or(latest, |known| known.max(latest)));
                 for &other in search.located.iter().filter(|other| one.is_together_with(other)) {
                     if event.crossed[other.guard].is_none() {
                         event.crossed[other.guard] = Some(other.crossed);

@@ -57,6 +57,7 @@ impl<S: System> Examination<'_, S> {
             crossed: only(count, guard, Crossed { slope: at.slope.abs(), jump: at.jump, sign }),
             simultaneous: List::of(count, false),
             elapsed: at.elapsed,
+            latest: None,
             state: at.state,
             residual: at.residual.abs(),
             beyond,

@@ -81,6 +81,7 @@ impl<S: System> Examination<'_, S> {
             let Some(guard) = first else { return false };
             if guard != note.guard {
                 note.simultaneous[guard] = false;
+                note.simultaneous[note.guard] = note.crossed[note.guard].is_some();
                 note.guard = guard;
                 let slope = note.crossed[guard].map_or(f64::INFINITY, |crossed| crossed.slope);
                 note.flatness = phase.flatness(guard, slope);

@@ -36,7 +36,7 @@ pub fn times(exact: Exact, quarters: i128) -> Option<Exact> {
 }
 
 /// What a guard does to the linear form on which it depends.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
     Linear,
     /// x + x³/64
@@ -48,7 +48,7 @@ pub enum Shape {
 }
 
 /// A guard's function: a shape of the linear form Σ aᵢyᵢ + bs − c, times a power of two.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Function {
     pub components: [i8; LINEAR],
     pub time: i8,
@@ -276,6 +276,11 @@ impl Planted {
                     Some(guard)
                 }
             }));
+        }
+        // Those that are equal are one.
+        for function in uses.iter_mut().flatten().flatten() {
+            let equal = functions.iter().position(|other| *other == functions[*function]);
+            *function = equal.unwrap_or(*function);
         }
         let transitions =
             (0..modes).map(|mode| std::array::from_fn(|_| Self::transition(random, mode, modes)));
