@@ -15,6 +15,9 @@ use stickslip_number::{Enclosure, Interval};
 /// The relative change of state and time with which a guard's sensitivity to them is measured.
 pub(crate) const SLIGHT: f64 = 1e-12;
 
+/// Values beyond this one are taken for it, so that sums and products of them stay finite.
+const LARGEST: f64 = 1e300;
+
 /// The number of patterns of signs by which large states are moved.
 const PATTERNS: usize = 8;
 
@@ -159,7 +162,8 @@ impl<S: System, M: Method> AlongStep<'_, S, M> {
     fn value(&mut self, theta: f64, y: &S::State) -> f64 {
         self.statistics.guards += 1;
         let s = self.step.s + theta * self.step.h;
-        self.sign * self.room.value(self.system, (self.mode, self.guard), s, y)
+        let value = self.room.value(self.system, (self.mode, self.guard), s, y);
+        self.sign * value.clamp(-LARGEST, LARGEST)
     }
 
     /// Bounds of the guard from bounds of time and state.
