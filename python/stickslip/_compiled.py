@@ -119,6 +119,8 @@ def _reals(values: ArrayLike, what: str) -> Floats:
 
 
 def _number(value: Any, what: str) -> float:
+    if type(value) is float:
+        return value
     array = _reals(value, what)
     if array.size != 1:
         if array.size and (array == array.flat[0]).all():

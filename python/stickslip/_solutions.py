@@ -1,6 +1,7 @@
 """What a run gives: points, events, and the state at any time."""
 
 from dataclasses import dataclass, field
+from functools import cache
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
@@ -169,19 +170,40 @@ class Solution:
 Names: TypeAlias = tuple[list[str], list[list[str]], list[str]]
 
 
-def _text(names: Names) -> str:
-    """The type of an array of names."""
-    return f"U{max(map(len, [*names[0], *names[2], ' ']))}"
+def _width(names: Names) -> int:
+    """The length of the longest name."""
+    return max(1, *map(len, names[0]), *map(len, names[2]))
+
+
+@cache
+def _event_columns(width: int, dimension: int) -> list[Any]:
+    text, state = f"U{width}", ("f8", (dimension,))
+    columns: list[Any] = [("time", "f8"), ("guard", text), ("from", text), ("to", text)]
+    columns += [("before", *state), ("after", *state)]
+    return [*columns, ("flatness", "f8"), ("jump", "?"), ("simultaneous", "O")]
+
+
+@cache
+def _event_type(width: int, dimension: int) -> "np.dtype[np.void]":
+    return np.dtype(_event_columns(width, dimension))
+
+
+@cache
+def _place_types(width: int) -> tuple["np.dtype[np.void]", ...]:
+    """The types of touches, of poles and guards that were preempted, and of rests."""
+    text = f"U{width}"
+    place: list[Any] = [("time", "f8"), ("guard", text), ("mode", text)]
+    rests = [place[0], ("error", "f8"), place[1], ("from", text), ("to", text)]
+    return np.dtype([*place, ("margin", "f8")]), np.dtype(place), np.dtype(rests)
 
 
 def event_array(
     found: dict[str, Any], dimension: int, names: Names, extra: list[Any]
 ) -> NDArray[np.void]:
     """Everything that fired, in order, with room for further columns."""
-    text, state = _text(names), ("f8", (dimension,))
-    dtype: list[Any] = [("time", "f8"), ("guard", text), ("from", text), ("to", text)]
-    dtype += [("before", *state), ("after", *state)]
-    dtype += [("flatness", "f8"), ("jump", "?"), ("simultaneous", "O"), *extra]
+    dtype = _event_type(_width(names), dimension)
+    if extra:
+        dtype = np.dtype([*_event_columns(_width(names), dimension), *extra])
     modes, guards, _ = names
     left = found["event_from"].tolist()
     events: NDArray[np.void] = np.empty(len(left), dtype=dtype)
@@ -215,8 +237,7 @@ def solution_of(
     """The solution that the native module has found, as columns."""
     modes = np.array(names[0])
     labels, event_names = names[1:]
-    text = _text(names)
-    place: list[Any] = [("time", "f8"), ("guard", text), ("mode", text)]
+    touching, place, resting = _place_types(_width(names))
     touches = [(t, labels[mode][g], modes[mode], m) for t, mode, g, m in found["touches"]]
     poles, preempted = (
         [(t, labels[mode][guard], modes[mode]) for t, mode, guard in found[kind]]
@@ -239,12 +260,10 @@ def solution_of(
         y_events=[events["before"][row] for row in rows],
         event_names=event_names,
         events=events,
-        touches=np.array(touches, dtype=[*place, ("margin", "f8")]),
+        touches=np.array(touches, dtype=touching),
         poles=np.array(poles, dtype=place),
         preempted=np.array(preempted, dtype=place),
-        rests=np.array(
-            rests, dtype=[place[0], ("error", "f8"), place[1], ("from", text), ("to", text)]
-        ),
+        rests=np.array(rests, dtype=resting),
         decided=found["decided"],
         guards=guards,
         status=found["status"],

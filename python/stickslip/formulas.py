@@ -5,6 +5,7 @@ repository.
 """
 
 from collections.abc import Mapping
+from functools import cached_property
 from os import PathLike
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -16,7 +17,7 @@ from stickslip import _native
 from stickslip._compiled import _number
 from stickslip._derivatives import Rerun, Sensitivities, sensitivities_of
 from stickslip._run_arguments import settings_of, span, state_at_start, times_within
-from stickslip._solutions import Solution, event_array, solution_of
+from stickslip._solutions import Names, Solution, event_array, solution_of
 from stickslip.collisions import _threads
 from stickslip.studies import Study, _study
 
@@ -207,17 +208,22 @@ class FormulaSystem:
         rerun: Rerun,
         event_names: list[str] | None = None,
     ) -> Solution:
-        modes = self._native.modes()
-        labels = [rules for _, rules in modes]
-        if event_names is None:
-            event_names = list(dict.fromkeys(label for rules in labels for label in rules))
-        names = ([name for name, _ in modes], labels, event_names)
-        events = event_array(found, len(self.components), names, [])
+        modes, labels, labelled = self._names
+        names = (modes, labels, [*labelled] if event_names is None else event_names)
+        events = event_array(found, found["end_state"].size, names, [])
         start = found["start_time"]
         again = (self, rerun)
         return solution_of(
             found, events, names, start=start, dense=dense, guards="decided", again=again
         )
+
+    @cached_property
+    def _names(self) -> Names:
+        """The names of modes, the labels of rules of each, and all labels."""
+        rows = self._native.modes()
+        labels = [rules for _, rules in rows]
+        known = list(dict.fromkeys(label for rules in labels for label in rules))
+        return [name for name, _ in rows], labels, known
 
     def __repr__(self) -> str:
         values = ", ".join(f"{name}={value!r}" for name, value in self.parameters.items())
